@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/axis.h"
+#include "core/can_frame.h"
+#include "core/fixed_vector.h"
+
+namespace contour {
+
+inline constexpr std::size_t kMaxBuses = 4;
+inline constexpr std::size_t kMaxFramesPerCycle = 64;
+inline constexpr std::size_t kMaxPathPointsPerCycle = 8;
+
+/// A sequenced request of an operator; acknowledged in CycleRecord by its sequence number.
+enum class RequestKind : std::uint8_t {
+  kNone = 0,
+  kEnable = 1,     ///< Idle to Ready
+  kDisable = 2,    ///< to Idle, by a stop on the path first when running
+  kRun = 3,        ///< Ready to Running: the program whose points carry program_id
+  kStop = 4,       ///< controlled stop on the path, then Ready. Latched: nothing overwrites it
+  kReset = 5,      ///< Faulted to Idle, bringing drives up again as needed
+  kTerminate = 6,  ///< as kDisable, then the loop ends
+};
+
+struct Request {
+  RequestKind kind = RequestKind::kNone;
+  std::uint32_t sequence = 0;
+  std::uint32_t program_id = 0;  ///< kRun only
+};
+
+/// One grid point of the path of a program, all axes.
+struct PathPoint {
+  std::uint32_t program_id = 0;
+  bool last = false;  ///< the path ends here, at rest
+  PerAxis<ReferencePoint> axes;
+};
+
+/// What the auxiliary I/O permits. Inputs can only take permission away; old data counts as open.
+struct IoInput {
+  bool configured = false;         ///< no I/O in the machine file: nothing below is looked at
+  bool fresh = false;              ///< last poll is younger than the time-out
+  bool emergency_stop_ok = false;  ///< true when the emergency-stop circuit is closed
+  bool enable_chain_ok = false;
+  double screw_temperature_degC = 0.0;  ///< NaN when there is no sensor
+};
+
+struct BusInput {
+  bool up = true;  ///< interface is up and the last batch could be sent
+  bool bus_off = false;
+  std::uint32_t send_failures = 0;  ///< frames of the last batch that could not be sent
+};
+
+/// Everything the cycle takes in. The log holds exactly this, so that a run can be repeated bit for bit.
+struct CycleInput {
+  std::uint64_t cycle = 0;        ///< number of this grid point; skipped grid points leave a gap
+  std::int64_t grid_time_ns = 0;  ///< the grid point on the loop's clock; for records, not for logic
+  FixedVector<StampedFrame, kMaxFramesPerCycle> frames;
+  FixedVector<BusInput, kMaxBuses> buses;
+  FixedVector<PathPoint, kMaxPathPointsPerCycle> path;
+  Request request;
+  IoInput io;
+};
+
+}  // namespace contour

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace contour {
+
+/// Why the machine stopped (requests 1.., faults 32..) or what holds an output back (limits 96..).
+/// Values are part of the log format: append, never renumber.
+enum class Reason : std::uint16_t {
+  kNone = 0,
+  // What an operator or a program asked for.
+  kOperatorStop = 1,
+  kTerminate = 2,
+  kProgramEnd = 3,
+  kDisableRequest = 4,
+  // Faults: the machine ends in a defined stop.
+  kStaleFeedback = 32,
+  kFollowingError = 33,
+  kPositionLimit = 34,
+  kVelocityLimit = 35,
+  kNotANumber = 36,
+  kBusDown = 37,
+  kBusOff = 38,
+  kSendFailed = 39,
+  kHeartbeatLost = 40,
+  kDriveFault = 41,
+  kDriveLeftEnabled = 42,
+  kEmergencyStop = 43,
+  kEnableChainOpen = 44,
+  kIoStale = 45,
+  kBringUpFailed = 46,
+  kPathUnderrun = 47,
+  kPathDiscontinuous = 48,
+  kEnableTimeout = 49,
+  kStopTimeout = 50,
+  kEstimatorDiverged = 51,
+  kDriveNotFollowing = 52,
+  // Limits: the output is held back, the machine goes on.
+  kTorqueLimit = 96,
+  kTorqueRateLimit = 97,
+  kSolverCap = 98,
+  kInnovationGated = 99,
+  kParameterBound = 100,
+};
+
+constexpr bool IsFault(Reason r) noexcept {
+  const auto v = static_cast<std::uint16_t>(r);
+  return v >= 32 && v < 96;
+}
+constexpr bool IsLimit(Reason r) noexcept { return static_cast<std::uint16_t>(r) >= 96; }
+
+/// Short name as it appears in status, logs and cycles.csv.
+constexpr std::string_view Name(Reason r) noexcept {
+  switch (r) {
+    case Reason::kNone:
+      return "none";
+    case Reason::kOperatorStop:
+      return "operator_stop";
+    case Reason::kTerminate:
+      return "terminate";
+    case Reason::kProgramEnd:
+      return "program_end";
+    case Reason::kDisableRequest:
+      return "disable_request";
+    case Reason::kStaleFeedback:
+      return "stale_feedback";
+    case Reason::kFollowingError:
+      return "following_error";
+    case Reason::kPositionLimit:
+      return "position_limit";
+    case Reason::kVelocityLimit:
+      return "velocity_limit";
+    case Reason::kNotANumber:
+      return "not_a_number";
+    case Reason::kBusDown:
+      return "bus_down";
+    case Reason::kBusOff:
+      return "bus_off";
+    case Reason::kSendFailed:
+      return "send_failed";
+    case Reason::kHeartbeatLost:
+      return "heartbeat_lost";
+    case Reason::kDriveFault:
+      return "drive_fault";
+    case Reason::kDriveLeftEnabled:
+      return "drive_left_enabled";
+    case Reason::kEmergencyStop:
+      return "emergency_stop";
+    case Reason::kEnableChainOpen:
+      return "enable_chain_open";
+    case Reason::kIoStale:
+      return "io_stale";
+    case Reason::kBringUpFailed:
+      return "bring_up_failed";
+    case Reason::kPathUnderrun:
+      return "path_underrun";
+    case Reason::kPathDiscontinuous:
+      return "path_discontinuous";
+    case Reason::kEnableTimeout:
+      return "enable_timeout";
+    case Reason::kStopTimeout:
+      return "stop_timeout";
+    case Reason::kEstimatorDiverged:
+      return "estimator_diverged";
+    case Reason::kDriveNotFollowing:
+      return "drive_not_following";
+    case Reason::kTorqueLimit:
+      return "torque_limit";
+    case Reason::kTorqueRateLimit:
+      return "torque_rate_limit";
+    case Reason::kSolverCap:
+      return "solver_cap";
+    case Reason::kInnovationGated:
+      return "innovation_gated";
+    case Reason::kParameterBound:
+      return "parameter_bound";
+  }
+  return "unknown";
+}
+
+}  // namespace contour

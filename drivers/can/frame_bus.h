@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/can_frame.h"
+
+namespace contour {
+
+/// State of a bus as the last calls saw it. Counters never go back.
+struct BusState {
+  bool up = false;
+  bool bus_off = false;
+  std::uint64_t frames_received = 0;
+  std::uint64_t frames_sent = 0;
+  std::uint64_t send_failures = 0;  ///< frames not accepted (ENOBUFS, ENETDOWN, ...)
+  std::uint64_t error_frames = 0;
+  std::uint64_t receive_overflows = 0;  ///< frames lost before we saw them
+};
+
+/// The master's end of one CAN bus. Never blocks, never throws, never allocates after construction.
+class FrameBus {
+ public:
+  virtual ~FrameBus() = default;
+
+  /// Takes the frames that have arrived up to `now_ns` (virtual buses) or up to now (real ones), oldest
+  /// first, at most frames.size(); returns how many. Fills stamp_ns; leaves `bus` to the caller.
+  virtual std::size_t Receive(std::int64_t now_ns, std::span<StampedFrame> frames) noexcept = 0;
+
+  /// Hands a batch over in order at `now_ns`; returns how many were accepted. The rest is lost and counted.
+  virtual std::size_t Send(std::int64_t now_ns, std::span<const CanFrame> frames) noexcept = 0;
+
+  [[nodiscard]] virtual BusState State() const noexcept = 0;
+};
+
+}  // namespace contour
