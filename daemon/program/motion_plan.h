@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/axis.h"
+#include "daemon/program/program.h"
+
+namespace contour {
+
+/// What one axis of the machine allows a program to do. SI units, table side.
+struct PlanLimits {
+  std::string axis;  ///< name in the machine file
+  double position_min_m = 0.0;
+  double position_max_m = 0.0;
+  double velocity_m_s = 0.0;
+  double acceleration_m_s2 = 0.0;
+  double jerk_m_s3 = 0.0;  ///< 0: not limited
+};
+
+/// The commanded circle of a circle program.
+struct CommandedCircle {
+  std::size_t axis[2] = {0, 1};  ///< indices of the plane's axes
+  double centre_m[2] = {0, 0};
+  double radius_m = 0.0;
+  bool counter_clockwise = true;
+  double turns = 0.0;
+};
+
+/// A program placed on a machine: where it is at every instant, and what it looks like as a curve.
+/// Immutable and deterministic; safe to share between threads.
+class MotionPlan {
+ public:
+  virtual ~MotionPlan() = default;
+
+  [[nodiscard]] virtual std::size_t axis_count() const = 0;
+
+  /// From the first to the last instant; the machine rests at both.
+  [[nodiscard]] virtual double duration_s() const = 0;
+
+  /// Reference at a time since the start, held at either end. Velocity and acceleration are the exact
+  /// derivatives of position (from the right, at a corner taken at full feed).
+  virtual void At(double time_s, PerAxis<ReferencePoint>& axes) const = 0;
+
+  /// Shortest distance from a point (one coordinate per axis) to the whole curve.
+  [[nodiscard]] virtual double Distance_m(const PerAxis<double>& point_m) const = 0;
+
+  /// Turns that the reference has completed at a time since the start; 0 for shapes without turns.
+  [[nodiscard]] virtual double Turns(double time_s) const = 0;
+
+  /// Is this instant part of what is scored? Circles: the whole turns after the first; other shapes: from 1 s
+  /// after the start to the end.
+  [[nodiscard]] virtual bool Scored(double time_s) const = 0;
+
+  [[nodiscard]] virtual std::optional<CommandedCircle> circle() const = 0;
+
+  /// Nothing but standing still.
+  [[nodiscard]] virtual bool is_hold() const = 0;
+};
+
+/// Places a program where the machine stands and checks it against the limits: position range, velocity,
+/// acceleration, run-up. Throws ProgramError naming axis, value and limit.
+std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAxis<double>& start_m,
+                                             const PerAxis<PlanLimits>& limits);
+
+}  // namespace contour

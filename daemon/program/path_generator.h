@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/cycle_input.h"
+#include "daemon/program/motion_plan.h"
+
+namespace contour {
+
+/// Hands out a program's reference one grid point at a time. Point 0 is the start position at rest; the last
+/// point is flagged and at rest. Computes each point when it is asked for, so programs of any length start at
+/// once. Not for the real-time thread.
+class PathGenerator {
+ public:
+  /// Throws ProgramError when the program does not fit the machine (see PlanMotion).
+  PathGenerator(const Program& program, const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits,
+                double period_s, std::uint32_t program_id);
+
+  /// The next grid point; false when the last one has been handed out.
+  bool Next(PathPoint& point);
+
+  [[nodiscard]] std::uint64_t points() const { return points_; }  ///< altogether
+  [[nodiscard]] std::uint64_t points_done() const { return next_; }
+  [[nodiscard]] double duration_s() const { return plan_->duration_s(); }
+  [[nodiscard]] const std::shared_ptr<const MotionPlan>& plan() const { return plan_; }
+
+ private:
+  std::shared_ptr<const MotionPlan> plan_;
+  double period_s_;
+  std::uint32_t program_id_;
+  std::uint64_t points_;
+  std::uint64_t next_ = 0;
+};
+
+}  // namespace contour
