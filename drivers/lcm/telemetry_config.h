@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "core/visit.h"
+
+namespace contour {
+
+/// `telemetry:` of a machine file.
+struct TelemetryConfig {
+  bool publish = true;
+  std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
+  int batch_cycles = 50;
+  int look_hz = 50;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Optional("publish", publish, "whether telemetry goes out over LCM at all");
+    v.Optional("lcm_url", lcm_url, "LCM provider; ttl=0 keeps the multicast on this machine");
+    v.Optional("batch_cycles", batch_cycles, Range{1, 100}, "cycles in one CONTOUR_CYCLES message");
+    v.Optional("look_hz", look_hz, Range{1, 1000}, "rate of the messages meant for looking at");
+  }
+};
+
+}  // namespace contour
