@@ -1,0 +1,56 @@
+#pragma once
+
+#include "core/visit.h"
+
+namespace contour {
+
+/// Tuning of the estimator of one axis (`estimator:`; every key optional). Noise values are standard
+/// deviations of what one millisecond adds; other cycle times scale with the square root of the period.
+/// What each does and why it has its value: docs/estimator.md.
+struct EstimatorConfig {
+  double position_noise_um = 1e-4;
+  double velocity_noise_mm_s = 0.03;
+  double bristle_noise_N = 1.75;
+  double level_noise_N = 0.1;
+  double disturbance_noise_N = 0.5;
+  double log_sigma0_noise = 0.002;
+  double measurement_noise_um = 0.02;
+  double disturbance_decay_ms = 200.0;
+  double motion_gate_mm_s = 2.0;
+  double log_sigma0_range = 1.5;
+  double level_range = 2.0;
+  double innovation_gate_sigma = 12.0;
+  double innovation_gate_um = 20.0;
+  double observer_bandwidth_Hz = 60.0;
+  double ripple_rate = 0.02;
+  bool adapt = true;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Optional("position_noise_um", position_noise_um, kNotNegative, "process noise of the position");
+    v.Optional("velocity_noise_mm_s", velocity_noise_mm_s, kNotNegative, "process noise of the velocity");
+    v.Optional("bristle_noise_N", bristle_noise_N, kNotNegative, "process noise of the bristle force");
+    v.Optional("level_noise_N", level_noise_N, kNotNegative, "process noise of the friction levels");
+    v.Optional("disturbance_noise_N", disturbance_noise_N, kNotNegative,
+               "process noise of the leaky disturbance");
+    v.Optional("log_sigma0_noise", log_sigma0_noise, kNotNegative, "process noise of ln sigma0");
+    v.Optional("measurement_noise_um", measurement_noise_um, kPositive,
+               "position noise, at least the encoder's own step / sqrt(12)");
+    v.Optional("disturbance_decay_ms", disturbance_decay_ms, kPositive, "time constant of the disturbance");
+    v.Optional("motion_gate_mm_s", motion_gate_mm_s, kPositive,
+               "speed from which the parameters take their full process noise");
+    v.Optional("log_sigma0_range", log_sigma0_range, kPositive, "bound of |ln(sigma0 / commissioned)|");
+    v.Optional("level_range", level_range, Range{1.01, 100.0},
+               "friction levels stay within this factor of their commissioned value");
+    v.Optional("innovation_gate_sigma", innovation_gate_sigma, Range{3.0, 1e6},
+               "a measurement further off than this many standard deviations, and");
+    v.Optional("innovation_gate_um", innovation_gate_um, kPositive, "further off than this, is not believed");
+    v.Optional("observer_bandwidth_Hz", observer_bandwidth_Hz, Range{1.0, 400.0},
+               "bandwidth of the kinematic and the disturbance observer");
+    v.Optional("ripple_rate", ripple_rate, Range{0.0, 1.0},
+               "rate of learning the per-turn ripple of the friction level; 0 none");
+    v.Optional("adapt", adapt, kAny, "false: friction levels and stiffness keep their commissioned values");
+  }
+};
+
+}  // namespace contour
