@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Keeps the floors of the house: each folder includes only what lies below it.
+
+    include_floors.py ROOT
+
+Prints every offence as file:line and ends with 1 if there is one.
+"""
+import re
+import sys
+from pathlib import Path
+
+# A folder, and the folders it may include besides itself. The longest matching folder counts.
+RT_DRIVERS = ["drivers/can", "drivers/cia301", "drivers/cia402"]
+FLOOR_1 = ["core", "drivers", "estimator", "control"]
+MAY_INCLUDE = {
+    # floor 0: plain data
+    "core": [],
+    # floor 1: the wire, belief, decision; blind to each other
+    "drivers": ["core"],
+    "drivers/can": ["core"],
+    "drivers/cia301": ["core", "drivers/can"],
+    "drivers/cia402": ["core", "drivers/can", "drivers/cia301"],
+    "estimator": ["core"],
+    "control": ["core"],
+    # floor 2: the cycle, and YAML into the config structs of floor 1
+    "daemon/rt": ["core", *RT_DRIVERS, "estimator", "control"],
+    "config": FLOOR_1,
+    # floor 3
+    "daemon": [*FLOOR_1, "daemon/rt", "config"],
+    # The emulated machine shares no code with the estimator it is to test.
+    "tools/plant_emulator": ["core", "drivers", "config"],
+    "tools": [*FLOOR_1, "config", "daemon", "tools/plant_emulator"],
+    "tests": [*FLOOR_1, "config", "daemon", "tools"],
+}
+# The daemon's program joins the parts: it alone knows the emulated machine, for the bus `loopback`.
+PROGRAMS_MAY_INCLUDE = {"daemon/main.cc": ["tools/plant_emulator", "tools/machine"]}
+
+# The real-time side: what would allocate, lock, wait or talk stays out.
+REALTIME = ["core", *RT_DRIVERS, "estimator", "control", "daemon/rt"]
+FORBIDDEN_IN_REALTIME = re.compile(
+    r"^(yaml-cpp/|lcm/|modbus|spdlog/|fmt/|nlohmann/|CLI/|systemd/"
+    r"|(mutex|shared_mutex|condition_variable|future|iostream|fstream|ostream|print|regex|filesystem)$)")
+# Runs once, before the first cycle, and reads what the kernel allows.
+SETS_UP_REALTIME = ["daemon/rt/thread_setup.cc"]
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+TOP_FOLDERS = {folder.split("/")[0] for folder in MAY_INCLUDE}
+
+
+def home_of(path):
+    """The folder of MAY_INCLUDE that a path lies in, or None."""
+    parts = path.split("/")
+    for length in range(len(parts) - 1, 0, -1):
+        folder = "/".join(parts[:length])
+        if folder in MAY_INCLUDE:
+            return folder
+    return None
+
+
+def lies_in(path, folder):
+    return path.startswith(folder + "/")
+
+
+def is_allowed(includer, included):
+    home = home_of(includer)
+    allowed = MAY_INCLUDE[home] + PROGRAMS_MAY_INCLUDE.get(includer, [])
+    return home_of(included) == home or any(lies_in(included, folder) for folder in allowed)
+
+
+def is_realtime(path):
+    return path not in SETS_UP_REALTIME and any(lies_in(path, folder) for folder in REALTIME)
+
+
+def offences_in(root, path):
+    name = path.relative_to(root).as_posix()
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+        match = INCLUDE.match(line)
+        if not match:
+            continue
+        bracket, included = match.groups()
+        where = f"{name}:{number}"
+        if is_realtime(name) and FORBIDDEN_IN_REALTIME.match(included):
+            yield f"{where}: <{included}> has no place on the real-time side"
+        if bracket == "<":
+            continue
+        if included.split("/")[0] not in TOP_FOLDERS:
+            yield f'{where}: "{included}" is not written from the root of the repository'
+        elif home_of(included) is None:
+            yield f'{where}: "{included}" lies on no floor'
+        elif not is_allowed(name, included):
+            yield f'{where}: {home_of(name)} may not include "{included}"'
+
+
+def check(root):
+    """All offences below root, as text."""
+    offences = []
+    for top in sorted(TOP_FOLDERS):
+        for path in sorted((root / top).rglob("*")):
+            if path.suffix in (".h", ".cc", ".hpp", ".cpp", ".c", ".inc"):
+                offences += offences_in(root, path)
+    return offences
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    root = Path(sys.argv[1]).resolve()
+    offences = check(root)
+    files = sum(1 for top in TOP_FOLDERS for suffix in ("*.h", "*.cc") for _ in (root / top).rglob(suffix))
+    print("\n".join(offences) or f"{files} files keep the floors")
+    sys.exit(1 if offences or files == 0 else 0)
+
+
+if __name__ == "__main__":
+    main()
