@@ -1,0 +1,106 @@
+#include "config/key_hints.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstddef>
+#include <utility>
+
+namespace contour {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 34> kUnits{{
+    {"m", "m"},         {"mm", "mm"},         {"um", "um"},       {"nm", "nm"},     {"rad", "rad"},
+    {"deg", "deg"},     {"s", "s"},           {"ms", "ms"},       {"us", "us"},     {"ns", "ns"},
+    {"min", "min"},     {"s2", "s^2"},        {"s3", "s^3"},      {"N", "N"},       {"kN", "kN"},
+    {"mN", "mN"},       {"Nm", "Nm"},         {"mNm", "mNm"},     {"kg", "kg"},     {"g", "g"},
+    {"kgm2", "kg m^2"}, {"kgcm2", "kg cm^2"}, {"gcm2", "g cm^2"}, {"Ns", "N s"},    {"Nms", "Nm s"},
+    {"Hz", "Hz"},       {"kHz", "kHz"},       {"degC", "degC"},   {"K", "K"},       {"bit", "bit"},
+    {"kbit", "kbit"},   {"rev", "rev"},       {"turn", "turn"},   {"rpm", "1/min"},
+}};
+
+const std::string_view* FindUnit(std::string_view token) {
+  for (const auto& [name, text] : kUnits)
+    if (name == token) return &text;
+  return nullptr;
+}
+
+std::vector<std::string_view> Tokens(std::string_view key) {
+  std::vector<std::string_view> tokens;
+  while (true) {
+    const std::size_t at = key.find('_');
+    tokens.push_back(key.substr(0, at));
+    if (at == std::string_view::npos) return tokens;
+    key.remove_prefix(at + 1);
+  }
+}
+
+std::string Lower(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
+std::size_t EditDistance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replace, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+KeyParts SplitUnit(std::string_view key) {
+  const std::vector<std::string_view> tokens = Tokens(key);
+  std::size_t first = tokens.size();
+  while (first > 1 && FindUnit(tokens[first - 1]) != nullptr) --first;
+  // "per" written out belongs to the unit: counts_per_rev.
+  if (first > 2 && first < tokens.size() && tokens[first - 1] == "per") first -= 2;
+  KeyParts parts;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    std::string& part = i < first ? parts.stem : parts.unit;
+    if (!part.empty()) part += '_';
+    part += tokens[i];
+  }
+  return parts;
+}
+
+std::string UnitText(std::string_view unit) {
+  if (unit.empty()) return "";
+  std::string text;
+  for (const std::string_view token : Tokens(unit)) {
+    if (token == "per") continue;
+    const std::string_view* known = FindUnit(token);
+    if (!text.empty()) text += '/';
+    text += known != nullptr ? *known : token;
+  }
+  return text;
+}
+
+KeyHint NearestKey(std::string_view unknown, const std::vector<std::string>& known) {
+  const KeyParts mine = SplitUnit(unknown);
+  for (const std::string& key : known) {
+    const KeyParts theirs = SplitUnit(key);
+    if (Lower(theirs.stem) == Lower(mine.stem) && theirs.unit != mine.unit) return {key, true};
+  }
+  KeyHint best;
+  std::size_t best_distance = std::max<std::size_t>(2, unknown.size() / 3) + 1;
+  for (const std::string& key : known) {
+    const std::size_t distance = EditDistance(Lower(unknown), Lower(key));
+    if (distance < best_distance) {
+      best_distance = distance;
+      best.key = key;
+    }
+  }
+  return best;
+}
+
+}  // namespace contour
