@@ -1,0 +1,57 @@
+#include "daemon/rt/cycle_runner.h"
+
+#include <algorithm>
+#include <array>
+
+namespace contour {
+
+void CycleRunner::Receive(std::int64_t bus_time_ns, CycleInput& in) noexcept {
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    const std::size_t have = in.frames.size();
+    const std::span<StampedFrame> room(in.frames.data() + have, in.frames.capacity() - have);
+    const std::size_t got = buses_[b]->Receive(bus_time_ns, room);
+    for (std::size_t i = 0; i < got; ++i) room[i].bus = static_cast<std::uint8_t>(b);
+    in.frames.resize(have + got);
+  }
+}
+
+void CycleRunner::Collect(const GridPoint& grid, std::int64_t now_ns, CycleInput& in) noexcept {
+  in.cycle = grid.index;
+  in.grid_time_ns = grid.time_ns;
+  in.buses.resize(buses_.size());
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    const BusState state = buses_[b]->State();
+    in.buses[b] = {state.up, state.bus_off, static_cast<std::uint32_t>(state.send_failures - failures_seen_[b])};
+    failures_seen_[b] = state.send_failures;
+  }
+  in.request = mailbox_.TakeRequest();
+  in.io = io_.Read(now_ns);
+  in.path.clear();
+  const std::size_t room = std::min(in.path.capacity(), cycle_.PathRoom());
+  while (in.path.size() < room) {
+    PathPoint point;
+    if (!mailbox_.TakePathPoint(point)) break;
+    in.path.push_back(point);
+  }
+}
+
+void CycleRunner::Send(std::int64_t bus_time_ns, const CycleOutput& out) noexcept {
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    std::array<CanFrame, kMaxFramesSentPerCycle> batch;
+    std::size_t count = 0;
+    for (const StampedFrame& f : out.frames)
+      if (f.bus == b) batch[count++] = f.frame;
+    if (count != 0) buses_[b]->Send(bus_time_ns, {batch.data(), count});
+  }
+}
+
+void CycleRunner::Tick(const GridPoint& grid, CycleEntry& entry) noexcept {
+  entry.input.frames.clear();
+  Receive(grid.time_ns, entry.input);
+  Collect(grid, grid.time_ns, entry.input);
+  cycle_.Step(entry.input, entry.output);
+  Send(grid.time_ns, entry.output);
+  entry.timing = {};
+}
+
+}  // namespace contour

@@ -1,0 +1,134 @@
+#include "daemon/rt/loop.h"
+
+#include <cerrno>
+#include <ctime>
+
+namespace contour {
+namespace {
+
+std::int64_t Now() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
+}
+
+void SleepUntil(std::int64_t time_ns) noexcept {
+  const timespec t{time_ns / 1'000'000'000, time_ns % 1'000'000'000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
+  }
+}
+
+/// How often lock-step looks for feedback or work.
+constexpr std::int64_t kLockstepPoll_ns = 50'000;
+/// Heartbeats while lock-step time stands still.
+constexpr std::int64_t kLockstepHeartbeat_ns = 20'000'000;
+/// Feedback that has not come after this long of wall time will not come.
+constexpr std::int64_t kLockstepFeedbackTimeout_ns = 400'000'000;
+
+}  // namespace
+
+Loop::Loop(const Config& config, Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox, IoSource& io,
+           TelemetryQueue& telemetry)
+    : config_(config),
+      cycle_(cycle),
+      buses_(buses),
+      mailbox_(mailbox),
+      telemetry_(telemetry),
+      runner_(cycle, buses, mailbox, io) {}
+
+void Loop::RunWall() noexcept {
+  // The grid begins one period from now, so that the first wake-up is an ordinary one.
+  const std::int64_t origin = Now();
+  GridPoint grid{0, origin, 0};
+  bool finished = false;
+  while (!finished) {
+    grid = NextWakeup(origin, config_.period_ns, grid.index, Now());
+    SleepUntil(grid.time_ns);
+    const std::int64_t woken = Now();
+    CycleEntry& entry = *telemetry_.Reserve();
+    entry.input.frames.clear();
+    runner_.Receive(grid.time_ns, entry.input);
+    runner_.Collect(grid, woken, entry.input);
+    const std::int64_t received = Now();
+    cycle_.Step(entry.input, entry.output);
+    const std::int64_t stepped = Now();
+    runner_.Send(grid.time_ns, entry.output);
+    finished = entry.output.finished;
+    Finish(entry, grid, woken, received, stepped);
+  }
+}
+
+void Loop::Finish(CycleEntry& entry, const GridPoint& grid, std::int64_t woken_ns, std::int64_t received_ns,
+                  std::int64_t stepped_ns) noexcept {
+  const std::int64_t sent = Now();
+  CycleTiming& timing = entry.timing;
+  timing.wakeup_late_ns = woken_ns - grid.time_ns;
+  timing.received_ns = received_ns - grid.time_ns;
+  timing.stepped_ns = stepped_ns - grid.time_ns;
+  timing.sent_ns = sent - grid.time_ns;
+  timing.skipped_grid_points = grid.skipped;
+  timing.late = timing.sent_ns > config_.send_deadline_ns || grid.skipped != 0;
+  counters_.cycles.fetch_add(1, std::memory_order_relaxed);
+  if (timing.late) counters_.late_cycles.fetch_add(1, std::memory_order_relaxed);
+  counters_.skipped_grid_points.fetch_add(grid.skipped, std::memory_order_relaxed);
+  if (timing.wakeup_late_ns > counters_.max_wakeup_late_ns.load(std::memory_order_relaxed))
+    counters_.max_wakeup_late_ns.store(timing.wakeup_late_ns, std::memory_order_relaxed);
+  telemetry_.Publish();
+}
+
+void Loop::RunLockstep() noexcept {
+  GridPoint grid;
+  bool finished = false;
+  CycleOutput last;
+  while (!finished) {
+    WaitForWork(last);
+    grid = {grid.index + 1, static_cast<std::int64_t>(grid.index + 1) * config_.period_ns, 0};
+    CycleEntry& entry = *telemetry_.Reserve();
+    entry.input.frames.clear();
+    WaitForFeedback(grid, entry.input);
+    runner_.Collect(grid, Now(), entry.input);
+    cycle_.Step(entry.input, entry.output);
+    runner_.Send(grid.time_ns, entry.output);
+    finished = entry.output.finished;
+    last.finished = finished;
+    last.quiescent = entry.output.quiescent;
+    entry.timing = {};
+    counters_.cycles.fetch_add(1, std::memory_order_relaxed);
+    telemetry_.Publish();
+  }
+}
+
+void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
+  const std::int64_t begin = Now();
+  // Before the drives answer SYNC there is nothing to keep step with but the period itself.
+  const std::int64_t limit = cycle_.ExpectsFeedback() ? kLockstepFeedbackTimeout_ns : config_.period_ns;
+  for (;;) {
+    runner_.Receive(grid.time_ns, in);
+    if (cycle_.ExpectsFeedback() && cycle_.FeedbackComplete(in)) return;
+    const std::int64_t now = Now();
+    if (now - begin >= limit || in.frames.full()) return;
+    SleepUntil(now + kLockstepPoll_ns);
+  }
+}
+
+void Loop::WaitForWork(const CycleOutput& last) noexcept {
+  std::int64_t next_heartbeat = Now();
+  for (;;) {
+    const bool idle = last.quiescent && !mailbox_.request_waiting();
+    const bool starved = cycle_.PathRoom() != 0 && mailbox_.more_path_to_come() &&
+                         mailbox_.path_points_waiting() < kMaxPathPointsPerCycle;
+    // Nothing waits for real time here, so nothing needs to be dropped either.
+    const bool crowded = telemetry_.size() + 1 >= telemetry_.capacity();
+    if (!idle && !starved && !crowded) return;
+    const std::int64_t now = Now();
+    if (now >= next_heartbeat) {
+      next_heartbeat = now + kLockstepHeartbeat_ns;
+      CycleOutput alive;
+      cycle_.EncodeHeartbeat(alive);
+      runner_.Send(0, alive);
+    }
+    SleepUntil(now + 4 * kLockstepPoll_ns);
+  }
+}
+
+}  // namespace contour

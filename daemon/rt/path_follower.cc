@@ -1,0 +1,157 @@
+#include "daemon/rt/path_follower.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+/// Quintic Hermite interpolation on [0, 1] through position, velocity and acceleration (per period) at both ends; gives the
+/// value and its first two derivatives at s.
+struct Interpolated {
+  double value, first, second;
+};
+Interpolated Quintic(double p0, double v0, double a0, double p1, double v1, double a1, double s) noexcept {
+  const double d = p1 - p0;
+  const double c3 = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1;
+  const double c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1;
+  const double c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1;
+  return {p0 + s * (v0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5)))),
+          v0 + s * (a0 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5))), a0 + s * (6 * c3 + s * (12 * c4 + s * 20 * c5))};
+}
+
+}  // namespace
+
+PathFollower::PathFollower(std::size_t axes, double period_s, double stop_periods, std::size_t horizon)
+    : axes_(axes),
+      period_s_(period_s),
+      stop_periods_(std::max(1.0, stop_periods)),
+      horizon_(std::min(horizon, kMaxHorizonPoints)),
+      hold_m_(axes) {}
+
+void PathFollower::Hold(const PerAxis<double>& position_m) noexcept {
+  hold_m_ = position_m;
+  mode_ = Mode::kHolding;
+  expecting_ = false;
+  have_last_ = false;
+  first_ = end_ = 0;
+  clock_ = 0;
+  UpdatePaces();
+}
+
+void PathFollower::Expect(std::uint32_t program_id) noexcept {
+  program_id_ = program_id;
+  expecting_ = true;
+  have_last_ = false;
+  first_ = end_ = 0;
+}
+
+void PathFollower::Accept(const PathPoint& point) noexcept {
+  if (!expecting_ || point.program_id != program_id_ || have_last_ || Room() == 0) return;
+  points_[end_ % kCapacity] = point;
+  ++end_;
+  have_last_ = point.last;
+}
+
+std::size_t PathFollower::Room() const noexcept {
+  if (!expecting_ || have_last_) return 0;
+  return kCapacity - waiting();
+}
+
+bool PathFollower::Prefetched() const noexcept {
+  if (!expecting_) return false;
+  return have_last_ || Room() == 0;
+}
+
+void PathFollower::Start() noexcept {
+  mode_ = Mode::kRunning;
+  // Horizon element 1 is the first instant the new torque acts at; the path begins there, element 0 is still at rest.
+  clock_ = -1;
+  UpdatePaces();
+}
+
+void PathFollower::BeginStop() noexcept {
+  if (mode_ != Mode::kRunning) return;
+  mode_ = Mode::kStopping;
+  // Elements 0 and 1 are past or about to be carried out; the ramp begins after them.
+  stop_clock_ = clock_ + 1;
+  UpdatePaces();
+}
+
+PathFollower::Pace PathFollower::PaceAfter(int periods_from_head) const noexcept {
+  const double t = static_cast<double>(clock_ + periods_from_head);
+  if (mode_ == Mode::kRunning) {
+    if (t <= 0.0) return {0.0, 0.0, 0.0};
+    return {t, 1.0, 0.0};
+  }
+  // Stopping: rate 1 - (3 s^2 - 2 s^3), s = time since the ramp began over its length; the integral is exact.
+  const double begin = static_cast<double>(stop_clock_);
+  if (t <= begin) return {std::max(0.0, t), t <= 0.0 ? 0.0 : 1.0, 0.0};
+  const double s = std::min(1.0, (t - begin) / stop_periods_);
+  const double travelled = stop_periods_ * (s - s * s * s + 0.5 * s * s * s * s);
+  const double rate = 1.0 - s * s * (3.0 - 2.0 * s);
+  const double change = s >= 1.0 ? 0.0 : -6.0 * s * (1.0 - s) / stop_periods_;
+  return {std::max(0.0, begin) + travelled, s >= 1.0 ? 0.0 : rate, change};
+}
+
+void PathFollower::UpdatePaces() noexcept {
+  if (!moving()) return;
+  for (std::size_t j = 0; j < horizon_; ++j) pace_[j] = PaceAfter(static_cast<int>(j));
+}
+
+void PathFollower::Advance() noexcept {
+  if (!moving()) return;
+  ++clock_;
+  UpdatePaces();
+  DropPassed();
+  const double last_time = static_cast<double>(end_ - 1);
+  if (have_last_ && pace_[0].time >= last_time) {
+    mode_ = Mode::kEnded;
+    for (std::size_t i = 0; i < axes_; ++i) hold_m_[i] = At(end_ - 1).axes[i].position_m;
+  } else if (mode_ == Mode::kStopping && pace_[0].rate == 0.0 && clock_ > stop_clock_) {
+    for (std::size_t i = 0; i < axes_; ++i) hold_m_[i] = Evaluate(i, pace_[0]).position_m;
+    mode_ = Mode::kHolding;
+  }
+  if (!moving()) expecting_ = false;
+}
+
+void PathFollower::DropPassed() noexcept {
+  const auto now = static_cast<std::uint64_t>(pace_[0].time);
+  if (now > first_ + kBehind) first_ = std::min(now - kBehind, end_ - 1);
+}
+
+bool PathFollower::running_dry() const noexcept {
+  if (mode_ != Mode::kRunning || have_last_) return false;
+  const double left = static_cast<double>(end_ - 1) - std::max(0.0, pace_[0].time);
+  return left < 0.5 * stop_periods_ + static_cast<double>(horizon_) + 2.0;
+}
+
+ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const noexcept {
+  const auto last = end_ - 1;
+  const double bounded = std::max(static_cast<double>(first_), pace.time);
+  auto index = static_cast<std::uint64_t>(bounded);
+  const double s = bounded - static_cast<double>(index);
+  if (index >= last) return {At(last).axes[axis].position_m, 0.0, 0.0};
+  const ReferencePoint& a = At(index).axes[axis];
+  if (s == 0.0 && pace.rate == 1.0 && pace.rate_change == 0.0) return a;
+  const ReferencePoint& b = At(index + 1).axes[axis];
+  const double h = period_s_;
+  const auto q = Quintic(a.position_m, a.velocity_m_s * h, a.acceleration_m_s2 * h * h, b.position_m, b.velocity_m_s * h,
+                         b.acceleration_m_s2 * h * h, s);
+  return {q.value, pace.rate * q.first / h, (pace.rate * pace.rate * q.second + pace.rate_change * q.first) / (h * h)};
+}
+
+void PathFollower::Horizon(std::size_t axis, AxisHorizon& out) const noexcept {
+  out.resize(horizon_);
+  for (std::size_t j = 0; j < horizon_; ++j)
+    out[j] = moving() ? Evaluate(axis, pace_[j]) : ReferencePoint{hold_m_[axis], 0.0, 0.0};
+}
+
+ReferencePoint PathFollower::Near(std::size_t axis, int offset) const noexcept {
+  if (!moving()) return {hold_m_[axis], 0.0, 0.0};
+  Pace pace = pace_[0];
+  pace.time += offset;
+  return Evaluate(axis, pace);
+}
+
+}  // namespace contour

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/cycle_input.h"
+#include "core/horizon.h"
+
+namespace contour {
+
+/// Turns the prefetched points of a program into the reference of every cycle, with a horizon ahead of it, and can leave
+/// the program's own pace for a stop on the path: the pace falls from 1 to 0 by a smooth ramp, the geometry is kept.
+///
+/// Time on the path is counted in periods. At pace 1 the references are the points themselves, bit for bit; off the grid
+/// they are quintic Hermite interpolations, whose velocity and acceleration follow from the pace by the chain rule.
+class PathFollower {
+ public:
+  /// stop_periods: length of the stop ramp. horizon: points wanted ahead of the present one.
+  PathFollower(std::size_t axes, double period_s, double stop_periods, std::size_t horizon);
+
+  /// Stand still here; forgets any program.
+  void Hold(const PerAxis<double>& position_m) noexcept;
+
+  /// Expect the points of this program; others are ignored.
+  void Expect(std::uint32_t program_id) noexcept;
+  void Accept(const PathPoint& point) noexcept;
+  /// How many more points may come this cycle.
+  [[nodiscard]] std::size_t Room() const noexcept;
+  /// Enough points are here to start: the whole path, or a full horizon and a stop beyond it.
+  [[nodiscard]] bool Prefetched() const noexcept;
+  /// Where the expected program begins; valid when Prefetched().
+  [[nodiscard]] const PathPoint& First() const noexcept { return At(first_); }
+  /// Begin: from the next Advance() on, the reference moves along the points.
+  void Start() noexcept;
+  /// Begin the stop ramp (no effect when not moving, or stopping already).
+  void BeginStop() noexcept;
+
+  /// One period further: element 1 of the horizon becomes element 0.
+  void Advance() noexcept;
+  /// Reference of one axis, indices as core/horizon.h.
+  void Horizon(std::size_t axis, AxisHorizon& out) const noexcept;
+  /// Reference shortly before and after the feedback's instant, all axes, for the geometry of the contour error: offset in
+  /// periods, -3..horizon.
+  [[nodiscard]] ReferencePoint Near(std::size_t axis, int offset) const noexcept;
+
+  [[nodiscard]] bool moving() const noexcept { return mode_ == Mode::kRunning || mode_ == Mode::kStopping; }
+  [[nodiscard]] bool stopping() const noexcept { return mode_ == Mode::kStopping; }
+  /// The program's last point has been reached.
+  [[nodiscard]] bool at_end() const noexcept { return mode_ == Mode::kEnded; }
+  /// A stop has come to rest.
+  [[nodiscard]] bool at_rest() const noexcept { return mode_ == Mode::kHolding || mode_ == Mode::kEnded; }
+  /// The supply is too short to go on and still stop on the path: begin the stop now.
+  [[nodiscard]] bool running_dry() const noexcept;
+  /// Time on the path of horizon element 0, in periods.
+  [[nodiscard]] double path_time() const noexcept { return pace_[0].time; }
+  [[nodiscard]] std::size_t waiting() const noexcept { return static_cast<std::size_t>(end_ - first_); }
+
+ private:
+  enum class Mode : std::uint8_t { kHolding, kRunning, kStopping, kEnded };
+  static constexpr std::size_t kCapacity = 1024;
+  /// Points kept behind the present one, for the geometry of the contour error.
+  static constexpr std::uint64_t kBehind = 8;
+
+  /// Time on the path and its first two derivatives, per period.
+  struct Pace {
+    double time = 0.0;
+    double rate = 0.0;
+    double rate_change = 0.0;
+  };
+
+  [[nodiscard]] const PathPoint& At(std::uint64_t index) const noexcept { return points_[index % kCapacity]; }
+  [[nodiscard]] ReferencePoint Evaluate(std::size_t axis, const Pace& pace) const noexcept;
+  [[nodiscard]] Pace PaceAfter(int periods_from_head) const noexcept;
+  void UpdatePaces() noexcept;
+  void DropPassed() noexcept;
+
+  std::size_t axes_;
+  double period_s_;
+  double stop_periods_;
+  std::size_t horizon_;
+  Mode mode_ = Mode::kHolding;
+  PerAxis<double> hold_m_;
+  std::uint32_t program_id_ = 0;
+  bool expecting_ = false;
+  bool have_last_ = false;
+  std::uint64_t first_ = 0;        ///< oldest point kept
+  std::uint64_t end_ = 0;          ///< one past the newest
+  std::int64_t clock_ = 0;         ///< periods since Start() of horizon element 0
+  std::int64_t stop_clock_ = 0;    ///< clock of the horizon element at which the stop ramp began
+  std::array<Pace, kMaxHorizonPoints> pace_{};
+  std::array<PathPoint, kCapacity> points_{};
+};
+
+}  // namespace contour

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "core/cycle_record.h"
+#include "daemon/rt/spsc_ring.h"
+
+namespace contour {
+
+/// The door out of the real-time side: one entry per cycle. When the reader falls behind, entries are dropped and counted,
+/// the cycle never waits.
+class TelemetryQueue {
+ public:
+  explicit TelemetryQueue(std::size_t capacity) : ring_(capacity) {}
+
+  /// Real-time side. Never null: when the queue is full the entry is written to a spare place and counted as dropped.
+  [[nodiscard]] CycleEntry* Reserve() noexcept {
+    CycleEntry* slot = ring_.Reserve();
+    reserved_ = slot != nullptr;
+    return reserved_ ? slot : &spare_;
+  }
+  void Publish() noexcept {
+    if (reserved_) {
+      ring_.Publish();
+    } else {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+    }
+  }
+
+  /// Reader's side.
+  [[nodiscard]] CycleEntry* Front() noexcept { return ring_.Front(); }
+  void Release() noexcept { ring_.Release(); }
+  [[nodiscard]] std::size_t capacity() const noexcept { return ring_.capacity(); }
+  [[nodiscard]] std::size_t size() const noexcept { return ring_.size(); }
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  SpscRing<CycleEntry> ring_;
+  CycleEntry spare_;
+  bool reserved_ = false;
+  std::atomic<std::uint64_t> dropped_{0};
+};
+
+}  // namespace contour

@@ -1,0 +1,256 @@
+#include "daemon/rt/transitions.h"
+
+namespace contour {
+namespace {
+
+bool Enabled(DriveState s) noexcept {
+  return s == DriveState::kOperationEnabled || s == DriveState::kQuickStopActive || s == DriveState::kFaultReactionActive;
+}
+
+bool AllOff(const Situation& now) noexcept {
+  for (const DriveState s : now.drives)
+    if (Enabled(s)) return false;
+  return true;
+}
+
+bool AllEnabled(const Situation& now) noexcept {
+  for (const DriveState s : now.drives)
+    if (s != DriveState::kOperationEnabled) return false;
+  return true;
+}
+
+bool HoldsTorque(MachineState s) noexcept {
+  return s == MachineState::kReady || s == MachineState::kRunning || s == MachineState::kStopping;
+}
+
+}  // namespace
+
+void Transitions::Enter(MachineState next) noexcept {
+  if (next == state_) return;
+  state_ = next;
+  since_ = 0;
+  run_pending_ = false;
+}
+
+void Transitions::Fault(FaultSeen fault) noexcept {
+  reason_ = fault.reason;
+  where_ = fault.where;
+  Enter(MachineState::kFaulted);
+}
+
+void Transitions::Acknowledge(const Request& request, bool ok) noexcept {
+  acknowledged_ = request.sequence;
+  acknowledged_ok_ = ok;
+}
+
+Orders Transitions::Step(const Situation& now) noexcept {
+  Orders orders;
+  ++since_;
+  drives_off_ = AllOff(now);
+  if (state_ == MachineState::kOff && !terminating_ && now.request.kind != RequestKind::kTerminate) {
+    // The first bring-up begins by itself: finding and configuring drives moves nothing.
+    orders.start_bring_up = true;
+    Enter(MachineState::kStarting);
+  }
+  const bool may_move = state_ == MachineState::kEnabling || HoldsTorque(state_);
+  if (may_move && now.fault.reason != Reason::kNone) {
+    Fault(now.fault);
+  } else if ((may_move || state_ == MachineState::kIdle) && now.lost.reason != Reason::kNone) {
+    Fault(now.lost);
+  } else if (may_move) {
+    WatchIo(now, orders);
+  }
+  if (now.request.kind != RequestKind::kNone) HandleRequest(now, orders);
+  Progress(now, orders);
+  orders.torque_allowed = HoldsTorque(state_);
+  orders.goal = Goal(now);
+  return orders;
+}
+
+void Transitions::WatchIo(const Situation& now, Orders& orders) noexcept {
+  const Reason verdict = IoVerdict(now.io);
+  if (verdict == Reason::kNone) return;
+  // The emergency stop asks for the quickest stop there is, and so does anything before the axes are held.
+  if (verdict == Reason::kEmergencyStop || state_ == MachineState::kEnabling) {
+    Fault({verdict, 0xFF});
+  } else if (state_ != MachineState::kStopping || after_stop_ != MachineState::kFaulted) {
+    BeginStop(orders, verdict, MachineState::kFaulted);
+  }
+}
+
+void Transitions::BeginStop(Orders& orders, Reason reason, MachineState after) noexcept {
+  reason_ = reason;
+  where_ = 0xFF;
+  after_stop_ = after;
+  orders.stop_path = true;
+  Enter(MachineState::kStopping);
+}
+
+void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
+  const Request& request = now.request;
+  switch (request.kind) {
+    case RequestKind::kNone:
+      return;
+    case RequestKind::kEnable:
+      return Enable(now, orders, request);
+    case RequestKind::kRun:
+      return Run(orders, request);
+    case RequestKind::kReset:
+      Acknowledge(request, state_ == MachineState::kFaulted || state_ == MachineState::kIdle);
+      if (state_ == MachineState::kFaulted) {
+        orders.start_bring_up = true;
+        Enter(MachineState::kStarting);
+      }
+      return;
+    case RequestKind::kStop:
+      Acknowledge(request, true);
+      if (state_ == MachineState::kRunning) {
+        BeginStop(orders, Reason::kOperatorStop, MachineState::kReady);
+      } else if (state_ == MachineState::kReady && run_pending_) {
+        run_pending_ = false;
+        reason_ = Reason::kOperatorStop;
+        orders.forget_path = true;
+      } else if (state_ == MachineState::kEnabling) {
+        reason_ = Reason::kOperatorStop;
+        Enter(MachineState::kIdle);
+      }
+      return;
+    case RequestKind::kDisable:
+    case RequestKind::kTerminate: {
+      const bool terminate = request.kind == RequestKind::kTerminate;
+      const Reason why = terminate ? Reason::kTerminate : Reason::kDisableRequest;
+      terminating_ = terminating_ || terminate;
+      Acknowledge(request, true);
+      if (state_ == MachineState::kRunning || state_ == MachineState::kReady) {
+        BeginStop(orders, why, MachineState::kIdle);
+      } else if (state_ == MachineState::kStopping && after_stop_ == MachineState::kReady) {
+        after_stop_ = MachineState::kIdle;
+        reason_ = why;
+      } else if (state_ == MachineState::kEnabling) {
+        reason_ = why;
+        Enter(MachineState::kIdle);
+      }
+      return;
+    }
+  }
+}
+
+void Transitions::Enable(const Situation& now, Orders& orders, const Request& request) noexcept {
+  const bool ok = state_ == MachineState::kIdle && now.operational && IoVerdict(now.io) == Reason::kNone && !terminating_;
+  Acknowledge(request, ok || state_ == MachineState::kReady);
+  if (!ok) return;
+  reason_ = Reason::kNone;
+  where_ = 0xFF;
+  orders.hold_here = true;
+  Enter(MachineState::kEnabling);
+}
+
+void Transitions::Run(Orders& orders, const Request& request) noexcept {
+  const bool ok = state_ == MachineState::kReady && !run_pending_ && !terminating_;
+  Acknowledge(request, ok);
+  if (!ok) return;
+  program_id_ = request.program_id;
+  run_pending_ = true;
+  run_pending_cycles_ = 0;
+  orders.expect_path = true;
+}
+
+void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
+  switch (state_) {
+    case MachineState::kOff:
+      break;
+    case MachineState::kStarting:
+      if (orders.start_bring_up) break;
+      if (now.bring_up_failed) {
+        Fault({Reason::kBringUpFailed, 0xFF});
+      } else if (now.operational && !now.bring_up_active) {
+        reason_ = Reason::kNone;
+        where_ = 0xFF;
+        Enter(MachineState::kIdle);
+      }
+      break;
+    case MachineState::kIdle:
+    case MachineState::kFaulted:
+      break;
+    case MachineState::kEnabling:
+      if (orders.hold_here) break;
+      // Until the drives hold, what they measure is what they shall hold.
+      orders.hold_here = true;
+      if (AllEnabled(now)) {
+        Enter(MachineState::kReady);
+      } else if (since_ > config_.enable_timeout_cycles) {
+        Fault({Reason::kEnableTimeout, 0xFF});
+      }
+      break;
+    case MachineState::kReady:
+      ProgressReady(now, orders);
+      break;
+    case MachineState::kRunning:
+      ProgressRunning(now, orders);
+      break;
+    case MachineState::kStopping:
+      ProgressStopping(now, orders);
+      break;
+  }
+  if (terminating_ && !HoldsTorque(state_) && state_ != MachineState::kEnabling)
+    orders.finished = drives_off_ || since_ > config_.stop_timeout_cycles;
+}
+
+void Transitions::ProgressReady(const Situation& now, Orders& orders) noexcept {
+  if (!run_pending_ || orders.expect_path) return;
+  if (now.path_prefetched) {
+    run_pending_ = false;
+    if (now.path_begins_here) {
+      orders.start_path = true;
+      reason_ = Reason::kNone;
+      Enter(MachineState::kRunning);
+    } else {
+      // Refused, not faulted: the axes have not moved.
+      reason_ = Reason::kPathDiscontinuous;
+      orders.forget_path = true;
+    }
+  } else if (++run_pending_cycles_ > config_.prefetch_timeout_cycles) {
+    run_pending_ = false;
+    reason_ = Reason::kPathUnderrun;
+    orders.forget_path = true;
+  }
+}
+
+void Transitions::ProgressRunning(const Situation& now, Orders& orders) noexcept {
+  if (now.path_at_end) {
+    reason_ = Reason::kProgramEnd;
+    Enter(MachineState::kReady);
+  } else if (now.path_running_dry) {
+    BeginStop(orders, Reason::kPathUnderrun, MachineState::kFaulted);
+  }
+}
+
+void Transitions::ProgressStopping(const Situation& now, Orders& orders) noexcept {
+  if (orders.stop_path) return;
+  if (now.path_at_rest) {
+    Enter(after_stop_);
+  } else if (since_ > config_.stop_timeout_cycles) {
+    Fault({Reason::kStopTimeout, 0xFF});
+  }
+}
+
+DriveGoal Transitions::Goal(const Situation&) const noexcept {
+  switch (state_) {
+    case MachineState::kEnabling:
+    case MachineState::kReady:
+    case MachineState::kRunning:
+    case MachineState::kStopping:
+      return DriveGoal::kEnabled;
+    case MachineState::kFaulted:
+      // The drive's own ramp first; once it has let go, keep it without voltage.
+      return drives_off_ ? DriveGoal::kDisabled : DriveGoal::kQuickStop;
+    case MachineState::kIdle:
+      return DriveGoal::kSwitchedOn;
+    case MachineState::kOff:
+    case MachineState::kStarting:
+      return DriveGoal::kDisabled;
+  }
+  return DriveGoal::kDisabled;
+}
+
+}  // namespace contour

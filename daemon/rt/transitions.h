@@ -1,0 +1,111 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/axis.h"
+#include "core/cycle_input.h"
+#include "core/reason.h"
+#include "core/states.h"
+
+namespace contour {
+
+/// A fault seen in this cycle; the first one found wins.
+struct FaultSeen {
+  Reason reason = Reason::kNone;
+  std::uint8_t where = 0xFF;  ///< axis, or bus for bus reasons; 0xFF the whole machine
+};
+
+/// What the machine's state depends on in one cycle.
+struct Situation {
+  Request request;
+  IoInput io;
+  bool bring_up_active = false;
+  bool bring_up_failed = false;
+  bool operational = false;      ///< all drives configured and Operational
+  PerAxis<DriveState> drives;
+  FaultSeen fault;               ///< acts whenever drives are or may be enabled
+  FaultSeen lost;                ///< bus or drive lost: acts in every state but Off and Starting
+  bool path_prefetched = false;
+  bool path_begins_here = false; ///< first point lies where the axes stand
+  bool path_running_dry = false;
+  bool path_at_end = false;
+  bool path_at_rest = false;
+};
+
+/// What the state machine asks of the rest of the cycle.
+struct Orders {
+  bool start_bring_up = false;
+  bool hold_here = false;      ///< take the measured position as reference, reset estimators and controller
+  bool expect_path = false;    ///< of program_id
+  bool start_path = false;
+  bool stop_path = false;      ///< begin the stop ramp
+  bool forget_path = false;    ///< hold where the reference stands
+  bool torque_allowed = false;
+  bool finished = false;       ///< terminate is carried out
+  DriveGoal goal = DriveGoal::kDisabled;
+};
+
+/// Which machine state may follow which. A fault acts in the cycle that sees it; nothing but an enable request leads to
+/// torque; a stop request is obeyed in every state that moves.
+class Transitions {
+ public:
+  struct Config {
+    std::uint32_t enable_timeout_cycles = 2000;
+    std::uint32_t stop_timeout_cycles = 2000;      ///< for a stop on the path and for drives to leave Operation Enabled
+    std::uint32_t prefetch_timeout_cycles = 5000;  ///< from a run request to enough path points
+  };
+  explicit Transitions(const Config& config) : config_(config) {}
+
+  Orders Step(const Situation& now) noexcept;
+
+  [[nodiscard]] MachineState state() const noexcept { return state_; }
+  [[nodiscard]] Reason reason() const noexcept { return reason_; }
+  [[nodiscard]] std::uint8_t reason_where() const noexcept { return where_; }
+  [[nodiscard]] std::uint32_t acknowledged() const noexcept { return acknowledged_; }
+  [[nodiscard]] bool acknowledged_ok() const noexcept { return acknowledged_ok_; }
+  [[nodiscard]] std::uint32_t program_id() const noexcept { return program_id_; }
+  /// Cycles spent in the present state.
+  [[nodiscard]] std::uint32_t since() const noexcept { return since_; }
+  [[nodiscard]] bool run_pending() const noexcept { return run_pending_; }
+  [[nodiscard]] bool drives_off() const noexcept { return drives_off_; }
+
+ private:
+  void Enter(MachineState next) noexcept;
+  void Fault(FaultSeen fault) noexcept;
+  void Acknowledge(const Request& request, bool ok) noexcept;
+  void HandleRequest(const Situation& now, Orders& orders) noexcept;
+  void Enable(const Situation& now, Orders& orders, const Request& request) noexcept;
+  void Run(Orders& orders, const Request& request) noexcept;
+  void BeginStop(Orders& orders, Reason reason, MachineState after) noexcept;
+  void Progress(const Situation& now, Orders& orders) noexcept;
+  void ProgressReady(const Situation& now, Orders& orders) noexcept;
+  void ProgressRunning(const Situation& now, Orders& orders) noexcept;
+  void ProgressStopping(const Situation& now, Orders& orders) noexcept;
+  void WatchIo(const Situation& now, Orders& orders) noexcept;
+  [[nodiscard]] DriveGoal Goal(const Situation& now) const noexcept;
+
+  Config config_;
+  MachineState state_ = MachineState::kOff;
+  Reason reason_ = Reason::kNone;
+  std::uint8_t where_ = 0xFF;
+  MachineState after_stop_ = MachineState::kReady;
+  std::uint32_t since_ = 0;
+  std::uint32_t acknowledged_ = 0;
+  bool acknowledged_ok_ = false;
+  std::uint32_t program_id_ = 0;
+  bool run_pending_ = false;
+  std::uint32_t run_pending_cycles_ = 0;
+  bool terminating_ = false;
+  bool drives_off_ = true;
+};
+
+/// Permission as the I/O gives it: kNone, or why not.
+constexpr Reason IoVerdict(const IoInput& io) noexcept {
+  if (!io.configured) return Reason::kNone;
+  if (!io.fresh) return Reason::kIoStale;
+  if (!io.emergency_stop_ok) return Reason::kEmergencyStop;
+  if (!io.enable_chain_ok) return Reason::kEnableChainOpen;
+  return Reason::kNone;
+}
+
+}  // namespace contour
