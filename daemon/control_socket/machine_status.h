@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/cycle_record.h"
+#include "daemon/telemetry/log_stats.h"
+#include "daemon/telemetry/timing_histogram.h"
+#include "drivers/can/frame_bus.h"
+#include "drivers/lcm/publisher_stats.h"
+#include "drivers/modbus/io_stats.h"
+
+namespace contour {
+
+struct BusStatus {
+  std::string name;
+  std::string interface;
+  BusState state;
+};
+
+/// Everything `contour status` shows. Axes, buses and names are in the order of the machine file.
+struct MachineStatus {
+  std::string machine;
+  std::string version;  ///< of the program that runs
+  std::string controller;
+  std::string clock;  ///< "wall", "lockstep" or "virtual"
+  int cycle_us = 0;
+  std::vector<std::string> axis_names;
+  std::vector<std::string> warnings;  ///< what the start complained of, such as refused real time
+
+  CycleRecord record;               ///< newest cycle that reached the pump
+  std::string bring_up;             ///< sentence on where bring-up stands or why it failed; may be empty
+  std::string reason_text;          ///< sentence on record.reason; empty when there is none
+  std::string program_name;         ///< of record.program_id; may be empty
+  double program_duration_s = 0.0;  ///< 0 unknown
+
+  std::uint64_t cycles = 0;
+  std::optional<std::uint64_t> late_cycles;  ///< nothing where time is not the wall's
+  std::uint64_t skipped_grid_points = 0;
+  TimingSummary wakeup_late;
+  TimingSummary computing;  ///< received to stepped
+  TimingSummary sent;       ///< grid point to frames handed over
+
+  std::uint64_t dropped_entries = 0;  ///< cycles that never reached telemetry, log and clients
+  std::vector<BusStatus> buses;
+  IoStats io;
+  PublisherStats publisher;
+  LogStats log;
+};
+
+/// The status as the socket carries it and `contour status --json` prints it; docs/operating.md lists the
+/// keys.
+nlohmann::json ToJson(const MachineStatus& status);
+
+}  // namespace contour

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "daemon/control_socket/machine_status.h"
+#include "daemon/telemetry/row_feed.h"
+
+namespace contour {
+
+/// A program as a client uploads it.
+struct ProgramUpload {
+  std::string name;        ///< file name, for messages; its ending does not matter
+  std::string format;      ///< "yaml" or "ngc"
+  std::string text;        ///< the program itself
+  std::string controller;  ///< empty: the one in use
+};
+
+/// What became of a request.
+struct Answer {
+  bool accepted = false;
+  std::string reason;            ///< why it was refused, one sentence; empty when accepted
+  std::uint32_t sequence = 0;    ///< as CycleRecord::acknowledged counts; 0 when it never reached the cycle
+  std::uint32_t program_id = 0;  ///< Run() only: what CycleRecord::program_id will say
+};
+
+/// What an operator may ask of the machine. The control socket calls it, the supervisor is it.
+///
+/// All calls come from the one thread of the socket server, one at a time. A request returns once the cycle
+/// has accepted or refused it (not when the machine has got there: a client watches the status for that), and
+/// within two seconds in any case, with a refusal when the cycle does not answer. Implementations do not
+/// throw; a program that cannot be read or does not fit the machine is a refusal with the full message.
+class OperatorDesk {
+ public:
+  virtual ~OperatorDesk() = default;
+
+  virtual Answer Enable() = 0;
+  virtual Answer Disable() = 0;
+  virtual Answer Stop() = 0;
+  virtual Answer Reset() = 0;
+  virtual Answer Run(const ProgramUpload& program) = 0;
+  virtual MachineStatus Status() = 0;
+
+  /// From now on every cycle that the pump sees is pushed to this feed, until Detach().
+  virtual void Attach(std::shared_ptr<RowFeed> feed) = 0;
+  virtual void Detach(const std::shared_ptr<RowFeed>& feed) = 0;
+};
+
+}  // namespace contour

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "core/cycle_record.h"
+
+namespace contour {
+
+/// Cycle records on their way to one client of the control socket. The pump pushes, the socket server pops;
+/// neither is the cycle. Bounded: when the client is too slow the newest rows are lost and counted.
+class RowFeed {
+ public:
+  static constexpr std::size_t kDefaultCapacity = 8192;
+
+  explicit RowFeed(std::size_t capacity = kDefaultCapacity) : capacity_(capacity) {}
+
+  /// Keeps the record and the timing of the cycle, not its frames and path points. A row is an encoded
+  /// contour_lcm::cycle_entry (see drivers/lcm/cycle_messages.h).
+  void Push(const CycleEntry& entry);
+  std::optional<std::string> Pop();
+
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] std::uint64_t lost() const;
+
+ private:
+  const std::size_t capacity_;
+  mutable std::mutex mutex_;
+  std::deque<std::string> rows_;
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace contour
