@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "control/control_config.h"
+#include "core/axis.h"
+#include "core/controller_name.h"
+#include "core/horizon.h"
+#include "core/mechanics.h"
+#include "core/reason.h"
+
+namespace contour {
+
+enum class ControllerKind : std::uint8_t { kPid, kCsp, kMpc };
+
+/// What a named controller is made of on the control side.
+struct ControllerOptions {
+  ControllerKind kind = ControllerKind::kMpc;
+  bool friction_feedforward = false;  ///< add the FrictionPreview to the force
+  bool windup_compensation =
+      false;  ///< lead the motor by the screw's wind-up, so that the table is on the path
+};
+
+constexpr ControllerOptions OptionsFor(ControllerName name) noexcept {
+  switch (name) {
+    case ControllerName::kPid:
+      return {ControllerKind::kPid, false, false};
+    case ControllerName::kCsp:
+      return {ControllerKind::kCsp, false, false};
+    case ControllerName::kMpc:
+      return {ControllerKind::kMpc, false, false};
+    case ControllerName::kMpcObserver:
+    case ControllerName::kMpcSrukf4:
+    case ControllerName::kMpcEkf7:
+    case ControllerName::kMpcSrukf7:
+      return {ControllerKind::kMpc, true, false};
+    case ControllerName::kFull:
+      break;
+  }
+  return {ControllerKind::kMpc, true, true};
+}
+
+/// The tuning of a controller that uses the MPC; that of `full` for those that do not.
+const MpcConfig& MpcConfigFor(const ControllerConfig& config, ControllerName name) noexcept;
+
+/// What the controller knows of one axis, fixed at construction.
+struct ControlledAxis {
+  Mechanics mechanics;
+  AxisLimitsSi limits;
+  double lag_s = 0.0;         ///< first-order lag of the drive's current loop
+  double viscous_Ns_m = 0.0;  ///< sigma2, for controllers without a friction preview
+};
+
+/// Everything the controller sees of one cycle; see core/horizon.h for the time indices.
+struct ControlInput {
+  PerAxis<AxisEstimate> estimate;
+  PerAxis<AxisHorizon> reference;
+  PerAxis<FrictionPreview> friction;  ///< total friction ahead; empty: none known
+  PerAxis<double> previous_force_N;   ///< u(k-1), the command that acts now, after the guard
+};
+
+/// Forces at the table, N = torque / R.
+struct ControlOutput {
+  PerAxis<double> force_N;            ///< wanted over [t(k), t(k+1)), within the limits
+  PerAxis<double> feedforward_N;      ///< the part of it that comes from the reference and the friction ahead
+  PerAxis<double> target_position_m;  ///< motor side, for t(k+1); what a drive in CSP is sent
+  PerAxis<Reason> limit;              ///< kTorqueLimit, kTorqueRateLimit or kSolverCap; kNone
+  int iterations = 0;                 ///< of the solver, all axes
+};
+
+class ControlLaw;
+
+/// Reference and estimate in, force out. Throws std::invalid_argument at construction only.
+class ContourController {
+ public:
+  ContourController(ControllerName name, const ControllerConfig& config, const PerAxis<ControlledAxis>& axes,
+                    double period_s);
+  ~ContourController();
+  ContourController(ContourController&&) noexcept;
+  ContourController& operator=(ContourController&&) noexcept;
+
+  /// Forgets integrators, warm starts and the last command. To be called when the axes are enabled.
+  void Reset() noexcept;
+  void Step(const ControlInput& input, ControlOutput& output) noexcept;
+
+  [[nodiscard]] const ControllerOptions& options() const noexcept { return options_; }
+  /// Points of reference and friction a Step looks at; what lies beyond is ignored.
+  [[nodiscard]] int horizon_points() const noexcept;
+
+ private:
+  ControllerOptions options_;
+  std::unique_ptr<ControlLaw> law_;
+};
+
+}  // namespace contour

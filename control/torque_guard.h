@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "control/control_config.h"
+#include "core/axis.h"
+#include "core/reason.h"
+
+namespace contour {
+
+/// One axis as the guard knows it.
+struct GuardedAxis {
+  AxisLimitsSi limits;
+  double radius_m_rad = 0.0;
+};
+
+/// What the guard says of one axis in one cycle.
+struct GuardedTorque {
+  double torque_Nm = 0.0;        ///< to be sent; 0 with a fault
+  Reason limit = Reason::kNone;  ///< kTorqueLimit or kTorqueRateLimit when the wanted torque was held back
+  Reason fault =
+      Reason::kNone;  ///< kNotANumber, kStaleFeedback, kPositionLimit, kVelocityLimit, kFollowingError
+};
+
+/// The last word on torque, per axis. Whatever the controllers ask for, what leaves here is finite, within
+/// the torque limit and, without a fault, within the rate limit. A fault gives zero torque at once, past the
+/// rate limit.
+///
+/// While an axis is not enabled the torque is zero and nothing is a fault but numbers that are none.
+class TorqueGuard {
+ public:
+  TorqueGuard(const GuardConfig& config, const PerAxis<GuardedAxis>& axes, double period_s);
+
+  /// Forgets the last torque and position of every axis.
+  void Reset() noexcept;
+
+  /// To be called once per axis and cycle. `reference_position_m` is the reference at the feedback's instant.
+  GuardedTorque Limit(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
+                      double reference_position_m, bool enabled) noexcept;
+
+ private:
+  struct Memory {
+    double torque_Nm = 0.0;
+    double position_m = 0.0;
+    std::uint32_t cycles_since_position = 0;
+    bool has_position = false;
+  };
+  Reason FindFault(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
+                   double reference_position_m, bool enabled) noexcept;
+
+  GuardConfig config_;
+  PerAxis<GuardedAxis> axes_;
+  PerAxis<Memory> memory_;
+  double period_s_;
+};
+
+}  // namespace contour
