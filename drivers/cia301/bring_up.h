@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/can_frame.h"
+#include "core/cycle_record.h"
+#include "core/fixed_vector.h"
+#include "drivers/cia301/bring_up_status.h"
+#include "drivers/cia301/messages.h"
+#include "drivers/cia301/sdo_step.h"
+#include "drivers/cia301/sdo_transfer.h"
+
+namespace contour {
+
+/// A node to be brought up: deadlines in cycles, and what to do over SDO.
+struct BringUpNode {
+  std::uint8_t axis = 0;  ///< for messages
+  std::uint8_t node_id = 0;
+  std::uint64_t boot_up_cycles = 0;
+  std::uint64_t sdo_cycles = 0;
+  std::uint64_t operational_cycles = 0;
+  std::vector<SdoStep> steps;
+};
+
+/// Brings the nodes of one bus up, one step per cycle:
+/// NMT reset communication to all, boot-up messages (a node that sends none is asked by SDO), NMT
+/// pre-operational, each node's script one object at a time, NMT start to all, Operational confirmed by
+/// heartbeat. One SDO at a time per bus bounds the bus load. Nothing is retried; Start begins again from the
+/// reset.
+class BringUp {
+ public:
+  using Frames = FixedVector<CanFrame, 20>;  ///< of one cycle: at most two NMT commands per node and one SDO
+
+  BringUp() = default;
+  BringUp(std::vector<BringUpNode> nodes, std::uint32_t cycle_us);
+
+  void Start() noexcept;
+  /// Stops whatever is under way and reports that the bus went down.
+  void BusDown() noexcept;
+
+  /// A frame of this bus: heartbeats, boot-up messages and SDO replies concern it, others are passed over.
+  void OnFrame(const CanFrame& frame) noexcept;
+  /// One cycle: checks deadlines, goes on where it can and appends what is to be sent.
+  void Step(std::uint64_t elapsed_cycles, Frames& out) noexcept;
+
+  [[nodiscard]] const BringUpStatus& status() const noexcept { return status_; }
+  [[nodiscard]] BringUpPhase phase() const noexcept { return phase_; }
+  [[nodiscard]] bool failed() const noexcept { return status_.error != 0; }
+  [[nodiscard]] bool done() const noexcept { return phase_ == BringUpPhase::kOperational; }
+  [[nodiscard]] bool running() const noexcept { return phase_ != BringUpPhase::kOff && !done() && !failed(); }
+
+ private:
+  struct NodeState {
+    bool booted = false;
+    bool operational = false;
+    bool started_itself = false;  ///< said Operational before it was told to
+    NmtState nmt = NmtState::kUnknown;
+  };
+
+  void OnHeartbeat(std::size_t node, NmtState state) noexcept;
+  void SendNmt(NmtCommand command, Frames& out) noexcept;
+  void HoldBack(Frames& out) noexcept;
+  void WaitForBootUp(Frames& out) noexcept;
+  void Configure(Frames& out) noexcept;
+  void FinishTransfer() noexcept;
+  void Judge(const SdoStep& step, std::uint32_t found) noexcept;
+  void NextStep(Frames& out) noexcept;
+  void BeginStep(Frames& out) noexcept;
+  void WaitForOperational() noexcept;
+  void Advance() noexcept;
+  void Fail(BringUpError error, std::uint32_t expected, std::uint32_t found) noexcept;
+  void ShowNode(std::size_t node) noexcept;
+  [[nodiscard]] const SdoStep& step() const noexcept { return nodes_[node_].steps[step_]; }
+  [[nodiscard]] bool configuring() const noexcept;
+
+  std::vector<BringUpNode> nodes_;
+  std::vector<NodeState> states_;
+  std::uint32_t cycle_us_ = 1000;
+  BringUpPhase phase_ = BringUpPhase::kOff;
+  BringUpStatus status_;
+  SdoTransfer transfer_;
+  std::size_t node_ = 0;  ///< the node whose script runs
+  std::size_t step_ = 0;
+  std::uint64_t waited_ = 0;  ///< cycles in this phase, or in this step
+  std::uint32_t kept_ = 0;    ///< of the last kKeep
+  bool kept_valid_ = false;
+  bool written_ = false;   ///< the last write was accepted
+  bool watchdog_ = false;  ///< a watchdog of this node could be set
+};
+
+}  // namespace contour

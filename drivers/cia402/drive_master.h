@@ -1,0 +1,131 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/axis.h"
+#include "core/cycle_input.h"
+#include "core/cycle_record.h"
+#include "drivers/cia301/bring_up.h"
+#include "drivers/cia301/messages.h"
+#include "drivers/cia402/drive_config.h"
+#include "drivers/cia402/drive_walk.h"
+#include "drivers/cia402/scaling.h"
+
+namespace contour {
+
+/// One axis as the master needs it.
+struct AxisDriveConfig {
+  std::string name;
+  std::uint8_t bus = 0;  ///< index into MasterConfig::buses
+  DriveConfig drive;
+  double torque_limit_Nm = 0.0;  ///< written to the drive (0x6072); the axis's limit, at most its peak torque
+};
+
+struct MasterConfig {
+  std::vector<AxisDriveConfig> axes;
+  std::vector<BusConfig> buses;
+  std::uint32_t cycle_us = 1000;
+};
+
+/// What the master knows of a drive beside its feedback.
+struct AxisDriveStatus {
+  NmtState nmt = NmtState::kUnknown;  ///< by the last heartbeat
+  bool configured = false;            ///< brought up and not restarted or lost since
+  bool heartbeat_lost = false;        ///< silent for heartbeat_timeout_ms since it was brought up
+  bool restarted = false;             ///< sent a boot-up message since it was brought up
+  bool fault = false;                 ///< Fault or Fault Reaction Active
+  bool left_enabled = false;     ///< left Operation Enabled without being told to; until the goal changes
+  bool transition_late = false;  ///< a transition missed its deadline; until the goal changes
+  DriveState stuck_in = DriveState::kUnknown;  ///< the state it stayed in, with transition_late
+  bool at_goal = false;                        ///< the drive's state is what the last goal asked for
+  std::uint16_t emergency_code = 0;            ///< last EMCY error code; 0 none, or taken back by the drive
+};
+
+/// The real-time side of CANopen for all axes on all buses: one Receive at the start of a cycle, one Send at
+/// its end. Everything is counted in cycles of CycleInput::cycle; no clock, no allocation after construction.
+class DriveMaster {
+ public:
+  using Frames = FixedVector<StampedFrame, kMaxFramesSentPerCycle>;
+
+  /// Sizes everything and writes the SDO scripts. Throws std::invalid_argument with a full message on
+  /// nonsense.
+  explicit DriveMaster(const MasterConfig& config);
+
+  /// Takes the frames of this cycle: feedback, emergencies, heartbeats, SDO replies.
+  void Receive(const CycleInput& in) noexcept;
+
+  /// Feedback of the SYNC before, all axes in the order of the configuration.
+  [[nodiscard]] const PerAxis<AxisFeedback>& feedback() const noexcept { return feedback_; }
+  [[nodiscard]] const PerAxis<AxisDriveStatus>& status() const noexcept { return status_; }
+
+  /// Brings all drives up again unless all are operational, configured and heard of. Also for a reset after a
+  /// fault.
+  void StartBringUp() noexcept;
+  /// Where bringing up stands: the failed node if there is one, else the one furthest behind.
+  [[nodiscard]] BringUpStatus bring_up() const noexcept;
+  [[nodiscard]] bool bring_up_failed() const noexcept { return bring_up().error != 0; }
+  /// All drives are Operational and configured; SYNC and PDOs run.
+  [[nodiscard]] bool operational() const noexcept;
+  /// Bringing up is under way, or a drive is on its way to the last goal.
+  [[nodiscard]] bool busy() const noexcept;
+
+  /// SYNCs sent on each bus since construction, this cycle's included after Send.
+  [[nodiscard]] std::uint64_t sync_number() const noexcept { return sync_number_; }
+  /// Number of the SYNC that latched the newest feedback of any axis; 0 none yet.
+  [[nodiscard]] std::uint64_t feedback_sync() const noexcept { return feedback_sync_; }
+
+  /// Appends this cycle's frames: per bus RPDOs then SYNC (once operational), then NMT, heartbeat and SDO.
+  /// Torque goes out only to a drive in Operation Enabled whose goal is kEnabled; it is 0 otherwise (and for
+  /// NaN).
+  void Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noexcept;
+  /// Torque of the last Send as the drives understand it: limited, in whole per mille.
+  [[nodiscard]] const PerAxis<double>& sent_torque_Nm() const noexcept { return sent_torque_Nm_; }
+
+ private:
+  struct Axis {
+    std::uint8_t bus = 0;
+    std::uint8_t node_id = 0;
+    DriveMode mode = DriveMode::kCst;
+    bool torque_offset = false;
+    bool has_scale = false;
+    TorqueScale torque;
+    PositionScale position;
+    double scale_m_per_count = 0.0;
+    double torque_limit_Nm = 0.0;
+    Unwrap unwrap;
+    Unwrap scale_unwrap;
+    DriveWalk walk;
+    std::uint64_t heartbeat_timeout_cycles = 0;
+    std::uint64_t heartbeat_cycle = 0;  ///< cycle of the last heartbeat
+  };
+  struct Bus {
+    BringUp bring_up;
+    std::uint8_t master_node_id = 127;
+    std::uint64_t heartbeat_cycles = 1;
+    std::uint64_t heartbeat_due = 0;
+  };
+
+  void OnFrame(const StampedFrame& frame) noexcept;
+  void OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept;
+  void OnFeedback(std::size_t axis, const CanFrame& frame) noexcept;
+  void Supervise(std::size_t axis, std::uint64_t elapsed) noexcept;
+  void AfterBringUp(bool was_operational) noexcept;
+  CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
+  [[nodiscard]] bool Healthy(std::size_t axis) const noexcept;
+
+  std::vector<Axis> axes_;
+  std::vector<Bus> buses_;
+  PerAxis<AxisFeedback> feedback_;
+  PerAxis<AxisDriveStatus> status_;
+  PerAxis<double> sent_torque_Nm_;
+  std::vector<std::uint8_t> axis_of_node_;  ///< [bus * 128 + node]; kNoAxis where none
+  std::uint64_t cycle_ = 0;
+  std::uint64_t sync_number_ = 0;
+  std::uint64_t feedback_sync_ = 0;
+  bool started_ = false;
+  bool seen_cycle_ = false;
+};
+
+}  // namespace contour
