@@ -1,0 +1,243 @@
+#include "config/machine_checks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "config/key_table.h"
+#include "config/stopping.h"
+#include "core/cycle_input.h"
+#include "core/mechanics.h"
+
+namespace contour {
+namespace {
+
+class Problems {
+ public:
+  void Add(std::string key, std::string message) { list_.push_back({std::move(key), std::move(message)}); }
+  std::vector<ConfigProblem> Take() { return std::move(list_); }
+
+ private:
+  std::vector<ConfigProblem> list_;
+};
+
+// A number for people: four significant digits.
+std::string Say(double number) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", number);
+  return text.data();
+}
+
+std::string Under(const std::string& key, std::string_view sub) {
+  return key.empty() ? std::string(sub) : key + "." + std::string(sub);
+}
+
+void CheckSizes(const MachineConfig& c, Problems& problems) {
+  if (c.axes.empty()) problems.Add("axes", "found no axis, expected at least one");
+  if (c.axes.size() > kMaxAxes)
+    problems.Add("axes", "found " + std::to_string(c.axes.size()) + " axes, expected at most " +
+                             std::to_string(kMaxAxes));
+  if (c.buses.empty()) problems.Add("buses", "found no bus, expected at least one");
+  if (c.buses.size() > kMaxBuses)
+    problems.Add("buses", "found " + std::to_string(c.buses.size()) + " buses, expected at most " +
+                              std::to_string(kMaxBuses));
+}
+
+void CheckTiming(const MachineConfig& c, Problems& problems) {
+  if (SendDeadline_ns(c) >= 1000 * std::int64_t{c.machine.cycle_us})
+    problems.Add("realtime.send_deadline_us", "found " + std::to_string(SendDeadline_ns(c) / 1000) +
+                                                  ", expected less than the cycle of " +
+                                                  std::to_string(c.machine.cycle_us) + " us");
+}
+
+void CheckBuses(const MachineConfig& c, Problems& problems) {
+  std::map<std::string, std::string> bus_of_interface;
+  for (const auto& [name, bus] : c.buses) {
+    const std::string key = "buses." + name;
+    if (bus.interface.empty())
+      problems.Add(key + ".interface", "found nothing, expected the name of an interface");
+    if (bus.interface == "loopback") continue;
+    // IFNAMSIZ leaves 15 characters.
+    if (bus.interface.size() > 15)
+      problems.Add(key + ".interface",
+                   "found '" + bus.interface + "', longer than a Linux interface name can be");
+    const auto [other, inserted] = bus_of_interface.emplace(bus.interface, name);
+    if (!inserted)
+      problems.Add(key + ".interface", "found '" + bus.interface + "', already the interface of bus '" +
+                                           other->second + "'; each bus needs its own");
+  }
+}
+
+void CheckNodes(const MachineConfig& c, Problems& problems) {
+  std::map<std::pair<std::string, int>, std::string> user;
+  for (const auto& [name, axis] : c.axes) {
+    const std::string key = "axes." + name + ".drive";
+    const auto bus = c.buses.find(axis.drive.bus);
+    if (bus == c.buses.end()) {
+      std::string known;
+      for (const std::string& b : BusNames(c)) known += (known.empty() ? "" : ", ") + b;
+      problems.Add(key + ".bus", "found '" + axis.drive.bus + "', expected a bus of this file: " + known);
+      continue;
+    }
+    const std::string node = std::to_string(axis.drive.node_id);
+    const auto [other, inserted] = user.emplace(std::pair{axis.drive.bus, axis.drive.node_id}, name);
+    if (!inserted)
+      problems.Add(key + ".node_id", "duplicate node: found " + node + ", already the node of axis '" +
+                                         other->second + "' on bus '" + axis.drive.bus + "'");
+    if (axis.drive.node_id == bus->second.master_node_id)
+      problems.Add(key + ".node_id", "found " + node + ", which is the master's own node on bus '" +
+                                         axis.drive.bus + "' (master_node_id)");
+  }
+}
+
+void CheckDrive(const std::string& key, const DriveConfig& d, double period_ms, Problems& problems) {
+  if (d.peak_torque_Nm < d.rated_torque_Nm)
+    problems.Add(
+        key + ".peak_torque_Nm",
+        "found " + Say(d.peak_torque_Nm) + ", expected at least rated_torque_Nm " + Say(d.rated_torque_Nm));
+  if (d.heartbeat_timeout_ms <= d.heartbeat_ms)
+    problems.Add(
+        key + ".heartbeat_timeout_ms",
+        "found " + Say(d.heartbeat_timeout_ms) + ", expected more than heartbeat_ms " + Say(d.heartbeat_ms));
+  if (d.notice_ms < 2.0 * period_ms)
+    problems.Add(key + ".notice_ms", "found " + Say(d.notice_ms) + ", expected at least two cycles, " +
+                                         Say(2.0 * period_ms) + " ms, or one lost frame stops the machine");
+  if (d.abort_connection_option != 3)
+    problems.Add(
+        key + ".abort_connection_option",
+        "found " + std::to_string(d.abort_connection_option) +
+            ", expected 3 (quick stop): otherwise nothing bounds how far the axis goes when the master dies");
+  if (d.quick_stop_option != 2)
+    problems.Add(
+        key + ".quick_stop_option",
+        "found " + std::to_string(d.quick_stop_option) +
+            ", expected 2 (quick-stop ramp, then off): no stopping distance can be promised otherwise");
+}
+
+void CheckLimits(const std::string& key, const AxisConfig& axis, Problems& problems) {
+  const AxisLimits& l = axis.limits;
+  if (!(l.position_mm[0] < l.position_mm[1]))
+    problems.Add(key + ".limits.position_mm", "found an empty range, " + Say(l.position_mm[0]) + " to " +
+                                                  Say(l.position_mm[1]) + ", expected the lower end first");
+  if (l.torque_Nm > axis.drive.peak_torque_Nm)
+    problems.Add(key + ".limits.torque_Nm", "found " + Say(l.torque_Nm) +
+                                                ", more than the drive's peak_torque_Nm of " +
+                                                Say(axis.drive.peak_torque_Nm));
+  // 0x6071 is an INT16 in per mille of rated torque.
+  if (l.torque_Nm > 32.767 * axis.drive.rated_torque_Nm)
+    problems.Add(key + ".limits.torque_Nm",
+                 "found " + Say(l.torque_Nm) + ", expected at most " +
+                     Say(32.767 * axis.drive.rated_torque_Nm) +
+                     ", the most a target torque (0x6071) can carry at this rated torque");
+}
+
+void CheckReserve(const std::string& key, const AxisConfig& axis, Problems& problems) {
+  const AxisReserve r = Reserve(axis);
+  const std::string available = "the torque limit of " + Say(axis.limits.torque_Nm) + " Nm leaves " +
+                                Say(1e3 * r.available_m_s2) + " mm/s^2";
+  if (r.needed_Nm > axis.limits.torque_Nm)
+    problems.Add(key + ".limits.acceleration_mm_s2",
+                 "impossible limit: found " + Say(axis.limits.acceleration_mm_s2) + ", which takes " +
+                     Say(r.needed_Nm) + " Nm at " + Say(axis.limits.velocity_mm_s) +
+                     " mm/s against friction; " + available);
+  const double jerk_rate_Nm_s = r.radius_m_rad * r.mass_kg * 1e-3 * axis.limits.jerk_mm_s3;
+  if (axis.limits.torque_rate_Nm_s > 0.0 && jerk_rate_Nm_s > axis.limits.torque_rate_Nm_s)
+    problems.Add(key + ".limits.jerk_mm_s3",
+                 "impossible limit: found " + Say(axis.limits.jerk_mm_s3) + ", which takes " +
+                     Say(jerk_rate_Nm_s) + " Nm/s; torque_rate_Nm_s is " + Say(axis.limits.torque_rate_Nm_s));
+}
+
+void CheckStopping(const MachineConfig& c, const std::string& key, const AxisConfig& axis,
+                   Problems& problems) {
+  const StoppingAxis s = ToStoppingAxis(c, axis);
+  if (s.ramp_m_s2 <= 0.0) {
+    problems.Add(
+        key + ".drive.quick_stop_deceleration_rad_s2",
+        "found 0 (the drive's own), expected a deceleration: no stopping distance can be promised otherwise");
+    return;
+  }
+  if (s.ramp_m_s2 > s.torque_acceleration_m_s2) {
+    problems.Add(key + ".drive.quick_stop_deceleration_rad_s2",
+                 "impossible limit: found " + Say(axis.drive.quick_stop_deceleration_rad_s2) +
+                     ", the torque limit of " + Say(axis.limits.torque_Nm) + " Nm gives " +
+                     Say(s.torque_acceleration_m_s2 / ToSi(axis.model.mechanics).radius_m_rad));
+    return;
+  }
+  const double travel_mm = SilentMaster(s, 0.0).travel_mm;
+  if (travel_mm > axis.limits.safe_travel_mm)
+    problems.Add(key + ".limits.safe_travel_mm", "found " + Say(axis.limits.safe_travel_mm) +
+                                                     ", but from rest at the torque limit the axis goes " +
+                                                     Say(travel_mm) +
+                                                     " mm until the drive notices a dead master (notice_ms " +
+                                                     Say(axis.drive.notice_ms) + ") and has stopped");
+}
+
+std::set<std::string> ParameterKeys(ModelConfig model) {
+  std::set<std::string> keys;
+  for (const KeyRow& row : DescribeKeys(model))
+    if (row.key.find('[') == std::string::npos && row.key.find('<') == std::string::npos)
+      keys.insert(row.key.substr(row.key.rfind('.') + 1));
+  return keys;
+}
+
+void Append(std::vector<ConfigProblem> more, Problems& problems) {
+  for (ConfigProblem& p : more) problems.Add(std::move(p.key), std::move(p.message));
+}
+
+}  // namespace
+
+AxisReserve Reserve(const AxisConfig& axis) {
+  const Mechanics m = ToSi(axis.model.mechanics);
+  const Friction f = ToSi(axis.model.friction, m.radius_m_rad);
+  AxisReserve r;
+  r.radius_m_rad = m.radius_m_rad;
+  r.mass_kg = m.mass_kg;
+  r.friction_N = std::max(f.Fc_plus_N, f.Fc_minus_N) + f.sigma2_Ns_m * 1e-3 * axis.limits.velocity_mm_s;
+  r.needed_Nm = m.radius_m_rad * (m.mass_kg * 1e-3 * axis.limits.acceleration_mm_s2 + r.friction_N);
+  r.available_m_s2 = std::max(0.0, (axis.limits.torque_Nm / m.radius_m_rad - r.friction_N) / m.mass_kg);
+  return r;
+}
+
+std::vector<ConfigProblem> Check(const ModelConfig& model, const std::string& key) {
+  Problems problems;
+  const Friction f = ToSi(model.friction, ToSi(model.mechanics).radius_m_rad);
+  const std::string suffix = model.friction.acts_on == FrictionSide::kTable ? "_N" : "_Nm";
+  for (const auto& [side, Fs_N, Fc_N] :
+       {std::tuple{"plus", f.Fs_plus_N, f.Fc_plus_N}, std::tuple{"minus", f.Fs_minus_N, f.Fc_minus_N}}) {
+    if (Fs_N < Fc_N)
+      problems.Add(Under(key, std::string("friction.Fs_") + side + suffix),
+                   std::string("found less than Fc_") + side + suffix +
+                       ": break-away friction is never below Coulomb friction");
+  }
+  const std::set<std::string> known = ParameterKeys(model);
+  for (const auto& [parameter, value] : model.uncertainty)
+    if (!known.contains(parameter))
+      problems.Add(Under(key, "uncertainty." + parameter), "found a key that is no parameter of this model");
+  return problems.Take();
+}
+
+std::vector<ConfigProblem> Check(const MachineConfig& c) {
+  Problems problems;
+  CheckSizes(c, problems);
+  CheckTiming(c, problems);
+  CheckBuses(c, problems);
+  CheckNodes(c, problems);
+  for (const auto& [name, axis] : c.axes) {
+    const std::string key = "axes." + name;
+    CheckDrive(key + ".drive", axis.drive, c.machine.cycle_us * 1e-3, problems);
+    CheckLimits(key, axis, problems);
+    CheckReserve(key, axis, problems);
+    CheckStopping(c, key, axis, problems);
+    Append(Check(axis.model, key + ".model"), problems);
+  }
+  if (c.io.modbus)
+    if (std::string text = Problem(*c.io.modbus); !text.empty()) problems.Add("io.modbus.timeout_ms", text);
+  return problems.Take();
+}
+
+}  // namespace contour

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "config/logging_config.h"
+#include "config/model_config.h"
+#include "config/realtime_config.h"
+#include "control/control_config.h"
+#include "core/controller_name.h"
+#include "core/visit.h"
+#include "drivers/cia402/drive_config.h"
+#include "drivers/lcm/telemetry_config.h"
+#include "drivers/modbus/io_config.h"
+#include "estimator/estimator_config.h"
+
+namespace contour {
+
+/// `machine:` of a machine file.
+struct MachineSection {
+  std::string name;
+  std::int32_t cycle_us = 1000;
+  ControllerName controller = ControllerName::kFull;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("name", name, "name of the machine, in telemetry and logs");
+    v.Optional("cycle_us", cycle_us, Range{250, 20000}, "period of the cycle");
+    v.Optional("controller", controller, "controller used unless another is asked for");
+  }
+};
+
+/// `axes.<name>` of a machine file.
+struct AxisConfig {
+  DriveConfig drive;
+  AxisLimits limits;
+  ModelConfig model;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("drive", drive, "the CiA 402 drive of this axis");
+    v.Required("limits", limits, "what the axis may do");
+    v.Required("model", model, "what is believed of the axis; or the name of a file that holds it");
+  }
+};
+
+/// A whole machine file but for `emulator:`, which the daemon does not read. Axes and buses are numbered in
+/// the order of their names.
+struct MachineConfig {
+  MachineSection machine;
+  RealtimeConfig realtime;
+  std::map<std::string, BusConfig> buses;
+  IoConfig io;
+  TelemetryConfig telemetry;
+  LoggingConfig logging;
+  ControllerConfig control;
+  EstimatorConfig estimator;
+  std::map<std::string, AxisConfig> axes;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("machine", machine, "name, cycle and controller");
+    v.Optional("realtime", realtime, "what the cycle's thread asks of the kernel");
+    v.Required("buses", buses, "CAN buses by name");
+    v.Optional("io", io, "auxiliary inputs and outputs");
+    v.Optional("telemetry", telemetry, "LCM telemetry");
+    v.Optional("logging", logging, "messages for people");
+    v.Optional("control", control, "tuning of the controllers");
+    v.Optional("estimator", estimator, "tuning of the estimators, the same for all axes");
+    v.Required("axes", axes, "axes by name");
+  }
+};
+
+/// Names in the order of their numbers.
+std::vector<std::string> AxisNames(const MachineConfig& config);
+std::vector<std::string> BusNames(const MachineConfig& config);
+
+/// Number of a bus; buses.size() when there is none of that name.
+std::size_t BusIndex(const MachineConfig& config, const std::string& bus);
+
+/// send_deadline_us of the file, or 20 % of the period.
+std::int64_t SendDeadline_ns(const MachineConfig& config);
+
+}  // namespace contour

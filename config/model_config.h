@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "core/mechanics.h"
+#include "core/visit.h"
+#include "estimator/friction_config.h"
+
+namespace contour {
+
+/// What is believed of one axis, `axes.<name>.model`. It may stand alone in a file: identification writes
+/// one, and a machine file may name one in place of the map.
+struct ModelConfig {
+  MechanicsConfig mechanics;
+  FrictionConfig friction;
+  /// Relative standard deviation of a parameter, by its key.
+  std::map<std::string, double> uncertainty;
+  /// Effects that diagnosis found beside the model: parameters with their units, by kind of effect.
+  std::map<std::string, std::map<std::string, double>> extensions;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    mechanics.Visit(v);
+    v.Required("friction", friction, "LuGre friction of the axis");
+    v.Optional("uncertainty", uncertainty, Range{0.0, 10.0},
+               "relative standard deviation of a parameter of the model, by its key");
+    v.Optional("extensions", extensions, "further effects with their parameters, as diagnosis writes them");
+  }
+};
+
+}  // namespace contour

@@ -1,0 +1,122 @@
+#include "config/stopping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/mechanics.h"
+
+namespace contour {
+namespace {
+
+double Cycles_s(const StoppingAxis& axis, double cycles) { return cycles * axis.period_s; }
+
+// A stop on the path: the pace falls along 1 - (3 s^2 - 2 s^3), whose steepest slope is 1.5 / T and whose
+// second derivative is at most 6 / T^2; T keeps the axis within its acceleration and jerk. Mean pace 1/2.
+double PathRamp_s(const StoppingAxis& axis) {
+  return std::max(1.5 * axis.speed_m_s / axis.path_acceleration_m_s2,
+                  std::sqrt(6.0 * axis.speed_m_s / axis.path_jerk_m_s3));
+}
+
+std::vector<StopBound> PathStop(const std::vector<StoppingAxis>& axes) {
+  // One ramp for all axes, so that the geometry is kept: the slowest axis says how long.
+  double ramp_s = 0.0;
+  for (const StoppingAxis& a : axes) ramp_s = std::max(ramp_s, PathRamp_s(a));
+  std::vector<StopBound> bounds;
+  for (const StoppingAxis& a : axes) {
+    const double delay_s = Cycles_s(a, 2.0);
+    bounds.push_back({delay_s + ramp_s, 1e3 * a.speed_m_s * (delay_s + 0.5 * ramp_s)});
+  }
+  return bounds;
+}
+
+template <class Bound>
+std::vector<StopBound> Each(const std::vector<StoppingAxis>& axes, Bound bound) {
+  std::vector<StopBound> bounds;
+  for (const StoppingAxis& a : axes) bounds.push_back(bound(a));
+  return bounds;
+}
+
+std::string Ms(double seconds) {
+  const long tenths = std::lround(seconds * 1e4);
+  return std::to_string(tenths / 10) + (tenths % 10 == 0 ? "" : "." + std::to_string(tenths % 10)) + " ms";
+}
+
+StopWay EmergencyStop(const MachineConfig& config, const std::vector<StoppingAxis>& axes,
+                      bool server_silent) {
+  const ModbusConfig& modbus = *config.io.modbus;
+  // An input that opens right after a poll is seen with the next reply; a server that says nothing counts as
+  // open when its last answer is timeout_ms old.
+  const double seen_s = 1e-3 * (server_silent ? modbus.timeout_ms : modbus.poll_ms + modbus.timeout_ms);
+  StopWay way;
+  way.name = server_silent ? "Modbus server silent" : "emergency-stop input";
+  way.how = "seen within " + Ms(seen_s) + ", then quick stop";
+  way.axes =
+      Each(axes, [&](const StoppingAxis& a) { return QuickStop(a, a.speed_m_s, seen_s + Cycles_s(a, 2.0)); });
+  return way;
+}
+
+}  // namespace
+
+StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis) {
+  const Mechanics m = ToSi(axis.model.mechanics);
+  const AxisLimitsSi limits = ToSi(axis.limits, m.radius_m_rad);
+  StoppingAxis s;
+  s.speed_m_s = limits.velocity_m_s;
+  s.path_acceleration_m_s2 = limits.acceleration_m_s2;
+  s.path_jerk_m_s3 = limits.jerk_m_s3;
+  s.torque_acceleration_m_s2 = limits.force_N / m.mass_kg;
+  s.ramp_m_s2 = axis.drive.quick_stop_deceleration_rad_s2 * m.radius_m_rad;
+  s.notice_s = axis.drive.notice_ms * 1e-3;
+  s.period_s = config.machine.cycle_us * 1e-6;
+  return s;
+}
+
+StopBound QuickStop(const StoppingAxis& axis, double speed_m_s, double delay_s) {
+  const double ramp_s = speed_m_s / axis.ramp_m_s2;
+  const double travel_m = speed_m_s * (delay_s + 0.5 * ramp_s + kRampFollowing_s);
+  return {delay_s + ramp_s + kRampFollowing_s, 1e3 * travel_m};
+}
+
+StopBound SilentMaster(const StoppingAxis& axis, double speed_m_s) {
+  const double held_s = axis.period_s + axis.notice_s;
+  const double reached_m_s = speed_m_s + axis.torque_acceleration_m_s2 * held_s;
+  const StopBound ramp = QuickStop(axis, reached_m_s, 0.0);
+  const double held_m = speed_m_s * held_s + 0.5 * axis.torque_acceleration_m_s2 * held_s * held_s;
+  return {held_s + ramp.time_s, 1e3 * held_m + ramp.travel_mm};
+}
+
+std::vector<StopWay> StopWays(const MachineConfig& config) {
+  std::vector<StoppingAxis> axes;
+  for (const auto& [name, axis] : config.axes) axes.push_back(ToStoppingAxis(config, axis));
+  const double overspeed = config.control.guard.overspeed_factor;
+  const double stale = config.control.guard.stale_cycles;
+  const auto silent = [](const StoppingAxis& a) { return SilentMaster(a, a.speed_m_s); };
+
+  std::vector<StopWay> ways;
+  ways.push_back(
+      {"operator stop", "on the path, within the limits of acceleration and jerk", PathStop(axes)});
+  ways.push_back(
+      {"SIGTERM, SIGINT", "as an operator stop, then the drives are switched off", PathStop(axes)});
+  ways.push_back({"fault (quick stop)", "torque 0 and the drives' quick-stop ramp in the cycle that sees it",
+                  Each(axes, [&](const StoppingAxis& a) {
+                    return QuickStop(a, overspeed * a.speed_m_s, Cycles_s(a, 2.0));
+                  })});
+  ways.push_back({"feedback lost",
+                  "fault after " + std::to_string(config.control.guard.stale_cycles) +
+                      " cycles without feedback; the drive gets its quick stop",
+                  Each(axes, [&](const StoppingAxis& a) {
+                    return QuickStop(a, a.speed_m_s + a.torque_acceleration_m_s2 * Cycles_s(a, stale + 2.0),
+                                     Cycles_s(a, stale + 2.0));
+                  })});
+  ways.push_back(
+      {"master silent (killed, hung)", "the drive notices, then its quick-stop ramp", Each(axes, silent)});
+  ways.push_back(
+      {"bus lost (interface down)", "as master silent; the machine is Faulted at once", Each(axes, silent)});
+  if (config.io.modbus) {
+    ways.push_back(EmergencyStop(config, axes, false));
+    ways.push_back(EmergencyStop(config, axes, true));
+  }
+  return ways;
+}
+
+}  // namespace contour
