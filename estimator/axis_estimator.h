@@ -1,14 +1,19 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <string_view>
+#include <variant>
 
 #include "core/axis.h"
 #include "core/horizon.h"
 #include "core/mechanics.h"
+#include "estimator/axis_estimator_input.h"
+#include "estimator/disturbance_observer.h"
 #include "estimator/estimator_config.h"
+#include "estimator/four_state_filter.h"
 #include "estimator/friction_config.h"
+#include "estimator/friction_preview.h"
+#include "estimator/kinematic_observer.h"
+#include "estimator/seven_state_filter.h"
 
 namespace contour {
 
@@ -19,19 +24,6 @@ enum class EstimatorKind : std::uint8_t {
   kEkf7,                 ///< the seven states in an extended Kalman filter
   kSrukf7,               ///< seven states in a square-root unscented Kalman filter
   kFull,                 ///< kSrukf7, per-turn ripple, friction rolled along the reference
-};
-
-/// What the estimator of one axis takes in per cycle. "Table units": forces are torque / R.
-struct AxisEstimatorInput {
-  double position_m = 0.0;  ///< R theta of the newest feedback, latched at t(k-1)
-  bool fresh = false;       ///< false: no new feedback; the filter only predicts
-  /// Torque commands over R as really sent (limited, rounded to the drive's steps), newest first:
-  /// u(k-1), which acts over [t(k-1), t(k)), then u(k-2), u(k-3).
-  std::array<double, 3> force_N{};
-  double commanded_velocity_m_s = 0.0;  ///< reference at t(k-1)
-  double commanded_acceleration_m_s2 = 0.0;
-  bool at_rest = true;   ///< commanded velocity is zero: friction parameters keep their values
-  bool enabled = false;  ///< the drive turns torque into motion; otherwise only the position is followed
 };
 
 /// State, velocity and friction of one axis from its motor encoder and the torque sent to it.
@@ -55,6 +47,14 @@ class AxisEstimator {
   /// Total friction (bristle, viscous, disturbance) expected along the reference; out gets reference.size()
   /// elements. Zero for kKinematic.
   void PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept;
+
+ private:
+  EstimatorKind kind_;
+  std::variant<KinematicObserver, DisturbanceObserver, FourStateFilter,
+               SevenStateFilter<SqrtEkf<kSevenStates>>, SevenStateFilter<SqrtUkf<kSevenStates>>>
+      filter_;
+  FrictionRoll roll_;
+  bool at_rest_ = true;
 };
 
 }  // namespace contour

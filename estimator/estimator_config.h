@@ -12,6 +12,7 @@ struct EstimatorConfig {
   double velocity_noise_mm_s = 0.03;
   double bristle_noise_N = 1.75;
   double level_noise_N = 0.1;
+  double four_state_level_noise_N = 0.5;
   double disturbance_noise_N = 0.5;
   double log_sigma0_noise = 0.002;
   double measurement_noise_um = 0.02;
@@ -23,6 +24,8 @@ struct EstimatorConfig {
   double innovation_gate_um = 20.0;
   double observer_bandwidth_Hz = 60.0;
   double ripple_rate = 0.02;
+  double initial_level_std = 0.2;
+  double initial_log_sigma0_std = 0.5;
   bool adapt = true;
 
   template <class Visitor>
@@ -31,6 +34,8 @@ struct EstimatorConfig {
     v.Optional("velocity_noise_mm_s", velocity_noise_mm_s, kNotNegative, "process noise of the velocity");
     v.Optional("bristle_noise_N", bristle_noise_N, kNotNegative, "process noise of the bristle force");
     v.Optional("level_noise_N", level_noise_N, kNotNegative, "process noise of the friction levels");
+    v.Optional("four_state_level_noise_N", four_state_level_noise_N, kNotNegative,
+               "process noise of the one friction level of the four-state filter");
     v.Optional("disturbance_noise_N", disturbance_noise_N, kNotNegative,
                "process noise of the leaky disturbance");
     v.Optional("log_sigma0_noise", log_sigma0_noise, kNotNegative, "process noise of ln sigma0");
@@ -49,6 +54,10 @@ struct EstimatorConfig {
                "bandwidth of the kinematic and the disturbance observer");
     v.Optional("ripple_rate", ripple_rate, Range{0.0, 1.0},
                "rate of learning the per-turn ripple of the friction level; 0 none");
+    v.Optional("initial_level_std", initial_level_std, Range{0.0, 2.0},
+               "relative uncertainty of the commissioned friction levels");
+    v.Optional("initial_log_sigma0_std", initial_log_sigma0_std, Range{0.0, 3.0},
+               "uncertainty of the logarithm of the commissioned bristle stiffness");
     v.Optional("adapt", adapt, kAny, "false: friction levels and stiffness keep their commissioned values");
   }
 };

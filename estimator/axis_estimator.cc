@@ -1,0 +1,98 @@
+#include "estimator/axis_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace contour {
+namespace {
+
+void Demand(bool ok, const char* what) {
+  if (!ok) throw std::invalid_argument(std::string("estimator: ") + what);
+}
+
+bool Positive(double x) { return std::isfinite(x) && x > 0.0; }
+bool NotNegative(double x) { return std::isfinite(x) && x >= 0.0; }
+
+FilterSetup Check(const Mechanics& mechanics, const FrictionConfig& config_friction,
+                  const EstimatorConfig& config, double period_s, double lag_s, double resolution_m) {
+  Demand(Positive(period_s), "the cycle period must be positive");
+  Demand(NotNegative(lag_s), "the drive's lag must not be negative");
+  Demand(NotNegative(resolution_m), "the encoder's resolution must not be negative");
+  Demand(Positive(mechanics.radius_m_rad), "the screw's lead must be positive");
+  Demand(Positive(mechanics.mass_kg) && NotNegative(mechanics.table_mass_kg), "masses must be positive");
+  Demand(mechanics.table_mass_kg <= mechanics.mass_kg, "the table cannot be heavier than the whole axis");
+  Demand(Positive(mechanics.stiffness_N_m), "the screw's stiffness must be positive");
+  const Friction f = ToSi(config_friction, mechanics.radius_m_rad);
+  Demand(Positive(f.Fs_plus_N) && Positive(f.Fs_minus_N) && Positive(f.Fc_plus_N) && Positive(f.Fc_minus_N),
+         "friction levels must be positive");
+  Demand(Positive(f.vs_m_s) && Positive(f.stribeck_exponent), "the Stribeck velocity must be positive");
+  Demand(Positive(f.sigma0_N_m), "sigma0 must be positive");
+  Demand(NotNegative(f.sigma1_Ns_m) && Positive(f.sigma1_decay_m_s), "sigma1 must not be negative");
+  Demand(NotNegative(f.sigma2_Ns_m), "sigma2 must not be negative");
+  Demand(Positive(config.measurement_noise_um), "the measurement noise must be positive");
+  // A rounded position is off by at most half a count, uniformly: LSB / sqrt(12).
+  const double rounding_m = resolution_m / std::sqrt(12.0);
+  return {mechanics, f, config, period_s, lag_s, std::max(config.measurement_noise_um * 1e-6, rounding_m)};
+}
+
+}  // namespace
+
+AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, const FrictionConfig& friction,
+                             const EstimatorConfig& config, double period_s, double lag_s,
+                             double resolution_m)
+    : kind_(kind) {
+  const FilterSetup setup = Check(mechanics, friction, config, period_s, lag_s, resolution_m);
+  switch (kind) {
+    case EstimatorKind::kKinematic:
+      filter_.emplace<KinematicObserver>(setup);
+      break;
+    case EstimatorKind::kDisturbanceObserver:
+      filter_.emplace<DisturbanceObserver>(setup);
+      break;
+    case EstimatorKind::kSrukf4:
+      filter_.emplace<FourStateFilter>(setup);
+      break;
+    case EstimatorKind::kEkf7:
+      filter_.emplace<SevenStateFilter<SqrtEkf<kSevenStates>>>(setup);
+      break;
+    case EstimatorKind::kSrukf7:
+    case EstimatorKind::kFull:
+      filter_.emplace<SevenStateFilter<SqrtUkf<kSevenStates>>>(setup);
+      break;
+  }
+  roll_ = FrictionRoll(period_s);
+}
+
+void AxisEstimator::Reset(double position_m) noexcept {
+  std::visit([&](auto& filter) noexcept { filter.Reset(position_m); }, filter_);
+  roll_.Reset(0.0);
+  at_rest_ = true;
+}
+
+AxisEstimate AxisEstimator::Update(const Input& in) noexcept {
+  at_rest_ = in.at_rest || !in.enabled;
+  return std::visit([&](auto& filter) noexcept { return filter.Update(in); }, filter_);
+}
+
+void AxisEstimator::PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept {
+  if (kind_ == EstimatorKind::kFull) {
+    const auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
+    roll_.Run(filter.model(), filter.state(), {}, at_rest_, reference, out);
+    return;
+  }
+  const double ahead_N = std::visit(
+      [](const auto& filter) noexcept {
+        if constexpr (requires { filter.FrictionAhead_N(); }) {
+          return filter.FrictionAhead_N();
+        } else {
+          return 0.0;
+        }
+      },
+      filter_);
+  out.resize(reference.size());
+  for (auto& f : out) f = {ahead_N, ahead_N};
+}
+
+}  // namespace contour

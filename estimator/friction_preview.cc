@@ -1,0 +1,28 @@
+#include "estimator/friction_preview.h"
+
+namespace contour {
+
+void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
+                       const SevenStateInput& ripple, bool at_rest, const AxisHorizon& reference,
+                       FrictionPreview& out) noexcept {
+  if (at_rest) bristle_N_ = x[kBristle];
+  const double offset_N = x[kBristle] - bristle_N_ + x[kDisturbance];
+  const double sigma0 = model.friction().sigma0_N_m * Exp(x[kLogSigma0]);
+  const double sigma2 = model.sigma2_Ns_m();
+  out.resize(reference.size());
+  double bristle_N = bristle_N_;
+  StateVector<kSevenStates> along = x;
+  for (std::size_t j = 0; j < reference.size(); ++j) {
+    const ReferencePoint& now = reference[j];
+    const double next_velocity = j + 1 < reference.size() ? reference[j + 1].velocity_m_s : now.velocity_m_s;
+    const double velocity = 0.5 * (now.velocity_m_s + next_velocity);
+    along[kVelocity] = velocity;
+    const double next_N = BristleAfter(bristle_N, velocity, sigma0, model.Level(along, ripple), period_s_);
+    out[j].node_N = bristle_N + offset_N + sigma2 * now.velocity_m_s;
+    out[j].mid_N = 0.5 * (bristle_N + next_N) + offset_N + sigma2 * velocity;
+    bristle_N = next_N;
+    if (j == 0) bristle_N_ = next_N;
+  }
+}
+
+}  // namespace contour

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/horizon.h"
+#include "estimator/seven_state_model.h"
+
+namespace contour {
+
+/// Friction the reference motion will meet: the bristle rolled along the reference with the levels and
+/// stiffness estimated now, plus the present difference between the estimated bristle and the rolled one,
+/// plus the disturbance held. Driven by the reference, not by the measured motion, it carries no noise and
+/// does not depend on the feedback loop.
+class FrictionRoll {
+ public:
+  FrictionRoll() noexcept = default;
+  explicit FrictionRoll(double period_s) noexcept : period_s_(period_s) {}
+
+  /// The rolled bristle starts from this force.
+  void Reset(double bristle_N) noexcept { bristle_N_ = bristle_N; }
+
+  /// `x`: filter state at element 0 of the reference. Keeps the bristle at element 1 for the next call.
+  void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, const SevenStateInput& ripple,
+           bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept;
+
+ private:
+  double period_s_ = 1e-3;
+  double bristle_N_ = 0.0;  // rolled, at element 0 of the next reference
+};
+
+}  // namespace contour

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "estimator/square_root.h"
+
+namespace contour {
+
+enum class UpdateResult : std::uint8_t {
+  kOk,
+  kGated,  ///< the measurement was too far off to be believed; state and covariance are unchanged
+};
+
+/// A measurement further from its prediction than `sigmas` standard deviations of the innovation and further
+/// than `absolute` is not believed. (An outlier once let in ruins a filter for good.)
+struct InnovationGate {
+  double sigmas = 12.0;
+  double absolute = 0.0;
+};
+
+struct Innovation {
+  double value = 0.0;
+  double std = 0.0;
+};
+
+/// Mean and square-root covariance: what all filters of this folder carry.
+template <std::size_t N>
+struct Gaussian {
+  StateVector<N> x{};
+  SquareMatrix<N> s{};  ///< lower triangular, P = s s^T
+
+  [[nodiscard]] double Variance(std::size_t i) const noexcept {
+    double v = 0.0;
+    for (std::size_t j = 0; j <= i; ++j) v += s[i][j] * s[i][j];
+    return v;
+  }
+
+  /// Standard deviation of sum_i c_i x_i.
+  [[nodiscard]] double Std(const StateVector<N>& c) const noexcept {
+    double v = 0.0;
+    for (std::size_t j = 0; j < N; ++j) {
+      double t = 0.0;
+      for (std::size_t i = j; i < N; ++i) t += c[i] * s[i][j];
+      v += t * t;
+    }
+    return std::sqrt(v);
+  }
+};
+
+template <std::size_t N>
+[[nodiscard]] constexpr StateMask<N> AllStates() noexcept {
+  StateMask<N> m{};
+  for (auto& b : m) b = true;
+  return m;
+}
+
+/// Exact Kalman update for a measurement of state 0: y = x0 + noise of standard deviation r > 0.
+///
+/// With S lower triangular only S00 is in row 0, so the Joseph form
+///   S S^T <- (I - K H) P (I - K H)^T + r^2 K K^T        (paper eqs. 23-26, corrected)
+/// multiplies column 0 of S by r / sqrt(S00^2 + r^2) and leaves the rest: exact, and it cannot fail.
+///
+/// States outside `mask` keep their value (a consider, or Schmidt, update): with the gain of those rows set
+/// to zero the Joseph form exceeds the optimum by dK Syy dK^T, added here as a rank-one update of S.
+template <std::size_t N>
+inline UpdateResult UpdateFirstState(Gaussian<N>& state, double y, double r, const InnovationGate& gate,
+                                     const StateMask<N>& mask, Innovation& innovation) noexcept {
+  const double s00 = state.s[0][0];
+  const double syy = std::sqrt(s00 * s00 + r * r);
+  innovation.value = y - state.x[0];
+  innovation.std = syy;
+  const double off = std::abs(innovation.value);
+  if (!(off <= std::max(gate.sigmas * syy, gate.absolute))) return UpdateResult::kGated;
+
+  const double scale = r / syy;
+  const double gain = s00 / (syy * syy) * innovation.value;
+  StateVector<N> excess{};
+  std::size_t first = N;
+  for (std::size_t i = 0; i < N; ++i) {
+    const double column = state.s[i][0];
+    if (mask[i]) {
+      state.x[i] += gain * column;
+    } else {
+      excess[i] = column * s00 / syy;
+      first = std::min(first, i);
+    }
+    state.s[i][0] = scale * column;
+  }
+  if (first < N) square_root::AddRankOne(state.s, excess, first);
+  return UpdateResult::kOk;
+}
+
+}  // namespace contour

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "core/axis.h"
+#include "estimator/axis_estimator_input.h"
+#include "estimator/filter_setup.h"
+
+namespace contour {
+
+/// Position, velocity and acceleration from the encoder alone: a third-order observer with three equal poles
+/// (fading-memory g-h-k filter). Knows nothing of force or friction.
+class KinematicObserver {
+ public:
+  KinematicObserver() noexcept = default;
+  explicit KinematicObserver(const FilterSetup& setup) noexcept : period_s_(setup.period_s) {
+    const double pole = std::exp(-2.0 * std::numbers::pi * setup.config.observer_bandwidth_Hz * period_s_);
+    const double rest = 1.0 - pole;
+    position_gain_ = 1.0 - pole * pole * pole;
+    velocity_gain_ = 1.5 * rest * rest * (1.0 + pole) / period_s_;
+    acceleration_gain_ = rest * rest * rest / (period_s_ * period_s_);
+  }
+
+  void Reset(double position_m) noexcept {
+    position_m_ = position_m;
+    velocity_m_s_ = acceleration_m_s2_ = 0.0;
+  }
+
+  AxisEstimate Update(const AxisEstimatorInput& in) noexcept;
+
+ private:
+  double period_s_ = 1e-3;
+  double position_gain_ = 0.0;
+  double velocity_gain_ = 0.0;
+  double acceleration_gain_ = 0.0;
+  double position_m_ = 0.0;
+  double velocity_m_s_ = 0.0;
+  double acceleration_m_s2_ = 0.0;
+};
+
+}  // namespace contour

@@ -1,0 +1,206 @@
+#include "estimator/seven_state_filter.h"
+
+#include <limits>
+
+namespace contour {
+namespace {
+
+// A drive that reports jumps this often in a row has moved: the filter starts again from the encoder.
+constexpr std::uint32_t kGatedBeforeRestart = 20;
+
+// Presliding: the bristle is well below the level it would slip at.
+constexpr double kPreslidingShare = 0.7;
+
+}  // namespace
+
+template <class Core>
+SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
+    : setup_(setup),
+      model_(setup.friction, setup.mechanics.mass_kg, setup.period_s,
+             setup.config.disturbance_decay_ms * 1e-3),
+      lag_(setup.period_s, setup.lag_s),
+      gate_{setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6} {
+  const auto& c = setup.config;
+  noise_[kPosition] = setup.PerPeriod(c.position_noise_um * 1e-6);
+  noise_[kVelocity] = setup.PerPeriod(c.velocity_noise_mm_s * 1e-3);
+  noise_[kBristle] = setup.PerPeriod(c.bristle_noise_N);
+  noise_[kDisturbance] = setup.PerPeriod(c.disturbance_noise_N);
+  noise_[kLevelPlus] = setup.PerPeriod(c.level_noise_N);
+  noise_[kLevelMinus] = noise_[kLevelPlus];
+  noise_[kLogSigma0] = setup.PerPeriod(c.log_sigma0_noise);
+
+  const Friction& f = setup.friction;
+  initial_std_[kPosition] = setup.measurement_std_m;
+  initial_std_[kVelocity] = 1e-4;
+  initial_std_[kBristle] = 0.5 * std::max(f.Fs_plus_N, f.Fs_minus_N);
+  initial_std_[kDisturbance] = c.disturbance_noise_N;
+  initial_std_[kLevelPlus] = c.initial_level_std * f.Fc_plus_N;
+  initial_std_[kLevelMinus] = c.initial_level_std * f.Fc_minus_N;
+  initial_std_[kLogSigma0] = c.initial_log_sigma0_std;
+  if (!c.adapt) {
+    for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise_[i] = initial_std_[i] = 0.0;
+  }
+
+  // Beyond these the covariance says nothing any more.
+  std_limit_ = {1.0, 100.0, 1e5, 1e5, 1e5, 1e5, 1e3};
+  Reset(0.0);
+}
+
+template <class Core>
+void SevenStateFilter<Core>::Reset(double position_m) noexcept {
+  core_.x = {};
+  core_.x[kLevelPlus] = setup_.friction.Fc_plus_N;
+  core_.x[kLevelMinus] = setup_.friction.Fc_minus_N;
+  core_.s = {};
+  for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = initial_std_[i];
+  last_position_m_ = position_m;
+  Follow(position_m);
+}
+
+// Position and velocity from the encoder, bristle unknown, parameters kept.
+template <class Core>
+void SevenStateFilter<Core>::Follow(double position_m) noexcept {
+  auto& x = core_.x;
+  x[kPosition] = position_m;
+  x[kVelocity] = (position_m - last_position_m_) / setup_.period_s;
+  x[kBristle] = 0.0;
+  x[kDisturbance] = 0.0;
+  X std = initial_std_;
+  for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) std[i] = std::sqrt(core_.Variance(i));
+  core_.s = {};
+  for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = std[i];
+  last_position_m_ = position_m;
+  lag_.Reset();
+  predicted_ = x;
+  gated_in_a_row_ = 0;
+  following_ = true;
+}
+
+// The encoder sees the motor; the model moves the centre of mass, which trails it by Mt/m of the screw's
+// wind-up (F + sigma2 v + Mt a) / K.
+template <class Core>
+double SevenStateFilter<Core>::WindUpShare_m(const X& x, double force_N) const noexcept {
+  const Mechanics& m = setup_.mechanics;
+  const double friction = x[kBristle] + model_.sigma2_Ns_m() * x[kVelocity];
+  const double acceleration = (force_N - friction - x[kDisturbance]) / m.mass_kg;
+  return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
+}
+
+template <class Core>
+void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
+  auto& x = core_.x;
+  const double moving = std::min(1.0, std::abs(x[kVelocity]) / (setup_.config.motion_gate_mm_s * 1e-3));
+  X noise = noise_;
+  noise[kDisturbance] *= moving;
+  const auto adapted = Adapted(in.at_rest);
+  for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
+
+  const SevenStateInput input = Input(lag_.Step(in.force_N[1]));
+  if constexpr (requires { core_.Draw(std::declval<SigmaPoints<kSevenStates>&>()); }) {
+    core_.Predict([&](SigmaPoints<kSevenStates>& points) noexcept { model_.Propagate(points, input); },
+                  noise);
+  } else {
+    core_.Predict(
+        [&](X& mean, SquareMatrix<kSevenStates>& t) noexcept { model_.PropagateTangent(mean, t, input); },
+        noise);
+  }
+}
+
+template <class Core>
+StateMask<kSevenStates> SevenStateFilter<Core>::Adapted(bool at_rest) const noexcept {
+  auto mask = AllStates<kSevenStates>();
+  const auto& x = core_.x;
+  const bool moving = !at_rest && setup_.config.adapt;
+  const bool forward = x[kVelocity] >= 0.0;
+  mask[kLevelPlus] = moving && forward;
+  mask[kLevelMinus] = moving && !forward;
+  mask[kLogSigma0] = moving && std::abs(x[kBristle]) < kPreslidingShare * Level_N();
+  return mask;
+}
+
+template <class Core>
+UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput& in,
+                                                       Innovation& innovation) noexcept {
+  const double y = in.position_m - WindUpShare_m(core_.x, lag_.force_N());
+  return core_.UpdateState0(y, setup_.measurement_std_m, gate_, Adapted(in.at_rest), innovation);
+}
+
+template <class Core>
+bool SevenStateFilter<Core>::Bound() noexcept {
+  bool bounded = false;
+  const auto clamp = [&bounded](double& value, double low, double high) {
+    if (value < low || value > high) {
+      value = std::clamp(value, low, high);
+      bounded = true;
+    }
+  };
+  const auto& c = setup_.config;
+  const Friction& f = setup_.friction;
+  auto& x = core_.x;
+  clamp(x[kLevelPlus], f.Fc_plus_N / c.level_range, f.Fc_plus_N * c.level_range);
+  clamp(x[kLevelMinus], f.Fc_minus_N / c.level_range, f.Fc_minus_N * c.level_range);
+  clamp(x[kLogSigma0], -c.log_sigma0_range, c.log_sigma0_range);
+  return bounded;
+}
+
+template <class Core>
+void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
+  predicted_ = core_.x;
+  model_.Propagate(predicted_, Input(lag_.Look(in.force_N[0])));
+  // On to the middle of [t(k), t(k+1)); the torque that acts there is being computed: the newest stands for
+  // it.
+  X middle = predicted_;
+  const std::array<double, kSubsteps> force_N{in.force_N[0], in.force_N[0]};
+  X end = predicted_;
+  model_.Propagate(end, Input(force_N));
+  friction_ahead_N_ = 0.5 * (middle[kBristle] + end[kBristle]) +
+                      0.5 * (middle[kDisturbance] + end[kDisturbance]) +
+                      model_.sigma2_Ns_m() * 0.5 * (middle[kVelocity] + end[kVelocity]);
+}
+
+template <class Core>
+AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexcept {
+  AxisEstimate out;
+  if (!in.enabled) {
+    if (in.fresh) Follow(in.position_m);
+  } else {
+    if (!following_) TimeUpdate(in);
+    following_ = false;
+    Innovation innovation;
+    if (in.fresh) {
+      const UpdateResult result = MeasurementUpdate(in, innovation);
+      gated_in_a_row_ = result == UpdateResult::kGated ? gated_in_a_row_ + 1 : 0;
+      if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
+      if (gated_in_a_row_ >= kGatedBeforeRestart) {
+        last_position_m_ = in.position_m;
+        Follow(in.position_m);
+      }
+    }
+    out.innovation_m = innovation.value;
+    out.innovation_std_m = innovation.std;
+    if (Bound() && out.limit == Reason::kNone) out.limit = Reason::kParameterBound;
+  }
+  LookAhead(in);
+
+  const auto& x = core_.x;
+  const double sigma2 = model_.sigma2_Ns_m();
+  const double wind_up = WindUpShare_m(x, lag_.force_N());
+  out.position_m = x[kPosition] + wind_up;
+  out.velocity_m_s = x[kVelocity];
+  out.predicted_position_m = predicted_[kPosition] + WindUpShare_m(predicted_, in.force_N[0]);
+  out.predicted_velocity_m_s = predicted_[kVelocity];
+  out.bristle_N = x[kBristle];
+  out.disturbance_N = x[kDisturbance];
+  out.friction_N = x[kBristle] + x[kDisturbance] + sigma2 * x[kVelocity];
+  out.friction_std_N = core_.Std({0.0, sigma2, 1.0, 1.0, 0.0, 0.0, 0.0});
+  out.g_plus_N = x[kLevelPlus];
+  out.g_minus_N = x[kLevelMinus];
+  out.sigma0_N_m = setup_.friction.sigma0_N_m * std::exp(x[kLogSigma0]);
+  out.diverged = !square_root::Sound(core_.x, core_.s, std_limit_);
+  return out;
+}
+
+template class SevenStateFilter<SqrtUkf<kSevenStates>>;
+template class SevenStateFilter<SqrtEkf<kSevenStates>>;
+
+}  // namespace contour

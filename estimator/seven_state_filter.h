@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include "core/axis.h"
+#include "estimator/axis_estimator_input.h"
+#include "estimator/drive_lag.h"
+#include "estimator/filter_setup.h"
+#include "estimator/seven_state_model.h"
+#include "estimator/sqrt_ekf.h"
+#include "estimator/sqrt_ukf.h"
+
+namespace contour {
+
+/// Position, velocity and LuGre friction of one axis with its drifting parameters, by either core filter
+/// (SqrtUkf<7>, SqrtEkf<7>). Around the core: process noise scaled by motion, only the active direction's
+/// level adapted, sigma0 only in presliding, parameters kept at rest, bounds, and the encoder corrected to
+/// the centre of mass. docs/estimator.md says why.
+template <class Core>
+class SevenStateFilter {
+ public:
+  SevenStateFilter() noexcept = default;
+  explicit SevenStateFilter(const FilterSetup& setup) noexcept;
+
+  void Reset(double position_m) noexcept;
+
+  /// Filter at the sample t(k-1) and prediction to t(k). Ripple factors of the level may be set before.
+  AxisEstimate Update(const AxisEstimatorInput& in) noexcept;
+
+  void SetRipple(double plus, double minus) noexcept {
+    ripple_plus_ = plus;
+    ripple_minus_ = minus;
+  }
+
+  /// Mean state at the sample and at t(k).
+  [[nodiscard]] const StateVector<kSevenStates>& state() const noexcept { return core_.x; }
+  [[nodiscard]] const StateVector<kSevenStates>& predicted() const noexcept { return predicted_; }
+  [[nodiscard]] const SevenStateModel& model() const noexcept { return model_; }
+  /// Friction (bristle, viscous, disturbance) in the middle of the interval in which the next torque acts.
+  [[nodiscard]] double FrictionAhead_N() const noexcept { return friction_ahead_N_; }
+  /// Level G in the direction of motion, Stribeck and ripple included.
+  [[nodiscard]] double Level_N() const noexcept { return model_.Level(core_.x, Input({})); }
+
+ private:
+  using X = StateVector<kSevenStates>;
+
+  [[nodiscard]] SevenStateInput Input(const std::array<double, kSubsteps>& force_N) const noexcept {
+    return {force_N, ripple_plus_, ripple_minus_};
+  }
+  void Follow(double position_m) noexcept;
+  void TimeUpdate(const AxisEstimatorInput& in) noexcept;
+  UpdateResult MeasurementUpdate(const AxisEstimatorInput& in, Innovation& innovation) noexcept;
+  [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
+  bool Bound() noexcept;
+  void LookAhead(const AxisEstimatorInput& in) noexcept;
+  [[nodiscard]] double WindUpShare_m(const X& x, double force_N) const noexcept;
+
+  FilterSetup setup_;
+  SevenStateModel model_;
+  DriveLag<kSubsteps> lag_;
+  InnovationGate gate_;
+  X noise_{};
+  X std_limit_{};
+  X initial_std_{};
+  Core core_;
+  X predicted_{};
+  double ripple_plus_ = 1.0;
+  double ripple_minus_ = 1.0;
+  double friction_ahead_N_ = 0.0;
+  double last_position_m_ = 0.0;
+  std::uint32_t gated_in_a_row_ = 0;
+  bool following_ = true;
+};
+
+extern template class SevenStateFilter<SqrtUkf<kSevenStates>>;
+extern template class SevenStateFilter<SqrtEkf<kSevenStates>>;
+
+}  // namespace contour

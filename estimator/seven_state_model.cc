@@ -1,0 +1,126 @@
+#include "estimator/seven_state_model.h"
+
+namespace contour {
+
+SevenStateModel::SevenStateModel(const Friction& friction, double mass_kg, double period_s,
+                                 double disturbance_decay_s) noexcept
+    : friction_(friction), sigma2_(friction.sigma2_Ns_m), step_s_(period_s / static_cast<double>(kSubsteps)) {
+  const double rate = sigma2_ / mass_kg;
+  velocity_decay_ = std::exp(-rate * step_s_);
+  velocity_gain_ = sigma2_ > 0.0 ? -std::expm1(-rate * step_s_) / sigma2_ : step_s_ / mass_kg;
+  leak_ = std::exp(-step_s_ / disturbance_decay_s);
+  ratio_plus_ = friction.Fs_plus_N / friction.Fc_plus_N;
+  ratio_minus_ = friction.Fs_minus_N / friction.Fc_minus_N;
+}
+
+// Whole rows at a time, without branches, so that the loop vectorises.
+template <class Row>
+void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm, const Row& s0,
+                              double force_N, const SevenStateInput& in) const noexcept {
+  const std::size_t n = std::tuple_size_v<Row>;
+  const double inverse_vs = 1.0 / friction_.vs_m_s;
+  const double per_plus = in.ripple_plus;
+  const double per_minus = in.ripple_minus;
+  const double more_plus = (ratio_plus_ - 1.0) * per_plus;
+  const double more_minus = (ratio_minus_ - 1.0) * per_minus;
+  Row shape;
+  for (std::size_t k = 0; k < n; ++k) shape[k] = std::abs(v[k]) * inverse_vs;
+  if (friction_.stribeck_exponent == 2.0) {
+    for (std::size_t k = 0; k < n; ++k) shape[k] *= shape[k];
+  } else if (friction_.stribeck_exponent != 1.0) {
+    for (std::size_t k = 0; k < n; ++k) shape[k] = std::pow(shape[k], friction_.stribeck_exponent);
+  }
+  for (std::size_t k = 0; k < n; ++k) shape[k] = Exp(-shape[k]);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double level_plus = gp[k] * (per_plus + more_plus * shape[k]);
+    const double level_minus = gm[k] * (per_minus + more_minus * shape[k]);
+    const double level = std::max(v[k] >= 0.0 ? level_plus : level_minus, kLeastLevel_N);
+    const double target = v[k] >= 0.0 ? level : -level;
+    f[k] -= (target - f[k]) * Expm1(-s0[k] * std::abs(v[k]) * step_s_ / level);
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const double next = velocity_decay_ * v[k] + velocity_gain_ * (force_N - f[k] - d[k]);
+    p[k] += 0.5 * step_s_ * (v[k] + next);
+    v[k] = next;
+    d[k] *= leak_;
+  }
+}
+
+void SevenStateModel::Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in) const noexcept {
+  auto& r = points.row;
+  SigmaPoints<kSevenStates>::Row s0;
+  for (std::size_t k = 0; k < s0.size(); ++k) s0[k] = friction_.sigma0_N_m * Exp(r[kLogSigma0][k]);
+  for (const double force_N : in.force_N) {
+    Substep(r[kPosition], r[kVelocity], r[kBristle], r[kDisturbance], r[kLevelPlus], r[kLevelMinus], s0,
+            force_N, in);
+  }
+}
+
+void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept {
+  using One = std::array<double, 1>;
+  One p{x[kPosition]}, v{x[kVelocity]}, f{x[kBristle]}, d{x[kDisturbance]};
+  const One gp{x[kLevelPlus]}, gm{x[kLevelMinus]}, s0{friction_.sigma0_N_m * Exp(x[kLogSigma0])};
+  for (const double force_N : in.force_N) Substep(p, v, f, d, gp, gm, s0, force_N, in);
+  x[kPosition] = p[0];
+  x[kVelocity] = v[0];
+  x[kBristle] = f[0];
+  x[kDisturbance] = d[0];
+}
+
+double SevenStateModel::Level(const StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept {
+  const bool forward = x[kVelocity] >= 0.0;
+  const double g = forward ? x[kLevelPlus] * in.ripple_plus : x[kLevelMinus] * in.ripple_minus;
+  return std::max(g * StribeckFactor(forward ? ratio_plus_ : ratio_minus_, std::abs(x[kVelocity]),
+                                     friction_.vs_m_s, friction_.stribeck_exponent),
+                  kLeastLevel_N);
+}
+
+void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& t,
+                                       const SevenStateInput& in) const noexcept {
+  const double s0 = friction_.sigma0_N_m * Exp(x[kLogSigma0]);
+  const double h = step_s_;
+  for (const double force_N : in.force_N) {
+    const bool forward = x[kVelocity] >= 0.0;
+    const double sign = forward ? 1.0 : -1.0;
+    const double speed = std::abs(x[kVelocity]);
+    const double ratio = forward ? ratio_plus_ : ratio_minus_;
+    const double ripple = forward ? in.ripple_plus : in.ripple_minus;
+    const double n = friction_.stribeck_exponent;
+    const double per_g = ripple * StribeckFactor(ratio, speed, friction_.vs_m_s, n);
+    const double g = forward ? x[kLevelPlus] : x[kLevelMinus];
+    const double level = std::max(g * per_g, kLeastLevel_N);
+    // dG/dv through the Stribeck curve.
+    const double u = speed / friction_.vs_m_s;
+    const double slope = n == 1.0 ? 1.0 : n * std::pow(u, n - 1.0);
+    const double level_v = -sign * g * ripple * (per_g / ripple - 1.0) * slope / friction_.vs_m_s;
+
+    const double a = s0 * speed / level;
+    const double relaxed = -Expm1(-a * h);
+    const double gap = sign * level - x[kBristle];
+    const double by_a = gap * h * (1.0 - relaxed);  // dF+/da
+    const double f_f = 1.0 - relaxed;
+    const double f_v = sign * level_v * relaxed + by_a * (s0 * sign / level - a / level * level_v);
+    const double f_g = (sign * relaxed - by_a * a / level) * per_g;
+    const double f_l = by_a * a;
+
+    x[kBristle] += gap * relaxed;
+    const double next =
+        velocity_decay_ * x[kVelocity] + velocity_gain_ * (force_N - x[kBristle] - x[kDisturbance]);
+    x[kPosition] += 0.5 * h * (x[kVelocity] + next);
+    x[kVelocity] = next;
+    x[kDisturbance] *= leak_;
+
+    const auto& active = t[forward ? kLevelPlus : kLevelMinus];
+    for (std::size_t k = 0; k < kSevenStates; ++k) {
+      const double f =
+          f_f * t[kBristle][k] + f_v * t[kVelocity][k] + f_g * active[k] + f_l * t[kLogSigma0][k];
+      const double v = velocity_decay_ * t[kVelocity][k] - velocity_gain_ * (f + t[kDisturbance][k]);
+      t[kPosition][k] += 0.5 * h * (t[kVelocity][k] + v);
+      t[kVelocity][k] = v;
+      t[kBristle][k] = f;
+      t[kDisturbance][k] *= leak_;
+    }
+  }
+}
+
+}  // namespace contour

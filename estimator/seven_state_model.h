@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "estimator/friction_model.h"
+#include "estimator/sqrt_ukf.h"
+#include "estimator/square_root.h"
+
+namespace contour {
+
+/// States of the friction filter. The parameters come last, so that keeping them costs little.
+enum SevenState : std::size_t {
+  kPosition,     ///< centre of mass, m
+  kVelocity,     ///< m/s
+  kBristle,      ///< F = sigma0 z, N
+  kDisturbance,  ///< leaky, positive opposes positive motion, N
+  kLevelPlus,    ///< Coulomb level g of the positive direction, N
+  kLevelMinus,   ///< and of the negative one
+  kLogSigma0,    ///< ln(sigma0 / commissioned sigma0)
+};
+inline constexpr std::size_t kSevenStates = 7;
+inline constexpr std::size_t kSubsteps = 2;
+
+/// What is known of one period beforehand.
+struct SevenStateInput {
+  std::array<double, kSubsteps> force_N{};  ///< mean force of the drive in each substep
+  double ripple_plus = 1.0;                 ///< factor of the level at this place, per direction
+  double ripple_minus = 1.0;
+};
+
+/// One rigid axis with LuGre friction in two substeps per period; sigma1 is left out (it costs almost
+/// nothing).
+///   F+ = F + (sgn(v) G - F) (1 - exp(-sigma0 |v| h / G)),  G = g(dir) Stribeck(v) ripple(p)
+///   v+ = A v + B (u - F+ - d),  A = exp(-sigma2 h / m),  B = (1 - A) / sigma2,   p+ = p + h (v + v+) / 2
+/// The new F goes into the velocity update (eq. 9 as printed is unstable in presliding).
+class SevenStateModel {
+ public:
+  SevenStateModel() noexcept = default;
+  SevenStateModel(const Friction& friction, double mass_kg, double period_s,
+                  double disturbance_decay_s) noexcept;
+
+  /// All sigma points, in place.
+  void Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in) const noexcept;
+
+  /// One state, over `substeps` substeps of the input.
+  void Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept;
+
+  /// One state, and `tangent` (each column a direction) by the chain rule.
+  void PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& tangent,
+                        const SevenStateInput& in) const noexcept;
+
+  /// Level G that holds in this state.
+  [[nodiscard]] double Level(const StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept;
+
+  [[nodiscard]] double sigma2_Ns_m() const noexcept { return sigma2_; }
+  [[nodiscard]] const Friction& friction() const noexcept { return friction_; }
+
+ private:
+  template <class Row>
+  void Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm, const Row& s0, double force_N,
+               const SevenStateInput& in) const noexcept;
+
+  Friction friction_;
+  double sigma2_ = 0.0;
+  double step_s_ = 0.0;          // h
+  double velocity_decay_ = 1.0;  // A
+  double velocity_gain_ = 0.0;   // B
+  double leak_ = 1.0;            // of d, per substep
+  double ratio_plus_ = 1.0;      // Fs / Fc
+  double ratio_minus_ = 1.0;
+};
+
+}  // namespace contour
