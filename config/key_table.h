@@ -46,7 +46,7 @@ class KeyDescriber {
 
   /// Rows of a struct, with all its variants.
   template <visit::Struct T>
-  static void Describe(T value, const std::string& path, std::vector<KeyRow>& rows);
+  static void Describe(const std::string& path, std::vector<KeyRow>& rows);
 
  private:
   /// Lets a struct's own Visit run with one of its enums set to each of its choices in turn.
@@ -75,9 +75,9 @@ class KeyDescriber {
 
 /// The table of a configuration struct.
 template <visit::Struct T>
-std::vector<KeyRow> DescribeKeys(const T& value, const std::string& path = "") {
+std::vector<KeyRow> DescribeKeys(const std::string& path = "") {
   std::vector<KeyRow> rows;
-  KeyDescriber::Describe(value, path, rows);
+  KeyDescriber::Describe<T>(path, rows);
   return rows;
 }
 
@@ -145,7 +145,7 @@ void KeyDescriber::Inside(const std::string& path, std::vector<KeyRow>& rows, Ra
   } else if constexpr (kIsMap<T>) {
     Inside<typename T::mapped_type>(path + ".<name>", rows, range);
   } else if constexpr (Struct<T>) {
-    Describe(T{}, path, rows);
+    Describe<T>(path, rows);
   }
 }
 
@@ -209,13 +209,14 @@ class KeyDescriber::VariantFinder {
 };
 
 template <visit::Struct T>
-void KeyDescriber::Describe(T value, const std::string& path, std::vector<KeyRow>& rows) {
+void KeyDescriber::Describe(const std::string& path, std::vector<KeyRow>& rows) {
+  T value;
   const std::size_t first = rows.size();
   KeyDescriber plain(path, rows);
   value.Visit(plain);
   for (std::size_t which = 0;; ++which) {
     for (std::size_t choice = 0;; ++choice) {
-      T variant = value;
+      T variant;
       VariantFinder finder(which, choice);
       variant.Visit(finder);
       if (!finder.enum_found()) return;

@@ -177,9 +177,9 @@ void CheckStopping(const MachineConfig& c, const std::string& key, const AxisCon
                                                      Say(axis.drive.notice_ms) + ") and has stopped");
 }
 
-std::set<std::string> ParameterKeys(ModelConfig model) {
+std::set<std::string> ParameterKeys() {
   std::set<std::string> keys;
-  for (const KeyRow& row : DescribeKeys(model))
+  for (const KeyRow& row : DescribeKeys<ModelConfig>())
     if (row.key.find('[') == std::string::npos && row.key.find('<') == std::string::npos)
       keys.insert(row.key.substr(row.key.rfind('.') + 1));
   return keys;
@@ -214,7 +214,7 @@ std::vector<ConfigProblem> Check(const ModelConfig& model, const std::string& ke
                    std::string("found less than Fc_") + side + suffix +
                        ": break-away friction is never below Coulomb friction");
   }
-  const std::set<std::string> known = ParameterKeys(model);
+  const std::set<std::string> known = ParameterKeys();
   for (const auto& [parameter, value] : model.uncertainty)
     if (!known.contains(parameter))
       problems.Add(Under(key, "uncertainty." + parameter), "found a key that is no parameter of this model");

@@ -29,7 +29,7 @@ struct StoppingAxis {
 StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis);
 
 /// A drive's velocity loop follows its ramp some time behind it; standstill comes by so much later.
-inline constexpr double kRampFollowing_s = 0.010;
+inline constexpr double kRampFollowing_s = 0.003;
 
 /// The axis keeps `speed` for `delay_s`, then the drive's quick-stop ramp brings it to rest:
 /// x = v t + v^2 / (2 d) + v t_following.

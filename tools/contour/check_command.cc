@@ -1,0 +1,59 @@
+#include "tools/contour/check_command.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/key_table.h"
+#include "tools/contour/check_report.h"
+#include "tools/machine/load_emulated_machine.h"
+
+namespace contour {
+namespace {
+
+struct Options {
+  std::string file;
+  bool describe = false;
+  bool markdown = false;
+  std::vector<std::string> set;
+};
+
+std::vector<KeyRow> AllKeys() {
+  std::vector<KeyRow> rows = DescribeKeys<MachineConfig>();
+  for (KeyRow& row : DescribeKeys<EmulatorConfig>("emulator")) rows.push_back(std::move(row));
+  return rows;
+}
+
+int RunCheck(const Options& options) {
+  if (options.describe || options.markdown) {
+    std::cout << (options.markdown ? MarkdownTable(AllKeys()) : TextTable(AllKeys()));
+    if (options.file.empty()) return kExitDone;
+  }
+  const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
+  std::cout << CheckReport(file.machine);
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddCheckCommand(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub =
+      app.add_subcommand("check", "Validate a machine file; print limits, stopping bounds and bus timing");
+  CLI::Option* file = sub->add_option("file", options->file, "Machine file (YAML)");
+  sub->add_flag("--describe", options->describe, "Print the reference table of all keys");
+  sub->add_flag("--markdown", options->markdown, "The reference table as Markdown");
+  sub->add_option("--set", options->set, "Put KEY=VALUE on top of the file; any number of times")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  sub->callback([options, file, &action] {
+    if (file->count() == 0 && !options->describe && !options->markdown) throw CLI::RequiredError("file");
+    action = [options] { return RunCheck(*options); };
+  });
+}
+
+}  // namespace contour

@@ -1,0 +1,125 @@
+#include "tools/contour/check_report.h"
+
+#include <array>
+#include <cstdio>
+
+#include "config/machine_checks.h"
+#include "config/stopping.h"
+#include "core/mechanics.h"
+#include "tools/contour/text_table.h"
+
+namespace contour {
+namespace {
+
+std::string WithUnit(const char* number, const char* unit) {
+  return std::string(number) + (unit[0] != '\0' ? " " : "") + unit;
+}
+
+// Four significant digits.
+std::string Number(double value, const char* unit = "") {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return WithUnit(text.data(), unit);
+}
+
+std::string Fixed(double value, int decimals, const char* unit) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return WithUnit(text.data(), unit);
+}
+
+std::string Head(const MachineConfig& c) {
+  return "Machine " + c.machine.name + ": cycle " + std::to_string(c.machine.cycle_us) + " us, controller " +
+         std::string(Name(c.machine.controller)) + ", " + std::to_string(c.axes.size()) +
+         (c.axes.size() == 1 ? " axis" : " axes") + "\n";
+}
+
+// One column per axis: easy to compare.
+std::string Axes(const MachineConfig& c) {
+  TextColumns table;
+  std::vector<std::string> names{""};
+  for (const std::string& name : AxisNames(c)) names.push_back(name);
+  table.Add(names);
+  const auto line = [&](const char* title, auto value) {
+    std::vector<std::string> row{title};
+    for (const auto& [name, axis] : c.axes) row.push_back(value(axis));
+    table.Add(row);
+  };
+  line("bus, node, mode", [](const AxisConfig& a) {
+    return a.drive.bus + ", " + std::to_string(a.drive.node_id) + ", " + std::string(Name(a.drive.mode));
+  });
+  line("position", [](const AxisConfig& a) {
+    return Number(a.limits.position_mm[0]) + " .. " + Number(a.limits.position_mm[1], "mm");
+  });
+  line("velocity", [](const AxisConfig& a) { return Number(a.limits.velocity_mm_s, "mm/s"); });
+  line("acceleration", [](const AxisConfig& a) { return Number(a.limits.acceleration_mm_s2, "mm/s^2"); });
+  line("jerk", [](const AxisConfig& a) { return Number(a.limits.jerk_mm_s3, "mm/s^3"); });
+  line("following error", [](const AxisConfig& a) { return Number(a.limits.following_error_mm, "mm"); });
+  line("torque: limit", [](const AxisConfig& a) { return Number(a.limits.torque_Nm, "Nm"); });
+  line("torque: rated, peak", [](const AxisConfig& a) {
+    return Number(a.drive.rated_torque_Nm) + ", " + Number(a.drive.peak_torque_Nm, "Nm");
+  });
+  line("force at the limit",
+       [](const AxisConfig& a) { return Fixed(a.limits.torque_Nm / Reserve(a).radius_m_rad, 0, "N"); });
+  line("effective mass (Jm/R^2 + Mt)", [](const AxisConfig& a) { return Number(Reserve(a).mass_kg, "kg"); });
+  line("one encoder count", [](const AxisConfig& a) {
+    return Number(1e6 * a.model.mechanics.lead_mm / a.drive.encoder_counts_per_rev, "nm");
+  });
+  line("one per mille of torque", [](const AxisConfig& a) {
+    return Fixed(1e-3 * a.drive.rated_torque_Nm / Reserve(a).radius_m_rad, 2, "N");
+  });
+  line("friction at full speed", [](const AxisConfig& a) { return Fixed(Reserve(a).friction_N, 0, "N"); });
+  line("torque for the limits", [](const AxisConfig& a) { return Number(Reserve(a).needed_Nm, "Nm"); });
+  line("acceleration available",
+       [](const AxisConfig& a) { return Fixed(1e3 * Reserve(a).available_m_s2, 0, "mm/s^2"); });
+  line("acceleration reserve", [](const AxisConfig& a) {
+    return Fixed(100.0 * (1e3 * Reserve(a).available_m_s2 / a.limits.acceleration_mm_s2 - 1.0), 0, "%");
+  });
+  return "\nAxes\n" + table.Text();
+}
+
+std::string Stops(const MachineConfig& c) {
+  TextColumns table;
+  std::vector<std::string> head{"way of stopping"};
+  for (const std::string& name : AxisNames(c)) {
+    head.push_back(name + ": time");
+    head.push_back("travel");
+  }
+  head.push_back("");
+  table.Add(head);
+  std::string notes;
+  for (const StopWay& way : StopWays(c)) {
+    std::vector<std::string> row{way.name};
+    for (const StopBound& b : way.axes) {
+      row.push_back(Fixed(1e3 * b.time_s, 1, "ms"));
+      row.push_back(Fixed(b.travel_mm, 2, "mm"));
+    }
+    table.Add(row);
+    notes += "  " + way.name + ": " + way.how + "\n";
+  }
+  std::string safe;
+  for (const auto& [name, axis] : c.axes)
+    safe += "  " + name + ": from rest at the torque limit, until the drive has noticed a dead master (" +
+            Number(axis.drive.notice_ms, "ms") +
+            ") and stopped: " + Fixed(SilentMaster(ToStoppingAxis(c, axis), 0.0).travel_mm, 2, "mm") +
+            ", safe travel " + Number(axis.limits.safe_travel_mm, "mm") + "\n";
+  return "\nStopping: bounds from the velocity limit to standstill\n" + table.Text() + notes +
+         "Safe travel\n" + safe;
+}
+
+std::string Timing(const MachineConfig& c) {
+  std::string text = "\nTiming\n";
+  text += "  cycle " + std::to_string(c.machine.cycle_us) + " us; frames late after " +
+          std::to_string(SendDeadline_ns(c) / 1000) + " us\n";
+  for (const auto& [name, axis] : c.axes)
+    text += "  " + name + ": from sample to torque " +
+            std::to_string(axis.drive.delay_cycles * c.machine.cycle_us) + " us and a lag of " +
+            Number(1e3 * axis.drive.lag_ms, "us") + "\n";
+  return text;
+}
+
+}  // namespace
+
+std::string CheckReport(const MachineConfig& c) { return Head(c) + Axes(c) + Stops(c) + Timing(c); }
+
+}  // namespace contour

@@ -1,0 +1,53 @@
+// `contour`: everything around the daemon, by subcommand. command.h says how to add one.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <string>
+
+#include "config/config_error.h"
+#include "core/exit_status.h"
+#include "tools/contour/check_command.h"
+#include "tools/contour/command.h"
+
+namespace {
+
+void AddVersionFlags(CLI::App& app) {
+  app.set_version_flag("--version", std::string("contour ") + CONTOUR_VERSION, "Print the version and leave");
+  for (CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) AddVersionFlags(*sub);
+}
+
+int Run(const contour::Action& action) {
+  try {
+    return action();
+  } catch (const contour::ConfigError& e) {
+    std::cerr << e.what() << "\n";
+    return contour::kExitBadUsage;
+  } catch (const contour::EnvironmentError& e) {
+    std::cerr << "contour: " << e.what() << "\n";
+    return contour::kExitEnvironment;
+  } catch (const std::exception& e) {
+    std::cerr << "contour: " << e.what() << "\n";
+    return contour::kExitFailed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Companion of contourd, the contouring servo daemon.", "contour"};
+  app.require_subcommand(1);
+  app.footer(
+      "Exit status: 0 done, 1 ran and failed, 2 bad usage or configuration, 3 the environment lacks "
+      "something.");
+  contour::Action action;
+
+  contour::AddCheckCommand(app, action);
+
+  AddVersionFlags(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? contour::kExitDone : contour::kExitBadUsage;
+  }
+  return Run(action);
+}

@@ -1,0 +1,49 @@
+#include "tools/machine/load_emulated_machine.h"
+
+#include <utility>
+
+#include "config/config_error.h"
+#include "config/load_machine.h"
+#include "config/yaml_reader.h"
+
+namespace contour {
+namespace {
+
+void CheckAxes(const YamlValue& tree, const MaybeEmulatedMachineFile& file,
+               std::vector<std::string>& errors) {
+  for (const auto& [name, axis] : file.machine.axes)
+    if (!file.emulator.axes.contains(name))
+      errors.push_back(WhereIs(tree, "emulator.axes") + ": emulator.axes." + name +
+                       ": missing, expected the emulated machine of axis '" + name + "'");
+  for (const auto& [name, axis] : file.emulator.axes)
+    if (!file.machine.axes.contains(name))
+      errors.push_back(WhereIs(tree, "emulator.axes." + name) + ": emulator.axes." + name +
+                       ": found an axis that the machine does not have");
+}
+
+}  // namespace
+
+MaybeEmulatedMachineFile LoadMaybeEmulatedMachine(const std::string& path,
+                                                  const std::vector<std::string>& overrides) {
+  const YamlValue tree = OpenMachineFile(path, overrides);
+  std::vector<std::string> errors;
+  MaybeEmulatedMachineFile file;
+  file.machine = ReadMachine(tree, errors);
+  if (const YamlEntry* section = tree.Find("emulator")) {
+    file.has_emulator = true;
+    const std::size_t before = errors.size();
+    ReadYaml(section->value, file.emulator, "emulator", errors);
+    if (errors.size() == before) CheckAxes(tree, file, errors);
+  }
+  if (!errors.empty()) throw ConfigError(std::move(errors));
+  return file;
+}
+
+EmulatedMachineFile LoadEmulatedMachine(const std::string& path, const std::vector<std::string>& overrides) {
+  MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(path, overrides);
+  if (!file.has_emulator)
+    throw ConfigError({path + ": emulator: missing, expected a map of keys: the machine to emulate"});
+  return {std::move(file.machine), std::move(file.emulator)};
+}
+
+}  // namespace contour

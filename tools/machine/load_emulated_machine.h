@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/machine_config.h"
+#include "tools/plant_emulator/emulator_config.h"
+
+namespace contour {
+
+/// A machine file with its section `emulator:`.
+struct EmulatedMachineFile {
+  MachineConfig machine;
+  EmulatorConfig emulator;
+};
+
+/// Reads and checks everything. `machine` is exactly what LoadMachine gives. Throws ConfigError with all that
+/// is wrong; a file without `emulator:`, or one that emulates other axes than `axes:` has, is wrong here.
+EmulatedMachineFile LoadEmulatedMachine(const std::string& path,
+                                        const std::vector<std::string>& overrides = {});
+
+/// A machine file whose `emulator:` may be missing (a real machine's).
+struct MaybeEmulatedMachineFile {
+  MachineConfig machine;
+  bool has_emulator = false;
+  EmulatorConfig emulator;
+};
+MaybeEmulatedMachineFile LoadMaybeEmulatedMachine(const std::string& path,
+                                                  const std::vector<std::string>& overrides = {});
+
+}  // namespace contour
