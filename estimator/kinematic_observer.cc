@@ -3,6 +3,10 @@
 namespace contour {
 
 AxisEstimate KinematicObserver::Update(const AxisEstimatorInput& in) noexcept {
+  const double force_N = in.enabled ? lag_.Step(in.force_N[1])[0] : 0.0;
+  if (!in.enabled) lag_.Reset();
+  acceleration_m_s2_ += (force_N - mean_force_N_) * inverse_mass_1_kg_;
+  mean_force_N_ = force_N;
   position_m_ += period_s_ * (velocity_m_s_ + 0.5 * period_s_ * acceleration_m_s2_);
   velocity_m_s_ += period_s_ * acceleration_m_s2_;
   AxisEstimate out;
@@ -14,8 +18,10 @@ AxisEstimate KinematicObserver::Update(const AxisEstimatorInput& in) noexcept {
   }
   out.position_m = position_m_;
   out.velocity_m_s = velocity_m_s_;
-  out.predicted_position_m = position_m_ + period_s_ * (velocity_m_s_ + 0.5 * period_s_ * acceleration_m_s2_);
-  out.predicted_velocity_m_s = velocity_m_s_ + period_s_ * acceleration_m_s2_;
+  const double ahead_N = in.enabled ? lag_.Look(in.force_N[0])[0] : 0.0;
+  const double ahead_m_s2 = acceleration_m_s2_ + (ahead_N - mean_force_N_) * inverse_mass_1_kg_;
+  out.predicted_position_m = position_m_ + period_s_ * (velocity_m_s_ + 0.5 * period_s_ * ahead_m_s2);
+  out.predicted_velocity_m_s = velocity_m_s_ + period_s_ * ahead_m_s2;
   out.diverged = !std::isfinite(position_m_ + velocity_m_s_ + acceleration_m_s2_);
   return out;
 }

@@ -5,16 +5,21 @@
 
 #include "core/axis.h"
 #include "estimator/axis_estimator_input.h"
+#include "estimator/drive_lag.h"
 #include "estimator/filter_setup.h"
 
 namespace contour {
 
-/// Position, velocity and acceleration from the encoder alone: a third-order observer with three equal poles
-/// (fading-memory g-h-k filter). Knows nothing of force or friction.
+/// Position, velocity and acceleration from the encoder: a third-order observer with three equal poles
+/// (fading-memory g-h-k filter). Knows nothing of friction; the change of the motor's force from one period
+/// to the next enters the acceleration, without which the observer's lag would destabilise a stiff loop.
 class KinematicObserver {
  public:
   KinematicObserver() noexcept = default;
-  explicit KinematicObserver(const FilterSetup& setup) noexcept : period_s_(setup.period_s) {
+  explicit KinematicObserver(const FilterSetup& setup) noexcept
+      : period_s_(setup.period_s),
+        inverse_mass_1_kg_(1.0 / setup.mechanics.mass_kg),
+        lag_(setup.period_s, setup.lag_s) {
     const double pole = std::exp(-2.0 * std::numbers::pi * setup.config.observer_bandwidth_Hz * period_s_);
     const double rest = 1.0 - pole;
     position_gain_ = 1.0 - pole * pole * pole;
@@ -24,13 +29,17 @@ class KinematicObserver {
 
   void Reset(double position_m) noexcept {
     position_m_ = position_m;
-    velocity_m_s_ = acceleration_m_s2_ = 0.0;
+    velocity_m_s_ = acceleration_m_s2_ = mean_force_N_ = 0.0;
+    lag_.Reset();
   }
 
   AxisEstimate Update(const AxisEstimatorInput& in) noexcept;
 
  private:
   double period_s_ = 1e-3;
+  double inverse_mass_1_kg_ = 0.0;
+  DriveLag<1> lag_;
+  double mean_force_N_ = 0.0;
   double position_gain_ = 0.0;
   double velocity_gain_ = 0.0;
   double acceleration_gain_ = 0.0;
