@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace contour {
+
+/// Goes up when a log of an older program could be misread.
+inline constexpr std::int32_t kLogFormatVersion = 1;
+
+inline constexpr std::string_view kHeaderChannel = "CONTOUR_LOG_HEADER";
+inline constexpr std::string_view kNoteChannel = "CONTOUR_LOG_NOTE";
+inline constexpr std::string_view kFooterChannel = "CONTOUR_LOG_FOOTER";
+
+/// Begins every event of an LCM log.
+inline constexpr std::uint32_t kLcmEventSync = 0xEDA1DA01u;
+
+}  // namespace contour

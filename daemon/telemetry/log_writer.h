@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+#include "daemon/telemetry/log_header.h"
+#include "daemon/telemetry/log_stats.h"
+#include "drivers/lcm/telemetry_encoder.h"
+
+namespace contour {
+
+/// Writes the log of a run: an LCM event log that lcm-logplayer plays (docs/telemetry.md has the format).
+///
+/// Events are gathered and handed to the file system batch by batch. What does not fit, because the disk is
+/// full for one, is cut off again, so that the file stays readable, and counted; writing goes on when there
+/// is room. Events and notes may come from different threads; stats() may be called from any. Never call this
+/// from the cycle.
+class LogWriter final : public TelemetrySink {
+ public:
+  /// Throws std::runtime_error with file and cause when the file cannot be made.
+  LogWriter(const std::filesystem::path& file, const LogHeader& header);
+  /// Closes.
+  ~LogWriter() override;
+  LogWriter(const LogWriter&) = delete;
+  LogWriter& operator=(const LogWriter&) = delete;
+
+  void OnEvent(const TelemetryEvent& event) noexcept override;
+  void Note(const std::string& key, const std::string& text) noexcept;
+  /// Writes what is pending and the footer. Nothing is written afterwards.
+  void Close() noexcept;
+
+  [[nodiscard]] LogStats stats() const;
+
+ private:
+  void Append(std::string_view channel, std::string_view bytes, std::int64_t unix_us);
+  [[nodiscard]] std::int64_t UnixTime_us(std::int64_t grid_time_ns) noexcept;
+  bool WritePending() noexcept;
+  void LosePending(const char* why) noexcept;
+
+  mutable std::mutex mutex_;
+  int fd_ = -1;
+  std::string pending_;
+  std::uint64_t pending_cycles_ = 0;
+  std::int64_t events_ = 0;
+  std::int64_t batches_ = 0;
+  std::int64_t good_size_ = 0;  ///< bytes of the file that are whole events
+  std::int64_t start_unix_us_;
+  std::int64_t last_unix_us_;
+  std::int64_t first_grid_time_ns_ = 0;
+  bool any_event_ = false;
+  LogStats stats_;
+};
+
+}  // namespace contour

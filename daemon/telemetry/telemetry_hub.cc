@@ -1,0 +1,86 @@
+#include "daemon/telemetry/telemetry_hub.h"
+
+#include <utility>
+
+namespace contour {
+
+TelemetryHub::TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
+                           const std::optional<LogTarget>& log)
+    : encoder_(config, cycle_us, axis_names) {
+  if (config.publish) {
+    publisher_ = std::make_unique<LcmPublisher>(config.lcm_url);
+    sinks_.push_back(publisher_.get());
+  }
+  if (log) {
+    log_ = std::make_unique<LogWriter>(log->file, log->header);
+    sinks_.push_back(log_.get());
+  }
+}
+
+void TelemetryHub::Consume(const CycleEntry& entry) {
+  Observe(entry);
+  if (!sinks_.empty()) encoder_.Add(entry, sinks_);
+}
+
+void TelemetryHub::Flush() { encoder_.Flush(sinks_); }
+
+void TelemetryHub::Close() {
+  Flush();
+  if (log_ != nullptr) log_->Close();
+}
+
+void TelemetryHub::Observe(const CycleEntry& entry) {
+  std::vector<std::shared_ptr<RowFeed>> feeds;
+  {
+    const std::lock_guard lock(mutex_);
+    ++cycles_;
+    record_ = entry.output.record;
+    timing_ = entry.timing;
+    late_cycles_ += entry.timing.late ? 1 : 0;
+    skipped_grid_points_ += entry.timing.skipped_grid_points;
+    wakeup_late_.Add(entry.timing.wakeup_late_ns);
+    computing_.Add(entry.timing.stepped_ns - entry.timing.received_ns);
+    sent_.Add(entry.timing.sent_ns);
+    feeds = feeds_;
+  }
+  for (const auto& feed : feeds) feed->Push(entry);
+}
+
+void TelemetryHub::Attach(std::shared_ptr<RowFeed> feed) {
+  const std::lock_guard lock(mutex_);
+  feeds_.push_back(std::move(feed));
+}
+
+void TelemetryHub::Detach(const std::shared_ptr<RowFeed>& feed) {
+  const std::lock_guard lock(mutex_);
+  std::erase(feeds_, feed);
+}
+
+void TelemetryHub::Note(const std::string& key, const std::string& text) {
+  if (log_ != nullptr) log_->Note(key, text);
+}
+
+TelemetryHub::Snapshot TelemetryHub::snapshot() const {
+  Snapshot s;
+  {
+    const std::lock_guard lock(mutex_);
+    s.cycles = cycles_;
+    s.record = record_;
+    s.timing = timing_;
+    s.late_cycles = late_cycles_;
+    s.skipped_grid_points = skipped_grid_points_;
+    s.wakeup_late = Summarize(wakeup_late_);
+    s.computing = Summarize(computing_);
+    s.sent = Summarize(sent_);
+  }
+  if (publisher_ != nullptr) s.publisher = publisher_->stats();
+  if (log_ != nullptr) s.log = log_->stats();
+  return s;
+}
+
+CycleRecord TelemetryHub::record() const {
+  const std::lock_guard lock(mutex_);
+  return record_;
+}
+
+}  // namespace contour

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/cycle_record.h"
+#include "daemon/telemetry/log_writer.h"
+#include "daemon/telemetry/row_feed.h"
+#include "daemon/telemetry/timing_histogram.h"
+#include "drivers/lcm/lcm_publisher.h"
+#include "drivers/lcm/telemetry_config.h"
+#include "drivers/lcm/telemetry_encoder.h"
+
+namespace contour {
+
+/// Where every cycle goes once it has left the real-time side: LCM, the log, the clients that collect rows,
+/// and what status shows. Consume() and Flush() belong to the pump thread; the rest may be called from any.
+class TelemetryHub {
+ public:
+  struct LogTarget {
+    std::filesystem::path file;
+    LogHeader header;
+  };
+
+  /// Throws std::runtime_error when the log cannot be made. Whether LCM works shows later, in stats.
+  TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
+               const std::optional<LogTarget>& log);
+
+  void Consume(const CycleEntry& entry);
+  /// Sends what is not a full batch yet; for when no cycles come.
+  void Flush();
+  /// Flush, and the end of the log. Consume() may not be called afterwards.
+  void Close();
+
+  void Attach(std::shared_ptr<RowFeed> feed);
+  void Detach(const std::shared_ptr<RowFeed>& feed);
+
+  /// Into the log, when there is one.
+  void Note(const std::string& key, const std::string& text);
+
+  struct Snapshot {
+    std::uint64_t cycles = 0;  ///< consumed
+    CycleRecord record;        ///< of the newest one
+    CycleTiming timing;
+    std::uint64_t late_cycles = 0;
+    std::uint64_t skipped_grid_points = 0;
+    TimingSummary wakeup_late;
+    TimingSummary computing;  ///< received to stepped
+    TimingSummary sent;
+    PublisherStats publisher;
+    LogStats log;
+  };
+  [[nodiscard]] Snapshot snapshot() const;
+  /// Newest record alone: cheap enough to poll while waiting for an acknowledgement.
+  [[nodiscard]] CycleRecord record() const;
+
+ private:
+  void Observe(const CycleEntry& entry);
+
+  TelemetryEncoder encoder_;
+  std::unique_ptr<LcmPublisher> publisher_;
+  std::unique_ptr<LogWriter> log_;
+  std::vector<TelemetrySink*> sinks_;
+
+  mutable std::mutex mutex_;  // guards all below
+  std::vector<std::shared_ptr<RowFeed>> feeds_;
+  std::uint64_t cycles_ = 0;
+  std::uint64_t late_cycles_ = 0;
+  std::uint64_t skipped_grid_points_ = 0;
+  CycleRecord record_;
+  CycleTiming timing_;
+  TimingHistogram wakeup_late_;
+  TimingHistogram computing_;
+  TimingHistogram sent_;
+};
+
+}  // namespace contour
