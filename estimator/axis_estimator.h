@@ -12,6 +12,7 @@
 #include "estimator/four_state_filter.h"
 #include "estimator/friction_config.h"
 #include "estimator/friction_preview.h"
+#include "estimator/friction_ripple.h"
 #include "estimator/kinematic_observer.h"
 #include "estimator/seven_state_filter.h"
 
@@ -49,11 +50,15 @@ class AxisEstimator {
   void PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept;
 
  private:
+  AxisEstimate UpdateFull(const Input& in) noexcept;
+
   EstimatorKind kind_;
   std::variant<KinematicObserver, DisturbanceObserver, FourStateFilter,
                SevenStateFilter<SqrtEkf<kSevenStates>>, SevenStateFilter<SqrtUkf<kSevenStates>>>
       filter_;
   FrictionRoll roll_;
+  FrictionRipple ripple_;
+  double period_s_ = 1e-3;
   bool at_rest_ = true;
 };
 

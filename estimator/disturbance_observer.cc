@@ -9,9 +9,8 @@ DisturbanceObserver::DisturbanceObserver(const FilterSetup& setup) noexcept
     : setup_(setup), lag_(setup.period_s, setup.lag_s) {
   const double mass_kg = setup.mechanics.mass_kg;
   const double rate = setup.friction.sigma2_Ns_m / mass_kg;
-  velocity_decay_ = std::exp(-rate * setup.period_s);
-  velocity_gain_ =
-      rate > 0.0 ? -std::expm1(-rate * setup.period_s) / (rate * mass_kg) : setup.period_s / mass_kg;
+  velocity_decay_ = Exp(-rate * setup.period_s);
+  velocity_gain_ = rate > 0.0 ? -Expm1(-rate * setup.period_s) / (rate * mass_kg) : setup.period_s / mass_kg;
   const double w = 2.0 * std::numbers::pi * setup.config.observer_bandwidth_Hz;
   noise_ = {0.0, 0.0, mass_kg * w * w * w * setup.measurement_std_m * setup.period_s};
   Reset(0.0);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "estimator/exponential.h"
+
 namespace contour {
 
 /// The first-order lag of a drive's current loop: f' = (u - f) / tau, with u held over one period. Followed
@@ -18,7 +20,7 @@ class DriveLag {
   DriveLag(double period_s, double lag_s) noexcept {
     const double part_s = period_s / static_cast<double>(Parts);
     if (lag_s > 0.0) {
-      decay_ = std::exp(-part_s / lag_s);
+      decay_ = Exp(-part_s / lag_s);
       mean_ = lag_s / part_s * (1.0 - decay_);
     }
   }

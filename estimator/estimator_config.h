@@ -23,7 +23,7 @@ struct EstimatorConfig {
   double innovation_gate_sigma = 12.0;
   double innovation_gate_um = 20.0;
   double observer_bandwidth_Hz = 60.0;
-  double ripple_rate = 0.02;
+  double ripple_rate = 0.1;
   double initial_level_std = 0.2;
   double initial_log_sigma0_std = 0.5;
   bool adapt = true;
@@ -53,7 +53,8 @@ struct EstimatorConfig {
     v.Optional("observer_bandwidth_Hz", observer_bandwidth_Hz, Range{1.0, 400.0},
                "bandwidth of the kinematic and the disturbance observer");
     v.Optional("ripple_rate", ripple_rate, Range{0.0, 1.0},
-               "rate of learning the per-turn ripple of the friction level; 0 none");
+               "share of the error that the per-turn ripple of the friction level learns per radian of the "
+               "screw; 0 none");
     v.Optional("initial_level_std", initial_level_std, Range{0.0, 2.0},
                "relative uncertainty of the commissioned friction levels");
     v.Optional("initial_log_sigma0_std", initial_log_sigma0_std, Range{0.0, 3.0},

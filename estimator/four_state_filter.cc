@@ -20,9 +20,8 @@ FourStateFilter::FourStateFilter(const FilterSetup& setup) noexcept
   const auto& c = setup.config;
   const double mass_kg = setup.mechanics.mass_kg;
   const double rate = f.sigma2_Ns_m / mass_kg;
-  velocity_decay_ = std::exp(-rate * setup.period_s);
-  velocity_gain_ =
-      rate > 0.0 ? -std::expm1(-rate * setup.period_s) / (rate * mass_kg) : setup.period_s / mass_kg;
+  velocity_decay_ = Exp(-rate * setup.period_s);
+  velocity_gain_ = rate > 0.0 ? -Expm1(-rate * setup.period_s) / (rate * mass_kg) : setup.period_s / mass_kg;
   level_N_ = 0.25 * (f.Fc_plus_N + f.Fc_minus_N + f.Fs_plus_N + f.Fs_minus_N);
   noise_ = {setup.PerPeriod(c.position_noise_um * 1e-6), setup.PerPeriod(c.velocity_noise_mm_s * 1e-3),
             setup.PerPeriod(c.bristle_noise_N) / f.sigma0_N_m, setup.PerPeriod(c.four_state_level_noise_N)};

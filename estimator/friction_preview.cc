@@ -3,7 +3,7 @@
 namespace contour {
 
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
-                       const SevenStateInput& ripple, bool at_rest, const AxisHorizon& reference,
+                       const FrictionRipple& ripple, bool at_rest, const AxisHorizon& reference,
                        FrictionPreview& out) noexcept {
   if (at_rest) bristle_N_ = x[kBristle];
   const double offset_N = x[kBristle] - bristle_N_ + x[kDisturbance];
@@ -17,7 +17,9 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
     const double next_velocity = j + 1 < reference.size() ? reference[j + 1].velocity_m_s : now.velocity_m_s;
     const double velocity = 0.5 * (now.velocity_m_s + next_velocity);
     along[kVelocity] = velocity;
-    const double next_N = BristleAfter(bristle_N, velocity, sigma0, model.Level(along, ripple), period_s_);
+    const double factor = ripple.Factor(ripple.Basis(now.position_m), velocity >= 0.0);
+    const SevenStateInput input{{}, factor, factor};
+    const double next_N = BristleAfter(bristle_N, velocity, sigma0, model.Level(along, input), period_s_);
     out[j].node_N = bristle_N + offset_N + sigma2 * now.velocity_m_s;
     out[j].mid_N = 0.5 * (bristle_N + next_N) + offset_N + sigma2 * velocity;
     bristle_N = next_N;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/horizon.h"
+#include "estimator/friction_ripple.h"
 #include "estimator/seven_state_model.h"
 
 namespace contour {
@@ -18,7 +19,7 @@ class FrictionRoll {
   void Reset(double bristle_N) noexcept { bristle_N_ = bristle_N; }
 
   /// `x`: filter state at element 0 of the reference. Keeps the bristle at element 1 for the next call.
-  void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, const SevenStateInput& ripple,
+  void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, const FrictionRipple& ripple,
            bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept;
 
  private:

@@ -6,6 +6,7 @@
 #include "core/axis.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/drive_lag.h"
+#include "estimator/exponential.h"
 #include "estimator/filter_setup.h"
 
 namespace contour {
@@ -20,7 +21,7 @@ class KinematicObserver {
       : period_s_(setup.period_s),
         inverse_mass_1_kg_(1.0 / setup.mechanics.mass_kg),
         lag_(setup.period_s, setup.lag_s) {
-    const double pole = std::exp(-2.0 * std::numbers::pi * setup.config.observer_bandwidth_Hz * period_s_);
+    const double pole = Exp(-2.0 * std::numbers::pi * setup.config.observer_bandwidth_Hz * period_s_);
     const double rest = 1.0 - pole;
     position_gain_ = 1.0 - pole * pole * pole;
     velocity_gain_ = 1.5 * rest * rest * (1.0 + pole) / period_s_;

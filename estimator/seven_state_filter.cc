@@ -195,7 +195,7 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   out.friction_std_N = core_.Std({0.0, sigma2, 1.0, 1.0, 0.0, 0.0, 0.0});
   out.g_plus_N = x[kLevelPlus];
   out.g_minus_N = x[kLevelMinus];
-  out.sigma0_N_m = setup_.friction.sigma0_N_m * std::exp(x[kLogSigma0]);
+  out.sigma0_N_m = setup_.friction.sigma0_N_m * Exp(x[kLogSigma0]);
   out.diverged = !square_root::Sound(core_.x, core_.s, std_limit_);
   return out;
 }

@@ -6,9 +6,9 @@ SevenStateModel::SevenStateModel(const Friction& friction, double mass_kg, doubl
                                  double disturbance_decay_s) noexcept
     : friction_(friction), sigma2_(friction.sigma2_Ns_m), step_s_(period_s / static_cast<double>(kSubsteps)) {
   const double rate = sigma2_ / mass_kg;
-  velocity_decay_ = std::exp(-rate * step_s_);
-  velocity_gain_ = sigma2_ > 0.0 ? -std::expm1(-rate * step_s_) / sigma2_ : step_s_ / mass_kg;
-  leak_ = std::exp(-step_s_ / disturbance_decay_s);
+  velocity_decay_ = Exp(-rate * step_s_);
+  velocity_gain_ = sigma2_ > 0.0 ? -Expm1(-rate * step_s_) / sigma2_ : step_s_ / mass_kg;
+  leak_ = Exp(-step_s_ / disturbance_decay_s);
   ratio_plus_ = friction.Fs_plus_N / friction.Fc_plus_N;
   ratio_minus_ = friction.Fs_minus_N / friction.Fc_minus_N;
 }
