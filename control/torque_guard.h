@@ -45,6 +45,9 @@ class TorqueGuard {
     double position_m = 0.0;
     std::uint32_t cycles_since_position = 0;
     bool has_position = false;
+    bool was_enabled = false;
+    double allowed_min_m = 0.0;  ///< position limits of this enabling
+    double allowed_max_m = 0.0;
   };
   Reason FindFault(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
                    double reference_position_m, bool enabled) noexcept;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "control/contour_controller.h"
+
+namespace contour {
+
+/// One way of turning reference and estimate into force.
+class ControlLaw {
+ public:
+  virtual ~ControlLaw() = default;
+  virtual void Reset() noexcept = 0;
+  virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
+  [[nodiscard]] virtual int horizon_points() const noexcept = 0;
+};
+
+/// Point of a horizon; beyond its end the last one.
+inline const ReferencePoint& PointAt(const AxisHorizon& horizon, std::size_t index) noexcept {
+  return horizon[index < horizon.size() ? index : horizon.size() - 1];
+}
+
+}  // namespace contour

@@ -1,0 +1,175 @@
+#include "control/mpc_group.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace contour {
+namespace {
+
+// With cost weight error^2 + (force / mass)^2 a free mass becomes a second-order loop of natural frequency
+// weight^(1/4): bandwidths in Hz mean the same for every mass.
+double WeightOf(double bandwidth_Hz) {
+  const double omega = 2.0 * std::numbers::pi * bandwidth_Hz;
+  return omega * omega * omega * omega;
+}
+
+}  // namespace
+
+template <std::size_t Axes>
+MpcGroup<Axes>::MpcGroup(const MpcConfig& config, const ControllerOptions& options,
+                         const PerAxis<ControlledAxis>& axes, std::size_t first, double period_s)
+    : config_(config),
+      first_(first),
+      period_s_(period_s),
+      contour_weight_(WeightOf(config.contour_bandwidth_Hz)),
+      lag_weight_(WeightOf(config.lag_bandwidth_Hz)) {
+  if (config.horizon < 1 || config.horizon > static_cast<int>(kMaxHorizon)) {
+    throw std::invalid_argument("mpc: the horizon must be 1 to 40 cycles");
+  }
+  if (config.iteration_cap < 1) throw std::invalid_argument("mpc: the iteration cap must be positive");
+  problem_.horizon = static_cast<std::size_t>(config.horizon);
+  for (std::size_t i = 0; i < Axes; ++i) {
+    const ControlledAxis& axis = axes[first + i];
+    if (!(axis.limits.force_N > 0.0)) throw std::invalid_argument("mpc: the torque limit must be positive");
+    feedforward_.emplace_back(axis, options, period_s);
+    mass_kg_[i] = axis.mechanics.mass_kg;
+    bound_m_s2_[i] = axis.limits.force_N / mass_kg_[i];
+    step_m_s2_[i] = axis.limits.force_rate_N_s * period_s / mass_kg_[i];
+    problem_.has_rate_limit[i] = step_m_s2_[i] < 2.0 * bound_m_s2_[i];
+    problem_.dynamics[i] = feedforward_[i].dynamics();
+    problem_.effort[i] = 1.0;
+    contour_terminal_[i] = LqrTerminal(problem_.dynamics[i], contour_weight_, 1.0);
+    lag_terminal_[i] = LqrTerminal(problem_.dynamics[i], lag_weight_, 1.0);
+  }
+  Reset();
+}
+
+template <std::size_t Axes>
+void MpcGroup<Axes>::Reset() noexcept {
+  active_ = {};
+  solution_ = {};
+  has_planned_ = false;
+}
+
+template <std::size_t Axes>
+AxisVector<Axes> MpcGroup<Axes>::Tangent(const ControlInput& input, std::size_t node) const noexcept {
+  AxisVector<Axes> tangent;
+  const double rest = config_.rest_velocity_um_s * 1e-6;
+  double square = rest * rest;
+  for (std::size_t i = 0; i < Axes; ++i) {
+    tangent[i] = PointAt(input.reference[first_ + i], node).velocity_m_s;
+    square += tangent[i] * tangent[i];
+  }
+  const double inverse = 1.0 / std::sqrt(square);
+  for (double& t : tangent) t *= inverse;
+  return tangent;
+}
+
+template <std::size_t Axes>
+void MpcGroup<Axes>::BuildWeights(const ControlInput& input) noexcept {
+  AxisVector<Axes> tangent{};
+  for (std::size_t j = 0; j < problem_.horizon; ++j) {
+    tangent = Tangent(input, j + 2);
+    for (std::size_t i = 0; i < Axes; ++i) {
+      for (std::size_t k = 0; k < Axes; ++k) {
+        problem_.stage[j].weight[i][k] =
+            (i == k ? contour_weight_ : 0.0) + (lag_weight_ - contour_weight_) * tangent[i] * tangent[k];
+      }
+    }
+  }
+  BuildTerminal(tangent);
+}
+
+// Cost-to-go of the rotated weights: exact when all axes have the same dynamics, positive semidefinite
+// always.
+template <std::size_t Axes>
+void MpcGroup<Axes>::BuildTerminal(const AxisVector<Axes>& tangent) noexcept {
+  auto& terminal = problem_.terminal;
+  for (std::size_t i = 0; i < Axes; ++i) {
+    for (std::size_t k = 0; k < Axes; ++k) {
+      const TerminalFactor &ci = contour_terminal_[i], &ck = contour_terminal_[k];
+      const TerminalFactor &li = lag_terminal_[i], &lk = lag_terminal_[k];
+      const double along = tangent[i] * tangent[k];
+      const double across = (i == k ? 1.0 : 0.0) - along;
+      terminal[i][k] = across * ci.pp * ck.pp + along * li.pp * lk.pp;
+      terminal[i][Axes + k] = across * ci.pp * ck.vp + along * li.pp * lk.vp;
+      terminal[Axes + i][k] = across * ci.vp * ck.pp + along * li.vp * lk.pp;
+      terminal[Axes + i][Axes + k] =
+          across * (ci.vp * ck.vp + ci.vv * ck.vv) + along * (li.vp * lk.vp + li.vv * lk.vv);
+    }
+  }
+}
+
+template <std::size_t Axes>
+void MpcGroup<Axes>::BuildAxis(const ControlInput& input, std::size_t i) noexcept {
+  const std::size_t axis = first_ + i;
+  const double sent = input.previous_force_N[axis] / mass_kg_[i];
+  if (!has_planned_) planned_m_s2_[i] = sent;
+  AxisPlan& plan = plan_[i];
+  feedforward_[i].Plan(input.reference[axis], input.friction[axis], planned_m_s2_[i], problem_.horizon, plan);
+
+  const AxisEstimate& estimate = input.estimate[axis];
+  const AxisDynamics& d = problem_.dynamics[i];
+  const double position = estimate.predicted_position_m - plan.start_position_m;
+  const double velocity = estimate.predicted_velocity_m_s - plan.start_velocity_m_s;
+  const double previous = sent - planned_m_s2_[i];
+  problem_.previous[i] = previous;
+  problem_.start.position[i] = position + d.position_from_velocity * velocity +
+                               d.position_from_previous * previous + plan.position_defect_m[0];
+  problem_.start.velocity[i] =
+      d.velocity_kept * velocity + d.velocity_from_previous * previous + plan.velocity_defect_m_s[0];
+
+  double before = planned_m_s2_[i];
+  for (std::size_t j = 0; j < problem_.horizon; ++j) {
+    QpStage<Axes>& stage = problem_.stage[j];
+    const double planned = plan.command_m_s2[j];
+    stage.position_defect[i] = plan.position_defect_m[j];
+    stage.velocity_defect[i] = plan.velocity_defect_m_s[j];
+    stage.lowest[i] = -bound_m_s2_[i] - planned;
+    stage.highest[i] = bound_m_s2_[i] - planned;
+    stage.lowest_step[i] = -step_m_s2_[i] - (planned - before);
+    stage.highest_step[i] = step_m_s2_[i] - (planned - before);
+    before = planned;
+  }
+  planned_m_s2_[i] = plan.command_m_s2[0];
+}
+
+template <std::size_t Axes>
+void MpcGroup<Axes>::ShiftWarmStart() noexcept {
+  for (std::size_t j = 0; j + 1 < problem_.horizon; ++j) active_[j] = active_[j + 1];
+}
+
+template <std::size_t Axes>
+void MpcGroup<Axes>::Step(const ControlInput& input, ControlOutput& output) noexcept {
+  BuildWeights(input);
+  for (std::size_t i = 0; i < Axes; ++i) BuildAxis(input, i);
+  has_planned_ = true;
+  ShiftWarmStart();
+  const QpReport report = solver_.Solve(problem_, config_.iteration_cap, active_, solution_);
+  Report(report, output);
+}
+
+template <std::size_t Axes>
+void MpcGroup<Axes>::Report(const QpReport& report, ControlOutput& output) noexcept {
+  output.iterations += report.iterations;
+  for (std::size_t i = 0; i < Axes; ++i) {
+    const std::size_t axis = first_ + i;
+    const double planned = plan_[i].command_m_s2[0];
+    const double command = std::clamp(planned + solution_[0][i], -bound_m_s2_[i], bound_m_s2_[i]);
+    output.force_N[axis] = command * mass_kg_[i];
+    output.feedforward_N[axis] = planned * mass_kg_[i];
+    output.target_position_m[axis] = plan_[i].target_position_m;
+    output.limit[axis] = Reason::kNone;
+    if (report.status != QpStatus::kOptimal) output.limit[axis] = Reason::kSolverCap;
+    if (active_[0][i].value != 0) output.limit[axis] = Reason::kTorqueLimit;
+    if (active_[0][i].step != 0) output.limit[axis] = Reason::kTorqueRateLimit;
+  }
+}
+
+template class MpcGroup<1>;
+template class MpcGroup<2>;
+template class MpcGroup<3>;
+
+}  // namespace contour

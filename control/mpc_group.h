@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "control/control_law.h"
+#include "control/flat_feedforward.h"
+#include "control/lqr_terminal.h"
+#include "control/qp_solver.h"
+
+namespace contour {
+
+/// The axes of a machine that share one MPC problem; see MpcLaw.
+class MpcGroupBase {
+ public:
+  virtual ~MpcGroupBase() = default;
+  virtual void Reset() noexcept = 0;
+  virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
+};
+
+/// MPC of 1 to 3 axes in the frame of their common path. Deviations from the flat feed-forward are predicted
+/// over the horizon; the error across the path and along it are weighed apart.
+template <std::size_t Axes>
+class MpcGroup final : public MpcGroupBase {
+ public:
+  /// The group is axes[first] .. axes[first + Axes - 1].
+  MpcGroup(const MpcConfig& config, const ControllerOptions& options, const PerAxis<ControlledAxis>& axes,
+           std::size_t first, double period_s);
+  void Reset() noexcept override;
+  void Step(const ControlInput& input, ControlOutput& output) noexcept override;
+
+ private:
+  // Direction of the path, shrinking to zero at rest so that then all directions weigh the same.
+  [[nodiscard]] AxisVector<Axes> Tangent(const ControlInput& input, std::size_t node) const noexcept;
+  void BuildWeights(const ControlInput& input) noexcept;
+  void BuildTerminal(const AxisVector<Axes>& tangent) noexcept;
+  void BuildAxis(const ControlInput& input, std::size_t i) noexcept;
+  void ShiftWarmStart() noexcept;
+  void Report(const QpReport& report, ControlOutput& output) noexcept;
+
+  MpcConfig config_;
+  std::size_t first_;
+  double period_s_;
+  double contour_weight_;
+  double lag_weight_;
+  AxisVector<Axes> mass_kg_{};
+  AxisVector<Axes> bound_m_s2_{};
+  AxisVector<Axes> step_m_s2_{};
+  std::array<TerminalFactor, Axes> contour_terminal_{};
+  std::array<TerminalFactor, Axes> lag_terminal_{};
+  std::vector<FlatFeedforward> feedforward_;
+  std::array<AxisPlan, Axes> plan_{};
+  AxisVector<Axes> planned_m_s2_{};  // feed-forward command of the last Step
+  bool has_planned_ = false;
+  QpProblem<Axes> problem_;
+  QpSolver<Axes> solver_;
+  typename QpSolver<Axes>::Active active_{};
+  typename QpSolver<Axes>::Inputs solution_{};
+};
+
+}  // namespace contour

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "control/qp_problem.h"
+
+namespace contour {
+
+/// How an input is held while the others are optimised.
+enum class Hold : std::uint8_t {
+  kFree,   ///< chosen by the optimum
+  kFixed,  ///< u_j = value
+  kTied,   ///< u_j = u_{j-1} + value
+};
+
+template <std::size_t Axes>
+struct HeldInputs {
+  std::array<Hold, Axes> how{};
+  AxisVector<Axes> value{};
+};
+
+/// Optimum of a QpProblem with given inputs held and no other bound, by one backward Riccati pass and one
+/// roll-out: dynamic programming over the horizon, e.g. Rawlings, Mayne and Diehl, Model Predictive Control,
+/// 2nd ed., ch. 8.8, with held inputs folded into the value function. Cost is linear in the horizon; nothing
+/// is allocated.
+template <std::size_t Axes>
+class Riccati {
+ public:
+  using Problem = QpProblem<Axes>;
+  using Inputs = std::array<AxisVector<Axes>, kMaxHorizon>;
+  using Holding = std::array<HeldInputs<Axes>, kMaxHorizon>;
+
+  /// Backward pass over stages top .. 0; those above are taken from the last call with the same problem.
+  /// With top = horizon - 1 everything is computed anew.
+  void Factor(const Problem& problem, const Holding& holding, std::size_t top) noexcept;
+
+  /// The optimum of the factored problem, and the derivative of the cost by every fixed input (0 for the
+  /// others).
+  void RollOut(const Problem& problem, const Holding& holding, Inputs& input,
+               Inputs& gradient) const noexcept;
+
+  /// Curvature of the cost-to-go in an input; positive.
+  [[nodiscard]] double curvature(std::size_t stage, std::size_t axis) const noexcept {
+    return policy_[stage].curvature[axis];
+  }
+
+ private:
+  static constexpr std::size_t kStates = 2 * Axes;
+  using SquareBlock = std::array<AxisVector<Axes>, Axes>;
+
+  // 1/2 s' P s + h' s, and with tied inputs q' C s + 1/2 q' Q q + l' q in the input q of the stage before.
+  struct Value {
+    SquareBlock pp{}, pv{}, vv{};  // position-position, position-velocity, velocity-velocity
+    AxisVector<Axes> p{}, v{};
+    bool tied = false;
+    SquareBlock qp{}, qv{}, qq{};
+    AxisVector<Axes> q{};
+  };
+  // Free: u_i = on_position p + on_velocity v + on_input u + offset, inputs after i and held ones only.
+  // Fixed: the same expression is the derivative by u_i, all inputs.
+  struct Policy {
+    SquareBlock on_position{}, on_velocity{}, on_input{};
+    AxisVector<Axes> offset{};
+    AxisVector<Axes> curvature{};
+  };
+
+  void FactorStage(const Problem& problem, const HeldInputs<Axes>& held, std::size_t j) noexcept;
+  static Value TerminalValue(const Problem& problem) noexcept;
+
+  std::array<Value, kMaxHorizon + 1> value_{};
+  std::array<Policy, kMaxHorizon> policy_{};
+};
+
+/// State after interval j when `input` acts in it, without the defect of the interval after.
+template <std::size_t Axes>
+inline DriftState<Axes> Advance(const QpProblem<Axes>& problem, const DriftState<Axes>& s, std::size_t j,
+                                const AxisVector<Axes>& input) noexcept {
+  DriftState<Axes> next;
+  const bool last = j + 1 >= problem.horizon;
+  for (std::size_t i = 0; i < Axes; ++i) {
+    const AxisDynamics& d = problem.dynamics[i];
+    const double error = s.position[i] + d.position_from_command * input[i];
+    const double velocity = s.velocity[i] + d.velocity_from_command * input[i];
+    next.position[i] = error + d.position_from_velocity * velocity + d.position_from_previous * input[i];
+    next.velocity[i] = d.velocity_kept * velocity + d.velocity_from_previous * input[i];
+    if (!last) {
+      next.position[i] += problem.stage[j + 1].position_defect[i];
+      next.velocity[i] += problem.stage[j + 1].velocity_defect[i];
+    }
+  }
+  return next;
+}
+
+/// Cost of any inputs.
+template <std::size_t Axes>
+double Cost(const QpProblem<Axes>& problem, const typename Riccati<Axes>::Inputs& input) noexcept;
+
+/// Derivative of the cost by every input, by roll-out and adjoint.
+template <std::size_t Axes>
+void Gradient(const QpProblem<Axes>& problem, const typename Riccati<Axes>::Inputs& input,
+              typename Riccati<Axes>::Inputs& gradient) noexcept;
+
+}  // namespace contour
