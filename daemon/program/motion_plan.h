@@ -25,7 +25,7 @@ struct CommandedCircle {
   double centre_m[2] = {0, 0};
   double radius_m = 0.0;
   bool counter_clockwise = true;
-  double turns = 0.0;
+  int turns = 0;
 };
 
 /// A program placed on a machine: where it is at every instant, and what it looks like as a curve.

@@ -1,23 +1,23 @@
 #pragma once
 
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
-#include <vector>
 
+#include "config/config_error.h"
 #include "daemon/program/shapes.h"
 
 namespace contour {
 
 enum class ProgramFormat { kYaml, kGcode };
 
-/// A program that cannot be read or cannot run on this machine. what() is one line, beginning with the file
-/// and, where there is one, the line.
-class ProgramError : public std::runtime_error {
+/// A program that cannot be read or cannot run on this machine. Each message is one line and begins with the
+/// file and, where there is one, the line.
+class ProgramError : public ConfigError {
  public:
-  using std::runtime_error::runtime_error;
+  explicit ProgramError(const std::string& message) : ConfigError({message}) {}
+  explicit ProgramError(std::vector<std::string> messages) : ConfigError(std::move(messages)) {}
 };
 
 /// What is to be drawn, in its own coordinates: it begins wherever the machine stands when it starts.
@@ -31,11 +31,10 @@ struct Program {
 /// Reads a program from text; `name` stands for the file in messages. Throws ProgramError.
 Program ParseProgram(std::string_view text, const std::string& name, ProgramFormat format);
 
-/// Reads a program from a file: G-code when the name ends in .ngc, .nc or .gcode, YAML otherwise.
-/// Throws ProgramError.
+/// Reads a program from a file, in the format of its name. Throws ProgramError.
 Program LoadProgram(const std::filesystem::path& file);
 
-/// The format that LoadProgram takes a file of this name for.
+/// G-code when the name ends in .ngc, .nc or .gcode, YAML otherwise.
 ProgramFormat FormatOf(const std::filesystem::path& file);
 
 }  // namespace contour

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -7,45 +8,74 @@
 
 #include "core/visit.h"
 
-// The shapes a program can have. Member names are the YAML keys; docs/programs.md describes them for users.
+// The shapes a program can have. The names in the Visit methods are the YAML keys; docs/programs.md describes
+// them for users.
 namespace contour {
 
 enum class Direction { kCcw, kCw };
+bool FromName(std::string_view name, Direction& direction);
+std::string_view Name(Direction direction);
+std::string_view Choices(Direction);
+
 enum class Corners {
   kContinuous,  ///< full feed through every corner: the velocity of the reference jumps there
   kExactStop,   ///< the reference stops in every corner
 };
+bool FromName(std::string_view name, Corners& corners);
+std::string_view Name(Corners corners);
+std::string_view Choices(Corners);
 
-/// Along a curve: exactly one of the two.
+inline constexpr Range kCount{1, 1000000};
+
+/// Speed along a curve: exactly one of the two.
 struct Feed {
   std::optional<double> feed_mm_min;
-  std::optional<double> frequency_hz;  ///< revolutions (circle, square, diamond), periods (sine) per second
+  std::optional<double> frequency_hz;
 
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Optional("feed_mm_min", feed_mm_min, kPositive, "speed along the path");
-    v.Optional("frequency_hz", frequency_hz, kPositive, "revolutions or periods per second");
+    v.Optional("feed_mm_min", feed_mm_min, kPositive, "speed along the path (sine: the largest speed)");
+    v.Optional("frequency_hz", frequency_hz, kPositive, "revolutions or periods per second, instead");
   }
 };
 
-/// The axes that a plane shape uses; empty: the machine's first two.
+/// The axes that a plane shape uses; empty: the machine's x and y, or else its first two.
 using PlaneAxes = std::vector<std::string>;
 
 struct CircleShape {
   double radius_mm = 0.0;
-  double turns = 3.0;
+  int turns = 3;
   Direction direction = Direction::kCcw;
   Feed feed;
   PlaneAxes axes;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("radius_mm", radius_mm, kPositive, "radius of the circle");
+    v.Optional("turns", turns, kCount, "whole turns");
+    v.Optional("direction", direction, "ccw or cw");
+    feed.Visit(v);
+    v.Optional("axes", axes, "the two axes of the plane");
+  }
 };
 
 struct SquareShape {
   double side_mm = 0.0;
-  double turns = 1.0;
+  int turns = 1;
   Direction direction = Direction::kCcw;
   Corners corners = Corners::kContinuous;
   Feed feed;
   PlaneAxes axes;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("side_mm", side_mm, kPositive, "length of a side");
+    v.Optional("turns", turns, kCount, "whole turns");
+    v.Optional("direction", direction, "ccw or cw");
+    v.Optional("corners", corners, "full feed through the corners, or a stop in each");
+    feed.Visit(v);
+    v.Optional("axes", axes, "the two axes of the plane");
+  }
 };
 
 /// A square standing on a corner.
@@ -56,36 +86,76 @@ struct LineShape {
   double dy_mm = 0.0;
   Feed feed;
   PlaneAxes axes;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Optional("dx_mm", dx_mm, "way of the first axis");
+    v.Optional("dy_mm", dy_mm, "way of the second axis");
+    v.Required("feed_mm_min", feed.feed_mm_min, kPositive, "speed along the line");
+    v.Optional("axes", axes, "the two axes of the plane");
+  }
 };
 
 struct SineShape {
   std::string axis;
   double amplitude_mm = 0.0;
-  double cycles = 1.0;
-  Feed feed;  ///< feed_mm_min is the largest speed
+  int cycles = 3;
+  Feed feed;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("axis", axis, "the axis that moves");
+    v.Required("amplitude_mm", amplitude_mm, kPositive, "from the middle to a reversal");
+    v.Optional("cycles", cycles, kCount, "whole periods");
+    feed.Visit(v);
+  }
 };
 
 struct HoldShape {
   double seconds = 0.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("seconds", seconds, Range{0.0, 1e6, true}, "how long to stand still");
+  }
 };
 
-/// Slow strokes to and fro at constant speed: presliding, Stribeck and Coulomb friction.
+/// Slow strokes forth and back at constant speed: presliding, Stribeck and Coulomb friction.
 struct CreepShape {
   std::string axis;
   double stroke_mm = 0.0;
-  std::vector<double> velocities_mm_s;  ///< one stroke forth and back at each
-  double repeats = 1.0;
-  double dwell_s = 0.5;  ///< at rest at each end
+  std::vector<double> velocities_mm_s;
+  int repeats = 1;
+  double dwell_s = 0.5;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("axis", axis, "the axis that moves");
+    v.Required("stroke_mm", stroke_mm, kAny, "way of a stroke; negative: the first stroke goes down");
+    v.Required("velocities_mm_s", velocities_mm_s, kPositive, "a stroke forth and back at each of them");
+    v.Optional("repeats", repeats, kCount, "how often to go through the list");
+    v.Optional("dwell_s", dwell_s, kNotNegative, "rest at each end of a stroke");
+  }
 };
 
-/// A sum of sines of equal velocity amplitude.
+/// A sum of sines, spread evenly over the logarithm of frequency, of equal velocity amplitude.
 struct MultisineShape {
   std::string axis;
-  double velocity_mm_s = 0.0;  ///< amplitude of each line's velocity
+  double velocity_mm_s = 0.0;
   double frequency_min_hz = 0.0;
   double frequency_max_hz = 0.0;
-  double lines = 10.0;
+  int lines = 10;
   double seconds = 0.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("axis", axis, "the axis that moves");
+    v.Required("velocity_mm_s", velocity_mm_s, kPositive, "velocity amplitude of each sine");
+    v.Required("frequency_min_hz", frequency_min_hz, kPositive, "lowest frequency");
+    v.Required("frequency_max_hz", frequency_max_hz, kPositive, "highest frequency");
+    v.Optional("lines", lines, Range{1, 200}, "number of sines");
+    v.Required("seconds", seconds, Range{0.0, 3600.0, true}, "duration");
+  }
 };
 
 /// A sine whose frequency rises exponentially, of constant velocity amplitude.
@@ -95,24 +165,37 @@ struct SweepShape {
   double frequency_min_hz = 0.0;
   double frequency_max_hz = 0.0;
   double seconds = 0.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("axis", axis, "the axis that moves");
+    v.Required("velocity_mm_s", velocity_mm_s, kPositive, "velocity amplitude");
+    v.Required("frequency_min_hz", frequency_min_hz, kPositive, "frequency at the start");
+    v.Required("frequency_max_hz", frequency_max_hz, kPositive, "frequency at the end");
+    v.Required("seconds", seconds, Range{0.0, 3600.0, true}, "duration");
+  }
 };
 
-/// One move of a G-code program, in metres relative to where the program began, arcs in the XY plane.
+/// One move of a G-code program, in metres relative to where the program began.
 struct GcodeMove {
   enum class Kind { kRapid, kLine, kArc, kDwell };
+  enum class Corner {
+    kContinuous,  ///< G64: full feed
+    kExactPath,   ///< G61: stops where the direction changes
+    kExactStop,   ///< G61.1: stops at the end of the move
+  };
   Kind kind = Kind::kLine;
-  int line = 0;                  ///< of the source text
-  std::vector<double> target_m;  ///< per letter of GcodeMoves::letters
-  double centre_m[2] = {0, 0};   ///< arc: centre in X, Y
-  double sweep_rad = 0.0;        ///< arc: positive counter-clockwise, a full circle is 2 pi
-  double feed_m_s = 0.0;         ///< line, arc: speed along the path
+  int line = 0;                             ///< of the source text
+  std::vector<double> target_m;             ///< per letter of GcodeMoves::letters
+  std::array<double, 2> centre_m = {0, 0};  ///< arc: in X and Y
+  double sweep_rad = 0.0;                   ///< arc: positive counter-clockwise, a full circle is 2 pi
+  double feed_m_s = 0.0;                    ///< line, arc: speed along the path
   double dwell_s = 0.0;
-  bool stop_at_end = false;         ///< G61.1
-  bool keep_feed_in_corner = true;  ///< G64 (true) or G61 (false: stop where the direction changes)
+  Corner corner = Corner::kContinuous;  ///< what happens at the end of the move
 };
 
 struct GcodeMoves {
-  std::string letters;  ///< axis letters in use, e.g. "XY"; axis `x` of the machine is letter X
+  std::string letters;  ///< axis letters in use, X and Y always first; letter X is the machine's axis `x`
   std::vector<GcodeMove> moves;
 };
 

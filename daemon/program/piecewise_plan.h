@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "daemon/program/curve_piece.h"
+#include "daemon/program/motion_plan.h"
+#include "daemon/program/speed_profile.h"
+
+namespace contour {
+
+/// One piece of a path as a shape or a G-code move asks for it.
+struct PieceRequest {
+  CurvePiece curve;
+  double speed_m_s = 0.0;                                    ///< 0: as fast as the axes allow
+  double dwell_s = 0.0;                                      ///< at the end of the piece, at rest
+  GcodeMove::Corner corner = GcodeMove::Corner::kExactStop;  ///< towards the next piece
+  double shortest_ramp_s = 0.0;
+  std::string origin;  ///< "file" or "file:line", begins messages
+};
+
+/// What else is known of the whole path.
+struct PathTraits {
+  double turn_length_m = 0.0;      ///< 0: a shape without turns
+  bool speed_in_one_turn = false;  ///< the full speed must be reached, and left, within one turn
+  std::optional<CommandedCircle> circle;
+};
+
+/// A path of smooth pieces, each with its own speed; the speed changes along the path within the axes' limits
+/// of acceleration and jerk.
+class PiecewisePlan : public MotionPlan {
+ public:
+  /// Throws ProgramError when a piece leaves the axes' limits.
+  PiecewisePlan(std::vector<PieceRequest> requests, const PathTraits& traits,
+                const PerAxis<PlanLimits>& limits);
+
+  [[nodiscard]] std::size_t axis_count() const override { return axis_count_; }
+  [[nodiscard]] double duration_s() const override { return duration_s_; }
+  void At(double time_s, PerAxis<ReferencePoint>& axes) const override;
+  [[nodiscard]] double Distance_m(const PerAxis<double>& point_m) const override;
+  [[nodiscard]] double Turns(double time_s) const override;
+  [[nodiscard]] bool Scored(double time_s) const override;
+  [[nodiscard]] std::optional<CommandedCircle> circle() const override { return traits_.circle; }
+  [[nodiscard]] bool is_hold() const override;
+
+ private:
+  struct Piece {
+    CurvePiece curve;
+    SpeedProfile profile;
+    double begin_s = 0.0;   ///< time
+    double before_m = 0.0;  ///< way covered by the pieces before
+  };
+  /// Pieces next to each other with a box around them, so that the nearest one is found without trying all.
+  struct Group {
+    std::size_t first = 0;
+    std::size_t end = 0;
+    Extent box;
+  };
+
+  void CheckSpeedWithinTurn(const std::vector<PieceRequest>& requests) const;
+  void MakeGroups();
+  [[nodiscard]] const Piece& PieceAt(double time_s) const;
+
+  PathTraits traits_;
+  std::size_t axis_count_;
+  double duration_s_ = 0.0;
+  std::vector<Piece> pieces_;
+  std::vector<Group> groups_;
+};
+
+}  // namespace contour

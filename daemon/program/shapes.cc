@@ -1,0 +1,27 @@
+#include "daemon/program/shapes.h"
+
+namespace contour {
+
+bool FromName(std::string_view name, Direction& direction) {
+  if (name != "ccw" && name != "cw") return false;
+  direction = name == "ccw" ? Direction::kCcw : Direction::kCw;
+  return true;
+}
+
+std::string_view Name(Direction direction) { return direction == Direction::kCcw ? "ccw" : "cw"; }
+
+std::string_view Choices(Direction) { return "ccw, cw"; }
+
+bool FromName(std::string_view name, Corners& corners) {
+  if (name != "continuous" && name != "exact_stop") return false;
+  corners = name == "continuous" ? Corners::kContinuous : Corners::kExactStop;
+  return true;
+}
+
+std::string_view Name(Corners corners) {
+  return corners == Corners::kContinuous ? "continuous" : "exact_stop";
+}
+
+std::string_view Choices(Corners) { return "continuous, exact_stop"; }
+
+}  // namespace contour
