@@ -68,7 +68,6 @@ class BringUp {
   void NextStep(Frames& out) noexcept;
   void BeginStep(Frames& out) noexcept;
   void WaitForOperational() noexcept;
-  void Advance() noexcept;
   void Fail(BringUpError error, std::uint32_t expected, std::uint32_t found) noexcept;
   void ShowNode(std::size_t node) noexcept;
   [[nodiscard]] const SdoStep& step() const noexcept { return nodes_[node_].steps[step_]; }

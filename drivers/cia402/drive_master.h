@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -110,8 +111,8 @@ class DriveMaster {
   void OnFrame(const StampedFrame& frame) noexcept;
   void OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept;
   void OnFeedback(std::size_t axis, const CanFrame& frame) noexcept;
-  void Supervise(std::size_t axis, std::uint64_t elapsed) noexcept;
-  void AfterBringUp(bool was_operational) noexcept;
+  void Supervise(std::size_t axis) noexcept;
+  void StepBringUp() noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
   [[nodiscard]] bool Healthy(std::size_t axis) const noexcept;
 
@@ -120,11 +121,15 @@ class DriveMaster {
   PerAxis<AxisFeedback> feedback_;
   PerAxis<AxisDriveStatus> status_;
   PerAxis<double> sent_torque_Nm_;
+  std::array<DriveGoal, kMaxAxes> goal_{};  ///< of the last Send
   std::vector<std::uint8_t> axis_of_node_;  ///< [bus * 128 + node]; kNoAxis where none
   std::uint64_t cycle_ = 0;
+  std::uint64_t elapsed_ = 1;  ///< cycles since the one before; more than 1 when grid points were skipped
   std::uint64_t sync_number_ = 0;
   std::uint64_t feedback_sync_ = 0;
-  bool started_ = false;
+  bool started_ = false;  ///< ever brought up: the master's heartbeat runs
+  bool bringing_up_ = false;
+  bool pdos_run_ = false;
   bool seen_cycle_ = false;
 };
 

@@ -1,0 +1,309 @@
+#include "drivers/cia402/drive_master.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "drivers/cia402/drive_script.h"
+#include "drivers/cia402/drive_state.h"
+#include "drivers/cia402/pdo_layout.h"
+
+namespace contour {
+namespace {
+
+constexpr std::uint8_t kNoAxis = 0xFF;
+constexpr std::size_t kNodes = 128;
+constexpr std::uint32_t kFreshEnough_cycles = 5;  // feedback younger than this: the drive is there
+
+[[noreturn]] void Refuse(const AxisDriveConfig& axis, const std::string& what) {
+  throw std::invalid_argument("axis " + axis.name + ": " + what);
+}
+
+void Check(const AxisDriveConfig& axis, const MasterConfig& config) {
+  const DriveConfig& d = axis.drive;
+  if (axis.bus >= config.buses.size()) Refuse(axis, "the drive's bus does not exist");
+  if (d.node_id < 1 || d.node_id > 127) Refuse(axis, "node_id must be 1 to 127");
+  if (d.node_id == config.buses[axis.bus].master_node_id) {
+    Refuse(axis, "node_id " + std::to_string(d.node_id) + " is the master's own (master_node_id)");
+  }
+  if (!(d.rated_torque_Nm > 0.0)) Refuse(axis, "rated_torque_Nm must be greater than 0");
+  if (d.encoder_counts_per_rev == 0) Refuse(axis, "encoder_counts_per_rev must not be 0");
+  if (!(axis.torque_limit_Nm > 0.0)) Refuse(axis, "the torque limit must be greater than 0");
+  if (axis.torque_limit_Nm > d.peak_torque_Nm) {
+    Refuse(axis, "the torque limit of " + std::to_string(axis.torque_limit_Nm) +
+                     " Nm exceeds peak_torque_Nm " + std::to_string(d.peak_torque_Nm));
+  }
+  if (axis.torque_limit_Nm > 32.0 * d.rated_torque_Nm) {
+    Refuse(axis, "the torque limit is more than 32 times rated_torque_Nm, which 0x6071 cannot carry");
+  }
+  if (!(d.heartbeat_timeout_ms > d.heartbeat_ms)) {
+    Refuse(axis, "heartbeat_timeout_ms must be longer than heartbeat_ms");
+  }
+  if (d.notice_ms * 1000.0 < 2.0 * config.cycle_us) {
+    Refuse(axis,
+           "notice_ms must be at least two cycles, or the drive stops between two frames of the master");
+  }
+}
+
+void CheckNodes(const MasterConfig& config) {
+  for (std::size_t i = 0; i < config.axes.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const AxisDriveConfig& a = config.axes[j];
+      const AxisDriveConfig& b = config.axes[i];
+      if (a.bus == b.bus && a.drive.node_id == b.drive.node_id) {
+        Refuse(b, "node_id " + std::to_string(b.drive.node_id) + " is already that of axis " + a.name);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+DriveMaster::DriveMaster(const MasterConfig& config)
+    : feedback_(config.axes.size()),
+      status_(config.axes.size()),
+      sent_torque_Nm_(config.axes.size()),
+      axis_of_node_(config.buses.size() * kNodes, kNoAxis) {
+  if (config.axes.empty() || config.axes.size() > kMaxAxes) {
+    throw std::invalid_argument("a machine has 1 to " + std::to_string(kMaxAxes) + " axes");
+  }
+  if (config.buses.empty() || config.buses.size() > kMaxBuses) {
+    throw std::invalid_argument("a machine has 1 to " + std::to_string(kMaxBuses) + " buses");
+  }
+  CheckNodes(config);
+
+  std::vector<std::vector<BringUpNode>> nodes(config.buses.size());
+  std::vector<std::uint64_t> heartbeat_cycles(config.buses.size(), ~std::uint64_t{0});
+  for (std::size_t i = 0; i < config.axes.size(); ++i) {
+    const AxisDriveConfig& a = config.axes[i];
+    Check(a, config);
+    const DriveConfig& d = a.drive;
+    nodes[a.bus].push_back(DriveScript(d, static_cast<std::uint8_t>(i), a.torque_limit_Nm,
+                                       config.buses[a.bus].master_node_id, config.cycle_us));
+    heartbeat_cycles[a.bus] =
+        std::min(heartbeat_cycles[a.bus], MasterHeartbeatCycles(d.notice_ms, config.cycle_us));
+    axis_of_node_[a.bus * kNodes + static_cast<std::size_t>(d.node_id)] = static_cast<std::uint8_t>(i);
+
+    Axis axis;
+    axis.bus = a.bus;
+    axis.node_id = static_cast<std::uint8_t>(d.node_id);
+    axis.mode = d.mode;
+    axis.torque_offset = d.csp_torque_offset;
+    axis.has_scale = d.linear_scale.has_value();
+    axis.torque = {d.rated_torque_Nm};
+    axis.position = {static_cast<double>(d.encoder_counts_per_rev)};
+    axis.scale_m_per_count = d.linear_scale ? 1e-3 / d.linear_scale->counts_per_mm : 0.0;
+    axis.torque_limit_Nm = a.torque_limit_Nm;
+    axis.walk =
+        DriveWalk(CyclesOf(d.transition_ms, config.cycle_us), CyclesOf(d.quick_stop_ms, config.cycle_us));
+    axis.heartbeat_timeout_cycles = CyclesOf(d.heartbeat_timeout_ms, config.cycle_us);
+    axes_.push_back(axis);
+  }
+  for (std::size_t b = 0; b < config.buses.size(); ++b) {
+    Bus bus;
+    bus.bring_up = BringUp(std::move(nodes[b]), config.cycle_us);
+    bus.master_node_id = static_cast<std::uint8_t>(config.buses[b].master_node_id);
+    bus.heartbeat_cycles = heartbeat_cycles[b];
+    buses_.push_back(std::move(bus));
+  }
+}
+
+void DriveMaster::Receive(const CycleInput& in) noexcept {
+  // The number of the grid point is the clock: a skipped point counts as time gone by.
+  elapsed_ = seen_cycle_ && in.cycle > cycle_ ? in.cycle - cycle_ : 1;
+  cycle_ = in.cycle;
+  seen_cycle_ = true;
+
+  for (AxisFeedback& f : feedback_) f.fresh = false;
+  for (const StampedFrame& frame : in.frames) OnFrame(frame);
+  for (std::size_t b = 0; b < buses_.size() && b < in.buses.size(); ++b) {
+    if (!in.buses[b].up || in.buses[b].bus_off) buses_[b].bring_up.BusDown();
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) Supervise(i);
+}
+
+void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
+  if (stamped.bus >= buses_.size()) return;
+  const CanFrame& frame = stamped.frame;
+  buses_[stamped.bus].bring_up.OnFrame(frame);
+
+  const std::size_t axis = axis_of_node_[stamped.bus * kNodes + (frame.id & 0x7F)];
+  if (axis == kNoAxis) return;
+  switch (frame.id & 0x780) {
+    case cob::kEmergency:
+      if (frame.length >= 3) status_[axis].emergency_code = DecodeEmergency(frame).error_code;
+      return;
+    case cob::kTpdo1:
+      if (frame.length >= kFeedbackLength) OnFeedback(axis, frame);
+      return;
+    case cob::kTpdo1 + 0x100:
+      if (axes_[axis].has_scale && frame.length >= kScaleLength && status_[axis].configured) {
+        AxisFeedback& f = feedback_[axis];
+        f.table_position_m = static_cast<double>(axes_[axis].scale_unwrap.Update(DecodeScale(frame))) *
+                             axes_[axis].scale_m_per_count;
+        f.has_scale = true;
+      }
+      return;
+    case cob::kHeartbeat:
+      if (frame.length >= 1) OnHeartbeat(axis, frame);
+      return;
+    default:
+      return;
+  }
+}
+
+void DriveMaster::OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept {
+  AxisDriveStatus& s = status_[axis];
+  s.nmt = HeartbeatState(frame);
+  axes_[axis].heartbeat_cycle = cycle_;
+  if (s.nmt == NmtState::kBootUp) {
+    s.restarted = s.restarted || s.configured;
+    s.emergency_code = 0;
+  }
+}
+
+void DriveMaster::OnFeedback(std::size_t axis, const CanFrame& frame) noexcept {
+  // Before the drive is configured its TPDO may hold anything.
+  if (!status_[axis].configured) return;
+  const RawFeedback raw = DecodeFeedback(frame);
+  AxisFeedback& f = feedback_[axis];
+  Axis& a = axes_[axis];
+  f.position_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
+  f.torque_Nm = a.torque.FromPerMille(raw.torque_per_mille);
+  f.statusword = raw.statusword;
+  f.drive_state = DecodeStatusword(raw.statusword);
+  f.fresh = true;
+  f.valid = true;
+  f.age_cycles = 0;
+  feedback_sync_ = sync_number_;
+}
+
+void DriveMaster::Supervise(std::size_t axis) noexcept {
+  AxisFeedback& f = feedback_[axis];
+  AxisDriveStatus& s = status_[axis];
+  if (!f.fresh) f.age_cycles += static_cast<std::uint32_t>(elapsed_);
+  s.fault = f.valid && IsFaultState(f.drive_state);
+  if (s.configured && cycle_ - axes_[axis].heartbeat_cycle >= axes_[axis].heartbeat_timeout_cycles) {
+    s.heartbeat_lost = true;
+    s.nmt = NmtState::kUnknown;
+  }
+}
+
+bool DriveMaster::Healthy(std::size_t axis) const noexcept {
+  const AxisDriveStatus& s = status_[axis];
+  return s.configured && !s.heartbeat_lost && !s.restarted && s.nmt == NmtState::kOperational;
+}
+
+bool DriveMaster::operational() const noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (!Healthy(i)) return false;
+  }
+  return pdos_run_;
+}
+
+void DriveMaster::StartBringUp() noexcept {
+  bool needed = !operational();
+  for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
+  if (!needed || bringing_up_) return;
+  pdos_run_ = false;
+  bringing_up_ = true;
+  started_ = true;
+  for (Bus& b : buses_) b.bring_up.Start();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    status_[i] = {};
+    feedback_[i].valid = feedback_[i].fresh = feedback_[i].has_scale = false;
+    feedback_[i].drive_state = DriveState::kUnknown;
+    feedback_[i].age_cycles = 0;
+    axes_[i].walk.Reset();
+  }
+}
+
+BringUpStatus DriveMaster::bring_up() const noexcept {
+  const BringUp* shown = &buses_.front().bring_up;
+  for (const Bus& b : buses_) {
+    const BringUp& other = b.bring_up;
+    const bool failed_first = other.failed() && !shown->failed();
+    const bool behind = other.failed() == shown->failed() && other.phase() < shown->phase();
+    if (failed_first || behind) shown = &other;
+  }
+  return shown->status();
+}
+
+bool DriveMaster::busy() const noexcept {
+  if (bringing_up_) return true;
+  if (!pdos_run_) return false;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const AxisDriveStatus& s = status_[i];
+    const bool resting_in_fault =
+        feedback_[i].drive_state == DriveState::kFault && goal_[i] != DriveGoal::kFaultReset;
+    if (!s.at_goal && !s.transition_late && !s.left_enabled && !resting_in_fault) return true;
+  }
+  return false;
+}
+
+void DriveMaster::StepBringUp() noexcept {
+  if (!bringing_up_) return;
+  bool running = false;
+  bool done = true;
+  for (const Bus& b : buses_) {
+    running = running || b.bring_up.running();
+    done = done && b.bring_up.done();
+  }
+  bringing_up_ = running;
+  if (!done) return;
+  pdos_run_ = true;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    status_[i].configured = true;
+    axes_[i].heartbeat_cycle = cycle_;
+  }
+}
+
+CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept {
+  Axis& a = axes_[axis];
+  AxisDriveStatus& s = status_[axis];
+  const AxisFeedback& f = feedback_[axis];
+
+  const std::uint16_t word = a.walk.Step(f.drive_state, setpoint.goal, elapsed_);
+  goal_[axis] = setpoint.goal;
+  s.at_goal = a.walk.at_goal();
+  s.transition_late = a.walk.late();
+  s.stuck_in = a.walk.stuck_in();
+  s.left_enabled = a.walk.left_enabled();
+
+  const bool follows = setpoint.goal == DriveGoal::kEnabled && f.drive_state == DriveState::kOperationEnabled;
+  const double limited_Nm = std::clamp(setpoint.torque_Nm, -a.torque_limit_Nm, a.torque_limit_Nm);
+  const std::int16_t torque = follows ? a.torque.ToPerMille(limited_Nm) : std::int16_t{0};
+  sent_torque_Nm_[axis] = a.torque.FromPerMille(torque);
+  if (a.mode == DriveMode::kCst) return EncodeTorqueSetpoint(a.node_id, word, torque);
+
+  // A drive that does not follow is told to be where it is, so that enabling it finds no step.
+  const double target_rad =
+      follows && std::isfinite(setpoint.position_rad) ? setpoint.position_rad : f.position_rad;
+  return EncodePositionSetpoint(a.node_id, word, a.position.ToCounts(target_rad), a.torque_offset, torque);
+}
+
+void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noexcept {
+  StepBringUp();
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    Bus& bus = buses_[b];
+    const auto index = static_cast<std::uint8_t>(b);
+    if (pdos_run_) {
+      for (std::size_t i = 0; i < axes_.size(); ++i) {
+        if (axes_[i].bus != b) continue;
+        const AxisSetpoint setpoint = i < setpoints.size() ? setpoints[i] : AxisSetpoint{};
+        out.push_back({SetpointFrame(i, setpoint), index, 0});
+      }
+      out.push_back({SyncFrame(), index, 0});
+    }
+    BringUp::Frames frames;
+    bus.bring_up.Step(elapsed_, frames);
+    for (const CanFrame& f : frames) out.push_back({f, index, 0});
+    if (started_ && cycle_ >= bus.heartbeat_due) {
+      out.push_back({HeartbeatFrame(bus.master_node_id, NmtState::kOperational), index, 0});
+      bus.heartbeat_due = cycle_ + bus.heartbeat_cycles;
+    }
+  }
+  if (pdos_run_) ++sync_number_;
+}
+
+}  // namespace contour
