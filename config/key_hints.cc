@@ -35,8 +35,10 @@ std::vector<std::string_view> Tokens(std::string_view key) {
   }
 }
 
-std::string Lower(std::string_view text) {
+// What people vary without meaning another thing: capitals and underscores.
+std::string Plain(std::string_view text) {
   std::string lower(text);
+  std::erase(lower, '_');
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return lower;
 }
@@ -89,12 +91,13 @@ KeyHint NearestKey(std::string_view unknown, const std::vector<std::string>& kno
   const KeyParts mine = SplitUnit(unknown);
   for (const std::string& key : known) {
     const KeyParts theirs = SplitUnit(key);
-    if (Lower(theirs.stem) == Lower(mine.stem) && theirs.unit != mine.unit) return {key, true};
+    if (Plain(theirs.stem) == Plain(mine.stem) && theirs.unit != mine.unit) return {key, true};
   }
   KeyHint best;
-  std::size_t best_distance = std::max<std::size_t>(2, unknown.size() / 3) + 1;
+  std::size_t best_distance = std::max<std::size_t>(2, mine.stem.size() / 3) + 1;
   for (const std::string& key : known) {
-    const std::size_t distance = EditDistance(Lower(unknown), Lower(key));
+    const std::size_t distance = std::min(EditDistance(Plain(unknown), Plain(key)),
+                                          EditDistance(Plain(mine.stem), Plain(SplitUnit(key).stem)));
     if (distance < best_distance) {
       best_distance = distance;
       best.key = key;

@@ -70,6 +70,10 @@ class YamlReader {
                        std::vector<std::string>& errors);
   static void WrongType(const YamlValue& from, const std::string& path, const std::string& expected,
                         std::vector<std::string>& errors);
+  /// A key with nothing behind it, as when all below it is commented out, is an empty map.
+  static bool IsMap(const YamlValue& value) {
+    return value.kind == YamlValue::Kind::kMap || value.kind == YamlValue::Kind::kNull;
+  }
   static std::string Join(const std::string& path, std::string_view key);
   static bool CheckDuplicates(const YamlValue& map, const std::string& path,
                               std::vector<std::string>& errors);
@@ -154,13 +158,13 @@ void YamlReader::ReadValue(const YamlValue& from, T& value, Range range, const s
     for (std::size_t i = 0; i < from.items.size(); ++i)
       ReadValue(from.items[i], value[i], range, path + "[" + std::to_string(i) + "]", errors);
   } else if constexpr (kIsMap<T>) {
-    if (from.kind != YamlValue::Kind::kMap) return WrongType(from, path, Expected<T>(range), errors);
+    if (!IsMap(from)) return WrongType(from, path, Expected<T>(range), errors);
     CheckDuplicates(from, path, errors);
     value.clear();
     for (const YamlEntry& e : from.entries)
       ReadValue(e.value, value[e.key], range, Join(path, e.key), errors);
   } else if constexpr (Struct<T>) {
-    if (from.kind != YamlValue::Kind::kMap) return WrongType(from, path, Expected<T>(range), errors);
+    if (!IsMap(from)) return WrongType(from, path, Expected<T>(range), errors);
     YamlReader reader(from, path, errors);
     value.Visit(reader);
     reader.Finish();

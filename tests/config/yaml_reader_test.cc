@@ -169,6 +169,12 @@ TEST(YamlReader, WrongTypes) {
             "m.yaml:5: spare: found '3', expected a map of keys");
 }
 
+TEST(YamlReader, KeyWithNothingBehindItIsAnEmptyMap) {
+  EXPECT_EQ(OnlyError("name: a\ncycle_us: 1000\naxes:\n  x:\n"),
+            "m.yaml:4: axes.x.lead_mm: missing, expected a number from 0.1 to 200: travel per turn");
+  EXPECT_TRUE(Read("name: a\ncycle_us: 1000\naxes:\n").errors.empty());
+}
+
 TEST(YamlReader, OutOfRange) {
   EXPECT_EQ(OnlyError("name: a\ncycle_us: 50\naxes: {x: {lead_mm: 5}}\n"),
             "m.yaml:2: cycle_us: found '50', expected a whole number from 100 to 10000");
