@@ -18,10 +18,12 @@ enum class ControllerName : std::uint8_t {
   kFull,         ///< the best there is: preview, wind-up and ripple besides
 };
 
-inline constexpr std::array<std::string_view, 8> kControllerNames{"pid",        "csp",      "mpc",        "mpc_observer",
-                                                                  "mpc_srukf4", "mpc_ekf7", "mpc_srukf7", "full"};
+inline constexpr std::array<std::string_view, 8> kControllerNames{
+    "pid", "csp", "mpc", "mpc_observer", "mpc_srukf4", "mpc_ekf7", "mpc_srukf7", "full"};
 
-constexpr std::string_view Name(ControllerName c) noexcept { return kControllerNames[static_cast<std::size_t>(c)]; }
+constexpr std::string_view Name(ControllerName c) noexcept {
+  return kControllerNames[static_cast<std::size_t>(c)];
+}
 constexpr std::string_view Choices(ControllerName) noexcept {
   return "pid, csp, mpc, mpc_observer, mpc_srukf4, mpc_ekf7, mpc_srukf7 or full";
 }

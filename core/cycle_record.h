@@ -82,6 +82,8 @@ struct CycleOutput {
   CycleRecord record;
   bool finished = false;   ///< terminate was carried out: the loop may end
   bool quiescent = false;  ///< nothing to do until a request comes (lock-step time may stand still)
+  bool settling =
+      false;  ///< will be quiescent soon; virtual and lock-step time hold requests back until then
 };
 
 /// One entry of the telemetry queue: everything about one cycle, inputs included.

@@ -8,9 +8,10 @@
 
 namespace contour {
 
-/// The door into the real-time side. Requests come one per cycle, in sequence, and are acknowledged in the cycle record;
-/// a stop overtakes them, is latched and is never overwritten; path points come through a bounded queue of their own.
-/// One writer thread for requests, one for path points; any thread may ask for a stop.
+/// The door into the real-time side. Requests come one per cycle, in sequence, and are acknowledged in the
+/// cycle record; a stop overtakes them, is latched and is never overwritten; path points come through a
+/// bounded queue of their own. One writer thread for requests, one for path points; any thread may ask for a
+/// stop.
 class CommandMailbox {
  public:
   CommandMailbox(std::size_t requests, std::size_t path_points) : requests_(requests), path_(path_points) {}
@@ -33,19 +34,24 @@ class CommandMailbox {
   }
   bool PushPathPoint(const PathPoint& point) noexcept { return path_.Push(point); }
   /// Whether more points of the program are to come; lock-step time waits for them instead of running dry.
-  void SetPathSupply(bool more_to_come) noexcept { more_to_come_.store(more_to_come, std::memory_order_release); }
-  [[nodiscard]] bool more_path_to_come() const noexcept { return more_to_come_.load(std::memory_order_acquire); }
+  void SetPathSupply(bool more_to_come) noexcept {
+    more_to_come_.store(more_to_come, std::memory_order_release);
+  }
+  [[nodiscard]] bool more_path_to_come() const noexcept {
+    return more_to_come_.load(std::memory_order_acquire);
+  }
   [[nodiscard]] std::size_t path_points_waiting() const noexcept { return path_.size(); }
   [[nodiscard]] std::size_t path_capacity() const noexcept { return path_.capacity(); }
 
-  /// Real-time side: at most one request a cycle, terminate before stop before the rest.
-  Request TakeRequest() noexcept {
+  /// Real-time side: at most one request a cycle, terminate before stop before the rest (which may be left
+  /// for later).
+  Request TakeRequest(bool all = true) noexcept {
     if (const std::uint32_t s = terminate_.exchange(0, std::memory_order_acq_rel); s != 0)
       return {RequestKind::kTerminate, s, 0};
     if (const std::uint32_t s = stop_.exchange(0, std::memory_order_acq_rel); s != 0)
       return {RequestKind::kStop, s, 0};
     Request request;
-    requests_.Pop(request);
+    if (all) requests_.Pop(request);
     return request;
   }
   /// True when TakeRequest would give something.

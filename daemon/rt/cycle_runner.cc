@@ -15,16 +15,18 @@ void CycleRunner::Receive(std::int64_t bus_time_ns, CycleInput& in) noexcept {
   }
 }
 
-void CycleRunner::Collect(const GridPoint& grid, std::int64_t now_ns, CycleInput& in) noexcept {
+void CycleRunner::Collect(const GridPoint& grid, std::int64_t now_ns, bool take_requests,
+                          CycleInput& in) noexcept {
   in.cycle = grid.index;
   in.grid_time_ns = grid.time_ns;
   in.buses.resize(buses_.size());
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     const BusState state = buses_[b]->State();
-    in.buses[b] = {state.up, state.bus_off, static_cast<std::uint32_t>(state.send_failures - failures_seen_[b])};
+    in.buses[b] = {state.up, state.bus_off,
+                   static_cast<std::uint32_t>(state.send_failures - failures_seen_[b])};
     failures_seen_[b] = state.send_failures;
   }
-  in.request = mailbox_.TakeRequest();
+  in.request = mailbox_.TakeRequest(take_requests);
   in.io = io_.Read(now_ns);
   in.path.clear();
   const std::size_t room = std::min(in.path.capacity(), cycle_.PathRoom());
@@ -45,10 +47,10 @@ void CycleRunner::Send(std::int64_t bus_time_ns, const CycleOutput& out) noexcep
   }
 }
 
-void CycleRunner::Tick(const GridPoint& grid, CycleEntry& entry) noexcept {
+void CycleRunner::Tick(const GridPoint& grid, bool take_requests, CycleEntry& entry) noexcept {
   entry.input.frames.clear();
   Receive(grid.time_ns, entry.input);
-  Collect(grid, grid.time_ns, entry.input);
+  Collect(grid, grid.time_ns, take_requests, entry.input);
   cycle_.Step(entry.input, entry.output);
   Send(grid.time_ns, entry.output);
   entry.timing = {};

@@ -10,22 +10,25 @@
 
 namespace contour {
 
-/// What a cycle takes in and gives out, carried between the cycle and its surroundings. The real-time loop, the lock-step
-/// loop and virtual time differ only in when they call these.
+/// What a cycle takes in and gives out, carried between the cycle and its surroundings. The real-time loop,
+/// the lock-step loop and virtual time differ only in when they call these.
 class CycleRunner {
  public:
   CycleRunner(Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox, IoSource& io)
       : cycle_(cycle), buses_(buses), mailbox_(mailbox), io_(io) {}
 
-  /// Frames of all buses, appended to what is there already. bus_time_ns is the grid point: virtual buses move there.
+  /// Frames of all buses, appended to what is there already. bus_time_ns is the grid point: virtual buses
+  /// move there.
   void Receive(std::int64_t bus_time_ns, CycleInput& in) noexcept;
-  /// All the rest of the input, for this grid point.
-  void Collect(const GridPoint& grid, std::int64_t now_ns, CycleInput& in) noexcept;
+  /// All the rest of the input, for this grid point. Virtual and lock-step time take requests only when the
+  /// last cycle had settled, so that the number of cycles between two requests does not depend on when they
+  /// arrive; a stop always passes.
+  void Collect(const GridPoint& grid, std::int64_t now_ns, bool take_requests, CycleInput& in) noexcept;
   /// The output's frames to their buses, a batch each.
   void Send(std::int64_t bus_time_ns, const CycleOutput& out) noexcept;
 
   /// Receive, Collect, Step, Send: one cycle in virtual time.
-  void Tick(const GridPoint& grid, CycleEntry& entry) noexcept;
+  void Tick(const GridPoint& grid, bool take_requests, CycleEntry& entry) noexcept;
 
  private:
   Cycle& cycle_;

@@ -6,7 +6,8 @@
 
 namespace contour {
 
-/// Where the loop takes the auxiliary I/O from. Read() never blocks; freshness is judged at now_ns (CLOCK_MONOTONIC).
+/// Where the loop takes the auxiliary I/O from. Read() never blocks; freshness is judged at now_ns
+/// (CLOCK_MONOTONIC).
 class IoSource {
  public:
   virtual ~IoSource() = default;

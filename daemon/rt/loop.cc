@@ -27,8 +27,8 @@ constexpr std::int64_t kLockstepFeedbackTimeout_ns = 400'000'000;
 
 }  // namespace
 
-Loop::Loop(const Config& config, Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox, IoSource& io,
-           TelemetryQueue& telemetry)
+Loop::Loop(const Config& config, Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox,
+           IoSource& io, TelemetryQueue& telemetry)
     : config_(config),
       cycle_(cycle),
       buses_(buses),
@@ -48,7 +48,7 @@ void Loop::RunWall() noexcept {
     CycleEntry& entry = *telemetry_.Reserve();
     entry.input.frames.clear();
     runner_.Receive(grid.time_ns, entry.input);
-    runner_.Collect(grid, woken, entry.input);
+    runner_.Collect(grid, woken, true, entry.input);
     const std::int64_t received = Now();
     cycle_.Step(entry.input, entry.output);
     const std::int64_t stepped = Now();
@@ -86,12 +86,13 @@ void Loop::RunLockstep() noexcept {
     CycleEntry& entry = *telemetry_.Reserve();
     entry.input.frames.clear();
     WaitForFeedback(grid, entry.input);
-    runner_.Collect(grid, Now(), entry.input);
+    runner_.Collect(grid, Now(), !last.settling, entry.input);
     cycle_.Step(entry.input, entry.output);
     runner_.Send(grid.time_ns, entry.output);
     finished = entry.output.finished;
     last.finished = finished;
     last.quiescent = entry.output.quiescent;
+    last.settling = entry.output.settling;
     entry.timing = {};
     counters_.cycles.fetch_add(1, std::memory_order_relaxed);
     telemetry_.Publish();

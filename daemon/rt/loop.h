@@ -21,20 +21,21 @@ struct LoopCounters {
   std::atomic<std::int64_t> max_wakeup_late_ns{0};
 };
 
-/// Everything around the cycle: waits for the grid point, receives, steps, sends, stamps the stages and hands the entry to
-/// the telemetry queue. Runs in the calling thread until the cycle says it is finished.
+/// Everything around the cycle: waits for the grid point, receives, steps, sends, stamps the stages and hands
+/// the entry to the telemetry queue. Runs in the calling thread until the cycle says it is finished.
 class Loop {
  public:
   struct Config {
     std::int64_t period_ns = 1'000'000;
     std::int64_t send_deadline_ns = 200'000;
   };
-  Loop(const Config& config, Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox, IoSource& io,
-       TelemetryQueue& telemetry);
+  Loop(const Config& config, Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox,
+       IoSource& io, TelemetryQueue& telemetry);
 
   /// Real time: absolute wake-ups on a grid that keeps its phase.
   void RunWall() noexcept;
-  /// As fast as the feedback comes in; time stands still while there is nothing to do. For emulated machines only.
+  /// As fast as the feedback comes in; time stands still while there is nothing to do. For emulated machines
+  /// only.
   void RunLockstep() noexcept;
 
   [[nodiscard]] const LoopCounters& counters() const noexcept { return counters_; }

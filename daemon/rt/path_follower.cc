@@ -6,8 +6,8 @@
 namespace contour {
 namespace {
 
-/// Quintic Hermite interpolation on [0, 1] through position, velocity and acceleration (per period) at both ends; gives the
-/// value and its first two derivatives at s.
+/// Quintic Hermite interpolation on [0, 1] through position, velocity and acceleration (per period) at both
+/// ends; gives the value and its first two derivatives at s.
 struct Interpolated {
   double value, first, second;
 };
@@ -17,7 +17,8 @@ Interpolated Quintic(double p0, double v0, double a0, double p1, double v1, doub
   const double c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1;
   const double c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1;
   return {p0 + s * (v0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5)))),
-          v0 + s * (a0 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5))), a0 + s * (6 * c3 + s * (12 * c4 + s * 20 * c5))};
+          v0 + s * (a0 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5))),
+          a0 + s * (6 * c3 + s * (12 * c4 + s * 20 * c5))};
 }
 
 }  // namespace
@@ -65,7 +66,8 @@ bool PathFollower::Prefetched() const noexcept {
 
 void PathFollower::Start() noexcept {
   mode_ = Mode::kRunning;
-  // Horizon element 1 is the first instant the new torque acts at; the path begins there, element 0 is still at rest.
+  // Horizon element 1 is the first instant the new torque acts at; the path begins there, element 0 is still
+  // at rest.
   clock_ = -1;
   UpdatePaces();
 }
@@ -136,9 +138,10 @@ ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const 
   if (s == 0.0 && pace.rate == 1.0 && pace.rate_change == 0.0) return a;
   const ReferencePoint& b = At(index + 1).axes[axis];
   const double h = period_s_;
-  const auto q = Quintic(a.position_m, a.velocity_m_s * h, a.acceleration_m_s2 * h * h, b.position_m, b.velocity_m_s * h,
-                         b.acceleration_m_s2 * h * h, s);
-  return {q.value, pace.rate * q.first / h, (pace.rate * pace.rate * q.second + pace.rate_change * q.first) / (h * h)};
+  const auto q = Quintic(a.position_m, a.velocity_m_s * h, a.acceleration_m_s2 * h * h, b.position_m,
+                         b.velocity_m_s * h, b.acceleration_m_s2 * h * h, s);
+  return {q.value, pace.rate * q.first / h,
+          (pace.rate * pace.rate * q.second + pace.rate_change * q.first) / (h * h)};
 }
 
 void PathFollower::Horizon(std::size_t axis, AxisHorizon& out) const noexcept {

@@ -8,11 +8,13 @@
 
 namespace contour {
 
-/// Turns the prefetched points of a program into the reference of every cycle, with a horizon ahead of it, and can leave
-/// the program's own pace for a stop on the path: the pace falls from 1 to 0 by a smooth ramp, the geometry is kept.
+/// Turns the prefetched points of a program into the reference of every cycle, with a horizon ahead of it,
+/// and can leave the program's own pace for a stop on the path: the pace falls from 1 to 0 by a smooth ramp,
+/// the geometry is kept.
 ///
-/// Time on the path is counted in periods. At pace 1 the references are the points themselves, bit for bit; off the grid
-/// they are quintic Hermite interpolations, whose velocity and acceleration follow from the pace by the chain rule.
+/// Time on the path is counted in periods. At pace 1 the references are the points themselves, bit for bit;
+/// off the grid they are quintic Hermite interpolations, whose velocity and acceleration follow from the pace
+/// by the chain rule.
 class PathFollower {
  public:
   /// stop_periods: length of the stop ramp. horizon: points wanted ahead of the present one.
@@ -39,8 +41,8 @@ class PathFollower {
   void Advance() noexcept;
   /// Reference of one axis, indices as core/horizon.h.
   void Horizon(std::size_t axis, AxisHorizon& out) const noexcept;
-  /// Reference shortly before and after the feedback's instant, all axes, for the geometry of the contour error: offset in
-  /// periods, -3..horizon.
+  /// Reference shortly before and after the feedback's instant, all axes, for the geometry of the contour
+  /// error: offset in periods, -3..horizon.
   [[nodiscard]] ReferencePoint Near(std::size_t axis, int offset) const noexcept;
 
   [[nodiscard]] bool moving() const noexcept { return mode_ == Mode::kRunning || mode_ == Mode::kStopping; }
@@ -83,10 +85,10 @@ class PathFollower {
   std::uint32_t program_id_ = 0;
   bool expecting_ = false;
   bool have_last_ = false;
-  std::uint64_t first_ = 0;        ///< oldest point kept
-  std::uint64_t end_ = 0;          ///< one past the newest
-  std::int64_t clock_ = 0;         ///< periods since Start() of horizon element 0
-  std::int64_t stop_clock_ = 0;    ///< clock of the horizon element at which the stop ramp began
+  std::uint64_t first_ = 0;      ///< oldest point kept
+  std::uint64_t end_ = 0;        ///< one past the newest
+  std::int64_t clock_ = 0;       ///< periods since Start() of horizon element 0
+  std::int64_t stop_clock_ = 0;  ///< clock of the horizon element at which the stop ramp began
   std::array<Pace, kMaxHorizonPoints> pace_{};
   std::array<PathPoint, kCapacity> points_{};
 };

@@ -6,15 +6,16 @@
 
 namespace contour {
 
-/// Bounded queue for one producer and one consumer thread, without locks. All memory is taken at construction.
-/// Capacity is rounded up to a power of two.
+/// Bounded queue for one producer and one consumer thread, without locks. All memory is taken at
+/// construction. Capacity is rounded up to a power of two.
 template <class T>
 class SpscRing {
  public:
   explicit SpscRing(std::size_t capacity) : mask_(RoundUp(capacity) - 1), slots_(new T[mask_ + 1]()) {}
 
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
-  /// Exact for the two parties as far as each cares: never too large for the consumer, never too small for the producer.
+  /// Exact for the two parties as far as each cares: never too large for the consumer, never too small for
+  /// the producer.
   [[nodiscard]] std::size_t size() const noexcept {
     return head_.load(std::memory_order_acquire) - tail_.load(std::memory_order_acquire);
   }
@@ -25,7 +26,9 @@ class SpscRing {
     if (head - tail_.load(std::memory_order_acquire) > mask_) return nullptr;
     return &slots_[head & mask_];
   }
-  void Publish() noexcept { head_.store(head_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+  void Publish() noexcept {
+    head_.store(head_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
 
   bool Push(const T& value) noexcept {
     T* slot = Reserve();
@@ -41,7 +44,9 @@ class SpscRing {
     if (tail == head_.load(std::memory_order_acquire)) return nullptr;
     return &slots_[tail & mask_];
   }
-  void Release() noexcept { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
+  void Release() noexcept {
+    tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+  }
 
   bool Pop(T& value) noexcept {
     T* slot = Front();

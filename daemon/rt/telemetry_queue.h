@@ -8,13 +8,14 @@
 
 namespace contour {
 
-/// The door out of the real-time side: one entry per cycle. When the reader falls behind, entries are dropped and counted,
-/// the cycle never waits.
+/// The door out of the real-time side: one entry per cycle. When the reader falls behind, entries are dropped
+/// and counted, the cycle never waits.
 class TelemetryQueue {
  public:
   explicit TelemetryQueue(std::size_t capacity) : ring_(capacity) {}
 
-  /// Real-time side. Never null: when the queue is full the entry is written to a spare place and counted as dropped.
+  /// Real-time side. Never null: when the queue is full the entry is written to a spare place and counted as
+  /// dropped.
   [[nodiscard]] CycleEntry* Reserve() noexcept {
     CycleEntry* slot = ring_.Reserve();
     reserved_ = slot != nullptr;

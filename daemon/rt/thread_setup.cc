@@ -19,7 +19,8 @@ std::string LimitText(rlim_t value) { return value == RLIM_INFINITY ? "unlimited
 std::string WhyNoPriority(int priority, int error) {
   rlimit limit{};
   getrlimit(RLIMIT_RTPRIO, &limit);
-  std::string text = "SCHED_FIFO priority " + std::to_string(priority) + " refused (" + std::strerror(error) + "): ";
+  std::string text =
+      "SCHED_FIFO priority " + std::to_string(priority) + " refused (" + std::strerror(error) + "): ";
   if (error == EPERM && limit.rlim_cur < static_cast<rlim_t>(priority)) {
     return text + "RLIMIT_RTPRIO is " + LimitText(limit.rlim_cur) +
            "; set LimitRTPRIO=" + std::to_string(priority) +
@@ -27,16 +28,20 @@ std::string WhyNoPriority(int priority, int error) {
   }
   std::ifstream runtime("/sys/fs/cgroup/cpu/cpu.rt_runtime_us");
   if (error == EPERM && runtime) {
-    return text + "the kernel schedules real-time groups (CONFIG_RT_GROUP_SCHED) and this control group has no real-time "
-                  "budget; give it cpu.rt_runtime_us or boot with rt_group_sched=0";
+    return text +
+           "the kernel schedules real-time groups (CONFIG_RT_GROUP_SCHED) and this control group has no "
+           "real-time "
+           "budget; give it cpu.rt_runtime_us or boot with rt_group_sched=0";
   }
-  return text + "check RLIMIT_RTPRIO (now " + LimitText(limit.rlim_cur) + ") and the control group's real-time budget";
+  return text + "check RLIMIT_RTPRIO (now " + LimitText(limit.rlim_cur) +
+         ") and the control group's real-time budget";
 }
 
 std::string WhyNoLock(int error) {
   rlimit limit{};
   getrlimit(RLIMIT_MEMLOCK, &limit);
-  return std::string("mlockall refused (") + std::strerror(error) + "): RLIMIT_MEMLOCK is " + LimitText(limit.rlim_cur) +
+  return std::string("mlockall refused (") + std::strerror(error) + "): RLIMIT_MEMLOCK is " +
+         LimitText(limit.rlim_cur) +
          " bytes; set LimitMEMLOCK=infinity in the systemd unit, or 'memlock' in /etc/security/limits.conf";
 }
 
@@ -59,9 +64,10 @@ std::vector<std::string> ApplyThreadRequest(const ThreadRequest& request) {
     CPU_ZERO(&set);
     CPU_SET(static_cast<std::size_t>(request.cpu), &set);
     if (const int error = pthread_setaffinity_np(pthread_self(), sizeof set, &set); error != 0) {
-      refused.push_back("CPU " + std::to_string(request.cpu) + " refused (" + std::strerror(error) + "): this machine has " +
-                        std::to_string(sysconf(_SC_NPROCESSORS_ONLN)) +
-                        " CPUs on line; correct realtime.cpu in the machine file, or CPUAffinity= in the systemd unit");
+      refused.push_back(
+          "CPU " + std::to_string(request.cpu) + " refused (" + std::strerror(error) +
+          "): this machine has " + std::to_string(sysconf(_SC_NPROCESSORS_ONLN)) +
+          " CPUs on line; correct realtime.cpu in the machine file, or CPUAffinity= in the systemd unit");
     }
   }
   if (request.lock_memory && mlockall(MCL_CURRENT | MCL_FUTURE) != 0) refused.push_back(WhyNoLock(errno));

@@ -4,7 +4,8 @@ namespace contour {
 namespace {
 
 bool Enabled(DriveState s) noexcept {
-  return s == DriveState::kOperationEnabled || s == DriveState::kQuickStopActive || s == DriveState::kFaultReactionActive;
+  return s == DriveState::kOperationEnabled || s == DriveState::kQuickStopActive ||
+         s == DriveState::kFaultReactionActive;
 }
 
 bool AllOff(const Situation& now) noexcept {
@@ -63,7 +64,15 @@ Orders Transitions::Step(const Situation& now) noexcept {
   if (now.request.kind != RequestKind::kNone) HandleRequest(now, orders);
   Progress(now, orders);
   orders.torque_allowed = HoldsTorque(state_);
-  orders.goal = Goal(now);
+  orders.goal = Goal();
+  return orders;
+}
+
+Orders Transitions::RaiseLate(FaultSeen fault) noexcept {
+  Fault(fault);
+  Orders orders;
+  orders.forget_path = true;
+  orders.goal = Goal();
   return orders;
 }
 
@@ -136,7 +145,8 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
 }
 
 void Transitions::Enable(const Situation& now, Orders& orders, const Request& request) noexcept {
-  const bool ok = state_ == MachineState::kIdle && now.operational && IoVerdict(now.io) == Reason::kNone && !terminating_;
+  const bool ok =
+      state_ == MachineState::kIdle && now.operational && IoVerdict(now.io) == Reason::kNone && !terminating_;
   Acknowledge(request, ok || state_ == MachineState::kReady);
   if (!ok) return;
   reason_ = Reason::kNone;
@@ -234,7 +244,7 @@ void Transitions::ProgressStopping(const Situation& now, Orders& orders) noexcep
   }
 }
 
-DriveGoal Transitions::Goal(const Situation&) const noexcept {
+DriveGoal Transitions::Goal() const noexcept {
   switch (state_) {
     case MachineState::kEnabling:
     case MachineState::kReady:

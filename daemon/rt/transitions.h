@@ -21,12 +21,12 @@ struct Situation {
   IoInput io;
   bool bring_up_active = false;
   bool bring_up_failed = false;
-  bool operational = false;      ///< all drives configured and Operational
+  bool operational = false;  ///< all drives configured and Operational
   PerAxis<DriveState> drives;
-  FaultSeen fault;               ///< acts whenever drives are or may be enabled
-  FaultSeen lost;                ///< bus or drive lost: acts in every state but Off and Starting
+  FaultSeen fault;  ///< acts whenever drives are or may be enabled
+  FaultSeen lost;   ///< bus or drive lost: acts in every state but Off and Starting
   bool path_prefetched = false;
-  bool path_begins_here = false; ///< first point lies where the axes stand
+  bool path_begins_here = false;  ///< first point lies where the axes stand
   bool path_running_dry = false;
   bool path_at_end = false;
   bool path_at_rest = false;
@@ -35,28 +35,32 @@ struct Situation {
 /// What the state machine asks of the rest of the cycle.
 struct Orders {
   bool start_bring_up = false;
-  bool hold_here = false;      ///< take the measured position as reference, reset estimators and controller
-  bool expect_path = false;    ///< of program_id
+  bool hold_here = false;    ///< take the measured position as reference, reset estimators and controller
+  bool expect_path = false;  ///< of program_id
   bool start_path = false;
-  bool stop_path = false;      ///< begin the stop ramp
-  bool forget_path = false;    ///< hold where the reference stands
+  bool stop_path = false;    ///< begin the stop ramp
+  bool forget_path = false;  ///< hold where the reference stands
   bool torque_allowed = false;
-  bool finished = false;       ///< terminate is carried out
+  bool finished = false;  ///< terminate is carried out
   DriveGoal goal = DriveGoal::kDisabled;
 };
 
-/// Which machine state may follow which. A fault acts in the cycle that sees it; nothing but an enable request leads to
-/// torque; a stop request is obeyed in every state that moves.
+/// Which machine state may follow which. A fault acts in the cycle that sees it; nothing but an enable
+/// request leads to torque; a stop request is obeyed in every state that moves.
 class Transitions {
  public:
   struct Config {
     std::uint32_t enable_timeout_cycles = 2000;
-    std::uint32_t stop_timeout_cycles = 2000;      ///< for a stop on the path and for drives to leave Operation Enabled
+    std::uint32_t stop_timeout_cycles =
+        2000;  ///< for a stop on the path and for drives to leave Operation Enabled
     std::uint32_t prefetch_timeout_cycles = 5000;  ///< from a run request to enough path points
   };
   explicit Transitions(const Config& config) : config_(config) {}
 
   Orders Step(const Situation& now) noexcept;
+  /// A fault found after Step, by the torque guard: acts in this very cycle. Gives the orders that replace
+  /// Step's.
+  Orders RaiseLate(FaultSeen fault) noexcept;
 
   [[nodiscard]] MachineState state() const noexcept { return state_; }
   [[nodiscard]] Reason reason() const noexcept { return reason_; }
@@ -82,7 +86,7 @@ class Transitions {
   void ProgressRunning(const Situation& now, Orders& orders) noexcept;
   void ProgressStopping(const Situation& now, Orders& orders) noexcept;
   void WatchIo(const Situation& now, Orders& orders) noexcept;
-  [[nodiscard]] DriveGoal Goal(const Situation& now) const noexcept;
+  [[nodiscard]] DriveGoal Goal() const noexcept;
 
   Config config_;
   MachineState state_ = MachineState::kOff;

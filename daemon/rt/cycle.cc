@@ -1,0 +1,353 @@
+#include "daemon/rt/cycle.h"
+
+#include <cmath>
+
+#include "drivers/cia301/messages.h"
+
+namespace contour {
+namespace {
+
+/// A program begins where the axes stand; more than this away and it is refused.
+constexpr double kPathStartTolerance_m = 1e-6;
+/// Lock-step time may stand still when nothing has changed for so many cycles.
+constexpr std::uint32_t kSettledCycles = 300;
+/// The same after a fault whose end cannot be seen, because the drives are out of reach.
+constexpr std::uint32_t kFaultSettledCycles = 3000;
+/// Reference points to either side of the feedback's instant that make the local path of the contour error.
+constexpr int kLocalPathReach = 4;
+
+EstimatorKind KindFor(ControllerName name) noexcept {
+  switch (name) {
+    case ControllerName::kPid:
+    case ControllerName::kCsp:
+    case ControllerName::kMpc:
+      return EstimatorKind::kKinematic;
+    case ControllerName::kMpcObserver:
+      return EstimatorKind::kDisturbanceObserver;
+    case ControllerName::kMpcSrukf4:
+      return EstimatorKind::kSrukf4;
+    case ControllerName::kMpcEkf7:
+      return EstimatorKind::kEkf7;
+    case ControllerName::kMpcSrukf7:
+      return EstimatorKind::kSrukf7;
+    case ControllerName::kFull:
+      break;
+  }
+  return EstimatorKind::kFull;
+}
+
+PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
+  PerAxis<ControlledAxis> axes;
+  for (const CycleAxisConfig& a : config.axes) {
+    const double r = a.mechanics.radius_m_rad;
+    axes.push_back({a.mechanics, ToSi(a.limits, r), a.lag_s, ToSi(a.friction, r).sigma2_Ns_m});
+  }
+  return axes;
+}
+
+PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config) {
+  PerAxis<GuardedAxis> axes;
+  for (const CycleAxisConfig& a : config.axes)
+    axes.push_back({ToSi(a.limits, a.mechanics.radius_m_rad), a.mechanics.radius_m_rad});
+  return axes;
+}
+
+Transitions::Config TransitionTimes(const CycleConfig& config) {
+  const auto cycles = [&](double ms) { return static_cast<std::uint32_t>(ms * 1e3 / config.cycle_us) + 1; };
+  double walk_ms = 0.0;
+  double quick_stop_ms = 0.0;
+  for (const AxisDriveConfig& a : config.master.axes) {
+    walk_ms = std::max(walk_ms, a.drive.transition_ms);
+    quick_stop_ms = std::max(quick_stop_ms, a.drive.quick_stop_ms);
+  }
+  // From Switch On Disabled to Operation Enabled there are three transitions.
+  return {cycles(3.0 * walk_ms), cycles(1000.0 * StopOnPathTime_s(config) + quick_stop_ms), cycles(5000.0)};
+}
+
+PerAxis<double> Zeros(std::size_t n) {
+  PerAxis<double> zeros(n);
+  for (double& z : zeros) z = 0.0;
+  return zeros;
+}
+
+}  // namespace
+
+double StopOnPathTime_s(const CycleConfig& config) {
+  // The ramp's steepest slope is 1.5 / T: an axis at its highest speed then just keeps its acceleration
+  // limit.
+  double time_s = 0.0;
+  for (const CycleAxisConfig& a : config.axes)
+    time_s = std::max(time_s, 1.5 * a.limits.velocity_mm_s / a.limits.acceleration_mm_s2);
+  return time_s;
+}
+
+Cycle::Axis::Axis(const CycleAxisConfig& config, ControllerName controller, double period_s)
+    : radius_m_rad(config.mechanics.radius_m_rad),
+      estimator(KindFor(controller), config.mechanics, config.friction, config.estimator, period_s,
+                config.lag_s,
+                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev) {}
+
+Cycle::Cycle(const CycleConfig& config)
+    : period_s_(config.cycle_us * 1e-6),
+      master_(config.master),
+      transitions_(TransitionTimes(config)),
+      follower_(config.axes.size(), period_s_, StopOnPathTime_s(config) / period_s_, kMaxHorizonPoints),
+      controller_(config.controller, config.control, ControlledAxes(config), period_s_),
+      guard_(config.control.guard, GuardedAxes(config), period_s_),
+      csp_(config.controller == ControllerName::kCsp),
+      estimates_(config.axes.size()),
+      guarded_(config.axes.size()),
+      setpoints_(config.axes.size()) {
+  for (const CycleAxisConfig& a : config.axes) axes_.emplace_back(a, config.controller, period_s_);
+  for (const AxisDriveConfig& a : config.master.axes)
+    answers_.push_back({{static_cast<std::uint16_t>(cob::kTpdo1 + a.drive.node_id), 0, {}}, a.bus, 0});
+  for (const BusConfig& b : config.master.buses) {
+    const auto bus = static_cast<std::uint8_t>(heartbeats_.size());
+    heartbeats_.push_back(
+        {HeartbeatFrame(static_cast<std::uint8_t>(b.master_node_id), NmtState::kOperational), bus, 0});
+  }
+  const std::size_t n = axes_.size();
+  control_in_.reference.resize(n);
+  control_in_.friction.resize(n);
+  control_in_.previous_force_N = Zeros(n);
+  control_out_.force_N = Zeros(n);
+  control_out_.feedforward_N = Zeros(n);
+  control_out_.target_position_m = Zeros(n);
+  control_out_.limit.resize(n);
+  follower_.Hold(Zeros(n));
+}
+
+void Cycle::Step(const CycleInput& in, CycleOutput& out) noexcept {
+  Observe(in);
+  Estimate();
+  Orders orders = transitions_.Step(Assess(in));
+  CarryOut(orders);
+  Decide();
+  if (const FaultSeen fault = Guard(orders); fault.reason != Reason::kNone) {
+    orders = transitions_.RaiseLate(fault);
+    CarryOut(orders);
+    Guard(orders);
+  }
+  Command(orders, out);
+  Record(in, out);
+  out.finished = orders.finished;
+}
+
+bool Cycle::FeedbackComplete(const CycleInput& in) const noexcept {
+  for (const StampedFrame& answer : answers_) {
+    bool found = false;
+    for (const StampedFrame& f : in.frames)
+      found = found || (f.bus == answer.bus && f.frame.id == answer.frame.id);
+    if (!found) return false;
+  }
+  return true;
+}
+
+void Cycle::EncodeHeartbeat(CycleOutput& out) const noexcept {
+  for (const StampedFrame& f : heartbeats_) out.frames.push_back(f);
+}
+
+void Cycle::Observe(const CycleInput& in) noexcept {
+  master_.Receive(in);
+  for (const PathPoint& p : in.path) follower_.Accept(p);
+  follower_.Advance();
+  bool stale = false;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const AxisFeedback& f = master_.feedback()[i];
+    axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
+    stale = stale || (f.valid && !f.fresh);
+    follower_.Horizon(i, control_in_.reference[i]);
+  }
+  if (stale && master_.operational()) ++stale_cycles_;
+}
+
+void Cycle::Estimate() noexcept {
+  const MachineState state = transitions_.state();
+  const bool holds =
+      state == MachineState::kReady || state == MachineState::kRunning || state == MachineState::kStopping;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Axis& axis = axes_[i];
+    const AxisFeedback& f = master_.feedback()[i];
+    const ReferencePoint& commanded = control_in_.reference[i][0];
+    AxisEstimatorInput input;
+    input.position_m = axis.position_m;
+    input.fresh = f.fresh;
+    input.force_N = axis.sent_force_N;
+    input.commanded_velocity_m_s = commanded.velocity_m_s;
+    input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
+    input.at_rest = commanded.velocity_m_s == 0.0;
+    input.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
+    estimates_[i] = axis.estimator.Update(input);
+  }
+}
+
+Situation Cycle::Assess(const CycleInput& in) const noexcept {
+  Situation now;
+  now.request = in.request;
+  now.io = in.io;
+  now.operational = master_.operational();
+  now.bring_up_failed = master_.bring_up_failed();
+  now.bring_up_active = !now.operational && !now.bring_up_failed;
+  for (const AxisFeedback& f : master_.feedback()) now.drives.push_back(f.drive_state);
+  now.fault = FindFault();
+  now.lost = FindLost(in);
+  now.path_prefetched = follower_.Prefetched();
+  now.path_begins_here = now.path_prefetched && PathBeginsHere();
+  now.path_running_dry = follower_.running_dry();
+  now.path_at_end = follower_.at_end();
+  now.path_at_rest = follower_.at_rest();
+  return now;
+}
+
+FaultSeen Cycle::FindFault() const noexcept {
+  const MachineState state = transitions_.state();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const auto where = static_cast<std::uint8_t>(i);
+    const AxisDriveStatus& status = master_.status()[i];
+    if (status.fault) return {Reason::kDriveFault, where};
+    if (state != MachineState::kEnabling && status.left_enabled) return {Reason::kDriveLeftEnabled, where};
+    if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
+  }
+  return {};
+}
+
+FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
+  for (std::size_t b = 0; b < in.buses.size(); ++b) {
+    const auto where = static_cast<std::uint8_t>(b);
+    if (in.buses[b].bus_off) return {Reason::kBusOff, where};
+    if (!in.buses[b].up) return {Reason::kBusDown, where};
+    if (in.buses[b].send_failures != 0) return {Reason::kSendFailed, where};
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const auto where = static_cast<std::uint8_t>(i);
+    if (master_.status()[i].heartbeat_lost || master_.status()[i].restarted)
+      return {Reason::kHeartbeatLost, where};
+  }
+  return {};
+}
+
+bool Cycle::PathBeginsHere() const noexcept {
+  const PathPoint& first = follower_.First();
+  if (first.axes.size() != axes_.size()) return false;
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (!(std::abs(first.axes[i].position_m - control_in_.reference[i][0].position_m) <=
+          kPathStartTolerance_m))
+      return false;
+  return true;
+}
+
+void Cycle::HoldHere() noexcept {
+  PerAxis<double> here;
+  for (Axis& axis : axes_) {
+    here.push_back(axis.position_m);
+    axis.estimator.Reset(axis.position_m);
+    axis.sent_force_N = {};
+  }
+  follower_.Hold(here);
+  controller_.Reset();
+  guard_.Reset();
+}
+
+void Cycle::CarryOut(const Orders& orders) noexcept {
+  if (orders.start_bring_up) master_.StartBringUp();
+  if (orders.hold_here) HoldHere();
+  if (orders.forget_path) {
+    PerAxis<double> here;
+    for (std::size_t i = 0; i < axes_.size(); ++i) here.push_back(control_in_.reference[i][0].position_m);
+    follower_.Hold(here);
+  }
+  if (orders.expect_path) follower_.Expect(transitions_.program_id());
+  if (orders.start_path) follower_.Start();
+  if (orders.stop_path) follower_.BeginStop();
+}
+
+void Cycle::Decide() noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    follower_.Horizon(i, control_in_.reference[i]);
+    axes_[i].estimator.PreviewFriction(control_in_.reference[i], control_in_.friction[i]);
+    control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
+  }
+  control_in_.estimate = estimates_;
+  controller_.Step(control_in_, control_out_);
+}
+
+FaultSeen Cycle::Guard(const Orders& orders) noexcept {
+  FaultSeen fault;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    // In CSP the drive's cascade makes the torque; the guard still watches the axis.
+    const double wanted_Nm = csp_ ? 0.0 : control_out_.force_N[i] * axes_[i].radius_m_rad;
+    guarded_[i] = guard_.Limit(i, wanted_Nm, master_.feedback()[i], control_in_.reference[i][0].position_m,
+                               orders.torque_allowed);
+    if (guarded_[i].fault != Reason::kNone && fault.reason == Reason::kNone)
+      fault = {guarded_[i].fault, static_cast<std::uint8_t>(i)};
+  }
+  return fault;
+}
+
+void Cycle::Command(const Orders& orders, CycleOutput& out) noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    AxisSetpoint& s = setpoints_[i];
+    s.goal = orders.goal;
+    s.torque_Nm = guarded_[i].torque_Nm;
+    // Until the axis is held, the target follows the axis, so that a drive in CSP does not jump when enabled.
+    s.position_rad = (orders.torque_allowed ? control_out_.target_position_m[i] : axes_[i].position_m) /
+                     axes_[i].radius_m_rad;
+  }
+  out.frames.clear();
+  master_.Send(setpoints_, out.frames);
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    auto& sent = axes_[i].sent_force_N;
+    sent = {master_.sent_torque_Nm()[i] / axes_[i].radius_m_rad, sent[0], sent[1]};
+  }
+}
+
+void Cycle::Record(const CycleInput& in, CycleOutput& out) noexcept {
+  CycleRecord& r = out.record;
+  r.cycle = in.cycle;
+  r.grid_time_ns = in.grid_time_ns;
+  r.sync_number = master_.sync_number();
+  r.feedback_sync = master_.feedback_sync();
+  r.state = transitions_.state();
+  r.reason = transitions_.reason();
+  r.reason_axis = transitions_.reason_where();
+  r.acknowledged = transitions_.acknowledged();
+  r.acknowledged_ok = transitions_.acknowledged_ok();
+  r.program_id = transitions_.program_id();
+  r.path_time_s = follower_.moving() || follower_.at_end() ? follower_.path_time() * period_s_ : 0.0;
+  r.path_points_waiting = static_cast<std::uint16_t>(follower_.waiting());
+  r.solver_iterations = static_cast<std::uint16_t>(control_out_.iterations);
+  r.stale_cycles = stale_cycles_;
+  r.io = in.io;
+  r.bring_up = master_.bring_up();
+  r.axes.resize(axes_.size());
+  for (std::size_t i = 0; i < axes_.size(); ++i) RecordAxis(i, r.axes[i]);
+  RecordContourError(r);
+  const bool waits =
+      (r.state == MachineState::kIdle || r.state == MachineState::kReady) && !transitions_.run_pending();
+  const bool over = r.state == MachineState::kFaulted && transitions_.drives_off();
+  const bool lost = r.state == MachineState::kFaulted && transitions_.since() >= kFaultSettledCycles;
+  out.quiescent = ((waits || over) && transitions_.since() >= kSettledCycles) || lost;
+  out.settling = (waits || r.state == MachineState::kFaulted) && !out.quiescent;
+}
+
+void Cycle::RecordContourError(CycleRecord& record) const noexcept {
+  record.contour_error_m = 0.0;
+  record.lag_error_m = 0.0;
+}
+
+void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
+  r.feedback = master_.feedback()[i];
+  r.reference = control_in_.reference[i][0];
+  r.estimate = estimates_[i];
+  r.position_m = axes_[i].position_m;
+  r.following_error_m = r.reference.position_m - r.position_m;
+  r.feedforward_Nm = control_out_.feedforward_N[i] * axes_[i].radius_m_rad;
+  r.wanted_torque_Nm = control_out_.force_N[i] * axes_[i].radius_m_rad;
+  r.torque_Nm = master_.sent_torque_Nm()[i];
+  r.target_position_rad = setpoints_[i].position_rad;
+  r.goal = setpoints_[i].goal;
+  r.limit = guarded_[i].limit != Reason::kNone ? guarded_[i].limit : control_out_.limit[i];
+  r.emergency_code = master_.status()[i].emergency_code;
+}
+
+}  // namespace contour

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "control/contour_controller.h"
+#include "control/torque_guard.h"
+#include "core/cycle_record.h"
+#include "core/horizon.h"
+#include "daemon/rt/cycle_config.h"
+#include "daemon/rt/path_follower.h"
+#include "daemon/rt/transitions.h"
+#include "drivers/cia402/drive_master.h"
+#include "estimator/axis_estimator.h"
+
+namespace contour {
+
+/// Length of a stop on the path: an axis at its highest speed keeps its acceleration limit.
+double StopOnPathTime_s(const CycleConfig& config);
+
+/// One period of the machine, top to bottom: frames in, axis feedback, estimate, machine state, wanted
+/// torque, torque limits, frames out, record. A pure function of its input and its state; the same in real
+/// time, in virtual time and in replay.
+class Cycle {
+ public:
+  /// Takes all memory there will be. Throws std::invalid_argument on a configuration that cannot run.
+  explicit Cycle(const CycleConfig& config);
+
+  void Step(const CycleInput& in, CycleOutput& out) noexcept;
+
+  // For the loop around it:
+  /// How many path points the next Step can take.
+  [[nodiscard]] std::size_t PathRoom() const noexcept { return follower_.Room(); }
+  /// SYNC is running, so the drives answer every cycle.
+  [[nodiscard]] bool ExpectsFeedback() const noexcept { return master_.operational(); }
+  /// All drives' answers to the last SYNC are among these frames.
+  [[nodiscard]] bool FeedbackComplete(const CycleInput& in) const noexcept;
+  /// The master's heartbeats alone, for a loop whose time stands still.
+  void EncodeHeartbeat(CycleOutput& out) const noexcept;
+
+ private:
+  struct Axis {
+    Axis(const CycleAxisConfig& config, ControllerName controller, double period_s);
+    double radius_m_rad;
+    AxisEstimator estimator;
+    std::array<double, 3> sent_force_N{};  ///< newest first
+    double position_m = 0.0;
+  };
+
+  void Observe(const CycleInput& in) noexcept;
+  void Estimate() noexcept;
+  [[nodiscard]] Situation Assess(const CycleInput& in) const noexcept;
+  [[nodiscard]] FaultSeen FindFault() const noexcept;
+  [[nodiscard]] FaultSeen FindLost(const CycleInput& in) const noexcept;
+  [[nodiscard]] bool PathBeginsHere() const noexcept;
+  void CarryOut(const Orders& orders) noexcept;
+  void HoldHere() noexcept;
+  void Decide() noexcept;
+  FaultSeen Guard(const Orders& orders) noexcept;
+  void Command(const Orders& orders, CycleOutput& out) noexcept;
+  void Record(const CycleInput& in, CycleOutput& out) noexcept;
+  void RecordContourError(CycleRecord& record) const noexcept;
+  void RecordAxis(std::size_t i, AxisRecord& record) const noexcept;
+
+  double period_s_;
+  DriveMaster master_;
+  std::vector<Axis> axes_;
+  Transitions transitions_;
+  PathFollower follower_;
+  ContourController controller_;
+  TorqueGuard guard_;
+  bool csp_;
+
+  PerAxis<AxisEstimate> estimates_;
+  ControlInput control_in_;
+  ControlOutput control_out_;
+  PerAxis<GuardedTorque> guarded_;
+  PerAxis<AxisSetpoint> setpoints_;
+  std::uint64_t stale_cycles_ = 0;
+  FixedVector<StampedFrame, kMaxAxes> answers_;  ///< bus and identifier of each drive's answer to SYNC
+  FixedVector<StampedFrame, kMaxBuses> heartbeats_;
+};
+
+}  // namespace contour

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "control/control_config.h"
+#include "core/axis.h"
+#include "core/controller_name.h"
+#include "core/mechanics.h"
+#include "drivers/cia402/drive_master.h"
+#include "estimator/estimator_config.h"
+#include "estimator/friction_config.h"
+
+namespace contour {
+
+/// All the cycle needs to know of one axis.
+struct CycleAxisConfig {
+  std::string name;
+  Mechanics mechanics;
+  FrictionConfig friction;
+  EstimatorConfig estimator;
+  AxisLimits limits;
+  double lag_s = 0.0;
+  double encoder_counts_per_rev = 0.0;
+};
+
+/// All the cycle needs to know; it never sees a file.
+struct CycleConfig {
+  std::uint32_t cycle_us = 1000;
+  ControllerName controller = ControllerName::kFull;
+  ControllerConfig control;
+  MasterConfig master;
+  std::vector<CycleAxisConfig> axes;
+};
+
+}  // namespace contour

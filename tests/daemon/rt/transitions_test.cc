@@ -1,0 +1,230 @@
+#include "daemon/rt/transitions.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace contour {
+namespace {
+
+/// Drives the state machine with drives that obey at once.
+class TransitionsTest : public ::testing::Test {
+ protected:
+  TransitionsTest() : machine_({10, 20, 30}) {
+    now_.operational = true;
+    now_.drives.resize(2);
+    SetDrives(DriveState::kSwitchedOn);
+    now_.io = {true, true, true, true, 20.0};
+    now_.path_at_rest = true;
+  }
+
+  void SetDrives(DriveState s) {
+    for (DriveState& d : now_.drives) d = s;
+  }
+  Orders Step(RequestKind kind = RequestKind::kNone, std::uint32_t program = 0) {
+    now_.request = {kind, kind == RequestKind::kNone ? 0 : ++sequence_, program};
+    const Orders orders = machine_.Step(now_);
+    if (orders.goal == DriveGoal::kEnabled) SetDrives(DriveState::kOperationEnabled);
+    if (orders.goal == DriveGoal::kQuickStop) SetDrives(DriveState::kSwitchOnDisabled);
+    if (orders.goal == DriveGoal::kSwitchedOn) SetDrives(DriveState::kSwitchedOn);
+    return orders;
+  }
+  void ToIdle() {
+    Step();
+    Step();
+    ASSERT_EQ(machine_.state(), MachineState::kIdle);
+  }
+  void ToReady() {
+    ToIdle();
+    Step(RequestKind::kEnable);
+    for (int i = 0; i < 5; ++i) Step();
+    ASSERT_EQ(machine_.state(), MachineState::kReady);
+  }
+  void ToRunning() {
+    ToReady();
+    EXPECT_TRUE(Step(RequestKind::kRun, 3).expect_path);
+    now_.path_prefetched = now_.path_begins_here = true;
+    now_.path_at_rest = false;
+    EXPECT_TRUE(Step().start_path);
+    ASSERT_EQ(machine_.state(), MachineState::kRunning);
+  }
+
+  Situation now_;
+  Transitions machine_;
+  std::uint32_t sequence_ = 0;
+};
+
+TEST_F(TransitionsTest, NothingEnablesItself) {
+  EXPECT_TRUE(Step().start_bring_up);
+  for (int i = 0; i < 1000; ++i) {
+    const Orders orders = Step();
+    ASSERT_FALSE(orders.torque_allowed);
+    ASSERT_NE(orders.goal, DriveGoal::kEnabled);
+  }
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+}
+
+TEST_F(TransitionsTest, EnableRunAndProgramEnd) {
+  ToRunning();
+  EXPECT_EQ(machine_.program_id(), 3u);
+  now_.path_at_end = true;
+  const Orders orders = Step();
+  EXPECT_EQ(machine_.state(), MachineState::kReady);
+  EXPECT_EQ(machine_.reason(), Reason::kProgramEnd);
+  EXPECT_TRUE(orders.torque_allowed);
+}
+
+TEST_F(TransitionsTest, EnableIsRefusedWithoutPermission) {
+  ToIdle();
+  for (const IoInput& io : {IoInput{true, false, true, true, 0}, IoInput{true, true, false, true, 0},
+                            IoInput{true, true, true, false, 0}}) {
+    now_.io = io;
+    Step(RequestKind::kEnable);
+    EXPECT_FALSE(machine_.acknowledged_ok());
+    EXPECT_EQ(machine_.acknowledged(), sequence_);
+    EXPECT_EQ(machine_.state(), MachineState::kIdle);
+  }
+  now_.io = {};  // no I/O configured
+  Step(RequestKind::kEnable);
+  EXPECT_TRUE(machine_.acknowledged_ok());
+}
+
+TEST_F(TransitionsTest, EveryMovingStateFallsToFaultedInTheSameCycle) {
+  struct Case {
+    Reason reason;
+    bool lost;
+  };
+  for (const Case c :
+       {Case{Reason::kDriveFault, false}, Case{Reason::kBusDown, true}, Case{Reason::kHeartbeatLost, true}}) {
+    machine_ = Transitions({10, 20, 30});
+    now_.fault = now_.lost = {};
+    now_.path_prefetched = now_.path_begins_here = false;
+    ToRunning();
+    (c.lost ? now_.lost : now_.fault) = {c.reason, 1};
+    const Orders orders = machine_.Step(now_);
+    EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+    EXPECT_EQ(machine_.reason(), c.reason);
+    EXPECT_EQ(machine_.reason_where(), 1);
+    EXPECT_FALSE(orders.torque_allowed);
+    EXPECT_EQ(orders.goal, DriveGoal::kQuickStop);
+  }
+}
+
+TEST_F(TransitionsTest, EmergencyStopInputIsAQuickStop) {
+  ToRunning();
+  now_.io.emergency_stop_ok = false;
+  const Orders orders = machine_.Step(now_);
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kEmergencyStop);
+  EXPECT_EQ(orders.goal, DriveGoal::kQuickStop);
+}
+
+TEST_F(TransitionsTest, LostIoStopsOnThePathThenFaults) {
+  ToRunning();
+  now_.io.fresh = false;
+  EXPECT_TRUE(Step().stop_path);
+  EXPECT_EQ(machine_.state(), MachineState::kStopping);
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(Step().stop_path);
+  now_.path_at_rest = true;
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kIoStale);
+}
+
+TEST_F(TransitionsTest, EmergencyStopDuringAStopStillActsAtOnce) {
+  ToRunning();
+  Step(RequestKind::kStop);
+  now_.io.emergency_stop_ok = false;
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+}
+
+TEST_F(TransitionsTest, StopLeadsToReadyDisableToIdle) {
+  ToRunning();
+  EXPECT_TRUE(Step(RequestKind::kStop).stop_path);
+  now_.path_at_rest = true;
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kReady);
+  Step(RequestKind::kDisable);
+  const Orders orders = Step();
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+  EXPECT_FALSE(orders.torque_allowed);
+}
+
+TEST_F(TransitionsTest, TerminateStopsOnThePathThenFinishes) {
+  ToRunning();
+  EXPECT_TRUE(Step(RequestKind::kTerminate).stop_path);
+  EXPECT_FALSE(Step().finished);
+  now_.path_at_rest = true;
+  bool finished = false;
+  for (int i = 0; i < 5 && !finished; ++i) finished = Step().finished;
+  EXPECT_TRUE(finished);
+  Step(RequestKind::kEnable);
+  EXPECT_FALSE(machine_.acknowledged_ok()) << "nothing enables a machine that is going down";
+}
+
+TEST_F(TransitionsTest, TerminateWhileFaultedOrStartingFinishes) {
+  machine_ = Transitions({10, 20, 30});
+  now_.operational = false;
+  now_.bring_up_active = true;
+  Step();
+  bool finished = false;
+  Step(RequestKind::kTerminate);
+  for (int i = 0; i < 50 && !finished; ++i) finished = Step().finished;
+  EXPECT_TRUE(finished);
+}
+
+TEST_F(TransitionsTest, AStopThatDoesNotComeToRestIsAFault) {
+  ToRunning();
+  Step(RequestKind::kStop);
+  for (int i = 0; i < 30; ++i) Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kStopTimeout);
+}
+
+TEST_F(TransitionsTest, DrivesThatDoNotEnableAreAFault) {
+  ToIdle();
+  now_.request = {RequestKind::kEnable, ++sequence_, 0};
+  machine_.Step(now_);
+  now_.request = {};
+  for (int i = 0; i < 30; ++i) machine_.Step(now_);
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kEnableTimeout);
+}
+
+TEST_F(TransitionsTest, ResetBringsUpAgainAndDoesNotEnable) {
+  ToRunning();
+  now_.fault = {Reason::kDriveFault, 0};
+  Step();
+  now_.fault = {};
+  EXPECT_TRUE(Step(RequestKind::kReset).start_bring_up);
+  for (int i = 0; i < 5; ++i) {
+    const Orders orders = Step();
+    EXPECT_FALSE(orders.torque_allowed);
+    EXPECT_NE(orders.goal, DriveGoal::kEnabled);
+  }
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+}
+
+TEST_F(TransitionsTest, APathThatBeginsElsewhereIsRefused) {
+  ToReady();
+  Step(RequestKind::kRun, 4);
+  now_.path_prefetched = true;
+  now_.path_begins_here = false;
+  const Orders orders = Step();
+  EXPECT_TRUE(orders.forget_path);
+  EXPECT_FALSE(orders.start_path);
+  EXPECT_EQ(machine_.state(), MachineState::kReady);
+  EXPECT_EQ(machine_.reason(), Reason::kPathDiscontinuous);
+}
+
+TEST_F(TransitionsTest, ALateFaultActsInTheSameCycle) {
+  ToRunning();
+  const Orders orders = machine_.RaiseLate({Reason::kFollowingError, 0});
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_FALSE(orders.torque_allowed);
+  EXPECT_TRUE(orders.forget_path);
+}
+
+}  // namespace
+}  // namespace contour
