@@ -22,6 +22,7 @@ struct EmulatedAxisPlacement {
   double rated_torque_Nm = 0.637;
   double peak_torque_Nm = 1.91;
   double encoder_counts_per_rev = 1048576.0;
+  double scale_counts_per_mm = 0.0;      ///< linear scale at the table; 0: none
   std::uint32_t vendor_id = 0x00000C0D;  ///< identity (0x1018) the drive shows
   std::uint32_t product_code = 0x00000402;
   std::uint32_t revision = 0x00010000;

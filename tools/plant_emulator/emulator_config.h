@@ -133,6 +133,7 @@ struct EmulatedAxisConfig {
   std::optional<double> rated_torque_Nm;
   std::optional<double> peak_torque_Nm;
   std::optional<double> encoder_counts_per_rev;
+  std::optional<double> scale_counts_per_mm;
   double encoder_noise_lsb = 0.3;
   double stroke_mm = 400.0;
   double start_position_mm = 0.0;
@@ -159,6 +160,8 @@ struct EmulatedAxisConfig {
                "of the emulated drive; default: as `drive` states");
     v.Optional("encoder_counts_per_rev", encoder_counts_per_rev, Range{100.0, 16777216.0},
                "of the emulated encoder; default: as `drive` states");
+    v.Optional("scale_counts_per_mm", scale_counts_per_mm, kPositive,
+               "of the emulated linear scale (0x60E4:01); default: as `drive` states, none if it has none");
     v.Optional("encoder_noise_lsb", encoder_noise_lsb, Range{0.0, 1000.0},
                "standard deviation of a reading, counts");
     v.Optional("stroke_mm", stroke_mm, kPositive, "travel over which friction varies");

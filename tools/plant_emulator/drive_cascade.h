@@ -1,0 +1,92 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "tools/plant_emulator/emulator_config.h"
+#include "tools/plant_emulator/portable_math.h"
+
+namespace contour::plant {
+
+/// Where the drive is told to be, at one tick of its position loop. Motor side, as travel of the table.
+struct CascadeTarget {
+  double position_m = 0.0;
+  double velocity_m_s = 0.0;
+  double acceleration_m_s2 = 0.0;
+};
+
+/// Smooths the targets of successive SYNCs: a uniform quadratic B-spline through them, so that position and
+/// velocity are continuous and acceleration is constant between SYNCs. It runs half a period behind the
+/// targets.
+class TargetInterpolator {
+ public:
+  void Reset(double position_m) noexcept { old_ = middle_ = new_ = position_m; }
+  void Push(double position_m) noexcept {
+    old_ = middle_;
+    middle_ = new_;
+    new_ = position_m;
+  }
+  /// `u` in [0, 1]: share of the interpolation period since the last SYNC; held beyond.
+  [[nodiscard]] CascadeTarget At(double u, double period_s) const noexcept {
+    u = std::clamp(u, 0.0, 1.0);
+    const double position =
+        0.5 * ((1.0 - u) * (1.0 - u) * old_ + (1.0 + 2.0 * u * (1.0 - u)) * middle_ + u * u * new_);
+    const double velocity = ((1.0 - u) * (middle_ - old_) + u * (new_ - middle_)) / period_s;
+    const double acceleration = (new_ - 2.0 * middle_ + old_) / (period_s * period_s);
+    return {position, velocity, acceleration};
+  }
+
+ private:
+  double old_ = 0.0;
+  double middle_ = 0.0;
+  double new_ = 0.0;
+};
+
+/// The drive's own cascade at its tick: position P, velocity PI with feed-forward. In travel of the table;
+/// the output is an acceleration, which the drive turns into torque by its inertia.
+class DriveCascade {
+ public:
+  DriveCascade(const EmulatedCascadeConfig& gains, double tick_s) noexcept
+      : gains_(gains),
+        tick_s_(tick_s),
+        filter_share_(1.0 - portable::Exp(-6.283185307179586 * gains.velocity_filter_Hz * tick_s)) {}
+
+  /// Encoder reading of this tick. Velocity is its filtered difference.
+  void Sense(double position_m) noexcept {
+    if (sensed_) velocity_m_s_ += filter_share_ * ((position_m - position_m_) / tick_s_ - velocity_m_s_);
+    position_m_ = position_m;
+    sensed_ = true;
+  }
+  void ResetIntegral() noexcept { integral_m_s_ = 0.0; }
+
+  double PositionLoop_m_s2(const CascadeTarget& target, double limit_m_s2) noexcept {
+    const double wanted = gains_.velocity_feedforward * target.velocity_m_s +
+                          gains_.position_gain_1_s * (target.position_m - position_m_);
+    return VelocityLoop_m_s2(wanted, gains_.acceleration_feedforward * target.acceleration_m_s2, limit_m_s2);
+  }
+
+  double VelocityLoop_m_s2(double wanted_m_s, double feedforward_m_s2, double limit_m_s2) noexcept {
+    const double error = wanted_m_s - velocity_m_s_;
+    const double free = feedforward_m_s2 + gains_.velocity_gain_1_s * (error + integral_m_s_);
+    const double held = std::clamp(free, -limit_m_s2, limit_m_s2);
+    // The integral stands still while the limit holds the output and the error would push it further.
+    if (held == free || (free > held) != (error > 0.0))
+      integral_m_s_ += gains_.velocity_integral_1_s * tick_s_ * error;
+    return held;
+  }
+
+  [[nodiscard]] double position_m() const noexcept { return position_m_; }
+  [[nodiscard]] double velocity_m_s() const noexcept { return velocity_m_s_; }
+
+ private:
+  EmulatedCascadeConfig gains_;
+  double tick_s_;
+  double filter_share_;
+  double position_m_ = 0.0;
+  double velocity_m_s_ = 0.0;
+  double integral_m_s_ = 0.0;
+  bool sensed_ = false;
+};
+
+}  // namespace contour::plant

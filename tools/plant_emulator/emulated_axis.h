@@ -1,0 +1,162 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "drivers/can/bus_node.h"
+#include "tools/plant_emulator/axis_plant.h"
+#include "tools/plant_emulator/canopen_slave.h"
+#include "tools/plant_emulator/current_loop.h"
+#include "tools/plant_emulator/drive_cascade.h"
+#include "tools/plant_emulator/drive_power_state.h"
+#include "tools/plant_emulator/encoder.h"
+#include "tools/plant_emulator/truth.h"
+
+namespace contour::plant {
+
+/// One axis: a CiA 402 drive with its current loop and encoder, on its mechanics. The drive's control runs at
+/// 8 kHz in its own time, re-phased by every SYNC.
+class EmulatedAxis final : private SlaveDevice {
+ public:
+  static constexpr std::int64_t kTick_ns = 125'000;
+
+  /// Throws std::invalid_argument.
+  EmulatedAxis(const AxisParameters& parameters, const EmulatedAxisPlacement& placement,
+               std::uint32_t cycle_us, std::uint64_t seed, std::uint64_t stream);
+  EmulatedAxis(const EmulatedAxis&) = delete;
+  EmulatedAxis& operator=(const EmulatedAxis&) = delete;
+
+  /// Every frame except SYNC.
+  void OnFrame(const CanFrame& frame, std::int64_t bus_ns, PendingFrames& out) noexcept;
+  /// The SYNC, after AdvanceTo its instant: latches, sends TPDOs, applies RPDOs.
+  void OnSync(std::int64_t bus_ns, PendingFrames& out) noexcept;
+  void OnTimer(std::int64_t bus_ns, PendingFrames& out) noexcept;
+  [[nodiscard]] std::int64_t NextTimer() const noexcept { return slave_.NextTimer(); }
+
+  /// Plant and drive up to this instant of the drive's time.
+  void AdvanceTo(std::int64_t drive_ns) noexcept;
+  [[nodiscard]] std::int64_t now_ns() const noexcept { return now_ns_; }
+
+  /// The motor is under the drive's control, or the axis still moves.
+  [[nodiscard]] bool alive() const noexcept;
+  void FillTruth(AxisTruth& truth) const noexcept;
+  void InjectFault(std::uint16_t error_code) noexcept { Fault(error_code, 0x20); }
+
+  [[nodiscard]] std::uint8_t node_id() const noexcept { return node_id_; }
+  [[nodiscard]] AxisPlant& plant() noexcept { return plant_; }
+  [[nodiscard]] const AxisPlant& plant() const noexcept { return plant_; }
+  [[nodiscard]] const AxisParameters& parameters() const noexcept { return p_; }
+  [[nodiscard]] const CanopenSlave& slave() const noexcept { return slave_; }
+  [[nodiscard]] DriveState drive_state() const noexcept { return power_.state(); }
+
+ private:
+  /// Why the drive is braking by itself, and so what follows when the axis stands.
+  enum class Braking : std::uint8_t { kNone, kQuickStop, kFaultReaction, kDisableOperation, kShutdown };
+
+  // SlaveDevice
+  [[nodiscard]] std::uint32_t CheckWrite(const ObjectEntry& entry,
+                                         std::int64_t value) const noexcept override;
+  void OnWritten(const ObjectEntry& entry) noexcept override;
+  void OnConnectionLost(ConnectionLoss loss) noexcept override;
+  void OnPowerCycle() noexcept override;
+
+  void AddObjects(const EmulatedAxisPlacement& placement);
+  void FindObjects();
+  void Integrate(std::int64_t duration_ns) noexcept;
+  void Sense() noexcept;
+  void Tick() noexcept;
+  void StepPowerState() noexcept;
+  void ApplyTarget() noexcept;
+  void BeginBraking(Braking why, std::int64_t option) noexcept;
+  void Brake() noexcept;
+  void BrakingDone() noexcept;
+  void TorqueOff() noexcept;
+  void Fault(std::uint16_t error_code, std::uint8_t register_bits) noexcept;
+  void FollowPosition() noexcept;
+  void WatchFollowingError(double error_m) noexcept;
+  void Command_Nm(double torque_Nm) noexcept;
+  void UpdateActualValues() noexcept;
+  [[nodiscard]] std::uint16_t Statusword() const noexcept;
+  [[nodiscard]] double TorqueLimit_Nm(bool positive) const noexcept;
+  [[nodiscard]] double TravelPerCount_m() const noexcept {
+    return p_.radius_m_rad / encoder_.counts_per_rad();
+  }
+  [[nodiscard]] double InertiaForce_Nm(double acceleration_m_s2) const noexcept;
+  [[nodiscard]] double InterpolationPeriod_s() const noexcept;
+
+  AxisParameters p_;
+  std::uint8_t node_id_;
+  std::uint32_t cycle_us_;
+  ObjectDictionary objects_;
+  AxisPlant plant_;
+  CurrentLoop current_;
+  Encoder encoder_;
+  Random scale_noise_;
+  DriveCascade cascade_;
+  TargetInterpolator target_;
+  DrivePowerState power_;
+
+  // Objects looked at every tick.
+  ObjectEntry* controlword_ = nullptr;
+  ObjectEntry* statusword_ = nullptr;
+  ObjectEntry* error_code_ = nullptr;
+  ObjectEntry* quick_stop_option_ = nullptr;
+  ObjectEntry* shutdown_option_ = nullptr;
+  ObjectEntry* disable_option_ = nullptr;
+  ObjectEntry* fault_option_ = nullptr;
+  ObjectEntry* abort_option_ = nullptr;
+  ObjectEntry* mode_ = nullptr;
+  ObjectEntry* mode_display_ = nullptr;
+  ObjectEntry* position_ = nullptr;
+  ObjectEntry* velocity_ = nullptr;
+  ObjectEntry* torque_ = nullptr;
+  ObjectEntry* torque_demand_ = nullptr;
+  ObjectEntry* target_torque_ = nullptr;
+  ObjectEntry* torque_offset_ = nullptr;
+  ObjectEntry* velocity_offset_ = nullptr;
+  ObjectEntry* target_position_ = nullptr;
+  ObjectEntry* max_torque_ = nullptr;
+  ObjectEntry* max_torque_plus_ = nullptr;
+  ObjectEntry* max_torque_minus_ = nullptr;
+  ObjectEntry* window_ = nullptr;
+  ObjectEntry* window_timeout_ = nullptr;
+  ObjectEntry* following_error_ = nullptr;
+  ObjectEntry* deceleration_ = nullptr;
+  ObjectEntry* quick_stop_deceleration_ = nullptr;
+  ObjectEntry* interpolation_value_ = nullptr;
+  ObjectEntry* interpolation_exponent_ = nullptr;
+  ObjectEntry* scale_ = nullptr;  ///< null without a linear scale
+
+  CanopenSlave slave_;  // after objects_ is filled
+
+  std::int64_t now_ns_ = 0;
+  std::int64_t next_tick_ns_ = 0;
+  std::int64_t sensed_ns_ = -1;
+  std::int64_t counts_ = 0;
+  std::int64_t latched_counts_ = 0;
+  std::array<std::int64_t, 17> past_counts_{};  ///< of the last 2 ms
+  std::size_t past_ = 0;
+
+  // Commands on their way: applied at a SYNC, acting after delay_cycles - 1 more and the input delay.
+  struct Command {
+    double torque_Nm = 0.0;
+    std::int64_t at_ns = 0;
+  };
+  std::array<Command, 64> on_the_way_{};
+  std::size_t first_on_the_way_ = 0;
+  std::size_t on_the_way_count_ = 0;
+  std::array<double, 8> delayed_targets_{};  ///< newest first
+  std::array<std::int64_t, 8> delayed_positions_{};
+
+  Braking braking_ = Braking::kNone;
+  double ramp_m_s_ = 0.0;
+  double ramp_rate_m_s2_ = 0.0;
+  bool coasting_ = false;  ///< brake option "disable drive function"
+  std::int64_t ramp_end_ns_ = -1;
+  std::int64_t last_sync_ns_ = 0;
+  std::int64_t beyond_window_since_ns_ = -1;
+  bool limited_ = false;
+  bool following_error_seen_ = false;
+};
+
+}  // namespace contour::plant
