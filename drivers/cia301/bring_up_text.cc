@@ -1,0 +1,205 @@
+#include "drivers/cia301/bring_up_text.h"
+
+#include <array>
+#include <cstdio>
+
+#include "drivers/cia301/bring_up_status.h"
+#include "drivers/cia301/messages.h"
+#include "drivers/cia301/sdo_transfer.h"
+
+namespace contour {
+namespace {
+
+struct Named {
+  std::uint32_t code;
+  std::string_view name;
+};
+
+constexpr std::array kObjects{
+    Named{0x1000, "device type"},
+    Named{0x1006, "SYNC period"},
+    Named{0x1015, "emergency inhibit time"},
+    Named{0x1016, "heartbeat consumer"},
+    Named{0x1017, "heartbeat producer"},
+    Named{0x1018, "identity"},
+    Named{0x1029, "error behaviour"},
+    Named{0x6007, "abort connection option"},
+    Named{0x605A, "quick stop option"},
+    Named{0x605B, "shutdown option"},
+    Named{0x605C, "disable operation option"},
+    Named{0x605D, "halt option"},
+    Named{0x605E, "fault reaction option"},
+    Named{0x6060, "mode of operation"},
+    Named{0x6061, "mode of operation display"},
+    Named{0x6072, "maximum torque"},
+    Named{0x6076, "rated torque"},
+    Named{0x607E, "polarity"},
+    Named{0x6085, "quick stop deceleration"},
+    Named{0x608F, "encoder resolution"},
+    Named{0x6091, "gear ratio"},
+    Named{0x60C2, "interpolation period"},
+    Named{0x60E0, "positive torque limit"},
+    Named{0x60E1, "negative torque limit"},
+    Named{0x6502, "supported drive modes"},
+};
+
+// Error codes of CiA 301 and CiA 402; a code not listed falls back to its class (the same with the low byte
+// zero, then with the low twelve bits zero).
+constexpr std::array kEmergencies{
+    Named{0x0000, "no error"},
+    Named{0x1000, "generic error"},
+    Named{0x2000, "current"},
+    Named{0x2310, "continuous over-current"},
+    Named{0x2320, "short circuit"},
+    Named{0x3000, "voltage"},
+    Named{0x3210, "DC link over-voltage"},
+    Named{0x3220, "DC link under-voltage"},
+    Named{0x4000, "temperature"},
+    Named{0x4210, "excess temperature of the device"},
+    Named{0x4310, "excess temperature of the drive"},
+    Named{0x5000, "device hardware"},
+    Named{0x6000, "device software"},
+    Named{0x7000, "additional modules"},
+    Named{0x7300, "sensor"},
+    Named{0x7305, "incremental sensor"},
+    Named{0x7500, "communication"},
+    Named{0x8000, "monitoring"},
+    Named{0x8100, "communication"},
+    Named{0x8110, "CAN overrun"},
+    Named{0x8120, "CAN in error passive mode"},
+    Named{0x8130, "heartbeat of the master missing"},
+    Named{0x8140, "recovered from bus-off"},
+    Named{0x8200, "protocol error"},
+    Named{0x8210, "PDO not processed, its length is wrong"},
+    Named{0x8250, "RPDO timeout"},
+    Named{0x8611, "following error"},
+    Named{0xF000, "additional functions"},
+    Named{0xFF00, "specific to the device"},
+};
+
+template <std::size_t N>
+std::string_view Find(const std::array<Named, N>& table, std::uint32_t code) noexcept {
+  for (const Named& n : table) {
+    if (n.code == code) return n.name;
+  }
+  return {};
+}
+
+std::string Hex(std::uint32_t value, int digits) {
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "0x%0*X", digits, value);
+  return text.data();
+}
+
+std::string_view ObjectName(std::uint16_t index) noexcept {
+  if (index >= 0x1400 && index < 0x1600) return "RPDO parameter";
+  if (index >= 0x1600 && index < 0x1800) return "RPDO mapping";
+  if (index >= 0x1800 && index < 0x1A00) return "TPDO parameter";
+  if (index >= 0x1A00 && index < 0x1C00) return "TPDO mapping";
+  return Find(kObjects, index);
+}
+
+std::string Object(const BringUpStatus& s) {
+  std::array<char, 8> sub{};
+  std::snprintf(sub.data(), sub.size(), ":%02X", unsigned{s.sub_index});
+  const std::string_view name = ObjectName(s.index);
+  return (name.empty() ? std::string("object ") : std::string(name) + " ") + Hex(s.index, 4) + sub.data();
+}
+
+std::string Waited(const BringUpStatus& s) { return std::to_string((s.waited_us + 500) / 1000) + " ms"; }
+
+std::string Both(const BringUpStatus& s, std::string_view unit = {}) {
+  const std::string u = unit.empty() ? std::string() : " " + std::string(unit);
+  return "expected " + std::to_string(s.expected) + u + " (" + Hex(s.expected, 1) + "), found " +
+         std::to_string(s.found) + u + " (" + Hex(s.found, 1) + ")";
+}
+
+std::string NmtName(std::uint32_t state) {
+  switch (static_cast<NmtState>(state)) {
+    case NmtState::kBootUp:
+      return "its boot-up message was the last";
+    case NmtState::kStopped:
+      return "its heartbeat says Stopped";
+    case NmtState::kOperational:
+      return "its heartbeat says Operational";
+    case NmtState::kPreOperational:
+      return "its heartbeat says Pre-operational";
+    case NmtState::kUnknown:
+      return "it sends no heartbeat";
+  }
+  return "its heartbeat says state " + Hex(state, 2);
+}
+
+std::string Failure(const BringUpStatus& s) {
+  switch (static_cast<BringUpError>(s.error)) {
+    case BringUpError::kNone:
+      break;
+    case BringUpError::kNoAnswer:
+      return "the drive sent no boot-up message and answers no SDO (waited " + Waited(s) +
+             "); check its supply, its node number, the wiring and the bit rate";
+    case BringUpError::kSdoTimeout:
+      return "no reply to SDO for " + Object(s) + " within " + Waited(s);
+    case BringUpError::kSdoAbort:
+      return "the drive refused " + Object(s) + ": " + std::string(SdoAbortText(s.abort_code)) +
+             " (abort code " + Hex(s.abort_code, 8) + ")";
+    case BringUpError::kReadBack:
+      return Object(s) + " does not hold what was written: " + Both(s);
+    case BringUpError::kIdentity:
+      return Object(s) + " differs from the configuration: " + Both(s) +
+             "; this is another drive than the machine file says";
+    case BringUpError::kNotADrive:
+      return Object(s) + " is not that of a CiA 402 drive: expected profile 402, found " +
+             std::to_string(s.found);
+    case BringUpError::kRatedTorqueZero:
+      return Object(s) + " is 0 in the drive, so its torques have no unit; expected " +
+             std::to_string(s.expected) + " mNm. Set up the motor in the drive first";
+    case BringUpError::kRatedTorque:
+      return Object(s) + " differs from rated_torque_Nm: " + Both(s, "mNm");
+    case BringUpError::kUnits:
+      return Object(s) + " differs from the configuration: " + Both(s);
+    case BringUpError::kModeNotSupported:
+      return Object(s) + " lacks the mode of the configuration: bits " + Hex(s.expected, 1) + " expected, " +
+             Hex(s.found, 1) + " found";
+    case BringUpError::kNoLossDetection:
+      return "the drive has neither a heartbeat consumer (0x1016) nor an RPDO timeout (0x1400:05), so it "
+             "would not "
+             "notice that the master is gone";
+    case BringUpError::kModeNotTaken:
+      return Object(s) + " shows mode " + std::to_string(s.found) + " instead of " +
+             std::to_string(s.expected) + " after " + Waited(s);
+    case BringUpError::kNotOperational:
+      return "the drive did not become Operational within " + Waited(s) +
+             " after NMT start: " + NmtName(s.found);
+    case BringUpError::kLimitTooLow:
+      return Object(s) + " in the drive is lower than the axis's torque limit: " + Both(s, "per mille");
+    case BringUpError::kRestarted:
+      return "the drive restarted (boot-up message) while it was brought up";
+    case BringUpError::kBusDown:
+      return "the bus went down while the drive was brought up";
+  }
+  return "unknown error " + std::to_string(s.error);
+}
+
+}  // namespace
+
+std::string BringUpText(const BringUpStatus& s, std::span<const std::string> axis_names) {
+  const auto phase = static_cast<BringUpPhase>(s.phase);
+  if (s.error == 0 && phase == BringUpPhase::kOff) return "drives not brought up yet";
+  if (s.error == 0 && phase == BringUpPhase::kOperational) return "all drives operational";
+  const std::string name = s.axis < axis_names.size() ? axis_names[s.axis] : std::to_string(s.axis);
+  const std::string who =
+      "axis " + name + " (node " + std::to_string(s.node_id) + "), " + std::string(Name(phase)) + ": ";
+  if (s.error != 0) return who + Failure(s);
+  return who + (s.index != 0 ? Object(s) + ", " : std::string()) + "waiting for " + Waited(s);
+}
+
+std::string_view EmergencyText(std::uint16_t error_code) noexcept {
+  for (const std::uint32_t mask : {0xFFFFu, 0xFFF0u, 0xFF00u, 0xF000u}) {
+    if (error_code != 0 && (error_code & mask) == 0) continue;
+    const std::string_view text = Find(kEmergencies, error_code & mask);
+    if (!text.empty()) return text;
+  }
+  return "unknown";
+}
+
+}  // namespace contour
