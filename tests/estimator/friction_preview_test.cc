@@ -1,0 +1,124 @@
+#include "estimator/friction_preview.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace contour {
+namespace {
+
+const Friction kFriction{52, 47, 42, 36, 2e-3, 1, 5e6, 0, 2e-3, 500};
+constexpr double kPeriod_s = 1e-3;
+
+ReferencePoint Sine(double t) {
+  const double a = 100e-6, w = 5.0;
+  return {a * std::sin(w * t), a * w * std::cos(w * t), -a * w * w * std::sin(w * t)};
+}
+
+AxisHorizon Horizon(int k, int points) {
+  AxisHorizon h;
+  for (int j = 0; j < points; ++j) h.push_back(Sine((k + j) * kPeriod_s));
+  return h;
+}
+
+TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
+  const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
+  FrictionRoll roll(kPeriod_s);
+  FrictionRipple ripple(5e-3, 0.0);
+  StateVector<kSevenStates> x{};
+  x[kLevelPlus] = 42;
+  x[kLevelMinus] = 36;
+  // Truth: the same law in fine steps along the same motion, its bristle handed over as the estimate.
+  double bristle = 0.0;
+  const int fine = 100;
+  FrictionPreview preview;
+  std::array<double, 6> ahead{};
+  for (int k = 0; k < 4000; ++k) {
+    x[kBristle] = bristle;
+    roll.Run(model, x, ripple, false, Horizon(k, 6), preview);
+    ASSERT_EQ(preview.size(), 6u);
+    double f = bristle;
+    for (std::size_t j = 0; j < 6; ++j) {
+      const double t0 = (k + static_cast<double>(j)) * kPeriod_s;
+      ahead[j] = f + 500.0 * Sine(t0).velocity_m_s;
+      double mean = 0.0;
+      for (int i = 0; i < fine; ++i) {
+        const double v = Sine(t0 + (i + 0.5) * kPeriod_s / fine).velocity_m_s;
+        const double next = BristleAfter(f, v, 5e6, FrictionLevel(kFriction, v), kPeriod_s / fine);
+        mean += (0.5 * (f + next) + 500.0 * v) / fine;
+        f = next;
+      }
+      if (k > 1) {
+        EXPECT_NEAR(preview[j].node_N, ahead[j], 0.15) << k << " " << j;
+        EXPECT_NEAR(preview[j].mid_N, mean, 0.15) << k << " " << j;
+      }
+      if (j == 0) bristle = f;
+    }
+  }
+}
+
+TEST(FrictionRoll, AnOffsetOfTheEstimateIsKept) {
+  const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
+  FrictionRipple ripple(5e-3, 0.0);
+  StateVector<kSevenStates> x{};
+  x[kLevelPlus] = 42;
+  x[kLevelMinus] = 36;
+  FrictionRoll a(kPeriod_s), b(kPeriod_s);
+  FrictionPreview pa, pb;
+  a.Run(model, x, ripple, false, Horizon(0, 10), pa);
+  x[kBristle] += 3.0;
+  x[kDisturbance] += 4.0;
+  b.Run(model, x, ripple, false, Horizon(0, 10), pb);
+  for (std::size_t j = 0; j < 10; ++j) {
+    EXPECT_NEAR(pb[j].node_N - pa[j].node_N, 7.0, 1e-12);
+    EXPECT_NEAR(pb[j].mid_N - pa[j].mid_N, 7.0, 1e-12);
+  }
+}
+
+TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
+  const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
+  FrictionRipple ripple(5e-3, 0.0);
+  StateVector<kSevenStates> x{};
+  x[kLevelPlus] = 42;
+  x[kLevelMinus] = 36;
+  x[kBristle] = -17.0;
+  x[kDisturbance] = 2.0;
+  FrictionRoll roll(kPeriod_s);
+  roll.Reset(30.0);
+  AxisHorizon still(kMaxHorizonPoints);
+  FrictionPreview preview;
+  roll.Run(model, x, ripple, true, still, preview);
+  ASSERT_EQ(preview.size(), kMaxHorizonPoints);
+  for (const auto& f : preview) {
+    EXPECT_DOUBLE_EQ(f.node_N, -15.0);
+    EXPECT_DOUBLE_EQ(f.mid_N, -15.0);
+  }
+  AxisHorizon none;
+  roll.Run(model, x, ripple, true, none, preview);
+  EXPECT_TRUE(preview.empty());
+}
+
+TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
+  const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
+  FrictionRipple ripple(5e-3, 0.5);
+  for (int k = 0; k < 20000; ++k) {
+    const auto basis = ripple.Basis(k * 1e-5);
+    const double truth = 1.0 + 0.08 * basis[1];
+    ripple.Learn(basis, true, truth / ripple.Factor(basis, true) - 1.0, 1e-5);
+  }
+  StateVector<kSevenStates> x{};
+  x[kLevelPlus] = 42;
+  x[kLevelMinus] = 36;
+  x[kBristle] = 42;
+  AxisHorizon h;
+  for (int j = 0; j < 40; ++j) h.push_back({j * 50e-6, 50e-3, 0.0});
+  FrictionRoll roll(kPeriod_s);
+  roll.Reset(42.0);
+  FrictionPreview preview;
+  roll.Run(model, x, ripple, false, h, preview);
+  // After 1.25 mm, a quarter turn, the level stands 8 % up; sigma2 v = 25 N beside it.
+  EXPECT_NEAR(preview[25].node_N, 42.0 * 1.08 + 25.0, 0.5);
+}
+
+}  // namespace
+}  // namespace contour
