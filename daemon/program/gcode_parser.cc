@@ -109,13 +109,14 @@ class Interpreter {
     position_m_.assign(program_.letters.size(), 0.0);
   }
 
-  /// Returns false after the end of the program (M2, M30, or the second %).
-  bool Execute(const Block& block) {
+  void Execute(const Block& block) {
     line_ = block.line;
     motion_in_block_.reset();
     dwell_ = false;
-    end_ = false;
     for (const Word& word : block.words) Modal(word);
+    if (!dwell_ && block.Get('P')) {
+      Fail("P is not supported here: G64 takes no tolerance, corners keep the programmed path");
+    }
     if (dwell_) {
       Dwell(block);
     } else if (HasAxisWord(block)) {
@@ -124,7 +125,6 @@ class Interpreter {
       // A full circle may name its centre only.
       Move(block);
     }
-    return !end_;
   }
 
   GcodeMoves Finish() {
@@ -147,7 +147,6 @@ class Interpreter {
       ModalG(word);
     } else if (word.letter == 'M') {
       if (word.value != 2.0 && word.value != 30.0) Fail(Text(word) + " is not supported");
-      end_ = true;
     } else if (word.letter == 'F') {
       if (!(word.value > 0.0)) Fail("F: expected a feed above zero");
       feed_ = word.value;
@@ -228,8 +227,6 @@ class Interpreter {
 
   void Move(const Block& block) {
     if (!motion_) Fail("a position without G0, G1, G2 or G3 before it");
-    if (block.Get('P'))
-      Fail("P is not supported here: G64 takes no tolerance, corners keep the programmed path");
     const std::vector<double> target = Target(block);
     const bool arc = *motion_ == 2 || *motion_ == 3;
     if (!arc && (block.Get('I') || block.Get('J') || block.Get('R'))) Fail("I, J and R belong to G2 and G3");
@@ -313,9 +310,14 @@ class Interpreter {
   int line_ = 0;
   std::optional<int> motion_in_block_;
   bool dwell_ = false;
-  bool end_ = false;
 };
 
+bool EndsProgram(const Block& block) {
+  return std::any_of(block.words.begin(), block.words.end(),
+                     [](const Word& w) { return w.letter == 'M' && (w.value == 2.0 || w.value == 30.0); });
+}
+
+/// Up to and including the block that ends the program (M2, M30).
 std::vector<Block> ReadBlocks(std::string_view text, const std::string& name) {
   std::vector<Block> blocks;
   int number = 0;
@@ -326,6 +328,7 @@ std::vector<Block> ReadBlocks(std::string_view text, const std::string& name) {
     text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
     const bool frame = line.find_first_not_of(" \t\r%") == std::string_view::npos;
     if (!frame) blocks.push_back(BlockReader(line, number, name).Read());
+    if (!blocks.empty() && EndsProgram(blocks.back())) break;
   }
   return blocks;
 }
@@ -340,7 +343,8 @@ std::string LettersOf(const std::vector<Block>& blocks) {
   const bool arcs = std::any_of(blocks.begin(), blocks.end(), HasArc);
   std::string letters;
   for (const char letter : kAxisLetters) {
-    const bool named = std::any_of(blocks.begin(), blocks.end(), [&](const Block& b) { return b.Get(letter); });
+    const bool named =
+        std::any_of(blocks.begin(), blocks.end(), [&](const Block& b) { return b.Get(letter); });
     if (named || (arcs && (letter == 'X' || letter == 'Y'))) letters += letter;
   }
   return letters;
@@ -351,9 +355,7 @@ std::string LettersOf(const std::vector<Block>& blocks) {
 GcodeMoves ParseGcode(std::string_view text, const std::string& name) {
   const std::vector<Block> blocks = ReadBlocks(text, name);
   Interpreter interpreter(LettersOf(blocks), name);
-  for (const Block& block : blocks) {
-    if (!interpreter.Execute(block)) break;
-  }
+  for (const Block& block : blocks) interpreter.Execute(block);
   return interpreter.Finish();
 }
 

@@ -119,8 +119,11 @@ void OscillationPlan::CheckLimits(const PlanLimits& limits, double highest_hz, c
   double previous = 0.0;
   for (std::uint64_t i = 0; i <= samples; ++i) {
     const ReferencePoint p = Oscillation(static_cast<double>(i) * step);
-    lowest_m_ = std::min(lowest_m_, p.position_m);
-    highest_m_ = std::max(highest_m_, p.position_m);
+    // A reversal between two samples, by the parabola through this one.
+    const bool turns = std::abs(p.velocity_m_s) < step * std::abs(p.acceleration_m_s2);
+    const double beyond_m = turns ? 0.5 * p.velocity_m_s * p.velocity_m_s / p.acceleration_m_s2 : 0.0;
+    lowest_m_ = std::min(lowest_m_, p.position_m - beyond_m);
+    highest_m_ = std::max(highest_m_, p.position_m - beyond_m);
     velocity = std::max(velocity, std::abs(p.velocity_m_s));
     acceleration = std::max(acceleration, std::abs(p.acceleration_m_s2));
     jerk = std::max(jerk, std::abs(p.acceleration_m_s2 - previous) / step);

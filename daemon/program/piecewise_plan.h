@@ -47,9 +47,16 @@ class PiecewisePlan : public MotionPlan {
  private:
   struct Piece {
     CurvePiece curve;
-    SpeedProfile profile;
-    double begin_s = 0.0;   ///< time
     double before_m = 0.0;  ///< way covered by the pieces before
+  };
+  /// Pieces driven through without a stop at one speed: changes of speed reach across them.
+  struct Run {
+    SpeedProfile profile;
+    double begin_s = 0.0;
+    double before_m = 0.0;
+    double length_m = 0.0;
+    std::size_t first = 0;
+    std::size_t end = 0;
   };
   /// Pieces next to each other with a box around them, so that the nearest one is found without trying all.
   struct Group {
@@ -58,14 +65,16 @@ class PiecewisePlan : public MotionPlan {
     Extent box;
   };
 
-  void CheckSpeedWithinTurn(const std::vector<PieceRequest>& requests) const;
+  void CheckSpeedWithinTurn(const PieceRequest& first) const;
   void MakeGroups();
-  [[nodiscard]] const Piece& PieceAt(double time_s) const;
+  [[nodiscard]] const Run& RunAt(double time_s) const;
+  [[nodiscard]] const Piece& PieceAt(const Run& run, double way_m) const;
 
   PathTraits traits_;
   std::size_t axis_count_;
   double duration_s_ = 0.0;
   std::vector<Piece> pieces_;
+  std::vector<Run> runs_;
   std::vector<Group> groups_;
 };
 

@@ -26,6 +26,7 @@ std::string_view Name(Corners corners);
 std::string_view Choices(Corners);
 
 inline constexpr Range kCount{1, 1000000};
+inline constexpr Range kPolygonCount{1, 10000};  ///< every side is kept in memory
 
 /// Speed along a curve: exactly one of the two.
 struct Feed {
@@ -70,7 +71,7 @@ struct SquareShape {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Required("side_mm", side_mm, kPositive, "length of a side");
-    v.Optional("turns", turns, kCount, "whole turns");
+    v.Optional("turns", turns, kPolygonCount, "whole turns");
     v.Optional("direction", direction, "ccw or cw");
     v.Optional("corners", corners, "full feed through the corners, or a stop in each");
     feed.Visit(v);
@@ -133,7 +134,7 @@ struct CreepShape {
     v.Required("axis", axis, "the axis that moves");
     v.Required("stroke_mm", stroke_mm, kAny, "way of a stroke; negative: the first stroke goes down");
     v.Required("velocities_mm_s", velocities_mm_s, kPositive, "a stroke forth and back at each of them");
-    v.Optional("repeats", repeats, kCount, "how often to go through the list");
+    v.Optional("repeats", repeats, kPolygonCount, "how often to go through the list");
     v.Optional("dwell_s", dwell_s, kNotNegative, "rest at each end of a stroke");
   }
 };
