@@ -212,6 +212,7 @@ struct EntryFields {
     copy.List(core.output.frames, wire.num_sent, wire.sent, FrameFields{});
     copy(core.output.finished, wire.finished);
     copy(core.output.quiescent, wire.quiescent);
+    copy(core.output.settling, wire.settling);
     StatusFields{}(copy, core.output.record, wire.status);
     ContourFields{}(copy, core.output.record, wire.contour);
     TimingFields{}(copy, core.timing, wire.timing);

@@ -73,6 +73,7 @@ class RandomCycleEntry {
     }
     out.finished = Bool();
     out.quiescent = Bool();
+    out.settling = Bool();
     CycleRecord& r = out.record;
     r.sync_number = Int<std::uint64_t>();
     r.feedback_sync = Int<std::uint64_t>();

@@ -150,6 +150,7 @@ inline void ExpectSame(const CycleEntry& a, const CycleEntry& b) {
   for (std::size_t i = 0; i < a.output.frames.size(); ++i) ExpectSame(a.output.frames[i], b.output.frames[i]);
   EXPECT_EQ(a.output.finished, b.output.finished);
   EXPECT_EQ(a.output.quiescent, b.output.quiescent);
+  EXPECT_EQ(a.output.settling, b.output.settling);
   ExpectSame(a.output.record, b.output.record);
   ExpectSame(a.timing, b.timing);
 }

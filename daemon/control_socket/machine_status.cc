@@ -1,0 +1,139 @@
+#include "daemon/control_socket/machine_status.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace contour {
+namespace {
+
+using nlohmann::json;
+
+json Number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json Summary(const TimingSummary& s) {
+  return {{"p50_us", s.p50_us}, {"p99_us", s.p99_us}, {"p999_us", s.p999_us}, {"max_us", s.max_us}};
+}
+
+json Axis(const std::string& name, const AxisRecord& a) {
+  return {
+      {"name", name},
+      {"drive_state", Name(a.feedback.drive_state)},
+      {"statusword", a.feedback.statusword},
+      {"emergency_code", a.emergency_code},
+      {"feedback_fresh", a.feedback.fresh},
+      {"feedback_age_cycles", a.feedback.age_cycles},
+      {"motor_angle_rad", Number(a.feedback.position_rad)},
+      {"position_m", Number(a.position_m)},
+      {"table_position_m", a.feedback.has_scale ? Number(a.feedback.table_position_m) : json(nullptr)},
+      {"reference_position_m", Number(a.reference.position_m)},
+      {"following_error_m", Number(a.following_error_m)},
+      {"velocity_m_s", Number(a.estimate.velocity_m_s)},
+      {"torque_Nm", Number(a.torque_Nm)},
+      {"actual_torque_Nm", Number(a.feedback.torque_Nm)},
+      {"friction_N", Number(a.estimate.friction_N)},
+      {"friction_std_N", Number(a.estimate.friction_std_N)},
+      {"friction_level_plus_N", Number(a.estimate.g_plus_N)},
+      {"friction_level_minus_N", Number(a.estimate.g_minus_N)},
+      {"sigma0_N_m", Number(a.estimate.sigma0_N_m)},
+      {"disturbance_N", Number(a.estimate.disturbance_N)},
+      {"limit", Name(a.limit)},
+      {"estimate_limit", Name(a.estimate.limit)},
+      {"estimate_diverged", a.estimate.diverged},
+  };
+}
+
+json Axes(const MachineStatus& s) {
+  json axes = json::array();
+  for (std::size_t i = 0; i < s.axis_names.size(); ++i)
+    axes.push_back(Axis(s.axis_names[i], i < s.record.axes.size() ? s.record.axes[i] : AxisRecord{}));
+  return axes;
+}
+
+json Buses(const MachineStatus& s) {
+  json buses = json::array();
+  for (const BusStatus& b : s.buses) {
+    buses.push_back({{"name", b.name},
+                     {"interface", b.interface},
+                     {"up", b.state.up},
+                     {"bus_off", b.state.bus_off},
+                     {"frames_received", b.state.frames_received},
+                     {"frames_sent", b.state.frames_sent},
+                     {"send_failures", b.state.send_failures},
+                     {"error_frames", b.state.error_frames},
+                     {"receive_overflows", b.state.receive_overflows}});
+  }
+  return buses;
+}
+
+json Io(const MachineStatus& s) {
+  if (!s.io.configured) return nullptr;
+  return {{"connected", s.io.connected},
+          {"fresh", s.record.io.fresh},
+          {"emergency_stop_ok", s.record.io.emergency_stop_ok},
+          {"enable_chain_ok", s.record.io.enable_chain_ok},
+          {"screw_temperature_degC", Number(s.record.io.screw_temperature_degC)},
+          {"polls", s.io.polls},
+          {"failures", s.io.failures},
+          {"connections", s.io.connections},
+          {"lubrication_pulses", s.io.lubrication_pulses},
+          {"last_error", s.io.last_error}};
+}
+
+json Log(const LogStats& log) {
+  if (log.file.empty()) return nullptr;
+  return {{"file", log.file},
+          {"cycles", log.cycles},
+          {"lost_cycles", log.lost_cycles},
+          {"bytes", log.bytes},
+          {"last_error", log.last_error}};
+}
+
+json Lcm(const PublisherStats& p) {
+  if (!p.enabled) return nullptr;
+  return {{"messages", p.messages}, {"failures", p.failures}, {"last_error", p.last_error}};
+}
+
+}  // namespace
+
+nlohmann::json ToJson(const MachineStatus& s) {
+  const CycleRecord& r = s.record;
+  const json late = s.late_cycles ? json(*s.late_cycles) : json(nullptr);
+  return {
+      {"machine", s.machine},
+      {"version", s.version},
+      {"controller", s.controller},
+      {"clock", s.clock},
+      {"cycle_us", s.cycle_us},
+      {"warnings", s.warnings},
+      {"state", Name(r.state)},
+      {"reason", Name(r.reason)},
+      {"reason_is_fault", IsFault(r.reason)},
+      {"reason_text", s.reason_text},
+      {"bring_up", s.bring_up},
+      {"cycle", r.cycle},
+      {"acknowledged", r.acknowledged},
+      {"program",
+       {{"id", r.program_id},
+        {"name", s.program_name},
+        {"time_s", Number(r.path_time_s)},
+        {"duration_s", Number(s.program_duration_s)}}},
+      {"contour_error_m", Number(r.contour_error_m)},
+      {"lag_error_m", Number(r.lag_error_m)},
+      {"axes", Axes(s)},
+      {"cycles", s.cycles},
+      {"late_cycles", late},
+      {"stale_cycles", r.stale_cycles},
+      {"skipped_grid_points", s.skipped_grid_points},
+      {"dropped_telemetry", s.dropped_entries},
+      {"timing",
+       {{"wakeup_late", Summary(s.wakeup_late)},
+        {"computing", Summary(s.computing)},
+        {"sent", Summary(s.sent)}}},
+      {"buses", Buses(s)},
+      {"io", Io(s)},
+      {"lcm", Lcm(s.publisher)},
+      {"log", Log(s.log)},
+  };
+}
+
+}  // namespace contour

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "daemon/control_socket/operator_desk.h"
+
+namespace contour::test {
+
+/// A desk that accepts or refuses as told and keeps what it was asked.
+class FakeDesk final : public OperatorDesk {
+ public:
+  Answer Enable() override { return Do("enable"); }
+  Answer Disable() override { return Do("disable"); }
+  Answer Stop() override { return Do("stop"); }
+  Answer Reset() override { return Do("reset"); }
+  Answer Run(const ProgramUpload& program) override {
+    Answer answer = Do("run");
+    const std::lock_guard lock(mutex_);
+    upload_ = program;
+    answer.program_id = 7;
+    return answer;
+  }
+  MachineStatus Status() override {
+    const std::lock_guard lock(mutex_);
+    return status_;
+  }
+  void Attach(std::shared_ptr<RowFeed> feed) override {
+    const std::lock_guard lock(mutex_);
+    feeds_.push_back(std::move(feed));
+  }
+  void Detach(const std::shared_ptr<RowFeed>& feed) override {
+    const std::lock_guard lock(mutex_);
+    std::erase(feeds_, feed);
+  }
+
+  void Refuse(std::string reason) {
+    const std::lock_guard lock(mutex_);
+    refusal_ = std::move(reason);
+  }
+  void SetStatus(MachineStatus status) {
+    const std::lock_guard lock(mutex_);
+    status_ = std::move(status);
+  }
+  std::vector<std::string> asked() const {
+    const std::lock_guard lock(mutex_);
+    return asked_;
+  }
+  ProgramUpload upload() const {
+    const std::lock_guard lock(mutex_);
+    return upload_;
+  }
+  std::size_t feeds() const {
+    const std::lock_guard lock(mutex_);
+    return feeds_.size();
+  }
+  void Push(const CycleEntry& entry) {
+    std::vector<std::shared_ptr<RowFeed>> feeds;
+    {
+      const std::lock_guard lock(mutex_);
+      feeds = feeds_;
+    }
+    for (const auto& feed : feeds) feed->Push(entry);
+  }
+
+ private:
+  Answer Do(const char* what) {
+    const std::lock_guard lock(mutex_);
+    asked_.emplace_back(what);
+    return {refusal_.empty(), refusal_, static_cast<std::uint32_t>(asked_.size()), 0};
+  }
+
+  mutable std::mutex mutex_;
+  std::vector<std::string> asked_;
+  std::vector<std::shared_ptr<RowFeed>> feeds_;
+  std::string refusal_;
+  ProgramUpload upload_;
+  MachineStatus status_;
+};
+
+}  // namespace contour::test

@@ -1,0 +1,125 @@
+#include "daemon/control_socket/request_handler.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "tests/daemon/control_socket/fake_desk.h"
+
+namespace contour {
+namespace {
+
+using nlohmann::json;
+
+class RequestHandlerTest : public ::testing::Test {
+ protected:
+  json Ask(const std::string& line) { return Handle(line, desk_, subscriptions_); }
+
+  test::FakeDesk desk_;
+  Subscriptions subscriptions_;
+};
+
+TEST_F(RequestHandlerTest, CarriesEachRequestToTheDeskAndItsIdBack) {
+  for (const char* kind : {"enable", "disable", "stop", "reset"}) {
+    const json reply = Ask(json{{"id", 42}, {"request", kind}}.dump());
+    EXPECT_EQ(reply["ok"], true);
+    EXPECT_EQ(reply["id"], 42);
+    EXPECT_EQ(desk_.asked().back(), kind);
+  }
+}
+
+TEST_F(RequestHandlerTest, ARefusalComesWithItsReason) {
+  desk_.Refuse("axis x is in Fault");
+  const json reply = Ask(R"({"request": "enable"})");
+  EXPECT_EQ(reply["ok"], false);
+  EXPECT_EQ(reply["error"], "axis x is in Fault");
+}
+
+TEST_F(RequestHandlerTest, RunUploadsTheProgram) {
+  const json reply =
+      Ask(R"({"request": "run", "name": "a.yaml", "format": "yaml", "text": "shape: circle\n"})");
+  EXPECT_EQ(reply["ok"], true);
+  EXPECT_EQ(reply["program_id"], 7);
+  EXPECT_EQ(desk_.upload().name, "a.yaml");
+  EXPECT_EQ(desk_.upload().text, "shape: circle\n");
+  EXPECT_EQ(desk_.upload().controller, "");
+}
+
+TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesTheDesk) {
+  for (const char* line :
+       {"", "{", "enable", "[]", "42", "null", "\"status\"", "{}", R"({"request": 5})",
+        R"({"request": "fly"})", R"({"request": "run"})",
+        R"({"request": "run", "name": "a", "format": "pdf", "text": ""})",
+        R"({"request": "run", "name": 1, "format": "yaml", "text": ""})", R"({"request": "rows"})",
+        R"({"request": "rows", "on": "yes"})", R"({"request": "watch", "period_ms": 1})",
+        R"({"request": "watch", "period_ms": 1e300})", R"({"request": "watch", "period_ms": null})"}) {
+    const json reply = Ask(line);
+    EXPECT_EQ(reply["ok"], false) << line;
+    EXPECT_TRUE(reply["error"].is_string()) << line;
+  }
+  EXPECT_TRUE(desk_.asked().empty());
+  EXPECT_FALSE(subscriptions_.rows);
+  EXPECT_FALSE(subscriptions_.watch_period_ms);
+}
+
+TEST_F(RequestHandlerTest, SurvivesNoise) {
+  std::mt19937 random(1);
+  const std::string seed = R"({"id": 1, "request": "run", "name": "a", "format": "yaml", "text": "b"})";
+  for (int i = 0; i < 20000; ++i) {
+    std::string line = seed;
+    for (auto n = random() % 6 + 1; n > 0; --n)
+      line[random() % line.size()] = static_cast<char>(random());
+    EXPECT_TRUE(Ask(line).contains("ok"));
+  }
+  EXPECT_EQ(Ask(std::string(100000, '['))["ok"], false);
+}
+
+TEST_F(RequestHandlerTest, SubscriptionsCanBeTakenAndGivenBack) {
+  Ask(R"({"request": "rows", "on": true})");
+  Ask(R"({"request": "watch", "period_ms": 100})");
+  EXPECT_TRUE(subscriptions_.rows);
+  EXPECT_EQ(subscriptions_.watch_period_ms, 100);
+  Ask(R"({"request": "rows", "on": false})");
+  Ask(R"({"request": "watch"})");
+  EXPECT_FALSE(subscriptions_.rows);
+  EXPECT_FALSE(subscriptions_.watch_period_ms);
+}
+
+TEST_F(RequestHandlerTest, StatusTellsStateReasonAxesAndCounters) {
+  MachineStatus s;
+  s.machine = "xy";
+  s.axis_names = {"x", "y"};
+  s.record.state = MachineState::kFaulted;
+  s.record.reason = Reason::kEmergencyStop;
+  s.reason_text = "the emergency-stop circuit is open";
+  s.record.axes.resize(2);
+  s.record.axes[1].feedback.drive_state = DriveState::kFault;
+  s.record.axes[1].position_m = 0.125;
+  s.record.axes[0].estimate.friction_N = std::numeric_limits<double>::quiet_NaN();
+  s.record.stale_cycles = 3;
+  s.dropped_entries = 4;
+  s.buses.push_back({"main", "vcan0", {}});
+  s.io.configured = true;
+  desk_.SetStatus(s);
+  const json status = Ask(R"({"request": "status"})")["status"];
+  EXPECT_EQ(status["state"], "Faulted");
+  EXPECT_EQ(status["reason"], "emergency_stop");
+  EXPECT_EQ(status["reason_is_fault"], true);
+  EXPECT_EQ(status["reason_text"], "the emergency-stop circuit is open");
+  EXPECT_EQ(status["axes"][1]["drive_state"], "Fault");
+  EXPECT_EQ(status["axes"][1]["position_m"], 0.125);
+  EXPECT_TRUE(status["axes"][0]["friction_N"].is_null()) << "JSON has no NaN";
+  EXPECT_EQ(status["stale_cycles"], 3);
+  EXPECT_EQ(status["dropped_telemetry"], 4);
+  EXPECT_TRUE(status["late_cycles"].is_null());
+  EXPECT_EQ(status["buses"][0]["interface"], "vcan0");
+  EXPECT_TRUE(status["io"].is_object());
+  EXPECT_TRUE(status["log"].is_null());
+}
+
+}  // namespace
+}  // namespace contour
