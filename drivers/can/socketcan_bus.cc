@@ -130,7 +130,7 @@ bool SocketCanBus::Bind() noexcept {
 
 std::size_t SocketCanBus::Receive(std::int64_t /*now_ns*/, std::span<StampedFrame> frames) noexcept {
   // A bus-off of an earlier call has been seen; data that arrives now says that it is over.
-  const bool bus_off_was_seen = state_.bus_off && !bus_off_is_new_;
+  const bool bus_off_was_seen = state_.bus_off;
   bus_off_is_new_ = false;
   const std::uint64_t received_before = state_.frames_received;
   const std::int64_t to_monotonic_ns = RealtimeToMonotonic_ns();
