@@ -23,6 +23,7 @@ void DisturbanceObserver::Reset(double position_m) noexcept {
   core_.s[1][1] = 1e-3;
   core_.s[2][2] = 30.0;
   lag_.Reset();
+  gated_in_a_row_ = 0;
 }
 
 void DisturbanceObserver::Propagate(X& x, double force_N) const noexcept {
@@ -53,6 +54,9 @@ AxisEstimate DisturbanceObserver::Update(const AxisEstimatorInput& in) noexcept 
       if (core_.UpdateState0(in.position_m, setup_.measurement_std_m, gate, AllStates<3>(), innovation) ==
           UpdateResult::kGated) {
         out.limit = Reason::kInnovationGated;
+        if (++gated_in_a_row_ >= kGatedBeforeRestart) Reset(in.position_m);
+      } else {
+        gated_in_a_row_ = 0;
       }
       out.innovation_m = innovation.value;
       out.innovation_std_m = innovation.std;

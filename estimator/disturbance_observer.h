@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "core/axis.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/drive_lag.h"
@@ -34,6 +36,7 @@ class DisturbanceObserver {
   double velocity_decay_ = 1.0;
   double velocity_gain_ = 0.0;
   double friction_ahead_N_ = 0.0;
+  std::uint32_t gated_in_a_row_ = 0;
 };
 
 }  // namespace contour

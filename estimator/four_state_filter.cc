@@ -10,7 +10,6 @@ constexpr std::size_t kP = 0;
 constexpr std::size_t kV = 1;
 constexpr std::size_t kZ = 2;
 constexpr std::size_t kG = 3;
-constexpr std::uint32_t kGatedBeforeRestart = 20;
 
 }  // namespace
 

@@ -21,6 +21,9 @@ struct InnovationGate {
   double absolute = 0.0;
 };
 
+/// An encoder that disagrees this often in a row has really moved: filters start again from it.
+inline constexpr std::uint32_t kGatedBeforeRestart = 20;
+
 struct Innovation {
   double value = 0.0;
   double std = 0.0;

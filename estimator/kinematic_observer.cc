@@ -1,6 +1,14 @@
 #include "estimator/kinematic_observer.h"
 
+#include "estimator/gaussian.h"
+
 namespace contour {
+namespace {
+
+// The observer knows no covariance: a step of a millimetre in one cycle is no motion of a machine tool.
+constexpr double kGate_m = 1e-3;
+
+}  // namespace
 
 AxisEstimate KinematicObserver::Update(const AxisEstimatorInput& in) noexcept {
   const double force_N = in.enabled ? lag_.Step(in.force_N[1])[0] : 0.0;
@@ -12,9 +20,15 @@ AxisEstimate KinematicObserver::Update(const AxisEstimatorInput& in) noexcept {
   AxisEstimate out;
   if (in.fresh) {
     out.innovation_m = in.position_m - position_m_;
-    position_m_ += position_gain_ * out.innovation_m;
-    velocity_m_s_ += velocity_gain_ * out.innovation_m;
-    acceleration_m_s2_ += acceleration_gain_ * out.innovation_m;
+    if (std::abs(out.innovation_m) <= kGate_m) {
+      position_m_ += position_gain_ * out.innovation_m;
+      velocity_m_s_ += velocity_gain_ * out.innovation_m;
+      acceleration_m_s2_ += acceleration_gain_ * out.innovation_m;
+      gated_in_a_row_ = 0;
+    } else {
+      out.limit = Reason::kInnovationGated;
+      if (++gated_in_a_row_ >= kGatedBeforeRestart) Reset(in.position_m);
+    }
   }
   out.position_m = position_m_;
   out.velocity_m_s = velocity_m_s_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "core/axis.h"
@@ -31,6 +32,7 @@ class KinematicObserver {
   void Reset(double position_m) noexcept {
     position_m_ = position_m;
     velocity_m_s_ = acceleration_m_s2_ = mean_force_N_ = 0.0;
+    gated_in_a_row_ = 0;
     lag_.Reset();
   }
 
@@ -41,6 +43,7 @@ class KinematicObserver {
   double inverse_mass_1_kg_ = 0.0;
   DriveLag<1> lag_;
   double mean_force_N_ = 0.0;
+  std::uint32_t gated_in_a_row_ = 0;
   double position_gain_ = 0.0;
   double velocity_gain_ = 0.0;
   double acceleration_gain_ = 0.0;

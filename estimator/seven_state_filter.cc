@@ -5,9 +5,6 @@
 namespace contour {
 namespace {
 
-// A drive that reports jumps this often in a row has moved: the filter starts again from the encoder.
-constexpr std::uint32_t kGatedBeforeRestart = 20;
-
 // Presliding: the bristle is well below the level it would slip at.
 constexpr double kPreslidingShare = 0.7;
 

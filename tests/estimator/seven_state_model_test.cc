@@ -56,8 +56,9 @@ TEST(SevenStateModel, OnePeriodMatchesAFineIntegration) {
         v += h * dv;
         d -= h * d / 0.2;
       }
-      // A bristle started anywhere may jump by up to 90 N within a period; the steps put its end value into the
-      // whole substep's balance, for stability. Tolerances are shares of what 100 N do to the axis in a period.
+      // A bristle started anywhere may jump by up to 90 N within a period; the steps put its end value into
+      // the whole substep's balance, for stability. Tolerances are shares of what 100 N do to the axis in a
+      // period.
       const double dv = 100.0 / mass * period;
       EXPECT_NEAR(coarse[kPosition], p, 0.12 * dv * period) << trial;
       EXPECT_NEAR(coarse[kVelocity], v, 0.15 * dv) << trial;
