@@ -25,6 +25,11 @@ const std::string_view* FindUnit(std::string_view token) {
   return nullptr;
 }
 
+// The "1" of rate_1_K: one per kelvin.
+bool IsInverse(const std::vector<std::string_view>& tokens, std::size_t at) {
+  return tokens[at] == "1" && at + 1 < tokens.size();
+}
+
 std::vector<std::string_view> Tokens(std::string_view key) {
   std::vector<std::string_view> tokens;
   while (true) {
@@ -63,9 +68,16 @@ std::size_t EditDistance(std::string_view a, std::string_view b) {
 KeyParts SplitUnit(std::string_view key) {
   const std::vector<std::string_view> tokens = Tokens(key);
   std::size_t first = tokens.size();
-  while (first > 1 && FindUnit(tokens[first - 1]) != nullptr) --first;
-  // "per" written out belongs to the unit: counts_per_rev.
-  if (first > 2 && first < tokens.size() && tokens[first - 1] == "per") first -= 2;
+  // "per" written out belongs to the unit, with what is counted before it: counts_per_rev, degC_per_count.
+  // What is not counted but is a quantity of its own stays a stem: order_per_rev.
+  const auto per = std::find(tokens.begin(), tokens.end(), "per");
+  if (per != tokens.end() && per != tokens.begin()) {
+    first = static_cast<std::size_t>(per - tokens.begin());
+    const std::string_view before = tokens[first - 1];
+    if (before == "counts" || FindUnit(before) != nullptr) --first;
+  } else {
+    while (first > 1 && (FindUnit(tokens[first - 1]) != nullptr || IsInverse(tokens, first - 1))) --first;
+  }
   KeyParts parts;
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     std::string& part = i < first ? parts.stem : parts.unit;
@@ -79,7 +91,10 @@ std::string UnitText(std::string_view unit) {
   if (unit.empty()) return "";
   std::string text;
   for (const std::string_view token : Tokens(unit)) {
-    if (token == "per") continue;
+    if (token == "per") {
+      if (text.empty()) text = "1";
+      continue;
+    }
     const std::string_view* known = FindUnit(token);
     if (!text.empty()) text += '/';
     text += known != nullptr ? *known : token;

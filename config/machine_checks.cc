@@ -1,18 +1,22 @@
 #include "config/machine_checks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
+#include <limits>
+#include <numbers>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
+#include "config/bus_timing.h"
 #include "config/key_table.h"
+#include "config/number_text.h"
 #include "config/stopping.h"
 #include "core/cycle_input.h"
 #include "core/mechanics.h"
+#include "drivers/cia402/drive_script.h"
 
 namespace contour {
 namespace {
@@ -26,12 +30,7 @@ class Problems {
   std::vector<ConfigProblem> list_;
 };
 
-// A number for people: four significant digits.
-std::string Say(double number) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", number);
-  return text.data();
-}
+std::string Say(double number) { return RoundedText(number); }
 
 std::string Under(const std::string& key, std::string_view sub) {
   return key.empty() ? std::string(sub) : key + "." + std::string(sub);
@@ -49,6 +48,11 @@ void CheckSizes(const MachineConfig& c, Problems& problems) {
 }
 
 void CheckTiming(const MachineConfig& c, Problems& problems) {
+  try {
+    std::ignore = ToInterpolationPeriod(static_cast<std::uint32_t>(c.machine.cycle_us));
+  } catch (const std::invalid_argument& e) {
+    problems.Add("machine.cycle_us", e.what());
+  }
   if (SendDeadline_ns(c) >= 1000 * std::int64_t{c.machine.cycle_us})
     problems.Add("realtime.send_deadline_us", "found " + std::to_string(SendDeadline_ns(c) / 1000) +
                                                   ", expected less than the cycle of " +
@@ -70,6 +74,35 @@ void CheckBuses(const MachineConfig& c, Problems& problems) {
     if (!inserted)
       problems.Add(key + ".interface", "found '" + bus.interface + "', already the interface of bus '" +
                                            other->second + "'; each bus needs its own");
+  }
+}
+
+// Within a cycle all frames of that cycle must be through: RPDOs and SYNC go out at the grid point, the
+// answers to SYNC are wanted at the next one. An emergency message may make one answer late; a fault follows
+// it anyway.
+void CheckBusTiming(const MachineConfig& c, Problems& problems) {
+  const double cycle_us = c.machine.cycle_us;
+  const double deadline_us = 1e-3 * static_cast<double>(SendDeadline_ns(c));
+  for (const BusTiming& t : BusTimings(c)) {
+    if (t.messages.empty()) {
+      problems.Add("buses." + t.bus, "found a bus with no drive on it");
+      continue;
+    }
+    const std::string rate = Say(c.buses.at(t.bus).bitrate_bit_s) + " bit/s";
+    if (t.cyclic_load > 1.0)
+      problems.Add("buses." + t.bus, "bus overload at this cycle: the frames of a cycle take " +
+                                         Say(1e2 * t.cyclic_load) + " % of " + Say(cycle_us) + " us at " +
+                                         rate);
+    else if (!t.worst_us || *t.worst_us > cycle_us)
+      problems.Add("buses." + t.bus, "bus overload at this cycle: a frame of a cycle takes up to " +
+                                         (t.worst_us ? Say(*t.worst_us) + " us" : "for ever") +
+                                         ", expected at most " + Say(cycle_us) + " us (" + rate + ", load " +
+                                         Say(1e2 * t.load) + " %)");
+    else if (*t.worst_us + deadline_us > cycle_us && deadline_us < cycle_us)
+      problems.Add("realtime.send_deadline_us", "found " + Say(deadline_us) + " us, expected at most " +
+                                                    Say(cycle_us - *t.worst_us) + " us: frames of bus '" +
+                                                    t.bus + "' take up to " + Say(*t.worst_us) +
+                                                    " us, and feedback must be in at the next grid point");
   }
 }
 
@@ -95,7 +128,20 @@ void CheckNodes(const MachineConfig& c, Problems& problems) {
   }
 }
 
+void CheckMode(const MachineConfig& c, const std::string& key, const DriveConfig& d, Problems& problems) {
+  if (d.mode == DriveMode::kCsp && c.machine.controller != ControllerName::kCsp)
+    problems.Add(key + ".mode", "found csp, but machine.controller " +
+                                    std::string(Name(c.machine.controller)) + " gives torques; expected cst");
+}
+
 void CheckDrive(const std::string& key, const DriveConfig& d, double period_ms, Problems& problems) {
+  // 0x6085 is an UNSIGNED32 in counts/s^2.
+  const double most_rad_s2 =
+      2.0 * std::numbers::pi * std::numeric_limits<std::uint32_t>::max() / d.encoder_counts_per_rev;
+  if (d.quick_stop_deceleration_rad_s2 > most_rad_s2)
+    problems.Add(key + ".quick_stop_deceleration_rad_s2",
+                 "found " + Say(d.quick_stop_deceleration_rad_s2) + ", expected at most " + Say(most_rad_s2) +
+                     ", the most that 0x6085 can carry with this encoder");
   if (d.peak_torque_Nm < d.rated_torque_Nm)
     problems.Add(
         key + ".peak_torque_Nm",
@@ -227,8 +273,10 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
   CheckTiming(c, problems);
   CheckBuses(c, problems);
   CheckNodes(c, problems);
+  CheckBusTiming(c, problems);
   for (const auto& [name, axis] : c.axes) {
     const std::string key = "axes." + name;
+    CheckMode(c, key + ".drive", axis.drive, problems);
     CheckDrive(key + ".drive", axis.drive, c.machine.cycle_us * 1e-3, problems);
     CheckLimits(key, axis, problems);
     CheckReserve(key, axis, problems);

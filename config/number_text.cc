@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 namespace contour {
 
@@ -10,6 +11,13 @@ std::string NumberText(double number) {
   std::array<char, 40> text{};
   const auto result = std::to_chars(text.data(), text.data() + text.size(), number);
   return {text.data(), result.ptr};
+}
+
+std::string RoundedText(double number) {
+  std::array<char, 40> text{};
+  const bool large = std::abs(number) >= 1e3 && std::abs(number) < 1e9;
+  std::snprintf(text.data(), text.size(), large ? "%.0f" : "%.4g", number);
+  return text.data();
 }
 
 std::string RangeText(const Range& range) {

@@ -78,7 +78,7 @@ StopBound QuickStop(const StoppingAxis& axis, double speed_m_s, double delay_s) 
 }
 
 StopBound SilentMaster(const StoppingAxis& axis, double speed_m_s) {
-  const double held_s = axis.period_s + axis.notice_s;
+  const double held_s = axis.notice_s + kWatchdogStep_s;
   const double reached_m_s = speed_m_s + axis.torque_acceleration_m_s2 * held_s;
   const StopBound ramp = QuickStop(axis, reached_m_s, 0.0);
   const double held_m = speed_m_s * held_s + 0.5 * axis.torque_acceleration_m_s2 * held_s * held_s;

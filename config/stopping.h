@@ -35,9 +35,12 @@ inline constexpr double kRampFollowing_s = 0.003;
 /// x = v t + v^2 / (2 d) + v t_following.
 StopBound QuickStop(const StoppingAxis& axis, double speed_m_s, double delay_s);
 
-/// The master falls silent: a drive in torque mode holds its last torque, at worst the limit, until it
-/// notices, one cycle and `notice` after the last frame; then its quick-stop ramp: v1 = v + a t, x = v t + a
-/// t^2 / 2 + v1^2 / (2 d) + v1 t_following, with a = T_limit / (R m).
+/// Drives count their watchdogs in steps of a millisecond.
+inline constexpr double kWatchdogStep_s = 0.001;
+
+/// The master falls silent: a drive in torque mode holds its last torque, at worst the limit, until its
+/// watchdog runs out, `notice` and a step of it after the last frame; then its quick-stop ramp: v1 = v + a t,
+/// x = v t + a t^2 / 2 + v1^2 / (2 d) + v1 t_following, with a = T_limit / (R m).
 StopBound SilentMaster(const StoppingAxis& axis, double speed_m_s);
 
 /// One way of stopping, all axes (in the order of their numbers).

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "config/interfaces.h"
 #include "config/key_table.h"
 #include "tools/contour/check_report.h"
 #include "tools/machine/load_emulated_machine.h"
@@ -26,6 +27,23 @@ std::vector<KeyRow> AllKeys() {
   return rows;
 }
 
+/// A virtual CAN interface is made by software, perhaps after this check; that any other is missing is a
+/// finding.
+ExitStatus CheckInterfaces(const MachineConfig& config) {
+  ExitStatus status = kExitDone;
+  for (const auto& [name, bus] : config.buses) {
+    try {
+      RequireInterface(name, bus.interface);
+    } catch (const EnvironmentError& e) {
+      const bool later =
+          IsVirtualCan(bus.interface) && FindInterface(bus.interface) == InterfaceKind::kAbsent;
+      std::cerr << (later ? "note: " : "contour: ") << e.what() << "\n";
+      if (!later) status = kExitEnvironment;
+    }
+  }
+  return status;
+}
+
 int RunCheck(const Options& options) {
   if (options.describe || options.markdown) {
     std::cout << (options.markdown ? MarkdownTable(AllKeys()) : TextTable(AllKeys()));
@@ -33,7 +51,7 @@ int RunCheck(const Options& options) {
   }
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
   std::cout << CheckReport(file.machine);
-  return kExitDone;
+  return CheckInterfaces(file.machine);
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 
 #include <array>
 #include <cstdio>
+#include <optional>
 
+#include "config/bus_timing.h"
 #include "config/machine_checks.h"
+#include "config/number_text.h"
 #include "config/stopping.h"
 #include "core/mechanics.h"
 #include "tools/contour/text_table.h"
@@ -11,16 +14,11 @@
 namespace contour {
 namespace {
 
-std::string WithUnit(const char* number, const char* unit) {
-  return std::string(number) + (unit[0] != '\0' ? " " : "") + unit;
+std::string WithUnit(const std::string& number, const char* unit) {
+  return number + (unit[0] != '\0' ? " " : "") + unit;
 }
 
-// Four significant digits.
-std::string Number(double value, const char* unit = "") {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return WithUnit(text.data(), unit);
-}
+std::string Number(double value, const char* unit = "") { return WithUnit(RoundedText(value), unit); }
 
 std::string Fixed(double value, int decimals, const char* unit) {
   std::array<char, 64> text{};
@@ -45,8 +43,9 @@ std::string Axes(const MachineConfig& c) {
     for (const auto& [name, axis] : c.axes) row.push_back(value(axis));
     table.Add(row);
   };
-  line("bus, node, mode", [](const AxisConfig& a) {
-    return a.drive.bus + ", " + std::to_string(a.drive.node_id) + ", " + std::string(Name(a.drive.mode));
+  const DriveMode mode = c.machine.controller == ControllerName::kCsp ? DriveMode::kCsp : DriveMode::kCst;
+  line("bus, node, mode", [mode](const AxisConfig& a) {
+    return a.drive.bus + ", " + std::to_string(a.drive.node_id) + ", " + std::string(Name(mode));
   });
   line("position", [](const AxisConfig& a) {
     return Number(a.limits.position_mm[0]) + " .. " + Number(a.limits.position_mm[1], "mm");
@@ -107,6 +106,39 @@ std::string Stops(const MachineConfig& c) {
          "Safe travel\n" + safe;
 }
 
+std::string Response(const std::optional<double>& response_us) {
+  return response_us ? Fixed(*response_us, 0, "us") : "-";
+}
+
+std::string Bus(const MachineConfig& c, const BusTiming& t) {
+  const BusConfig& bus = c.buses.at(t.bus);
+  TextColumns table;
+  table.Add({"message", "COB-ID", "bytes", "period", "response", "with emergencies"});
+  for (const BusMessage& m : t.messages) {
+    std::array<char, 16> id{};
+    std::snprintf(id.data(), id.size(), "0x%03X", static_cast<unsigned>(m.id));
+    table.Add({m.name, id.data(), std::to_string(m.length), Number(m.period_ms, "ms"),
+               Response(m.response_us), Response(m.response_with_emergencies_us)});
+  }
+  std::string text = "\nBus " + t.bus + ": " + bus.interface + ", " + Number(bus.bitrate_bit_s, "bit/s") +
+                     "; worst-case load " + Fixed(1e2 * t.cyclic_load, 1, "% by the frames of a cycle, ") +
+                     Fixed(1e2 * t.load, 1, "% in all") + "\n" + table.Text();
+  text += "  all frames of a cycle are through after " + Response(t.worst_us) + " of " +
+          std::to_string(c.machine.cycle_us) + " us; they may leave " +
+          Fixed(c.machine.cycle_us - *t.worst_us, 0, "us") + " after the grid point at the latest\n";
+  if (!t.worst_with_emergencies_us || *t.worst_with_emergencies_us > c.machine.cycle_us)
+    text +=
+        "  an emergency message from each drive at once can make feedback miss a grid point (a stale "
+        "cycle)\n";
+  return text;
+}
+
+std::string Buses(const MachineConfig& c) {
+  std::string text;
+  for (const BusTiming& t : BusTimings(c)) text += Bus(c, t);
+  return text;
+}
+
 std::string Timing(const MachineConfig& c) {
   std::string text = "\nTiming\n";
   text += "  cycle " + std::to_string(c.machine.cycle_us) + " us; frames late after " +
@@ -120,6 +152,8 @@ std::string Timing(const MachineConfig& c) {
 
 }  // namespace
 
-std::string CheckReport(const MachineConfig& c) { return Head(c) + Axes(c) + Stops(c) + Timing(c); }
+std::string CheckReport(const MachineConfig& c) {
+  return Head(c) + Axes(c) + Stops(c) + Buses(c) + Timing(c);
+}
 
 }  // namespace contour

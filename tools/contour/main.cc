@@ -8,6 +8,8 @@
 #include "core/exit_status.h"
 #include "tools/contour/check_command.h"
 #include "tools/contour/command.h"
+#include "tools/contour/emulate_command.h"
+#include "tools/contour/simulate_command.h"
 
 namespace {
 
@@ -42,6 +44,8 @@ int main(int argc, char** argv) {
   contour::Action action;
 
   contour::AddCheckCommand(app, action);
+  contour::AddEmulateCommand(app, action);
+  contour::AddSimulateCommand(app, action);
 
   AddVersionFlags(app);
   try {

@@ -1,0 +1,193 @@
+#include "config/machine_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "config/load_machine.h"
+#include "config/stopping.h"
+#include "tests/config/test_files.h"
+
+namespace contour {
+namespace {
+
+MachineConfig Good() { return LoadMachine(ExampleMachine("xy_emulated.yaml")); }
+
+// The one problem of a machine, as "key: message".
+std::string Only(const MachineConfig& c) {
+  const std::vector<ConfigProblem> problems = Check(c);
+  std::string all;
+  for (const ConfigProblem& p : problems) all += (all.empty() ? "" : "\n") + p.key + ": " + p.message;
+  EXPECT_EQ(problems.size(), 1U) << all;
+  return all;
+}
+
+TEST(MachineChecks, TheExampleIsSound) { EXPECT_TRUE(Check(Good()).empty()); }
+
+TEST(MachineChecks, Nodes) {
+  MachineConfig c = Good();
+  c.axes.at("y").drive.node_id = 1;
+  EXPECT_EQ(Only(c),
+            "axes.y.drive.node_id: duplicate node: found 1, already the node of axis 'x' on bus 'main'");
+  c.buses["second"].interface = "loopback";
+  c.axes.at("y").drive.bus = "second";
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("y").drive.node_id = 127;
+  EXPECT_EQ(
+      Only(c),
+      "axes.y.drive.node_id: found 127, which is the master's own node on bus 'second' (master_node_id)");
+}
+
+TEST(MachineChecks, Buses) {
+  MachineConfig c = Good();
+  c.axes.at("x").drive.bus = "mian";
+  EXPECT_EQ(Only(c), "axes.x.drive.bus: found 'mian', expected a bus of this file: main");
+  c = Good();
+  c.buses["main"].interface = "can0";
+  c.buses["other"].interface = "can0";
+  c.axes.at("y").drive.bus = "other";
+  EXPECT_EQ(
+      Only(c),
+      "buses.other.interface: found 'can0', already the interface of bus 'main'; each bus needs its own");
+  c = Good();
+  c.buses["main"].interface = "a_name_longer_than_15";
+  EXPECT_NE(Only(c).find("longer than a Linux interface name"), std::string::npos);
+}
+
+TEST(MachineChecks, Timing) {
+  MachineConfig c = Good();
+  c.realtime.send_deadline_us = 1000;
+  EXPECT_EQ(Only(c), "realtime.send_deadline_us: found 1000, expected less than the cycle of 1000 us");
+  c = Good();
+  c.machine.cycle_us = 1234;
+  EXPECT_EQ(Only(c).substr(0, 16), "machine.cycle_us");
+}
+
+TEST(MachineChecks, Torques) {
+  MachineConfig c = Good();
+  c.axes.at("x").limits.torque_Nm = 1.95;
+  c.axes.at("x").limits.safe_travel_mm = 3;
+  EXPECT_EQ(Only(c), "axes.x.limits.torque_Nm: found 1.95, more than the drive's peak_torque_Nm of 1.91");
+  c = Good();
+  c.axes.at("x").drive.rated_torque_Nm = 0.04;
+  EXPECT_EQ(Only(c),
+            "axes.x.limits.torque_Nm: found 1.5, expected at most 1.311, the most a target torque (0x6071) "
+            "can carry at "
+            "this rated torque");
+}
+
+TEST(MachineChecks, EmptyPositionRange) {
+  MachineConfig c = Good();
+  c.axes.at("x").limits.position_mm = {200.0, -200.0};
+  EXPECT_EQ(Only(c),
+            "axes.x.limits.position_mm: found an empty range, 200 to -200, expected the lower end first");
+}
+
+TEST(MachineChecks, ImpossibleAccelerationSaysWhatIsAvailable) {
+  MachineConfig c = Good();
+  AxisConfig& x = c.axes.at("x");
+  // Reckoned by hand for the example: R = 5 mm / 2 pi, m = 4.65e-5 / R^2 + 10.6 = 84.03 kg, friction 40.5 N +
+  // 440 * 0.25 N. Torque for 30 m/s^2: R (84.03 * 30 + 150.5) = 2.126 Nm; with 1.5 Nm there are (1885 -
+  // 150.5) / 84.03 = 20.64 m/s^2.
+  x.limits.acceleration_mm_s2 = 30000;
+  EXPECT_EQ(Only(c),
+            "axes.x.limits.acceleration_mm_s2: impossible limit: found 30000, which takes 2.126 Nm at 250 "
+            "mm/s against "
+            "friction; the torque limit of 1.5 Nm leaves 20641 mm/s^2");
+}
+
+TEST(MachineChecks, JerkAgainstTorqueRate) {
+  MachineConfig c = Good();
+  c.axes.at("x").limits.torque_rate_Nm_s = 10.0;
+  // R m j = 0.7958e-3 * 84.03 * 200 = 13.37 Nm/s.
+  EXPECT_EQ(Only(c),
+            "axes.x.limits.jerk_mm_s3: impossible limit: found 200000, which takes 13.37 Nm/s; "
+            "torque_rate_Nm_s is 10");
+}
+
+TEST(MachineChecks, TravelBeforeADeadMasterIsNoticed) {
+  MachineConfig c = Good();
+  c.axes.at("x").drive.notice_ms = 100;
+  const std::string problem = Only(c);
+  EXPECT_EQ(problem.substr(0, 51), "axes.x.limits.safe_travel_mm: found 2, but from res");
+  EXPECT_NE(problem.find("notice_ms 100"), std::string::npos) << problem;
+  c.axes.at("x").limits.safe_travel_mm = SilentMaster(ToStoppingAxis(c, c.axes.at("x")), 0.0).travel_mm;
+  EXPECT_TRUE(Check(c).empty());
+}
+
+TEST(MachineChecks, StopsThatPromiseNothing) {
+  MachineConfig c = Good();
+  DriveConfig& drive = c.axes.at("x").drive;
+  drive.quick_stop_deceleration_rad_s2 = 0.0;
+  EXPECT_NE(Only(c).find("no stopping distance can be promised"), std::string::npos);
+  drive.quick_stop_deceleration_rad_s2 = 30000.0;
+  EXPECT_NE(Check(c).size(), 0U);
+  drive.quick_stop_deceleration_rad_s2 = 22600.0;
+  drive.abort_connection_option = 0;
+  EXPECT_NE(Only(c).find("expected 3 (quick stop)"), std::string::npos);
+  drive.abort_connection_option = 3;
+  drive.quick_stop_option = 0;
+  EXPECT_NE(Only(c).find("expected 2 (quick-stop ramp, then off)"), std::string::npos);
+}
+
+TEST(MachineChecks, ModelMustMakeSense) {
+  MachineConfig c = Good();
+  c.axes.at("x").model.friction.Fs_plus_N = 10.0;
+  EXPECT_EQ(Only(c),
+            "axes.x.model.friction.Fs_plus_N: found less than Fc_plus_N: break-away friction is never below "
+            "Coulomb "
+            "friction");
+  c = Good();
+  c.axes.at("x").model.uncertainty["colour"] = 0.1;
+  EXPECT_EQ(Only(c), "axes.x.model.uncertainty.colour: found a key that is no parameter of this model");
+}
+
+TEST(MachineChecks, ModeAndController) {
+  MachineConfig c = Good();
+  c.axes.at("x").drive.mode = DriveMode::kCsp;
+  EXPECT_EQ(Only(c), "axes.x.drive.mode: found csp, but machine.controller full gives torques; expected cst");
+  c.machine.controller = ControllerName::kCsp;
+  EXPECT_TRUE(Check(c).empty());
+}
+
+// The axis of CANOPEN's warning: rated torque held for 100 ms gains 0.85 m/s and 42 mm.
+TEST(Stopping, HeldTorqueFromRest) {
+  StoppingAxis axis;
+  axis.torque_acceleration_m_s2 = 8.5;
+  axis.ramp_m_s2 = 10.0;
+  axis.notice_s = 0.1 - kWatchdogStep_s;
+  const StopBound b = SilentMaster(axis, 0.0);
+  EXPECT_NEAR(b.travel_mm, 42.5 + 1e3 * (0.85 * 0.85 / 20.0 + 0.85 * kRampFollowing_s), 1e-9);
+  EXPECT_NEAR(b.time_s, 0.1 + 0.085 + kRampFollowing_s, 1e-12);
+}
+
+TEST(Stopping, EveryWayOfStoppingHasABoundForEveryAxis) {
+  const MachineConfig c = Good();
+  const std::vector<StopWay> ways = StopWays(c);
+  EXPECT_EQ(ways.size(), 8U);
+  for (const StopWay& way : ways) {
+    ASSERT_EQ(way.axes.size(), 2U) << way.name;
+    for (const StopBound& b : way.axes) {
+      EXPECT_GT(b.time_s, 0.0) << way.name;
+      EXPECT_LT(b.time_s, 0.2) << way.name;
+      EXPECT_GT(b.travel_mm, 0.0) << way.name;
+      EXPECT_LT(b.travel_mm, 40.0) << way.name;
+    }
+  }
+  MachineConfig without_io = c;
+  without_io.io.modbus.reset();
+  EXPECT_EQ(StopWays(without_io).size(), 6U);
+}
+
+TEST(Stopping, ASlowerAxisSlowsTheStopOfAll) {
+  MachineConfig c = Good();
+  const double before_s = StopWays(c)[0].axes[0].time_s;
+  c.axes.at("y").limits.acceleration_mm_s2 = 500;
+  const StopWay way = StopWays(c)[0];
+  EXPECT_EQ(way.axes[0].time_s, way.axes[1].time_s);
+  EXPECT_GT(way.axes[0].time_s, 2.0 * before_s);
+}
+
+}  // namespace
+}  // namespace contour

@@ -1,0 +1,68 @@
+#include "tools/contour/simulate_command.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/exit_status.h"
+#include "daemon/program/program.h"
+#include "tools/machine/load_emulated_machine.h"
+#include "tools/simulate/simulation_run.h"
+
+namespace contour {
+namespace {
+
+struct Options {
+  std::string config;
+  std::string program;
+  std::string controller;
+  std::vector<std::string> set;
+  std::optional<std::uint64_t> seed;
+  std::string out;
+  std::string log;
+};
+
+int RunSimulate(const Options& options) {
+  SimulationRequest request;
+  request.file = LoadEmulatedMachine(options.config, options.set);
+  if (options.seed) request.file.emulator.seed = *options.seed;
+  request.controller = request.file.machine.machine.controller;
+  if (!options.controller.empty() && !FromName(options.controller, request.controller)) {
+    std::cerr << "contour: --controller: found '" << options.controller << "', expected "
+              << Choices(ControllerName{}) << "\n";
+    return kExitBadUsage;
+  }
+  try {
+    request.program = LoadProgram(options.program);
+  } catch (const ProgramError& e) {
+    std::cerr << e.what() << "\n";
+    return kExitBadUsage;
+  }
+  request.out = options.out;
+  RunSimulation(request);
+  std::cout << "wrote " << (std::filesystem::path(options.out) / "metrics.json").string()
+            << " and cycles.csv\n";
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddSimulateCommand(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub =
+      app.add_subcommand("simulate", "Run the daemon's cycle on the emulated machine in virtual time");
+  sub->add_option("--config", options->config, "Machine file with an emulator: section")->required();
+  sub->add_option("--program", options->program, "Program: YAML or G-code (.ngc)")->required();
+  sub->add_option("--controller", options->controller, "Controller instead of the machine file's");
+  sub->add_option("--set", options->set, "KEY=VALUE: override a key of the machine file; repeatable")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  sub->add_option("--seed", options->seed, "Seed of the emulated machine");
+  sub->add_option("--out", options->out, "Directory for metrics.json and cycles.csv")->required();
+  sub->callback([options, &action] { action = [options] { return RunSimulate(*options); }; });
+}
+
+}  // namespace contour
