@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "control/contour_error.h"
 #include "drivers/cia301/messages.h"
 
 namespace contour {
@@ -14,7 +15,7 @@ constexpr std::uint32_t kSettledCycles = 300;
 /// The same after a fault whose end cannot be seen, because the drives are out of reach.
 constexpr std::uint32_t kFaultSettledCycles = 3000;
 /// Reference points to either side of the feedback's instant that make the local path of the contour error.
-constexpr int kLocalPathReach = 4;
+constexpr int kLocalPathReach = 8;
 
 EstimatorKind KindFor(ControllerName name) noexcept {
   switch (name) {
@@ -97,7 +98,9 @@ Cycle::Cycle(const CycleConfig& config)
       csp_(config.controller == ControllerName::kCsp),
       estimates_(config.axes.size()),
       guarded_(config.axes.size()),
-      setpoints_(config.axes.size()) {
+      setpoints_(config.axes.size()),
+      near_position_m_(config.axes.size()),
+      near_path_(config.axes.size()) {
   for (const CycleAxisConfig& a : config.axes) axes_.emplace_back(a, config.controller, period_s_);
   for (const AxisDriveConfig& a : config.master.axes)
     answers_.push_back({{static_cast<std::uint16_t>(cob::kTpdo1 + a.drive.node_id), 0, {}}, a.bus, 0});
@@ -330,9 +333,16 @@ void Cycle::Record(const CycleInput& in, CycleOutput& out) noexcept {
   out.settling = (waits || r.state == MachineState::kFaulted) && !out.quiescent;
 }
 
-void Cycle::RecordContourError(CycleRecord& record) const noexcept {
-  record.contour_error_m = 0.0;
-  record.lag_error_m = 0.0;
+void Cycle::RecordContourError(CycleRecord& record) noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    near_position_m_[i] = axes_[i].position_m;
+    near_path_[i].clear();
+    for (int j = -kLocalPathReach; j <= kLocalPathReach; ++j) near_path_[i].push_back(follower_.Near(i, j));
+  }
+  const ContourError error =
+      FindContourError(near_position_m_, near_path_, period_s_, static_cast<std::size_t>(kLocalPathReach));
+  record.contour_error_m = error.contour_m;
+  record.lag_error_m = error.lag_m;
 }
 
 void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {

@@ -60,7 +60,7 @@ class Cycle {
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;
   void Record(const CycleInput& in, CycleOutput& out) noexcept;
-  void RecordContourError(CycleRecord& record) const noexcept;
+  void RecordContourError(CycleRecord& record) noexcept;
   void RecordAxis(std::size_t i, AxisRecord& record) const noexcept;
 
   double period_s_;
@@ -77,6 +77,8 @@ class Cycle {
   ControlOutput control_out_;
   PerAxis<GuardedTorque> guarded_;
   PerAxis<AxisSetpoint> setpoints_;
+  PerAxis<double> near_position_m_;
+  PerAxis<AxisHorizon> near_path_;
   std::uint64_t stale_cycles_ = 0;
   FixedVector<StampedFrame, kMaxAxes> answers_;  ///< bus and identifier of each drive's answer to SYNC
   FixedVector<StampedFrame, kMaxBuses> heartbeats_;

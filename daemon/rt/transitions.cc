@@ -160,6 +160,7 @@ void Transitions::Run(Orders& orders, const Request& request) noexcept {
   Acknowledge(request, ok);
   if (!ok) return;
   program_id_ = request.program_id;
+  reason_ = Reason::kNone;
   run_pending_ = true;
   run_pending_cycles_ = 0;
   orders.expect_path = true;

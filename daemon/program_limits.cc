@@ -1,0 +1,15 @@
+#include "daemon/program_limits.h"
+
+namespace contour {
+
+PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
+  PerAxis<PlanLimits> limits;
+  for (const auto& [name, axis] : machine.axes) {
+    const AxisLimits& l = axis.limits;
+    limits.push_back({name, l.position_mm[0] * 1e-3, l.position_mm[1] * 1e-3, l.velocity_mm_s * 1e-3,
+                      l.acceleration_mm_s2 * 1e-3, l.jerk_mm_s3 * 1e-3});
+  }
+  return limits;
+}
+
+}  // namespace contour

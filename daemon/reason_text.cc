@@ -1,0 +1,137 @@
+#include "daemon/reason_text.h"
+
+#include "daemon/rt/transitions.h"
+
+namespace contour {
+namespace {
+
+std::string Where(std::span<const std::string> names, std::uint8_t index) {
+  return index < names.size() ? names[index] : "?";
+}
+
+std::string Hex(unsigned value) {
+  constexpr char kDigits[] = "0123456789ABCDEF";
+  std::string text = "0x0000";
+  for (std::size_t i = 0; i < 4; ++i) text[5 - i] = kDigits[(value >> (4 * i)) & 0xF];
+  return text;
+}
+
+std::string DriveText(const CycleRecord& record, std::uint8_t axis) {
+  if (axis >= record.axes.size()) return {};
+  const AxisRecord& a = record.axes[axis];
+  std::string text = ", drive in state " + std::string(Name(a.feedback.drive_state));
+  if (a.emergency_code != 0) text += ", emergency code " + Hex(a.emergency_code);
+  return text;
+}
+
+}  // namespace
+
+std::string ReasonText(const CycleRecord& record, std::span<const std::string> axis_names,
+                       std::span<const std::string> bus_names) {
+  const std::uint8_t at = record.reason_axis;
+  const std::string axis = "axis " + Where(axis_names, at);
+  const std::string bus = "bus " + Where(bus_names, at);
+  switch (record.reason) {
+    case Reason::kNone:
+      return {};
+    case Reason::kOperatorStop:
+      return "stopped on the path as asked";
+    case Reason::kTerminate:
+      return "the daemon was asked to end: stopped on the path and switched off";
+    case Reason::kProgramEnd:
+      return "the program has ended";
+    case Reason::kDisableRequest:
+      return "switched off as asked";
+    case Reason::kStaleFeedback:
+      return axis + " sent no position for several cycles; quick stop. Check the drive's supply and the bus" +
+             DriveText(record, at);
+    case Reason::kFollowingError:
+      return axis +
+             " left the reference by more than limits.following_error_mm; quick stop. Look for a collision, "
+             "a wrong "
+             "model, or limits too tight for this feed";
+    case Reason::kPositionLimit:
+      return axis + " is outside limits.position_mm; quick stop. Move it back by hand with the drive off";
+    case Reason::kVelocityLimit:
+      return axis + " ran faster than its limit allows; quick stop";
+    case Reason::kNotANumber:
+      return axis +
+             ": the torque computed was no number; zero torque and quick stop. Please report this with the "
+             "log";
+    case Reason::kBusDown:
+      return bus + " is down; the drives stop by themselves. Bring the interface up, then reset";
+    case Reason::kBusOff:
+      return bus +
+             " is bus-off: the controller saw too many errors. Check wiring, termination and bit rate, then "
+             "reset";
+    case Reason::kSendFailed:
+      return bus +
+             " did not take the frames of a cycle (transmit queue full or interface gone); raise txqueuelen, "
+             "check the "
+             "bus, then reset";
+    case Reason::kHeartbeatLost:
+      return axis +
+             ": the drive's heartbeat is missing or it restarted; check its supply and the bus, then reset" +
+             DriveText(record, at);
+    case Reason::kDriveFault:
+      return axis + ": the drive reports a fault" + DriveText(record, at) +
+             "; see its manual for the code, then reset";
+    case Reason::kDriveLeftEnabled:
+      return axis + ": the drive left Operation Enabled by itself" + DriveText(record, at) + "; then reset";
+    case Reason::kEmergencyStop:
+      return "the emergency-stop input is open; quick stop. Release it, then reset";
+    case Reason::kEnableChainOpen:
+      return "the enable chain is open; stopped on the path and switched off. Close it, then reset";
+    case Reason::kIoStale:
+      return "no fresh data from the Modbus I/O; stopped on the path and switched off. Check the I/O "
+             "station, then reset";
+    case Reason::kBringUpFailed:
+      return "a drive could not be brought up";
+    case Reason::kPathUnderrun:
+      return "the supply of path points ran dry; stopped on the path. The host is overloaded; reset and run "
+             "again";
+    case Reason::kPathDiscontinuous:
+      return "the program does not begin where the axes stand; nothing was moved. Run it again";
+    case Reason::kEnableTimeout:
+      return "the drives did not reach Operation Enabled in time" +
+             (record.axes.empty() ? std::string() : DriveText(record, 0));
+    case Reason::kStopTimeout:
+      return "a stop on the path did not come to rest in time; quick stop";
+    case Reason::kEstimatorDiverged:
+      return axis + ": the friction estimate diverged; quick stop. Please report this with the log";
+    case Reason::kDriveNotFollowing:
+      return axis + ": the drive does not follow its target" + DriveText(record, at);
+    case Reason::kTorqueLimit:
+    case Reason::kTorqueRateLimit:
+    case Reason::kSolverCap:
+    case Reason::kInnovationGated:
+    case Reason::kParameterBound:
+      return std::string(Name(record.reason));
+  }
+  return {};
+}
+
+std::string RefusalText(const CycleRecord& record, RequestKind request,
+                        std::span<const std::string> axis_names, std::span<const std::string> bus_names) {
+  const std::string state = "the machine is " + std::string(Name(record.state));
+  if (record.state == MachineState::kFaulted)
+    return state + " (" + ReasonText(record, axis_names, bus_names) + "); reset it first";
+  switch (request) {
+    case RequestKind::kEnable: {
+      CycleRecord io = record;
+      io.reason = IoVerdict(record.io);
+      if (record.state == MachineState::kIdle && io.reason != Reason::kNone)
+        return "not permitted: " + ReasonText(io, axis_names, bus_names);
+      return state + "; only an Idle machine can be enabled";
+    }
+    case RequestKind::kRun:
+      return state + "; a program starts only from Ready" +
+             (record.state == MachineState::kIdle ? ": enable the machine first" : "");
+    case RequestKind::kReset:
+      return state + "; there is nothing to reset";
+    default:
+      return state;
+  }
+}
+
+}  // namespace contour

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+
+#include "core/controller_name.h"
+#include "daemon/program/program.h"
+#include "tools/machine/load_emulated_machine.h"
+
+namespace contour {
+
+struct SimulationRequest {
+  EmulatedMachineFile file;
+  ControllerName controller = ControllerName::kFull;
+  Program program;
+  std::filesystem::path out;  ///< directory for cycles.csv and metrics.json; made when missing
+};
+
+/// Bring-up, enable, the program to its end, all in virtual time; then the files. Throws std::runtime_error
+/// when the machine stops otherwise or a file cannot be written, ProgramError when the program does not fit
+/// the machine.
+void RunSimulation(const SimulationRequest& request);
+
+}  // namespace contour

@@ -1,0 +1,140 @@
+#include "tools/simulate/virtual_machine.h"
+
+#include <array>
+#include <stdexcept>
+
+#include "daemon/make_cycle_config.h"
+#include "daemon/program_limits.h"
+#include "daemon/reason_text.h"
+#include "drivers/cia301/bring_up_text.h"
+
+namespace contour {
+namespace {
+
+constexpr std::size_t kRequests = 16;
+constexpr std::size_t kPathPoints = 256;
+/// Bring-up, enabling and settling take a fraction of a second; a machine that takes longer hangs.
+constexpr int kPatience_cycles = 60'000;
+
+}  // namespace
+
+/// The last truth rows by SYNC number: feedback is one SYNC older than the newest row.
+class VirtualMachine::TruthMemory final : public TruthSink {
+ public:
+  void OnTruth(const TruthRow& row) noexcept override {
+    if (!row.free_running) rows_[row.sync_number % rows_.size()] = row;
+  }
+  [[nodiscard]] const TruthRow* Find(std::uint64_t sync_number) const {
+    const TruthRow& row = rows_[sync_number % rows_.size()];
+    return sync_number != 0 && row.sync_number == sync_number ? &row : nullptr;
+  }
+
+ private:
+  std::array<TruthRow, 8> rows_{};
+};
+
+std::vector<EmulatedAxisPlacement> Placements(const MachineConfig& machine) {
+  std::vector<EmulatedAxisPlacement> out;
+  for (const auto& [name, axis] : machine.axes) {
+    EmulatedAxisPlacement p;
+    p.name = name;
+    p.bus = BusIndex(machine, axis.drive.bus);
+    p.node_id = static_cast<std::uint8_t>(axis.drive.node_id);
+    p.lead_mm = axis.model.mechanics.lead_mm;
+    p.rated_torque_Nm = axis.drive.rated_torque_Nm;
+    p.peak_torque_Nm = axis.drive.peak_torque_Nm;
+    p.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
+    out.push_back(p);
+  }
+  return out;
+}
+
+VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName controller)
+    : axis_names_(AxisNames(file.machine)),
+      bus_names_(BusNames(file.machine)),
+      limits_(ProgramLimits(file.machine)),
+      emulated_(file.emulator, Placements(file.machine),
+                static_cast<std::uint32_t>(file.machine.machine.cycle_us)),
+      truths_(std::make_unique<TruthMemory>()),
+      mailbox_(kRequests, kPathPoints),
+      cycle_(MakeCycleConfig(file.machine, controller)),
+      feeder_(mailbox_),
+      period_ns_(std::int64_t{1000} * file.machine.machine.cycle_us),
+      entry_(std::make_unique<CycleEntry>()) {
+  std::size_t b = 0;
+  for (const auto& [name, bus] : file.machine.buses) {
+    std::vector<BusNode*> nodes;
+    if (b < emulated_.bus_count()) nodes.push_back(&emulated_.node(b));
+    buses_.push_back(std::make_unique<LoopbackBus>(bus.bitrate_bit_s, std::move(nodes)));
+    bus_pointers_.push_back(buses_.back().get());
+    ++b;
+  }
+  emulated_.SetTruthSink(truths_.get());
+  SetIo(no_io_);
+}
+
+VirtualMachine::~VirtualMachine() { emulated_.SetTruthSink(nullptr); }
+
+void VirtualMachine::SetIo(IoSource& io) {
+  runner_ = std::make_unique<CycleRunner>(cycle_, bus_pointers_, mailbox_, io);
+}
+
+void VirtualMachine::Tick() {
+  feeder_.Feed();
+  ++index_;
+  const GridPoint grid{index_, static_cast<std::int64_t>(index_) * period_ns_, 0};
+  runner_->Tick(grid, !settling_, *entry_);
+  settling_ = entry_->output.settling;
+  if (observer_) observer_(*entry_, truths_->Find(record().feedback_sync));
+}
+
+void VirtualMachine::Fail(const std::string& doing) const {
+  const CycleRecord& r = record();
+  const std::string why = r.reason == Reason::kBringUpFailed ? BringUpText(r.bring_up, axis_names_)
+                                                             : ReasonText(r, axis_names_, bus_names_);
+  throw std::runtime_error(doing + ": the machine is " + std::string(Name(r.state)) + " in cycle " +
+                           std::to_string(r.cycle) + (why.empty() ? std::string() : ": " + why));
+}
+
+void VirtualMachine::TickUntilSettled(MachineState wanted, const char* doing) {
+  for (int i = 0; i < kPatience_cycles; ++i) {
+    Tick();
+    if (record().state == wanted && entry_->output.quiescent) return;
+    if (record().state == MachineState::kFaulted) break;
+  }
+  Fail(doing);
+}
+
+void VirtualMachine::BringUp() { TickUntilSettled(MachineState::kIdle, "bringing up the drives"); }
+
+void VirtualMachine::Enable() {
+  mailbox_.Post(RequestKind::kEnable);
+  TickUntilSettled(MachineState::kReady, "enabling");
+}
+
+void VirtualMachine::Run(const Program& program) {
+  PerAxis<double> start_m;
+  for (const AxisRecord& a : record().axes) start_m.push_back(a.reference.position_m);
+  auto generator = std::make_unique<PathGenerator>(program, start_m, limits_,
+                                                   static_cast<double>(period_ns_) * 1e-9, ++program_id_);
+  plan_ = generator->plan();
+  feeder_.Begin(std::move(generator));
+  const std::uint32_t sequence = mailbox_.Post(RequestKind::kRun, program_id_);
+  const auto acknowledged = [&] { return record().acknowledged >= sequence; };
+  bool ran = false;
+  for (;;) {
+    Tick();
+    const MachineState state = record().state;
+    ran = ran || state == MachineState::kRunning;
+    if (ran && state == MachineState::kReady && record().reason == Reason::kProgramEnd) return;
+    // Until the cycle has taken the request the reason is that of the program before.
+    const bool waiting =
+        state == MachineState::kReady && (record().reason == Reason::kNone || !acknowledged());
+    if (state != MachineState::kRunning && !waiting) {
+      feeder_.Abandon();
+      Fail("running " + program.name);
+    }
+  }
+}
+
+}  // namespace contour

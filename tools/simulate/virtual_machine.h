@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/controller_name.h"
+#include "core/cycle_record.h"
+#include "daemon/path_feeder.h"
+#include "daemon/program/program.h"
+#include "daemon/rt/command_mailbox.h"
+#include "daemon/rt/cycle.h"
+#include "daemon/rt/cycle_runner.h"
+#include "drivers/can/loopback_bus.h"
+#include "tools/machine/load_emulated_machine.h"
+#include "tools/plant_emulator/emulated_machine.h"
+
+namespace contour {
+
+/// The daemon's own cycle on an emulated machine in virtual time: loopback buses, no threads, no waiting. The
+/// same machine file, program and seed give the same cycles every time, on every host.
+class VirtualMachine {
+ public:
+  /// Sees every cycle with the truth of the instant its feedback was latched at (null before there is any).
+  using Observer = std::function<void(const CycleEntry& entry, const TruthRow* truth)>;
+
+  VirtualMachine(const EmulatedMachineFile& file, ControllerName controller);
+  ~VirtualMachine();
+
+  void SetObserver(Observer observer) { observer_ = std::move(observer); }
+
+  /// Brings the drives up and waits until the machine is Idle and at rest. Throws std::runtime_error with the
+  /// reason.
+  void BringUp();
+  /// Enables and waits until the machine holds.
+  void Enable();
+  /// Runs a program to its end. Throws std::runtime_error with the reason when the machine stops otherwise.
+  void Run(const Program& program);
+  /// One more cycle, whatever the state.
+  void Tick();
+
+  CommandMailbox& mailbox() { return mailbox_; }
+  LoopbackBus& bus(std::size_t i) { return *buses_[i]; }
+  EmulatedMachine& emulated() { return emulated_; }
+  void SetIo(IoSource& io);
+  [[nodiscard]] const CycleEntry& last() const { return *entry_; }
+  [[nodiscard]] const CycleRecord& record() const { return entry_->output.record; }
+  /// Of the last program run.
+  [[nodiscard]] std::shared_ptr<const MotionPlan> plan() const { return plan_; }
+  [[nodiscard]] const std::vector<std::string>& axis_names() const { return axis_names_; }
+
+ private:
+  class TruthMemory;
+
+  void TickUntilSettled(MachineState wanted, const char* doing);
+  [[noreturn]] void Fail(const std::string& doing) const;
+
+  std::vector<std::string> axis_names_;
+  std::vector<std::string> bus_names_;
+  PerAxis<PlanLimits> limits_;
+  EmulatedMachine emulated_;
+  std::unique_ptr<TruthMemory> truths_;
+  std::vector<std::unique_ptr<LoopbackBus>> buses_;
+  std::vector<FrameBus*> bus_pointers_;
+  CommandMailbox mailbox_;
+  Cycle cycle_;
+  NoIo no_io_;
+  std::unique_ptr<CycleRunner> runner_;
+  PathFeeder feeder_;
+  std::int64_t period_ns_;
+  std::uint64_t index_ = 0;
+  std::uint32_t program_id_ = 0;
+  bool settling_ = false;
+  std::unique_ptr<CycleEntry> entry_;
+  std::shared_ptr<const MotionPlan> plan_;
+  Observer observer_;
+};
+
+/// Where the axes of a machine file sit on its buses, for the emulated machine.
+std::vector<EmulatedAxisPlacement> Placements(const MachineConfig& machine);
+
+}  // namespace contour
