@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace contour {
 namespace {
@@ -51,6 +52,24 @@ std::size_t QpSolver<Axes>::UpdateActive(const Problem& problem, const Inputs& i
 }
 
 template <std::size_t Axes>
+void QpSolver<Axes>::Forget() noexcept {
+  best_cost_ = std::numeric_limits<double>::infinity();
+}
+
+template <std::size_t Axes>
+void QpSolver<Axes>::RememberClipped(const Problem& problem, const Inputs& input) noexcept {
+  trial_ = input;
+  Active active;
+  ClipForward<Axes>(problem, trial_, active);
+  const double cost = Cost<Axes>(problem, trial_);
+  if (cost < best_cost_) {
+    best_ = trial_;
+    best_active_ = active;
+    best_cost_ = cost;
+  }
+}
+
+template <std::size_t Axes>
 bool QpSolver<Axes>::PrimalDual(const Problem& problem, int cap, Active& active, Inputs& input,
                                 QpReport& report) noexcept {
   std::size_t top = problem.horizon - 1;
@@ -61,22 +80,16 @@ bool QpSolver<Axes>::PrimalDual(const Problem& problem, int cap, Active& active,
     ++report.iterations;
     top = UpdateActive(problem, input, gradient_, active);
     if (top == kUnchanged) return true;
+    RememberClipped(problem, input);
   }
   return false;
 }
 
 template <std::size_t Axes>
-void QpSolver<Axes>::ProjectedNewton(const Problem& problem, int cap, Active& active, Inputs& input,
+void QpSolver<Axes>::ProjectedNewton(const Problem& problem, int cap, Active& active,
                                      QpReport& report) noexcept {
-  const auto project = [&problem](Inputs& u) {
-    for (std::size_t j = 0; j < problem.horizon; ++j) {
-      for (std::size_t i = 0; i < Axes; ++i) {
-        u[j][i] = std::clamp(u[j][i], problem.stage[j].lowest[i], problem.stage[j].highest[i]);
-      }
-    }
-  };
-  project(input);
-  double cost = Cost<Axes>(problem, input);
+  Inputs& input = best_;
+  double& cost = best_cost_;
   report.status = QpStatus::kCap;
   double nearness = 0.1;  // of the bounds' width; shrinks when a step had to be shortened
   while (report.iterations < cap) {
@@ -188,6 +201,7 @@ bool QpSolver<Axes>::PrimalDualWithSteps(const Problem& problem, int cap, Active
     SolveHeld(problem, active, input);
     ++report.iterations;
     if (!UpdateWithSteps(problem, input, active)) return true;
+    RememberClipped(problem, input);
   }
   return false;
 }
@@ -252,10 +266,11 @@ bool QpSolver<Axes>::DropWorst(const Problem& problem, Active& active) noexcept 
 }
 
 template <std::size_t Axes>
-void QpSolver<Axes>::PrimalActiveSet(const Problem& problem, int cap, Active& active, Inputs& input,
+void QpSolver<Axes>::PrimalActiveSet(const Problem& problem, int cap, Active& active,
                                      QpReport& report) noexcept {
-  ClipForward<Axes>(problem, input, active);
-  double cost = Cost<Axes>(problem, input);
+  Inputs& input = best_;
+  double& cost = best_cost_;
+  active = best_active_;
   report.status = QpStatus::kCap;
   while (report.iterations < cap) {
     SolveHeld(problem, active, target_);
@@ -303,16 +318,20 @@ QpReport QpSolver<Axes>::Solve(Problem& problem, int iteration_cap, Active& acti
       guess_has_steps = guess_has_steps || active[j][i].step != 0;
   }
   if (rate_limited) FoldFirstStep<Axes>(problem);
+  Forget();
   if (!rate_limited || !guess_has_steps) {
     if (PrimalDual(problem, iteration_cap, active, input, report)) {
       if (!rate_limited || StepsWithin(problem, input)) return report;
+      RememberClipped(problem, input);
     } else if (!rate_limited) {
-      ProjectedNewton(problem, iteration_cap, active, input, report);
+      ProjectedNewton(problem, iteration_cap, active, report);
+      input = best_;
       return report;
     }
   }
   if (!PrimalDualWithSteps(problem, iteration_cap, active, input, report)) {
-    PrimalActiveSet(problem, iteration_cap, active, input, report);
+    PrimalActiveSet(problem, iteration_cap, active, report);
+    input = best_;
   }
   return report;
 }

@@ -51,10 +51,13 @@ class QpSolver {
     ActiveBounds bound;
   };
 
+  // The best feasible point met so far.
+  void Forget() noexcept;
+  void RememberClipped(const Problem& problem, const Inputs& input) noexcept;
+
   // Bounds on values only.
   bool PrimalDual(const Problem& problem, int cap, Active& active, Inputs& input, QpReport& report) noexcept;
-  void ProjectedNewton(const Problem& problem, int cap, Active& active, Inputs& input,
-                       QpReport& report) noexcept;
+  void ProjectedNewton(const Problem& problem, int cap, Active& active, QpReport& report) noexcept;
   std::size_t UpdateActive(const Problem& problem, const Inputs& input, const Inputs& gradient,
                            Active& active) const noexcept;
   void HoldValues(const Problem& problem, const Active& active) noexcept;
@@ -63,8 +66,7 @@ class QpSolver {
   [[nodiscard]] bool StepsWithin(const Problem& problem, const Inputs& input) const noexcept;
   bool PrimalDualWithSteps(const Problem& problem, int cap, Active& active, Inputs& input,
                            QpReport& report) noexcept;
-  void PrimalActiveSet(const Problem& problem, int cap, Active& active, Inputs& input,
-                       QpReport& report) noexcept;
+  void PrimalActiveSet(const Problem& problem, int cap, Active& active, QpReport& report) noexcept;
   bool UpdateWithSteps(const Problem& problem, const Inputs& input, Active& active) noexcept;
   bool DropWorst(const Problem& problem, Active& active) noexcept;
   [[nodiscard]] Blocking FindBlocking(const Problem& problem, const Active& active, const Inputs& from,
@@ -76,6 +78,9 @@ class QpSolver {
   Inputs gradient_{};
   Inputs target_{};
   Inputs trial_{};
+  Inputs best_{};
+  Active best_active_{};
+  double best_cost_ = 0.0;
   Multipliers<Axes> multipliers_{};
 };
 

@@ -65,8 +65,9 @@ Reason TorqueGuard::FindFault(std::size_t axis, double wanted_torque_Nm, const A
   if (!memory.was_enabled) {
     // An axis that stands outside its limits, after a fault there, must be able to be driven back.
     memory.was_enabled = true;
-    memory.allowed_min_m = std::min(limits.position_min_m, position - limits.following_error_m);
-    memory.allowed_max_m = std::max(limits.position_max_m, position + limits.following_error_m);
+    const double beyond = limits.following_error_m;
+    memory.allowed_min_m = position < limits.position_min_m ? position - beyond : limits.position_min_m;
+    memory.allowed_max_m = position > limits.position_max_m ? position + beyond : limits.position_max_m;
   }
   if (!feedback.valid || feedback.age_cycles >= static_cast<std::uint32_t>(config_.stale_cycles)) {
     return Reason::kStaleFeedback;
