@@ -204,9 +204,8 @@ bool DriveMaster::operational() const noexcept {
 void DriveMaster::StartBringUp() noexcept {
   bool needed = !operational();
   for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
-  if (!needed || bringing_up_) return;
+  if (!needed || (BringingUp() && !bring_up_failed())) return;
   pdos_run_ = false;
-  bringing_up_ = true;
   started_ = true;
   for (Bus& b : buses_) b.bring_up.Start();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -230,7 +229,7 @@ BringUpStatus DriveMaster::bring_up() const noexcept {
 }
 
 bool DriveMaster::busy() const noexcept {
-  if (bringing_up_) return true;
+  if (BringingUp()) return true;
   if (!pdos_run_) return false;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const AxisDriveStatus& s = status_[i];
@@ -241,19 +240,18 @@ bool DriveMaster::busy() const noexcept {
   return false;
 }
 
-void DriveMaster::StepBringUp() noexcept {
-  if (!bringing_up_) return;
-  bool running = false;
-  bool done = true;
-  for (const Bus& b : buses_) {
-    running = running || b.bring_up.running();
-    done = done && b.bring_up.done();
-  }
-  bringing_up_ = running;
-  if (!done) return;
+bool DriveMaster::BringingUp() const noexcept {
+  return std::any_of(buses_.begin(), buses_.end(), [](const Bus& b) { return b.bring_up.running(); });
+}
+
+// The cycle after the last drive came up is the first with PDOs and SYNC.
+void DriveMaster::StartPdos() noexcept {
+  if (pdos_run_) return;
+  if (!std::all_of(buses_.begin(), buses_.end(), [](const Bus& b) { return b.bring_up.done(); })) return;
   pdos_run_ = true;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     status_[i].configured = true;
+    status_[i].nmt = NmtState::kOperational;
     axes_[i].heartbeat_cycle = cycle_;
   }
 }
@@ -283,11 +281,11 @@ CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoi
 }
 
 void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noexcept {
-  StepBringUp();
+  const bool pdos = pdos_run_;
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     Bus& bus = buses_[b];
     const auto index = static_cast<std::uint8_t>(b);
-    if (pdos_run_) {
+    if (pdos) {
       for (std::size_t i = 0; i < axes_.size(); ++i) {
         if (axes_[i].bus != b) continue;
         const AxisSetpoint setpoint = i < setpoints.size() ? setpoints[i] : AxisSetpoint{};
@@ -303,7 +301,8 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
       bus.heartbeat_due = cycle_ + bus.heartbeat_cycles;
     }
   }
-  if (pdos_run_) ++sync_number_;
+  if (pdos) ++sync_number_;
+  StartPdos();
 }
 
 }  // namespace contour

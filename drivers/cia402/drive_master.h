@@ -112,7 +112,8 @@ class DriveMaster {
   void OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept;
   void OnFeedback(std::size_t axis, const CanFrame& frame) noexcept;
   void Supervise(std::size_t axis) noexcept;
-  void StepBringUp() noexcept;
+  void StartPdos() noexcept;
+  [[nodiscard]] bool BringingUp() const noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
   [[nodiscard]] bool Healthy(std::size_t axis) const noexcept;
 
@@ -128,7 +129,6 @@ class DriveMaster {
   std::uint64_t sync_number_ = 0;
   std::uint64_t feedback_sync_ = 0;
   bool started_ = false;  ///< ever brought up: the master's heartbeat runs
-  bool bringing_up_ = false;
   bool pdos_run_ = false;
   bool seen_cycle_ = false;
 };

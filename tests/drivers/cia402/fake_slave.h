@@ -93,10 +93,10 @@ class FakeSlave : public BusNode {
       if (nmt_ == NmtState::kOperational) OnSync(time_ns, out);
     } else if (frame.id == cob::kSdoRequest + node_id_) {
       if (nmt_ != NmtState::kStopped) OnSdo(frame, time_ns, out);
-    } else if (frame.id == (objects_[{0x1400, 1}] & 0x7FF) && nmt_ == NmtState::kOperational) {
+    } else if (frame.id == (Value({0x1400, 1}) & 0x7FF) && nmt_ == NmtState::kOperational) {
       rpdo_ = frame;
       rpdo_waiting_ = true;
-    } else if (frame.id == cob::kHeartbeat + (objects_[{0x1016, 1}] >> 16) && objects_[{0x1016, 1}] != 0) {
+    } else if (Value({0x1016, 1}) != 0 && frame.id == cob::kHeartbeat + (Value({0x1016, 1}) >> 16)) {
       ++master_heartbeats_;
     }
   }
@@ -107,7 +107,7 @@ class FakeSlave : public BusNode {
       out.push_back({HeartbeatFrame(node_id_, NmtState::kBootUp), time_ns});
     }
     if (next_heartbeat_ns_ <= time_ns) {
-      next_heartbeat_ns_ = time_ns + static_cast<std::int64_t>(objects_[{0x1017, 0}]) * 1'000'000;
+      next_heartbeat_ns_ = time_ns + static_cast<std::int64_t>(Value({0x1017, 0})) * 1'000'000;
       if (!behaviour.silent) out.push_back({HeartbeatFrame(node_id_, nmt_), time_ns});
       FlushEmergency(time_ns, out);
     }
@@ -117,6 +117,11 @@ class FakeSlave : public BusNode {
   }
 
  private:
+  [[nodiscard]] std::uint32_t Value(const Object& object) const {
+    const auto found = objects_.find(object);
+    return found == objects_.end() ? 0 : found->second;
+  }
+
   void FlushEmergency(std::int64_t time_ns, PendingFrames& out) {
     if (!emergency_) return;
     out.push_back({EmergencyFrame(node_id_, {*emergency_, 1}), time_ns});
@@ -127,8 +132,9 @@ class FakeSlave : public BusNode {
     switch (command) {
       case NmtCommand::kResetNode:
       case NmtCommand::kResetCommunication:
-        objects_[{0x1016, 1}] = 0;
-        objects_[{0x1017, 0}] = 0;
+        for (const Object& o : {Object{0x1016, 1}, Object{0x1017, 0}}) {
+          if (objects_.contains(o)) objects_[o] = 0;
+        }
         next_heartbeat_ns_ = kNever;
         nmt_ = behaviour.self_start ? NmtState::kOperational : NmtState::kPreOperational;
         state_ = DriveState::kSwitchOnDisabled;
@@ -180,8 +186,8 @@ class FakeSlave : public BusNode {
   void OnSync(std::int64_t time_ns, PendingFrames& out) {
     ++syncs_;
     position_ += velocity_;
-    const std::uint32_t cob_id = objects_[{0x1800, 1}];
-    const std::uint32_t type = objects_[{0x1800, 2}];
+    const std::uint32_t cob_id = Value({0x1800, 1});
+    const std::uint32_t type = Value({0x1800, 2});
     if ((cob_id & 0x80000000) == 0 && type >= 1 && type <= 240)
       out.push_back({Feedback(cob_id), time_ns + 20'000});
     if (rpdo_waiting_) Apply();
@@ -191,8 +197,8 @@ class FakeSlave : public BusNode {
 
   CanFrame Feedback(std::uint32_t cob_id) {
     CanFrame f{static_cast<std::uint16_t>(cob_id & 0x7FF), 0, {}};
-    for (std::uint8_t sub = 1; sub <= objects_[{0x1A00, 0}]; ++sub) {
-      const std::uint32_t entry = objects_[{0x1A00, sub}];
+    for (std::uint8_t sub = 1; sub <= Value({0x1A00, 0}); ++sub) {
+      const std::uint32_t entry = Value({0x1A00, sub});
       std::uint32_t value = 0;
       if (entry >> 16 == 0x6041) value = Statusword();
       if (entry >> 16 == 0x6064) value = static_cast<std::uint32_t>(static_cast<std::uint64_t>(position_));
@@ -207,8 +213,8 @@ class FakeSlave : public BusNode {
   void Apply() {
     rpdo_waiting_ = false;
     const std::uint16_t word = GetU16(rpdo_, 0);
-    if (objects_[{0x6061, 0}] == 10) torque_ = static_cast<std::int16_t>(GetU16(rpdo_, 2));
-    if (objects_[{0x6061, 0}] == 8) {
+    if (Value({0x6061, 0}) == 10) torque_ = static_cast<std::int16_t>(GetU16(rpdo_, 2));
+    if (Value({0x6061, 0}) == 8) {
       target_position_ = static_cast<std::int32_t>(GetU32(rpdo_, 2));
       if (rpdo_.length == 8) torque_ = static_cast<std::int16_t>(GetU16(rpdo_, 6));
     }
