@@ -163,8 +163,11 @@ void MpcGroup<Axes>::Report(const QpReport& report, ControlOutput& output) noexc
     output.target_position_m[axis] = plan_[i].target_position_m;
     output.limit[axis] = Reason::kNone;
     if (report.status != QpStatus::kOptimal) output.limit[axis] = Reason::kSolverCap;
-    if (active_[0][i].value != 0) output.limit[axis] = Reason::kTorqueLimit;
-    if (active_[0][i].step != 0) output.limit[axis] = Reason::kTorqueRateLimit;
+    if (active_[0][i].value != 0) {
+      // The solver folds the first step's bound into the first value's.
+      const bool at_torque = std::abs(command) > (1.0 - 1e-9) * bound_m_s2_[i];
+      output.limit[axis] = at_torque ? Reason::kTorqueLimit : Reason::kTorqueRateLimit;
+    }
   }
 }
 
