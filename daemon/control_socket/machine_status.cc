@@ -42,10 +42,18 @@ json Axis(const std::string& name, const AxisRecord& a) {
   };
 }
 
+json Facts(const AxisFacts& f) {
+  return {{"position_min_m", f.limits.position_min_m}, {"position_max_m", f.limits.position_max_m},
+          {"velocity_m_s", f.limits.velocity_m_s},     {"acceleration_m_s2", f.limits.acceleration_m_s2},
+          {"jerk_m_s3", f.limits.jerk_m_s3},           {"encoder_count_m", f.encoder_count_m}};
+}
+
 json Axes(const MachineStatus& s) {
   json axes = json::array();
-  for (std::size_t i = 0; i < s.axis_names.size(); ++i)
+  for (std::size_t i = 0; i < s.axis_names.size(); ++i) {
     axes.push_back(Axis(s.axis_names[i], i < s.record.axes.size() ? s.record.axes[i] : AxisRecord{}));
+    if (i < s.axis_facts.size()) axes.back()["facts"] = Facts(s.axis_facts[i]);
+  }
   return axes;
 }
 

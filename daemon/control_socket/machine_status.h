@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/cycle_record.h"
+#include "daemon/program/motion_plan.h"
 #include "daemon/telemetry/log_stats.h"
 #include "daemon/telemetry/timing_histogram.h"
 #include "drivers/can/frame_bus.h"
@@ -21,6 +22,12 @@ struct BusStatus {
   BusState state;
 };
 
+/// What a client needs to know of an axis to plan and score a program as the daemon does.
+struct AxisFacts {
+  PlanLimits limits;
+  double encoder_count_m = 0.0;  ///< way of the table per encoder count
+};
+
 /// Everything `contour status` shows. Axes, buses and names are in the order of the machine file.
 struct MachineStatus {
   std::string machine;
@@ -29,6 +36,7 @@ struct MachineStatus {
   std::string clock;  ///< "wall", "lockstep" or "virtual"
   int cycle_us = 0;
   std::vector<std::string> axis_names;
+  std::vector<AxisFacts> axis_facts;  ///< one per axis
   std::vector<std::string> warnings;  ///< what the start complained of, such as refused real time
 
   CycleRecord record;               ///< newest cycle that reached the pump

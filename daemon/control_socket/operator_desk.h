@@ -23,6 +23,7 @@ struct Answer {
   std::string reason;            ///< why it was refused, one sentence; empty when accepted
   std::uint32_t sequence = 0;    ///< as CycleRecord::acknowledged counts; 0 when it never reached the cycle
   std::uint32_t program_id = 0;  ///< Run() only: what CycleRecord::program_id will say
+  PerAxis<double> start_m{};     ///< Run() only: where the program was placed
 };
 
 /// What an operator may ask of the machine. The control socket calls it, the supervisor is it.

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace contour {
 namespace {
@@ -47,7 +48,10 @@ json Run(const json& request, OperatorDesk& desk) {
     throw BadRequest("\"format\" must be \"yaml\" or \"ngc\"");
   const Answer answer = desk.Run(upload);
   json reply = Reply(answer);
-  if (answer.accepted) reply["program_id"] = answer.program_id;
+  if (answer.accepted) {
+    reply["program_id"] = answer.program_id;
+    reply["start_m"] = std::vector<double>(answer.start_m.begin(), answer.start_m.end());
+  }
   return reply;
 }
 

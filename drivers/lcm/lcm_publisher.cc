@@ -1,5 +1,6 @@
 #include "drivers/lcm/lcm_publisher.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <lcm/lcm-cpp.hpp>
@@ -8,7 +9,9 @@
 namespace contour {
 namespace {
 
-constexpr std::chrono::seconds kReopenAfter{5};
+// Ever longer, because LCM itself prints half a page to stderr each time.
+constexpr std::chrono::seconds kFirstReopen{5};
+constexpr std::chrono::seconds kLastReopen{600};
 
 }  // namespace
 
@@ -39,7 +42,8 @@ bool LcmPublisher::Open() {
   if (lcm_ != nullptr && lcm_->good()) return true;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_attempt_) return false;
-  next_attempt_ = now + kReopenAfter;
+  reopen_after_ = std::clamp(2 * reopen_after_, kFirstReopen, kLastReopen);
+  next_attempt_ = now + reopen_after_;
   lcm_ = std::make_unique<lcm::LCM>(url_);
   return lcm_->good();
 }

@@ -36,6 +36,7 @@ class LcmPublisher final : public TelemetrySink {
   const std::string url_;
   std::unique_ptr<lcm::LCM> lcm_;
   std::chrono::steady_clock::time_point next_attempt_{};
+  std::chrono::seconds reopen_after_{0};
   mutable std::mutex mutex_;  // guards stats_
   PublisherStats stats_;
 };

@@ -22,6 +22,8 @@ class FakeDesk final : public OperatorDesk {
     const std::lock_guard lock(mutex_);
     upload_ = program;
     answer.program_id = 7;
+    answer.start_m.push_back(0.1);
+    answer.start_m.push_back(-0.3);
     return answer;
   }
   MachineStatus Status() override {
@@ -70,7 +72,7 @@ class FakeDesk final : public OperatorDesk {
   Answer Do(const char* what) {
     const std::lock_guard lock(mutex_);
     asked_.emplace_back(what);
-    return {refusal_.empty(), refusal_, static_cast<std::uint32_t>(asked_.size()), 0};
+    return {refusal_.empty(), refusal_, static_cast<std::uint32_t>(asked_.size()), 0, {}};
   }
 
   mutable std::mutex mutex_;

@@ -44,6 +44,7 @@ TEST_F(RequestHandlerTest, RunUploadsTheProgram) {
       Ask(R"({"request": "run", "name": "a.yaml", "format": "yaml", "text": "shape: circle\n"})");
   EXPECT_EQ(reply["ok"], true);
   EXPECT_EQ(reply["program_id"], 7);
+  EXPECT_EQ(reply["start_m"], json::array({0.1, -0.3}));
   EXPECT_EQ(desk_.upload().name, "a.yaml");
   EXPECT_EQ(desk_.upload().text, "shape: circle\n");
   EXPECT_EQ(desk_.upload().controller, "");
@@ -71,8 +72,7 @@ TEST_F(RequestHandlerTest, SurvivesNoise) {
   const std::string seed = R"({"id": 1, "request": "run", "name": "a", "format": "yaml", "text": "b"})";
   for (int i = 0; i < 20000; ++i) {
     std::string line = seed;
-    for (auto n = random() % 6 + 1; n > 0; --n)
-      line[random() % line.size()] = static_cast<char>(random());
+    for (auto n = random() % 6 + 1; n > 0; --n) line[random() % line.size()] = static_cast<char>(random());
     EXPECT_TRUE(Ask(line).contains("ok"));
   }
   EXPECT_EQ(Ask(std::string(100000, '['))["ok"], false);
@@ -102,6 +102,8 @@ TEST_F(RequestHandlerTest, StatusTellsStateReasonAxesAndCounters) {
   s.record.axes[0].estimate.friction_N = std::numeric_limits<double>::quiet_NaN();
   s.record.stale_cycles = 3;
   s.dropped_entries = 4;
+  s.axis_facts.resize(2);
+  s.axis_facts[1].limits.position_max_m = 0.2;
   s.buses.push_back({"main", "vcan0", {}});
   s.io.configured = true;
   desk_.SetStatus(s);
@@ -113,6 +115,7 @@ TEST_F(RequestHandlerTest, StatusTellsStateReasonAxesAndCounters) {
   EXPECT_EQ(status["axes"][1]["drive_state"], "Fault");
   EXPECT_EQ(status["axes"][1]["position_m"], 0.125);
   EXPECT_TRUE(status["axes"][0]["friction_N"].is_null()) << "JSON has no NaN";
+  EXPECT_EQ(status["axes"][1]["facts"]["position_max_m"], 0.2);
   EXPECT_EQ(status["stale_cycles"], 3);
   EXPECT_EQ(status["dropped_telemetry"], 4);
   EXPECT_TRUE(status["late_cycles"].is_null());

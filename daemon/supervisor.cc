@@ -1,0 +1,139 @@
+#include "daemon/supervisor.h"
+
+#include <chrono>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "core/version.h"
+#include "daemon/program/path_generator.h"
+#include "daemon/program/program.h"
+#include "daemon/program_limits.h"
+#include "daemon/reason_text.h"
+#include "drivers/cia301/bring_up_text.h"
+
+namespace contour {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kAnswerTimeout{2};
+constexpr std::chrono::milliseconds kAnswerPoll{1};
+
+}  // namespace
+
+Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, std::string clock,
+                       std::vector<std::string> warnings, const SupervisedParts& parts)
+    : machine_name_(machine.machine.name),
+      controller_(controller),
+      clock_(std::move(clock)),
+      cycle_us_(machine.machine.cycle_us),
+      warnings_(std::move(warnings)),
+      axis_names_(AxisNames(machine)),
+      bus_names_(BusNames(machine)),
+      limits_(ProgramLimits(machine)),
+      parts_(parts) {
+  for (const auto& [name, axis] : machine.axes)
+    encoder_counts_m_.push_back(axis.model.mechanics.lead_mm * 1e-3 / axis.drive.encoder_counts_per_rev);
+  for (const auto& [name, bus] : machine.buses) interfaces_.push_back(bus.interface);
+}
+
+Answer Supervisor::Ask(RequestKind kind, std::uint32_t program_id) {
+  const std::uint32_t sequence =
+      kind == RequestKind::kStop ? parts_.mailbox.PostStop() : parts_.mailbox.Post(kind, program_id);
+  if (sequence == 0)
+    return {false, "the cycle takes no requests: the mailbox is full; is the loop running?", 0, 0};
+  return Await(kind, sequence);
+}
+
+Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence) {
+  const auto deadline = Clock::now() + kAnswerTimeout;
+  for (;;) {
+    const CycleRecord record = parts_.hub.record();
+    if (record.acknowledged >= sequence) {
+      const bool ok = record.acknowledged > sequence || record.acknowledged_ok;
+      return {ok, ok ? std::string() : RefusalText(record, kind, axis_names_, bus_names_), sequence, 0};
+    }
+    if (Clock::now() >= deadline)
+      return {false, "the cycle did not answer within 2 s; is the loop running?", sequence, 0};
+    std::this_thread::sleep_for(kAnswerPoll);
+  }
+}
+
+Answer Supervisor::Enable() { return Ask(RequestKind::kEnable); }
+Answer Supervisor::Disable() { return Ask(RequestKind::kDisable); }
+Answer Supervisor::Stop() { return Ask(RequestKind::kStop); }
+Answer Supervisor::Reset() { return Ask(RequestKind::kReset); }
+
+Answer Supervisor::Run(const ProgramUpload& upload) {
+  if (!upload.controller.empty() && upload.controller != Name(controller_)) {
+    return {false,
+            "this daemon runs controller " + std::string(Name(controller_)) +
+                "; start it with --controller " + upload.controller + " to run that one",
+            0, 0};
+  }
+  const CycleRecord now = parts_.hub.record();
+  if (now.state != MachineState::kReady)
+    return {false, RefusalText(now, RequestKind::kRun, axis_names_, bus_names_), 0, 0};
+  try {
+    const Program program = ParseProgram(
+        upload.text, upload.name, upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml);
+    PerAxis<double> start_m;
+    for (const AxisRecord& a : now.axes) start_m.push_back(a.reference.position_m);
+    auto generator =
+        std::make_unique<PathGenerator>(program, start_m, limits_, cycle_us_ * 1e-6, ++program_id_);
+    const double duration_s = generator->duration_s();
+    parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
+    // The points wait in the queue until the cycle has taken the request and expects them.
+    parts_.pump.Supply(std::move(generator));
+    Answer answer = Ask(RequestKind::kRun, program_id_);
+    answer.program_id = program_id_;
+    answer.start_m = start_m;
+    if (!answer.accepted) {
+      parts_.pump.Abandon();
+      return answer;
+    }
+    program_name_ = upload.name;
+    program_duration_s_ = duration_s;
+    return answer;
+  } catch (const std::exception& e) {
+    return {false, e.what(), 0, 0};
+  }
+}
+
+MachineStatus Supervisor::Status() {
+  const TelemetryHub::Snapshot s = parts_.hub.snapshot();
+  MachineStatus out;
+  out.machine = machine_name_;
+  out.version = kVersion;
+  out.controller = Name(controller_);
+  out.clock = clock_;
+  out.cycle_us = cycle_us_;
+  out.axis_names = axis_names_;
+  for (std::size_t a = 0; a < axis_names_.size(); ++a)
+    out.axis_facts.push_back({limits_[a], encoder_counts_m_[a]});
+  out.warnings = warnings_;
+  out.record = s.record;
+  out.bring_up = BringUpText(s.record.bring_up, axis_names_);
+  out.reason_text = s.record.reason == Reason::kBringUpFailed ? out.bring_up
+                                                              : ReasonText(s.record, axis_names_, bus_names_);
+  out.program_name = program_name_;
+  out.program_duration_s = program_duration_s_;
+  out.cycles = parts_.loop.counters().cycles.load();
+  if (clock_ == "wall") out.late_cycles = parts_.loop.counters().late_cycles.load();
+  out.skipped_grid_points = parts_.loop.counters().skipped_grid_points.load();
+  out.wakeup_late = s.wakeup_late;
+  out.computing = s.computing;
+  out.sent = s.sent;
+  out.dropped_entries = parts_.queue.dropped();
+  for (std::size_t b = 0; b < parts_.buses.size(); ++b)
+    out.buses.push_back({bus_names_[b], interfaces_[b], parts_.buses[b]->State()});
+  if (parts_.io != nullptr) out.io = parts_.io->stats();
+  out.publisher = s.publisher;
+  out.log = s.log;
+  return out;
+}
+
+void Supervisor::Attach(std::shared_ptr<RowFeed> feed) { parts_.hub.Attach(std::move(feed)); }
+void Supervisor::Detach(const std::shared_ptr<RowFeed>& feed) { parts_.hub.Detach(feed); }
+
+}  // namespace contour
