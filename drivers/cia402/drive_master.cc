@@ -155,7 +155,7 @@ void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
 void DriveMaster::OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept {
   AxisDriveStatus& s = status_[axis];
   s.nmt = HeartbeatState(frame);
-  axes_[axis].heartbeat_cycle = cycle_;
+  axes_[axis].alive_cycle = cycle_;
   if (s.nmt == NmtState::kBootUp) {
     s.restarted = s.restarted || s.configured;
     s.emergency_code = 0;
@@ -175,6 +175,7 @@ void DriveMaster::OnFeedback(std::size_t axis, const CanFrame& frame) noexcept {
   f.fresh = true;
   f.valid = true;
   f.age_cycles = 0;
+  a.alive_cycle = cycle_;  // it answers every SYNC: a sign of life at least as good as its heartbeat
   feedback_sync_ = sync_number_;
 }
 
@@ -183,7 +184,7 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
   AxisDriveStatus& s = status_[axis];
   if (!f.fresh) f.age_cycles += static_cast<std::uint32_t>(elapsed_);
   s.fault = f.valid && IsFaultState(f.drive_state);
-  if (s.configured && cycle_ - axes_[axis].heartbeat_cycle >= axes_[axis].heartbeat_timeout_cycles) {
+  if (s.configured && cycle_ - axes_[axis].alive_cycle >= axes_[axis].heartbeat_timeout_cycles) {
     s.heartbeat_lost = true;
     s.nmt = NmtState::kUnknown;
   }
@@ -252,7 +253,7 @@ void DriveMaster::StartPdos() noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     status_[i].configured = true;
     status_[i].nmt = NmtState::kOperational;
-    axes_[i].heartbeat_cycle = cycle_;
+    axes_[i].alive_cycle = cycle_;
   }
 }
 

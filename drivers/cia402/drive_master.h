@@ -34,7 +34,7 @@ struct MasterConfig {
 struct AxisDriveStatus {
   NmtState nmt = NmtState::kUnknown;  ///< by the last heartbeat
   bool configured = false;            ///< brought up and not restarted or lost since
-  bool heartbeat_lost = false;        ///< silent for heartbeat_timeout_ms since it was brought up
+  bool heartbeat_lost = false;        ///< neither heartbeat nor feedback for heartbeat_timeout_ms
   bool restarted = false;             ///< sent a boot-up message since it was brought up
   bool fault = false;                 ///< Fault or Fault Reaction Active
   bool left_enabled = false;     ///< left Operation Enabled without being told to; until the goal changes
@@ -99,7 +99,7 @@ class DriveMaster {
     Unwrap scale_unwrap;
     DriveWalk walk;
     std::uint64_t heartbeat_timeout_cycles = 0;
-    std::uint64_t heartbeat_cycle = 0;  ///< cycle of the last heartbeat
+    std::uint64_t alive_cycle = 0;  ///< cycle of the last heartbeat or feedback
   };
   struct Bus {
     BringUp bring_up;

@@ -452,20 +452,43 @@ TEST(DriveMaster, ADriveThatRestartsIsNoticedAndBroughtUpAgain) {
   EXPECT_TRUE(m.master.status()[0].at_goal);
 }
 
-TEST(DriveMaster, AMissingHeartbeatIsNoticed) {
+TEST(DriveMaster, ADriveThatFallsSilentIsNoticed) {
   Machine m;
   m.BringUp();
   m.Cycles(100);
-  m.slave[1].StopHeartbeat();
-  m.Cycles(90);
+  m.slave[1].behaviour.silent = true;
+  m.Cycles(145);
   EXPECT_FALSE(m.master.status()[1].heartbeat_lost);
-  m.Cycles(61);
+  m.Cycles(6);
   EXPECT_TRUE(m.master.status()[1].heartbeat_lost);
+  EXPECT_EQ(m.master.status()[1].nmt, NmtState::kUnknown);
   EXPECT_FALSE(m.master.status()[0].heartbeat_lost);
   EXPECT_FALSE(m.master.operational());
+  m.slave[1].behaviour.silent = false;
   m.BringUp();
   EXPECT_TRUE(m.master.operational());
   EXPECT_FALSE(m.master.status()[1].heartbeat_lost);
+}
+
+TEST(DriveMaster, FeedbackIsASignOfLifeToo) {
+  Machine m;
+  m.BringUp();
+  m.slave[1].StopHeartbeat();
+  m.Cycles(300);
+  EXPECT_FALSE(m.master.status()[1].heartbeat_lost);
+  EXPECT_TRUE(m.master.operational());
+}
+
+TEST(DriveMaster, ADriveThatLeavesOperationalIsNoticedByItsHeartbeat) {
+  Machine m;
+  m.BringUp();
+  m.Cycles(5);
+  m.slave[0].EnterPreOperational();
+  m.Cycles(52);
+  EXPECT_EQ(m.master.status()[0].nmt, NmtState::kPreOperational);
+  EXPECT_FALSE(m.master.operational());
+  m.BringUp();
+  EXPECT_TRUE(m.master.operational());
 }
 
 TEST(DriveMaster, FeedbackAgesWhenItDoesNotCome) {

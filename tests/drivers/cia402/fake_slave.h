@@ -74,6 +74,7 @@ class FakeSlave : public BusNode {
     emergency_ = code;
   }
   void LeaveEnabled() { state_ = DriveState::kSwitchedOn; }
+  void EnterPreOperational() { nmt_ = NmtState::kPreOperational; }
   void StopHeartbeat() { next_heartbeat_ns_ = kNever; }
   /// As after a power cycle: everything forgotten, boot-up sent with the next timer.
   void Restart(std::int64_t now_ns) {
