@@ -7,15 +7,15 @@
 
 namespace contour {
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kNoTruth = std::numeric_limits<double>::quiet_NaN();
 
 /// What scoring needs of one axis at one instant.
 struct ScoredAxis {
   double reference_m = 0.0;
   double encoder_m = 0.0;                 ///< R theta
-  double table_m = kUnknown;              ///< true position of the table
-  double friction_estimate_N = kUnknown;  ///< total
-  double friction_truth_N = kUnknown;     ///< total
+  double table_m = kNoTruth;              ///< true position of the table
+  double friction_estimate_N = kNoTruth;  ///< total
+  double friction_truth_N = kNoTruth;     ///< total
   bool torque_saturated = false;
 };
 

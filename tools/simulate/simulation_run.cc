@@ -2,10 +2,13 @@
 
 #include <charconv>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "daemon/telemetry/cycle_csv.h"
+#include "tools/metrics/metrics_json.h"
+#include "tools/metrics/run_metrics.h"
 #include "tools/simulate/virtual_machine.h"
 
 namespace contour {
@@ -31,11 +34,14 @@ class CyclesFile {
 
   void Add(const CycleEntry& entry, const TruthRow* truth) {
     row_.clear();
-    csv_.AppendRow(entry.output.record, entry.timing, row_);
+    record_ = entry.output.record;
+    for (std::size_t i = 0; truth != nullptr && i < record_.axes.size(); ++i) {
+      record_.axes[i].feedback.has_scale = true;
+      record_.axes[i].feedback.table_position_m = truth->axes[i].table_position_m;
+    }
+    csv_.AppendRow(record_, entry.timing, row_);
     row_.pop_back();
-    for (std::size_t i = 0; i < entry.output.record.axes.size(); ++i) {
-      row_ += ',';
-      if (truth != nullptr) AppendNumber(truth->axes[i].table_position_m, row_);
+    for (std::size_t i = 0; i < record_.axes.size(); ++i) {
       row_ += ',';
       if (truth != nullptr) AppendNumber(truth->axes[i].friction_N, row_);
     }
@@ -52,7 +58,63 @@ class CyclesFile {
   std::filesystem::path file_;
   std::ofstream stream_;
   CycleCsv csv_;
+  CycleRecord record_;
   std::string row_;
+};
+
+bool EstimatesFriction(ControllerName controller) {
+  return controller != ControllerName::kPid && controller != ControllerName::kCsp &&
+         controller != ControllerName::kMpc;
+}
+
+std::vector<ScoredAxisFacts> AxisFacts(const MachineConfig& machine) {
+  std::vector<ScoredAxisFacts> facts;
+  for (const auto& [name, axis] : machine.axes) {
+    const double counts_per_m = axis.drive.encoder_counts_per_rev / (axis.model.mechanics.lead_mm * 1e-3);
+    facts.push_back({name, 1.0 / counts_per_m});
+  }
+  return facts;
+}
+
+/// Scores the cycles of the program as they come.
+class Scoring {
+ public:
+  Scoring(const SimulationRequest& request, const VirtualMachine& machine)
+      : request_(request), machine_(machine), estimates_(EstimatesFriction(request.controller)) {}
+
+  void Add(const CycleRecord& record, const TruthRow* truth) {
+    if (!scorer_) scorer_.emplace(machine_.plan(), AxisFacts(request_.file.machine));
+    if (cycles_ == 0) stale_before_ = record.stale_cycles;
+    ++cycles_;
+    stale_ = record.stale_cycles - stale_before_;
+    ScoredRow row = RowOf(record, estimates_);
+    for (std::size_t i = 0; truth != nullptr && i < row.axes.size(); ++i) {
+      row.axes[i].table_m = truth->axes[i].table_position_m;
+      row.axes[i].friction_truth_N = truth->axes[i].friction_N;
+    }
+    scorer_->Add(row);
+  }
+
+  void Write(const std::filesystem::path& file) const {
+    RunFacts facts;
+    facts.controller = Name(request_.controller);
+    facts.program = request_.program.name;
+    facts.seed = request_.file.emulator.seed;
+    facts.cycle_us = request_.file.machine.machine.cycle_us;
+    facts.cycles = cycles_;
+    facts.stale_cycles = stale_;
+    if (!scorer_) throw std::runtime_error("no cycle in which the program ran");
+    WriteMetrics(file, facts, scorer_->Finish());
+  }
+
+ private:
+  const SimulationRequest& request_;
+  const VirtualMachine& machine_;
+  bool estimates_;
+  std::optional<RunScorer> scorer_;
+  std::uint64_t cycles_ = 0;
+  std::uint64_t stale_before_ = 0;
+  std::uint64_t stale_ = 0;
 };
 
 }  // namespace
@@ -63,12 +125,15 @@ void RunSimulation(const SimulationRequest& request) {
   CyclesFile cycles(request.out / "cycles.csv", machine.axis_names(), request.file.machine.machine.cycle_us);
   machine.BringUp();
   machine.Enable();
+  Scoring scoring(request, machine);
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
-    if (entry.output.record.program_id != 0 && entry.output.record.path_points_waiting != 0)
-      cycles.Add(entry, truth);
+    if (entry.output.record.state != MachineState::kRunning) return;
+    cycles.Add(entry, truth);
+    scoring.Add(entry.output.record, truth);
   });
   machine.Run(request.program);
   cycles.Close();
+  scoring.Write(request.out / "metrics.json");
 }
 
 }  // namespace contour

@@ -119,7 +119,7 @@ TEST(RunMetrics, FirstTurnIsNotScored) {
 }
 
 TEST(RunMetrics, WithoutTruthTheTableIsUnknown) {
-  const RunMetrics m = Score(CirclePlan(), [](ScoredRow& row) { row.axes[1].table_m = kUnknown; });
+  const RunMetrics m = Score(CirclePlan(), [](ScoredRow& row) { row.axes[1].table_m = kNoTruth; });
   EXPECT_FALSE(m.table.rms_um.has_value());
   EXPECT_FALSE(m.table.quadrant_peak_um.has_value());
   EXPECT_TRUE(m.encoder.rms_um.has_value());
