@@ -7,6 +7,7 @@
 #include "daemon/program_limits.h"
 #include "daemon/reason_text.h"
 #include "drivers/cia301/bring_up_text.h"
+#include "tools/machine/placements.h"
 
 namespace contour {
 namespace {
@@ -33,27 +34,11 @@ class VirtualMachine::TruthMemory final : public TruthSink {
   std::array<TruthRow, 8> rows_{};
 };
 
-std::vector<EmulatedAxisPlacement> Placements(const MachineConfig& machine) {
-  std::vector<EmulatedAxisPlacement> out;
-  for (const auto& [name, axis] : machine.axes) {
-    EmulatedAxisPlacement p;
-    p.name = name;
-    p.bus = BusIndex(machine, axis.drive.bus);
-    p.node_id = static_cast<std::uint8_t>(axis.drive.node_id);
-    p.lead_mm = axis.model.mechanics.lead_mm;
-    p.rated_torque_Nm = axis.drive.rated_torque_Nm;
-    p.peak_torque_Nm = axis.drive.peak_torque_Nm;
-    p.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
-    out.push_back(p);
-  }
-  return out;
-}
-
 VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName controller)
     : axis_names_(AxisNames(file.machine)),
       bus_names_(BusNames(file.machine)),
       limits_(ProgramLimits(file.machine)),
-      emulated_(file.emulator, Placements(file.machine),
+      emulated_(file.emulator, EmulatedPlacements(file.machine),
                 static_cast<std::uint32_t>(file.machine.machine.cycle_us)),
       truths_(std::make_unique<TruthMemory>()),
       mailbox_(kRequests, kPathPoints),

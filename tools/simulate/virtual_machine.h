@@ -78,7 +78,4 @@ class VirtualMachine {
   Observer observer_;
 };
 
-/// Where the axes of a machine file sit on its buses, for the emulated machine.
-std::vector<EmulatedAxisPlacement> Placements(const MachineConfig& machine);
-
 }  // namespace contour

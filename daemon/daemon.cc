@@ -1,0 +1,278 @@
+#include "daemon/daemon.h"
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <future>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "config/config_error.h"
+#include "config/load_machine.h"
+#include "core/exit_status.h"
+#include "core/version.h"
+#include "daemon/control_socket/control_server.h"
+#include "daemon/control_socket/socket_path.h"
+#include "daemon/io_adapter.h"
+#include "daemon/logging/logging.h"
+#include "daemon/machine_buses.h"
+#include "daemon/make_cycle_config.h"
+#include "daemon/pump.h"
+#include "daemon/rt/loop.h"
+#include "daemon/rt/thread_setup.h"
+#include "daemon/service_notifier.h"
+#include "daemon/supervisor.h"
+#include "daemon/telemetry/telemetry_hub.h"
+#include "tools/machine/load_emulated_machine.h"
+
+namespace contour {
+namespace {
+
+constexpr std::size_t kTelemetryEntries = 2048;
+constexpr std::size_t kRequests = 16;
+constexpr std::size_t kPathPoints = 4096;
+constexpr std::chrono::milliseconds kWatchPeriod{50};
+
+/// The machine file as the command line changes it.
+MaybeEmulatedMachineFile LoadFile(const DaemonOptions& options) {
+  std::vector<std::string> set = options.set;
+  if (!options.controller.empty()) set.push_back("machine.controller=" + options.controller);
+  if (!options.buses.empty()) {
+    const std::vector<std::string> names = BusNames(LoadMachine(options.config, set));
+    if (options.buses.size() != names.size())
+      throw ConfigError({"--bus: found " + std::to_string(options.buses.size()) +
+                         " interfaces, expected one for each of the " + std::to_string(names.size()) +
+                         " buses of " + options.config});
+    for (std::size_t i = 0; i < names.size(); ++i)
+      set.push_back("buses." + names[i] + ".interface=" + options.buses[i]);
+  }
+  for (const auto& [name, bus] : LoadMachine(options.config, set).buses)
+    if (bus.interface == "loopback") return LoadMaybeEmulatedMachine(options.config, set);
+  // Whatever stands under emulator: is none of the daemon's business on a real bus.
+  return {LoadMachine(options.config, set), false, {}};
+}
+
+LogHeader MakeHeader(const DaemonOptions& options, const MachineConfig& machine) {
+  LogHeader header;
+  header.build = BuildIdentity();
+  header.machine = machine.machine.name;
+  header.controller = Name(machine.machine.controller);
+  header.clock = options.clock;
+  header.start_unix_us = std::chrono::duration_cast<std::chrono::microseconds>(
+                             std::chrono::system_clock::now().time_since_epoch())
+                             .count();
+  header.cycle_us = machine.machine.cycle_us;
+  header.axis_names = AxisNames(machine);
+  header.config_name = options.config;
+  std::ifstream file(options.config, std::ios::binary);
+  header.config_text.assign(std::istreambuf_iterator<char>(file), {});
+  header.overrides = options.set;
+  if (!options.controller.empty()) header.overrides.push_back("machine.controller=" + options.controller);
+  return header;
+}
+
+/// SIGTERM and SIGINT are taken by the main thread alone.
+sigset_t BlockSignals() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  return set;
+}
+
+bool SignalCame(const sigset_t& set) {
+  const timespec wait{0, std::chrono::nanoseconds(kWatchPeriod).count()};
+  return sigtimedwait(&set, nullptr, &wait) > 0;
+}
+
+/// Real time as the machine file asks for it, or why not. Lock-step needs none.
+class RealtimeThread {
+ public:
+  RealtimeThread(Loop& loop, const RealtimeConfig& config, bool lockstep) : loop_(loop), lockstep_(lockstep) {
+    request_ = {config.priority, config.cpu, config.lock_memory};
+  }
+  ~RealtimeThread() { Join(); }
+
+  /// What was refused.
+  std::vector<std::string> Start() {
+    std::future<std::vector<std::string>> refused = refused_.get_future();
+    thread_ = std::thread([this] { Work(); });
+    return refused.get();
+  }
+  /// Let the loop run, or give it up.
+  void Go(bool go) { go_.set_value(go); }
+  [[nodiscard]] bool ended() const { return ended_; }
+  void Join() {
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  void Work() {
+    pthread_setname_np(pthread_self(), "contour-rt");
+    refused_.set_value(lockstep_ ? std::vector<std::string>() : ApplyThreadRequest(request_));
+    if (go_.get_future().get()) {
+      if (lockstep_) {
+        loop_.RunLockstep();
+      } else {
+        loop_.RunWall();
+      }
+    }
+    ended_ = true;
+  }
+
+  Loop& loop_;
+  bool lockstep_;
+  ThreadRequest request_;
+  std::promise<std::vector<std::string>> refused_;
+  std::promise<bool> go_;
+  std::atomic<bool> ended_{false};
+  std::thread thread_;
+};
+
+/// Everything of a running daemon, in the order in which it is taken down again.
+class Daemon {
+ public:
+  Daemon(const DaemonOptions& options, const MaybeEmulatedMachineFile& file)
+      : options_(options),
+        machine_(file.machine),
+        buses_(machine_, file.has_emulator ? std::optional(file.emulator) : std::nullopt, options.truth),
+        mailbox_(kRequests, kPathPoints),
+        queue_(kTelemetryEntries),
+        hub_(machine_.telemetry, machine_.machine.cycle_us, AxisNames(machine_), LogTarget()),
+        pump_(queue_, mailbox_, hub_, machine_.machine.cycle_us * 1e-6, AxisNames(machine_),
+              BusNames(machine_)),
+        cycle_(MakeCycleConfig(machine_, machine_.machine.controller)) {
+    if (machine_.io.modbus) {
+      io_client_ = std::make_unique<IoClient>(*machine_.io.modbus);
+      io_ = std::make_unique<IoAdapter>(*io_client_);
+      pump_.ReportMotionTo(
+          [this](double travel_m, double moving_s) { io_client_->ReportMotion(travel_m, moving_s); });
+    } else {
+      io_ = std::make_unique<NoIo>();
+    }
+    pump_.AlsoDrain([this] { buses_.DrainTruth(); });
+    const Loop::Config loop{std::int64_t{1000} * machine_.machine.cycle_us, SendDeadline_ns(machine_)};
+    loop_ = std::make_unique<Loop>(loop, cycle_, buses_.all(), mailbox_, *io_, queue_);
+  }
+
+  int Run(const sigset_t& signals) {
+    const bool lockstep = options_.clock == "lockstep";
+    if (lockstep && !buses_.all_virtual())
+      throw ConfigError(
+          {"--clock lockstep: found a real bus, expected loopback or vcan only: a real machine does not "
+           "wait"});
+    RealtimeThread thread(*loop_, machine_.realtime, lockstep);
+    const std::vector<std::string> refused = thread.Start();
+    for (const std::string& r : refused)
+      spdlog::log(machine_.realtime.required ? spdlog::level::err : spdlog::level::warn, r);
+    if (!refused.empty() && machine_.realtime.required) {
+      thread.Go(false);
+      throw EnvironmentError("the kernel refused real time: " + refused.front() +
+                             ". realtime.required: false in the machine file goes on without");
+    }
+    Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, refused,
+                          {mailbox_, queue_, hub_, pump_, *loop_, buses_.all(), io_client_.get()});
+    ControlServer::Options socket;
+    socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
+    ControlServer server(socket, supervisor);
+    if (io_client_) io_client_->Start();
+    pump_.Start();
+    spdlog::info("{} {}: machine {}, controller {}, cycle {} us, socket {}", "contourd", kVersion,
+                 machine_.machine.name, Name(machine_.machine.controller), machine_.machine.cycle_us,
+                 socket.socket.string());
+    thread.Go(true);
+    server.Start();
+    const int status = Watch(signals, thread);
+    thread.Join();
+    server.Stop();
+    pump_.Finish();
+    if (io_client_) io_client_->Stop();
+    hub_.Close();
+    spdlog::info("ended");
+    return status;
+  }
+
+ private:
+  std::optional<TelemetryHub::LogTarget> LogTarget() const {
+    if (options_.log.empty()) return std::nullopt;
+    return TelemetryHub::LogTarget{options_.log, MakeHeader(options_, machine_)};
+  }
+
+  /// The main thread's work while the loop runs. A first bring-up that fails ends the daemon with status 1.
+  int Watch(const sigset_t& signals, const RealtimeThread& thread) {
+    int status = kExitDone;
+    bool up = false;
+    ServiceNotifier notifier;
+    while (!thread.ended()) {
+      if (SignalCame(signals)) {
+        spdlog::info("asked to end by a signal");
+        notifier.Stopping();
+        mailbox_.PostTerminate();
+      }
+      const CycleRecord record = hub_.record();
+      notifier.Status(std::string(Name(record.state)) + (record.reason == Reason::kNone
+                                                             ? std::string()
+                                                             : ": " + std::string(Name(record.reason))));
+      notifier.Alive(loop_->counters().cycles.load());
+      if (record.state == MachineState::kIdle) {
+        notifier.Ready();
+        up = true;
+      }
+      if (!up && status == kExitDone && record.state == MachineState::kFaulted) {
+        status = kExitFailed;
+        mailbox_.PostTerminate();
+      }
+    }
+    return status;
+  }
+
+  DaemonOptions options_;
+  MachineConfig machine_;
+  MachineBuses buses_;
+  CommandMailbox mailbox_;
+  TelemetryQueue queue_;
+  TelemetryHub hub_;
+  Pump pump_;
+  Cycle cycle_;
+  std::unique_ptr<IoClient> io_client_;
+  std::unique_ptr<IoSource> io_;
+  std::unique_ptr<Loop> loop_;
+};
+
+spdlog::level::level_enum ToSpdlog(LogLevel level) {
+  switch (level) {
+    case LogLevel::kDebug:
+      return spdlog::level::debug;
+    case LogLevel::kInfo:
+      return spdlog::level::info;
+    case LogLevel::kWarning:
+      return spdlog::level::warn;
+    case LogLevel::kError:
+      return spdlog::level::err;
+  }
+  return spdlog::level::info;
+}
+
+}  // namespace
+
+int RunDaemon(const DaemonOptions& options) {
+  const MaybeEmulatedMachineFile file = LoadFile(options);
+  LoggingOptions logging;
+  logging.level = ToSpdlog(file.machine.logging.level);
+  if (!file.machine.logging.file.empty()) logging.file = file.machine.logging.file;
+  SetUpLogging(logging);
+  // Before any thread starts, so that all inherit it.
+  const sigset_t signals = BlockSignals();
+  Daemon daemon(options, file);
+  return daemon.Run(signals);
+}
+
+}  // namespace contour

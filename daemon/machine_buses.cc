@@ -1,0 +1,72 @@
+#include "daemon/machine_buses.h"
+
+#include <spdlog/spdlog.h>
+
+#include "config/config_error.h"
+#include "config/interfaces.h"
+#include "drivers/can/loopback_bus.h"
+#include "drivers/can/socketcan_bus.h"
+#include "tools/machine/placements.h"
+
+namespace contour {
+namespace {
+
+constexpr const char* kLoopback = "loopback";
+
+std::size_t LoopbackCount(const MachineConfig& machine) {
+  std::size_t count = 0;
+  for (const auto& [name, bus] : machine.buses) count += bus.interface == kLoopback ? 1U : 0U;
+  return count;
+}
+
+}  // namespace
+
+MachineBuses::MachineBuses(const MachineConfig& machine, const std::optional<EmulatorConfig>& emulator,
+                           const std::string& truth_file) {
+  const std::size_t loopbacks = LoopbackCount(machine);
+  if (loopbacks != 0 && loopbacks != machine.buses.size())
+    throw ConfigError(
+        {"buses: some are loopback and some are not; expected all or none, the emulated machine is one"});
+  if (loopbacks == 0) {
+    if (!truth_file.empty())
+      throw ConfigError(
+          {"--truth: only the in-process emulated machine (bus loopback) tells its truth here; expected "
+           "--truth "
+           "at `contour emulate`"});
+    RequireInterfaces(machine);
+    for (const auto& [name, bus] : machine.buses) {
+      all_virtual_ = all_virtual_ && IsVirtualCan(bus.interface);
+      buses_.push_back(std::make_unique<SocketCanBus>(bus.interface));
+      pointers_.push_back(buses_.back().get());
+    }
+    return;
+  }
+  if (!emulator)
+    throw ConfigError({"buses: loopback needs the section emulator: in the machine file; found none"});
+  emulated_ = std::make_unique<EmulatedMachine>(*emulator, EmulatedPlacements(machine),
+                                                static_cast<std::uint32_t>(machine.machine.cycle_us));
+  if (emulator->io) io_server_ = std::make_unique<ModbusIoServer>(*emulator->io);
+  if (!truth_file.empty()) {
+    relay_ = std::make_unique<TruthRelay>(truth_file, AxisNames(machine));
+    emulated_->SetTruthSink(relay_.get());
+  }
+  std::size_t index = 0;
+  for (const auto& [name, bus] : machine.buses) {
+    std::vector<BusNode*> nodes;
+    if (index < emulated_->bus_count()) nodes.push_back(&emulated_->node(index));
+    buses_.push_back(std::make_unique<LoopbackBus>(bus.bitrate_bit_s, std::move(nodes)));
+    pointers_.push_back(buses_.back().get());
+    ++index;
+  }
+}
+
+MachineBuses::~MachineBuses() {
+  if (emulated_) emulated_->SetTruthSink(nullptr);
+}
+
+void MachineBuses::DrainTruth() {
+  if (relay_) relay_->Drain();
+  if (relay_ && relay_->lost() != 0) spdlog::warn("{} rows of truth were lost", relay_->lost());
+}
+
+}  // namespace contour

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/machine_config.h"
+#include "daemon/truth_relay.h"
+#include "drivers/can/frame_bus.h"
+#include "tools/plant_emulator/emulated_machine.h"
+#include "tools/plant_emulator/modbus_io_server.h"
+
+namespace contour {
+
+/// The buses of a machine: SocketCAN interfaces, or, when all are `loopback`, in-process buses with the
+/// emulated machine on them.
+class MachineBuses {
+ public:
+  /// `emulator` is needed for loopback only. Throws ConfigError (loopback mixed with real buses, no emulator
+  /// section), EnvironmentError or BusUnavailable.
+  MachineBuses(const MachineConfig& machine, const std::optional<EmulatorConfig>& emulator,
+               const std::string& truth_file);
+  ~MachineBuses();
+
+  [[nodiscard]] const std::vector<FrameBus*>& all() const { return pointers_; }
+  [[nodiscard]] bool loopback() const { return emulated_ != nullptr; }
+  /// Every bus is in-process or virtual CAN.
+  [[nodiscard]] bool all_virtual() const { return all_virtual_; }
+  /// Writes what the emulated machine has told; not for the real-time thread.
+  void DrainTruth();
+
+ private:
+  std::unique_ptr<EmulatedMachine> emulated_;
+  std::unique_ptr<ModbusIoServer> io_server_;
+  std::unique_ptr<TruthRelay> relay_;
+  std::vector<std::unique_ptr<FrameBus>> buses_;
+  std::vector<FrameBus*> pointers_;
+  bool all_virtual_ = true;
+};
+
+}  // namespace contour

@@ -1,0 +1,118 @@
+#include "daemon/pump.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "daemon/reason_text.h"
+#include "drivers/cia301/bring_up_text.h"
+
+namespace contour {
+namespace {
+
+constexpr std::chrono::milliseconds kPeriod{2};
+
+bool Given(MachineState s) {
+  return s == MachineState::kFaulted || s == MachineState::kIdle || s == MachineState::kStopping;
+}
+
+}  // namespace
+
+Pump::Pump(TelemetryQueue& queue, CommandMailbox& mailbox, TelemetryHub& hub, double period_s,
+           std::vector<std::string> axis_names, std::vector<std::string> bus_names)
+    : queue_(queue),
+      hub_(hub),
+      axis_names_(std::move(axis_names)),
+      bus_names_(std::move(bus_names)),
+      feeder_(mailbox),
+      period_s_(period_s) {}
+
+Pump::~Pump() { Finish(); }
+
+void Pump::Start() { thread_ = std::thread(&Pump::Work, this); }
+
+void Pump::Finish() {
+  finish_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+void Pump::Supply(std::unique_ptr<PathGenerator> generator) {
+  const std::scoped_lock lock(mutex_);
+  next_ = std::move(generator);
+  abandon_ = false;
+}
+
+void Pump::Abandon() {
+  const std::scoped_lock lock(mutex_);
+  next_.reset();
+  abandon_ = true;
+}
+
+void Pump::Work() {
+  while (!finish_) {
+    Drain();
+    Feed();
+    std::this_thread::sleep_for(kPeriod);
+  }
+  Drain();
+  hub_.Flush();
+}
+
+void Pump::Drain() {
+  while (CycleEntry* entry = queue_.Front()) {
+    hub_.Consume(*entry);
+    Report(entry->output.record);
+    MeasureMotion(entry->output.record);
+    queue_.Release();
+  }
+  if (report_motion_) report_motion_(travel_m_, static_cast<double>(moving_cycles_) * period_s_);
+  if (also_drain_) also_drain_();
+  if (const std::uint64_t dropped = queue_.dropped(); dropped != reported_drops_) {
+    spdlog::warn(
+        "{} cycles did not fit into the telemetry queue and are missing in log and telemetry ({} in all)",
+        dropped - reported_drops_, dropped);
+    reported_drops_ = dropped;
+  }
+}
+
+void Pump::MeasureMotion(const CycleRecord& record) {
+  const bool moving = record.state == MachineState::kRunning || record.state == MachineState::kStopping;
+  if (moving && last_position_m_.size() == record.axes.size()) {
+    ++moving_cycles_;
+    for (std::size_t i = 0; i < record.axes.size(); ++i)
+      travel_m_ += std::abs(record.axes[i].position_m - last_position_m_[i]);
+  }
+  last_position_m_.clear();
+  for (const AxisRecord& a : record.axes) last_position_m_.push_back(a.position_m);
+}
+
+void Pump::Feed() {
+  {
+    const std::scoped_lock lock(mutex_);
+    if (abandon_) {
+      feeder_.Abandon();
+      abandon_ = false;
+    }
+    if (next_) feeder_.Begin(std::move(next_));
+  }
+  feeder_.Feed();
+}
+
+void Pump::Report(const CycleRecord& record) {
+  if (record.state == last_state_ && record.reason == last_reason_) return;
+  // A program that was broken off needs no more points.
+  if (Given(record.state) && last_state_ == MachineState::kRunning) feeder_.Abandon();
+  const std::string text = record.reason == Reason::kBringUpFailed
+                               ? BringUpText(record.bring_up, axis_names_)
+                               : ReasonText(record, axis_names_, bus_names_);
+  const auto level = IsFault(record.reason) && record.state == MachineState::kFaulted ? spdlog::level::err
+                                                                                      : spdlog::level::info;
+  spdlog::log(level, "{} -> {}{}{} (cycle {})", Name(last_state_), Name(record.state),
+              text.empty() ? "" : ": ", text, record.cycle);
+  last_state_ = record.state;
+  last_reason_ = record.reason;
+}
+
+}  // namespace contour

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "daemon/path_feeder.h"
+#include "daemon/rt/command_mailbox.h"
+#include "daemon/rt/telemetry_queue.h"
+#include "daemon/telemetry/telemetry_hub.h"
+
+namespace contour {
+
+/// The thread on the far side of both doors: empties the telemetry queue into the hub, writes what changed to
+/// the text log, and keeps the path queue filled.
+class Pump {
+ public:
+  Pump(TelemetryQueue& queue, CommandMailbox& mailbox, TelemetryHub& hub, double period_s,
+       std::vector<std::string> axis_names, std::vector<std::string> bus_names);
+  ~Pump();
+
+  /// Something else to empty on this thread, such as the truth of an emulated machine. Before Start().
+  void AlsoDrain(std::function<void()> drain) { also_drain_ = std::move(drain); }
+  /// Is told the totals of travel (all axes) and of time in motion. Before Start().
+  void ReportMotionTo(std::function<void(double travel_m, double moving_s)> report) {
+    report_motion_ = std::move(report);
+  }
+  void Start();
+  /// Empties what is left and ends the thread.
+  void Finish();
+
+  /// Supply this program's points until they are all handed over or the program is abandoned.
+  void Supply(std::unique_ptr<PathGenerator> generator);
+  void Abandon();
+
+ private:
+  void Work();
+  void Drain();
+  void Feed();
+  void Report(const CycleRecord& record);
+  void MeasureMotion(const CycleRecord& record);
+
+  TelemetryQueue& queue_;
+  TelemetryHub& hub_;
+  std::vector<std::string> axis_names_;
+  std::vector<std::string> bus_names_;
+  PathFeeder feeder_;  ///< pump thread only
+  std::mutex mutex_;   ///< guards next_ and abandon_
+  std::unique_ptr<PathGenerator> next_;
+  bool abandon_ = false;
+  MachineState last_state_ = MachineState::kOff;
+  Reason last_reason_ = Reason::kNone;
+  std::uint64_t reported_drops_ = 0;
+  std::function<void()> also_drain_;
+  std::function<void(double, double)> report_motion_;
+  double travel_m_ = 0.0;
+  std::uint64_t moving_cycles_ = 0;
+  PerAxis<double> last_position_m_;
+  double period_s_;
+  std::atomic<bool> finish_{false};
+  std::thread thread_;
+};
+
+}  // namespace contour
