@@ -32,8 +32,10 @@ MAY_INCLUDE = {
     "tools": [*FLOOR_1, "config", "daemon", "tools/plant_emulator"],
     "tests": [*FLOOR_1, "config", "daemon", "tools"],
 }
-# The daemon's program joins the parts: it alone knows the emulated machine, for the bus `loopback`.
-PROGRAMS_MAY_INCLUDE = {"daemon/main.cc": ["tools/plant_emulator", "tools/machine"]}
+# The daemon's program joins the parts: these files alone know the emulated machine, for the bus `loopback`.
+EMULATED_MACHINE = ["tools/plant_emulator", "tools/machine"]
+PROGRAM_FILES = ["daemon/main.cc", "daemon/daemon.cc", "daemon/machine_buses.cc", "daemon/machine_buses.h", "daemon/truth_relay.h"]
+PROGRAMS_MAY_INCLUDE = {name: EMULATED_MACHINE for name in PROGRAM_FILES}
 
 # The real-time side: what would allocate, lock, wait or talk stays out.
 REALTIME = ["core", *RT_DRIVERS, "estimator", "control", "daemon/rt"]
