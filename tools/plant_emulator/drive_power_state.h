@@ -80,8 +80,9 @@ class DrivePowerState {
   void QuickStop() noexcept { state_ = DriveState::kQuickStopActive; }
   void Disable() noexcept { state_ = DriveState::kSwitchOnDisabled; }
   void LeftOperation(DriveState to) noexcept { state_ = to; }
+  /// The self-test takes no time here: Not Ready To Switch On is over before the first message.
   void PowerOn() noexcept {
-    state_ = DriveState::kNotReadyToSwitchOn;
+    state_ = DriveState::kSwitchOnDisabled;
     reset_seen_ = false;
   }
 
@@ -121,7 +122,7 @@ class DrivePowerState {
     return was_on ? Action::kTorqueOff : Action::kNone;
   }
 
-  DriveState state_ = DriveState::kNotReadyToSwitchOn;
+  DriveState state_ = DriveState::kSwitchOnDisabled;
   bool reset_seen_ = false;
 };
 
