@@ -34,14 +34,11 @@ class CyclesFile {
 
   void Add(const CycleEntry& entry, const TruthRow* truth) {
     row_.clear();
-    record_ = entry.output.record;
-    for (std::size_t i = 0; truth != nullptr && i < record_.axes.size(); ++i) {
-      record_.axes[i].feedback.has_scale = true;
-      record_.axes[i].feedback.table_position_m = truth->axes[i].table_position_m;
-    }
-    csv_.AppendRow(record_, entry.timing, row_);
+    csv_.AppendRow(entry.output.record, entry.timing, row_);
     row_.pop_back();
-    for (std::size_t i = 0; i < record_.axes.size(); ++i) {
+    for (std::size_t i = 0; i < entry.output.record.axes.size(); ++i) {
+      row_ += ',';
+      if (truth != nullptr) AppendNumber(truth->axes[i].table_position_m, row_);
       row_ += ',';
       if (truth != nullptr) AppendNumber(truth->axes[i].friction_N, row_);
     }
@@ -58,7 +55,6 @@ class CyclesFile {
   std::filesystem::path file_;
   std::ofstream stream_;
   CycleCsv csv_;
-  CycleRecord record_;
   std::string row_;
 };
 
