@@ -62,7 +62,6 @@ struct DriveConfig {
   std::optional<LinearScaleConfig> linear_scale;
   int delay_cycles = 1;
   double lag_ms = 0.2;
-  double tpdo_delay_us = 0.0;
 
   double notice_ms = 10.0;
   bool rpdo_timeout = true;
@@ -100,8 +99,6 @@ struct DriveConfig {
     v.Optional("delay_cycles", delay_cycles, Range{1, 3},
                "periods from latching a position to the torque computed from it");
     v.Optional("lag_ms", lag_ms, Range{0, 20}, "time constant of the drive's current loop");
-    v.Optional("tpdo_delay_us", tpdo_delay_us, Range{0, 10000},
-               "time the drive takes from SYNC to having its TPDO ready, for the bus check");
 
     v.Optional("notice_ms", notice_ms, Range{2, 1000},
                "within this time the drive notices that the master is silent and stops by itself");

@@ -33,5 +33,48 @@ TEST(ResponseTime, NoBoundWhenOthersTakeTheWholeBus) {
   EXPECT_GT(Load(m, 1'000'000), 1.0);
 }
 
+// Servo layouts at 1 Mbit/s: SYNC, per axis an 8-byte TPDO and a 4-byte RPDO, SDO every 2 ms, heartbeats at
+// 100 ms, and `emergencies` axes that send an 8-byte emergency message within the same cycle.
+struct Worst {
+  std::optional<std::int64_t> tpdo_ns;
+  std::optional<std::int64_t> rpdo_ns;
+};
+
+Worst Servo(int axes, std::int64_t cycle_ns, int emergencies) {
+  std::vector<CanMessage> m{{"SYNC", 0x80, 0, cycle_ns, 0}, {"SDO", 0x581, 8, 2 * kMs, 0}};
+  const auto id = [](int base, int n) { return static_cast<std::uint16_t>(base + n); };
+  for (int n = 1; n <= axes; ++n) {
+    if (n <= emergencies) m.push_back({"EMCY", id(0x80, n), 8, 100 * kMs, 0});
+    m.push_back({"TPDO", id(0x180, n), 8, cycle_ns, 0});
+    m.push_back({"RPDO", id(0x200, n), 4, cycle_ns, 0});
+    m.push_back({"heartbeat", id(0x700, n), 1, 100 * kMs, 0});
+  }
+  Worst w;
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    if (m[i].id == id(0x180, axes)) w.tpdo_ns = ResponseTime_ns(m, i, 1'000'000);
+    if (m[i].id == id(0x200, axes)) w.rpdo_ns = ResponseTime_ns(m, i, 1'000'000);
+  }
+  return w;
+}
+
+TEST(ResponseTime, ServoLayouts) {
+  EXPECT_EQ(Servo(1, kMs, 0).tpdo_ns, 325'000);
+  EXPECT_EQ(Servo(1, kMs, 0).rpdo_ns, 420'000);
+  EXPECT_EQ(Servo(1, kMs, 1).tpdo_ns, 460'000);
+  EXPECT_EQ(Servo(1, kMs, 1).rpdo_ns, 555'000);
+  EXPECT_EQ(Servo(2, kMs, 0).tpdo_ns, 460'000);
+  EXPECT_EQ(Servo(2, kMs, 0).rpdo_ns, 650'000);
+  EXPECT_EQ(Servo(2, kMs, 1).rpdo_ns, 785'000);  // leaves 215 us of the cycle
+  EXPECT_EQ(Servo(2, kMs, 2).tpdo_ns, 730'000);
+  EXPECT_EQ(Servo(2, kMs, 2).rpdo_ns, 920'000);
+  EXPECT_EQ(Servo(3, kMs, 0).tpdo_ns, 595'000);
+  EXPECT_EQ(Servo(3, kMs, 0).rpdo_ns, 880'000);
+  EXPECT_GT(Servo(3, kMs, 3).rpdo_ns.value_or(kMs * 10), kMs) << "misses";
+  EXPECT_GT(Servo(4, kMs, 0).rpdo_ns.value_or(kMs * 10), kMs) << "misses";
+  EXPECT_EQ(Servo(4, 2 * kMs, 4).tpdo_ns, 1'270'000);
+  EXPECT_EQ(Servo(4, 2 * kMs, 4).rpdo_ns, 1'650'000);
+  EXPECT_EQ(Servo(4, 2 * kMs, 1).rpdo_ns, 1'245'000);  // leaves 755 us
+}
+
 }  // namespace
 }  // namespace contour

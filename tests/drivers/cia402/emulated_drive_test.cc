@@ -1,13 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <numbers>
+#include <cmath>
 #include <span>
+#include <string>
 
 #include "drivers/can/loopback_bus.h"
 #include "drivers/cia301/bring_up_text.h"
 #include "drivers/cia402/drive_master.h"
 #include "tests/plant_emulator/drive_harness.h"
+#include "tests/support/allocation_guard.h"
 #include "tools/plant_emulator/emulated_machine.h"
 
 // The master and the emulated machine were written apart from each other, from the standards.
@@ -160,6 +162,21 @@ TEST(EmulatedDrive, StopsByItselfWhenTheBusIsGone) {
   ASSERT_TRUE(m.BringUp()) << m.Text();
   ASSERT_TRUE(m.Reach(DriveGoal::kFaultReset));
   ASSERT_TRUE(m.Reach(DriveGoal::kEnabled));
+}
+
+TEST(EmulatedDrive, TheWholeWayTouchesNoHeap) {
+  if (!AllocationGuard::kAvailable) GTEST_SKIP() << "the sanitizer owns the heap";
+  Machine m;
+  const AllocationGuard guard;
+  const bool up = m.BringUp();
+  const bool enabled = up && m.Reach(DriveGoal::kEnabled);
+  m.Cycles(100);
+  m.emulated.InjectFault(0, 0x3210);
+  m.Cycles(20);
+  m.Reach(DriveGoal::kQuickStop, 50);
+  m.Reach(DriveGoal::kFaultReset);
+  EXPECT_EQ(guard.calls(), 0u);
+  EXPECT_TRUE(enabled) << m.Text();
 }
 
 }  // namespace
