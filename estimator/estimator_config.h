@@ -8,14 +8,14 @@ namespace contour {
 /// deviations of what one millisecond adds; other cycle times scale with the square root of the period.
 /// What each does and why it has its value: docs/estimator.md.
 struct EstimatorConfig {
-  double position_noise_um = 1e-4;
-  double velocity_noise_mm_s = 0.03;
-  double bristle_noise_N = 1.75;
-  double level_noise_N = 0.1;
-  double four_state_level_noise_N = 0.5;
-  double disturbance_noise_N = 0.5;
-  double log_sigma0_noise = 0.002;
-  double measurement_noise_um = 0.02;
+  double position_noise_um = 1.5e-5;
+  double velocity_noise_mm_s = 0.003;
+  double bristle_noise_N = 0.26;
+  double level_noise_N = 0.015;
+  double four_state_level_noise_N = 0.075;
+  double disturbance_noise_N = 0.075;
+  double log_sigma0_noise = 0.0003;
+  double measurement_noise_um = 0.003;
   double disturbance_decay_ms = 200.0;
   double motion_gate_mm_s = 2.0;
   double log_sigma0_range = 1.5;
@@ -26,6 +26,7 @@ struct EstimatorConfig {
   double ripple_rate = 0.1;
   double initial_level_std = 0.2;
   double initial_log_sigma0_std = 0.5;
+  double mass_std = 0.05;
   bool adapt = true;
 
   template <class Visitor>
@@ -59,6 +60,8 @@ struct EstimatorConfig {
                "relative uncertainty of the commissioned friction levels");
     v.Optional("initial_log_sigma0_std", initial_log_sigma0_std, Range{0.0, 3.0},
                "uncertainty of the logarithm of the commissioned bristle stiffness");
+    v.Optional("mass_std", mass_std, Range{0.0, 1.0},
+               "relative uncertainty of the moving mass, for the band of the friction estimate");
     v.Optional("adapt", adapt, kAny, "false: friction levels and stiffness keep their commissioned values");
   }
 };

@@ -8,6 +8,9 @@ namespace {
 // Presliding: the bristle is well below the level it would slip at.
 constexpr double kPreslidingShare = 0.7;
 
+// Mean of the squared, normalised innovations over about a hundred cycles.
+constexpr double kSurpriseShare = 0.01;
+
 }  // namespace
 
 template <class Core>
@@ -67,6 +70,7 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   core_.s = {};
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = std[i];
   last_position_m_ = position_m;
+  surprise_ = 1.0;
   lag_.Reset();
   predicted_ = x;
   gated_in_a_row_ = 0;
@@ -78,8 +82,9 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
 template <class Core>
 double SevenStateFilter<Core>::WindUpShare_m(const X& x, double force_N) const noexcept {
   const Mechanics& m = setup_.mechanics;
-  const double friction = x[kBristle] + model_.sigma2_Ns_m() * x[kVelocity];
-  const double acceleration = (force_N - friction - x[kDisturbance]) / m.mass_kg;
+  const double total = model_.Friction_N(x, Input(x, {}));
+  const double friction = total - x[kDisturbance];
+  const double acceleration = (force_N - total) / m.mass_kg;
   return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
 }
 
@@ -92,7 +97,7 @@ void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   const auto adapted = Adapted(in.at_rest);
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
 
-  const SevenStateInput input = Input(lag_.Step(in.force_N[1]));
+  const SevenStateInput input = Input(x, lag_.Step(in.force_N[1]));
   if constexpr (requires { core_.Draw(std::declval<SigmaPoints<kSevenStates>&>()); }) {
     core_.Predict([&](SigmaPoints<kSevenStates>& points) noexcept { model_.Propagate(points, input); },
                   noise);
@@ -143,16 +148,22 @@ bool SevenStateFilter<Core>::Bound() noexcept {
 template <class Core>
 void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
   predicted_ = core_.x;
-  model_.Propagate(predicted_, Input(lag_.Look(in.force_N[0])));
-  // On to the middle of [t(k), t(k+1)); the torque that acts there is being computed: the newest stands for
-  // it.
-  X middle = predicted_;
-  const std::array<double, kSubsteps> force_N{in.force_N[0], in.force_N[0]};
+  model_.Propagate(predicted_, Input(predicted_, lag_.Look(in.force_N[0])));
+  // On to the end of [t(k), t(k+1)), for the middle of it. The torque that acts there is being computed: the
+  // newest stands for it.
   X end = predicted_;
-  model_.Propagate(end, Input(force_N));
-  friction_ahead_N_ = 0.5 * (middle[kBristle] + end[kBristle]) +
-                      0.5 * (middle[kDisturbance] + end[kDisturbance]) +
-                      model_.sigma2_Ns_m() * 0.5 * (middle[kVelocity] + end[kVelocity]);
+  model_.Propagate(end, Input(end, {in.force_N[0], in.force_N[0]}));
+  friction_ahead_N_ =
+      0.5 * (model_.Friction_N(predicted_, Input(predicted_, {})) + model_.Friction_N(end, Input(end, {})));
+}
+
+// The covariance says what noise does. Innovations larger than it expects (a wrong model) widen the band in
+// proportion, and a wrong mass is seen by nothing but the acceleration it is multiplied with.
+template <class Core>
+double SevenStateFilter<Core>::FrictionStd_N(double acceleration_m_s2) const noexcept {
+  const double filter_N = core_.Std({0.0, model_.sigma2_Ns_m(), 1.0, 1.0, 0.0, 0.0, 0.0});
+  const double mass_N = setup_.config.mass_std * setup_.mechanics.mass_kg * acceleration_m_s2;
+  return std::sqrt(std::max(1.0, surprise_) * filter_N * filter_N + mass_N * mass_N);
 }
 
 template <class Core>
@@ -167,6 +178,10 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
     if (in.fresh) {
       const UpdateResult result = MeasurementUpdate(in, innovation);
       gated_in_a_row_ = result == UpdateResult::kGated ? gated_in_a_row_ + 1 : 0;
+      if (result == UpdateResult::kOk) {
+        const double ratio = innovation.value / innovation.std;
+        surprise_ += kSurpriseShare * (ratio * ratio - surprise_);
+      }
       if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
       if (gated_in_a_row_ >= kGatedBeforeRestart) {
         last_position_m_ = in.position_m;
@@ -180,7 +195,6 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   LookAhead(in);
 
   const auto& x = core_.x;
-  const double sigma2 = model_.sigma2_Ns_m();
   const double wind_up = WindUpShare_m(x, lag_.force_N());
   out.position_m = x[kPosition] + wind_up;
   out.velocity_m_s = x[kVelocity];
@@ -188,8 +202,8 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   out.predicted_velocity_m_s = predicted_[kVelocity];
   out.bristle_N = x[kBristle];
   out.disturbance_N = x[kDisturbance];
-  out.friction_N = x[kBristle] + x[kDisturbance] + sigma2 * x[kVelocity];
-  out.friction_std_N = core_.Std({0.0, sigma2, 1.0, 1.0, 0.0, 0.0, 0.0});
+  out.friction_N = model_.Friction_N(x, Input(x, {}));
+  out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
   out.g_plus_N = x[kLevelPlus];
   out.g_minus_N = x[kLevelMinus];
   out.sigma0_N_m = setup_.friction.sigma0_N_m * Exp(x[kLogSigma0]);

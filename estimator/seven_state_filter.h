@@ -42,13 +42,14 @@ class SevenStateFilter {
   /// Friction (bristle, viscous, disturbance) in the middle of the interval in which the next torque acts.
   [[nodiscard]] double FrictionAhead_N() const noexcept { return friction_ahead_N_; }
   /// Level G in the direction of motion, Stribeck and ripple included.
-  [[nodiscard]] double Level_N() const noexcept { return model_.Level(core_.x, Input({})); }
+  [[nodiscard]] double Level_N() const noexcept { return model_.Level(core_.x, Input(core_.x, {})); }
 
  private:
   using X = StateVector<kSevenStates>;
 
-  [[nodiscard]] SevenStateInput Input(const std::array<double, kSubsteps>& force_N) const noexcept {
-    return {force_N, ripple_plus_, ripple_minus_};
+  [[nodiscard]] SevenStateInput Input(const X& x,
+                                      const std::array<double, kSubsteps>& force_N) const noexcept {
+    return {force_N, ripple_plus_, ripple_minus_, model_.Sigma1_Ns_m(x[kVelocity])};
   }
   void Follow(double position_m) noexcept;
   void TimeUpdate(const AxisEstimatorInput& in) noexcept;
@@ -56,6 +57,7 @@ class SevenStateFilter {
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
   bool Bound() noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
+  [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
   [[nodiscard]] double WindUpShare_m(const X& x, double force_N) const noexcept;
 
   FilterSetup setup_;
@@ -71,6 +73,7 @@ class SevenStateFilter {
   double ripple_minus_ = 1.0;
   double friction_ahead_N_ = 0.0;
   double last_position_m_ = 0.0;
+  double surprise_ = 1.0;  // mean square of innovation / its standard deviation
   std::uint32_t gated_in_a_row_ = 0;
   bool following_ = true;
 };

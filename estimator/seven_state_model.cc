@@ -23,7 +23,7 @@ void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, con
   const double per_minus = in.ripple_minus;
   const double more_plus = (ratio_plus_ - 1.0) * per_plus;
   const double more_minus = (ratio_minus_ - 1.0) * per_minus;
-  Row shape;
+  Row shape, damping;
   for (std::size_t k = 0; k < n; ++k) shape[k] = std::abs(v[k]) * inverse_vs;
   if (friction_.stribeck_exponent == 2.0) {
     for (std::size_t k = 0; k < n; ++k) shape[k] *= shape[k];
@@ -36,10 +36,12 @@ void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, con
     const double level_minus = gm[k] * (per_minus + more_minus * shape[k]);
     const double level = std::max(v[k] >= 0.0 ? level_plus : level_minus, kLeastLevel_N);
     const double target = v[k] >= 0.0 ? level : -level;
-    f[k] -= (target - f[k]) * Expm1(-s0[k] * std::abs(v[k]) * step_s_ / level);
+    const double per_level = std::abs(v[k]) / level;
+    f[k] -= (target - f[k]) * Expm1(-s0[k] * per_level * step_s_);
+    damping[k] = in.sigma1_Ns_m * (v[k] - per_level * f[k]);
   }
   for (std::size_t k = 0; k < n; ++k) {
-    const double next = velocity_decay_ * v[k] + velocity_gain_ * (force_N - f[k] - d[k]);
+    const double next = velocity_decay_ * v[k] + velocity_gain_ * (force_N - f[k] - damping[k] - d[k]);
     p[k] += 0.5 * step_s_ * (v[k] + next);
     v[k] = next;
     d[k] *= leak_;
@@ -75,6 +77,18 @@ double SevenStateModel::Level(const StateVector<kSevenStates>& x, const SevenSta
                   kLeastLevel_N);
 }
 
+double SevenStateModel::Sigma1_Ns_m(double velocity_m_s) const noexcept {
+  const double u = velocity_m_s / friction_.sigma1_decay_m_s;
+  return friction_.sigma1_Ns_m * Exp(-u * u);
+}
+
+double SevenStateModel::Friction_N(const StateVector<kSevenStates>& x,
+                                   const SevenStateInput& in) const noexcept {
+  const double v = x[kVelocity];
+  const double damping = in.sigma1_Ns_m * (v - std::abs(v) * x[kBristle] / Level(x, in));
+  return x[kBristle] + damping + sigma2_ * v + x[kDisturbance];
+}
+
 void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& t,
                                        const SevenStateInput& in) const noexcept {
   const double s0 = friction_.sigma0_N_m * Exp(x[kLogSigma0]);
@@ -104,8 +118,15 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
     const double f_l = by_a * a;
 
     x[kBristle] += gap * relaxed;
+    // Damping c = sigma1 (v - |v| F+ / G).
+    const double per_level = speed / level;
+    const double c_f = -in.sigma1_Ns_m * per_level;
+    const double share = x[kBristle] / level;
+    const double c_v = in.sigma1_Ns_m * (1.0 - sign * share + per_level * share * level_v);
+    const double c_g = in.sigma1_Ns_m * per_level * share * per_g;
+    const double damping = in.sigma1_Ns_m * (x[kVelocity] - per_level * x[kBristle]);
     const double next =
-        velocity_decay_ * x[kVelocity] + velocity_gain_ * (force_N - x[kBristle] - x[kDisturbance]);
+        velocity_decay_ * x[kVelocity] + velocity_gain_ * (force_N - x[kBristle] - damping - x[kDisturbance]);
     x[kPosition] += 0.5 * h * (x[kVelocity] + next);
     x[kVelocity] = next;
     x[kDisturbance] *= leak_;
@@ -114,7 +135,8 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
     for (std::size_t k = 0; k < kSevenStates; ++k) {
       const double f =
           f_f * t[kBristle][k] + f_v * t[kVelocity][k] + f_g * active[k] + f_l * t[kLogSigma0][k];
-      const double v = velocity_decay_ * t[kVelocity][k] - velocity_gain_ * (f + t[kDisturbance][k]);
+      const double c = c_f * f + c_v * t[kVelocity][k] + c_g * active[k];
+      const double v = velocity_decay_ * t[kVelocity][k] - velocity_gain_ * (f + c + t[kDisturbance][k]);
       t[kPosition][k] += 0.5 * h * (t[kVelocity][k] + v);
       t[kVelocity][k] = v;
       t[kBristle][k] = f;

@@ -29,13 +29,15 @@ struct SevenStateInput {
   std::array<double, kSubsteps> force_N{};  ///< mean force of the drive in each substep
   double ripple_plus = 1.0;                 ///< factor of the level at this place, per direction
   double ripple_minus = 1.0;
+  double sigma1_Ns_m = 0.0;  ///< bristle damping at the speed of this period
 };
 
-/// One rigid axis with LuGre friction in two substeps per period; sigma1 is left out (it costs almost
-/// nothing).
+/// One rigid axis with LuGre friction in two substeps per period:
 ///   F+ = F + (sgn(v) G - F) (1 - exp(-sigma0 |v| h / G)),  G = g(dir) Stribeck(v) ripple(p)
-///   v+ = A v + B (u - F+ - d),  A = exp(-sigma2 h / m),  B = (1 - A) / sigma2,   p+ = p + h (v + v+) / 2
-/// The new F goes into the velocity update (eq. 9 as printed is unstable in presliding).
+///   v+ = A v + B (u - F+ - sigma1 (v - |v| F+ / G) - d),  A = exp(-sigma2 h / m),  B = (1 - A) / sigma2
+///   p+ = p + h (v + v+) / 2
+/// The new F goes into the velocity update (eq. 9 as printed is unstable in presliding). sigma1 fades with
+/// speed, exp(-(v / vd)^2); it is taken at the mean speed and is the same for all sigma points.
 class SevenStateModel {
  public:
   SevenStateModel() noexcept = default;
@@ -54,6 +56,13 @@ class SevenStateModel {
 
   /// Level G that holds in this state.
   [[nodiscard]] double Level(const StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept;
+
+  /// Bristle damping at this speed.
+  [[nodiscard]] double Sigma1_Ns_m(double velocity_m_s) const noexcept;
+
+  /// Bristle, its damping, viscous friction and disturbance together.
+  [[nodiscard]] double Friction_N(const StateVector<kSevenStates>& x,
+                                  const SevenStateInput& in) const noexcept;
 
   [[nodiscard]] double sigma2_Ns_m() const noexcept { return sigma2_; }
   [[nodiscard]] const Friction& friction() const noexcept { return friction_; }

@@ -36,7 +36,9 @@ TEST(SevenStateModel, OnePeriodMatchesAFineIntegration) {
       X x = RandomState(random, speed);
       // Away from a reversal within the period, where two substeps are not meant to follow.
       x[kVelocity] = std::copysign(std::abs(x[kVelocity]) + 0.2 * speed, x[kVelocity]);
-      const SevenStateInput in{{60.0, 40.0}, 1.05, 0.9};
+      const double sigma1 = 3000.0 * std::exp(-std::pow(x[kVelocity] / 2e-3, 2));
+      const SevenStateInput in{{60.0, 40.0}, 1.05, 0.9, sigma1};
+      EXPECT_NEAR(model.Sigma1_Ns_m(x[kVelocity]), sigma1, 1e-9);
       X coarse = x;
       model.Propagate(coarse, in);
 
@@ -50,7 +52,7 @@ TEST(SevenStateModel, OnePeriodMatchesAFineIntegration) {
         const double g = fc * (1 + (ratio - 1) * std::exp(-std::pow(std::abs(v) / 2e-3, exponent)));
         const double s0 = 5e6 * std::exp(x[kLogSigma0]);
         const double dF = s0 * (v - std::abs(v) * F / g);
-        const double dv = (u - F - 500 * v - d) / mass;
+        const double dv = (u - F - sigma1 * dF / s0 - 500 * v - d) / mass;
         p += h * v + 0.5 * h * h * dv;
         F += h * dF;
         v += h * dv;
@@ -80,7 +82,7 @@ TEST(SevenStateModel, AllSigmaPointsMoveLikeSingleStates) {
     single[c] = RandomState(random, 1e-3);
     for (std::size_t i = 0; i < kSevenStates; ++i) points.row[i][c] = single[c][i];
   }
-  const SevenStateInput in{{50.0, 55.0}, 1.02, 0.97};
+  const SevenStateInput in{{50.0, 55.0}, 1.02, 0.97, 2000.0};
   model.Propagate(points, in);
   for (std::size_t c = 0; c < single.size(); ++c) {
     model.Propagate(single[c], in);
@@ -96,7 +98,7 @@ TEST(SevenStateModel, TangentIsTheDerivative) {
     for (int trial = 0; trial < 100; ++trial) {
       X x = RandomState(random, 5e-3);
       if (std::abs(x[kVelocity]) < 1.5e-3) x[kVelocity] = std::copysign(1.5e-3, x[kVelocity]);
-      const SevenStateInput in{{50.0, 30.0}, 1.1, 0.93};
+      const SevenStateInput in{{50.0, 30.0}, 1.1, 0.93, 2500.0};
       X mean = x;
       SquareMatrix<kSevenStates> jacobian{};
       for (std::size_t i = 0; i < kSevenStates; ++i) jacobian[i][i] = 1.0;
