@@ -17,26 +17,52 @@ typename Riccati<Axes>::Value Riccati<Axes>::TerminalValue(const Problem& proble
 
 template <std::size_t Axes>
 void Riccati<Axes>::Factor(const Problem& problem, const Holding& holding, std::size_t top) noexcept {
-  if (top + 1 == problem.horizon) value_[problem.horizon] = TerminalValue(problem);
+  if (top + 1 == problem.horizon) {
+    value_[problem.horizon] = TerminalValue(problem);
+    has_ties_[problem.horizon] = false;
+    for (std::size_t i = 0; i < Axes; ++i) {
+      const AxisDynamics& d = problem.dynamics[i];
+      coefficients_.a[i] = d.position_from_velocity;
+      coefficients_.e[i] = d.velocity_kept;
+      coefficients_.c[i] = d.position_from_command;
+      coefficients_.b_p[i] = d.position_from_command + d.position_from_velocity * d.velocity_from_command +
+                             d.position_from_previous;
+      coefficients_.b_v[i] = d.velocity_kept * d.velocity_from_command + d.velocity_from_previous;
+    }
+  }
   for (std::size_t j = top + 1; j-- > 0;) FactorStage(problem, holding[j], j);
 }
 
 template <std::size_t Axes>
 void Riccati<Axes>::FactorStage(const Problem& problem, const HeldInputs<Axes>& held,
                                 std::size_t j) noexcept {
+  StageForm form;
+  Value& value = value_[j];
+  Policy& policy = policy_[j];
+  BuildForm(problem, j, form, value);
+  if (has_ties_[j + 1]) AddTies(problem, coefficients_, ties_[j + 1], j, form);
+  bool all_free = true;
+  for (std::size_t i = 0; i < Axes; ++i) {
+    all_free = all_free && held.how[i] == Hold::kFree;
+    policy.curvature[i] = form.uu[i][i];
+  }
+  has_ties_[j] = false;
+  policy.all_free = all_free && Axes <= 2;
+  if (policy.all_free) {
+    ChooseAll(form, value, policy);
+    return;
+  }
+  ChooseFree(held, form, value, policy);
+  has_ties_[j] = FoldHeld(held, form, value, policy, ties_[j]);
+}
+
+// Cost of the stage and cost-to-go of s_{j+1} = A s_j + B u_j + defect, over (u, s).
+template <std::size_t Axes>
+void Riccati<Axes>::BuildForm(const Problem& problem, std::size_t j, StageForm& form,
+                              Value& value) const noexcept {
   const Value& next = value_[j + 1];
   const SquareBlock& weight = problem.stage[j].weight;
-  const auto& dyn = problem.dynamics;
-
-  // s_{j+1} = A s_j + B u_j + defect; b_p, b_v are the rows of B.
-  AxisVector<Axes> a, e, c, b_p, b_v;
-  for (std::size_t i = 0; i < Axes; ++i) {
-    a[i] = dyn[i].position_from_velocity;
-    e[i] = dyn[i].velocity_kept;
-    c[i] = dyn[i].position_from_command;
-    b_p[i] = c[i] + a[i] * dyn[i].velocity_from_command + dyn[i].position_from_previous;
-    b_v[i] = e[i] * dyn[i].velocity_from_command + dyn[i].velocity_from_previous;
-  }
+  const Coefficients& k = coefficients_;
 
   // Gradient of the value at the defect.
   AxisVector<Axes> h_p = next.p, h_v = next.v;
@@ -44,132 +70,174 @@ void Riccati<Axes>::FactorStage(const Problem& problem, const HeldInputs<Axes>& 
     const AxisVector<Axes>& defect_p = problem.stage[j + 1].position_defect;
     const AxisVector<Axes>& defect_v = problem.stage[j + 1].velocity_defect;
     for (std::size_t i = 0; i < Axes; ++i) {
-      for (std::size_t k = 0; k < Axes; ++k) {
-        h_p[i] += next.pp[i][k] * defect_p[k] + next.pv[i][k] * defect_v[k];
-        h_v[i] += next.pv[k][i] * defect_p[k] + next.vv[i][k] * defect_v[k];
+      for (std::size_t m = 0; m < Axes; ++m) {
+        h_p[i] += next.pp[i][m] * defect_p[m] + next.pv[i][m] * defect_v[m];
+        h_v[i] += next.pv[m][i] * defect_p[m] + next.vv[i][m] * defect_v[m];
       }
     }
   }
 
-  // P B, then the quadratic form over (u, s).
-  SquareBlock w_p, w_v;  // [state axis][input axis]
-  for (std::size_t k = 0; k < Axes; ++k) {
+  SquareBlock w_p, w_v;  // P B, [state axis][input axis]
+  for (std::size_t m = 0; m < Axes; ++m) {
     for (std::size_t i = 0; i < Axes; ++i) {
-      w_p[k][i] = next.pp[k][i] * b_p[i] + next.pv[k][i] * b_v[i];
-      w_v[k][i] = next.pv[i][k] * b_p[i] + next.vv[k][i] * b_v[i];
-    }
-  }
-  SquareBlock uu, up, uv;  // [input axis][input, position or velocity axis]
-  AxisVector<Axes> u;
-  for (std::size_t i = 0; i < Axes; ++i) {
-    for (std::size_t k = 0; k < Axes; ++k) {
-      uu[i][k] = b_p[i] * w_p[i][k] + b_v[i] * w_v[i][k] + c[i] * weight[i][k] * c[k];
-      up[i][k] = w_p[k][i] + c[i] * weight[i][k];
-      uv[i][k] = a[k] * w_p[k][i] + e[k] * w_v[k][i];
-    }
-    uu[i][i] += problem.effort[i];
-    u[i] = b_p[i] * h_p[i] + b_v[i] * h_v[i];
-  }
-  if (next.tied) {
-    AxisVector<Axes> defect_p{}, defect_v{};
-    if (j + 1 < problem.horizon) {
-      defect_p = problem.stage[j + 1].position_defect;
-      defect_v = problem.stage[j + 1].velocity_defect;
-    }
-    for (std::size_t i = 0; i < Axes; ++i) {
-      for (std::size_t k = 0; k < Axes; ++k) {
-        uu[i][k] += b_p[i] * next.qp[k][i] + b_v[i] * next.qv[k][i] + b_p[k] * next.qp[i][k] +
-                    b_v[k] * next.qv[i][k] + next.qq[i][k];
-        up[i][k] += next.qp[i][k];
-        uv[i][k] += a[k] * next.qp[i][k] + e[k] * next.qv[i][k];
-        u[i] += next.qp[i][k] * defect_p[k] + next.qv[i][k] * defect_v[k];
-      }
-      u[i] += next.q[i];
-    }
-  }
-
-  Value& value = value_[j];
-  for (std::size_t i = 0; i < Axes; ++i) {
-    for (std::size_t k = 0; k < Axes; ++k) {
-      const double mixed = a[k] * next.pp[i][k] + e[k] * next.pv[i][k];
-      value.pp[i][k] = next.pp[i][k] + weight[i][k];
-      value.pv[i][k] = mixed;
+      w_p[m][i] = next.pp[m][i] * k.b_p[i] + next.pv[m][i] * k.b_v[i];
+      w_v[m][i] = next.pv[i][m] * k.b_p[i] + next.vv[m][i] * k.b_v[i];
     }
   }
   for (std::size_t i = 0; i < Axes; ++i) {
-    for (std::size_t k = 0; k < Axes; ++k) {
-      value.vv[i][k] = a[i] * value.pv[i][k] + e[i] * (a[k] * next.pv[k][i] + e[k] * next.vv[i][k]);
+    for (std::size_t m = 0; m < Axes; ++m) {
+      const double from_error = k.c[i] * weight[i][m];
+      form.uu[i][m] = k.b_p[i] * w_p[i][m] + k.b_v[i] * w_v[i][m] + from_error * k.c[m];
+      form.up[i][m] = w_p[m][i] + from_error;
+      form.uv[i][m] = k.a[m] * w_p[m][i] + k.e[m] * w_v[m][i];
+      value.pp[i][m] = next.pp[i][m] + weight[i][m];
+      value.pv[i][m] = k.a[m] * next.pp[i][m] + k.e[m] * next.pv[i][m];
     }
+    form.uu[i][i] += problem.effort[i];
+    form.u[i] = k.b_p[i] * h_p[i] + k.b_v[i] * h_v[i];
     value.p[i] = h_p[i];
-    value.v[i] = a[i] * h_p[i] + e[i] * h_v[i];
+    value.v[i] = k.a[i] * h_p[i] + k.e[i] * h_v[i];
   }
-
-  // Free inputs leave one after the other; what remains is a form over (later inputs, held inputs, s).
-  Policy& policy = policy_[j];
   for (std::size_t i = 0; i < Axes; ++i) {
-    policy.curvature[i] = uu[i][i];
+    for (std::size_t m = 0; m < Axes; ++m) {
+      value.vv[i][m] = k.a[i] * value.pv[i][m] + k.e[i] * (k.a[m] * next.pv[m][i] + k.e[m] * next.vv[i][m]);
+    }
+  }
+}
+
+// What the input means to tied inputs of the stage after.
+template <std::size_t Axes>
+void Riccati<Axes>::AddTies(const Problem& problem, const Coefficients& k, const Ties& next, std::size_t j,
+                            StageForm& form) noexcept {
+  AxisVector<Axes> defect_p{}, defect_v{};
+  if (j + 1 < problem.horizon) {
+    defect_p = problem.stage[j + 1].position_defect;
+    defect_v = problem.stage[j + 1].velocity_defect;
+  }
+  for (std::size_t i = 0; i < Axes; ++i) {
+    for (std::size_t m = 0; m < Axes; ++m) {
+      form.uu[i][m] += k.b_p[i] * next.qp[m][i] + k.b_v[i] * next.qv[m][i] + k.b_p[m] * next.qp[i][m] +
+                       k.b_v[m] * next.qv[i][m] + next.qq[i][m];
+      form.up[i][m] += next.qp[i][m];
+      form.uv[i][m] += k.a[m] * next.qp[i][m] + k.e[m] * next.qv[i][m];
+      form.u[i] += next.qp[i][m] * defect_p[m] + next.qv[i][m] * defect_v[m];
+    }
+    form.u[i] += next.q[i];
+  }
+}
+
+// One or two inputs, all free: gains by the inverse in closed form.
+template <std::size_t Axes>
+void Riccati<Axes>::ChooseAll(const StageForm& form, Value& value, Policy& policy) noexcept {
+  SquareBlock inverse{};  // of uu, negative
+  if constexpr (Axes == 1) {
+    inverse[0][0] = -1.0 / form.uu[0][0];
+  } else if constexpr (Axes == 2) {
+    const double scale = -1.0 / (form.uu[0][0] * form.uu[1][1] - form.uu[0][1] * form.uu[1][0]);
+    inverse[0][0] = scale * form.uu[1][1];
+    inverse[1][1] = scale * form.uu[0][0];
+    inverse[0][1] = inverse[1][0] = -scale * form.uu[0][1];
+  }
+  for (std::size_t i = 0; i < Axes; ++i) {
+    policy.offset[i] = 0.0;
+    for (std::size_t m = 0; m < Axes; ++m) policy.offset[i] += inverse[i][m] * form.u[m];
+    for (std::size_t n = 0; n < Axes; ++n) {
+      double by_p = 0.0, by_v = 0.0;
+      for (std::size_t m = 0; m < Axes; ++m) {
+        by_p += inverse[i][m] * form.up[m][n];
+        by_v += inverse[i][m] * form.uv[m][n];
+      }
+      policy.on_position[i][n] = by_p;
+      policy.on_velocity[i][n] = by_v;
+    }
+  }
+  for (std::size_t m = 0; m < Axes; ++m) {
+    for (std::size_t i = 0; i < Axes; ++i) {
+      for (std::size_t n = 0; n < Axes; ++n) {
+        if (n >= m) value.pp[m][n] += form.up[i][m] * policy.on_position[i][n];
+        if (n >= m) value.vv[m][n] += form.uv[i][m] * policy.on_velocity[i][n];
+        value.pv[m][n] += form.up[i][m] * policy.on_velocity[i][n];
+      }
+      value.p[m] += form.up[i][m] * policy.offset[i];
+      value.v[m] += form.uv[i][m] * policy.offset[i];
+    }
+    for (std::size_t n = 0; n < m; ++n) {
+      value.pp[m][n] = value.pp[n][m];
+      value.vv[m][n] = value.vv[n][m];
+    }
+  }
+}
+
+// Free inputs leave one after the other; what remains is a form over (later inputs, held inputs, s).
+template <std::size_t Axes>
+void Riccati<Axes>::ChooseFree(const HeldInputs<Axes>& held, StageForm& form, Value& value,
+                               Policy& policy) noexcept {
+  for (std::size_t i = 0; i < Axes; ++i) {
     if (held.how[i] != Hold::kFree) continue;
-    const double inverse = 1.0 / uu[i][i];
+    const auto gone = [&held, i](std::size_t m) { return m == i || (m < i && held.how[m] == Hold::kFree); };
+    const double inverse = 1.0 / form.uu[i][i];
     AxisVector<Axes> k_u, k_p, k_v;
-    for (std::size_t k = 0; k < Axes; ++k) {
-      // Inputs that left before i are not among those u_i may depend on.
-      const bool gone = k == i || (k < i && held.how[k] == Hold::kFree);
-      k_u[k] = gone ? 0.0 : -inverse * uu[i][k];
-      k_p[k] = -inverse * up[i][k];
-      k_v[k] = -inverse * uv[i][k];
-    }
-    const double k_0 = -inverse * u[i];
     for (std::size_t m = 0; m < Axes; ++m) {
-      for (std::size_t k = 0; k < Axes; ++k) {
-        value.pp[m][k] += up[i][m] * k_p[k];
-        value.pv[m][k] += up[i][m] * k_v[k];
-        value.vv[m][k] += uv[i][m] * k_v[k];
+      k_u[m] = gone(m) ? 0.0 : -inverse * form.uu[i][m];
+      k_p[m] = -inverse * form.up[i][m];
+      k_v[m] = -inverse * form.uv[i][m];
+    }
+    const double k_0 = -inverse * form.u[i];
+    for (std::size_t m = 0; m < Axes; ++m) {
+      for (std::size_t n = 0; n < Axes; ++n) {
+        value.pp[m][n] += form.up[i][m] * k_p[n];
+        value.pv[m][n] += form.up[i][m] * k_v[n];
+        value.vv[m][n] += form.uv[i][m] * k_v[n];
       }
-      value.p[m] += up[i][m] * k_0;
-      value.v[m] += uv[i][m] * k_0;
+      value.p[m] += form.up[i][m] * k_0;
+      value.v[m] += form.uv[i][m] * k_0;
     }
     for (std::size_t m = 0; m < Axes; ++m) {
-      if (m == i || (m < i && held.how[m] == Hold::kFree)) continue;
-      for (std::size_t k = 0; k < Axes; ++k) {
-        up[m][k] += uu[m][i] * k_p[k];
-        uv[m][k] += uu[m][i] * k_v[k];
+      if (gone(m)) continue;
+      const double coupling = form.uu[m][i];
+      for (std::size_t n = 0; n < Axes; ++n) {
+        form.up[m][n] += coupling * k_p[n];
+        form.uv[m][n] += coupling * k_v[n];
+        form.uu[m][n] += coupling * k_u[n];
       }
-      u[m] += uu[m][i] * k_0;
-      for (std::size_t k = 0; k < Axes; ++k) {
-        if (k != i) uu[m][k] += uu[m][i] * k_u[k];
-      }
+      form.u[m] += coupling * k_0;
     }
     policy.on_input[i] = k_u;
     policy.on_position[i] = k_p;
     policy.on_velocity[i] = k_v;
     policy.offset[i] = k_0;
   }
+}
 
-  value.tied = false;
+// With the free inputs gone: a held input's row is the derivative by it; its value enters the cost-to-go.
+template <std::size_t Axes>
+bool Riccati<Axes>::FoldHeld(const HeldInputs<Axes>& held, const StageForm& form, Value& value,
+                             Policy& policy, Ties& ties) noexcept {
+  bool any_tied = false;
   for (std::size_t i = 0; i < Axes; ++i) {
     if (held.how[i] == Hold::kFree) continue;
-    if (held.how[i] == Hold::kTied) value.tied = true;
-    // The free inputs are gone: the row is the derivative by u_i with them at their optimum.
-    policy.on_position[i] = up[i];
-    policy.on_velocity[i] = uv[i];
-    policy.offset[i] = u[i];
-    for (std::size_t k = 0; k < Axes; ++k) {
-      policy.on_input[i][k] = held.how[k] == Hold::kFree ? 0.0 : uu[i][k];
-      value.p[k] += up[i][k] * held.value[i];
-      value.v[k] += uv[i][k] * held.value[i];
+    if (held.how[i] == Hold::kTied) any_tied = true;
+    policy.on_position[i] = form.up[i];
+    policy.on_velocity[i] = form.uv[i];
+    policy.offset[i] = form.u[i];
+    for (std::size_t m = 0; m < Axes; ++m) {
+      policy.on_input[i][m] = held.how[m] == Hold::kFree ? 0.0 : form.uu[i][m];
+      value.p[m] += form.up[i][m] * held.value[i];
+      value.v[m] += form.uv[i][m] * held.value[i];
     }
   }
-  if (!value.tied) return;
+  if (!any_tied) return false;
   for (std::size_t i = 0; i < Axes; ++i) {
     const bool tied = held.how[i] == Hold::kTied;
-    value.q[i] = tied ? u[i] : 0.0;
-    for (std::size_t k = 0; k < Axes; ++k) {
-      value.qp[i][k] = tied ? up[i][k] : 0.0;
-      value.qv[i][k] = tied ? uv[i][k] : 0.0;
-      value.qq[i][k] = tied && held.how[k] == Hold::kTied ? uu[i][k] : 0.0;
-      if (tied && held.how[k] != Hold::kFree) value.q[i] += uu[i][k] * held.value[k];
+    ties.q[i] = tied ? form.u[i] : 0.0;
+    for (std::size_t m = 0; m < Axes; ++m) {
+      ties.qp[i][m] = tied ? form.up[i][m] : 0.0;
+      ties.qv[i][m] = tied ? form.uv[i][m] : 0.0;
+      ties.qq[i][m] = tied && held.how[m] == Hold::kTied ? form.uu[i][m] : 0.0;
+      if (tied && held.how[m] != Hold::kFree) ties.q[i] += form.uu[i][m] * held.value[m];
     }
   }
+  return true;
 }
 
 template <std::size_t Axes>
@@ -181,6 +249,19 @@ void Riccati<Axes>::RollOut(const Problem& problem, const Holding& holding, Inpu
     const HeldInputs<Axes>& held = holding[j];
     const Policy& policy = policy_[j];
     AxisVector<Axes> u{};
+    if (policy.all_free) {
+      u = policy.offset;
+      for (std::size_t i = 0; i < Axes; ++i) {
+        for (std::size_t k = 0; k < Axes; ++k) {
+          u[i] += policy.on_position[i][k] * s.position[k] + policy.on_velocity[i][k] * s.velocity[k];
+        }
+      }
+      input[j] = u;
+      gradient[j] = {};
+      s = Advance(problem, s, j, u);
+      previous = u;
+      continue;
+    }
     for (std::size_t i = 0; i < Axes; ++i) {
       if (held.how[i] == Hold::kFixed) u[i] = held.value[i];
       if (held.how[i] == Hold::kTied) u[i] = previous[i] + held.value[i];

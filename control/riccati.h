@@ -50,13 +50,20 @@ class Riccati {
   static constexpr std::size_t kStates = 2 * Axes;
   using SquareBlock = std::array<AxisVector<Axes>, Axes>;
 
-  // 1/2 s' P s + h' s, and with tied inputs q' C s + 1/2 q' Q q + l' q in the input q of the stage before.
+  // 1/2 s' P s + h' s.
   struct Value {
     SquareBlock pp{}, pv{}, vv{};  // position-position, position-velocity, velocity-velocity
     AxisVector<Axes> p{}, v{};
-    bool tied = false;
+  };
+  // What tied inputs add, in the inputs q of the stage before: q' C s + 1/2 q' Q q + l' q.
+  struct Ties {
     SquareBlock qp{}, qv{}, qq{};
     AxisVector<Axes> q{};
+  };
+  // What a stage's step needs of the dynamics; the same for all stages.
+  struct Coefficients {
+    AxisVector<Axes> a, e, c;   // position from velocity, velocity kept, position from command
+    AxisVector<Axes> b_p, b_v;  // next drift position and velocity from command
   };
   // Free: u_i = on_position p + on_velocity v + on_input u + offset, inputs after i and held ones only.
   // Fixed: the same expression is the derivative by u_i, all inputs.
@@ -64,13 +71,30 @@ class Riccati {
     SquareBlock on_position{}, on_velocity{}, on_input{};
     AxisVector<Axes> offset{};
     AxisVector<Axes> curvature{};
+    bool all_free = false;  ///< on_input is not used
+  };
+  // Quadratic form over (inputs u, state s) before the inputs are chosen; that of s alone stands in Value.
+  struct StageForm {
+    SquareBlock uu, up, uv;  // [input axis][input, position or velocity axis]
+    AxisVector<Axes> u;
   };
 
   void FactorStage(const Problem& problem, const HeldInputs<Axes>& held, std::size_t j) noexcept;
+  void BuildForm(const Problem& problem, std::size_t j, StageForm& form, Value& value) const noexcept;
+  static void AddTies(const Problem& problem, const Coefficients& k, const Ties& next, std::size_t j,
+                      StageForm& form) noexcept;
+  static void ChooseAll(const StageForm& form, Value& value, Policy& policy) noexcept;
+  static void ChooseFree(const HeldInputs<Axes>& held, StageForm& form, Value& value,
+                         Policy& policy) noexcept;
+  static bool FoldHeld(const HeldInputs<Axes>& held, const StageForm& form, Value& value, Policy& policy,
+                       Ties& ties) noexcept;
   static Value TerminalValue(const Problem& problem) noexcept;
 
+  Coefficients coefficients_{};
   std::array<Value, kMaxHorizon + 1> value_{};
   std::array<Policy, kMaxHorizon> policy_{};
+  std::array<bool, kMaxHorizon + 1> has_ties_{};
+  std::array<Ties, kMaxHorizon> ties_{};
 };
 
 /// State after interval j when `input` acts in it, without the defect of the interval after.
