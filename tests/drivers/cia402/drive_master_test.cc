@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -598,6 +599,42 @@ TEST(DriveMaster, PositionGoesOnOverTheWrapOfTheCounter) {
   m.slave[0].set_position(std::int64_t{INT32_MAX} + 10);
   m.Cycles(3);
   EXPECT_NEAR(m.master.feedback()[0].position_rad - before, 20 * kRadPerCount, 1e-9);
+}
+
+TEST(DriveMaster, SurvivesNonsenseOnTheBus) {
+  std::mt19937 random(3);
+  DriveMaster master(TwoAxes());
+  DriveMaster::Frames sent;
+  PerAxis<AxisSetpoint> setpoints(2);
+  for (AxisSetpoint& s : setpoints) s.goal = DriveGoal::kEnabled;
+  CycleInput in;
+  in.buses.push_back({});
+  master.StartBringUp();
+  constexpr std::uint16_t kBases[] = {0x000, 0x080, 0x180, 0x200, 0x280, 0x580, 0x600, 0x700};
+  for (int cycle = 0; cycle < 20000; ++cycle) {
+    in.cycle = static_cast<std::uint64_t>(cycle);
+    in.frames.clear();
+    for (std::size_t n = random() % kMaxFramesPerCycle; n > 0; --n) {
+      StampedFrame f;
+      f.bus = static_cast<std::uint8_t>(random() % 8 == 0 ? random() : 0);
+      f.frame.id = static_cast<std::uint16_t>(kBases[random() % 8] + random() % 4);
+      f.frame.length = static_cast<std::uint8_t>(random() % 9);
+      for (auto& byte : f.frame.data) byte = static_cast<std::uint8_t>(random());
+      // Now and then the right answer, so that it gets further than the first object.
+      if (random() % 2 == 0 && !sent.empty() && (sent.back().frame.id & 0x780) == 0x600) {
+        f.frame = sent.back().frame;
+        f.frame.id = static_cast<std::uint16_t>(f.frame.id - 0x80);
+        f.frame.data[0] = (f.frame.data[0] & 0xE0) == 0x20 ? 0x60 : 0x43;
+        f.frame.length = 8;
+      }
+      in.frames.push_back(f);
+    }
+    master.Receive(in);
+    sent.clear();
+    master.Send(setpoints, sent);
+    if (master.bring_up_failed() && cycle % 50 == 0) master.StartBringUp();
+    for (const double torque : master.sent_torque_Nm()) ASSERT_EQ(torque, 0.0);
+  }
 }
 
 TEST(DriveMaster, TouchesNoHeap) {
