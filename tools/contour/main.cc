@@ -9,7 +9,11 @@
 #include "tools/contour/check_command.h"
 #include "tools/contour/command.h"
 #include "tools/contour/emulate_command.h"
+#include "tools/contour/export_command.h"
+#include "tools/contour/request_command.h"
+#include "tools/contour/run_command.h"
 #include "tools/contour/simulate_command.h"
+#include "tools/contour/status_command.h"
 
 namespace {
 
@@ -46,6 +50,11 @@ int main(int argc, char** argv) {
   contour::AddCheckCommand(app, action);
   contour::AddEmulateCommand(app, action);
   contour::AddSimulateCommand(app, action);
+  contour::AddRunCommand(app, action);
+  contour::AddStatusCommand(app, action);
+  contour::AddWatchCommand(app, action);
+  contour::AddRequestCommands(app, action);
+  contour::AddExportCommand(app, action);
 
   AddVersionFlags(app);
   try {

@@ -1,0 +1,88 @@
+#include "tests/tools/daemon_commands/scripted_machine.h"
+
+#include <utility>
+
+#include "daemon/program/program.h"
+
+namespace contour::test {
+
+ScriptedMachine::ScriptedMachine() {
+  status_.machine = "scripted";
+  status_.version = "0";
+  status_.controller = "mpc";
+  status_.clock = "wall";
+  status_.cycle_us = 1000;
+  status_.late_cycles = 0;
+  for (const char* name : {"x", "y"}) {
+    status_.axis_names.emplace_back(name);
+    status_.axis_facts.push_back({{name, -0.2, 0.2, 0.25, 5.0, 200.0}, 5e-9});
+  }
+  status_.buses.push_back({"main", "loopback", {}});
+  status_.record.axes.resize(2);
+  status_.record.state = MachineState::kIdle;
+}
+
+void ScriptedMachine::Refuse(std::string why) {
+  const std::lock_guard lock(mutex_);
+  refusal_ = std::move(why);
+}
+
+void ScriptedMachine::FailWith(Reason reason, std::string text) {
+  const std::lock_guard lock(mutex_);
+  fault_ = reason;
+  fault_text_ = std::move(text);
+}
+
+MachineStatus ScriptedMachine::Status() {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+Answer ScriptedMachine::Go(MachineState state, Reason reason) {
+  const std::lock_guard lock(mutex_);
+  if (!refusal_.empty()) return {false, refusal_, ++sequence_, 0, {}};
+  const bool fault = fault_ != Reason::kNone;
+  status_.record.state = fault ? MachineState::kFaulted : state;
+  status_.record.reason = fault ? fault_ : reason;
+  status_.reason_text = fault_text_;
+  return {true, "", ++sequence_, 0, {}};
+}
+
+Answer ScriptedMachine::Run(const ProgramUpload& upload) {
+  Answer answer = Go(MachineState::kReady, Reason::kProgramEnd);
+  if (!answer.accepted) return answer;
+  const std::lock_guard lock(mutex_);
+  const auto format = upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml;
+  PerAxis<PlanLimits> limits;
+  for (const AxisFacts& facts : status_.axis_facts) limits.push_back(facts.limits);
+  answer.start_m.push_back(0.01);
+  answer.start_m.push_back(-0.02);
+  answer.program_id = ++status_.record.program_id;
+  PathGenerator path(ParseProgram(upload.text, upload.name, format), answer.start_m, limits, 1e-3,
+                     answer.program_id);
+  CycleEntry entry;
+  entry.output.record.axes.resize(2);
+  PathPoint point;
+  for (std::uint64_t i = 0; path.Next(point); ++i) {
+    CycleRecord& r = entry.output.record;
+    r.cycle = entry.input.cycle = ++status_.record.cycle;
+    r.feedback_sync = r.cycle - 1;
+    r.state = MachineState::kRunning;
+    r.program_id = answer.program_id;
+    r.path_time_s = static_cast<double>(i) * 1e-3;
+    for (std::size_t a = 0; a < 2; ++a) {
+      r.axes[a].reference = point.axes[a];
+      r.axes[a].position_m = point.axes[a].position_m;
+      r.axes[a].feedback.position_rad = point.axes[a].position_m / kRadius_m_rad;
+    }
+    if (on_truth) on_truth(r.feedback_sync, point.axes);
+    if (feed_) feed_->Push(entry);
+  }
+  // A cycle after the program, which does not belong to it.
+  entry.output.record.cycle = entry.input.cycle = ++status_.record.cycle;
+  entry.output.record.state = status_.record.state;
+  if (feed_) feed_->Push(entry);
+  return answer;
+}
+
+}  // namespace contour::test

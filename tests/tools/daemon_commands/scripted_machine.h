@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "daemon/control_socket/operator_desk.h"
+#include "daemon/program/path_generator.h"
+
+namespace contour::test {
+
+/// Stands for the daemon behind the control socket: two axes that follow every program exactly, at once, with
+/// a motor of 5 mm lead; it can be told to refuse, or to end in a fault.
+class ScriptedMachine final : public OperatorDesk {
+ public:
+  ScriptedMachine();
+
+  Answer Enable() override { return Go(MachineState::kReady, Reason::kNone); }
+  Answer Disable() override { return Go(MachineState::kIdle, Reason::kDisableRequest); }
+  Answer Stop() override { return Go(MachineState::kReady, Reason::kOperatorStop); }
+  Answer Reset() override { return Go(MachineState::kIdle, Reason::kNone); }
+  Answer Run(const ProgramUpload& upload) override;
+  MachineStatus Status() override;
+  void Attach(std::shared_ptr<RowFeed> feed) override { feed_ = std::move(feed); }
+  void Detach(const std::shared_ptr<RowFeed>&) override { feed_.reset(); }
+
+  void Refuse(std::string why);
+  /// Requests are accepted and lead to this fault.
+  void FailWith(Reason reason, std::string text);
+  /// Takes a line of the truth of every cycle run: sync_number and both axes' angles and positions.
+  std::function<void(std::uint64_t sync, const PerAxis<ReferencePoint>& axes)> on_truth;
+
+  static constexpr double kRadius_m_rad = 5e-3 / 6.283185307179586;
+
+ private:
+  Answer Go(MachineState state, Reason reason);
+
+  std::mutex mutex_;
+  MachineStatus status_;
+  std::string refusal_;
+  Reason fault_ = Reason::kNone;
+  std::string fault_text_;
+  std::shared_ptr<RowFeed> feed_;
+  std::uint32_t sequence_ = 0;
+};
+
+}  // namespace contour::test

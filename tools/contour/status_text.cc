@@ -1,0 +1,131 @@
+#include "tools/contour/status_text.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tools/contour/daemon_link.h"
+#include "tools/contour/text_table.h"
+
+namespace contour {
+namespace {
+
+using nlohmann::json;
+
+std::string Text(const json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
+/// A number of the status times a factor; a dash where there is none.
+std::string Number(const json& value, double factor, int decimals) {
+  if (!value.is_number()) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", decimals, value.get<double>() * factor);
+  return text;
+}
+
+std::string Machine(const json& s) {
+  std::string text = Text(s["machine"]) + ": " + StateSentence(s) + "\n";
+  text += "  controller " + Text(s["controller"]) + ", cycle " + Text(s["cycle_us"]) + " us, " +
+          Text(s["clock"]) + " clock, contourd " + Text(s["version"]) + "\n";
+  const std::string bring_up = Text(s["bring_up"]);
+  if (!bring_up.empty() && bring_up != Text(s["reason_text"])) text += "  bring-up: " + bring_up + "\n";
+  for (const json& warning : s["warnings"]) text += "  warning: " + Text(warning) + "\n";
+  const json& program = s["program"];
+  if (program["id"] != 0)
+    text += "  program " + Text(program["name"]) + ", " + Number(program["time_s"], 1.0, 1) + " of " +
+            Number(program["duration_s"], 1.0, 1) + " s\n";
+  return text;
+}
+
+std::string Axes(const json& s) {
+  TextColumns table;
+  table.Add({"axis", "drive", "position mm", "error um", "torque Nm", "friction N", "+-", "limit"});
+  for (const json& a : s["axes"]) {
+    std::string drive = Text(a["drive_state"]);
+    if (a["emergency_code"] != 0) {
+      char code[32];
+      std::snprintf(code, sizeof code, " (EMCY %04Xh)", a["emergency_code"].get<unsigned>());
+      drive += code;
+    }
+    if (a["feedback_fresh"] == false) drive += ", feedback old";
+    table.Add({Text(a["name"]), drive, Number(a["position_m"], 1e3, 4),
+               Number(a["following_error_m"], 1e6, 2), Number(a["torque_Nm"], 1.0, 4),
+               Number(a["friction_N"], 1.0, 1), Number(a["friction_std_N"], 1.0, 1),
+               a["limit"] == "none" ? "" : Text(a["limit"])});
+  }
+  return table.Text();
+}
+
+std::string Counters(const json& s) {
+  std::string text = "  cycles " + Text(s["cycles"]);
+  if (!s["late_cycles"].is_null()) text += ", late " + Text(s["late_cycles"]);
+  text += ", stale " + Text(s["stale_cycles"]) + ", skipped " + Text(s["skipped_grid_points"]) +
+          ", dropped telemetry " + Text(s["dropped_telemetry"]) + "\n";
+  if (s["clock"] != "wall") return text;
+  TextColumns table;
+  table.Add({"us", "median", "99 %", "99.9 %", "largest"});
+  const auto row = [&](const char* name, const char* key) {
+    const json& t = s["timing"][key];
+    table.Add({name, Number(t["p50_us"], 1, 0), Number(t["p99_us"], 1, 0), Number(t["p999_us"], 1, 0),
+               Number(t["max_us"], 1, 1)});
+  };
+  row("woken after the grid point", "wakeup_late");
+  row("computing", "computing");
+  row("sent after the grid point", "sent");
+  return text + table.Text();
+}
+
+std::string Buses(const json& s) {
+  std::string text;
+  for (const json& b : s["buses"]) {
+    text += "  bus " + Text(b["name"]) + " on " + Text(b["interface"]) + ": " +
+            (b["bus_off"] == true ? "bus off"
+             : b["up"] == true    ? "up"
+                                  : "down") +
+            ", received " + Text(b["frames_received"]) + ", sent " + Text(b["frames_sent"]) + ", not sent " +
+            Text(b["send_failures"]) + ", error frames " + Text(b["error_frames"]) + ", overflows " +
+            Text(b["receive_overflows"]) + "\n";
+  }
+  return text;
+}
+
+std::string Around(const json& s) {
+  std::string text;
+  if (const json& io = s["io"]; !io.is_null()) {
+    text += std::string("  I/O ") + (io["connected"] == true ? "connected" : "not connected") +
+            (io["fresh"] == true ? "" : ", data old") + ", emergency stop " +
+            (io["emergency_stop_ok"] == true ? "closed" : "OPEN") + ", enable chain " +
+            (io["enable_chain_ok"] == true ? "closed" : "OPEN") + ", screw " +
+            Number(io["screw_temperature_degC"], 1.0, 1) + " degC, polls " + Text(io["polls"]) +
+            ", failures " + Text(io["failures"]) + "\n";
+    if (io["connected"] == false && !Text(io["last_error"]).empty())
+      text += "      " + Text(io["last_error"]) + "\n";
+  }
+  if (const json& lcm = s["lcm"]; !lcm.is_null()) {
+    text += "  LCM messages " + Text(lcm["messages"]) + ", not sent " + Text(lcm["failures"]) + "\n";
+    if (!Text(lcm["last_error"]).empty()) text += "      " + Text(lcm["last_error"]) + "\n";
+  }
+  if (const json& log = s["log"]; !log.is_null()) {
+    text += "  log " + Text(log["file"]) + ": " + Text(log["cycles"]) + " cycles, lost " +
+            Text(log["lost_cycles"]) + "\n";
+    if (!Text(log["last_error"]).empty()) text += "      " + Text(log["last_error"]) + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string StatusText(const json& status) {
+  return Machine(status) + Axes(status) + Counters(status) + Buses(status) + Around(status);
+}
+
+std::string StatusLine(const json& status) {
+  std::string line = StateSentence(status);
+  for (const json& a : status["axes"])
+    line += "  " + Text(a["name"]) + " " + Number(a["position_m"], 1e3, 4) + " mm " +
+            Number(a["torque_Nm"], 1.0, 3) + " Nm " + Number(a["friction_N"], 1.0, 1) + " N";
+  if (status["state"] == "Running")
+    line += "  contour error " + Number(status["contour_error_m"], 1e6, 2) + " um";
+  return line;
+}
+
+}  // namespace contour
