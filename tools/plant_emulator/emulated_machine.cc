@@ -12,7 +12,6 @@ namespace contour {
 namespace {
 
 constexpr std::uint16_t kSyncCobId = 0x080;
-constexpr std::int64_t kSilence_ns = 200'000'000;
 constexpr std::int64_t kFreeStep_ns = 1'000'000;
 /// Streams of random numbers an axis uses: parameters, encoder, scale.
 constexpr std::uint64_t kStreamsPerAxis = 4;
@@ -57,6 +56,7 @@ class EmulatedMachine::Impl {
 
   std::uint32_t cycle_us_;
   EmulatedClock clock_;
+  std::int64_t silence_ns_;
   std::vector<std::unique_ptr<plant::EmulatedAxis>> axes_;
   std::vector<Bus> buses_;
   std::vector<std::unique_ptr<Node>> nodes_;
@@ -75,7 +75,7 @@ class EmulatedMachine::Impl {
 
 EmulatedMachine::Impl::Impl(const EmulatorConfig& config, std::span<const EmulatedAxisPlacement> placements,
                             std::uint32_t cycle_us, EmulatedClock clock)
-    : cycle_us_(cycle_us), clock_(clock) {
+    : cycle_us_(cycle_us), clock_(clock), silence_ns_(static_cast<std::int64_t>(config.silence_ms * 1e6)) {
   if (placements.empty()) throw std::invalid_argument("emulator: no axes to emulate");
   if (placements.size() > kMaxAxes)
     throw std::invalid_argument("emulator: more than " + std::to_string(kMaxAxes) + " axes");
@@ -160,9 +160,9 @@ void EmulatedMachine::Impl::Follow(Bus& bus, std::int64_t time_ns) noexcept {
     bus.next_step_ns = time_ns + kFreeStep_ns;
   }
   if (clock_ == EmulatedClock::kSync && !bus.running_free) {
-    if (!Alive(bus) || time_ns - bus.last_frame_ns < kSilence_ns) return;
+    if (!Alive(bus) || time_ns - bus.last_frame_ns < silence_ns_) return;
     bus.running_free = true;
-    bus.followed_ns = bus.last_frame_ns + kSilence_ns;
+    bus.followed_ns = bus.last_frame_ns + silence_ns_;
     bus.next_step_ns = bus.followed_ns;
   }
   if (time_ns > bus.followed_ns) Advance(bus, time_ns - bus.followed_ns);
@@ -206,7 +206,7 @@ std::int64_t EmulatedMachine::Impl::NextTimer(std::size_t index) const noexcept 
   std::int64_t next = kNever;
   for (const std::size_t a : bus.axes) next = std::min(next, axes_[a]->NextTimer());
   if (clock_ == EmulatedClock::kWall || bus.running_free) return std::min(next, bus.next_step_ns);
-  if (bus.seen_time && Alive(bus)) next = std::min(next, bus.last_frame_ns + kSilence_ns);
+  if (bus.seen_time && Alive(bus)) next = std::min(next, bus.last_frame_ns + silence_ns_);
   return next;
 }
 

@@ -39,9 +39,9 @@ enum class EmulatedClock : std::uint8_t {
 /// runs in the real-time thread on an in-process bus.
 ///
 /// With EmulatedClock::kSync, SYNC n falls on plant time n periods. The drives' watchdogs count plant time,
-/// so a slow host trips none. If a drive is enabled (or an axis still moves) and no frame at all came for 200
-/// ms of the time handed in, the plant follows that time until the next SYNC, so that the drives can notice
-/// and stop.
+/// so a slow host trips none. If a drive is enabled (or an axis still moves) and no frame at all came for
+/// silence_ms of the time handed in, the plant follows that time until the next SYNC, so that the drives can
+/// notice and stop.
 class EmulatedMachine {
  public:
   /// Throws std::invalid_argument, with the axis and the value named, on a configuration that cannot be

@@ -209,6 +209,7 @@ struct EmulatedIoConfig {
 struct EmulatorConfig {
   std::uint64_t seed = 1;
   double parameter_variation_rel = 0.05;
+  double silence_ms = 200.0;
   std::map<std::string, EmulatedAxisConfig> axes;
   std::optional<EmulatedIoConfig> io;
 
@@ -217,6 +218,10 @@ struct EmulatorConfig {
     v.Optional("seed", seed, kNotNegative, "varies noise, ripple phases, start and parameters");
     v.Optional("parameter_variation_rel", parameter_variation_rel, Range{0.0, 0.5},
                "the seed varies every parameter by at most this");
+    v.Optional(
+        "silence_ms", silence_ms, Range{1.0, 600000.0},
+        "stepped by SYNC, with a drive enabled: after so long without a frame time runs by the clock, so "
+        "that the drives notice");
     v.Required("axes", axes, "the emulated axes, by the names under `axes`");
     v.Optional("io", io, "Modbus server for the emulated inputs and outputs");
   }
