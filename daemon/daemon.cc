@@ -222,11 +222,12 @@ class Daemon {
                                                              ? std::string()
                                                              : ": " + std::string(Name(record.reason))));
       notifier.Alive(loop_->counters().cycles.load());
-      if (record.state == MachineState::kIdle) {
+      const bool failed = record.reason == Reason::kBringUpFailed;
+      if (record.state == MachineState::kIdle || (record.state == MachineState::kFaulted && !failed)) {
         notifier.Ready();
         up = true;
       }
-      if (!up && status == kExitDone && record.state == MachineState::kFaulted) {
+      if (!up && failed && status == kExitDone && record.state == MachineState::kFaulted) {
         status = kExitFailed;
         mailbox_.PostTerminate();
       }

@@ -17,6 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::seconds kAnswerTimeout{2};
+/// In lock-step a request waits until the machine has settled, for as many cycles as that takes on this host.
+constexpr std::chrono::seconds kLockstepAnswerTimeout{25};
 constexpr std::chrono::milliseconds kAnswerPoll{1};
 
 }  // namespace
@@ -46,7 +48,8 @@ Answer Supervisor::Ask(RequestKind kind, std::uint32_t program_id) {
 }
 
 Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence) {
-  const auto deadline = Clock::now() + kAnswerTimeout;
+  const auto timeout = clock_ == "lockstep" ? kLockstepAnswerTimeout : kAnswerTimeout;
+  const auto deadline = Clock::now() + timeout;
   for (;;) {
     const CycleRecord record = parts_.hub.record();
     if (record.acknowledged >= sequence) {
@@ -54,7 +57,10 @@ Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence) {
       return {ok, ok ? std::string() : RefusalText(record, kind, axis_names_, bus_names_), sequence, 0};
     }
     if (Clock::now() >= deadline)
-      return {false, "the cycle did not answer within 2 s; is the loop running?", sequence, 0};
+      return {
+          false,
+          "the cycle did not answer within " + std::to_string(timeout.count()) + " s; is the loop running?",
+          sequence, 0};
     std::this_thread::sleep_for(kAnswerPoll);
   }
 }

@@ -20,6 +20,16 @@ bool AllEnabled(const Situation& now) noexcept {
   return true;
 }
 
+constexpr std::uint8_t kNone = 0xFF;
+
+/// Index of a drive in Fault, or kNone.
+std::uint8_t FaultedDrive(const Situation& now) noexcept {
+  for (std::size_t i = 0; i < now.drives.size(); ++i)
+    if (now.drives[i] == DriveState::kFault || now.drives[i] == DriveState::kFaultReactionActive)
+      return static_cast<std::uint8_t>(i);
+  return kNone;
+}
+
 bool HoldsTorque(MachineState s) noexcept {
   return s == MachineState::kReady || s == MachineState::kRunning || s == MachineState::kStopping;
 }
@@ -107,6 +117,7 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
     case RequestKind::kReset:
       Acknowledge(request, state_ == MachineState::kFaulted || state_ == MachineState::kIdle);
       if (state_ == MachineState::kFaulted) {
+        resetting_ = true;
         orders.start_bring_up = true;
         Enter(MachineState::kStarting);
       }
@@ -174,6 +185,10 @@ void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
       if (orders.start_bring_up) break;
       if (now.bring_up_failed) {
         Fault({Reason::kBringUpFailed, 0xFF});
+      } else if (now.operational && !now.bring_up_active && FaultedDrive(now) != kNone) {
+        // A reset clears the drives' faults too; at the first start that is left to the operator.
+        if (!resetting_ || since_ > config_.stop_timeout_cycles)
+          Fault({Reason::kDriveFault, FaultedDrive(now)});
       } else if (now.operational && !now.bring_up_active) {
         reason_ = Reason::kNone;
         where_ = 0xFF;
@@ -257,8 +272,9 @@ DriveGoal Transitions::Goal() const noexcept {
       return drives_off_ ? DriveGoal::kDisabled : DriveGoal::kQuickStop;
     case MachineState::kIdle:
       return DriveGoal::kSwitchedOn;
-    case MachineState::kOff:
     case MachineState::kStarting:
+      return resetting_ ? DriveGoal::kFaultReset : DriveGoal::kDisabled;
+    case MachineState::kOff:
       return DriveGoal::kDisabled;
   }
   return DriveGoal::kDisabled;

@@ -100,6 +100,7 @@ class Transitions {
   bool run_pending_ = false;
   std::uint32_t run_pending_cycles_ = 0;
   bool terminating_ = false;
+  bool resetting_ = false;  ///< Starting was asked for by an operator
   bool drives_off_ = true;
 };
 

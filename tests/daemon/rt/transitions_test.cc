@@ -206,6 +206,21 @@ TEST_F(TransitionsTest, ResetBringsUpAgainAndDoesNotEnable) {
   EXPECT_EQ(machine_.state(), MachineState::kIdle);
 }
 
+TEST_F(TransitionsTest, ResetClearsDriveFaultsTheFirstStartDoesNot) {
+  SetDrives(DriveState::kFault);
+  EXPECT_NE(Step().goal, DriveGoal::kFaultReset);
+  EXPECT_NE(Step().goal, DriveGoal::kFaultReset);
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kDriveFault);
+  SetDrives(DriveState::kFault);
+  EXPECT_EQ(Step(RequestKind::kReset).goal, DriveGoal::kFaultReset);
+  EXPECT_EQ(Step().goal, DriveGoal::kFaultReset);
+  EXPECT_EQ(machine_.state(), MachineState::kStarting);
+  SetDrives(DriveState::kSwitchOnDisabled);
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+}
+
 TEST_F(TransitionsTest, APathThatBeginsElsewhereIsRefused) {
   ToReady();
   Step(RequestKind::kRun, 4);

@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/closed_loop/test_machine.h"
+
+namespace contour::test {
+namespace {
+
+const Program kSmall = Circle(0.1, 3, 0.7853981634);
+
+TEST(Contour, CompensationBeatsThePlainMpcOnTheSmallCircle) {
+  const EmulatedMachineFile file = ExampleMachine();
+  const RunResult mpc = RunCircle(file, ControllerName::kMpc, kSmall);
+  const RunResult full = RunCircle(file, ControllerName::kFull, kSmall);
+  EXPECT_LT(full.circular_deviation_m() * 10.0, mpc.circular_deviation_m());
+  EXPECT_LT(full.table_peak_m, 1.0e-6);
+  EXPECT_LT(full.friction_rms_N(), 1.0);
+}
+
+TEST(Contour, AndOnTheLargeCircle) {
+  const Program large = Circle(10.0, 3, 0.7957747155);  // 3 m/min
+  const EmulatedMachineFile file = ExampleMachine();
+  const RunResult mpc = RunCircle(file, ControllerName::kMpc, large);
+  const RunResult full = RunCircle(file, ControllerName::kFull, large);
+  EXPECT_LT(full.circular_deviation_m() * 15.0, mpc.circular_deviation_m());
+  EXPECT_LT(full.table_peak_m, 2.5e-6);
+}
+
+TEST(Contour, TheSameRunTwiceIsTheSameRun) {
+  const EmulatedMachineFile file = ExampleMachine();
+  const RunResult a = RunCircle(file, ControllerName::kFull, kSmall);
+  const RunResult b = RunCircle(file, ControllerName::kFull, kSmall);
+  EXPECT_EQ(a.torque_Nm, b.torque_Nm);
+  EmulatedMachineFile other = file;
+  other.emulator.seed = 77;
+  EXPECT_NE(a.torque_Nm, RunCircle(other, ControllerName::kFull, kSmall).torque_Nm);
+}
+
+TEST(Contour, AFrozenEstimatorIsVisiblyWorse) {
+  const RunResult live = RunCircle(ExampleMachine(), ControllerName::kFull, kSmall);
+  // Frozen: friction is what was commissioned, whatever the machine does.
+  const RunResult frozen = RunCircle(ExampleMachine({"estimator.adapt=false", "estimator.bristle_noise_N=0",
+                                                     "estimator.disturbance_noise_N=0"}),
+                                     ControllerName::kFull, kSmall);
+  EXPECT_GT(frozen.table_peak_m, 2.0 * live.table_peak_m);
+}
+
+/// The estimator of x on a recorded run, once with x's own torque and once with y's.
+TEST(Contour, AnEstimatorFedTheOtherAxisTorqueIsVisiblyWorse) {
+  const EmulatedMachineFile file = ExampleMachine();
+  VirtualMachine machine(file, ControllerName::kFull);
+  machine.BringUp();
+  machine.Enable();
+  const AxisConfig& x = file.machine.axes.at("x");
+  const Mechanics mechanics = ToSi(x.model.mechanics);
+  const auto make = [&] {
+    return AxisEstimator(EstimatorKind::kFull, mechanics, x.model.friction, file.machine.estimator, 1e-3,
+                         x.drive.lag_ms * 1e-3);
+  };
+  AxisEstimator own = make();
+  AxisEstimator other = make();
+  own.Reset(machine.record().axes[0].position_m);
+  other.Reset(machine.record().axes[0].position_m);
+  std::array<std::array<double, 3>, 2> sent{};
+  double own_square = 0.0, other_square = 0.0;
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
+    const CycleRecord& r = entry.output.record;
+    if (truth == nullptr) return;
+    AxisEstimatorInput in;
+    in.position_m = r.axes[0].position_m;
+    in.fresh = true;
+    in.commanded_velocity_m_s = r.axes[0].reference.velocity_m_s;
+    in.commanded_acceleration_m_s2 = r.axes[0].reference.acceleration_m_s2;
+    in.at_rest = in.commanded_velocity_m_s == 0.0;
+    in.enabled = true;
+    in.force_N = sent[0];
+    const double friction = truth->axes[0].friction_N;
+    own_square += std::pow(own.Update(in).friction_N - friction, 2);
+    in.force_N = sent[1];
+    other_square += std::pow(other.Update(in).friction_N - friction, 2);
+    for (std::size_t i = 0; i < 2; ++i)
+      sent[i] = {r.axes[i].torque_Nm / mechanics.radius_m_rad, sent[i][0], sent[i][1]};
+  });
+  machine.Run(kSmall);
+  EXPECT_GT(std::sqrt(other_square), 10.0 * std::sqrt(own_square));
+}
+
+}  // namespace
+}  // namespace contour::test

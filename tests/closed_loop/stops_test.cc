@@ -1,0 +1,158 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/closed_loop/test_machine.h"
+
+namespace contour::test {
+namespace {
+
+/// I/O that a test switches.
+class TestIo final : public IoSource {
+ public:
+  IoInput Read(std::int64_t) noexcept override { return input; }
+  IoInput input{true, true, true, true, 20.0};
+};
+
+/// A machine that runs a circle at 3 m/min when something happens.
+class Stops : public ::testing::Test {
+ protected:
+  Stops() : file_(ExampleMachine()), machine_(file_, ControllerName::kFull) {
+    machine_.SetIo(io_);
+    machine_.BringUp();
+    machine_.Enable();
+    StartCircle();
+  }
+
+  void StartCircle() {
+    PerAxis<double> start_m;
+    for (const AxisRecord& a : machine_.record().axes) start_m.push_back(a.reference.position_m);
+    PerAxis<PlanLimits> limits;
+    for (const char* name : {"x", "y"}) limits.push_back({name, -0.2, 0.2, 0.25, 5.0, 200.0});
+    PathGenerator generator(Circle(10.0, 5, 0.7957747155), start_m, limits, 1e-3, ++program_);
+    PathFeeder feeder(machine_.mailbox());
+    machine_.mailbox().Post(RequestKind::kRun, program_);
+    PathPoint point;
+    bool held = generator.Next(point);
+    int running = 0;
+    for (int i = 0; i < 2000 && running < 300; ++i) {
+      while (held && machine_.mailbox().PushPathPoint(point)) held = generator.Next(point);
+      machine_.Tick();
+      if (machine_.record().state == MachineState::kRunning) ++running;
+    }
+    generator_ = std::make_unique<PathGenerator>(std::move(generator));
+    point_ = point;
+    held_ = held;
+    ASSERT_EQ(machine_.record().state, MachineState::kRunning);
+    ASSERT_GT(Speed(), 0.04);
+  }
+
+  /// Ticks on, with the path supplied unless `dry`, until the emulated axes stand and no drive gives torque;
+  /// the cycles.
+  int TicksToStandstill(int limit, bool dry = false) {
+    for (int i = 0; i < limit; ++i) {
+      while (!dry && held_ && machine_.mailbox().PushPathPoint(point_)) held_ = generator_->Next(point_);
+      machine_.Tick();
+      if (i == 0) first_state_ = machine_.record().state;
+      bool torque_off = true;
+      for (const AxisTruth& a : machine_.emulated().truth().axes)
+        torque_off = torque_off && a.drive_state != DriveState::kOperationEnabled &&
+                     a.drive_state != DriveState::kQuickStopActive && std::abs(a.torque_Nm) < 1e-6;
+      if (Speed() < 1e-4 && torque_off) return i + 1;
+    }
+    return limit + 1;
+  }
+
+  [[nodiscard]] double Speed() {
+    const auto& axes = machine_.emulated().truth().axes;
+    return std::hypot(axes[0].table_velocity_m_s, axes[1].table_velocity_m_s);
+  }
+
+  /// reset, enable, run: the machine works again in the same process.
+  void ExpectWorksAgain() {
+    for (int i = 0; i < 300; ++i) machine_.Tick();
+    machine_.mailbox().Post(RequestKind::kReset);
+    for (int i = 0; i < 3000 && machine_.record().state != MachineState::kIdle; ++i) machine_.Tick();
+    ASSERT_EQ(machine_.record().state, MachineState::kIdle);
+    for (int i = 0; i < 400; ++i) {
+      machine_.Tick();
+      for (const AxisTruth& a : machine_.emulated().truth().axes)
+        ASSERT_NE(a.drive_state, DriveState::kOperationEnabled) << "nothing enables itself";
+    }
+    machine_.Enable();
+    StartCircle();
+  }
+
+  EmulatedMachineFile file_;
+  TestIo io_;
+  VirtualMachine machine_;
+  std::unique_ptr<PathGenerator> generator_;
+  PathPoint point_;
+  bool held_ = false;
+  std::uint32_t program_ = 0;
+  MachineState first_state_ = MachineState::kOff;
+};
+
+TEST_F(Stops, OperatorStopEndsOnThePathAndHolds) {
+  machine_.mailbox().PostStop();
+  for (int i = 0; i < 200; ++i) machine_.Tick();
+  EXPECT_EQ(machine_.record().state, MachineState::kReady);
+  EXPECT_EQ(machine_.record().reason, Reason::kOperatorStop);
+  EXPECT_LT(Speed(), 1e-4);
+  EXPECT_LT(std::abs(machine_.record().contour_error_m), 5e-6);
+  StartCircle();
+}
+
+TEST_F(Stops, TerminateStopsOnThePathAndSwitchesOff) {
+  machine_.mailbox().PostTerminate();
+  EXPECT_LE(TicksToStandstill(300), 150);
+  EXPECT_EQ(machine_.record().reason, Reason::kTerminate);
+  EXPECT_TRUE(machine_.last().output.finished);
+}
+
+TEST_F(Stops, EmergencyStopInput) {
+  io_.input.emergency_stop_ok = false;
+  EXPECT_LE(TicksToStandstill(300), 60);
+  EXPECT_EQ(first_state_, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kEmergencyStop);
+  io_.input.emergency_stop_ok = true;
+  ExpectWorksAgain();
+}
+
+TEST_F(Stops, EnableChainAndLostIoStopOnThePath) {
+  io_.input.fresh = false;
+  EXPECT_LE(TicksToStandstill(300), 150);
+  EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kIoStale);
+  io_.input.fresh = true;
+  ExpectWorksAgain();
+}
+
+TEST_F(Stops, BusDown) {
+  machine_.bus(0).SetLink(machine_.last().input.grid_time_ns, false);
+  // The emulated machine counts SYNCs; it takes 200 ms of silence to go on by itself, then its drives notice.
+  EXPECT_LE(TicksToStandstill(400), 300) << "the drives notice the silence and stop by themselves";
+  EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kBusDown);
+  machine_.bus(0).SetLink(machine_.last().input.grid_time_ns, true);
+  ExpectWorksAgain();
+}
+
+TEST_F(Stops, DriveFault) {
+  machine_.emulated().InjectFault(1, 0x3210);
+  EXPECT_LE(TicksToStandstill(300), 80);
+  EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kDriveFault);
+  EXPECT_EQ(machine_.record().reason_axis, 1);
+  EXPECT_EQ(machine_.record().axes[1].emergency_code, 0x3210);
+  ExpectWorksAgain();
+}
+
+TEST_F(Stops, PathSupplyRunsDry) {
+  EXPECT_LE(TicksToStandstill(3000, true), 2500);
+  EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kPathUnderrun);
+}
+
+}  // namespace
+}  // namespace contour::test
