@@ -13,6 +13,8 @@ constexpr std::int8_t kModeCsp = 8;
 constexpr std::int8_t kModeCst = 10;
 /// Below this the drive takes the axis for standing, once its ramp has ended.
 constexpr double kStandstill_m_s = 1e-3;
+/// The axis stands, held against what friction has wound up: so long the drive only damps, then it lets go.
+constexpr std::int64_t kRelease_ns = 28 * kNsPerMs;
 /// After the ramp's end the drive lets go at the latest then, standing or not.
 constexpr std::int64_t kBrakeTimeout_ns = 500 * kNsPerMs;
 constexpr std::uint16_t kEmergencyFollowingError = 0x8611;
@@ -373,6 +375,7 @@ void EmulatedAxis::BeginBraking(Braking why, std::int64_t option) noexcept {
                     static_cast<double>(quick ? quick_stop_deceleration_->value : deceleration_->value);
   ramp_m_s_ = hardest ? 0.0 : cascade_.velocity_m_s();
   ramp_end_ns_ = -1;
+  release_end_ns_ = -1;
   cascade_.ResetIntegral();
   if (coasting_) BrakingDone();
 }
@@ -382,6 +385,7 @@ void EmulatedAxis::Brake() noexcept {
   const double before = ramp_m_s_;
   ramp_m_s_ = std::fabs(before) <= step ? 0.0 : before - std::copysign(step, before);
   if (ramp_m_s_ == 0.0 && ramp_end_ns_ < 0) ramp_end_ns_ = now_ns_;
+  if (release_end_ns_ >= 0) cascade_.ResetIntegral();
   const double limit = TorqueLimit_Nm(true) / InertiaForce_Nm(1.0);
   const double acceleration = cascade_.VelocityLoop_m_s2(ramp_m_s_, (ramp_m_s_ - before) / kTick_s, limit);
   Command_Nm(InertiaForce_Nm(acceleration));
@@ -391,7 +395,10 @@ void EmulatedAxis::Brake() noexcept {
   const double moved_m = TravelPerCount_m() * static_cast<double>(std::abs(counts_ - oldest));
   const bool slow = moved_m <= std::max(kStandstill_m_s * window_s, 2.0 * TravelPerCount_m());
   const bool settled = now_ns_ - ramp_end_ns_ >= 2 * kNsPerMs;
-  if ((slow && settled) || now_ns_ - ramp_end_ns_ >= kBrakeTimeout_ns) BrakingDone();
+  const bool holds = braking_ == Braking::kQuickStop && quick_stop_option_->value >= 5;
+  if (slow && settled && release_end_ns_ < 0 && !holds) release_end_ns_ = now_ns_ + kRelease_ns;
+  const bool released = release_end_ns_ >= 0 && now_ns_ >= release_end_ns_;
+  if (released || now_ns_ - ramp_end_ns_ >= kBrakeTimeout_ns) BrakingDone();
 }
 
 void EmulatedAxis::BrakingDone() noexcept {

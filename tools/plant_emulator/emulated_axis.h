@@ -153,6 +153,7 @@ class EmulatedAxis final : private SlaveDevice {
   double ramp_rate_m_s2_ = 0.0;
   bool coasting_ = false;  ///< brake option "disable drive function"
   std::int64_t ramp_end_ns_ = -1;
+  std::int64_t release_end_ns_ = -1;
   std::int64_t last_sync_ns_ = 0;
   std::int64_t beyond_window_since_ns_ = -1;
   bool limited_ = false;
