@@ -11,13 +11,18 @@ constexpr double kPreslidingShare = 0.7;
 // Mean of the squared, normalised innovations over about a hundred cycles.
 constexpr double kSurpriseShare = 0.01;
 
+// The centre of mass runs ahead of the table by (1 - Mt/m) of the wind-up F / K.
+double AheadOfTable(const Mechanics& m) noexcept {
+  return (1.0 - m.table_mass_kg / m.mass_kg) / m.stiffness_N_m;
+}
+
 }  // namespace
 
 template <class Core>
 SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
     : setup_(setup),
       model_(setup.friction, setup.mechanics.mass_kg, setup.period_s,
-             setup.config.disturbance_decay_ms * 1e-3),
+             setup.config.disturbance_decay_ms * 1e-3, AheadOfTable(setup.mechanics)),
       lag_(setup.period_s, setup.lag_s),
       gate_{setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6} {
   const auto& c = setup.config;

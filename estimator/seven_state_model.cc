@@ -3,11 +3,12 @@
 namespace contour {
 
 SevenStateModel::SevenStateModel(const Friction& friction, double mass_kg, double period_s,
-                                 double disturbance_decay_s) noexcept
+                                 double disturbance_decay_s, double compliance_m_N) noexcept
     : friction_(friction), sigma2_(friction.sigma2_Ns_m), step_s_(period_s / static_cast<double>(kSubsteps)) {
   const double rate = sigma2_ / mass_kg;
   velocity_decay_ = Exp(-rate * step_s_);
   velocity_gain_ = sigma2_ > 0.0 ? -Expm1(-rate * step_s_) / sigma2_ : step_s_ / mass_kg;
+  compliance_m_N_ = compliance_m_N;
   leak_ = Exp(-step_s_ / disturbance_decay_s);
   ratio_plus_ = friction.Fs_plus_N / friction.Fc_plus_N;
   ratio_minus_ = friction.Fs_minus_N / friction.Fc_minus_N;
@@ -37,7 +38,9 @@ void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, con
     const double level = std::max(v[k] >= 0.0 ? level_plus : level_minus, kLeastLevel_N);
     const double target = v[k] >= 0.0 ? level : -level;
     const double per_level = std::abs(v[k]) / level;
-    f[k] -= (target - f[k]) * Expm1(-s0[k] * per_level * step_s_);
+    const double gap = target - f[k];
+    const double trailing = 1.0 + s0[k] * compliance_m_N_ * std::abs(gap) / level;
+    f[k] -= gap * Expm1(-s0[k] * per_level * step_s_ / trailing);
     damping[k] = in.sigma1_Ns_m * (v[k] - per_level * f[k]);
   }
   for (std::size_t k = 0; k < n; ++k) {
@@ -108,14 +111,21 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
     const double slope = n == 1.0 ? 1.0 : n * std::pow(u, n - 1.0);
     const double level_v = -sign * g * ripple * (per_g / ripple - 1.0) * slope / friction_.vs_m_s;
 
-    const double a = s0 * speed / level;
-    const double relaxed = -Expm1(-a * h);
     const double gap = sign * level - x[kBristle];
+    // a = b / D; b = sigma0 |v| / G, D = 1 + sigma0 C |gap| / G.
+    const double stiff = s0 * compliance_m_N_ / level;
+    const double toward = gap >= 0.0 ? 1.0 : -1.0;
+    const double big_d = 1.0 + stiff * std::abs(gap);
+    const double b = s0 * speed / level;
+    const double a = b / big_d;
+    const double relaxed = -Expm1(-a * h);
     const double by_a = gap * h * (1.0 - relaxed);  // dF+/da
-    const double f_f = 1.0 - relaxed;
-    const double f_v = sign * level_v * relaxed + by_a * (s0 * sign / level - a / level * level_v);
-    const double f_g = (sign * relaxed - by_a * a / level) * per_g;
-    const double f_l = by_a * a;
+    const double a_f = a / big_d * stiff * toward;
+    const double a_level = -a / level - a / big_d * stiff * (toward * sign - std::abs(gap) / level);
+    const double f_f = 1.0 - relaxed + by_a * a_f;
+    const double f_v = sign * level_v * relaxed + by_a * (s0 * sign / (level * big_d) + a_level * level_v);
+    const double f_g = (sign * relaxed + by_a * a_level) * per_g;
+    const double f_l = by_a * a / big_d;
 
     x[kBristle] += gap * relaxed;
     // Damping c = sigma1 (v - |v| F+ / G).

@@ -33,16 +33,19 @@ struct SevenStateInput {
 };
 
 /// One rigid axis with LuGre friction in two substeps per period:
-///   F+ = F + (sgn(v) G - F) (1 - exp(-sigma0 |v| h / G)),  G = g(dir) Stribeck(v) ripple(p)
-///   v+ = A v + B (u - F+ - sigma1 (v - |v| F+ / G) - d),  A = exp(-sigma2 h / m),  B = (1 - A) / sigma2
+///   F+ = F + (sgn(v) G - F) (1 - exp(-a h)),  G = g(dir) Stribeck(v) ripple(p)
+///   a = sigma0 |v| / G / (1 + sigma0 C (1 - sgn(v) F / G)): the bristle sees the table, which trails v by C
+///   F' v+ = A v + B (u - F+ - sigma1 (v - |v| F+ / G) - d),  A = exp(-sigma2 h / m),  B = (1 - A) / sigma2
 ///   p+ = p + h (v + v+) / 2
 /// The new F goes into the velocity update (eq. 9 as printed is unstable in presliding). sigma1 fades with
 /// speed, exp(-(v / vd)^2); it is taken at the mean speed and is the same for all sigma points.
 class SevenStateModel {
  public:
   SevenStateModel() noexcept = default;
-  SevenStateModel(const Friction& friction, double mass_kg, double period_s,
-                  double disturbance_decay_s) noexcept;
+  /// compliance_m_N: by how much the centre of mass runs ahead of the table per newton of friction, because
+  /// the screw winds up.
+  SevenStateModel(const Friction& friction, double mass_kg, double period_s, double disturbance_decay_s,
+                  double compliance_m_N = 0.0) noexcept;
 
   /// All sigma points, in place.
   void Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in) const noexcept;
@@ -77,8 +80,9 @@ class SevenStateModel {
   double step_s_ = 0.0;          // h
   double velocity_decay_ = 1.0;  // A
   double velocity_gain_ = 0.0;   // B
-  double leak_ = 1.0;            // of d, per substep
-  double ratio_plus_ = 1.0;      // Fs / Fc
+  double compliance_m_N_ = 0.0;
+  double leak_ = 1.0;        // of d, per substep
+  double ratio_plus_ = 1.0;  // Fs / Fc
   double ratio_minus_ = 1.0;
 };
 

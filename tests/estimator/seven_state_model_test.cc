@@ -92,7 +92,7 @@ TEST(SevenStateModel, AllSigmaPointsMoveLikeSingleStates) {
 
 TEST(SevenStateModel, TangentIsTheDerivative) {
   for (const double exponent : {1.0, 2.0}) {
-    const SevenStateModel model(Nominal(exponent), 89.0, 1e-3, 0.2);
+    const SevenStateModel model(Nominal(exponent), 89.0, 1e-3, 0.2, 25e-9);
     std::mt19937 random(6);
     const std::array<double, kSevenStates> delta{1e-7, 1e-9, 1e-4, 1e-4, 1e-4, 1e-4, 1e-6};
     for (int trial = 0; trial < 100; ++trial) {
