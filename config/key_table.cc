@@ -26,12 +26,36 @@ std::string Padded(std::string text, std::size_t width) {
 
 }  // namespace
 
-std::string MarkdownTable(const std::vector<KeyRow>& rows) {
-  std::string table = "| key | unit | value | default | meaning |\n|---|---|---|---|---|\n";
-  for (const KeyRow& row : rows)
-    table += "| `" + row.key + "` | " + Unit(row) + " | " + Type(row) + " | " + row.value + " | " +
-             Explanation(row) + " |\n";
-  return table;
+std::string MarkdownReference(const std::vector<KeyRow>& rows) {
+  // A section for each map; a key belongs to the innermost map that is listed.
+  struct Section {
+    const KeyRow* map = nullptr;
+    std::string table;
+  };
+  std::vector<Section> sections;
+  for (const KeyRow& row : rows) {
+    if (row.type == "map") {
+      sections.push_back({&row, ""});
+      continue;
+    }
+    Section* home = nullptr;
+    for (Section& s : sections)
+      if (row.key.starts_with(s.map->key + ".") &&
+          (home == nullptr || s.map->key.size() > home->map->key.size()))
+        home = &s;
+    if (home == nullptr) home = &sections.emplace_back(Section{&row, ""});
+    const std::string shown = home->map == &row ? row.key : row.key.substr(home->map->key.size() + 1);
+    home->table += "| `" + shown + "` | " + Unit(row) + " | " + Type(row) + " | " + row.value + " | " +
+                   Explanation(row) + " |\n";
+  }
+  std::string text;
+  for (const Section& s : sections) {
+    const bool required = s.map->value == "required";
+    text += "## `" + s.map->key + "`\n\n" + Explanation(*s.map) + (required ? " (required)" : "") + "\n\n";
+    if (!s.table.empty())
+      text += "| key | unit | value | default | meaning |\n|---|---|---|---|---|\n" + s.table + "\n";
+  }
+  return text;
 }
 
 std::string TextTable(const std::vector<KeyRow>& rows) {

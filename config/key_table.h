@@ -81,8 +81,8 @@ std::vector<KeyRow> DescribeKeys(const std::string& path = "") {
   return rows;
 }
 
-/// The table as Markdown: one line per key.
-std::string MarkdownTable(const std::vector<KeyRow>& rows);
+/// The table as Markdown: a section with a table for each map of keys.
+std::string MarkdownReference(const std::vector<KeyRow>& rows);
 /// The table as aligned text.
 std::string TextTable(const std::vector<KeyRow>& rows);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/mechanics.h"
 
@@ -17,14 +18,16 @@ double PathRamp_s(const StoppingAxis& axis) {
                   std::sqrt(6.0 * axis.speed_m_s / axis.path_jerk_m_s3));
 }
 
-std::vector<StopBound> PathStop(const std::vector<StoppingAxis>& axes) {
+// `delay_s` on the path, then the ramp; `after_s` until it counts as stopped.
+std::vector<StopBound> PathStop(const std::vector<StoppingAxis>& axes, double delay_s, double after_s) {
   // One ramp for all axes, so that the geometry is kept: the slowest axis says how long.
   double ramp_s = 0.0;
   for (const StoppingAxis& a : axes) ramp_s = std::max(ramp_s, PathRamp_s(a));
   std::vector<StopBound> bounds;
   for (const StoppingAxis& a : axes) {
-    const double delay_s = Cycles_s(a, 2.0);
-    bounds.push_back({delay_s + ramp_s, 1e3 * a.speed_m_s * (delay_s + 0.5 * ramp_s)});
+    const double until_ramp_s = delay_s + Cycles_s(a, 2.0);
+    bounds.push_back({until_ramp_s + ramp_s + after_s,
+                      1e3 * a.speed_m_s * (until_ramp_s + 0.5 * ramp_s) + a.following_error_mm});
   }
   return bounds;
 }
@@ -41,18 +44,19 @@ std::string Ms(double seconds) {
   return std::to_string(tenths / 10) + (tenths % 10 == 0 ? "" : "." + std::to_string(tenths % 10)) + " ms";
 }
 
-StopWay EmergencyStop(const MachineConfig& config, const std::vector<StoppingAxis>& axes,
-                      bool server_silent) {
-  const ModbusConfig& modbus = *config.io.modbus;
-  // An input that opens right after a poll is seen with the next reply; a server that says nothing counts as
-  // open when its last answer is timeout_ms old.
-  const double seen_s = 1e-3 * (server_silent ? modbus.timeout_ms : modbus.poll_ms + modbus.timeout_ms);
-  StopWay way;
-  way.name = server_silent ? "Modbus server silent" : "emergency-stop input";
-  way.how = "seen within " + Ms(seen_s) + ", then quick stop";
-  way.axes =
-      Each(axes, [&](const StoppingAxis& a) { return QuickStop(a, a.speed_m_s, seen_s + Cycles_s(a, 2.0)); });
-  return way;
+// An input that opens right after a poll is seen with the next reply; a server that says nothing counts as
+// open when its last answer is timeout_ms old.
+std::vector<StopWay> IoStops(const ModbusConfig& modbus, const std::vector<StoppingAxis>& axes) {
+  const double seen_s = 1e-3 * (modbus.poll_ms + modbus.timeout_ms);
+  const double old_s = 1e-3 * modbus.timeout_ms;
+  const auto quick = [&](const StoppingAxis& a) {
+    return QuickStop(a, a.speed_m_s, seen_s + Cycles_s(a, 2.0));
+  };
+  return {{"emergency-stop input", "seen within " + Ms(seen_s) + ", then as a fault", Each(axes, quick)},
+          {"enable-chain input", "seen within " + Ms(seen_s) + ", then as SIGTERM",
+           PathStop(axes, seen_s, kSwitchOff_s)},
+          {"Modbus server silent", "counts as open after " + Ms(old_s) + ", then as SIGTERM",
+           PathStop(axes, old_s, kSwitchOff_s)}};
 }
 
 }  // namespace
@@ -64,6 +68,7 @@ StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis)
   s.speed_m_s = limits.velocity_m_s;
   s.path_acceleration_m_s2 = limits.acceleration_m_s2;
   s.path_jerk_m_s3 = limits.jerk_m_s3;
+  s.following_error_mm = axis.limits.following_error_mm;
   s.torque_acceleration_m_s2 = limits.force_N / m.mass_kg;
   s.ramp_m_s2 = axis.drive.quick_stop_deceleration_rad_s2 * m.radius_m_rad;
   s.notice_s = axis.drive.notice_ms * 1e-3;
@@ -74,7 +79,7 @@ StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis)
 StopBound QuickStop(const StoppingAxis& axis, double speed_m_s, double delay_s) {
   const double ramp_s = speed_m_s / axis.ramp_m_s2;
   const double travel_m = speed_m_s * (delay_s + 0.5 * ramp_s + kRampFollowing_s);
-  return {delay_s + ramp_s + kRampFollowing_s, 1e3 * travel_m};
+  return {delay_s + ramp_s + kSwitchOff_s, 1e3 * travel_m};
 }
 
 StopBound SilentMaster(const StoppingAxis& axis, double speed_m_s) {
@@ -93,10 +98,10 @@ std::vector<StopWay> StopWays(const MachineConfig& config) {
   const auto silent = [](const StoppingAxis& a) { return SilentMaster(a, a.speed_m_s); };
 
   std::vector<StopWay> ways;
-  ways.push_back(
-      {"operator stop", "on the path, within the limits of acceleration and jerk", PathStop(axes)});
-  ways.push_back(
-      {"SIGTERM, SIGINT", "as an operator stop, then the drives are switched off", PathStop(axes)});
+  ways.push_back({"operator stop", "on the path, within the limits of acceleration and jerk",
+                  PathStop(axes, 0.0, kSwitchOff_s)});
+  ways.push_back({"SIGTERM, SIGINT", "as an operator stop, then the drives are switched off",
+                  PathStop(axes, 0.0, kSwitchOff_s)});
   ways.push_back({"fault (quick stop)", "torque 0 and the drives' quick-stop ramp in the cycle that sees it",
                   Each(axes, [&](const StoppingAxis& a) {
                     return QuickStop(a, overspeed * a.speed_m_s, Cycles_s(a, 2.0));
@@ -112,10 +117,8 @@ std::vector<StopWay> StopWays(const MachineConfig& config) {
       {"master silent (killed, hung)", "the drive notices, then its quick-stop ramp", Each(axes, silent)});
   ways.push_back(
       {"bus lost (interface down)", "as master silent; the machine is Faulted at once", Each(axes, silent)});
-  if (config.io.modbus) {
-    ways.push_back(EmergencyStop(config, axes, false));
-    ways.push_back(EmergencyStop(config, axes, true));
-  }
+  if (config.io.modbus)
+    for (StopWay& way : IoStops(*config.io.modbus, axes)) ways.push_back(std::move(way));
   return ways;
 }
 

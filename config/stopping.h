@@ -11,7 +11,7 @@
 namespace contour {
 
 struct StopBound {
-  double time_s = 0.0;     ///< from the event to standstill
+  double time_s = 0.0;     ///< from the event to standstill; where the drives go off, to no torque
   double travel_mm = 0.0;  ///< on the way
 };
 
@@ -20,6 +20,7 @@ struct StoppingAxis {
   double speed_m_s = 0.0;  ///< highest speed at which an axis can be when something happens
   double path_acceleration_m_s2 = 0.0;
   double path_jerk_m_s3 = 0.0;
+  double following_error_mm = 0.0;  ///< by which the axis may be away from the path
   double torque_acceleration_m_s2 =
       0.0;                 ///< torque limit over effective mass; friction, which helps, left out
   double ramp_m_s2 = 0.0;  ///< the drive's quick-stop ramp
@@ -28,11 +29,15 @@ struct StoppingAxis {
 };
 StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis);
 
-/// A drive's velocity loop follows its ramp some time behind it; standstill comes by so much later.
+/// A drive's velocity loop follows its ramp some time behind it.
 inline constexpr double kRampFollowing_s = 0.003;
 
+/// From a ramp's end to no torque: the last oscillation of the screw fades, the drive sees standstill and
+/// leaves its state.
+inline constexpr double kSwitchOff_s = 0.040;
+
 /// The axis keeps `speed` for `delay_s`, then the drive's quick-stop ramp brings it to rest:
-/// x = v t + v^2 / (2 d) + v t_following.
+/// x = v t + v^2 / (2 d) + v t_following; torque is off after t + v / d + t_off.
 StopBound QuickStop(const StoppingAxis& axis, double speed_m_s, double delay_s);
 
 /// Drives count their watchdogs in steps of a millisecond.

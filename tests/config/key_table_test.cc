@@ -53,17 +53,25 @@ TEST(KeyTable, ListsTheKeysOfOtherVariants) {
   EXPECT_EQ(Find(rows, "friction.stribeck_exponent")->only, "");
 }
 
-TEST(KeyTable, Layout) {
+TEST(KeyTable, TextLayout) {
   const std::vector<KeyRow> rows{{"a_mm", "number", "above 0", "2", "", "first"},
                                  {"long_key", "text", "", "required", "kind: b", "second"}};
   EXPECT_EQ(TextTable(rows),
             "KEY       UNIT  VALUE           DEFAULT   MEANING\n"
             "a_mm      mm    number above 0  2         first\n"
             "long_key        text            required  second (only with kind: b)\n");
-  EXPECT_EQ(MarkdownTable(rows),
-            "| key | unit | value | default | meaning |\n|---|---|---|---|---|\n"
-            "| `a_mm` | mm | number above 0 | 2 | first |\n"
-            "| `long_key` |  | text | required | second (only with kind: b) |\n");
+}
+
+TEST(KeyTable, MarkdownLayout) {
+  const std::vector<KeyRow> rows{{"outer", "map", "", "required", "", "the outer map"},
+                                 {"outer.<name>.inner", "map", "", "as below", "", "the inner map"},
+                                 {"outer.<name>.inner.a_mm", "number", "above 0", "2", "", "first"},
+                                 {"outer.<name>.late", "text", "", "required", "", "after the inner map"}};
+  const std::string head = "| key | unit | value | default | meaning |\n|---|---|---|---|---|\n";
+  EXPECT_EQ(MarkdownReference(rows), "## `outer`\n\nthe outer map (required)\n\n" + head +
+                                         "| `<name>.late` |  | text | required | after the inner map |\n\n" +
+                                         "## `outer.<name>.inner`\n\nthe inner map\n\n" + head +
+                                         "| `a_mm` | mm | number above 0 | 2 | first |\n\n");
 }
 
 TEST(KeyHints, Units) {

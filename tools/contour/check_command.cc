@@ -21,6 +21,12 @@ struct Options {
   std::vector<std::string> set;
 };
 
+const std::string kReferenceHead =
+    "# Every key of a machine file\n\n"
+    "Written by `contour check --markdown`; [configuration.md](configuration.md) explains the whole. "
+    "`<name>` stands for "
+    "a name of your\nchoice; a range is inclusive unless it says above.\n\n";
+
 std::vector<KeyRow> AllKeys() {
   std::vector<KeyRow> rows = DescribeKeys<MachineConfig>();
   for (KeyRow& row : DescribeKeys<EmulatorConfig>("emulator")) rows.push_back(std::move(row));
@@ -46,7 +52,7 @@ ExitStatus CheckInterfaces(const MachineConfig& config) {
 
 int RunCheck(const Options& options) {
   if (options.describe || options.markdown) {
-    std::cout << (options.markdown ? MarkdownTable(AllKeys()) : TextTable(AllKeys()));
+    std::cout << (options.markdown ? kReferenceHead + MarkdownReference(AllKeys()) : TextTable(AllKeys()));
     if (options.file.empty()) return kExitDone;
   }
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
@@ -62,7 +68,8 @@ void AddCheckCommand(CLI::App& app, Action& action) {
       app.add_subcommand("check", "Validate a machine file; print limits, stopping bounds and bus timing");
   CLI::Option* file = sub->add_option("file", options->file, "Machine file (YAML)");
   sub->add_flag("--describe", options->describe, "Print the reference table of all keys");
-  sub->add_flag("--markdown", options->markdown, "The reference table as Markdown");
+  sub->add_flag("--markdown", options->markdown,
+                "Print it as Markdown, as docs/configuration_keys.md holds it");
   sub->add_option("--set", options->set, "Put KEY=VALUE on top of the file; any number of times")
       ->type_name("KEY=VALUE")
       ->expected(1)

@@ -6,6 +6,7 @@
 
 #include "config/config_error.h"
 #include "core/exit_status.h"
+#include "core/version.h"
 #include "tools/contour/check_command.h"
 #include "tools/contour/command.h"
 #include "tools/contour/emulate_command.h"
@@ -18,7 +19,8 @@
 namespace {
 
 void AddVersionFlags(CLI::App& app) {
-  app.set_version_flag("--version", std::string("contour ") + CONTOUR_VERSION, "Print the version and leave");
+  app.set_version_flag("--version", "contour " + std::string(contour::kVersion),
+                       "Print the version and leave");
   for (CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) AddVersionFlags(*sub);
 }
 
