@@ -7,7 +7,7 @@ import json
 import sys
 from pathlib import Path
 
-HEADER = ("controller", "enc. rms", "enc. peak", "table rms", "table peak", "circ. dev.", "quadrants +X +Y -X -Y",
+HEADER = ("controller", "clock", "enc. rms", "enc. peak", "table rms", "table peak", "circ. dev.", "quadrants +X +Y -X -Y",
           "friction x/y")
 
 
@@ -19,7 +19,8 @@ def row(metrics):
     encoder, table = metrics["contour"]["encoder"], metrics["contour"]["table"]
     quadrants = table["quadrant_peak_um"] or [None] * 4
     friction = metrics["friction_estimate_error_rms_N"].values()
-    return (metrics["controller"], number(encoder["rms_um"]), number(encoder["peak_um"]), number(table["rms_um"]),
+    clock = "virtual" if metrics["late_cycles"] is None else "real time"
+    return (metrics["controller"], clock, number(encoder["rms_um"]), number(encoder["peak_um"]), number(table["rms_um"]),
             number(table["peak_um"]), number(table["circular_deviation_um"]), " ".join(map(number, quadrants)),
             " / ".join(map(number, friction)))
 
@@ -33,7 +34,7 @@ def table_text(metrics_of_runs):
     widths = [max(len(r[i]) for r in [HEADER, *rows]) for i in range(len(HEADER))]
 
     def line(cells):
-        padded = [cells[0].ljust(widths[0])] + [c.rjust(w) for c, w in zip(cells[1:], widths[1:])]
+        padded = [c.ljust(w) if i < 2 else c.rjust(w) for i, (c, w) in enumerate(zip(cells, widths))]
         return "  ".join(padded).rstrip()
 
     lines = []

@@ -16,7 +16,8 @@ def draw(pyplot, run):
     figure, axes = pyplot.subplots(figsize=(9.5, 4.6))
     columns = {name: run.column(name) for name, _, _ in STAMPS}
     largest = max(float(np.nanmax(values)) for values in columns.values())
-    bins = np.geomspace(1.0, max(largest * 1.1, 10.0), 70)
+    smallest = min(float(np.nanmin(values)) for values in columns.values())
+    bins = np.geomspace(max(0.8 * smallest, 1.0), max(1.1 * largest, 10.0), 70)
     for name, title, colour in STAMPS:
         values = np.clip(columns[name], bins[0], None)
         middle, worst = np.percentile(values, 50), values.max()
