@@ -165,9 +165,7 @@ void Cycle::Observe(const CycleInput& in) noexcept {
 }
 
 void Cycle::Estimate() noexcept {
-  const MachineState state = transitions_.state();
-  const bool holds =
-      state == MachineState::kReady || state == MachineState::kRunning || state == MachineState::kStopping;
+  const bool holds = transitions_.holds_torque();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
     const AxisFeedback& f = master_.feedback()[i];
@@ -251,6 +249,12 @@ void Cycle::HoldHere() noexcept {
   guard_.Reset();
 }
 
+void Cycle::FollowFeedback() noexcept {
+  PerAxis<double> here;
+  for (const Axis& axis : axes_) here.push_back(axis.position_m);
+  follower_.Hold(here);
+}
+
 void Cycle::CarryOut(const Orders& orders) noexcept {
   if (orders.start_bring_up) master_.StartBringUp();
   if (orders.hold_here) HoldHere();
@@ -259,6 +263,8 @@ void Cycle::CarryOut(const Orders& orders) noexcept {
     for (std::size_t i = 0; i < axes_.size(); ++i) here.push_back(control_in_.reference[i][0].position_m);
     follower_.Hold(here);
   }
+  // Where nothing is held, the reference is where the axes are: nothing jumps when they are enabled.
+  if (!orders.torque_allowed) FollowFeedback();
   if (orders.expect_path) follower_.Expect(transitions_.program_id());
   if (orders.start_path) follower_.Start();
   if (orders.stop_path) follower_.BeginStop();
@@ -356,7 +362,8 @@ void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
   r.torque_Nm = master_.sent_torque_Nm()[i];
   r.target_position_rad = setpoints_[i].position_rad;
   r.goal = setpoints_[i].goal;
-  r.limit = guarded_[i].limit != Reason::kNone ? guarded_[i].limit : control_out_.limit[i];
+  const bool held = transitions_.holds_torque();
+  r.limit = guarded_[i].limit != Reason::kNone || !held ? guarded_[i].limit : control_out_.limit[i];
   r.emergency_code = master_.status()[i].emergency_code;
 }
 

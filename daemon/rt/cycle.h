@@ -56,6 +56,7 @@ class Cycle {
   [[nodiscard]] bool PathBeginsHere() const noexcept;
   void CarryOut(const Orders& orders) noexcept;
   void HoldHere() noexcept;
+  void FollowFeedback() noexcept;
   void Decide() noexcept;
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;

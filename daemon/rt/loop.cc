@@ -3,6 +3,8 @@
 #include <cerrno>
 #include <ctime>
 
+#include "drivers/can/socketcan_bus.h"
+
 namespace contour {
 namespace {
 
@@ -18,8 +20,10 @@ void SleepUntil(std::int64_t time_ns) noexcept {
   }
 }
 
-/// How often lock-step looks for feedback or work.
+/// How often lock-step looks for feedback that no descriptor announces, for path points, for requests.
 constexpr std::int64_t kLockstepPoll_ns = 50'000;
+constexpr std::int64_t kLockstepStarvedPoll_ns = 200'000;
+constexpr std::int64_t kLockstepIdlePoll_ns = 2'000'000;
 /// Heartbeats while lock-step time stands still.
 constexpr std::int64_t kLockstepHeartbeat_ns = 20'000'000;
 /// Feedback that has not come after this long of wall time will not come.
@@ -108,7 +112,18 @@ void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
     if (cycle_.ExpectsFeedback() && cycle_.FeedbackComplete(in)) return;
     const std::int64_t now = Now();
     if (now - begin >= limit || in.frames.full()) return;
-    SleepUntil(now + kLockstepPoll_ns);
+    WaitForFrames(begin + limit);
+  }
+}
+
+void Loop::WaitForFrames(std::int64_t until_ns) noexcept {
+  FixedVector<int, kMaxBuses> fds;
+  for (const FrameBus* bus : buses_)
+    if (bus->fd() >= 0) fds.push_back(bus->fd());
+  if (fds.empty()) {
+    SleepUntil(Now() + kLockstepPoll_ns);
+  } else {
+    static_cast<void>(WaitReadable(std::span(fds.data(), fds.size()), until_ns));
   }
 }
 
@@ -128,7 +143,7 @@ void Loop::WaitForWork(const CycleOutput& last) noexcept {
       cycle_.EncodeHeartbeat(alive);
       runner_.Send(0, alive);
     }
-    SleepUntil(now + 4 * kLockstepPoll_ns);
+    SleepUntil(now + (idle ? kLockstepIdlePoll_ns : kLockstepStarvedPoll_ns));
   }
 }
 

@@ -43,6 +43,7 @@ class Loop {
  private:
   void Finish(CycleEntry& entry, const GridPoint& grid, std::int64_t woken_ns, std::int64_t received_ns,
               std::int64_t stepped_ns) noexcept;
+  void WaitForFrames(std::int64_t until_ns) noexcept;
   void WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept;
   void WaitForWork(const CycleOutput& last) noexcept;
 

@@ -71,6 +71,9 @@ class Transitions {
   /// Cycles spent in the present state.
   [[nodiscard]] std::uint32_t since() const noexcept { return since_; }
   [[nodiscard]] bool run_pending() const noexcept { return run_pending_; }
+  [[nodiscard]] bool holds_torque() const noexcept {
+    return state_ == MachineState::kReady || state_ == MachineState::kRunning || state_ == MachineState::kStopping;
+  }
   [[nodiscard]] bool drives_off() const noexcept { return drives_off_; }
 
  private:
