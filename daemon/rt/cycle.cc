@@ -1,5 +1,6 @@
 #include "daemon/rt/cycle.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "control/contour_error.h"
@@ -74,11 +75,14 @@ PerAxis<double> Zeros(std::size_t n) {
 }  // namespace
 
 double StopOnPathTime_s(const CycleConfig& config) {
-  // The ramp's steepest slope is 1.5 / T: an axis at its highest speed then just keeps its acceleration
-  // limit.
+  // The ramp's steepest slope is 1.5 / T, its sharpest bend 6 / T^2: an axis at its highest speed then just
+  // keeps its limits of acceleration and jerk.
   double time_s = 0.0;
-  for (const CycleAxisConfig& a : config.axes)
-    time_s = std::max(time_s, 1.5 * a.limits.velocity_mm_s / a.limits.acceleration_mm_s2);
+  for (const CycleAxisConfig& a : config.axes) {
+    const AxisLimits& l = a.limits;
+    time_s = std::max({time_s, 1.5 * l.velocity_mm_s / l.acceleration_mm_s2,
+                       std::sqrt(6.0 * l.velocity_mm_s / l.jerk_mm_s3)});
+  }
   return time_s;
 }
 

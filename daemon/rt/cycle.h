@@ -16,7 +16,7 @@
 
 namespace contour {
 
-/// Length of a stop on the path: an axis at its highest speed keeps its acceleration limit.
+/// Length of a stop on the path: an axis at its highest speed keeps its limits of acceleration and jerk.
 double StopOnPathTime_s(const CycleConfig& config);
 
 /// One period of the machine, top to bottom: frames in, axis feedback, estimate, machine state, wanted
