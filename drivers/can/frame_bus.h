@@ -32,6 +32,9 @@ class FrameBus {
   virtual std::size_t Send(std::int64_t now_ns, std::span<const CanFrame> frames) noexcept = 0;
 
   [[nodiscard]] virtual BusState State() const noexcept = 0;
+
+  /// For poll(): readable when frames wait; -1 for a bus inside the process.
+  [[nodiscard]] virtual int fd() const noexcept { return -1; }
 };
 
 }  // namespace contour

@@ -46,8 +46,7 @@ class SocketCanBus : public FrameBus {
   std::size_t Send(std::int64_t now_ns, std::span<const CanFrame> frames) noexcept override;
   [[nodiscard]] BusState State() const noexcept override { return state_; }
 
-  /// For poll(): readable when frames wait.
-  [[nodiscard]] int fd() const noexcept { return fd_; }
+  [[nodiscard]] int fd() const noexcept override { return fd_; }
   [[nodiscard]] const std::string& interface() const noexcept { return interface_; }
   /// errno of the last failure to send or receive; 0 none. For messages.
   [[nodiscard]] int last_error() const noexcept { return last_error_; }

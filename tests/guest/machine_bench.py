@@ -48,6 +48,9 @@ class MachineBench:
         self.out = Path(out)
         self.clock = clock
         self.bus = bus
+        # On a busy host a process may be held up for long, which neither the emulated drives nor the I/O client is to
+        # take for the other's death: time-outs by the clock do not belong to lock-step.
+        self.patience_ms = 4000
         self.work = Path("/tmp/bench")
         self.socket = self.work / "contourd.sock"
         self.processes = {}
@@ -93,14 +96,15 @@ class MachineBench:
 
     def start_emulator(self):
         self.start("emulator", self.programs / "contour", "emulate", "--config", self.config, "--bus", self.bus, "--clock",
-                   "sync" if self.clock == "lockstep" else "wall", "--truth", self.truth_path)
+                   "sync" if self.clock == "lockstep" else "wall", "--truth", self.truth_path,
+                   "--set", f"emulator.silence_ms={self.patience_ms}")
         self.wait_for("the emulator's Modbus server", lambda: self._listens(self.modbus_port))
 
     def start_daemon(self, *arguments):
         self._log_number += 1
         return self.start("contourd", self.programs / "contourd", "--config", self.config, "--bus", self.bus, "--clock",
                           self.clock, "--socket", self.socket, "--log", self.work / f"cycles{self._log_number}.lcm",
-                          *arguments)
+                          "--set", f"io.modbus.timeout_ms={self.patience_ms}", *arguments)
 
     def wait_for_end(self, name, seconds=20):
         """Exit status of a process that should end by itself."""
