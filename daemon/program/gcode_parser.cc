@@ -156,7 +156,10 @@ class Interpreter {
   }
 
   void ModalG(const Word& word) {
-    switch (static_cast<int>(std::lround(word.value * 10.0))) {
+    // G61.1 is the only code with a decimal; codes beyond the table are refused below.
+    const double tenfold = word.value * 10.0;
+    const bool known_form = std::abs(tenfold) < 10000.0 && std::abs(tenfold - std::round(tenfold)) < 1e-6;
+    switch (known_form ? static_cast<int>(std::lround(tenfold)) : -1) {
       case 0:
       case 10:
       case 20:

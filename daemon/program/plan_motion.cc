@@ -13,6 +13,7 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 // Circles and sines come up to speed in this time, or within a quarter turn: gentler than the axes' limits
 // usually ask, so that the first turn settles the machine. The limits may make it longer.
 constexpr double kGentleRamp_s = 0.2;
+constexpr double kLongest_s = 1e8;
 
 using Plane = std::array<std::size_t, 2>;
 
@@ -238,7 +239,11 @@ std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAx
     throw ProgramError(program.name + ": one start position and one set of limits is needed for each axis");
   }
   const Place place{program, start_m, limits};
-  return std::visit([&](const auto& shape) { return Plan(shape, place); }, program.shape);
+  auto plan = std::visit([&](const auto& shape) { return Plan(shape, place); }, program.shape);
+  if (!(plan->duration_s() <= kLongest_s)) {
+    throw ProgramError(program.name + ": the program would take more than three years");
+  }
+  return plan;
 }
 
 }  // namespace contour

@@ -79,6 +79,8 @@ TEST(GcodeParser, ErrorsNameTheLine) {
     const char* message;
   } wrong[] = {
       {"G1 X1 F100\nG5 X2\n", "part.ngc:2: G5 is not supported"},
+      {"G1.04 X1 F100\n", "part.ngc:1: G1.04 is not supported"},
+      {"G99999999999999999999 X1 F100\n", "part.ngc:1: G1e+20 is not supported"},
       {"G1 X1\n", "part.ngc:1: a feed (F) is missing"},
       {"X1\n", "part.ngc:1: a position without"},
       {"G1 X F100\n", "part.ngc:1: a number is missing after X"},

@@ -270,6 +270,7 @@ TEST(MotionPlan, RefusalsNameAxisValueAndLimit) {
       {"shape: line\ndx_mm: 250\nfeed_mm_min: 100\n",
        "axis x: position 253 mm is beyond the limit of 200 mm"},
       {"shape: sine\naxis: y\namplitude_mm: 197\nfrequency_hz: 0.1\n", "axis y: position -201 mm"},
+      {"shape: line\ndx_mm: 1\nfeed_mm_min: 1e-12\n", "would take more than three years"},
       {"shape: sine\naxis: z\namplitude_mm: 1\nfrequency_hz: 1\n",
        "axis z: the machine has no such axis, but x, y"},
       {"shape: multisine\naxis: x\nvelocity_mm_s: 100\nfrequency_min_hz: 5\nfrequency_max_hz: 50\nseconds: "
