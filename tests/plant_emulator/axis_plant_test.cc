@@ -146,6 +146,19 @@ TEST(AxisPlant, StiffFrictionIsStable) {
   }
 }
 
+TEST(AxisPlant, NothingDiesAwayIntoSubnormalNumbers) {
+  AxisParameters p = Nominal();
+  p.start_bristle_N =
+      5.0;  // the only thing that moves: all decays to nothing, which would make every step slow
+  AxisPlant plant(p);
+  for (int i = 0; i < 1500000; ++i) {
+    plant.Step(6e-5, 0.0);
+    ASSERT_NE(std::fpclassify(plant.table_velocity_m_s()), FP_SUBNORMAL) << i;
+    ASSERT_NE(std::fpclassify(plant.elastic_N()), FP_SUBNORMAL) << i;
+  }
+  EXPECT_NEAR(plant.table_velocity_m_s(), 0.0, 1e-15);
+}
+
 TEST(AxisPlant, WindUpOfTheScrewIsForceOverStiffness) {
   AxisPlant plant(Nominal());
   // Steady sliding: the screw carries friction.

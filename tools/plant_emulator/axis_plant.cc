@@ -184,8 +184,8 @@ void AxisPlant::Step(double step_s, double torque_Nm) noexcept {
   table_m_s2_ = (table_mid - table_m_s_) / half_s;
   motor_m_ += step_s * motor_mid;
   table_m_ += step_s * table_mid;
-  motor_m_s_ += step_s * motor_m_s2_;
-  table_m_s_ += step_s * table_m_s2_;
+  motor_m_s_ = portable::WithoutDust(motor_m_s_ + step_s * motor_m_s2_);
+  table_m_s_ = portable::WithoutDust(table_m_s_ + step_s * table_m_s2_);
   time_s_ += step_s;
   UpdateSlowThings(step_s);
 }

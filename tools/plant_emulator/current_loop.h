@@ -22,7 +22,7 @@ class CurrentLoop {
       decay_ = portable::DecayOver(step_s / lag_s_);
     }
     const double away = torque_Nm_ - command_Nm_;
-    torque_Nm_ = command_Nm_ + away * decay_.remaining;
+    torque_Nm_ = portable::WithoutDust(command_Nm_ + away * decay_.remaining);
     return command_Nm_ + away * decay_.mean;
   }
 

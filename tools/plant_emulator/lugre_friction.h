@@ -33,7 +33,7 @@ class LugreFriction {
 
   /// Moves the bristle over the step that Line() prepared.
   void Commit(double velocity_m_s) noexcept {
-    z_m_ = z_m_ * decay_.remaining + velocity_m_s * step_s_ * decay_.mean;
+    z_m_ = portable::WithoutDust(z_m_ * decay_.remaining + velocity_m_s * step_s_ * decay_.mean);
   }
 
   /// Whole force now; positive opposes positive motion.

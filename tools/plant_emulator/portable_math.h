@@ -84,6 +84,9 @@ inline double Sin(double x) noexcept {
 
 inline double Cos(double x) noexcept { return Sin(x + 1.57079632679489661923); }
 
+/// What has died away is zero: numbers too small to be normal would make every step slow.
+inline double WithoutDust(double x) noexcept { return x < 1e-60 && x > -1e-60 ? 0.0 : x; }
+
 /// What a first-order state does over a step, x = step / time constant >= 0.
 struct Decay {
   double remaining = 1.0;  ///< e^-x
