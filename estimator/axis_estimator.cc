@@ -13,9 +13,6 @@ void Demand(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(std::string("estimator: ") + what);
 }
 
-// From this share of its level on the bristle counts as sliding.
-constexpr double kSlidingShare = 0.9;
-
 bool Positive(double x) { return std::isfinite(x) && x > 0.0; }
 bool NotNegative(double x) { return std::isfinite(x) && x >= 0.0; }
 
@@ -67,14 +64,17 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       break;
   }
   roll_ = FrictionRoll(period_s);
-  period_s_ = period_s;
-  ripple_ = FrictionRipple(2.0 * std::numbers::pi * mechanics.radius_m_rad, config.ripple_rate);
+  mass_ = MassCorrection(mechanics.mass_kg, config.adapt ? config.mass_rate : 0.0);
+  correction_ =
+      LevelCorrection({2.0 * std::numbers::pi * mechanics.radius_m_rad, setup.friction.vs_m_s,
+                       config.adapt ? config.ripple_rate : 0.0, config.adapt ? config.stribeck_rate : 0.0});
 }
 
 void AxisEstimator::Reset(double position_m) noexcept {
   std::visit([&](auto& filter) noexcept { filter.Reset(position_m); }, filter_);
   roll_.Reset(0.0);
-  ripple_.Reset();
+  correction_.Reset();
+  mass_.Reset();
   at_rest_ = true;
 }
 
@@ -86,25 +86,17 @@ AxisEstimate AxisEstimator::Update(const Input& in) noexcept {
 
 AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
-  const auto basis = ripple_.Basis(filter.predicted()[kPosition]);
-  filter.SetRipple(ripple_.Factor(basis, true), ripple_.Factor(basis, false));
-  const AxisEstimate estimate = filter.Update(in);
-  const auto& x = filter.state();
-  const bool forward = x[kVelocity] >= 0.0;
-  // Sliding: the bristle has come to the level, and what F and d say together is a measurement of it.
-  const double along_N = forward ? x[kBristle] : -x[kBristle];
-  const double level_N = filter.Level_N();
-  if (!at_rest_ && in.fresh && along_N > kSlidingShare * level_N) {
-    const double measured_N = along_N + (forward ? x[kDisturbance] : -x[kDisturbance]);
-    ripple_.Learn(basis, forward, measured_N / level_N - 1.0, x[kVelocity] * period_s_);
-  }
-  return estimate;
+  const auto& ahead = filter.predicted();
+  const auto basis = correction_.Basis(ahead[kPosition], ahead[kVelocity]);
+  filter.SetLevelFactors(correction_.Factor(basis, true), correction_.Factor(basis, false));
+  filter.SetInertialForce_N(mass_.extra_kg() * in.commanded_acceleration_m_s2);
+  return filter.Update(in);
 }
 
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept {
   if (kind_ == EstimatorKind::kFull) {
     const auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
-    roll_.Run(filter.model(), filter.state(), ripple_, at_rest_, reference, out);
+    roll_.Run(filter.model(), filter.state(), correction_, mass_, at_rest_, reference, out);
     return;
   }
   const double ahead_N = std::visit(

@@ -12,8 +12,9 @@
 #include "estimator/four_state_filter.h"
 #include "estimator/friction_config.h"
 #include "estimator/friction_preview.h"
-#include "estimator/friction_ripple.h"
 #include "estimator/kinematic_observer.h"
+#include "estimator/level_correction.h"
+#include "estimator/mass_correction.h"
 #include "estimator/seven_state_filter.h"
 
 namespace contour {
@@ -24,7 +25,7 @@ enum class EstimatorKind : std::uint8_t {
   kSrukf4,               ///< the paper's four states, corrected
   kEkf7,                 ///< the seven states in an extended Kalman filter
   kSrukf7,               ///< seven states in a square-root unscented Kalman filter
-  kFull,                 ///< kSrukf7, per-turn ripple, friction rolled along the reference
+  kFull,                 ///< kSrukf7, level learnt over turn and speed, friction rolled along the reference
 };
 
 /// State, velocity and friction of one axis from its motor encoder and the torque sent to it.
@@ -57,8 +58,8 @@ class AxisEstimator {
                SevenStateFilter<SqrtEkf<kSevenStates>>, SevenStateFilter<SqrtUkf<kSevenStates>>>
       filter_;
   FrictionRoll roll_;
-  FrictionRipple ripple_;
-  double period_s_ = 1e-3;
+  LevelCorrection correction_;
+  MassCorrection mass_;
   bool at_rest_ = true;
 };
 

@@ -24,6 +24,8 @@ struct EstimatorConfig {
   double innovation_gate_um = 20.0;
   double observer_bandwidth_Hz = 60.0;
   double ripple_rate = 0.1;
+  double stribeck_rate = 0.005;
+  double mass_rate = 0.001;
   double initial_level_std = 0.2;
   double initial_log_sigma0_std = 0.5;
   double mass_std = 0.05;
@@ -56,6 +58,10 @@ struct EstimatorConfig {
     v.Optional("ripple_rate", ripple_rate, Range{0.0, 1.0},
                "share of the error that the per-turn ripple of the friction level learns per radian of the "
                "screw; 0 none");
+    v.Optional("stribeck_rate", stribeck_rate, Range{0.0, 1.0},
+               "share of the error that the low-speed rise of the friction level learns per cycle; 0 none");
+    v.Optional("mass_rate", mass_rate, Range{0.0, 1.0},
+               "share of the error that the correction of the moving mass learns per cycle; 0 none");
     v.Optional("initial_level_std", initial_level_std, Range{0.0, 2.0},
                "relative uncertainty of the commissioned friction levels");
     v.Optional("initial_log_sigma0_std", initial_log_sigma0_std, Range{0.0, 3.0},

@@ -1,11 +1,20 @@
 #include "estimator/friction_preview.h"
 
 namespace contour {
+namespace {
+
+// From this share of its level on the bristle counts as sliding.
+constexpr double kSlidingShare = 0.85;
+
+}  // namespace
 
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
-                       const FrictionRipple& ripple, bool at_rest, const AxisHorizon& reference,
-                       FrictionPreview& out) noexcept {
-  if (at_rest) bristle_N_ = x[kBristle];
+                       LevelCorrection& correction, MassCorrection& mass, bool at_rest,
+                       const AxisHorizon& reference, FrictionPreview& out) noexcept {
+  if (at_rest) {
+    bristle_N_ = x[kBristle];
+    correction.Pause();
+  }
   const Friction& f = model.friction();
   const double sigma0 = f.sigma0_N_m * Exp(x[kLogSigma0]);
   const double sigma2 = model.sigma2_Ns_m();
@@ -16,22 +25,32 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   StateVector<kSevenStates> along = x;
   for (std::size_t j = 0; j < reference.size(); ++j) {
     const ReferencePoint& now = reference[j];
-    const double next_velocity = j + 1 < reference.size() ? reference[j + 1].velocity_m_s : now.velocity_m_s;
-    const double velocity = 0.5 * (now.velocity_m_s + next_velocity);
+    const ReferencePoint& next = j + 1 < reference.size() ? reference[j + 1] : now;
+    const double velocity = 0.5 * (now.velocity_m_s + next.velocity_m_s);
     along[kVelocity] = velocity;
-    const double factor = ripple.Factor(ripple.Basis(now.position_m), velocity >= 0.0);
-    const SevenStateInput input{{}, factor, factor};
-    const double level_N = model.Level(along, input);
-    const double next_N = BristleAfter(bristle_N, velocity, sigma0, level_N, period_s_);
+    const auto basis = correction.Basis(now.position_m, velocity);
+    const double factor = correction.Factor(basis, velocity >= 0.0);
+    const double level_N = model.Level(along, {{}, factor, factor});
+    const double relaxation = BristleRelaxation(sigma0, std::abs(velocity), level_N, period_s_);
+    const double next_N = bristle_N + (std::copysign(level_N, velocity) - bristle_N) * relaxation;
     const double middle_N = 0.5 * (bristle_N + next_N);
     const double node_N = bristle_N + BristleDamping(f, bristle_N, now.velocity_m_s, level_N);
     if (j == 0) {
       offset_N = x[kBristle] - bristle_N;
       bristle_N_ = next_N;
+      const double share = (velocity >= 0.0 ? bristle_N : -bristle_N) / level_N;
+      if (!at_rest && share > kSlidingShare) {
+        mass.Learn(offset_N + d, now.acceleration_m_s2);
+        correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, (offset_N + d) / level_N,
+                         velocity * period_s_);
+      } else {
+        correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, 0.0, velocity * period_s_);
+      }
     }
     out[j].node_N = node_N + offset_N + d + sigma2 * now.velocity_m_s;
-    out[j].mid_N =
-        middle_N + BristleDamping(f, middle_N, velocity, level_N) + offset_N + d + sigma2 * velocity;
+    out[j].mid_N = middle_N + BristleDamping(f, middle_N, velocity, level_N) + offset_N + d +
+                   sigma2 * velocity +
+                   mass.extra_kg() * 0.5 * (now.acceleration_m_s2 + next.acceleration_m_s2);
     bristle_N = next_N;
   }
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "core/horizon.h"
-#include "estimator/friction_ripple.h"
+#include "estimator/level_correction.h"
+#include "estimator/mass_correction.h"
 #include "estimator/seven_state_model.h"
 
 namespace contour {
@@ -18,9 +19,11 @@ class FrictionRoll {
   /// The rolled bristle starts from this force.
   void Reset(double bristle_N) noexcept { bristle_N_ = bristle_N; }
 
-  /// `x`: filter state at element 0 of the reference. Keeps the bristle at element 1 for the next call.
-  void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, const FrictionRipple& ripple,
-           bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept;
+  /// `x`: filter state at element 0 of the reference. Keeps the bristle at element 1 for the next call and
+  /// lets the corrections learn from the difference at element 0. mid_N, which the torque must overcome, has
+  /// what the axis is heavier than commissioned in it; node_N, which winds the screw up, has not.
+  void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, LevelCorrection& correction,
+           MassCorrection& mass, bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept;
 
  private:
   double period_s_ = 1e-3;

@@ -89,7 +89,7 @@ double SevenStateFilter<Core>::WindUpShare_m(const X& x, double force_N) const n
   const Mechanics& m = setup_.mechanics;
   const double total = model_.Friction_N(x, Input(x, {}));
   const double friction = total - x[kDisturbance];
-  const double acceleration = (force_N - total) / m.mass_kg;
+  const double acceleration = (force_N - inertial_N_ - total) / m.mass_kg;
   return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
 }
 

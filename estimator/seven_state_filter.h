@@ -27,13 +27,16 @@ class SevenStateFilter {
 
   void Reset(double position_m) noexcept;
 
-  /// Filter at the sample t(k-1) and prediction to t(k). Ripple factors of the level may be set before.
+  /// Filter at the sample t(k-1) and prediction to t(k). Factors of the level may be set before.
   AxisEstimate Update(const AxisEstimatorInput& in) noexcept;
 
-  void SetRipple(double plus, double minus) noexcept {
-    ripple_plus_ = plus;
-    ripple_minus_ = minus;
+  void SetLevelFactors(double plus, double minus) noexcept {
+    factor_plus_ = plus;
+    factor_minus_ = minus;
   }
+
+  /// Force that accelerates what the axis is heavier than commissioned.
+  void SetInertialForce_N(double force_N) noexcept { inertial_N_ = force_N; }
 
   /// Mean state at the sample and at t(k).
   [[nodiscard]] const StateVector<kSevenStates>& state() const noexcept { return core_.x; }
@@ -41,15 +44,15 @@ class SevenStateFilter {
   [[nodiscard]] const SevenStateModel& model() const noexcept { return model_; }
   /// Friction (bristle, viscous, disturbance) in the middle of the interval in which the next torque acts.
   [[nodiscard]] double FrictionAhead_N() const noexcept { return friction_ahead_N_; }
-  /// Level G in the direction of motion, Stribeck and ripple included.
+  /// Level G in the direction of motion, Stribeck curve and factors included.
   [[nodiscard]] double Level_N() const noexcept { return model_.Level(core_.x, Input(core_.x, {})); }
 
  private:
   using X = StateVector<kSevenStates>;
 
-  [[nodiscard]] SevenStateInput Input(const X& x,
-                                      const std::array<double, kSubsteps>& force_N) const noexcept {
-    return {force_N, ripple_plus_, ripple_minus_, model_.Sigma1_Ns_m(x[kVelocity])};
+  [[nodiscard]] SevenStateInput Input(const X& x, std::array<double, kSubsteps> force_N) const noexcept {
+    for (double& f : force_N) f -= inertial_N_;
+    return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity])};
   }
   void Follow(double position_m) noexcept;
   void TimeUpdate(const AxisEstimatorInput& in) noexcept;
@@ -69,8 +72,9 @@ class SevenStateFilter {
   X initial_std_{};
   Core core_;
   X predicted_{};
-  double ripple_plus_ = 1.0;
-  double ripple_minus_ = 1.0;
+  double factor_plus_ = 1.0;
+  double factor_minus_ = 1.0;
+  double inertial_N_ = 0.0;
   double friction_ahead_N_ = 0.0;
   double last_position_m_ = 0.0;
   double surprise_ = 1.0;  // mean square of innovation / its standard deviation

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "estimator/exponential.h"
+#include "estimator/turn.h"
+
+namespace contour {
+
+/// What the commissioned friction level lacks, per direction, as a factor 1 + sum(c_i f_i) on g: two
+/// harmonics of the screw's turn (ripple) and a rise at low speed (a wrong Stribeck curve). It belongs inside
+/// g: as a force beside the bristle it would jump at a reversal.
+///
+/// Learnt on line by least mean squares from how far the estimated bristle is from the one rolled along the
+/// reference. The bristle follows its level only as fast as it relaxes, so each term is passed through the
+/// same relaxation first: in presliding, where the level has no say, nothing is learnt.
+class LevelCorrection {
+ public:
+  static constexpr std::size_t kRippleTerms = 4;
+  static constexpr std::size_t kTerms = kRippleTerms + 1;
+  using Terms = std::array<double, kTerms>;
+
+  struct Tuning {
+    double lead_m = 5e-3;
+    double vs_m_s = 2e-3;
+    double ripple_rate = 0.1;     ///< share of the error taken over per radian of the screw
+    double stribeck_rate = 0.05;  ///< and per cycle, by the low-speed term
+  };
+
+  LevelCorrection() noexcept = default;
+  explicit LevelCorrection(const Tuning& tuning) noexcept
+      : tuning_(tuning), per_turn_1_m_(1.0 / tuning.lead_m), per_speed_s_m_(1.0 / tuning.vs_m_s) {}
+
+  void Reset() noexcept {
+    plus_ = minus_ = {};
+    mean_low_speed_ = 0.0;
+  }
+
+  /// Term values at a place and speed: cos, sin of the screw's angle and of twice it, and exp(-|v| / vs).
+  [[nodiscard]] Terms Basis(double position_m, double velocity_m_s) const noexcept {
+    const CosSin one = Turn(position_m * per_turn_1_m_);
+    return {one.cos, one.sin, one.cos * one.cos - one.sin * one.sin, 2.0 * one.sin * one.cos,
+            Exp(-std::abs(velocity_m_s) * per_speed_s_m_)};
+  }
+
+  /// Factor of the level, within 1 +- kLargest.
+  [[nodiscard]] double Factor(const Terms& basis, bool forward) const noexcept {
+    const Terms& c = forward ? plus_.coefficient : minus_.coefficient;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < kTerms; ++i) sum += c[i] * basis[i];
+    return 1.0 + std::clamp(sum, -kLargest, kLargest);
+  }
+
+  /// One period along the reference: `kept` is the share of the bristle that relaxation left, `travel_m` the
+  /// way. `excess` is the estimated bristle minus the rolled one at the period's start over the level, signed
+  /// as the force is.
+  void Learn(const Terms& basis, bool forward, double kept, double excess, double travel_m) noexcept {
+    // The low-speed term is taken against its mean: where the speed never leaves the low range it cannot be
+    // told from the level itself, and is left alone.
+    mean_low_speed_ += kMeanShare * (basis[kRippleTerms] - mean_low_speed_);
+    Terms centred = basis;
+    centred[kRippleTerms] -= mean_low_speed_;
+    const double ripple = std::min(tuning_.ripple_rate * std::abs(travel_m) * per_turn_1_m_ * kTwoPi, 0.5);
+    Step(plus_, centred, forward, kept, excess, ripple);
+    Step(minus_, centred, !forward, kept, -excess, ripple);
+  }
+
+  /// At rest nothing is known of what the bristle still follows.
+  void Pause() noexcept { plus_.follows = minus_.follows = {}; }
+
+  [[nodiscard]] const Terms& plus() const noexcept { return plus_.coefficient; }
+  [[nodiscard]] const Terms& minus() const noexcept { return minus_.coefficient; }
+
+ private:
+  static constexpr double kLargest = 0.5;
+  static constexpr double kTwoPi = 6.283185307179586;
+  static constexpr double kMeanShare = 1e-3;
+
+  struct Direction {
+    Terms coefficient{};
+    Terms follows{};  ///< terms as the bristle follows them: d(bristle / level) / d(coefficient)
+  };
+
+  void Step(Direction& d, const Terms& basis, bool active, double kept, double excess,
+            double ripple) const noexcept {
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      const double rate = i < kRippleTerms ? ripple : tuning_.stribeck_rate;
+      d.coefficient[i] = std::clamp(d.coefficient[i] + rate * excess * d.follows[i], -kLargest, kLargest);
+      d.follows[i] = kept * d.follows[i] + (active ? (1.0 - kept) * basis[i] : 0.0);
+    }
+  }
+
+  Tuning tuning_;
+  double per_turn_1_m_ = 0.0;
+  double per_speed_s_m_ = 0.0;
+  Direction plus_;
+  Direction minus_;
+  double mean_low_speed_ = 0.0;
+};
+
+}  // namespace contour

@@ -1,0 +1,113 @@
+#include "estimator/level_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "estimator/mass_correction.h"
+
+namespace contour {
+namespace {
+
+constexpr double kLead_m = 5e-3;
+constexpr LevelCorrection::Tuning kTuning{kLead_m, 2e-3, 0.1, 0.01};
+
+// The bristle as it follows its level: relaxes by 1 - kept per period.
+struct Follower {
+  double value = 1.0;
+  void Step(double level, double kept) { value = kept * value + (1.0 - kept) * level; }
+};
+
+TEST(LevelCorrection, LearnsTheRippleOfEachDirection) {
+  LevelCorrection correction(kTuning);
+  const auto truth = [](double p, bool forward) {
+    const double angle = 2.0 * std::numbers::pi * p / kLead_m;
+    return forward ? 1.0 + 0.08 * std::sin(angle + 0.7)
+                   : 1.0 + 0.05 * std::cos(2.0 * angle) - 0.03 * std::sin(angle);
+  };
+  const double step = 50e-6, kept = 0.1;
+  for (int sweep = 0; sweep < 10; ++sweep) {
+    const bool forward = sweep % 2 == 0;
+    Follower real, rolled;
+    for (int k = 0; k < 1000; ++k) {
+      const double p = forward ? k * step : (1000 - k) * step;
+      const double v = forward ? 0.05 : -0.05;
+      const auto basis = correction.Basis(p, v);
+      const double force = forward ? 1.0 : -1.0;
+      correction.Learn(basis, forward, kept, force * (real.value - rolled.value), v * 1e-3);
+      real.Step(truth(p, forward), kept);
+      rolled.Step(correction.Factor(basis, forward), kept);
+    }
+  }
+  for (double p = 0.0; p < kLead_m; p += 1e-4) {
+    EXPECT_NEAR(correction.Factor(correction.Basis(p, 0.05), true), truth(p, true), 0.005) << p;
+    EXPECT_NEAR(correction.Factor(correction.Basis(p, -0.05), false), truth(p, false), 0.005) << p;
+  }
+}
+
+TEST(LevelCorrection, LearnsTheRiseAtLowSpeedFromReversals) {
+  LevelCorrection correction(kTuning);
+  double p = 0.0;
+  Follower real, rolled;
+  for (int k = 0; k < 300000; ++k) {
+    const double v = 0.05 * std::sin(0.005 * k) + 1e-9;
+    const bool forward = v >= 0.0;
+    const auto basis = correction.Basis(p, v);
+    const double force = forward ? 1.0 : -1.0;
+    const double kept = std::exp(-std::abs(v) * 1e-3 / 10e-6);
+    correction.Learn(basis, forward, kept, force * (real.value - rolled.value), v * 1e-3);
+    real.Step(forward ? 1.0 + 0.2 * basis[4] : 1.0 - 0.1 * basis[4], kept);
+    rolled.Step(correction.Factor(basis, forward), kept);
+    p += v * 1e-3;
+  }
+  EXPECT_NEAR(correction.plus()[4], 0.2, 0.06);
+  EXPECT_NEAR(correction.minus()[4], -0.1, 0.06);
+}
+
+TEST(LevelCorrection, WhereTheSpeedNeverChangesTheLowSpeedTermIsLeftAlone) {
+  LevelCorrection correction(kTuning);
+  const auto basis = correction.Basis(0.0, 1e-4);
+  for (int k = 0; k < 3000; ++k) correction.Learn(basis, true, 0.5, 0.0, 0.0);
+  for (int k = 0; k < 20000; ++k) correction.Learn(basis, true, 0.5, 0.1, 0.0);
+  EXPECT_LT(std::abs(correction.plus()[4]), 0.12);
+  EXPECT_EQ(correction.plus()[0], 0.0);  // and without travel no ripple is learnt
+}
+
+TEST(LevelCorrection, PreslidingTeachesNothing) {
+  LevelCorrection correction(kTuning);
+  for (int k = 0; k < 100000; ++k) correction.Learn(correction.Basis(1e-6 * k, 1e-3), true, 1.0, 0.3, 1e-6);
+  for (const double c : correction.plus()) EXPECT_EQ(c, 0.0);
+  for (const double c : correction.minus()) EXPECT_EQ(c, 0.0);
+}
+
+TEST(LevelCorrection, FactorIsBounded) {
+  LevelCorrection correction({kLead_m, 2e-3, 1.0, 1.0});
+  for (int k = 0; k < 10000; ++k) {
+    correction.Learn(correction.Basis(k * 1e-4, 0.1), true, 0.1, 100.0, 1e-4);
+    const double factor = correction.Factor(correction.Basis(k * 1.3e-4, 0.1), true);
+    ASSERT_GE(factor, 0.5);
+    ASSERT_LE(factor, 1.5);
+  }
+  correction.Reset();
+  EXPECT_EQ(correction.Factor(correction.Basis(1e-3, 0.0), true), 1.0);
+}
+
+TEST(MassCorrection, FindsWhatGoesWithTheAcceleration) {
+  MassCorrection mass(90.0, 0.001);
+  for (int k = 0; k < 10000; ++k) {
+    const double a = 0.25 * std::sin(0.005 * k);
+    const double friction = std::cos(0.005 * k) > 0.0 ? 0.5 : -0.5;  // goes with the velocity
+    mass.Learn((6.0 - mass.extra_kg()) * a + friction, a);
+  }
+  EXPECT_NEAR(mass.extra_kg(), 6.0, 0.5);
+}
+
+TEST(MassCorrection, IsBounded) {
+  MassCorrection mass(90.0, 0.1);
+  for (int k = 0; k < 10000; ++k) mass.Learn(1e3, 1.0);
+  EXPECT_DOUBLE_EQ(mass.extra_kg(), 36.0);
+}
+
+}  // namespace
+}  // namespace contour
