@@ -109,8 +109,9 @@ void Pump::Report(const CycleRecord& record) {
                                : ReasonText(record, axis_names_, bus_names_);
   const auto level = IsFault(record.reason) && record.state == MachineState::kFaulted ? spdlog::level::err
                                                                                       : spdlog::level::info;
-  spdlog::log(level, "{} -> {}{}{} (cycle {})", Name(last_state_), Name(record.state),
-              text.empty() ? "" : ": ", text, record.cycle);
+  const std::string why =
+      text.empty() ? std::string() : ", " + std::string(Name(record.reason)) + ": " + text;
+  spdlog::log(level, "{} -> {}{} (cycle {})", Name(last_state_), Name(record.state), why, record.cycle);
   last_state_ = record.state;
   last_reason_ = record.reason;
 }
