@@ -16,11 +16,11 @@ std::filesystem::path Variable(const char* name) {
 }  // namespace
 
 std::filesystem::path DefaultSocketPath() {
-  if (const auto socket = Variable("CONTOUR_SOCKET"); !socket.empty()) return socket;
+  if (auto socket = Variable("CONTOUR_SOCKET"); !socket.empty()) return socket;
   // systemd may list several directories, colon between them; the first is the service's own.
   if (const std::string own = Variable("RUNTIME_DIRECTORY").string(); !own.empty())
     return std::filesystem::path(own.substr(0, own.find(':'))) / "control.sock";
-  const std::filesystem::path service = "/run/contourd/control.sock";
+  std::filesystem::path service = "/run/contourd/control.sock";
   if (::geteuid() == 0) return service;
   const auto user = Variable("XDG_RUNTIME_DIR");
   const auto own = user.empty() ? std::filesystem::path("/tmp/contourd-" + std::to_string(::geteuid()))

@@ -46,6 +46,7 @@ class Loop {
   void WaitForFrames(std::int64_t until_ns) noexcept;
   void WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept;
   void WaitForWork(const CycleOutput& last) noexcept;
+  void KeepRealBuses(CycleOutput& out) const noexcept;
 
   Config config_;
   Cycle& cycle_;

@@ -12,7 +12,7 @@
 #include "daemon/telemetry/log_header.h"
 
 extern "C" {
-typedef struct _lcm_eventlog_t lcm_eventlog_t;
+typedef struct _lcm_eventlog_t lcm_eventlog_t;  // NOLINT(bugprone-reserved-identifier): LCM's name
 }
 
 namespace contour {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-typedef struct _modbus modbus_t;
+typedef struct _modbus modbus_t;  // NOLINT(bugprone-reserved-identifier): libmodbus's name
 
 namespace contour {
 
