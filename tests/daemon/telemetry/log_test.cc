@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <lcm/eventlog.h>
+#include <signal.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <fstream>
@@ -190,6 +192,51 @@ TEST_F(LogTest, CountsCyclesThatNeverReachedTheLog) {
   const Read read = ReadAll();
   EXPECT_EQ(read.cycles, 5u);
   EXPECT_EQ(read.missing, 2u);
+}
+
+/// Files of this process may not grow beyond a size: a full disk, as write() sees it.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limited{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limited);
+  }
+  ~FileSizeLimit() { ::setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST_F(LogTest, AFullDiskCostsWholeBatchesIsCountedAndWritingGoesOn) {
+  test::RandomCycleEntry random(6);
+  LogWriter writer(file_, Header());
+  TelemetryEncoder encoder({}, 1000, Header().axis_names);
+  TelemetrySink* sinks[] = {&writer};
+  std::uint64_t cycle = 0;
+  const auto write = [&](int cycles) {
+    for (int i = 0; i < cycles; ++i) encoder.Add(random.Next(++cycle, 2), sinks);
+  };
+  write(100);
+  EXPECT_EQ(writer.stats().lost_cycles, 0u);
+  {
+    const FileSizeLimit limit(writer.stats().bytes + 1000);  // a part of the next batch fits
+    write(150);
+  }
+  EXPECT_EQ(writer.stats().lost_cycles, 150u);
+  EXPECT_NE(writer.stats().last_error, "");
+  EXPECT_EQ(fs::file_size(file_), writer.stats().bytes) << "the part that fitted is cut off again";
+  write(50);
+  writer.Close();
+  EXPECT_EQ(writer.stats().cycles, 150u);
+  const Read read = ReadAll();
+  EXPECT_EQ(read.error, "");
+  EXPECT_TRUE(read.complete);
+  EXPECT_EQ(read.cycles, 150u);
+  EXPECT_EQ(read.missing, 150u);
 }
 
 TEST_F(LogTest, RefusesWhatIsNoLog) {
