@@ -65,9 +65,9 @@ constexpr AxisLimitsSi ToSi(const AxisLimits& c, double radius_m_rad) noexcept {
 
 /// PID with feed-forward, stated as pole frequencies so that one tuning fits axes of any mass.
 struct PidConfig {
-  double bandwidth_Hz = 45.0;
-  double damping = 0.9;
-  double integral_Hz = 12.0;
+  double bandwidth_Hz = 30.0;
+  double damping = 0.75;
+  double integral_Hz = 14.0;
   double derivative_filter_Hz = 400.0;
 
   template <class Visitor>
@@ -95,7 +95,7 @@ struct CspConfig {
 /// One tuning of the MPC. Weights are stated as the bandwidths of the unconstrained loop they lead to.
 struct MpcConfig {
   std::int32_t horizon = 20;
-  double contour_bandwidth_Hz = 42.0;
+  double contour_bandwidth_Hz = 35.0;
   double lag_bandwidth_Hz = 24.0;
   double rest_velocity_um_s = 10.0;
   std::int32_t iteration_cap = 30;
@@ -130,9 +130,11 @@ struct GuardConfig {
 struct ControllerConfig {
   PidConfig pid;
   CspConfig csp;
-  MpcConfig mpc;
-  MpcConfig mpc_observer;
-  MpcConfig mpc_srukf4;
+  // As stiff as stays stable with 30 % more or less inertia and one more cycle of delay: estimates that are
+  // fed forward close a loop of their own and take their share of the margin.
+  MpcConfig mpc{.contour_bandwidth_Hz = 42.0};
+  MpcConfig mpc_observer{.contour_bandwidth_Hz = 28.0, .lag_bandwidth_Hz = 20.0};
+  MpcConfig mpc_srukf4{.contour_bandwidth_Hz = 42.0};
   MpcConfig mpc_ekf7;
   MpcConfig mpc_srukf7;
   MpcConfig full;

@@ -83,6 +83,8 @@ class Riccati {
   void BuildForm(const Problem& problem, std::size_t j, StageForm& form, Value& value) const noexcept;
   static void AddTies(const Problem& problem, const Coefficients& k, const Ties& next, std::size_t j,
                       StageForm& form) noexcept;
+  // BuildForm and ChooseAll of two axes in one, on pairs of doubles.
+  void FactorFreePair(const Problem& problem, std::size_t j) noexcept;
   static void ChooseAll(const StageForm& form, Value& value, Policy& policy) noexcept;
   static void ChooseFree(const HeldInputs<Axes>& held, StageForm& form, Value& value,
                          Policy& policy) noexcept;
