@@ -24,7 +24,7 @@ struct EstimatorConfig {
   double innovation_gate_um = 20.0;
   double observer_bandwidth_Hz = 60.0;
   double ripple_rate = 0.1;
-  double stribeck_rate = 0.005;
+  double stribeck_rate = 0.3;
   double mass_rate = 0.001;
   double initial_level_std = 0.2;
   double initial_log_sigma0_std = 0.5;

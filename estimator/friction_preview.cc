@@ -39,13 +39,10 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
       offset_N = x[kBristle] - bristle_N;
       bristle_N_ = next_N;
       const double share = (velocity >= 0.0 ? bristle_N : -bristle_N) / level_N;
-      if (!at_rest && share > kSlidingShare) {
-        mass.Learn(offset_N + d, now.acceleration_m_s2);
-        correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, (offset_N + d) / level_N,
-                         velocity * period_s_);
-      } else {
-        correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, 0.0, velocity * period_s_);
-      }
+      const bool sliding = !at_rest && share > kSlidingShare;
+      if (sliding) mass.Learn(offset_N + d, now.acceleration_m_s2);
+      correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, (offset_N + d) / level_N,
+                       velocity * period_s_, sliding);
     }
     out[j].node_N = node_N + offset_N + d + sigma2 * now.velocity_m_s;
     out[j].mid_N = middle_N + BristleDamping(f, middle_N, velocity, level_N) + offset_N + d +

@@ -34,10 +34,7 @@ class LevelCorrection {
   explicit LevelCorrection(const Tuning& tuning) noexcept
       : tuning_(tuning), per_turn_1_m_(1.0 / tuning.lead_m), per_speed_s_m_(1.0 / tuning.vs_m_s) {}
 
-  void Reset() noexcept {
-    plus_ = minus_ = {};
-    mean_low_speed_ = 0.0;
-  }
+  void Reset() noexcept { plus_ = minus_ = {}; }
 
   /// Term values at a place and speed: cos, sin of the screw's angle and of twice it, and exp(-|v| / vs).
   [[nodiscard]] Terms Basis(double position_m, double velocity_m_s) const noexcept {
@@ -56,16 +53,34 @@ class LevelCorrection {
 
   /// One period along the reference: `kept` is the share of the bristle that relaxation left, `travel_m` the
   /// way. `excess` is the estimated bristle minus the rolled one at the period's start over the level, signed
-  /// as the force is.
-  void Learn(const Terms& basis, bool forward, double kept, double excess, double travel_m) noexcept {
-    // The low-speed term is taken against its mean: where the speed never leaves the low range it cannot be
-    // told from the level itself, and is left alone.
-    mean_low_speed_ += kMeanShare * (basis[kRippleTerms] - mean_low_speed_);
-    Terms centred = basis;
-    centred[kRippleTerms] -= mean_low_speed_;
+  /// as the force is; `sliding` says whether it means anything.
+  void Learn(const Terms& basis, bool forward, double kept, double excess, double travel_m,
+             bool sliding) noexcept {
     const double ripple = std::min(tuning_.ripple_rate * std::abs(travel_m) * per_turn_1_m_ * kTwoPi, 0.5);
-    Step(plus_, centred, forward, kept, excess, ripple);
-    Step(minus_, centred, !forward, kept, -excess, ripple);
+    Direction& active = forward ? plus_ : minus_;
+    Direction& other = forward ? minus_ : plus_;
+    const double along = forward ? excess : -excess;
+    const double low_speed = basis[kRippleTerms];
+    // The low-speed term is told from the level itself by comparison with what was seen at speed, not long
+    // ago.
+    if (sliding && low_speed < kAtSpeed) {
+      active.excess_at_speed += kMeanShare * (along - active.excess_at_speed);
+      active.cycles_since_speed = 0;
+    } else {
+      active.cycles_since_speed = std::min(active.cycles_since_speed + 1, kForgotten);
+    }
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      if (sliding) {
+        const bool slow = i == kRippleTerms;
+        const bool known = low_speed >= kAtSpeed && active.cycles_since_speed < kForgotten;
+        const double rate = slow ? (known ? tuning_.stribeck_rate : 0.0) : ripple;
+        const double error = slow ? along - active.excess_at_speed : along;
+        active.coefficient[i] =
+            std::clamp(active.coefficient[i] + rate * error * active.follows[i], -kLargest, kLargest);
+      }
+      active.follows[i] = kept * active.follows[i] + (1.0 - kept) * basis[i];
+      other.follows[i] *= kept;
+    }
   }
 
   /// At rest nothing is known of what the bristle still follows.
@@ -77,28 +92,22 @@ class LevelCorrection {
  private:
   static constexpr double kLargest = 0.5;
   static constexpr double kTwoPi = 6.283185307179586;
-  static constexpr double kMeanShare = 1e-3;
+  static constexpr double kMeanShare = 0.02;
+  static constexpr double kAtSpeed = 0.1;  // exp(-|v| / vs) above 2.3 Stribeck velocities
+  static constexpr int kForgotten = 1000;  // cycles
 
   struct Direction {
     Terms coefficient{};
     Terms follows{};  ///< terms as the bristle follows them: d(bristle / level) / d(coefficient)
+    double excess_at_speed = 0.0;
+    int cycles_since_speed = kForgotten;
   };
-
-  void Step(Direction& d, const Terms& basis, bool active, double kept, double excess,
-            double ripple) const noexcept {
-    for (std::size_t i = 0; i < kTerms; ++i) {
-      const double rate = i < kRippleTerms ? ripple : tuning_.stribeck_rate;
-      d.coefficient[i] = std::clamp(d.coefficient[i] + rate * excess * d.follows[i], -kLargest, kLargest);
-      d.follows[i] = kept * d.follows[i] + (active ? (1.0 - kept) * basis[i] : 0.0);
-    }
-  }
 
   Tuning tuning_;
   double per_turn_1_m_ = 0.0;
   double per_speed_s_m_ = 0.0;
   Direction plus_;
   Direction minus_;
-  double mean_low_speed_ = 0.0;
 };
 
 }  // namespace contour

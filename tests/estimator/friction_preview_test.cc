@@ -108,7 +108,7 @@ TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   for (int k = 0; k < 20000; ++k) {
     const auto basis = correction.Basis(k * 1e-5, 0.05);
     const double truth = 1.0 + 0.08 * basis[1];
-    correction.Learn(basis, true, 0.01, truth - correction.Factor(basis, true), 1e-5);
+    correction.Learn(basis, true, 0.01, truth - correction.Factor(basis, true), 1e-5, true);
   }
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
