@@ -137,7 +137,7 @@ class MachineBench:
         result = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, timeout=120)
         with open(self.work / "contour.log", "a", encoding="utf-8") as log:
             print("$", *command, f"-> {result.returncode}", file=log)
-            print(result.stdout + result.stderr, file=log)
+            print(result.stderr if arguments[0] == "status" else result.stdout + result.stderr, file=log)
         if check and result.returncode != 0:
             raise BenchError(f"contour {' '.join(map(str, arguments))} ended with {result.returncode}: "
                              f"{(result.stderr or result.stdout).strip()}")
@@ -149,6 +149,11 @@ class MachineBench:
 
     def status(self):
         return json.loads(self.ask("status", "--json"))
+
+    def wait_for_log(self, sentence):
+        """The daemon's log for people may be a moment behind its status."""
+        log = self.work / "contourd.log"
+        self.wait_for(f"the log to say {sentence!r}", lambda: sentence in log.read_text(errors="replace"))
 
     def try_ask(self, *arguments):
         """A request that may be refused; whether it was accepted."""

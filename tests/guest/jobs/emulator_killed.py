@@ -42,8 +42,7 @@ def test(programs, out):
         bench.wait_for_end("emulator")
         status = bench.wait_for_state("Faulted")
         expect(status["reason"] in REASONS, f"status gives {status['reason']!r} as the reason, not {REASONS}")
-        expect(status["reason"] in (bench.work / "contourd.log").read_text(errors="replace"),
-               f"the log does not give the reason {status['reason']}")
+        bench.wait_for_log(status["reason_text"])
 
         cycles = commands_after_last_feedback(bench.trace())
         quick_stop = next((i for i, cycle in enumerate(cycles) if all(w & 0x0F != 0x0F for w, _ in cycle.values())), None)
