@@ -76,6 +76,7 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = std[i];
   last_position_m_ = position_m;
   surprise_ = 1.0;
+  direction_ = 0;
   lag_.Reset();
   predicted_ = x;
   gated_in_a_row_ = 0;
@@ -93,9 +94,27 @@ double SevenStateFilter<Core>::WindUpShare_m(const X& x, double force_N) const n
   return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
 }
 
+// At a reversal, what d holds turns round with the friction if it was friction. As much as may be an error of
+// the level goes over to the bristle, which will follow its new level from there; their sum stays. More than
+// that is an outside force, which does not care for the direction.
+template <class Core>
+void SevenStateFilter<Core>::Reverse(double commanded_velocity_m_s) noexcept {
+  const int direction = commanded_velocity_m_s > 0.0 ? 1 : commanded_velocity_m_s < 0.0 ? -1 : 0;
+  if (direction == 0 || direction == direction_) return;
+  if (direction_ != 0) {
+    auto& x = core_.x;
+    const double largest_N = setup_.config.level_error * Level_N();
+    const double friction_N = std::clamp(x[kDisturbance], -largest_N, largest_N);
+    x[kBristle] += friction_N;
+    x[kDisturbance] -= friction_N;
+  }
+  direction_ = direction;
+}
+
 template <class Core>
 void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   auto& x = core_.x;
+  Reverse(in.commanded_velocity_m_s);
   const double moving = std::min(1.0, std::abs(x[kVelocity]) / (setup_.config.motion_gate_mm_s * 1e-3));
   X noise = noise_;
   noise[kDisturbance] *= moving;

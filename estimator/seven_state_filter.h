@@ -55,6 +55,7 @@ class SevenStateFilter {
     return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity])};
   }
   void Follow(double position_m) noexcept;
+  void Reverse(double commanded_velocity_m_s) noexcept;
   void TimeUpdate(const AxisEstimatorInput& in) noexcept;
   UpdateResult MeasurementUpdate(const AxisEstimatorInput& in, Innovation& innovation) noexcept;
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
@@ -75,6 +76,7 @@ class SevenStateFilter {
   double factor_plus_ = 1.0;
   double factor_minus_ = 1.0;
   double inertial_N_ = 0.0;
+  int direction_ = 0;  // last commanded one; 0 none yet
   double friction_ahead_N_ = 0.0;
   double last_position_m_ = 0.0;
   double surprise_ = 1.0;  // mean square of innovation / its standard deviation
