@@ -1,5 +1,6 @@
 #include "control/flat_feedforward.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "control/control_law.h"
@@ -19,6 +20,7 @@ FlatFeedforward::FlatFeedforward(const ControlledAxis& axis, const ControllerOpt
     : mechanics_(axis.mechanics),
       options_(options),
       period_s_(period_s),
+      bound_m_s2_(axis.limits.force_N / axis.mechanics.mass_kg),
       dynamics_(DiscretizeAxis(period_s, axis.lag_s, axis.viscous_Ns_m / axis.mechanics.mass_kg)),
       nominal_(options.friction_feedforward ? DiscretizeAxis(period_s, axis.lag_s, 0.0) : dynamics_) {
   if (!(mechanics_.mass_kg > 0.0)) throw std::invalid_argument("feed-forward: the mass must be positive");
@@ -62,6 +64,9 @@ void FlatFeedforward::Plan(const AxisHorizon& reference, const FrictionPreview& 
     const double left_over = d.velocity_from_previous * previous;
     double command = wanted / (d.velocity_from_command + d.velocity_from_previous);
     if (makes_up_lag_) command = (wanted - left_over) / d.velocity_from_command;
+    // What the axis cannot do is not planned: it would be made up for in the intervals after without having
+    // happened.
+    command = std::clamp(command, -bound_m_s2_, bound_m_s2_);
     plan.command_m_s2[j] = command;
     plan.velocity_defect_m_s[j] = d.velocity_from_command * command + left_over - wanted;
     plan.position_defect_m[j] = position - end_position + d.position_from_velocity * velocity +

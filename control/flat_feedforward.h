@@ -42,6 +42,7 @@ class FlatFeedforward {
   Mechanics mechanics_;
   ControllerOptions options_;
   double period_s_;
+  double bound_m_s2_;
   AxisDynamics dynamics_;
   AxisDynamics nominal_;  ///< of the reference: a friction preview has the viscous part in it
   bool makes_up_lag_;

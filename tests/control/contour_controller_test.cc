@@ -245,6 +245,29 @@ TEST(Mpc, ContourErrorIsWeighedMoreThanLag) {
   EXPECT_LT(across.TrackingError(), 0.7 * along.TrackingError());
 }
 
+// A corner at full feed asks for more force than there is. What cannot be done must not be made up for later.
+TEST(Full, TakesACornerBeyondTheTorqueLimitWithoutRinging) {
+  const auto corner = [](std::size_t axis, double t) {
+    const double along = 0.05 * (t - 0.2);
+    const bool before = t < 0.2;
+    if (axis == 0) return ReferencePoint{before ? along : -along, before ? 0.05 : -0.05, 0.0};
+    return ReferencePoint{0.0, 0.0, 0.0};
+  };
+  ContourLoop loop(ControllerName::kFull, ControllerConfig{}, NominalAxes(2), corner);
+  loop.plants[0].motor_m = loop.plants[0].table_m = -0.01;
+  loop.plants[0].motor_m_s = loop.plants[0].table_m_s = 0.05;
+  EXPECT_LT(loop.Run(0.15), 0.1e-6);
+  EXPECT_LT(loop.Run(0.06), 250e-6);
+  // Ten milliseconds after the corner nothing is left of it in the force but the way back to the path.
+  double before = loop.output.force_N[0];
+  for (int n = 0; n < 30; ++n) {
+    loop.Step();
+    EXPECT_LT(std::abs(loop.output.force_N[0] - before), 100.0);
+    before = loop.output.force_N[0];
+  }
+  EXPECT_LT(loop.Run(0.1), 3e-6);
+}
+
 TEST(Mpc, RefusesWhatCannotWork) {
   ControllerConfig config;
   config.full.horizon = 41;
