@@ -19,8 +19,9 @@ class RandomCycleEntry {
     CycleEntry e;
     FillInput(e.input, axes);
     FillOutput(e.output, axes);
+    // Within two seconds of the grid point, so that differences of them are numbers, too.
     e.timing = {
-        Int<std::int64_t>(), Int<std::int64_t>(), Int<std::int64_t>(), Int<std::int64_t>(), Bool(), 0};
+        Int<std::int32_t>(), Int<std::int32_t>(), Int<std::int32_t>(), Int<std::int32_t>(), Bool(), 0};
     e.input.cycle = e.output.record.cycle = cycle;
     e.input.grid_time_ns = e.output.record.grid_time_ns = static_cast<std::int64_t>(cycle) * 1'000'000;
     return e;
