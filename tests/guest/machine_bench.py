@@ -188,9 +188,13 @@ class MachineBench:
             raise BenchError("the truth log has no rows")
         return _numbers(dict(zip(header, lines[-2].split(","))))
 
-    def trace(self):
-        """What was on the bus so far."""
-        return canopen_trace.read(self.work / "candump.log")
+    def trace(self, sync_number=0):
+        """What was on the bus so far, at least up to that SYNC: the recording may be a moment behind the machine."""
+        def recorded():
+            frames = canopen_trace.read(self.work / "candump.log")
+            return frames if sum(1 for frame in frames if frame.id == canopen_trace.SYNC) >= sync_number else None
+
+        return self.wait_for(f"SYNC {sync_number} on the bus", recorded)
 
     # Waiting ---------------------------------------------------------------------------------------------------
 

@@ -119,7 +119,7 @@ class EmergencyStop(Way):
         write_modbus_coil(bench.modbus_port, OPEN_EMERGENCY_STOP_COIL, False)
 
     def begin(self, bench, rows, syncs_before):
-        return row_of_sync(rows, first_sync_without_enable(bench.trace(), syncs_before))
+        return row_of_sync(rows, first_sync_without_enable(bench.trace(rows[-1]["sync_number"]), syncs_before))
 
 
 class Terminate(Way):
