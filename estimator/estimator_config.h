@@ -18,6 +18,7 @@ struct EstimatorConfig {
   double measurement_noise_um = 0.003;
   double disturbance_decay_ms = 200.0;
   double motion_gate_mm_s = 2.0;
+  double rest_noise = 0.03;
   double log_sigma0_range = 1.5;
   double level_range = 2.0;
   double innovation_gate_sigma = 12.0;
@@ -48,6 +49,8 @@ struct EstimatorConfig {
     v.Optional("disturbance_decay_ms", disturbance_decay_ms, kPositive, "time constant of the disturbance");
     v.Optional("motion_gate_mm_s", motion_gate_mm_s, kPositive,
                "speed from which the parameters take their full process noise");
+    v.Optional("rest_noise", rest_noise, Range{0.0, 1.0},
+               "share of the bristle's process noise while the commanded velocity is zero");
     v.Optional("log_sigma0_range", log_sigma0_range, kPositive, "bound of |ln(sigma0 / commissioned)|");
     v.Optional("level_range", level_range, Range{1.01, 100.0},
                "friction levels stay within this factor of their commissioned value");

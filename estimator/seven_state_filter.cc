@@ -118,6 +118,7 @@ void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   const double moving = std::min(1.0, std::abs(x[kVelocity]) / (setup_.config.motion_gate_mm_s * 1e-3));
   X noise = noise_;
   noise[kDisturbance] *= moving;
+  if (in.at_rest) noise[kBristle] *= setup_.config.rest_noise;
   const auto adapted = Adapted(in.at_rest);
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
 
