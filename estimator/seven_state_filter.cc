@@ -7,6 +7,16 @@ namespace {
 
 // Presliding: the bristle is well below the level it would slip at.
 constexpr double kPreslidingShare = 0.7;
+// A bristle below this share of the level after so many presliding lengths of travel: the level is not there.
+// Even with a third of the commissioned stiffness a real one has come to 1 - exp(-4/3) = 0.74 by then.
+constexpr double kMissingShare = 0.3;
+constexpr double kSettledLengths = 4.0;
+// By how much the level then comes down per presliding length.
+constexpr double kGivingUpShare = 0.3;
+// Standard deviation of a level, at most this share of it.
+constexpr double kLargestLevelStd = 0.25;
+// Lowest level, of the commissioned one: an axis may turn out to have hardly any friction.
+constexpr double kLowestLevelShare = 1e-3;
 
 // Mean of the squared, normalised innovations over about a hundred cycles.
 constexpr double kSurpriseShare = 0.01;
@@ -88,7 +98,7 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
 template <class Core>
 double SevenStateFilter<Core>::WindUpShare_m(const X& x, double force_N) const noexcept {
   const Mechanics& m = setup_.mechanics;
-  const double total = model_.Friction_N(x, Input(x, {}));
+  const double total = model_.Friction_N(x, Input(x, {})) + viscous_N_;
   const double friction = total - x[kDisturbance];
   const double acceleration = (force_N - inertial_N_ - total) / m.mass_kg;
   return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
@@ -152,6 +162,30 @@ UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput&
   return core_.UpdateState0(y, setup_.measurement_std_m, gate_, Adapted(in.at_rest), innovation);
 }
 
+// After some presliding lengths g / sigma0 of travel in one direction the bristle has come to the level:
+// F = g (1 - exp(-sigma0 x / g)). If it stays far below, there is not that much friction, but the filter
+// cannot see that by itself: far from the level, F does not depend on it (dF/dg = 0 at F = 0). So the level
+// comes down by travel.
+template <class Core>
+void SevenStateFilter<Core>::GiveUpLevel(bool at_rest) noexcept {
+  auto& x = core_.x;
+  const int direction = x[kVelocity] > 0.0 ? 1 : -1;
+  if (direction != travel_direction_) {
+    travel_direction_ = direction;
+    travel_m_ = 0.0;
+  }
+  const double step_m = std::abs(x[kVelocity]) * setup_.period_s;
+  travel_m_ += step_m;
+  if (at_rest || !setup_.config.adapt) return;
+  const double level_N = Level_N();
+  // By the commissioned stiffness: the estimated one goes down instead of the level when there is no
+  // friction.
+  const double lengths_1_m = setup_.friction.sigma0_N_m / level_N;
+  const double along_N = direction * x[kBristle];
+  if (travel_m_ * lengths_1_m < kSettledLengths || along_N > kMissingShare * level_N) return;
+  x[direction > 0 ? kLevelPlus : kLevelMinus] *= std::exp(-kGivingUpShare * step_m * lengths_1_m);
+}
+
 template <class Core>
 bool SevenStateFilter<Core>::Bound() noexcept {
   bool bounded = false;
@@ -164,9 +198,16 @@ bool SevenStateFilter<Core>::Bound() noexcept {
   const auto& c = setup_.config;
   const Friction& f = setup_.friction;
   auto& x = core_.x;
-  clamp(x[kLevelPlus], f.Fc_plus_N / c.level_range, f.Fc_plus_N * c.level_range);
-  clamp(x[kLevelMinus], f.Fc_minus_N / c.level_range, f.Fc_minus_N * c.level_range);
+  clamp(x[kLevelPlus], f.Fc_plus_N * kLowestLevelShare, f.Fc_plus_N * c.level_range);
+  clamp(x[kLevelMinus], f.Fc_minus_N * kLowestLevelShare, f.Fc_minus_N * c.level_range);
   clamp(x[kLogSigma0], -c.log_sigma0_range, c.log_sigma0_range);
+  // A level is positive: its sigma points must be too. Scaling a row of S scales that state's deviation and
+  // keeps its correlations.
+  for (const auto i : {kLevelPlus, kLevelMinus}) {
+    const double share = kLargestLevelStd * x[i] / std::sqrt(core_.Variance(i));
+    if (share < 1.0)
+      for (double& s : core_.s[i]) s *= share;
+  }
   return bounded;
 }
 
@@ -215,6 +256,7 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
     }
     out.innovation_m = innovation.value;
     out.innovation_std_m = innovation.std;
+    GiveUpLevel(in.at_rest);
     if (Bound() && out.limit == Reason::kNone) out.limit = Reason::kParameterBound;
   }
   LookAhead(in);
@@ -227,7 +269,7 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   out.predicted_velocity_m_s = predicted_[kVelocity];
   out.bristle_N = x[kBristle];
   out.disturbance_N = x[kDisturbance];
-  out.friction_N = model_.Friction_N(x, Input(x, {}));
+  out.friction_N = model_.Friction_N(x, Input(x, {})) + viscous_N_;
   out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
   out.g_plus_N = x[kLevelPlus];
   out.g_minus_N = x[kLevelMinus];

@@ -35,8 +35,12 @@ class SevenStateFilter {
     factor_minus_ = minus;
   }
 
-  /// Force that accelerates what the axis is heavier than commissioned.
-  void SetInertialForce_N(double force_N) noexcept { inertial_N_ = force_N; }
+  /// Forces that accelerate what the axis is heavier, and push what it is more viscous, than commissioned.
+  /// The latter counts as friction.
+  void SetKnownForces_N(double inertial_N, double viscous_N) noexcept {
+    inertial_N_ = inertial_N;
+    viscous_N_ = viscous_N;
+  }
 
   /// Mean state at the sample and at t(k).
   [[nodiscard]] const StateVector<kSevenStates>& state() const noexcept { return core_.x; }
@@ -51,7 +55,7 @@ class SevenStateFilter {
   using X = StateVector<kSevenStates>;
 
   [[nodiscard]] SevenStateInput Input(const X& x, std::array<double, kSubsteps> force_N) const noexcept {
-    for (double& f : force_N) f -= inertial_N_;
+    for (double& f : force_N) f -= inertial_N_ + viscous_N_;
     return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity])};
   }
   void Follow(double position_m) noexcept;
@@ -59,6 +63,7 @@ class SevenStateFilter {
   void TimeUpdate(const AxisEstimatorInput& in) noexcept;
   UpdateResult MeasurementUpdate(const AxisEstimatorInput& in, Innovation& innovation) noexcept;
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
+  void GiveUpLevel(bool at_rest) noexcept;
   bool Bound() noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
@@ -76,8 +81,11 @@ class SevenStateFilter {
   double factor_plus_ = 1.0;
   double factor_minus_ = 1.0;
   double inertial_N_ = 0.0;
+  double viscous_N_ = 0.0;
   int direction_ = 0;  // last commanded one; 0 none yet
   double friction_ahead_N_ = 0.0;
+  double travel_m_ = 0.0;  // in one direction
+  int travel_direction_ = 0;
   double last_position_m_ = 0.0;
   double surprise_ = 1.0;  // mean square of innovation / its standard deviation
   std::uint32_t gated_in_a_row_ = 0;
