@@ -1,10 +1,12 @@
 #include "control/contour_controller.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "control/csp_law.h"
 #include "control/mpc_law.h"
 #include "control/pid_law.h"
+#include "control/reference_planner.h"
 
 namespace contour {
 namespace {
@@ -51,13 +53,28 @@ ContourController::ContourController(ControllerName name, const ControllerConfig
   if (axes.empty()) throw std::invalid_argument("controller: there is no axis");
   if (!(period_s > 0.0)) throw std::invalid_argument("controller: the period must be positive");
   law_ = MakeLaw(name, config, axes, period_s);
+  if (name == ControllerName::kFull && config.planner.enabled) {
+    planner_ = std::make_unique<ReferencePlanner>(config.planner, axes, period_s);
+  }
 }
 
 ContourController::~ContourController() = default;
 ContourController::ContourController(ContourController&&) noexcept = default;
 ContourController& ContourController::operator=(ContourController&&) noexcept = default;
 
-void ContourController::Reset() noexcept { law_->Reset(); }
+void ContourController::Reset() noexcept {
+  law_->Reset();
+  if (planner_) planner_->Reset();
+}
+
+void ContourController::Plan(ControlInput& input, bool follow) noexcept {
+  if (!planner_) {
+    input.planned.clear();
+    return;
+  }
+  if (!follow) planner_->Reset();
+  planner_->Plan(input.reference, input.planned);
+}
 
 void ContourController::Step(const ControlInput& input, ControlOutput& output) noexcept {
   const std::size_t axes = input.estimate.size();
@@ -68,6 +85,8 @@ void ContourController::Step(const ControlInput& input, ControlOutput& output) n
   law_->Step(input, output);
 }
 
-int ContourController::horizon_points() const noexcept { return law_->horizon_points(); }
+int ContourController::horizon_points() const noexcept {
+  return planner_ ? std::max(law_->horizon_points(), planner_->horizon_points()) : law_->horizon_points();
+}
 
 }  // namespace contour

@@ -56,7 +56,8 @@ struct ControlledAxis {
 struct ControlInput {
   PerAxis<AxisEstimate> estimate;
   PerAxis<AxisHorizon> reference;
-  PerAxis<FrictionPreview> friction;  ///< total friction ahead; empty: none known
+  PerAxis<AxisHorizon> planned;       ///< what Plan() made of it; empty: the reference itself is followed
+  PerAxis<FrictionPreview> friction;  ///< total friction along what is followed; empty: none known
   PerAxis<double> previous_force_N;   ///< u(k-1), the command that acts now, after the guard
 };
 
@@ -69,7 +70,13 @@ struct ControlOutput {
   int iterations = 0;                 ///< of the solver, all axes
 };
 
+/// What the controller follows, and along which friction is to be expected.
+inline const PerAxis<AxisHorizon>& Reference(const ControlInput& input) noexcept {
+  return input.planned.empty() ? input.reference : input.planned;
+}
+
 class ControlLaw;
+class ReferencePlanner;
 
 /// Reference and estimate in, force out. Throws std::invalid_argument at construction only.
 class ContourController {
@@ -82,6 +89,11 @@ class ContourController {
 
   /// Forgets integrators, warm starts and the last command. To be called when the axes are enabled.
   void Reset() noexcept;
+  /// Fills input.planned from input.reference: the same, or what the torque allows of it at corners. To be
+  /// called once per cycle before Step, and before the friction ahead is asked for. `follow` false: nothing
+  /// is moving by this controller (axes not enabled), the reference is taken as it is. Step works without it,
+  /// too.
+  void Plan(ControlInput& input, bool follow) noexcept;
   void Step(const ControlInput& input, ControlOutput& output) noexcept;
 
   [[nodiscard]] const ControllerOptions& options() const noexcept { return options_; }
@@ -91,6 +103,7 @@ class ContourController {
  private:
   ControllerOptions options_;
   std::unique_ptr<ControlLaw> law_;
+  std::unique_ptr<ReferencePlanner> planner_;  ///< none: nothing is planned
 };
 
 }  // namespace contour

@@ -112,6 +112,29 @@ struct MpcConfig {
   }
 };
 
+/// Planning of what is followed where the reference asks for more than the torque can do (`full` only).
+struct PlannerConfig {
+  bool enabled = true;
+  std::int32_t horizon = 30;
+  double contour_bandwidth_Hz = 250.0;
+  double lag_bandwidth_Hz = 25.0;
+  double torque_share = 0.6;
+  std::int32_t iteration_cap = 60;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Optional("enabled", enabled, kAny, "plan corners that ask for more torque than there is");
+    v.Optional("horizon", horizon, Range{5.0, 40.0}, "cycles planned");
+    v.Optional("contour_bandwidth_Hz", contour_bandwidth_Hz, Range{0.1, 300.0},
+               "weight of the planned error across the path");
+    v.Optional("lag_bandwidth_Hz", lag_bandwidth_Hz, Range{0.1, 300.0},
+               "weight of the planned error along the path");
+    v.Optional("torque_share", torque_share, Range{0.05, 1.0},
+               "share of torque_Nm to accelerate with; the rest is for friction and feedback");
+    v.Optional("iteration_cap", iteration_cap, Range{1.0, 1000.0}, "solver iterations allowed per cycle");
+  }
+};
+
 /// What the guard does beyond the axis limits.
 struct GuardConfig {
   std::int32_t stale_cycles = 3;
@@ -138,6 +161,7 @@ struct ControllerConfig {
   MpcConfig mpc_ekf7;
   MpcConfig mpc_srukf7;
   MpcConfig full;
+  PlannerConfig planner;
   GuardConfig guard;
 
   template <class Visitor>
@@ -150,6 +174,7 @@ struct ControllerConfig {
     v.Optional("mpc_ekf7", mpc_ekf7, "MPC with the 7-state EKF");
     v.Optional("mpc_srukf7", mpc_srukf7, "MPC with the 7-state SRUKF");
     v.Optional("full", full, "MPC with friction preview and wind-up compensation");
+    v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
   }
 };

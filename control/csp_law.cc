@@ -19,7 +19,7 @@ void CspLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   output.iterations = 0;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const FlatFeedforward& feedforward = feedforward_[i];
-    feedforward.Plan(input.reference[i], input.friction[i], 0.0, 1, plan_);
+    feedforward.Plan(Reference(input)[i], input.friction[i], 0.0, 1, plan_);
     const double wanted = plan_.command_m_s2[0] * axes_[i].mechanics.mass_kg;
     const double limit = axes_[i].limits.force_N;
     output.feedforward_N[i] = wanted;

@@ -2,29 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace contour {
-namespace {
-
-// With cost weight error^2 + (force / mass)^2 a free mass becomes a second-order loop of natural frequency
-// weight^(1/4): bandwidths in Hz mean the same for every mass.
-double WeightOf(double bandwidth_Hz) {
-  const double omega = 2.0 * std::numbers::pi * bandwidth_Hz;
-  return omega * omega * omega * omega;
-}
-
-}  // namespace
-
 template <std::size_t Axes>
 MpcGroup<Axes>::MpcGroup(const MpcConfig& config, const ControllerOptions& options,
                          const PerAxis<ControlledAxis>& axes, std::size_t first, double period_s)
-    : config_(config),
-      first_(first),
-      period_s_(period_s),
-      contour_weight_(WeightOf(config.contour_bandwidth_Hz)),
-      lag_weight_(WeightOf(config.lag_bandwidth_Hz)) {
+    : config_(config), first_(first), period_s_(period_s) {
   if (config.horizon < 1 || config.horizon > static_cast<int>(kMaxHorizon)) {
     throw std::invalid_argument("mpc: the horizon must be 1 to 40 cycles");
   }
@@ -40,9 +24,9 @@ MpcGroup<Axes>::MpcGroup(const MpcConfig& config, const ControllerOptions& optio
     problem_.has_rate_limit[i] = step_m_s2_[i] < 2.0 * bound_m_s2_[i];
     problem_.dynamics[i] = feedforward_[i].dynamics();
     problem_.effort[i] = 1.0;
-    contour_terminal_[i] = LqrTerminal(problem_.dynamics[i], contour_weight_, 1.0);
-    lag_terminal_[i] = LqrTerminal(problem_.dynamics[i], lag_weight_, 1.0);
   }
+  weights_.emplace_back(config.contour_bandwidth_Hz, config.lag_bandwidth_Hz,
+                        config.rest_velocity_um_s * 1e-6, problem_.dynamics);
   Reset();
 }
 
@@ -54,61 +38,13 @@ void MpcGroup<Axes>::Reset() noexcept {
 }
 
 template <std::size_t Axes>
-AxisVector<Axes> MpcGroup<Axes>::Tangent(const ControlInput& input, std::size_t node) const noexcept {
-  AxisVector<Axes> tangent;
-  const double rest = config_.rest_velocity_um_s * 1e-6;
-  double square = rest * rest;
-  for (std::size_t i = 0; i < Axes; ++i) {
-    tangent[i] = PointAt(input.reference[first_ + i], node).velocity_m_s;
-    square += tangent[i] * tangent[i];
-  }
-  const double inverse = 1.0 / std::sqrt(square);
-  for (double& t : tangent) t *= inverse;
-  return tangent;
-}
-
-template <std::size_t Axes>
-void MpcGroup<Axes>::BuildWeights(const ControlInput& input) noexcept {
-  AxisVector<Axes> tangent{};
-  for (std::size_t j = 0; j < problem_.horizon; ++j) {
-    tangent = Tangent(input, j + 2);
-    for (std::size_t i = 0; i < Axes; ++i) {
-      for (std::size_t k = 0; k < Axes; ++k) {
-        problem_.stage[j].weight[i][k] =
-            (i == k ? contour_weight_ : 0.0) + (lag_weight_ - contour_weight_) * tangent[i] * tangent[k];
-      }
-    }
-  }
-  BuildTerminal(tangent);
-}
-
-// Cost-to-go of the rotated weights: exact when all axes have the same dynamics, positive semidefinite
-// always.
-template <std::size_t Axes>
-void MpcGroup<Axes>::BuildTerminal(const AxisVector<Axes>& tangent) noexcept {
-  auto& terminal = problem_.terminal;
-  for (std::size_t i = 0; i < Axes; ++i) {
-    for (std::size_t k = 0; k < Axes; ++k) {
-      const TerminalFactor &ci = contour_terminal_[i], &ck = contour_terminal_[k];
-      const TerminalFactor &li = lag_terminal_[i], &lk = lag_terminal_[k];
-      const double along = tangent[i] * tangent[k];
-      const double across = (i == k ? 1.0 : 0.0) - along;
-      terminal[i][k] = across * ci.pp * ck.pp + along * li.pp * lk.pp;
-      terminal[i][Axes + k] = across * ci.pp * ck.vp + along * li.pp * lk.vp;
-      terminal[Axes + i][k] = across * ci.vp * ck.pp + along * li.vp * lk.pp;
-      terminal[Axes + i][Axes + k] =
-          across * (ci.vp * ck.vp + ci.vv * ck.vv) + along * (li.vp * lk.vp + li.vv * lk.vv);
-    }
-  }
-}
-
-template <std::size_t Axes>
 void MpcGroup<Axes>::BuildAxis(const ControlInput& input, std::size_t i) noexcept {
   const std::size_t axis = first_ + i;
   const double sent = input.previous_force_N[axis] / mass_kg_[i];
   if (!has_planned_) planned_m_s2_[i] = sent;
   AxisPlan& plan = plan_[i];
-  feedforward_[i].Plan(input.reference[axis], input.friction[axis], planned_m_s2_[i], problem_.horizon, plan);
+  feedforward_[i].Plan(Reference(input)[axis], input.friction[axis], planned_m_s2_[i], problem_.horizon,
+                       plan);
 
   const AxisEstimate& estimate = input.estimate[axis];
   const AxisDynamics& d = problem_.dynamics[i];
@@ -143,7 +79,7 @@ void MpcGroup<Axes>::ShiftWarmStart() noexcept {
 
 template <std::size_t Axes>
 void MpcGroup<Axes>::Step(const ControlInput& input, ControlOutput& output) noexcept {
-  BuildWeights(input);
+  weights_.front().Fill(Reference(input), first_, problem_);
   for (std::size_t i = 0; i < Axes; ++i) BuildAxis(input, i);
   has_planned_ = true;
   ShiftWarmStart();

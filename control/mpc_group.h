@@ -6,7 +6,7 @@
 
 #include "control/control_law.h"
 #include "control/flat_feedforward.h"
-#include "control/lqr_terminal.h"
+#include "control/path_weights.h"
 #include "control/qp_solver.h"
 
 namespace contour {
@@ -31,10 +31,6 @@ class MpcGroup final : public MpcGroupBase {
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
 
  private:
-  // Direction of the path, shrinking to zero at rest so that then all directions weigh the same.
-  [[nodiscard]] AxisVector<Axes> Tangent(const ControlInput& input, std::size_t node) const noexcept;
-  void BuildWeights(const ControlInput& input) noexcept;
-  void BuildTerminal(const AxisVector<Axes>& tangent) noexcept;
   void BuildAxis(const ControlInput& input, std::size_t i) noexcept;
   void ShiftWarmStart() noexcept;
   void Report(const QpReport& report, ControlOutput& output) noexcept;
@@ -42,13 +38,10 @@ class MpcGroup final : public MpcGroupBase {
   MpcConfig config_;
   std::size_t first_;
   double period_s_;
-  double contour_weight_;
-  double lag_weight_;
   AxisVector<Axes> mass_kg_{};
   AxisVector<Axes> bound_m_s2_{};
   AxisVector<Axes> step_m_s2_{};
-  std::array<TerminalFactor, Axes> contour_terminal_{};
-  std::array<TerminalFactor, Axes> lag_terminal_{};
+  std::vector<PathWeights<Axes>> weights_;  // one, made once the dynamics are known
   std::vector<FlatFeedforward> feedforward_;
   std::array<AxisPlan, Axes> plan_{};
   AxisVector<Axes> planned_m_s2_{};  // feed-forward command of the last Step

@@ -36,9 +36,9 @@ void PidLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   for (std::size_t i = 0; i < gains_.size(); ++i) {
     const AxisGains& gains = gains_[i];
     AxisMemory& memory = memory_[i];
-    const ReferencePoint& sampled = PointAt(input.reference[i], 0);
-    const ReferencePoint& start = PointAt(input.reference[i], 1);
-    const ReferencePoint& end = PointAt(input.reference[i], 2);
+    const ReferencePoint& sampled = PointAt(Reference(input)[i], 0);
+    const ReferencePoint& start = PointAt(Reference(input)[i], 1);
+    const ReferencePoint& end = PointAt(Reference(input)[i], 2);
 
     const double error = sampled.position_m - input.estimate[i].position_m;
     if (memory.has_error) {

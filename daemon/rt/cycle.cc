@@ -129,8 +129,9 @@ void Cycle::Step(const CycleInput& in, CycleOutput& out) noexcept {
   Estimate();
   Orders orders = transitions_.Step(Assess(in));
   CarryOut(orders);
-  Decide();
-  if (const FaultSeen fault = Guard(orders); fault.reason != Reason::kNone) {
+  Decide(orders);
+  // Without torque a fault of the guard moves nothing, and the enabling to come starts everything anew.
+  if (const FaultSeen fault = Guard(orders); fault.reason != Reason::kNone && orders.torque_allowed) {
     orders = transitions_.RaiseLate(fault);
     CarryOut(orders);
     Guard(orders);
@@ -192,7 +193,7 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
   now.io = in.io;
   now.operational = master_.operational();
   now.bring_up_failed = master_.bring_up_failed();
-  now.bring_up_active = !now.operational && !now.bring_up_failed;
+  now.bring_up_active = master_.BringingUp();
   for (const AxisFeedback& f : master_.feedback()) now.drives.push_back(f.drive_state);
   now.fault = FindFault();
   now.lost = FindLost(in);
@@ -225,8 +226,9 @@ FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto where = static_cast<std::uint8_t>(i);
-    if (master_.status()[i].heartbeat_lost || master_.status()[i].restarted)
-      return {Reason::kHeartbeatLost, where};
+    const AxisDriveStatus& s = master_.status()[i];
+    const bool left_operational = s.configured && s.nmt != NmtState::kOperational;
+    if (s.heartbeat_lost || s.restarted || left_operational) return {Reason::kHeartbeatLost, where};
   }
   return {};
 }
@@ -274,10 +276,11 @@ void Cycle::CarryOut(const Orders& orders) noexcept {
   if (orders.stop_path) follower_.BeginStop();
 }
 
-void Cycle::Decide() noexcept {
+void Cycle::Decide(const Orders& orders) noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) follower_.Horizon(i, control_in_.reference[i]);
+  controller_.Plan(control_in_, orders.torque_allowed);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    follower_.Horizon(i, control_in_.reference[i]);
-    axes_[i].estimator.PreviewFriction(control_in_.reference[i], control_in_.friction[i]);
+    axes_[i].estimator.PreviewFriction(Reference(control_in_)[i], control_in_.friction[i]);
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
   }
   control_in_.estimate = estimates_;

@@ -57,7 +57,7 @@ class Cycle {
   void CarryOut(const Orders& orders) noexcept;
   void HoldHere() noexcept;
   void FollowFeedback() noexcept;
-  void Decide() noexcept;
+  void Decide(const Orders& orders) noexcept;
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;
   void Record(const CycleInput& in, CycleOutput& out) noexcept;

@@ -175,7 +175,10 @@ TEST_P(EveryTorqueController, DoesNotTouchTheHeap) {
   ControlOutput output;
   const test::AllocationGuard guard;
   controller.Reset();
-  for (int n = 0; n < 5; ++n) controller.Step(loop.input, output);
+  for (int n = 0; n < 5; ++n) {
+    controller.Plan(loop.input, true);
+    controller.Step(loop.input, output);
+  }
   EXPECT_EQ(guard.calls(), 0u);
 }
 
@@ -245,17 +248,24 @@ TEST(Mpc, ContourErrorIsWeighedMoreThanLag) {
   EXPECT_LT(across.TrackingError(), 0.7 * along.TrackingError());
 }
 
-// A corner at full feed asks for more force than there is. What cannot be done must not be made up for later.
-TEST(Full, TakesACornerBeyondTheTorqueLimitWithoutRinging) {
-  const auto corner = [](std::size_t axis, double t) {
-    const double along = 0.05 * (t - 0.2);
-    const bool before = t < 0.2;
-    if (axis == 0) return ReferencePoint{before ? along : -along, before ? 0.05 : -0.05, 0.0};
-    return ReferencePoint{0.0, 0.0, 0.0};
-  };
-  ContourLoop loop(ControllerName::kFull, ControllerConfig{}, NominalAxes(2), corner);
+// There and back along x: the turn asks for more force than there is.
+ReferencePoint Turn(std::size_t axis, double t) {
+  const double along = 0.05 * (t - 0.2);
+  const bool before = t < 0.2;
+  if (axis == 0) return ReferencePoint{before ? along : -along, before ? 0.05 : -0.05, 0.0};
+  return ReferencePoint{0.0, 0.0, 0.0};
+}
+
+void StartOnTurn(ContourLoop& loop) {
   loop.plants[0].motor_m = loop.plants[0].table_m = -0.01;
   loop.plants[0].motor_m_s = loop.plants[0].table_m_s = 0.05;
+}
+
+TEST(Full, WithoutAPlanWhatCannotBeDoneIsNotMadeUpForLater) {
+  ControllerConfig config;
+  config.planner.enabled = false;
+  ContourLoop loop(ControllerName::kFull, config, NominalAxes(2), Turn);
+  StartOnTurn(loop);
   EXPECT_LT(loop.Run(0.15), 0.1e-6);
   EXPECT_LT(loop.Run(0.06), 250e-6);
   // Ten milliseconds after the corner nothing is left of it in the force but the way back to the path.
@@ -266,6 +276,35 @@ TEST(Full, TakesACornerBeyondTheTorqueLimitWithoutRinging) {
     before = loop.output.force_N[0];
   }
   EXPECT_LT(loop.Run(0.1), 3e-6);
+}
+
+TEST(Full, PlansCornersWithinTheTorqueAndKeepsToThePath) {
+  // A right-angled corner at 50 mm/s, along x and then along y.
+  const auto corner = [](std::size_t axis, double t) {
+    const double along = 0.05 * (t - 0.2);
+    const bool moves = (along < 0.0) == (axis == 0);
+    return ReferencePoint{moves ? along : 0.0, moves ? 0.05 : 0.0, 0.0};
+  };
+  ControllerConfig config;
+  double peak[2] = {0.0, 0.0};
+  for (const bool plans : {false, true}) {
+    config.planner.enabled = plans;
+    ContourLoop loop(ControllerName::kFull, config, NominalAxes(2), corner);
+    StartOnTurn(loop);
+    for (int n = 0; n < 350; ++n) {
+      loop.Step();
+      const double x = loop.plants[0].table_m, y = loop.plants[1].table_m;
+      // The path is the negative x axis and the positive y axis.
+      const double distance = std::min(std::hypot(std::max(x, 0.0), y), std::hypot(x, std::min(y, 0.0)));
+      peak[plans ? 1 : 0] = std::max(peak[plans ? 1 : 0], distance);
+      if (plans) {
+        EXPECT_NE(loop.output.limit[0], Reason::kTorqueLimit) << n;
+      }
+    }
+    EXPECT_LT(loop.Run(0.1), 1e-6);
+  }
+  EXPECT_LT(peak[1], 4e-6);
+  EXPECT_GT(peak[0], 30e-6);
 }
 
 TEST(Mpc, RefusesWhatCannotWork) {

@@ -99,6 +99,10 @@ class ContourLoop {
       reference.clear();
       for (int j = 0; j < controller_.horizon_points(); ++j)
         reference.push_back(path_(i, time_s + j * kPeriod_s));
+    }
+    controller_.Plan(input, true);
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+      const AxisHorizon& reference = Reference(input)[i];
       input.friction[i].clear();
       for (std::size_t j = 0; friction && j < reference.size(); ++j) {
         const ReferencePoint& next = reference[std::min(j + 1, reference.size() - 1)];
