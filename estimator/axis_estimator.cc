@@ -64,7 +64,8 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       break;
   }
   roll_ = FrictionRoll(period_s);
-  mass_ = MassCorrection(mechanics.mass_kg, config.adapt ? config.mass_rate : 0.0);
+  rigid_ = RigidCorrection({mechanics.mass_kg, setup.friction.sigma2_Ns_m,
+                            config.adapt ? config.mass_rate : 0.0, config.adapt ? config.viscous_rate : 0.0});
   correction_ =
       LevelCorrection({2.0 * std::numbers::pi * mechanics.radius_m_rad, setup.friction.vs_m_s,
                        config.adapt ? config.ripple_rate : 0.0, config.adapt ? config.stribeck_rate : 0.0});
@@ -74,7 +75,7 @@ void AxisEstimator::Reset(double position_m) noexcept {
   std::visit([&](auto& filter) noexcept { filter.Reset(position_m); }, filter_);
   roll_.Reset(0.0);
   correction_.Reset();
-  mass_.Reset();
+  rigid_.Reset();
   at_rest_ = true;
 }
 
@@ -89,14 +90,15 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   const auto& ahead = filter.predicted();
   const auto basis = correction_.Basis(ahead[kPosition], ahead[kVelocity]);
   filter.SetLevelFactors(correction_.Factor(basis, true), correction_.Factor(basis, false));
-  filter.SetInertialForce_N(mass_.extra_kg() * in.commanded_acceleration_m_s2);
+  filter.SetKnownForces_N(rigid_.extra_kg() * in.commanded_acceleration_m_s2,
+                          rigid_.extra_Ns_m() * in.commanded_velocity_m_s);
   return filter.Update(in);
 }
 
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept {
   if (kind_ == EstimatorKind::kFull) {
     const auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
-    roll_.Run(filter.model(), filter.state(), correction_, mass_, at_rest_, reference, out);
+    roll_.Run(filter.model(), filter.state(), correction_, rigid_, at_rest_, reference, out);
     return;
   }
   const double ahead_N = std::visit(

@@ -14,7 +14,7 @@
 #include "estimator/friction_preview.h"
 #include "estimator/kinematic_observer.h"
 #include "estimator/level_correction.h"
-#include "estimator/mass_correction.h"
+#include "estimator/rigid_correction.h"
 #include "estimator/seven_state_filter.h"
 
 namespace contour {
@@ -59,7 +59,7 @@ class AxisEstimator {
       filter_;
   FrictionRoll roll_;
   LevelCorrection correction_;
-  MassCorrection mass_;
+  RigidCorrection rigid_;
   bool at_rest_ = true;
 };
 

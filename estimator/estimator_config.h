@@ -27,6 +27,7 @@ struct EstimatorConfig {
   double ripple_rate = 0.1;
   double stribeck_rate = 0.3;
   double mass_rate = 0.001;
+  double viscous_rate = 0.001;
   double level_error = 0.05;
   double initial_level_std = 0.2;
   double initial_log_sigma0_std = 0.5;
@@ -69,6 +70,8 @@ struct EstimatorConfig {
     v.Optional(
         "level_error", level_error, Range{0.0, 1.0},
         "share of the friction level up to which a disturbance turns round at a reversal as friction does");
+    v.Optional("viscous_rate", viscous_rate, Range{0.0, 1.0},
+               "share of the error that the correction of viscous friction learns per cycle; 0 none");
     v.Optional("initial_level_std", initial_level_std, Range{0.0, 2.0},
                "relative uncertainty of the commissioned friction levels");
     v.Optional("initial_log_sigma0_std", initial_log_sigma0_std, Range{0.0, 3.0},

@@ -9,7 +9,7 @@ constexpr double kSlidingShare = 0.85;
 }  // namespace
 
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
-                       LevelCorrection& correction, MassCorrection& mass, bool at_rest,
+                       LevelCorrection& correction, RigidCorrection& rigid, bool at_rest,
                        const AxisHorizon& reference, FrictionPreview& out) noexcept {
   if (at_rest) {
     bristle_N_ = x[kBristle];
@@ -17,7 +17,7 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   }
   const Friction& f = model.friction();
   const double sigma0 = f.sigma0_N_m * Exp(x[kLogSigma0]);
-  const double sigma2 = model.sigma2_Ns_m();
+  const double sigma2 = model.sigma2_Ns_m() + rigid.extra_Ns_m();
   const double d = x[kDisturbance];
   out.resize(reference.size());
   double bristle_N = bristle_N_;
@@ -40,14 +40,14 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
       bristle_N_ = next_N;
       const double share = (velocity >= 0.0 ? bristle_N : -bristle_N) / level_N;
       const bool sliding = !at_rest && share > kSlidingShare;
-      if (sliding) mass.Learn(offset_N + d, now.acceleration_m_s2);
+      if (sliding) rigid.Learn(offset_N + d, now.velocity_m_s, now.acceleration_m_s2);
       correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, (offset_N + d) / level_N,
                        velocity * period_s_, sliding);
     }
     out[j].node_N = node_N + offset_N + d + sigma2 * now.velocity_m_s;
     out[j].mid_N = middle_N + BristleDamping(f, middle_N, velocity, level_N) + offset_N + d +
                    sigma2 * velocity +
-                   mass.extra_kg() * 0.5 * (now.acceleration_m_s2 + next.acceleration_m_s2);
+                   rigid.extra_kg() * 0.5 * (now.acceleration_m_s2 + next.acceleration_m_s2);
     bristle_N = next_N;
   }
 }

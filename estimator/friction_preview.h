@@ -2,7 +2,7 @@
 
 #include "core/horizon.h"
 #include "estimator/level_correction.h"
-#include "estimator/mass_correction.h"
+#include "estimator/rigid_correction.h"
 #include "estimator/seven_state_model.h"
 
 namespace contour {
@@ -23,7 +23,7 @@ class FrictionRoll {
   /// lets the corrections learn from the difference at element 0. mid_N, which the torque must overcome, has
   /// what the axis is heavier than commissioned in it; node_N, which winds the screw up, has not.
   void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, LevelCorrection& correction,
-           MassCorrection& mass, bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept;
+           RigidCorrection& rigid, bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept;
 
  private:
   double period_s_ = 1e-3;

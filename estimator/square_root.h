@@ -96,13 +96,22 @@ class Triangulariser {
       double* v = row[i].data() + i;
       const double x0 = v[0];
       const double rest = Dot<kReach - 1>(v + 1, v + 1);
+      if (rest < kNothing) {
+        // Row i is clear already, but for what would only underflow: at most a change of sign.
+        const double sign = x0 < 0.0 ? -1.0 : 1.0;
+        s[i][i] = sign * x0;
+        for (std::size_t j = i + 1; j < N; ++j) {
+          s[j][i] = sign * row[j][i];
+          s[i][j] = 0.0;
+        }
+        continue;
+      }
       const double norm = std::sqrt(x0 * x0 + rest);
       // Diagonals come out positive: the reflected row is +norm e_i. v0 = x0 - norm without cancellation.
       const double v0 = x0 > 0.0 ? -rest / (x0 + norm) : x0 - norm;
       s[i][i] = norm;
-      // Reflection I - v v^T / (norm (norm - x0)) = I + v v^T / (norm v0); nothing to do when v = 0.
-      const double scale = norm * v0;
-      const double factor = scale != 0.0 ? 1.0 / scale : 0.0;
+      // Reflection I - v v^T / (norm (norm - x0)) = I + v v^T / (norm v0).
+      const double factor = 1.0 / (norm * v0);
       v[0] = v0;
       for (std::size_t j = i + 1; j < N; ++j) {
         double* a = row[j].data() + i;
@@ -116,6 +125,7 @@ class Triangulariser {
 
  private:
   static constexpr std::size_t kReach = M + 1;
+  static constexpr double kNothing = 1e-250;  // squared: entries below 1e-125 in any unit
 };
 
 /// S S^T + w w^T by Givens rotations; w[0 .. first-1] must be zero. Destroys w. Cannot fail.

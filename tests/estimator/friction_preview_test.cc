@@ -25,7 +25,7 @@ TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   FrictionRoll roll(kPeriod_s);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  MassCorrection mass(89.0, 0.0);
+  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
@@ -36,7 +36,7 @@ TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   std::array<double, 6> ahead{};
   for (int k = 0; k < 4000; ++k) {
     x[kBristle] = bristle;
-    roll.Run(model, x, correction, mass, false, Horizon(k, 6), preview);
+    roll.Run(model, x, correction, rigid, false, Horizon(k, 6), preview);
     ASSERT_EQ(preview.size(), 6u);
     double f = bristle;
     for (std::size_t j = 0; j < 6; ++j) {
@@ -61,16 +61,16 @@ TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
 TEST(FrictionRoll, AnOffsetOfTheEstimateIsKept) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  MassCorrection mass(89.0, 0.0);
+  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
   FrictionRoll a(kPeriod_s), b(kPeriod_s);
   FrictionPreview pa, pb;
-  a.Run(model, x, correction, mass, false, Horizon(0, 10), pa);
+  a.Run(model, x, correction, rigid, false, Horizon(0, 10), pa);
   x[kBristle] += 3.0;
   x[kDisturbance] += 4.0;
-  b.Run(model, x, correction, mass, false, Horizon(0, 10), pb);
+  b.Run(model, x, correction, rigid, false, Horizon(0, 10), pb);
   for (std::size_t j = 0; j < 10; ++j) {
     EXPECT_NEAR(pb[j].node_N - pa[j].node_N, 7.0, 1e-12);
     EXPECT_NEAR(pb[j].mid_N - pa[j].mid_N, 7.0, 1e-12);
@@ -80,7 +80,7 @@ TEST(FrictionRoll, AnOffsetOfTheEstimateIsKept) {
 TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  MassCorrection mass(89.0, 0.0);
+  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
@@ -90,21 +90,21 @@ TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
   roll.Reset(30.0);
   AxisHorizon still(kMaxHorizonPoints);
   FrictionPreview preview;
-  roll.Run(model, x, correction, mass, true, still, preview);
+  roll.Run(model, x, correction, rigid, true, still, preview);
   ASSERT_EQ(preview.size(), kMaxHorizonPoints);
   for (const auto& f : preview) {
     EXPECT_DOUBLE_EQ(f.node_N, -15.0);
     EXPECT_DOUBLE_EQ(f.mid_N, -15.0);
   }
   AxisHorizon none;
-  roll.Run(model, x, correction, mass, true, none, preview);
+  roll.Run(model, x, correction, rigid, true, none, preview);
   EXPECT_TRUE(preview.empty());
 }
 
 TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.5, 0.0});
-  MassCorrection mass(89.0, 0.0);
+  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
   for (int k = 0; k < 20000; ++k) {
     const auto basis = correction.Basis(k * 1e-5, 0.05);
     const double truth = 1.0 + 0.08 * basis[1];
@@ -119,7 +119,7 @@ TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   FrictionRoll roll(kPeriod_s);
   roll.Reset(42.0);
   FrictionPreview preview;
-  roll.Run(model, x, correction, mass, false, h, preview);
+  roll.Run(model, x, correction, rigid, false, h, preview);
   // After 1.25 mm, a quarter turn, the level stands 8 % up; sigma2 v = 25 N beside it.
   EXPECT_NEAR(preview[25].node_N, 42.0 * 1.08 + 25.0, 0.5);
 }
@@ -127,8 +127,8 @@ TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
 TEST(FrictionRoll, WhatTheAxisIsHeavierThanCommissionedMustBePushedToo) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  MassCorrection mass(89.0, 0.5);
-  for (int k = 0; k < 100; ++k) mass.Learn((5.0 - mass.extra_kg()) * 1.0, 1.0);
+  RigidCorrection rigid({89.0, 500.0, 0.5, 0.0});
+  for (int k = 0; k < 100; ++k) rigid.Learn((5.0 - rigid.extra_kg()) * 1.0, 0.0, 1.0);
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
@@ -136,7 +136,7 @@ TEST(FrictionRoll, WhatTheAxisIsHeavierThanCommissionedMustBePushedToo) {
   for (int j = 0; j < 5; ++j) h.push_back({0.0, 0.0, 2.0});
   FrictionRoll roll(kPeriod_s);
   FrictionPreview preview;
-  roll.Run(model, x, correction, mass, true, h, preview);
+  roll.Run(model, x, correction, rigid, true, h, preview);
   EXPECT_NEAR(preview[1].mid_N, 10.0, 0.01);
   EXPECT_NEAR(preview[1].node_N, 0.0, 1e-12);  // the motor's mass does not wind the screw up
 }

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "estimator/mass_correction.h"
-
 namespace contour {
 namespace {
 
@@ -102,22 +100,6 @@ TEST(LevelCorrection, FactorIsBounded) {
   }
   correction.Reset();
   EXPECT_EQ(correction.Factor(correction.Basis(1e-3, 0.0), true), 1.0);
-}
-
-TEST(MassCorrection, FindsWhatGoesWithTheAcceleration) {
-  MassCorrection mass(90.0, 0.001);
-  for (int k = 0; k < 10000; ++k) {
-    const double a = 0.25 * std::sin(0.005 * k);
-    const double friction = std::cos(0.005 * k) > 0.0 ? 0.5 : -0.5;  // goes with the velocity
-    mass.Learn((6.0 - mass.extra_kg()) * a + friction, a);
-  }
-  EXPECT_NEAR(mass.extra_kg(), 6.0, 0.5);
-}
-
-TEST(MassCorrection, IsBounded) {
-  MassCorrection mass(90.0, 0.1);
-  for (int k = 0; k < 10000; ++k) mass.Learn(1e3, 1.0);
-  EXPECT_DOUBLE_EQ(mass.extra_kg(), 36.0);
 }
 
 }  // namespace

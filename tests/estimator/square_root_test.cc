@@ -85,6 +85,27 @@ TEST(Triangulariser, TakesRowsOfZeros) {
   EXPECT_EQ(static_cast<double>(p[2][2]), 0.0);
 }
 
+TEST(Triangulariser, EntriesThatUnderflowDoNoHarm) {
+  for (const double tiny : {1e-120, 1e-140, 1e-155, 1e-160, 1e-170, 1e-310}) {
+    for (const double sign : {-1.0, 1.0}) {
+      Triangulariser<3, 7> a;
+      a.row[0] = {sign * 1e-3, tiny, tiny, 0.0, tiny, 0.0, 0.0};
+      a.row[1] = {0.5, 1.0, tiny, 0.0, 0.0, 0.0, 0.0};
+      a.row[2] = {tiny, tiny, 0.0, tiny, 0.0, 0.0, 0.0};
+      a.SetNoise({});
+      SquareMatrix<3> s;
+      a.Run(s);
+      const auto p = Product<3>(s);
+      EXPECT_DOUBLE_EQ(static_cast<double>(p[0][0]), 1e-6) << tiny;
+      EXPECT_NEAR(static_cast<double>(p[1][0]), sign * 5e-4, 1e-18) << tiny;
+      EXPECT_NEAR(static_cast<double>(p[1][1]), 1.25, 1e-14) << tiny;
+      for (const auto& row : s) {
+        for (const double v : row) EXPECT_TRUE(std::isfinite(v)) << tiny;
+      }
+    }
+  }
+}
+
 TEST(AddRankOne, AddsTheOuterProduct) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;

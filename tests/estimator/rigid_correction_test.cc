@@ -1,0 +1,49 @@
+#include "estimator/rigid_correction.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace contour {
+namespace {
+
+constexpr RigidCorrection::Tuning kTuning{90.0, 500.0, 0.001, 0.001};
+
+TEST(RigidCorrection, TellsInertiaFromViscousFriction) {
+  RigidCorrection rigid(kTuning);
+  for (int k = 0; k < 30000; ++k) {
+    const double v = 0.05 * std::sin(0.005 * k), a = 0.25 * std::cos(0.005 * k);
+    rigid.Learn((6.0 - rigid.extra_kg()) * a + (-80.0 - rigid.extra_Ns_m()) * v, v, a);
+  }
+  EXPECT_NEAR(rigid.extra_kg(), 6.0, 0.1);
+  EXPECT_NEAR(rigid.extra_Ns_m(), -80.0, 2.0);
+}
+
+TEST(RigidCorrection, WhatOnlyChangesSignWithTheDirectionIsNotInertia) {
+  RigidCorrection rigid({90.0, 500.0, 0.001, 0.0});
+  for (int k = 0; k < 30000; ++k) {
+    const double v = 0.05 * std::sin(0.005 * k), a = 0.25 * std::cos(0.005 * k);
+    rigid.Learn((6.0 - rigid.extra_kg()) * a + (v > 0.0 ? 0.5 : -0.5), v, a);
+  }
+  EXPECT_NEAR(rigid.extra_kg(), 6.0, 0.5);
+}
+
+TEST(RigidCorrection, IsBounded) {
+  RigidCorrection rigid({90.0, 500.0, 0.1, 0.1});
+  for (int k = 0; k < 10000; ++k) rigid.Learn(1e3, 0.1, 1.0);
+  EXPECT_DOUBLE_EQ(rigid.extra_kg(), 36.0);
+  EXPECT_DOUBLE_EQ(rigid.extra_Ns_m(), 1100.0);
+  for (int k = 0; k < 10000; ++k) rigid.Learn(-1e3, 0.1, 1.0);
+  EXPECT_DOUBLE_EQ(rigid.extra_kg(), -36.0);
+  EXPECT_DOUBLE_EQ(rigid.extra_Ns_m(), -500.0);  // no viscous friction at all
+}
+
+TEST(RigidCorrection, AtRestNothingIsLearnt) {
+  RigidCorrection rigid(kTuning);
+  for (int k = 0; k < 1000; ++k) rigid.Learn(10.0, 0.0, 0.0);
+  EXPECT_EQ(rigid.extra_kg(), 0.0);
+  EXPECT_EQ(rigid.extra_Ns_m(), 0.0);
+}
+
+}  // namespace
+}  // namespace contour
