@@ -67,6 +67,8 @@ class DriveMaster {
   /// Where bringing up stands: the failed node if there is one, else the one furthest behind.
   [[nodiscard]] BringUpStatus bring_up() const noexcept;
   [[nodiscard]] bool bring_up_failed() const noexcept { return bring_up().error != 0; }
+  /// Drives are being found and configured at this moment.
+  [[nodiscard]] bool BringingUp() const noexcept;
   /// All drives are Operational and configured; SYNC and PDOs run.
   [[nodiscard]] bool operational() const noexcept;
   /// Bringing up is under way, or a drive is on its way to the last goal.
@@ -113,7 +115,6 @@ class DriveMaster {
   void OnFeedback(std::size_t axis, const CanFrame& frame) noexcept;
   void Supervise(std::size_t axis) noexcept;
   void StartPdos() noexcept;
-  [[nodiscard]] bool BringingUp() const noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
   [[nodiscard]] bool Healthy(std::size_t axis) const noexcept;
 
