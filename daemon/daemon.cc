@@ -99,7 +99,10 @@ class RealtimeThread {
   RealtimeThread(Loop& loop, const RealtimeConfig& config, bool lockstep) : loop_(loop), lockstep_(lockstep) {
     request_ = {config.priority, config.cpu, config.lock_memory};
   }
-  ~RealtimeThread() { Join(); }
+  ~RealtimeThread() {
+    if (thread_.joinable() && !gone_) Go(false);
+    Join();
+  }
 
   /// What was refused.
   std::vector<std::string> Start() {
@@ -108,7 +111,10 @@ class RealtimeThread {
     return refused.get();
   }
   /// Let the loop run, or give it up.
-  void Go(bool go) { go_.set_value(go); }
+  void Go(bool go) {
+    gone_ = true;
+    go_.set_value(go);
+  }
   [[nodiscard]] bool ended() const { return ended_; }
   void Join() {
     if (thread_.joinable()) thread_.join();
@@ -133,6 +139,7 @@ class RealtimeThread {
   ThreadRequest request_;
   std::promise<std::vector<std::string>> refused_;
   std::promise<bool> go_;
+  bool gone_ = false;  ///< the thread has been told
   std::atomic<bool> ended_{false};
   std::thread thread_;
 };

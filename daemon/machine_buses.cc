@@ -66,7 +66,10 @@ MachineBuses::~MachineBuses() {
 
 void MachineBuses::DrainTruth() {
   if (relay_) relay_->Drain();
-  if (relay_ && relay_->lost() != 0) spdlog::warn("{} rows of truth were lost", relay_->lost());
+  if (relay_ && relay_->lost() != reported_lost_) {
+    reported_lost_ = relay_->lost();
+    spdlog::warn("{} rows of truth were lost, in all", reported_lost_);
+  }
 }
 
 }  // namespace contour

@@ -34,6 +34,7 @@ class MachineBuses {
   std::unique_ptr<EmulatedMachine> emulated_;
   std::unique_ptr<ModbusIoServer> io_server_;
   std::unique_ptr<TruthRelay> relay_;
+  std::uint64_t reported_lost_ = 0;
   std::vector<std::unique_ptr<FrameBus>> buses_;
   std::vector<FrameBus*> pointers_;
   bool all_virtual_ = true;

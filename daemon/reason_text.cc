@@ -71,7 +71,8 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
              "bus, then reset";
     case Reason::kHeartbeatLost:
       return axis +
-             ": the drive's heartbeat is missing or it restarted; check its supply and the bus, then reset" +
+             ": the drive's heartbeat is missing, or it restarted or left Operational; check its supply and "
+             "the bus, then reset" +
              DriveText(record, at);
     case Reason::kDriveFault:
       return axis + ": the drive reports a fault" + DriveText(record, at) +

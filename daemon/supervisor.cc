@@ -52,8 +52,10 @@ Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence) {
   const auto deadline = Clock::now() + timeout;
   for (;;) {
     const CycleRecord record = parts_.hub.record();
-    if (record.acknowledged >= sequence) {
-      const bool ok = record.acknowledged > sequence || record.acknowledged_ok;
+    // Only a stop overtakes; whoever waits behind it waits for its own answer.
+    const bool overtaken = kind == RequestKind::kStop && record.acknowledged > sequence;
+    if (record.acknowledged == sequence || overtaken) {
+      const bool ok = overtaken || record.acknowledged_ok;
       return {ok, ok ? std::string() : RefusalText(record, kind, axis_names_, bus_names_), sequence, 0};
     }
     if (Clock::now() >= deadline)

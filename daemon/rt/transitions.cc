@@ -41,6 +41,7 @@ void Transitions::Enter(MachineState next) noexcept {
   state_ = next;
   since_ = 0;
   run_pending_ = false;
+  reset_pending_ = false;
 }
 
 void Transitions::Fault(FaultSeen fault) noexcept {
@@ -115,11 +116,11 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
     case RequestKind::kRun:
       return Run(orders, request);
     case RequestKind::kReset:
-      Acknowledge(request, state_ == MachineState::kFaulted || state_ == MachineState::kIdle);
       if (state_ == MachineState::kFaulted) {
-        resetting_ = true;
-        orders.start_bring_up = true;
-        Enter(MachineState::kStarting);
+        reset_pending_ = true;
+        reset_ = request;
+      } else {
+        Acknowledge(request, state_ == MachineState::kIdle);
       }
       return;
     case RequestKind::kStop:
@@ -166,6 +167,16 @@ void Transitions::Enable(const Situation& now, Orders& orders, const Request& re
   Enter(MachineState::kEnabling);
 }
 
+// A reset takes the voltage from the drives; it begins, and is acknowledged, when their quick-stop
+// ramps have come to an end.
+void Transitions::BeginReset(Orders& orders) noexcept {
+  if (!drives_off_ && since_ <= config_.stop_timeout_cycles) return;
+  Acknowledge(reset_, true);
+  resetting_ = true;
+  orders.start_bring_up = true;
+  Enter(MachineState::kStarting);
+}
+
 void Transitions::Run(Orders& orders, const Request& request) noexcept {
   const bool ok = state_ == MachineState::kReady && !run_pending_ && !terminating_;
   Acknowledge(request, ok);
@@ -193,10 +204,15 @@ void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
         reason_ = Reason::kNone;
         where_ = 0xFF;
         Enter(MachineState::kIdle);
+      } else if (!now.bring_up_active) {
+        // Lost again before all was well: nothing is under way any more, so nothing is waited for.
+        Fault(now.lost.reason != Reason::kNone ? now.lost : FaultSeen{Reason::kHeartbeatLost, kNone});
       }
       break;
     case MachineState::kIdle:
+      break;
     case MachineState::kFaulted:
+      if (reset_pending_) BeginReset(orders);
       break;
     case MachineState::kEnabling:
       if (orders.hold_here) break;

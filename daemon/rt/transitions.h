@@ -72,7 +72,8 @@ class Transitions {
   [[nodiscard]] std::uint32_t since() const noexcept { return since_; }
   [[nodiscard]] bool run_pending() const noexcept { return run_pending_; }
   [[nodiscard]] bool holds_torque() const noexcept {
-    return state_ == MachineState::kReady || state_ == MachineState::kRunning || state_ == MachineState::kStopping;
+    return state_ == MachineState::kReady || state_ == MachineState::kRunning ||
+           state_ == MachineState::kStopping;
   }
   [[nodiscard]] bool drives_off() const noexcept { return drives_off_; }
 
@@ -84,6 +85,7 @@ class Transitions {
   void Enable(const Situation& now, Orders& orders, const Request& request) noexcept;
   void Run(Orders& orders, const Request& request) noexcept;
   void BeginStop(Orders& orders, Reason reason, MachineState after) noexcept;
+  void BeginReset(Orders& orders) noexcept;
   void Progress(const Situation& now, Orders& orders) noexcept;
   void ProgressReady(const Situation& now, Orders& orders) noexcept;
   void ProgressRunning(const Situation& now, Orders& orders) noexcept;
@@ -103,6 +105,8 @@ class Transitions {
   bool run_pending_ = false;
   std::uint32_t run_pending_cycles_ = 0;
   bool terminating_ = false;
+  bool reset_pending_ = false;  ///< asked for while the drives still stop
+  Request reset_;
   bool resetting_ = false;  ///< Starting was asked for by an operator
   bool drives_off_ = true;
 };

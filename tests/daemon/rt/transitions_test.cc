@@ -206,6 +206,54 @@ TEST_F(TransitionsTest, ResetBringsUpAgainAndDoesNotEnable) {
   EXPECT_EQ(machine_.state(), MachineState::kIdle);
 }
 
+TEST_F(TransitionsTest, AResetWaitsForTheEndOfTheQuickStop) {
+  ToRunning();
+  now_.io.emergency_stop_ok = false;
+  machine_.Step(now_);
+  now_.io.emergency_stop_ok = true;
+  SetDrives(DriveState::kQuickStopActive);
+  now_.request = {RequestKind::kReset, ++sequence_, 0};
+  Orders orders = machine_.Step(now_);
+  now_.request = {};
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_FALSE(orders.start_bring_up);
+    EXPECT_NE(machine_.acknowledged(), sequence_);
+    EXPECT_EQ(orders.goal, DriveGoal::kQuickStop) << "the voltage stays until the ramp has ended";
+    orders = machine_.Step(now_);
+  }
+  SetDrives(DriveState::kSwitchOnDisabled);
+  EXPECT_TRUE(machine_.Step(now_).start_bring_up);
+  EXPECT_TRUE(machine_.acknowledged_ok());
+  EXPECT_EQ(machine_.acknowledged(), sequence_);
+  EXPECT_EQ(machine_.state(), MachineState::kStarting);
+}
+
+TEST_F(TransitionsTest, AResetDoesNotWaitForeverForADriveOutOfReach) {
+  ToRunning();
+  now_.lost = {Reason::kBusDown, 0};
+  machine_.Step(now_);  // the drives were last seen enabled, and are seen no more
+  now_.lost = {};
+  now_.request = {RequestKind::kReset, ++sequence_, 0};
+  machine_.Step(now_);
+  now_.request = {};
+  bool begun = false;
+  for (int i = 0; i < 25 && !begun; ++i) begun = machine_.Step(now_).start_bring_up;
+  EXPECT_TRUE(begun);
+}
+
+TEST_F(TransitionsTest, ADriveLostWhileStartingIsAFaultNotAWait) {
+  SetDrives(DriveState::kFault);
+  Step();
+  Step();
+  Step(RequestKind::kReset);
+  now_.operational = false;  // restarted, with its fault not yet reset
+  now_.lost = {Reason::kHeartbeatLost, 1};
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kHeartbeatLost);
+  EXPECT_TRUE(Step(RequestKind::kReset).start_bring_up);
+}
+
 TEST_F(TransitionsTest, ResetClearsDriveFaultsTheFirstStartDoesNot) {
   SetDrives(DriveState::kFault);
   EXPECT_NE(Step().goal, DriveGoal::kFaultReset);
