@@ -10,7 +10,7 @@ namespace contour {
 struct EstimatorConfig {
   double position_noise_um = 1.5e-5;
   double velocity_noise_mm_s = 0.003;
-  double bristle_noise_N = 0.26;
+  double bristle_noise_N = 0.4;
   double level_noise_N = 0.015;
   double four_state_level_noise_N = 0.075;
   double disturbance_noise_N = 0.075;

@@ -18,6 +18,9 @@ constexpr double kLargestLevelStd = 0.25;
 // Lowest level, of the commissioned one: an axis may turn out to have hardly any friction.
 constexpr double kLowestLevelShare = 1e-3;
 
+// Largest factor on the noise of parameters and disturbance for a coarse encoder.
+constexpr double kMostCoarse = 7.0;
+
 // Mean of the squared, normalised innovations over about a hundred cycles.
 constexpr double kSurpriseShare = 0.01;
 
@@ -36,13 +39,16 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
       lag_(setup.period_s, setup.lag_s),
       gate_{setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6} {
   const auto& c = setup.config;
+  // A coarse encoder would slow the parameters down with the rest of the filter, more than their drift
+  // allows.
+  const double coarse = std::min(setup.measurement_std_m / (c.measurement_noise_um * 1e-6), kMostCoarse);
   noise_[kPosition] = setup.PerPeriod(c.position_noise_um * 1e-6);
-  noise_[kVelocity] = setup.PerPeriod(c.velocity_noise_mm_s * 1e-3);
+  noise_[kVelocity] = setup.PerPeriod(c.velocity_noise_mm_s * 1e-3) * std::sqrt(coarse);
   noise_[kBristle] = setup.PerPeriod(c.bristle_noise_N);
-  noise_[kDisturbance] = setup.PerPeriod(c.disturbance_noise_N);
-  noise_[kLevelPlus] = setup.PerPeriod(c.level_noise_N);
+  noise_[kDisturbance] = setup.PerPeriod(c.disturbance_noise_N) * coarse;
+  noise_[kLevelPlus] = setup.PerPeriod(c.level_noise_N) * coarse;
   noise_[kLevelMinus] = noise_[kLevelPlus];
-  noise_[kLogSigma0] = setup.PerPeriod(c.log_sigma0_noise);
+  noise_[kLogSigma0] = setup.PerPeriod(c.log_sigma0_noise) * coarse;
 
   const Friction& f = setup.friction;
   initial_std_[kPosition] = setup.measurement_std_m;
@@ -235,6 +241,7 @@ double SevenStateFilter<Core>::FrictionStd_N(double acceleration_m_s2) const noe
 template <class Core>
 AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexcept {
   AxisEstimate out;
+  at_rest_ = in.at_rest;
   if (!in.enabled) {
     if (in.fresh) Follow(in.position_m);
   } else {

@@ -56,7 +56,7 @@ class SevenStateFilter {
 
   [[nodiscard]] SevenStateInput Input(const X& x, std::array<double, kSubsteps> force_N) const noexcept {
     for (double& f : force_N) f -= inertial_N_ + viscous_N_;
-    return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity])};
+    return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity]), at_rest_};
   }
   void Follow(double position_m) noexcept;
   void Reverse(double commanded_velocity_m_s) noexcept;
@@ -86,6 +86,7 @@ class SevenStateFilter {
   double friction_ahead_N_ = 0.0;
   double travel_m_ = 0.0;  // in one direction
   int travel_direction_ = 0;
+  bool at_rest_ = true;
   double last_position_m_ = 0.0;
   double surprise_ = 1.0;  // mean square of innovation / its standard deviation
   std::uint32_t gated_in_a_row_ = 0;

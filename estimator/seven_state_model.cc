@@ -43,11 +43,12 @@ void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, con
     f[k] -= gap * Expm1(-s0[k] * per_level * step_s_ / trailing);
     damping[k] = in.sigma1_Ns_m * (v[k] - per_level * f[k]);
   }
+  const double leak = in.at_rest ? 1.0 : leak_;
   for (std::size_t k = 0; k < n; ++k) {
     const double next = velocity_decay_ * v[k] + velocity_gain_ * (force_N - f[k] - damping[k] - d[k]);
     p[k] += 0.5 * step_s_ * (v[k] + next);
     v[k] = next;
-    d[k] *= leak_;
+    d[k] *= leak;
   }
 }
 
@@ -139,7 +140,8 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
         velocity_decay_ * x[kVelocity] + velocity_gain_ * (force_N - x[kBristle] - damping - x[kDisturbance]);
     x[kPosition] += 0.5 * h * (x[kVelocity] + next);
     x[kVelocity] = next;
-    x[kDisturbance] *= leak_;
+    const double leak = in.at_rest ? 1.0 : leak_;
+    x[kDisturbance] *= leak;
 
     const auto& active = t[forward ? kLevelPlus : kLevelMinus];
     for (std::size_t k = 0; k < kSevenStates; ++k) {
@@ -150,7 +152,7 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
       t[kPosition][k] += 0.5 * h * (t[kVelocity][k] + v);
       t[kVelocity][k] = v;
       t[kBristle][k] = f;
-      t[kDisturbance][k] *= leak_;
+      t[kDisturbance][k] *= leak;
     }
   }
 }

@@ -30,6 +30,7 @@ struct SevenStateInput {
   double ripple_plus = 1.0;                 ///< factor of the level at this place, per direction
   double ripple_minus = 1.0;
   double sigma1_Ns_m = 0.0;  ///< bristle damping at the speed of this period
+  bool at_rest = false;      ///< the disturbance keeps its value: nothing tells it from the bristle now
 };
 
 /// One rigid axis with LuGre friction in two substeps per period:

@@ -37,6 +37,21 @@ TEST(Contour, TheSameRunTwiceIsTheSameRun) {
   EXPECT_NE(a.torque_Nm, RunCircle(other, ControllerName::kFull, kSmall).torque_Nm);
 }
 
+TEST(Contour, WithoutFrictionCompensationDoesNoHarm) {
+  std::vector<std::string> none;
+  for (const char* axis : {"x", "y"})
+    for (const char* key : {"Fs_plus_N", "Fs_minus_N", "Fc_plus_N", "Fc_minus_N"})
+      none.push_back(std::string("emulator.axes.") + axis + ".friction." + key + "=0");
+  const EmulatedMachineFile file = ExampleMachine(none);
+  const Program large = Circle(10.0, 3, 0.7957747155);
+  EXPECT_LE(RunCircle(file, ControllerName::kFull, large).table_peak_m,
+            RunCircle(file, ControllerName::kMpc, large).table_peak_m);
+  // On the small circle both are at the encoder's noise: within a few of its counts (4.8 nm) they are the same.
+  constexpr double kFewCounts_m = 40e-9;
+  EXPECT_LE(RunCircle(file, ControllerName::kFull, kSmall).table_peak_m,
+            RunCircle(file, ControllerName::kMpc, kSmall).table_peak_m + kFewCounts_m);
+}
+
 TEST(Contour, AFrozenEstimatorIsVisiblyWorse) {
   const RunResult live = RunCircle(ExampleMachine(), ControllerName::kFull, kSmall);
   // Frozen: friction is what was commissioned, whatever the machine does.
