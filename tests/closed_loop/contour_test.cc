@@ -46,7 +46,8 @@ TEST(Contour, WithoutFrictionCompensationDoesNoHarm) {
   const Program large = Circle(10.0, 3, 0.7957747155);
   EXPECT_LE(RunCircle(file, ControllerName::kFull, large).table_peak_m,
             RunCircle(file, ControllerName::kMpc, large).table_peak_m);
-  // On the small circle both are at the encoder's noise: within a few of its counts (4.8 nm) they are the same.
+  // On the small circle both are at the encoder's noise: within a few of its counts (4.8 nm) they are the
+  // same.
   constexpr double kFewCounts_m = 40e-9;
   EXPECT_LE(RunCircle(file, ControllerName::kFull, kSmall).table_peak_m,
             RunCircle(file, ControllerName::kMpc, kSmall).table_peak_m + kFewCounts_m);
