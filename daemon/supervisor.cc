@@ -58,11 +58,14 @@ Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence) {
       const bool ok = overtaken || record.acknowledged_ok;
       return {ok, ok ? std::string() : RefusalText(record, kind, axis_names_, bus_names_), sequence, 0};
     }
-    if (Clock::now() >= deadline)
+    if (Clock::now() >= deadline) {
+      // Whoever asked has been told that it failed: it must not happen later either.
+      if (kind != RequestKind::kStop) parts_.mailbox.Withdraw(sequence);
       return {
           false,
           "the cycle did not answer within " + std::to_string(timeout.count()) + " s; is the loop running?",
           sequence, 0};
+    }
     std::this_thread::sleep_for(kAnswerPoll);
   }
 }
@@ -133,8 +136,8 @@ MachineStatus Supervisor::Status() {
   out.computing = s.computing;
   out.sent = s.sent;
   out.dropped_entries = parts_.queue.dropped();
-  for (std::size_t b = 0; b < parts_.buses.size(); ++b)
-    out.buses.push_back({bus_names_[b], interfaces_[b], parts_.buses[b]->State()});
+  for (std::size_t b = 0; b < bus_names_.size(); ++b)
+    out.buses.push_back({bus_names_[b], interfaces_[b], parts_.loop.bus_states().Read(b)});
   if (parts_.io != nullptr) out.io = parts_.io->stats();
   out.publisher = s.publisher;
   out.log = s.log;

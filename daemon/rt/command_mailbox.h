@@ -32,6 +32,8 @@ class CommandMailbox {
     terminate_.store(sequence, std::memory_order_release);
     return sequence;
   }
+  /// A request that nobody waits for any more is not carried out, if the cycle has not taken it yet.
+  void Withdraw(std::uint32_t sequence) noexcept { withdrawn_.store(sequence, std::memory_order_release); }
   bool PushPathPoint(const PathPoint& point) noexcept { return path_.Push(point); }
   /// Whether more points of the program are to come; lock-step time waits for them instead of running dry.
   void SetPathSupply(bool more_to_come) noexcept {
@@ -51,7 +53,10 @@ class CommandMailbox {
     if (const std::uint32_t s = stop_.exchange(0, std::memory_order_acq_rel); s != 0)
       return {RequestKind::kStop, s, 0};
     Request request;
-    if (all) requests_.Pop(request);
+    while (all && requests_.Pop(request)) {
+      if (request.sequence > withdrawn_.load(std::memory_order_acquire)) return request;
+      request = {};
+    }
     return request;
   }
   /// True when TakeRequest would give something.
@@ -69,6 +74,7 @@ class CommandMailbox {
   std::atomic<std::uint32_t> sequence_{0};
   std::atomic<std::uint32_t> stop_{0};
   std::atomic<std::uint32_t> terminate_{0};
+  std::atomic<std::uint32_t> withdrawn_{0};
   std::atomic<bool> more_to_come_{false};
 };
 

@@ -22,6 +22,7 @@ void CycleRunner::Collect(const GridPoint& grid, std::int64_t now_ns, bool take_
   in.buses.resize(buses_.size());
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     const BusState state = buses_[b]->State();
+    bus_states_.Publish(b, state);
     in.buses[b] = {state.up, state.bus_off,
                    static_cast<std::uint32_t>(state.send_failures - failures_seen_[b])};
     failures_seen_[b] = state.send_failures;

@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "daemon/rt/bus_state_board.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/cycle.h"
 #include "daemon/rt/io_source.h"
@@ -30,12 +31,15 @@ class CycleRunner {
   /// Receive, Collect, Step, Send: one cycle in virtual time.
   void Tick(const GridPoint& grid, bool take_requests, CycleEntry& entry) noexcept;
 
+  [[nodiscard]] const BusStateBoard& bus_states() const noexcept { return bus_states_; }
+
  private:
   Cycle& cycle_;
   std::span<FrameBus* const> buses_;
   CommandMailbox& mailbox_;
   IoSource& io_;
   std::array<std::uint64_t, kMaxBuses> failures_seen_{};
+  BusStateBoard bus_states_;
 };
 
 }  // namespace contour

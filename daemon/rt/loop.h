@@ -38,6 +38,7 @@ class Loop {
   /// only.
   void RunLockstep() noexcept;
 
+  [[nodiscard]] const BusStateBoard& bus_states() const noexcept { return runner_.bus_states(); }
   [[nodiscard]] const LoopCounters& counters() const noexcept { return counters_; }
 
  private:

@@ -42,8 +42,10 @@ std::uint16_t DriveWalk::Step(DriveState state, DriveGoal goal, std::uint64_t el
     if (left_enabled_) return controlword::kQuickStop;
   }
   if (goal == DriveGoal::kFaultReset && state == DriveState::kFault) return FaultReset();
-  // A quick stop that does not end (options 5 to 8 stay in Quick Stop Active) ends by disabling the voltage.
-  if (goal == DriveGoal::kQuickStop && state == DriveState::kQuickStopActive && late_) {
+  // A quick stop that does not end (options 5 to 8 stay in Quick Stop Active), or is not even begun, ends by
+  // disabling the voltage.
+  const bool stops = state == DriveState::kQuickStopActive || state == DriveState::kOperationEnabled;
+  if (goal == DriveGoal::kQuickStop && stops && late_) {
     return controlword::kDisableVoltage;
   }
   return Controlword(state, goal);

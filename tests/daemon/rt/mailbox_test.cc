@@ -35,6 +35,15 @@ TEST(CommandMailbox, HoldsOrdinaryRequestsBackButNotAStop) {
   EXPECT_EQ(mailbox.TakeRequest().kind, RequestKind::kEnable);
 }
 
+TEST(CommandMailbox, WithdrawnRequestsAreNotCarriedOut) {
+  CommandMailbox mailbox(8, 8);
+  const std::uint32_t enable = mailbox.Post(RequestKind::kEnable);
+  mailbox.Withdraw(enable);
+  mailbox.Post(RequestKind::kReset);
+  EXPECT_EQ(mailbox.TakeRequest().kind, RequestKind::kReset);
+  EXPECT_EQ(mailbox.TakeRequest().kind, RequestKind::kNone);
+}
+
 TEST(CommandMailbox, SaysWhenItIsFull) {
   CommandMailbox mailbox(2, 2);
   EXPECT_NE(mailbox.Post(RequestKind::kReset), 0u);

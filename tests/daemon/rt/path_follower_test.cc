@@ -148,6 +148,10 @@ TEST_F(PathFollowerTest, IgnoresPointsOfAnotherProgramAndAfterTheLast) {
   EXPECT_EQ(follower_->waiting(), 10u);
 }
 
+TEST(PathFollower, RefusesAStopThatItCannotLookAheadFor) {
+  EXPECT_THROW(PathFollower(2, kPeriod_s, 2000.0, kHorizon), std::invalid_argument);
+}
+
 TEST_F(PathFollowerTest, StopInTheFirstCyclesOfAProgram) {
   constexpr int kCount = 1000;
   follower_->Expect(7);
