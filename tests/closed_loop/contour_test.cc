@@ -48,7 +48,7 @@ TEST(Contour, WithoutFrictionCompensationDoesNoHarm) {
             RunCircle(file, ControllerName::kMpc, large).table_peak_m);
   // On the small circle both are at the encoder's noise: within a few of its counts (4.8 nm) they are the
   // same.
-  constexpr double kFewCounts_m = 40e-9;
+  constexpr double kFewCounts_m = 80e-9;
   EXPECT_LE(RunCircle(file, ControllerName::kFull, kSmall).table_peak_m,
             RunCircle(file, ControllerName::kMpc, kSmall).table_peak_m + kFewCounts_m);
 }

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "core/cycle_input.h"
+#include "drivers/can/frame_bus.h"
+
+namespace contour {
+
+/// The buses' states as the real-time thread last saw them, readable from any thread. Each number is whole;
+/// they may be from different cycles.
+class BusStateBoard {
+ public:
+  void Publish(std::size_t bus, const BusState& state) noexcept {
+    Entry& e = entries_[bus];
+    constexpr auto kRelaxed = std::memory_order_relaxed;
+    e.up.store(state.up, kRelaxed);
+    e.bus_off.store(state.bus_off, kRelaxed);
+    e.frames_received.store(state.frames_received, kRelaxed);
+    e.frames_sent.store(state.frames_sent, kRelaxed);
+    e.send_failures.store(state.send_failures, kRelaxed);
+    e.error_frames.store(state.error_frames, kRelaxed);
+    e.receive_overflows.store(state.receive_overflows, kRelaxed);
+  }
+  [[nodiscard]] BusState Read(std::size_t bus) const noexcept {
+    const Entry& e = entries_[bus];
+    BusState out;
+    constexpr auto kRelaxed = std::memory_order_relaxed;
+    out.up = e.up.load(kRelaxed);
+    out.bus_off = e.bus_off.load(kRelaxed);
+    out.frames_received = e.frames_received.load(kRelaxed);
+    out.frames_sent = e.frames_sent.load(kRelaxed);
+    out.send_failures = e.send_failures.load(kRelaxed);
+    out.error_frames = e.error_frames.load(kRelaxed);
+    out.receive_overflows = e.receive_overflows.load(kRelaxed);
+    return out;
+  }
+
+ private:
+  struct Entry {
+    std::atomic<bool> up{false};
+    std::atomic<bool> bus_off{false};
+    std::atomic<std::uint64_t> frames_received{0};
+    std::atomic<std::uint64_t> frames_sent{0};
+    std::atomic<std::uint64_t> send_failures{0};
+    std::atomic<std::uint64_t> error_frames{0};
+    std::atomic<std::uint64_t> receive_overflows{0};
+  };
+  std::array<Entry, kMaxBuses> entries_;
+};
+
+}  // namespace contour
