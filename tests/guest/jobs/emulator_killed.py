@@ -56,8 +56,8 @@ def test(programs, out):
         bench.wait_for("the drives to be told to stop", lambda: first_without_enable(cycles_now(bench)) is not None)
         cycles = cycles_now(bench)
         quick_stop = first_without_enable(cycles)
-        # The first cycle after the last answered SYNC still has its feedback; the next one is the first without.
-        expect(quick_stop <= 4, f"the enable was taken back {quick_stop} cycles after the last feedback")
+        # Cycle 0 still has the last feedback; 3 is the third one without.
+        expect(quick_stop <= 3, f"the enable was taken back {quick_stop} cycles after the last feedback")
         loud = [i for i, cycle in enumerate(cycles[quick_stop:]) if any(torque for _, torque in cycle.values())]
         expect(not loud, f"{len(loud)} cycles had torque commands after the fault")
 

@@ -16,6 +16,7 @@ from machine_bench import MachineBench, expect, main, write_modbus_coil  # noqa:
 AXES = {"x": 1, "y": 2}
 OPEN_EMERGENCY_STOP_COIL = 100
 IN_MOTION_m_s = 0.02
+WELL_IN_MOTION_m_s = 0.03  # of the program's 0.05
 AT_REST_m_s = 1e-4  # below this friction's spring-back still rings, a fraction of a micrometre
 NO_TORQUE_Nm = 1e-6
 CONTROLWORD_MASK, CONTROLWORD_ENABLED = 0x0F, 0x0F
@@ -138,7 +139,7 @@ class Terminate(Way):
         def path_speed(row):
             return sum(row[f"{axis}_table_velocity_m_s"]**2 for axis in AXES)**0.5
 
-        nominal = path_speed(rows[start])
+        nominal = max(path_speed(row) for row in rows[start:])
         return max(i for i in range(start, len(rows)) if path_speed(rows[i]) > 0.98 * nominal)
 
 
@@ -159,7 +160,7 @@ WAYS = {"link_down": LinkDown(), "emergency_stop": EmergencyStop(), "terminate":
 def start_moving(bench, program):
     """Runs the program in the background; returns when the axes really move, with the SYNCs counted so far."""
     bench.start("run", bench.programs / "contour", "run", program, "--socket", bench.socket)
-    bench.wait_for("the axes to move", lambda: speed(bench.last_truth()) > IN_MOTION_m_s)
+    bench.wait_for("the axes to move", lambda: speed(bench.last_truth()) > WELL_IN_MOTION_m_s)
     return syncs_in(bench.trace())
 
 
