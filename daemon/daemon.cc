@@ -186,7 +186,7 @@ class Daemon {
                              ". realtime.required: false in the machine file goes on without");
     }
     Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, refused,
-                          {mailbox_, queue_, hub_, pump_, *loop_, buses_.all(), io_client_.get()});
+                          {mailbox_, queue_, hub_, pump_, *loop_, io_client_.get()});
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);

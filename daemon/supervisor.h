@@ -10,7 +10,6 @@
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/loop.h"
 #include "daemon/telemetry/telemetry_hub.h"
-#include "drivers/can/frame_bus.h"
 #include "drivers/modbus/io_client.h"
 
 namespace contour {
@@ -22,7 +21,6 @@ struct SupervisedParts {
   TelemetryHub& hub;
   Pump& pump;
   Loop& loop;
-  std::vector<FrameBus*> buses;
   const IoClient* io = nullptr;  ///< null without auxiliary I/O
 };
 
