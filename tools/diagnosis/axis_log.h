@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+// A recorded axis as identification and diagnosis see it, whatever file it came from.
+//
+// Generalised coordinates. A rotary axis is seen at the motor: q in rad, u in Nm. A linear axis (columns
+// force_N, position_m) is seen at the carriage: q in m, u in N. Code of this folder writes `q` and `u` where
+// both are meant.
+namespace contour::diagnosis {
+
+/// Timing: row k holds the position latched at t_k and the command computed from it, which begins to act at
+/// t_k + delay, through the drive's first-order lag, and is held until the next.
+struct AxisLog {
+  std::string source;  ///< file, for messages
+  bool linear = false;
+  double period_s = 1e-3;
+
+  /// All vectors have one element per grid point from the first to the last row: a missing row has
+  /// present[k] == 0 and the last known command (a drive goes on with it), position NaN.
+  std::vector<std::uint8_t> present;
+  std::vector<double> command;             ///< u, as commanded and quantised
+  std::vector<double> position;            ///< q, as measured and quantised; NaN where missing
+  std::vector<double> table_position_m;    ///< linear scale; empty without one
+  std::vector<double> temperature_degC;    ///< empty without one
+  std::vector<double> axis2_position_m;    ///< empty without one
+  std::vector<double> reference_position;  ///< q, what was asked for; empty when not recorded
+
+  std::size_t rows = 0;     ///< rows of the file
+  std::size_t missing = 0;  ///< grid points without a row
+
+  std::size_t size() const { return command.size(); }
+};
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+// The model that the simulation runs with, as stated, and how well each of its numbers is known.
+namespace contour::diagnosis {
+
+/// LuGre friction in the coordinate of the inertia it acts on:
+///   F = s0 z + s1(w) z' + s2 w,  z' = w - s0 |w| z / g(w),  g = Fc + (Fs - Fc) exp(-(|w| / vs)^p),
+///   s1(w) = s1 exp(-(w / vd)^2), or s1 constant when vd is 0.
+struct StatedFriction {
+  double Fc_plus = 0.0, Fc_minus = 0.0;
+  double Fs_plus = 0.0, Fs_minus = 0.0;
+  double vs = 0.0, exponent = 1.0;
+  double s0 = 0.0, s1 = 0.0, vd = 0.0, s2 = 0.0;
+};
+
+/// In the generalised coordinates of AxisLog (rotary: rad, Nm, kg m^2 at the motor; linear: m, N, kg).
+struct StatedAxis {
+  std::string source;  ///< file, for messages
+  bool linear = false;
+  double lead_m = 0.0;       ///< table travel per motor turn; 0 when unknown (linear axes without a screw)
+  double table_per_q = 1.0;  ///< table travel in m per unit of q: lead / (2 pi), or 1
+
+  bool two_inertia = false;
+  double motor_inertia = 0.0;  ///< everything, when !two_inertia
+  double load_inertia = 0.0;   ///< the load seen at q
+  double stiffness = 0.0;      ///< between the two, seen at q
+  double damping = 0.0;
+  bool friction_on_load = false;  ///< else on the motor's inertia
+  StatedFriction friction;
+  double offset = 0.0;  ///< constant u that the model states, positive accelerates
+
+  double delay_s = 0.0;                           ///< from the row to the beginning of its command
+  double lag_s = 0.0;                             ///< first-order current loop
+  double position_step = 0.0;                     ///< q of one count
+  double command_step = 0.0;                      ///< u of one step of the command
+  double rated = 0.0;                             ///< rated u
+  double stroke_min_m = 0.0, stroke_max_m = 0.0;  ///< table
+
+  /// Relative standard deviation, by the names: inertia (motor_inertia), load_inertia, stiffness, damping,
+  /// Fc, Fs, vs, s0, s1, s2, delay, lag, torque_constant. Absent: the engine's stated default.
+  std::map<std::string, double> sigma;
+};
+
+}  // namespace contour::diagnosis
