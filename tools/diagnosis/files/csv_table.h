@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace contour::diagnosis {
+
+/// A text table with one header line, read row by row. Fields are separated by commas or semicolons,
+/// whichever the header has; lines that begin with '#' and empty lines are skipped.
+class CsvTable {
+ public:
+  /// Sees the fields of one row; `line` counts from 1.
+  using RowReader = std::function<void(std::size_t line, const std::vector<std::string_view>& fields)>;
+
+  /// Reads file and header. Throws ConfigError when there is none.
+  explicit CsvTable(std::string file);
+
+  [[nodiscard]] const std::string& file() const { return file_; }
+  [[nodiscard]] const std::vector<std::string>& header() const { return header_; }
+  /// All rows in order. Throws ConfigError naming the line of a row that has not as many fields as the
+  /// header.
+  void ForEachRow(const RowReader& reader) const;
+
+ private:
+  std::string file_;
+  std::string text_;
+  std::size_t body_ = 0;       ///< first byte after the header
+  std::size_t body_line_ = 1;  ///< and its line
+  char separator_ = ',';
+  std::vector<std::string> header_;
+};
+
+/// A number, or NaN for an empty field. Throws ConfigError naming file, line and column.
+double NumberOf(std::string_view field, const std::string& file, std::size_t line, std::string_view column);
+
+}  // namespace contour::diagnosis
