@@ -67,6 +67,8 @@ void ContourController::Reset() noexcept {
   if (planner_) planner_->Reset();
 }
 
+void ContourController::Release(std::size_t axis) noexcept { law_->Release(axis); }
+
 void ContourController::Plan(ControlInput& input, bool follow) noexcept {
   if (!planner_) {
     input.planned.clear();

@@ -89,6 +89,8 @@ class ContourController {
 
   /// Forgets integrators, warm starts and the last command. To be called when the axes are enabled.
   void Reset() noexcept;
+  /// Another force than this controller's acts on the axis in this cycle: forgets what it holds of it.
+  void Release(std::size_t axis) noexcept;
   /// Fills input.planned from input.reference: the same, or what the torque allows of it at corners. To be
   /// called once per cycle before Step, and before the friction ahead is asked for. `follow` false: nothing
   /// is moving by this controller (axes not enabled), the reference is taken as it is. Step works without it,

@@ -9,6 +9,8 @@ class ControlLaw {
  public:
   virtual ~ControlLaw() = default;
   virtual void Reset() noexcept = 0;
+  /// This axis is not under this law's control in this cycle: its integrator must not wind up.
+  virtual void Release(std::size_t axis) noexcept = 0;
   virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
   [[nodiscard]] virtual int horizon_points() const noexcept = 0;
 };

@@ -14,6 +14,7 @@ class CspLaw final : public ControlLaw {
   CspLaw(const CspConfig& config, const ControllerOptions& options, const PerAxis<ControlledAxis>& axes,
          double period_s);
   void Reset() noexcept override;
+  void Release(std::size_t) noexcept override {}  // the drive's own cascade goes on holding
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return 5; }
 

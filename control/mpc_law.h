@@ -14,6 +14,7 @@ class MpcLaw final : public ControlLaw {
   MpcLaw(const MpcConfig& config, const ControllerOptions& options, const PerAxis<ControlledAxis>& axes,
          double period_s);
   void Reset() noexcept override;
+  void Release(std::size_t) noexcept override {}  // has no integrator
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return horizon_points_; }
 

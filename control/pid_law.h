@@ -13,6 +13,7 @@ class PidLaw final : public ControlLaw {
   PidLaw(const PidConfig& config, const ControllerOptions& options, const PerAxis<ControlledAxis>& axes,
          double period_s);
   void Reset() noexcept override;
+  void Release(std::size_t axis) noexcept override { memory_[axis] = AxisMemory{}; }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return 2; }
 

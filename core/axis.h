@@ -43,11 +43,13 @@ struct AxisSetpoint {
   double position_rad = 0.0;  ///< target position (0x607A) in CSP
 };
 
-/// Kinematic reference of one axis at one grid point, table units.
+/// Reference of one axis at one grid point, table units: its motion, and what experiments ask for besides.
 struct ReferencePoint {
   double position_m = 0.0;
   double velocity_m_s = 0.0;
   double acceleration_m_s2 = 0.0;
+  double extra_torque_Nm = 0.0;  ///< added to the controller's torque over the period that begins here
+  double spring_N_m = 0.0;       ///< above 0: the controller lets go, a damped spring holds the axis instead
 };
 
 /// What an estimator believes of one axis. Table units: position is R theta (the motor seen at the table).

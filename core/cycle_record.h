@@ -27,7 +27,7 @@ struct BringUpStatus {
 /// feedback was latched; the torques are the command computed from it.
 struct AxisRecord {
   AxisFeedback feedback;
-  ReferencePoint reference;  ///< at the feedback's instant
+  ReferencePoint reference;  ///< motion at the feedback's instant; extra torque and spring of torque_Nm
   AxisEstimate estimate;
   double position_m = 0.0;           ///< R theta of the feedback
   double following_error_m = 0.0;    ///< reference minus position

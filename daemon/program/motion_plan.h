@@ -17,6 +17,11 @@ struct PlanLimits {
   double velocity_m_s = 0.0;
   double acceleration_m_s2 = 0.0;
   double jerk_m_s3 = 0.0;  ///< 0: not limited
+  // For experiments that put torque on the axis; 0: it takes none.
+  double torque_Nm = 0.0;
+  double following_error_m = 0.0;
+  double radius_m_rad = 0.0;
+  double mass_kg = 0.0;  ///< everything that moves, seen at the table
 };
 
 /// The commanded circle of a circle program.
@@ -57,10 +62,13 @@ class MotionPlan {
 
   /// Nothing but standing still.
   [[nodiscard]] virtual bool is_hold() const = 0;
+
+  /// Does this axis do anything?
+  [[nodiscard]] virtual bool Moves(std::size_t axis) const = 0;
 };
 
 /// Places a program where the machine stands and checks it against the limits: position range, velocity,
-/// acceleration, run-up. Throws ProgramError naming axis, value and limit.
+/// acceleration, run-up, torque. Throws ProgramError naming axis, value and limit.
 std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAxis<double>& start_m,
                                              const PerAxis<PlanLimits>& limits);
 

@@ -25,6 +25,7 @@ class OscillationPlan : public MotionPlan {
   [[nodiscard]] bool Scored(double time_s) const override { return time_s >= 1.0 && time_s <= duration_s_; }
   [[nodiscard]] std::optional<CommandedCircle> circle() const override { return std::nullopt; }
   [[nodiscard]] bool is_hold() const override { return false; }
+  [[nodiscard]] bool Moves(std::size_t axis) const override { return axis == axis_; }
 
  private:
   struct Line {

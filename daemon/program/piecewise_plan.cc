@@ -178,6 +178,7 @@ void PiecewisePlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
   const CurvePoint p = PointAt(piece.curve, std::clamp(way_m - piece.before_m, 0.0, piece.curve.length_m));
   axes.resize(axis_count_);
   for (std::size_t i = 0; i < axis_count_; ++i) {
+    axes[i] = {};
     axes[i].position_m = p.position_m[i];
     axes[i].velocity_m_s = p.tangent[i] * along.speed_m_s;
     axes[i].acceleration_m_s2 =
@@ -206,6 +207,11 @@ bool PiecewisePlan::Scored(double time_s) const {
   if (time_s > duration_s_) return false;
   if (!traits_.circle) return time_s >= kScoredAfter_s;
   return traits_.circle->turns > 1 && Turns(time_s) >= 1.0;
+}
+
+bool PiecewisePlan::Moves(std::size_t axis) const {
+  return std::any_of(groups_.begin(), groups_.end(),
+                     [&](const Group& g) { return g.box.max_m[axis] > g.box.min_m[axis]; });
 }
 
 bool PiecewisePlan::is_hold() const {

@@ -43,6 +43,7 @@ class PiecewisePlan : public MotionPlan {
   [[nodiscard]] bool Scored(double time_s) const override;
   [[nodiscard]] std::optional<CommandedCircle> circle() const override { return traits_.circle; }
   [[nodiscard]] bool is_hold() const override;
+  [[nodiscard]] bool Moves(std::size_t axis) const override;
 
  private:
   struct Piece {

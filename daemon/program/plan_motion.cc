@@ -2,9 +2,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemon/program/combined_plans.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/oscillation_plan.h"
 #include "daemon/program/piecewise_plan.h"
+#include "daemon/program/torque_plan.h"
+#include "daemon/program/torque_steps_plan.h"
 
 namespace contour {
 namespace {
@@ -195,6 +198,50 @@ std::shared_ptr<const MotionPlan> Plan(const SweepShape& shape, const Place& pla
                                            place.program.name);
 }
 
+std::shared_ptr<const MotionPlan> Plan(const ReversalsShape& shape, const Place& place) {
+  const std::size_t axis = Find(place, shape.axis);
+  std::vector<PieceRequest> requests;
+  for (const double amplitude_mm : shape.amplitudes_mm) {
+    const CurvePiece sine = SinePiece(place.start_m, axis, amplitude_mm * 1e-3, shape.cycles);
+    requests.push_back(RoundPiece(place, sine, kTurn_rad * shape.frequency_hz * amplitude_mm * 1e-3));
+    requests.back().dwell_s = shape.dwell_s;
+  }
+  return std::make_shared<PiecewisePlan>(std::move(requests), PathTraits{}, place.limits);
+}
+
+std::shared_ptr<const MotionPlan> Plan(const TorqueStepsShape& shape, const Place& place) {
+  return std::make_shared<TorqueStepsPlan>(shape, Find(place, shape.axis), place.start_m, place.limits,
+                                           place.program.name);
+}
+
+PerAxis<double> EndOf(const MotionPlan& plan) {
+  PerAxis<ReferencePoint> end;
+  plan.At(plan.duration_s(), end);
+  PerAxis<double> at_m;
+  for (const ReferencePoint& p : end) at_m.push_back(p.position_m);
+  return at_m;
+}
+
+std::shared_ptr<const MotionPlan> Plan(const SequenceShape& shape, const Place& place) {
+  SequencePlan::Plans plans;
+  PerAxis<double> at_m = place.start_m;
+  for (int repeat = 0; repeat < shape.repeats; ++repeat) {
+    // A sequence that came back to where it began is the same once more.
+    const bool same = repeat > 0 && std::equal(at_m.begin(), at_m.end(), place.start_m.begin());
+    for (std::size_t i = 0; i < shape.parts.size(); ++i) {
+      plans.push_back(same ? plans[i] : PlanMotion(shape.parts[i], at_m, place.limits));
+      at_m = EndOf(*plans.back());
+    }
+  }
+  return std::make_shared<SequencePlan>(std::move(plans));
+}
+
+std::shared_ptr<const MotionPlan> Plan(const TogetherShape& shape, const Place& place) {
+  SequencePlan::Plans plans;
+  for (const Program& part : shape.parts) plans.push_back(PlanMotion(part, place.start_m, place.limits));
+  return std::make_shared<TogetherPlan>(std::move(plans), place.limits, place.program.name);
+}
+
 std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& place) {
   std::vector<std::size_t> axis;
   for (const char letter : program.letters) {
@@ -239,9 +286,14 @@ std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAx
     throw ProgramError(program.name + ": one start position and one set of limits is needed for each axis");
   }
   const Place place{program, start_m, limits};
-  auto plan = std::visit([&](const auto& shape) { return Plan(shape, place); }, program.shape);
+  std::shared_ptr<const MotionPlan> plan =
+      std::visit([&](const auto& shape) { return Plan(shape, place); }, program.shape);
   if (!(plan->duration_s() <= kLongest_s)) {
     throw ProgramError(program.name + ": the program would take more than three years");
+  }
+  if (program.torque) {
+    plan = std::make_shared<TorquePlan>(std::move(plan), *program.torque, Find(place, program.torque->axis),
+                                        limits, program.name);
   }
   return plan;
 }

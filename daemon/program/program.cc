@@ -10,15 +10,14 @@
 namespace contour {
 namespace {
 
-constexpr std::string_view kShapes = "circle, square, diamond, line, sine, hold, creep, multisine, sweep";
+constexpr std::string_view kShapes =
+    "circle, square, diamond, line, sine, hold, creep, multisine, sweep, reversals, torque_steps";
 
-/// The value of `shape`, taken out of the tree, so that the rest is the shape's own keys.
-YamlEntry TakeShape(YamlValue& root, const std::string& name) {
+/// An entry taken out of the tree, so that the rest is the shape's own keys.
+std::optional<YamlEntry> Take(YamlValue& root, std::string_view key) {
   const auto entry = std::find_if(root.entries.begin(), root.entries.end(),
-                                  [](const YamlEntry& e) { return e.key == "shape"; });
-  if (entry == root.entries.end()) {
-    throw ProgramError(name + ": shape: missing, expected one of " + std::string(kShapes));
-  }
+                                  [&](const YamlEntry& e) { return e.key == key; });
+  if (entry == root.entries.end()) return std::nullopt;
   YamlEntry taken = *entry;
   root.entries.erase(entry);
   return taken;
@@ -93,9 +92,74 @@ Shape ReadBand(const YamlValue& root) {
   return shape;
 }
 
-Program ParseYaml(std::string_view text, const std::string& name) {
-  YamlValue root = ParseYamlText(std::string(text), name);
-  const YamlEntry entry = TakeShape(root, name);
+ReversalsShape ReadReversals(const YamlValue& root) {
+  auto shape = Read<ReversalsShape>(root);
+  if (shape.amplitudes_mm.empty()) {
+    throw ProgramError(WhereIs(root, "amplitudes_mm") + ": amplitudes_mm: expected at least one amplitude");
+  }
+  return shape;
+}
+
+TorqueStepsShape ReadTorqueSteps(const YamlValue& root) {
+  auto shape = Read<TorqueStepsShape>(root);
+  if (shape.torques_Nm.empty()) {
+    throw ProgramError(WhereIs(root, "torques_Nm") + ": torques_Nm: expected at least one torque");
+  }
+  for (const double torque_Nm : shape.torques_Nm) {
+    if (torque_Nm == 0.0)
+      throw ProgramError(WhereIs(root, "torques_Nm") + ": torques_Nm: found 0, expected a torque");
+  }
+  return shape;
+}
+
+TorqueSignal ReadTorque(const YamlEntry& entry) {
+  std::vector<std::string> errors;
+  TorqueSignal signal;
+  ReadYaml(entry.value, signal, "torque", errors);
+  if (!errors.empty()) throw ProgramError(errors);
+  const std::string where = entry.where + ": torque: ";
+  if (signal.kind == TorqueSignalKind::kPulses) {
+    if (!(4.0 * signal.width_s <= signal.period_s))
+      throw ProgramError(where + "four times width_s does not fit into period_s");
+  } else if (!(signal.frequency_min_hz > 0.0) || !(signal.frequency_max_hz > signal.frequency_min_hz)) {
+    throw ProgramError(where + "expected frequency_min_hz and a higher frequency_max_hz");
+  }
+  return signal;
+}
+
+Program ReadProgram(YamlValue root, const std::string& name);
+
+std::vector<Program> ReadParts(const YamlEntry& entry, const std::string& name) {
+  if (entry.value.kind != YamlValue::Kind::kSequence || entry.value.items.empty()) {
+    throw ProgramError(entry.where + ": " + entry.key + ": found " + entry.value.Describe() +
+                       ", expected a list of programs");
+  }
+  std::vector<Program> parts;
+  for (const YamlValue& item : entry.value.items) {
+    if (item.kind != YamlValue::Kind::kMap) {
+      throw ProgramError(item.where + ": " + entry.key + ": found " + item.Describe() +
+                         ", expected a program with a shape");
+    }
+    parts.push_back(ReadProgram(item, item.where.empty() ? name : item.where));
+  }
+  return parts;
+}
+
+/// `repeats:` of a sequence, all that may stand beside its list.
+struct SequenceKeys {
+  int repeats = 1;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Optional("repeats", repeats, kPolygonCount, "how often to go through the list");
+  }
+};
+
+struct NoKeys {
+  template <class Visitor>
+  void Visit(Visitor&) {}
+};
+
+Program ReadShape(const YamlEntry& entry, const YamlValue& root, const std::string& name) {
   const std::string& shape = entry.value.text;
   if (shape == "circle") return {name, ReadPlane<CircleShape>(root, name)};
   if (shape == "square") return {name, ReadPlane<SquareShape>(root, name)};
@@ -106,12 +170,38 @@ Program ParseYaml(std::string_view text, const std::string& name) {
   if (shape == "creep") return {name, ReadCreep(root)};
   if (shape == "multisine") return {name, ReadBand<MultisineShape>(root)};
   if (shape == "sweep") return {name, ReadBand<SweepShape>(root)};
-  if (shape == "torque_steps") {
-    throw ProgramError(entry.where +
-                       ": shape: torque_steps needs torque set-points, but programs carry positions only");
-  }
+  if (shape == "reversals") return {name, ReadReversals(root)};
+  if (shape == "torque_steps") return {name, ReadTorqueSteps(root)};
   throw ProgramError(entry.where + ": shape: found " + entry.value.Describe() + ", expected one of " +
                      std::string(kShapes));
+}
+
+/// A program or a part of one: `shape:` with its keys, `sequence:` or `together:`; each with a `torque:`.
+Program ReadProgram(YamlValue root, const std::string& name) {
+  const std::optional<YamlEntry> torque = Take(root, "torque");
+  const std::optional<YamlEntry> sequence = Take(root, "sequence");
+  const std::optional<YamlEntry> together = Take(root, "together");
+  const std::optional<YamlEntry> shape = Take(root, "shape");
+  if (sequence.has_value() + together.has_value() + shape.has_value() > 1)
+    throw ProgramError((shape ? *shape : *together).where +
+                       ": expected only one of shape, sequence and together");
+  Program program;
+  if (sequence) {
+    program = {name, SequenceShape{ReadParts(*sequence, name), Read<SequenceKeys>(root).repeats}};
+  } else if (together) {
+    Read<NoKeys>(root);
+    program = {name, TogetherShape{ReadParts(*together, name)}};
+  } else if (shape) {
+    program = ReadShape(*shape, root, name);
+  } else {
+    throw ProgramError(name + ": shape: missing, expected one of " + std::string(kShapes));
+  }
+  if (torque) program.torque = ReadTorque(*torque);
+  return program;
+}
+
+Program ParseYaml(std::string_view text, const std::string& name) {
+  return ReadProgram(ParseYamlText(std::string(text), name), name);
 }
 
 }  // namespace

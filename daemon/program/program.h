@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -24,8 +25,10 @@ class ProgramError : public ConfigError {
 struct Program {
   std::string name;  ///< file or other origin, for messages and metrics.json
   std::variant<CircleShape, SquareShape, DiamondShape, LineShape, SineShape, HoldShape, CreepShape,
-               MultisineShape, SweepShape, GcodeMoves>
+               MultisineShape, SweepShape, ReversalsShape, TorqueStepsShape, SequenceShape, TogetherShape,
+               GcodeMoves>
       shape;
+  std::optional<TorqueSignal> torque{};  ///< added while it runs
 };
 
 /// Reads a program from text; `name` stands for the file in messages. Throws ProgramError.

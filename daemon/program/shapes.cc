@@ -24,4 +24,27 @@ std::string_view Name(Corners corners) {
 
 std::string_view Choices(Corners) { return "continuous, exact_stop"; }
 
+bool FromName(std::string_view name, TorqueSignalKind& kind) {
+  for (const auto k : {TorqueSignalKind::kChirp, TorqueSignalKind::kMultisine, TorqueSignalKind::kPulses}) {
+    if (name != Name(k)) continue;
+    kind = k;
+    return true;
+  }
+  return false;
+}
+
+std::string_view Name(TorqueSignalKind kind) {
+  switch (kind) {
+    case TorqueSignalKind::kChirp:
+      return "chirp";
+    case TorqueSignalKind::kMultisine:
+      return "multisine";
+    case TorqueSignalKind::kPulses:
+      break;
+  }
+  return "pulses";
+}
+
+std::string_view Choices(TorqueSignalKind) { return "chirp, multisine, pulses"; }
+
 }  // namespace contour

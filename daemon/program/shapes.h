@@ -177,6 +177,96 @@ struct SweepShape {
   }
 };
 
+/// Sines of one axis about where it stands, one amplitude after the other: loops inside loops, from sticking
+/// to sliding.
+struct ReversalsShape {
+  std::string axis;
+  std::vector<double> amplitudes_mm;
+  double frequency_hz = 1.0;
+  int cycles = 3;
+  double dwell_s = 0.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("axis", axis, "the axis that moves");
+    v.Required("amplitudes_mm", amplitudes_mm, kPositive,
+               "from the middle to a reversal, one after the other");
+    v.Required("frequency_hz", frequency_hz, kPositive, "periods per second");
+    v.Optional("cycles", cycles, kPolygonCount, "whole periods of each amplitude");
+    v.Optional("dwell_s", dwell_s, kNotNegative, "rest after each amplitude");
+  }
+};
+
+/// Torque put on an axis at rest, in steps; a weak spring holds it in the controller's place, so that it
+/// breaks away but does not run off.
+struct TorqueStepsShape {
+  std::string axis;
+  std::vector<double> torques_Nm;
+  double travel_mm = 0.0;
+  double rise_s = 0.2;
+  double hold_s = 0.3;
+  double rest_s = 0.3;
+  int repeats = 1;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("axis", axis, "the axis that is pushed");
+    v.Required("torques_Nm", torques_Nm, kAny, "torque of each step; negative: downwards");
+    v.Required("travel_mm", travel_mm, kPositive,
+               "how far the largest of them may push the axis, either way");
+    v.Optional("rise_s", rise_s, Range{0.001, 100.0}, "time over which torque rises and falls");
+    v.Optional("hold_s", hold_s, kNotNegative, "time it stays");
+    v.Optional("rest_s", rest_s, kNotNegative, "time without torque after each step");
+    v.Optional("repeats", repeats, kPolygonCount, "how often to go through the list");
+  }
+};
+
+enum class TorqueSignalKind {
+  kChirp,      ///< a sine whose frequency rises evenly with time, again and again
+  kMultisine,  ///< sines spread evenly over the logarithm of frequency
+  kPulses,     ///< plus, minus, minus, plus: speed and position come back to where they were
+};
+bool FromName(std::string_view name, TorqueSignalKind& kind);
+std::string_view Name(TorqueSignalKind kind);
+std::string_view Choices(TorqueSignalKind);
+
+/// `torque:` of a program: a torque added to the controller's while the shape runs.
+struct TorqueSignal {
+  std::string axis;
+  TorqueSignalKind kind = TorqueSignalKind::kChirp;
+  double amplitude_Nm = 0.0;
+  double frequency_min_hz = 0.0;
+  double frequency_max_hz = 0.0;
+  int lines = 20;
+  double period_s = 5.0;
+  double width_s = 0.005;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("axis", axis, "the axis that is pushed");
+    v.Required("kind", kind, "what the torque looks like");
+    v.Required("amplitude_Nm", amplitude_Nm, kPositive, "peak of chirp and pulses, and of each line");
+    v.Optional("frequency_min_hz", frequency_min_hz, kPositive, "lowest frequency of chirp and multisine");
+    v.Optional("frequency_max_hz", frequency_max_hz, kPositive, "highest frequency of chirp and multisine");
+    v.Optional("lines", lines, Range{1, 200}, "sines of a multisine");
+    v.Optional("period_s", period_s, kPositive, "after which a chirp or a group of pulses comes again");
+    v.Optional("width_s", width_s, kPositive, "length of a quarter of a group of pulses");
+  }
+};
+
+struct Program;
+
+/// `sequence:`: programs one after the other, each from where the one before has ended.
+struct SequenceShape {
+  std::vector<Program> parts;
+  int repeats = 1;
+};
+
+/// `together:`: programs of different axes at the same time.
+struct TogetherShape {
+  std::vector<Program> parts;
+};
+
 /// One move of a G-code program, in metres relative to where the program began.
 struct GcodeMove {
   enum class Kind { kRapid, kLine, kArc, kDwell };

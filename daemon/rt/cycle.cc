@@ -17,6 +17,8 @@ constexpr std::uint32_t kSettledCycles = 300;
 constexpr std::uint32_t kFaultSettledCycles = 3000;
 /// Reference points to either side of the feedback's instant that make the local path of the contour error.
 constexpr int kLocalPathReach = 8;
+/// Damping ratio of an axis held by a spring, friction apart.
+constexpr double kSpringDamping = 0.7;
 
 EstimatorKind KindFor(ControllerName name) noexcept {
   switch (name) {
@@ -90,7 +92,8 @@ Cycle::Axis::Axis(const CycleAxisConfig& config, ControllerName controller, doub
     : radius_m_rad(config.mechanics.radius_m_rad),
       estimator(KindFor(controller), config.mechanics, config.friction, config.estimator, period_s,
                 config.lag_s,
-                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev) {}
+                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev),
+      mass_kg(config.mechanics.mass_kg) {}
 
 Cycle::Cycle(const CycleConfig& config)
     : period_s_(config.cycle_us * 1e-6),
@@ -181,7 +184,8 @@ void Cycle::Estimate() noexcept {
     input.force_N = axis.sent_force_N;
     input.commanded_velocity_m_s = commanded.velocity_m_s;
     input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
-    input.at_rest = commanded.velocity_m_s == 0.0;
+    // An experiment pushes the axis although nothing commands it to move.
+    input.at_rest = commanded.velocity_m_s == 0.0 && commanded.extra_torque_Nm == 0.0;
     input.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
     estimates_[i] = axis.estimator.Update(input);
   }
@@ -285,15 +289,33 @@ void Cycle::Decide(const Orders& orders) noexcept {
   }
   control_in_.estimate = estimates_;
   controller_.Step(control_in_, control_out_);
+  HoldBySprings();
+}
+
+/// Where an experiment asks for it, a damped spring towards the reference takes the controller's place: weak
+/// enough to let friction be felt, and no compensation answers the torque that is put on. In CSP the drive
+/// itself holds the axis, and goes on doing so.
+void Cycle::HoldBySprings() noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const ReferencePoint& ahead = control_in_.reference[i][1];
+    if (csp_ || !(ahead.spring_N_m > 0.0)) continue;
+    const double damping_Ns_m = 2.0 * kSpringDamping * std::sqrt(ahead.spring_N_m * axes_[i].mass_kg);
+    control_out_.force_N[i] = ahead.spring_N_m * (ahead.position_m - estimates_[i].predicted_position_m) +
+                              damping_Ns_m * (ahead.velocity_m_s - estimates_[i].predicted_velocity_m_s);
+    control_out_.feedforward_N[i] = 0.0;
+    control_out_.limit[i] = Reason::kNone;
+    controller_.Release(i);
+  }
 }
 
 FaultSeen Cycle::Guard(const Orders& orders) noexcept {
   FaultSeen fault;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // In CSP the drive's cascade makes the torque; the guard still watches the axis.
-    const double wanted_Nm = csp_ ? 0.0 : control_out_.force_N[i] * axes_[i].radius_m_rad;
-    guarded_[i] = guard_.Limit(i, wanted_Nm, master_.feedback()[i], control_in_.reference[i][0].position_m,
-                               orders.torque_allowed);
+    const double controller_Nm = csp_ ? 0.0 : control_out_.force_N[i] * axes_[i].radius_m_rad;
+    axes_[i].wanted_torque_Nm = controller_Nm + control_in_.reference[i][1].extra_torque_Nm;
+    guarded_[i] = guard_.Limit(i, axes_[i].wanted_torque_Nm, master_.feedback()[i],
+                               control_in_.reference[i][0].position_m, orders.torque_allowed);
     if (guarded_[i].fault != Reason::kNone && fault.reason == Reason::kNone)
       fault = {guarded_[i].fault, static_cast<std::uint8_t>(i)};
   }
@@ -361,11 +383,14 @@ void Cycle::RecordContourError(CycleRecord& record) noexcept {
 void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
   r.feedback = master_.feedback()[i];
   r.reference = control_in_.reference[i][0];
+  // What an experiment puts on belongs to the torque of this row, which begins to act one period later.
+  r.reference.extra_torque_Nm = control_in_.reference[i][1].extra_torque_Nm;
+  r.reference.spring_N_m = control_in_.reference[i][1].spring_N_m;
   r.estimate = estimates_[i];
   r.position_m = axes_[i].position_m;
   r.following_error_m = r.reference.position_m - r.position_m;
   r.feedforward_Nm = control_out_.feedforward_N[i] * axes_[i].radius_m_rad;
-  r.wanted_torque_Nm = control_out_.force_N[i] * axes_[i].radius_m_rad;
+  r.wanted_torque_Nm = axes_[i].wanted_torque_Nm;
   r.torque_Nm = master_.sent_torque_Nm()[i];
   r.target_position_rad = setpoints_[i].position_rad;
   r.goal = setpoints_[i].goal;

@@ -44,7 +44,9 @@ class Cycle {
     Axis(const CycleAxisConfig& config, ControllerName controller, double period_s);
     double radius_m_rad;
     AxisEstimator estimator;
+    double mass_kg;
     std::array<double, 3> sent_force_N{};  ///< newest first
+    double wanted_torque_Nm = 0.0;         ///< before the guard
     double position_m = 0.0;
   };
 
@@ -58,6 +60,7 @@ class Cycle {
   void HoldHere() noexcept;
   void FollowFeedback() noexcept;
   void Decide(const Orders& orders) noexcept;
+  void HoldBySprings() noexcept;
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;
   void Record(const CycleInput& in, CycleOutput& out) noexcept;

@@ -148,8 +148,11 @@ ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const 
   const double h = period_s_;
   const auto q = Quintic(a.position_m, a.velocity_m_s * h, a.acceleration_m_s2 * h * h, b.position_m,
                          b.velocity_m_s * h, b.acceleration_m_s2 * h * h, s);
+  // An extra torque belongs to the program's own pace: it fades with it. A spring stays to the end of a stop.
   return {q.value, pace.rate * q.first / h,
-          (pace.rate * pace.rate * q.second + pace.rate_change * q.first) / (h * h)};
+          (pace.rate * pace.rate * q.second + pace.rate_change * q.first) / (h * h),
+          pace.rate * (a.extra_torque_Nm + s * (b.extra_torque_Nm - a.extra_torque_Nm)),
+          a.spring_N_m + s * (b.spring_N_m - a.spring_N_m)};
 }
 
 void PathFollower::Horizon(std::size_t axis, AxisHorizon& out) const noexcept {

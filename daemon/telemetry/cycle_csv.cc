@@ -123,6 +123,8 @@ constexpr AxisColumn kAxisColumns[] = {
     {"estimate_diverged", [](const AxisRecord& a, Line& l) { l.Field(a.estimate.diverged); }},
     {"emergency_code", [](const AxisRecord& a, Line& l) { l.Field(a.emergency_code); }},
     {"feedback_fresh", [](const AxisRecord& a, Line& l) { l.Field(a.feedback.fresh); }},
+    {"extra_torque_Nm", [](const AxisRecord& a, Line& l) { l.Field(a.reference.extra_torque_Nm); }},
+    {"spring_N_m", [](const AxisRecord& a, Line& l) { l.Field(a.reference.spring_N_m); }},
 };
 
 }  // namespace

@@ -65,6 +65,8 @@ struct ReferenceFields {
     copy(core.position_m, wire.position_m);
     copy(core.velocity_m_s, wire.velocity_m_s);
     copy(core.acceleration_m_s2, wire.acceleration_m_s2);
+    copy(core.extra_torque_Nm, wire.extra_torque_Nm);
+    copy(core.spring_N_m, wire.spring_N_m);
   }
 };
 

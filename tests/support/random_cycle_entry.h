@@ -36,7 +36,7 @@ class RandomCycleEntry {
   bool Bool() { return (random_() & 1u) != 0; }
   std::size_t Below(std::size_t n) { return static_cast<std::size_t>(random_() % n); }
 
-  void Fill(ReferencePoint& p) { p = {Double(), Double(), Double()}; }
+  void Fill(ReferencePoint& p) { p = {Double(), Double(), Double(), Double(), Double()}; }
   void Fill(StampedFrame& f) {
     f.frame.id = static_cast<std::uint16_t>(Below(0x800));
     f.frame.length = static_cast<std::uint8_t>(Below(9));

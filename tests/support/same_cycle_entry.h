@@ -27,6 +27,8 @@ inline void ExpectSame(const ReferencePoint& a, const ReferencePoint& b) {
   EXPECT_TRUE(Same("position", a.position_m, b.position_m));
   EXPECT_TRUE(Same("velocity", a.velocity_m_s, b.velocity_m_s));
   EXPECT_TRUE(Same("acceleration", a.acceleration_m_s2, b.acceleration_m_s2));
+  EXPECT_TRUE(Same("extra torque", a.extra_torque_Nm, b.extra_torque_Nm));
+  EXPECT_TRUE(Same("spring", a.spring_N_m, b.spring_N_m));
 }
 
 inline void ExpectSame(const IoInput& a, const IoInput& b) {

@@ -9,8 +9,8 @@ namespace contour::testing {
 /// A table of two axes, x and y, with 400 mm of travel.
 inline PerAxis<PlanLimits> TableLimits() {
   PerAxis<PlanLimits> limits(2);
-  limits[0] = {"x", -0.2, 0.2, 0.25, 5.0, 200.0};
-  limits[1] = {"y", -0.2, 0.2, 0.25, 5.0, 200.0};
+  limits[0] = {"x", -0.2, 0.2, 0.25, 5.0, 200.0, 1.5, 5e-4, 8e-4, 84.0};
+  limits[1] = {"y", -0.2, 0.2, 0.25, 5.0, 200.0, 1.5, 5e-4, 8e-4, 84.0};
   return limits;
 }
 

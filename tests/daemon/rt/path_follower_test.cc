@@ -152,6 +152,33 @@ TEST(PathFollower, RefusesAStopThatItCannotLookAheadFor) {
   EXPECT_THROW(PathFollower(2, kPeriod_s, 2000.0, kHorizon), std::invalid_argument);
 }
 
+TEST_F(PathFollowerTest, ExtraTorqueFadesWithThePaceAndTheSpringStays) {
+  constexpr int kCount = 1000;
+  follower_->Expect(7);
+  for (int k = 0; k < kCount; ++k) {
+    PathPoint p = CirclePoint(7, k, kCount);
+    p.axes[0].extra_torque_Nm = 0.5;
+    p.axes[0].spring_N_m = 1e5;
+    follower_->Accept(p);
+  }
+  follower_->Start();
+  for (int k = 0; k < 100; ++k) follower_->Advance();
+  EXPECT_EQ(Now(0).extra_torque_Nm, 0.5);
+  EXPECT_EQ(Now(1).extra_torque_Nm, 0.0);
+  follower_->BeginStop();
+  double before = 0.5;
+  while (!follower_->at_rest()) {
+    follower_->Advance();
+    if (follower_->at_rest()) break;
+    EXPECT_LE(Now(0).extra_torque_Nm, before);
+    EXPECT_NEAR(Now(0).spring_N_m, 1e5, 1e-6);
+    before = Now(0).extra_torque_Nm;
+  }
+  EXPECT_LT(before, 0.02);
+  EXPECT_EQ(Now(0).extra_torque_Nm, 0.0);
+  EXPECT_EQ(Now(0).spring_N_m, 0.0);
+}
+
 TEST_F(PathFollowerTest, StopInTheFirstCyclesOfAProgram) {
   constexpr int kCount = 1000;
   follower_->Expect(7);
