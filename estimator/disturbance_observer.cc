@@ -11,7 +11,7 @@ DisturbanceObserver::DisturbanceObserver(const FilterSetup& setup) noexcept
   const double rate = setup.friction.sigma2_Ns_m / mass_kg;
   velocity_decay_ = Exp(-rate * setup.period_s);
   velocity_gain_ = rate > 0.0 ? -Expm1(-rate * setup.period_s) / (rate * mass_kg) : setup.period_s / mass_kg;
-  const double w = 2.0 * std::numbers::pi * setup.config.observer_bandwidth_Hz;
+  const double w = 2.0 * std::numbers::pi * setup.config.disturbance_observer_bandwidth_Hz;
   noise_ = {0.0, 0.0, mass_kg * w * w * w * setup.measurement_std_m * setup.period_s};
   Reset(0.0);
 }

@@ -24,6 +24,7 @@ struct EstimatorConfig {
   double innovation_gate_sigma = 12.0;
   double innovation_gate_um = 20.0;
   double observer_bandwidth_Hz = 60.0;
+  double disturbance_observer_bandwidth_Hz = 60.0;
   double ripple_rate = 0.1;
   double stribeck_rate = 0.3;
   double mass_rate = 0.001;
@@ -59,7 +60,9 @@ struct EstimatorConfig {
                "a measurement further off than this many standard deviations, and");
     v.Optional("innovation_gate_um", innovation_gate_um, kPositive, "further off than this, is not believed");
     v.Optional("observer_bandwidth_Hz", observer_bandwidth_Hz, Range{1.0, 400.0},
-               "bandwidth of the kinematic and the disturbance observer");
+               "bandwidth of the kinematic observer");
+    v.Optional("disturbance_observer_bandwidth_Hz", disturbance_observer_bandwidth_Hz, Range{1.0, 400.0},
+               "bandwidth of the disturbance observer");
     v.Optional("ripple_rate", ripple_rate, Range{0.0, 1.0},
                "share of the error that the per-turn ripple of the friction level learns per radian of the "
                "screw; 0 none");

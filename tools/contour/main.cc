@@ -9,12 +9,14 @@
 #include "core/version.h"
 #include "tools/contour/check_command.h"
 #include "tools/contour/command.h"
+#include "tools/contour/contest_command.h"
 #include "tools/contour/emulate_command.h"
 #include "tools/contour/export_command.h"
 #include "tools/contour/request_command.h"
 #include "tools/contour/run_command.h"
 #include "tools/contour/simulate_command.h"
 #include "tools/contour/status_command.h"
+#include "tools/contour/tune_command.h"
 
 namespace {
 
@@ -57,6 +59,8 @@ int main(int argc, char** argv) {
   contour::AddWatchCommand(app, action);
   contour::AddRequestCommands(app, action);
   contour::AddExportCommand(app, action);
+  contour::AddContestCommand(app, action);
+  contour::AddTuneCommand(app, action);
 
   AddVersionFlags(app);
   try {

@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""The short contest: its aims, its table, and the same figures as `contour simulate` gives.
+
+    short_contest.py CONTOUR ROOT
+"""
+import csv
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+CONTOUR, ROOT = sys.argv.pop(1), Path(sys.argv.pop(1))
+FILES = ["--config", ROOT / "config" / "xy_emulated.yaml", "--contest", ROOT / "config" / "contest.yaml"]
+
+
+def contour(*arguments):
+    return subprocess.run([CONTOUR, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+class ShortContest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.out = Path(cls.folder.name)
+        cls.result = contour("contest", "--short", "--check", *FILES, "--out", cls.out)
+        with (cls.out / "results.csv").open(encoding="utf-8", newline="") as text:
+            cls.rows = list(csv.DictReader(text))
+
+    def test_aims_are_met(self):
+        self.assertEqual(self.result.returncode, 0, self.result.stdout + self.result.stderr)
+        self.assertEqual(self.result.stderr, "")
+
+    def test_every_controller_ran_on_everything(self):
+        self.assertEqual(len({r["controller"] for r in self.rows}), 8)
+        self.assertEqual(len(self.rows), 8 * len({(r["program"], r["machine"], r["seed"]) for r in self.rows}))
+
+    def test_a_run_is_what_simulate_gives(self):
+        program = self.out / "circle.yaml"
+        program.write_text("{shape: circle, radius_mm: 0.1, frequency_hz: 0.7853981634, turns: 10}", encoding="utf-8")
+        for controller in ("csp", "full"):
+            result = contour("simulate", "--config", FILES[1], "--program", program, "--controller", controller,
+                             "--set", "emulator.axes.x.friction.law=maxwell_slip",
+                             "--set", "emulator.axes.y.friction.law=maxwell_slip", "--seed", 1, "--out", self.out / "s")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            metrics = json.loads((self.out / "s" / "metrics.json").read_text(encoding="utf-8"))
+            row = next(r for r in self.rows if (r["program"], r["machine"], r["controller"]) ==
+                       ("circle_100um", "maxwell_slip", controller))
+            self.assertAlmostEqual(float(row["table_peak_um"]), metrics["contour"]["table"]["peak_um"], delta=1e-5)
+            self.assertAlmostEqual(float(row["encoder_peak_um"]), metrics["contour"]["encoder"]["peak_um"], delta=1e-5)
+
+    def test_pictures_are_drawn(self):
+        script = ROOT / "tools" / "plots" / "plot_contest.py"
+        result = subprocess.run([sys.executable, script, self.out], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for name in ("contest_nominal.png", "contest_ratio.png", "contest_spread.png"):
+            self.assertEqual((self.out / name).read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_unknown_names_are_refused_with_the_known_ones(self):
+        result = contour("contest", *FILES, "--machines", "lathe", "--out", self.out / "no")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("maxwell_slip", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,90 @@
+#include "tools/contest/contest_plan.h"
+
+#include <algorithm>
+
+#include "config/config_error.h"
+#include "config/load_machine.h"
+#include "tools/contest/machine_variant.h"
+
+namespace contour {
+namespace {
+
+template <class Named>
+std::vector<std::string> Names(const std::vector<Named>& all) {
+  std::vector<std::string> names;
+  for (const Named& n : all) names.push_back(n.name);
+  return names;
+}
+
+void CheckAmong(const std::vector<std::string>& known, const std::vector<std::string>& chosen,
+                const std::string& option) {
+  for (const std::string& name : chosen) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    std::string list;
+    for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
+    throw ConfigError({"contour: " + option + ": found '" + name + "', expected some of " + list});
+  }
+}
+
+template <class Named>
+std::vector<Named> Chosen(const std::vector<Named>& all, const std::vector<std::string>& names) {
+  std::vector<Named> out;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(out),
+               [&](const Named& n) { return std::find(names.begin(), names.end(), n.name) != names.end(); });
+  return out;
+}
+
+}  // namespace
+
+ContestChoice DefaultChoice(const ContestConfig& config, bool shorter) {
+  if (shorter)
+    return {config.controllers, config.shorter.programs, config.shorter.machines, config.shorter.seeds};
+  return {config.controllers, Names(config.programs), Names(config.machines), config.seeds};
+}
+
+void CheckChoice(const ContestConfig& config, const ContestChoice& choice) {
+  CheckAmong(config.controllers, choice.controllers, "--controllers");
+  CheckAmong(Names(config.programs), choice.programs, "--programs");
+  CheckAmong(Names(config.machines), choice.machines, "--machines");
+}
+
+std::vector<std::string> Assignments(const std::string& machine_file, const ContestMachine& machine,
+                                     const ContestProgram& program) {
+  const YamlValue tree = OpenMachineFile(machine_file, {});
+  std::vector<std::string> out = ExpandAssignments(tree, machine.set);
+  for (std::string& one : ExpandAssignments(tree, program.set)) out.push_back(std::move(one));
+  return out;
+}
+
+std::vector<ContestCell> PlanCells(const std::vector<ContestProgram>& programs,
+                                   const std::vector<ContestMachine>& machines,
+                                   const std::vector<std::int64_t>& seeds,
+                                   const std::vector<std::string>& controllers,
+                                   const std::string& machine_file, const std::vector<std::string>& extra) {
+  std::vector<ContestCell> cells;
+  for (const ContestProgram& p : programs) {
+    const Program program = ParseProgram(p.program, p.name, ProgramFormat::kYaml);
+    for (const ContestMachine& m : machines) {
+      std::vector<std::string> set = Assignments(machine_file, m, p);
+      set.insert(set.end(), extra.begin(), extra.end());
+      const auto file = std::make_shared<const EmulatedMachineFile>(LoadEmulatedMachine(machine_file, set));
+      for (const std::int64_t seed : seeds) {
+        for (const std::string& c : controllers) {
+          ContestCell cell{
+              ControllerName::kFull, p.name, m.name, static_cast<std::uint64_t>(seed), program, file};
+          FromName(c, cell.controller);
+          cells.push_back(std::move(cell));
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+std::vector<ContestCell> PlanCells(const ContestConfig& config, const ContestChoice& choice,
+                                   const std::string& machine_file, const std::vector<std::string>& extra) {
+  return PlanCells(Chosen(config.programs, choice.programs), Chosen(config.machines, choice.machines),
+                   choice.seeds, choice.controllers, machine_file, extra);
+}
+
+}  // namespace contour
