@@ -231,6 +231,31 @@ std::set<std::string> ParameterKeys() {
   return keys;
 }
 
+void CheckTable(const std::string& key, const std::vector<double>& position_mm, std::size_t values,
+                Problems& problems) {
+  if (position_mm.empty() || position_mm.size() != values)
+    problems.Add(key, "found " + std::to_string(position_mm.size()) + " positions and " +
+                          std::to_string(values) + " values, expected as many of both, and at least one");
+  for (std::size_t i = 1; i < position_mm.size(); ++i)
+    if (!(position_mm[i] > position_mm[i - 1])) {
+      problems.Add(Under(key, "position_mm"), "found " + Say(position_mm[i]) + " after " +
+                                                  Say(position_mm[i - 1]) + ", expected them to ascend");
+      return;
+    }
+}
+
+void CheckExtensions(const std::string& key, const ExtensionsConfig& e, Problems& problems) {
+  if (e.position_friction)
+    CheckTable(Under(key, "position_friction"), e.position_friction->position_mm,
+               e.position_friction->friction_rel.size(), problems);
+  if (e.cable_spring)
+    CheckTable(Under(key, "cable_spring"), e.cable_spring->position_mm, e.cable_spring->torque_Nm.size(),
+               problems);
+  if (e.pitch_error)
+    CheckTable(Under(key, "pitch_error"), e.pitch_error->position_mm, e.pitch_error->error_um.size(),
+               problems);
+}
+
 void Append(std::vector<ConfigProblem> more, Problems& problems) {
   for (ConfigProblem& p : more) problems.Add(std::move(p.key), std::move(p.message));
 }
@@ -260,6 +285,7 @@ std::vector<ConfigProblem> Check(const ModelConfig& model, const std::string& ke
                    std::string("found less than Fc_") + side + suffix +
                        ": break-away friction is never below Coulomb friction");
   }
+  CheckExtensions(Under(key, "extensions"), model.extensions, problems);
   const std::set<std::string> known = ParameterKeys();
   for (const auto& [parameter, value] : model.uncertainty)
     if (!known.contains(parameter))

@@ -5,6 +5,7 @@
 
 #include "core/mechanics.h"
 #include "core/visit.h"
+#include "estimator/extension_config.h"
 #include "estimator/friction_config.h"
 
 namespace contour {
@@ -16,8 +17,8 @@ struct ModelConfig {
   FrictionConfig friction;
   /// Relative standard deviation of a parameter, by its key.
   std::map<std::string, double> uncertainty;
-  /// Effects that diagnosis found beside the model: parameters with their units, by kind of effect.
-  std::map<std::string, std::map<std::string, double>> extensions;
+  /// Effects that diagnosis found beside the model.
+  ExtensionsConfig extensions;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -25,7 +26,7 @@ struct ModelConfig {
     v.Required("friction", friction, "LuGre friction of the axis");
     v.Optional("uncertainty", uncertainty, Range{0.0, 10.0},
                "relative standard deviation of a parameter of the model, by its key");
-    v.Optional("extensions", extensions, "further effects with their parameters, as diagnosis writes them");
+    v.Optional("extensions", extensions, "further effects, as diagnosis writes them");
   }
 };
 

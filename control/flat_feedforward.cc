@@ -31,9 +31,10 @@ FlatFeedforward::FlatFeedforward(const ControlledAxis& axis, const ControllerOpt
   makes_up_lag_ = nominal_.velocity_from_previous < 0.5 * nominal_.velocity_from_command;
 }
 
-double FlatFeedforward::Windup(const ReferencePoint& point, double friction_N) const noexcept {
+double FlatFeedforward::Windup(const ReferencePoint& point, const FrictionAhead& friction) const noexcept {
   if (!options_.windup_compensation) return 0.0;
-  return (friction_N + mechanics_.table_mass_kg * point.acceleration_m_s2) / mechanics_.stiffness_N_m;
+  return (friction.node_N + mechanics_.table_mass_kg * point.acceleration_m_s2) / mechanics_.stiffness_N_m +
+         friction.lead_m;
 }
 
 void FlatFeedforward::Plan(const AxisHorizon& reference, const FrictionPreview& friction,
@@ -42,7 +43,7 @@ void FlatFeedforward::Plan(const AxisHorizon& reference, const FrictionPreview& 
   const AxisDynamics& d = nominal_;
   const double half_rate = 0.5 / period_s_;
   const auto windup = [&](std::size_t node) {
-    return Windup(PointAt(reference, node), with_friction ? FrictionAt(friction, node).node_N : 0.0);
+    return Windup(PointAt(reference, node), with_friction ? FrictionAt(friction, node) : FrictionAhead{});
   };
   // Node n is t(k-1+n); w[0..3] belong to nodes n-1 .. n+2 of the interval that starts at node n.
   std::array<double, 4> w{windup(0), windup(1), windup(2), windup(3)};

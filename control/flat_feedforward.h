@@ -37,7 +37,7 @@ class FlatFeedforward {
             std::size_t horizon, AxisPlan& plan) const noexcept;
 
  private:
-  [[nodiscard]] double Windup(const ReferencePoint& point, double friction_N) const noexcept;
+  [[nodiscard]] double Windup(const ReferencePoint& point, const FrictionAhead& friction) const noexcept;
 
   Mechanics mechanics_;
   ControllerOptions options_;

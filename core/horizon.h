@@ -17,6 +17,7 @@ using AxisHorizon = FixedVector<ReferencePoint, kMaxHorizonPoints>;
 struct FrictionAhead {
   double node_N = 0.0;  ///< at t(k-1+j)
   double mid_N = 0.0;   ///< mean over [t(k-1+j), t(k+j))
+  double lead_m = 0.0;  ///< by how much the motor must lead the table beside the wind-up, at t(k-1+j)
 };
 using FrictionPreview = FixedVector<FrictionAhead, kMaxHorizonPoints>;
 

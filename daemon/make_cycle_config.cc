@@ -2,17 +2,23 @@
 
 #include <algorithm>
 
+#include "config/extended_model.h"
+
 namespace contour {
 namespace {
 
 CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const EstimatorConfig& estimator) {
   CycleAxisConfig out;
   out.name = name;
-  out.mechanics = ToSi(axis.model.mechanics);
-  out.friction = axis.model.friction;
+  const ExtendedModel model = Extended(axis.model);
+  out.mechanics = ToSi(model.mechanics);
+  out.friction = model.friction;
+  out.known = KnownEffects(axis.model.extensions, out.mechanics,
+                           ToSi(out.friction, out.mechanics.radius_m_rad).sigma2_Ns_m);
   out.estimator = estimator;
   out.limits = axis.limits;
-  out.lag_s = axis.drive.lag_ms * 1e-3;
+  // A delay of a fraction of a period does to the axis what a lag of that time constant does, to first order.
+  out.lag_s = std::max(0.0, axis.drive.lag_ms * 1e-3 + model.added_lag_s + model.added_delay_s);
   out.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace contour {
 namespace {
@@ -42,8 +43,8 @@ FilterSetup Check(const Mechanics& mechanics, const FrictionConfig& config_frict
 
 AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, const FrictionConfig& friction,
                              const EstimatorConfig& config, double period_s, double lag_s,
-                             double resolution_m)
-    : kind_(kind) {
+                             double resolution_m, KnownEffects known)
+    : kind_(kind), known_(std::move(known)) {
   const FilterSetup setup = Check(mechanics, friction, config, period_s, lag_s, resolution_m);
   switch (kind) {
     case EstimatorKind::kKinematic:
@@ -89,16 +90,24 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
   const auto& ahead = filter.predicted();
   const auto basis = correction_.Basis(ahead[kPosition], ahead[kVelocity]);
-  filter.SetLevelFactors(correction_.Factor(basis, true), correction_.Factor(basis, false));
+  const double level = known_.LevelFactor(ahead[kPosition]);
+  filter.SetLevelFactors(level * correction_.Factor(basis, true), level * correction_.Factor(basis, false));
+  temperature_degC_ = in.temperature_degC;
   filter.SetKnownForces_N(rigid_.extra_kg() * in.commanded_acceleration_m_s2,
-                          rigid_.extra_Ns_m() * in.commanded_velocity_m_s);
+                          rigid_.extra_Ns_m() * in.commanded_velocity_m_s +
+                              known_.Viscous_N(in.commanded_velocity_m_s, temperature_degC_));
+  // In the middle of the period that has passed, and of the one that lies ahead. ahead is t(k-1) here.
+  const double next_m = ahead[kPosition] + ahead[kVelocity] * roll_.period_s();
+  filter.SetDrivingForces_N(known_.Force_N(0.5 * (filter.state()[kPosition] + ahead[kPosition])),
+                            known_.Force_N(0.5 * (ahead[kPosition] + next_m)));
   return filter.Update(in);
 }
 
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept {
   if (kind_ == EstimatorKind::kFull) {
     const auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
-    roll_.Run(filter.model(), filter.state(), correction_, rigid_, at_rest_, reference, out);
+    roll_.Run(filter.model(), filter.state(), correction_, rigid_, {known_, temperature_degC_}, at_rest_,
+              reference, out);
     return;
   }
   const double ahead_N = std::visit(
@@ -111,7 +120,7 @@ void AxisEstimator::PreviewFriction(const AxisHorizon& reference, FrictionPrevie
       },
       filter_);
   out.resize(reference.size());
-  for (auto& f : out) f = {ahead_N, ahead_N};
+  for (auto& f : out) f = {ahead_N, ahead_N, 0.0};
 }
 
 }  // namespace contour

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <variant>
 
 #include "core/axis.h"
@@ -13,6 +14,7 @@
 #include "estimator/friction_config.h"
 #include "estimator/friction_preview.h"
 #include "estimator/kinematic_observer.h"
+#include "estimator/known_effects.h"
 #include "estimator/level_correction.h"
 #include "estimator/rigid_correction.h"
 #include "estimator/seven_state_filter.h"
@@ -36,9 +38,11 @@ class AxisEstimator {
   using Input = AxisEstimatorInput;
 
   /// resolution_m: one encoder count at the table; 0 when unknown. lag_s: time constant of the drive's
-  /// current loop. Throws std::invalid_argument when a value makes no sense (not positive, not finite).
+  /// current loop. `known`: what `full` takes as given beside the model. Throws std::invalid_argument when a
+  /// value makes no sense (not positive, not finite).
   AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, const FrictionConfig& friction,
-                const EstimatorConfig& config, double period_s, double lag_s, double resolution_m = 0.0);
+                const EstimatorConfig& config, double period_s, double lag_s, double resolution_m = 0.0,
+                KnownEffects known = {});
 
   /// Starts anew at a position, at rest; friction parameters as commissioned.
   void Reset(double position_m) noexcept;
@@ -60,6 +64,8 @@ class AxisEstimator {
   FrictionRoll roll_;
   LevelCorrection correction_;
   RigidCorrection rigid_;
+  KnownEffects known_;
+  double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();
   bool at_rest_ = true;
 };
 

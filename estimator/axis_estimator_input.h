@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 
 namespace contour {
 
@@ -13,6 +14,7 @@ struct AxisEstimatorInput {
   std::array<double, 3> force_N{};
   double commanded_velocity_m_s = 0.0;  ///< reference at t(k-1)
   double commanded_acceleration_m_s2 = 0.0;
+  double temperature_degC = std::numeric_limits<double>::quiet_NaN();  ///< of the screw; NaN: unknown
   bool at_rest = true;   ///< commanded velocity is zero: friction parameters keep their values
   bool enabled = false;  ///< the drive turns torque into motion; otherwise only the position is followed
 };

@@ -9,8 +9,8 @@ constexpr double kSlidingShare = 0.85;
 }  // namespace
 
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
-                       LevelCorrection& correction, RigidCorrection& rigid, bool at_rest,
-                       const AxisHorizon& reference, FrictionPreview& out) noexcept {
+                       LevelCorrection& correction, RigidCorrection& rigid, const KnownNow& known,
+                       bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept {
   if (at_rest) {
     bristle_N_ = x[kBristle];
     correction.Pause();
@@ -29,7 +29,8 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
     const double velocity = 0.5 * (now.velocity_m_s + next.velocity_m_s);
     along[kVelocity] = velocity;
     const auto basis = correction.Basis(now.position_m, velocity);
-    const double factor = correction.Factor(basis, velocity >= 0.0);
+    const double factor =
+        correction.Factor(basis, velocity >= 0.0) * known.effects.LevelFactor(now.position_m);
     const double level_N = model.Level(along, {{}, factor, factor});
     const double relaxation = BristleRelaxation(sigma0, std::abs(velocity), level_N, period_s_);
     const double next_N = bristle_N + (std::copysign(level_N, velocity) - bristle_N) * relaxation;
@@ -44,10 +45,13 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
       correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, (offset_N + d) / level_N,
                        velocity * period_s_, sliding);
     }
-    out[j].node_N = node_N + offset_N + d + sigma2 * now.velocity_m_s;
+    out[j].node_N = node_N + offset_N + d + sigma2 * now.velocity_m_s +
+                    known.effects.Viscous_N(now.velocity_m_s, known.temperature_degC);
     out[j].mid_N = middle_N + BristleDamping(f, middle_N, velocity, level_N) + offset_N + d +
-                   sigma2 * velocity +
+                   sigma2 * velocity + known.effects.Viscous_N(velocity, known.temperature_degC) -
+                   known.effects.Force_N(0.5 * (now.position_m + next.position_m)) +
                    rigid.extra_kg() * 0.5 * (now.acceleration_m_s2 + next.acceleration_m_s2);
+    out[j].lead_m = known.effects.Lead_m(now.position_m);
     bristle_N = next_N;
   }
 }

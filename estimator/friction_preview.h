@@ -1,11 +1,18 @@
 #pragma once
 
 #include "core/horizon.h"
+#include "estimator/known_effects.h"
 #include "estimator/level_correction.h"
 #include "estimator/rigid_correction.h"
 #include "estimator/seven_state_model.h"
 
 namespace contour {
+
+/// Extensions of the model at the present temperature.
+struct KnownNow {
+  const KnownEffects& effects;
+  double temperature_degC;
+};
 
 /// Friction the reference motion will meet: the bristle rolled along the reference with the levels and
 /// stiffness estimated now, plus the present difference between the estimated bristle and the rolled one,
@@ -16,14 +23,18 @@ class FrictionRoll {
   FrictionRoll() noexcept = default;
   explicit FrictionRoll(double period_s) noexcept : period_s_(period_s) {}
 
+  [[nodiscard]] double period_s() const noexcept { return period_s_; }
+
   /// The rolled bristle starts from this force.
   void Reset(double bristle_N) noexcept { bristle_N_ = bristle_N; }
 
   /// `x`: filter state at element 0 of the reference. Keeps the bristle at element 1 for the next call and
   /// lets the corrections learn from the difference at element 0. mid_N, which the torque must overcome, has
-  /// what the axis is heavier than commissioned in it; node_N, which winds the screw up, has not.
+  /// what the axis is heavier than commissioned in it, and known forces on the motor; node_N, which winds the
+  /// screw up, has not.
   void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, LevelCorrection& correction,
-           RigidCorrection& rigid, bool at_rest, const AxisHorizon& reference, FrictionPreview& out) noexcept;
+           RigidCorrection& rigid, const KnownNow& known, bool at_rest, const AxisHorizon& reference,
+           FrictionPreview& out) noexcept;
 
  private:
   double period_s_ = 1e-3;

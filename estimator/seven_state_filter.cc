@@ -106,7 +106,7 @@ double SevenStateFilter<Core>::WindUpShare_m(const X& x, double force_N) const n
   const Mechanics& m = setup_.mechanics;
   const double total = model_.Friction_N(x, Input(x, {})) + viscous_N_;
   const double friction = total - x[kDisturbance];
-  const double acceleration = (force_N - inertial_N_ - total) / m.mass_kg;
+  const double acceleration = (force_N + driving_N_ - inertial_N_ - total) / m.mass_kg;
   return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
 }
 
@@ -131,6 +131,7 @@ template <class Core>
 void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   auto& x = core_.x;
   Reverse(in.commanded_velocity_m_s);
+  driving_N_ = driving_before_N_;
   const double moving = std::min(1.0, std::abs(x[kVelocity]) / (setup_.config.motion_gate_mm_s * 1e-3));
   X noise = noise_;
   noise[kDisturbance] *= moving;
@@ -219,6 +220,7 @@ bool SevenStateFilter<Core>::Bound() noexcept {
 
 template <class Core>
 void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
+  driving_N_ = driving_ahead_N_;
   predicted_ = core_.x;
   model_.Propagate(predicted_, Input(predicted_, lag_.Look(in.force_N[0])));
   // On to the end of [t(k), t(k+1)), for the middle of it. The torque that acts there is being computed: the

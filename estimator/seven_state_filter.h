@@ -42,6 +42,12 @@ class SevenStateFilter {
     viscous_N_ = viscous_N;
   }
 
+  /// Forces on the motor beside the command's, over [t(k-2), t(k-1)) and from t(k-1) on.
+  void SetDrivingForces_N(double before, double ahead) noexcept {
+    driving_before_N_ = before;
+    driving_ahead_N_ = ahead;
+  }
+
   /// Mean state at the sample and at t(k).
   [[nodiscard]] const StateVector<kSevenStates>& state() const noexcept { return core_.x; }
   [[nodiscard]] const StateVector<kSevenStates>& predicted() const noexcept { return predicted_; }
@@ -55,7 +61,7 @@ class SevenStateFilter {
   using X = StateVector<kSevenStates>;
 
   [[nodiscard]] SevenStateInput Input(const X& x, std::array<double, kSubsteps> force_N) const noexcept {
-    for (double& f : force_N) f -= inertial_N_ + viscous_N_;
+    for (double& f : force_N) f += driving_N_ - inertial_N_ - viscous_N_;
     return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity]), at_rest_};
   }
   void Follow(double position_m) noexcept;
@@ -82,7 +88,10 @@ class SevenStateFilter {
   double factor_minus_ = 1.0;
   double inertial_N_ = 0.0;
   double viscous_N_ = 0.0;
-  int direction_ = 0;  // last commanded one; 0 none yet
+  double driving_before_N_ = 0.0;
+  double driving_ahead_N_ = 0.0;
+  double driving_N_ = 0.0;  // of the two, the one at work
+  int direction_ = 0;       // last commanded one; 0 none yet
   double friction_ahead_N_ = 0.0;
   double travel_m_ = 0.0;  // in one direction
   int travel_direction_ = 0;

@@ -92,7 +92,8 @@ Cycle::Axis::Axis(const CycleAxisConfig& config, ControllerName controller, doub
     : radius_m_rad(config.mechanics.radius_m_rad),
       estimator(KindFor(controller), config.mechanics, config.friction, config.estimator, period_s,
                 config.lag_s,
-                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev),
+                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev,
+                config.known),
       mass_kg(config.mechanics.mass_kg) {}
 
 Cycle::Cycle(const CycleConfig& config)
@@ -129,7 +130,7 @@ Cycle::Cycle(const CycleConfig& config)
 
 void Cycle::Step(const CycleInput& in, CycleOutput& out) noexcept {
   Observe(in);
-  Estimate();
+  Estimate(in.io);
   Orders orders = transitions_.Step(Assess(in));
   CarryOut(orders);
   Decide(orders);
@@ -172,7 +173,7 @@ void Cycle::Observe(const CycleInput& in) noexcept {
   if (stale && master_.operational()) ++stale_cycles_;
 }
 
-void Cycle::Estimate() noexcept {
+void Cycle::Estimate(const IoInput& io) noexcept {
   const bool holds = transitions_.holds_torque();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
@@ -184,6 +185,7 @@ void Cycle::Estimate() noexcept {
     input.force_N = axis.sent_force_N;
     input.commanded_velocity_m_s = commanded.velocity_m_s;
     input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
+    if (io.configured && io.fresh) input.temperature_degC = io.screw_temperature_degC;
     // An experiment pushes the axis although nothing commands it to move.
     input.at_rest = commanded.velocity_m_s == 0.0 && commanded.extra_torque_Nm == 0.0;
     input.enabled = holds && f.drive_state == DriveState::kOperationEnabled;

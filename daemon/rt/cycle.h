@@ -51,7 +51,7 @@ class Cycle {
   };
 
   void Observe(const CycleInput& in) noexcept;
-  void Estimate() noexcept;
+  void Estimate(const IoInput& io) noexcept;
   [[nodiscard]] Situation Assess(const CycleInput& in) const noexcept;
   [[nodiscard]] FaultSeen FindFault() const noexcept;
   [[nodiscard]] FaultSeen FindLost(const CycleInput& in) const noexcept;

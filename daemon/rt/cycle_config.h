@@ -11,6 +11,7 @@
 #include "drivers/cia402/drive_master.h"
 #include "estimator/estimator_config.h"
 #include "estimator/friction_config.h"
+#include "estimator/known_effects.h"
 
 namespace contour {
 
@@ -19,6 +20,7 @@ struct CycleAxisConfig {
   std::string name;
   Mechanics mechanics;
   FrictionConfig friction;
+  KnownEffects known;
   EstimatorConfig estimator;
   AxisLimits limits;
   double lag_s = 0.0;

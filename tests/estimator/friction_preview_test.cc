@@ -21,6 +21,9 @@ AxisHorizon Horizon(int k, int points) {
   return h;
 }
 
+const KnownEffects kNoEffects;
+const KnownNow kNothingKnown{kNoEffects, std::nan("")};
+
 TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   FrictionRoll roll(kPeriod_s);
@@ -36,7 +39,7 @@ TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   std::array<double, 6> ahead{};
   for (int k = 0; k < 4000; ++k) {
     x[kBristle] = bristle;
-    roll.Run(model, x, correction, rigid, false, Horizon(k, 6), preview);
+    roll.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(k, 6), preview);
     ASSERT_EQ(preview.size(), 6u);
     double f = bristle;
     for (std::size_t j = 0; j < 6; ++j) {
@@ -67,10 +70,10 @@ TEST(FrictionRoll, AnOffsetOfTheEstimateIsKept) {
   x[kLevelMinus] = 36;
   FrictionRoll a(kPeriod_s), b(kPeriod_s);
   FrictionPreview pa, pb;
-  a.Run(model, x, correction, rigid, false, Horizon(0, 10), pa);
+  a.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), pa);
   x[kBristle] += 3.0;
   x[kDisturbance] += 4.0;
-  b.Run(model, x, correction, rigid, false, Horizon(0, 10), pb);
+  b.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), pb);
   for (std::size_t j = 0; j < 10; ++j) {
     EXPECT_NEAR(pb[j].node_N - pa[j].node_N, 7.0, 1e-12);
     EXPECT_NEAR(pb[j].mid_N - pa[j].mid_N, 7.0, 1e-12);
@@ -90,14 +93,14 @@ TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
   roll.Reset(30.0);
   AxisHorizon still(kMaxHorizonPoints);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, true, still, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, true, still, preview);
   ASSERT_EQ(preview.size(), kMaxHorizonPoints);
   for (const auto& f : preview) {
     EXPECT_DOUBLE_EQ(f.node_N, -15.0);
     EXPECT_DOUBLE_EQ(f.mid_N, -15.0);
   }
   AxisHorizon none;
-  roll.Run(model, x, correction, rigid, true, none, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, true, none, preview);
   EXPECT_TRUE(preview.empty());
 }
 
@@ -119,7 +122,7 @@ TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   FrictionRoll roll(kPeriod_s);
   roll.Reset(42.0);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, false, h, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, false, h, preview);
   // After 1.25 mm, a quarter turn, the level stands 8 % up; sigma2 v = 25 N beside it.
   EXPECT_NEAR(preview[25].node_N, 42.0 * 1.08 + 25.0, 0.5);
 }
@@ -136,7 +139,7 @@ TEST(FrictionRoll, WhatTheAxisIsHeavierThanCommissionedMustBePushedToo) {
   for (int j = 0; j < 5; ++j) h.push_back({0.0, 0.0, 2.0});
   FrictionRoll roll(kPeriod_s);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, true, h, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, true, h, preview);
   EXPECT_NEAR(preview[1].mid_N, 10.0, 0.01);
   EXPECT_NEAR(preview[1].node_N, 0.0, 1e-12);  // the motor's mass does not wind the screw up
 }

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <vector>
+
+#include "core/mechanics.h"
+#include "estimator/extension_config.h"
+
+namespace contour {
+
+/// What the extensions of a model say about the axis at a place, speed and temperature. Table units. Nothing
+/// allocates after construction; without extensions everything is neutral.
+class KnownEffects {
+ public:
+  KnownEffects() = default;
+  /// Throws std::invalid_argument when a table is not one: lengths that differ, positions that do not ascend.
+  KnownEffects(const ExtensionsConfig& config, const Mechanics& mechanics, double viscous_Ns_m);
+
+  /// Force on the motor beside the command's, positive towards positive position.
+  [[nodiscard]] double Force_N(double position_m) const noexcept;
+  /// Factor of the friction level.
+  [[nodiscard]] double LevelFactor(double position_m) const noexcept;
+  /// Friction beside bristle and sigma2 v, with the sign of the velocity. NaN means an unknown temperature.
+  [[nodiscard]] double Viscous_N(double velocity_m_s, double temperature_degC) const noexcept;
+  /// By how much the motor has to lead, R theta - p, for the table to stand at `position_m`.
+  [[nodiscard]] double Lead_m(double position_m) const noexcept;
+
+ private:
+  /// A curve of straight lines; constant beyond its ends.
+  struct Table {
+    std::vector<double> x, y;
+    [[nodiscard]] double At(double at) const noexcept;
+  };
+  struct Wave {
+    double amplitude = 0.0;
+    double turns_1_m = 0.0;
+    double phase_turns = 0.0;
+    [[nodiscard]] double At(double position_m) const noexcept;
+  };
+  static Table MakeTable(const char* kind, const std::vector<double>& position_mm,
+                         const std::vector<double>& values, double unit);
+
+  double constant_N_ = 0.0;
+  Wave cogging_;
+  Table spring_N_;
+  Wave ripple_, ball_;
+  Table friction_rel_;
+  double viscous_N_ = 0.0, max_speed_m_s_ = 1.0, exponent_ = 2.0;
+  double viscous_rate_Ns_m_K_ = 0.0, reference_degC_ = 20.0;
+  Table pitch_m_;
+};
+
+}  // namespace contour
