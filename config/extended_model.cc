@@ -1,7 +1,6 @@
 #include "config/extended_model.h"
 
 #include <cmath>
-#include <tuple>
 
 namespace contour {
 namespace {
@@ -22,13 +21,8 @@ Side SideOf(FrictionConfig& f, double radius_m_rad) {
 }
 
 void Apply(const AsymmetricCoulombExtension& e, const Side& f) {
-  const double mean = 0.5 * (*f.Fc_plus + *f.Fc_minus);
-  for (const auto& [Fc, Fs, sign] :
-       {std::tuple{f.Fc_plus, f.Fs_plus, 1.0}, std::tuple{f.Fc_minus, f.Fs_minus, -1.0}}) {
-    const double ratio = *Fs / *Fc;
-    *Fc = mean * (1.0 + 0.5 * sign * e.difference_rel);
-    *Fs = ratio * *Fc;
-  }
+  for (double* level : {f.Fc_plus, f.Fs_plus}) *level *= 1.0 + 0.5 * e.difference_rel;
+  for (double* level : {f.Fc_minus, f.Fs_minus}) *level *= 1.0 - 0.5 * e.difference_rel;
 }
 
 void Apply(const StribeckExtension& e, const Side& f) {

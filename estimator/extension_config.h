@@ -10,12 +10,14 @@
 // when positive; positions are the table's, angles the motor's, both as the drive reports them.
 namespace contour {
 
-/// Coulomb levels that differ between the directions, break-away levels with them; the mean is the model's.
+/// Coulomb levels that differ between the directions, break-away levels with them, more than the model
+/// states.
 struct AsymmetricCoulombExtension {
   double difference_rel = 0.0;
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Required("difference_rel", difference_rel, Range{-1.9, 1.9}, "(Fc_plus - Fc_minus) / mean");
+    v.Required("difference_rel", difference_rel, Range{-1.9, 1.9},
+               "(Fc_plus - Fc_minus) / mean, added to the model's");
   }
 };
 
@@ -92,17 +94,20 @@ struct CoggingExtension {
   }
 };
 
-/// Friction beyond the linear term: torque_at_max_speed_Nm (|w| / max_speed_rad_s)^exponent.
+/// Friction beyond the linear term, with u = |w| / max_speed_rad_s: torque_at_max_speed_Nm u^exponent; with a
+/// knee, k = knee_rad_s / max_speed_rad_s, torque_at_max_speed_Nm u (1 + k) / (u + k).
 struct ViscousNonlinearExtension {
   double torque_at_max_speed_Nm = 0.0;
   double max_speed_rad_s = 0.0;
   double exponent = 2.0;
+  double knee_rad_s = 0.0;
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Required("torque_at_max_speed_Nm", torque_at_max_speed_Nm, kAny,
                "friction beyond the linear term there");
     v.Required("max_speed_rad_s", max_speed_rad_s, kPositive, "the speed it is stated for");
     v.Optional("exponent", exponent, Range{0.1, 4.0}, "power of the speed");
+    v.Optional("knee_rad_s", knee_rad_s, kNotNegative, "speed from which it hardly grows; 0: the power law");
   }
 };
 

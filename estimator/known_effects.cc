@@ -50,6 +50,7 @@ KnownEffects::KnownEffects(const ExtensionsConfig& c, const Mechanics& mechanics
     viscous_N_ = e->torque_at_max_speed_Nm / r;
     max_speed_m_s_ = e->max_speed_rad_s * r;
     exponent_ = e->exponent;
+    knee_ = e->knee_rad_s / e->max_speed_rad_s;
   }
   if (const auto& e = c.temperature_viscosity) {
     viscous_rate_Ns_m_K_ = viscous_Ns_m * e->rate_1_K;
@@ -84,7 +85,10 @@ double KnownEffects::Viscous_N(double velocity_m_s, double temperature_degC) con
   double force_N = 0.0;
   if (viscous_N_ != 0.0) {
     const double u = std::abs(velocity_m_s) / max_speed_m_s_;
-    force_N = std::copysign(viscous_N_ * (exponent_ == 2.0 ? u * u : std::pow(u, exponent_)), velocity_m_s);
+    const double curve = knee_ > 0.0        ? u * (1.0 + knee_) / (u + knee_)
+                         : exponent_ == 2.0 ? u * u
+                                            : std::pow(u, exponent_);
+    force_N = std::copysign(viscous_N_ * curve, velocity_m_s);
   }
   if (viscous_rate_Ns_m_K_ != 0.0 && !std::isnan(temperature_degC))
     force_N += viscous_rate_Ns_m_K_ * (temperature_degC - reference_degC_) * velocity_m_s;

@@ -44,7 +44,7 @@ class KnownEffects {
   Table spring_N_;
   Wave ripple_, ball_;
   Table friction_rel_;
-  double viscous_N_ = 0.0, max_speed_m_s_ = 1.0, exponent_ = 2.0;
+  double viscous_N_ = 0.0, max_speed_m_s_ = 1.0, exponent_ = 2.0, knee_ = 0.0;
   double viscous_rate_Ns_m_K_ = 0.0, reference_degC_ = 20.0;
   Table pitch_m_;
 };

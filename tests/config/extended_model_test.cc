@@ -31,10 +31,9 @@ TEST(ExtendedModelTest, OtherNumbersForTheBasicModel) {
       "compliance: {stiffness_Nm_rad: 20, damping_ratio: 0.03}, input_delay: {delay_us: 150}, "
       "current_lag: {time_constant_us: 50}");
   const ExtendedModel e = Extended(m);
-  const double mean = 0.5 * (m.friction.Fc_plus_N + m.friction.Fc_minus_N);
-  EXPECT_NEAR(e.friction.Fc_plus_N, 1.1 * mean, 1e-9);
-  EXPECT_NEAR(e.friction.Fc_minus_N, 0.9 * mean, 1e-9);
-  EXPECT_NEAR(e.friction.Fs_plus_N, 1.5 * 1.1 * mean, 1e-9);
+  EXPECT_NEAR(e.friction.Fc_plus_N, 1.1 * m.friction.Fc_plus_N, 1e-9);
+  EXPECT_NEAR(e.friction.Fc_minus_N, 0.9 * m.friction.Fc_minus_N, 1e-9);
+  EXPECT_NEAR(e.friction.Fs_plus_N, 1.5 * 1.1 * m.friction.Fc_plus_N, 1e-9);
   const double r = 5e-3 / (2.0 * std::numbers::pi);
   EXPECT_NEAR(e.friction.vs_mm_s, 3e3 * r, 1e-9);
   EXPECT_NEAR(e.mechanics.screw_stiffness_N_um, 20e-6 / (r * r), 1e-9);
