@@ -1,6 +1,7 @@
 #include "config/load_machine.h"
 
 #include <filesystem>
+#include <functional>
 #include <utility>
 
 #include "config/config_error.h"
@@ -11,8 +12,7 @@ namespace contour {
 namespace {
 
 // A model file holds the keys of a model, or one key `model` with them below.
-YamlValue ModelOfFile(const std::string& path) {
-  YamlValue root = ParseYamlFile(path);
+YamlValue ModelOf(YamlValue root) {
   if (root.entries.size() == 1 && root.entries.front().key == "model") {
     YamlValue model = std::move(root.entries.front().value);
     return model;
@@ -20,33 +20,66 @@ YamlValue ModelOfFile(const std::string& path) {
   return root;
 }
 
+/// Gives a file that a machine file names, as it names it.
+using OpenNamed = std::function<YamlValue(const std::string& name)>;
+
 // `model: some_file.yaml`, relative to the machine file.
-void PlaceModelFiles(YamlValue& root, const std::string& path) {
+void PlaceModelFiles(YamlValue& root, const OpenNamed& open) {
   YamlEntry* axes = root.Find("axes");
   if (axes == nullptr) return;
   for (YamlEntry& axis : axes->value.entries) {
     YamlEntry* model = axis.value.Find("model");
     if (model == nullptr || model->value.kind != YamlValue::Kind::kScalar) continue;
-    const std::filesystem::path file = std::filesystem::path(path).parent_path() / model->value.text;
     try {
-      model->value = ModelOfFile(file.string());
+      model->value = ModelOf(open(model->value.text));
     } catch (const ConfigError& e) {
       throw ConfigError({model->where + ": axes." + axis.key + ".model: " + e.what()});
     }
   }
 }
 
+YamlValue Assemble(YamlValue tree, const std::vector<std::string>& overrides, const OpenNamed& open) {
+  // Twice: a model named on the command line, and values put on top of a model that came from a file.
+  PlaceModelFiles(tree, open);
+  for (const std::string& assignment : overrides) {
+    ApplyOverride(tree, assignment);
+    PlaceModelFiles(tree, open);
+  }
+  return tree;
+}
+
+std::string Beside(const std::string& path, const std::string& name) {
+  return (std::filesystem::path(path).parent_path() / name).string();
+}
+
 }  // namespace
 
 YamlValue OpenMachineFile(const std::string& path, const std::vector<std::string>& overrides) {
-  YamlValue tree = ParseYamlFile(path);
-  // Twice: a model named on the command line, and values put on top of a model that came from a file.
-  PlaceModelFiles(tree, path);
-  for (const std::string& assignment : overrides) {
-    ApplyOverride(tree, assignment);
-    PlaceModelFiles(tree, path);
-  }
-  return tree;
+  return Assemble(ParseYamlFile(path), overrides,
+                  [&](const std::string& name) { return ParseYamlFile(Beside(path, name)); });
+}
+
+MachineSource ReadSource(const std::string& path, const std::vector<std::string>& overrides) {
+  MachineSource source{path, ReadTextFile(path), {}, overrides};
+  Assemble(ParseYamlText(source.text, path), overrides, [&](const std::string& name) {
+    const std::string text = ReadTextFile(Beside(path, name));
+    source.files[name] = text;
+    return ParseYamlText(text, name);
+  });
+  return source;
+}
+
+MachineConfig LoadMachine(const MachineSource& source) {
+  const YamlValue tree =
+      Assemble(ParseYamlText(source.text, source.name), source.overrides, [&](const std::string& name) {
+        const auto file = source.files.find(name);
+        if (file == source.files.end()) throw ConfigError({name + ": is not kept with " + source.name});
+        return ParseYamlText(file->second, name);
+      });
+  std::vector<std::string> errors;
+  MachineConfig config = ReadMachine(tree, errors);
+  if (!errors.empty()) throw ConfigError(std::move(errors));
+  return config;
 }
 
 MachineConfig ReadMachine(const YamlValue& tree, std::vector<std::string>& errors) {
@@ -69,7 +102,7 @@ MachineConfig LoadMachine(const std::string& path, const std::vector<std::string
 }
 
 ModelConfig LoadModel(const std::string& path, const std::vector<std::string>& overrides) {
-  YamlValue tree = ModelOfFile(path);
+  YamlValue tree = ModelOf(ParseYamlFile(path));
   for (const std::string& assignment : overrides) ApplyOverride(tree, assignment);
   std::vector<std::string> errors;
   ModelConfig model;

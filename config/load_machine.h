@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,17 @@ namespace contour {
 /// under `emulator:` is left alone. `overrides` are assignments as `--set` takes them:
 /// "machine.cycle_us=2000". Throws ConfigError with all that is wrong.
 MachineConfig LoadMachine(const std::string& path, const std::vector<std::string>& overrides = {});
+
+/// A machine file as it was read, with all that is needed to read it again elsewhere.
+struct MachineSource {
+  std::string name;                          ///< of the file
+  std::string text;                          ///< the file itself
+  std::map<std::string, std::string> files;  ///< further files by the names that it has for them
+  std::vector<std::string> overrides;        ///< as above
+};
+MachineSource ReadSource(const std::string& path, const std::vector<std::string>& overrides);
+/// The same MachineConfig as LoadMachine of the file.
+MachineConfig LoadMachine(const MachineSource& source);
 
 /// Reads a model that stands alone: the keys of `axes.<name>.model` at the top of the file, or under
 /// `model:`.

@@ -131,7 +131,7 @@ YamlValue ParseYamlText(const std::string& text, const std::string& name) {
   return root;
 }
 
-YamlValue ParseYamlFile(const std::string& path) {
+std::string ReadTextFile(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   std::string text;
   std::array<char, 4096> block{};
@@ -144,8 +144,10 @@ YamlValue ParseYamlFile(const std::string& path) {
     break;
   }
   if (failed) throw ConfigError({path + ": cannot be read: " + std::strerror(errno)});
-  return ParseYamlText(text, path);
+  return text;
 }
+
+YamlValue ParseYamlFile(const std::string& path) { return ParseYamlText(ReadTextFile(path), path); }
 
 void ApplyOverride(YamlValue& root, const std::string& assignment) {
   const std::string where = "--set " + assignment;

@@ -32,6 +32,9 @@ struct YamlEntry {
   YamlValue value;
 };
 
+/// A whole file. Throws ConfigError when it cannot be read.
+std::string ReadTextFile(const std::string& path);
+
 /// Reads a file. Throws ConfigError when it cannot be read, is not YAML, or is not a map at the top.
 YamlValue ParseYamlFile(const std::string& path);
 

@@ -7,6 +7,7 @@
 #include "control/mpc_law.h"
 #include "control/pid_law.h"
 #include "control/reference_planner.h"
+#include "core/state_keeper.h"
 
 namespace contour {
 namespace {
@@ -86,6 +87,8 @@ void ContourController::Step(const ControlInput& input, ControlOutput& output) n
   output.limit.resize(axes);
   law_->Step(input, output);
 }
+
+void ContourController::Keep(StateKeeper& keep) noexcept { keep(law_, planner_); }
 
 int ContourController::horizon_points() const noexcept {
   return planner_ ? std::max(law_->horizon_points(), planner_->horizon_points()) : law_->horizon_points();

@@ -76,6 +76,7 @@ inline const PerAxis<AxisHorizon>& Reference(const ControlInput& input) noexcept
 }
 
 class ControlLaw;
+class StateKeeper;
 class ReferencePlanner;
 
 /// Reference and estimate in, force out. Throws std::invalid_argument at construction only.
@@ -99,6 +100,8 @@ class ContourController {
   void Step(const ControlInput& input, ControlOutput& output) noexcept;
 
   [[nodiscard]] const ControllerOptions& options() const noexcept { return options_; }
+  void Keep(StateKeeper& keep) noexcept;
+
   /// Points of reference and friction a Step looks at; what lies beyond is ignored.
   [[nodiscard]] int horizon_points() const noexcept;
 

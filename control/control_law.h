@@ -1,6 +1,7 @@
 #pragma once
 
 #include "control/contour_controller.h"
+#include "core/state_keeper.h"
 
 namespace contour {
 
@@ -13,6 +14,7 @@ class ControlLaw {
   virtual void Release(std::size_t axis) noexcept = 0;
   virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
   [[nodiscard]] virtual int horizon_points() const noexcept = 0;
+  virtual void Keep(StateKeeper& keep) noexcept = 0;
 };
 
 /// Point of a horizon; beyond its end the last one.

@@ -17,6 +17,7 @@ class MpcGroupBase {
   virtual ~MpcGroupBase() = default;
   virtual void Reset() noexcept = 0;
   virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
+  virtual void Keep(StateKeeper& keep) noexcept = 0;
 };
 
 /// MPC of 1 to 3 axes in the frame of their common path. Deviations from the flat feed-forward are predicted
@@ -29,6 +30,9 @@ class MpcGroup final : public MpcGroupBase {
            std::size_t first, double period_s);
   void Reset() noexcept override;
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
+  void Keep(StateKeeper& keep) noexcept override {
+    keep(weights_, feedforward_, plan_, planned_m_s2_, has_planned_, problem_, solver_, active_, solution_);
+  }
 
  private:
   void BuildAxis(const ControlInput& input, std::size_t i) noexcept;

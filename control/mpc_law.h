@@ -17,6 +17,7 @@ class MpcLaw final : public ControlLaw {
   void Release(std::size_t) noexcept override {}  // has no integrator
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return horizon_points_; }
+  void Keep(StateKeeper& keep) noexcept override { keep(groups_); }
 
  private:
   std::vector<std::unique_ptr<MpcGroupBase>> groups_;

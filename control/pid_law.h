@@ -16,6 +16,7 @@ class PidLaw final : public ControlLaw {
   void Release(std::size_t axis) noexcept override { memory_[axis] = AxisMemory{}; }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return 2; }
+  void Keep(StateKeeper& keep) noexcept override { keep(memory_); }
 
  private:
   struct AxisGains {

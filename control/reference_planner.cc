@@ -59,6 +59,10 @@ class PlannerGroup final : public PlannerGroupBase {
     }
   }
 
+  void Keep(StateKeeper& keep) noexcept override {
+    keep(state_, present_, next_, expected_m_, base_m_s2_, problem_, solver_, active_, solution_);
+  }
+
  private:
   enum class State { kUnknown, kFollowing, kPlanning };
 

@@ -7,6 +7,7 @@
 #include "control/contour_controller.h"
 #include "control/control_config.h"
 #include "core/horizon.h"
+#include "core/state_keeper.h"
 
 namespace contour {
 
@@ -16,6 +17,7 @@ class PlannerGroupBase {
   virtual ~PlannerGroupBase() = default;
   virtual void Reset() noexcept = 0;
   virtual void Plan(const PerAxis<AxisHorizon>& wanted, PerAxis<AxisHorizon>& planned) noexcept = 0;
+  virtual void Keep(StateKeeper& keep) noexcept = 0;
 };
 
 /// Turns a reference that asks for more acceleration than the torque allows, as corners at full feed do, into
@@ -31,6 +33,7 @@ class ReferencePlanner {
   /// that does not continue the last one begins anew.
   void Plan(const PerAxis<AxisHorizon>& wanted, PerAxis<AxisHorizon>& planned) noexcept;
   [[nodiscard]] int horizon_points() const noexcept { return horizon_points_; }
+  void Keep(StateKeeper& keep) noexcept { keep(groups_); }
 
  private:
   std::vector<std::unique_ptr<PlannerGroupBase>> groups_;

@@ -6,9 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <fstream>
 #include <future>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -23,6 +21,7 @@
 #include "daemon/logging/logging.h"
 #include "daemon/machine_buses.h"
 #include "daemon/make_cycle_config.h"
+#include "daemon/make_log_header.h"
 #include "daemon/pump.h"
 #include "daemon/rt/loop.h"
 #include "daemon/rt/thread_setup.h"
@@ -39,8 +38,8 @@ constexpr std::size_t kRequests = 16;
 constexpr std::size_t kPathPoints = 4096;
 constexpr std::chrono::milliseconds kWatchPeriod{50};
 
-/// The machine file as the command line changes it.
-MaybeEmulatedMachineFile LoadFile(const DaemonOptions& options) {
+/// The command line as assignments on top of the machine file.
+std::vector<std::string> Overrides(const DaemonOptions& options) {
   std::vector<std::string> set = options.set;
   if (!options.controller.empty()) set.push_back("machine.controller=" + options.controller);
   if (!options.buses.empty()) {
@@ -52,29 +51,21 @@ MaybeEmulatedMachineFile LoadFile(const DaemonOptions& options) {
     for (std::size_t i = 0; i < names.size(); ++i)
       set.push_back("buses." + names[i] + ".interface=" + options.buses[i]);
   }
+  return set;
+}
+
+/// The machine file as the command line changes it.
+MaybeEmulatedMachineFile LoadFile(const DaemonOptions& options, const std::vector<std::string>& set) {
   for (const auto& [name, bus] : LoadMachine(options.config, set).buses)
     if (bus.interface == "loopback") return LoadMaybeEmulatedMachine(options.config, set);
   // Whatever stands under emulator: is none of the daemon's business on a real bus.
   return {LoadMachine(options.config, set), false, {}};
 }
 
-LogHeader MakeHeader(const DaemonOptions& options, const MachineConfig& machine) {
-  LogHeader header;
-  header.build = BuildIdentity();
-  header.machine = machine.machine.name;
-  header.controller = Name(machine.machine.controller);
-  header.clock = options.clock;
-  header.start_unix_us = std::chrono::duration_cast<std::chrono::microseconds>(
-                             std::chrono::system_clock::now().time_since_epoch())
-                             .count();
-  header.cycle_us = machine.machine.cycle_us;
-  header.axis_names = AxisNames(machine);
-  header.config_name = options.config;
-  std::ifstream file(options.config, std::ios::binary);
-  header.config_text.assign(std::istreambuf_iterator<char>(file), {});
-  header.overrides = options.set;
-  if (!options.controller.empty()) header.overrides.push_back("machine.controller=" + options.controller);
-  return header;
+std::int64_t UnixTime_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
 }
 
 /// SIGTERM and SIGINT are taken by the main thread alone.
@@ -147,8 +138,9 @@ class RealtimeThread {
 /// Everything of a running daemon, in the order in which it is taken down again.
 class Daemon {
  public:
-  Daemon(const DaemonOptions& options, const MaybeEmulatedMachineFile& file)
+  Daemon(const DaemonOptions& options, const MaybeEmulatedMachineFile& file, const MachineSource& source)
       : options_(options),
+        source_(source),
         machine_(file.machine),
         buses_(machine_, file.has_emulator ? std::optional(file.emulator) : std::nullopt, options.truth),
         mailbox_(kRequests, kPathPoints),
@@ -210,7 +202,8 @@ class Daemon {
  private:
   std::optional<TelemetryHub::LogTarget> LogTarget() const {
     if (options_.log.empty()) return std::nullopt;
-    return TelemetryHub::LogTarget{options_.log, MakeHeader(options_, machine_)};
+    return TelemetryHub::LogTarget{options_.log,
+                                   MakeLogHeader(source_, machine_, options_.clock, UnixTime_us())};
   }
 
   /// The main thread's work while the loop runs. A first bring-up that fails ends the daemon with status 1.
@@ -243,6 +236,7 @@ class Daemon {
   }
 
   DaemonOptions options_;
+  MachineSource source_;
   MachineConfig machine_;
   MachineBuses buses_;
   CommandMailbox mailbox_;
@@ -272,14 +266,16 @@ spdlog::level::level_enum ToSpdlog(LogLevel level) {
 }  // namespace
 
 int RunDaemon(const DaemonOptions& options) {
-  const MaybeEmulatedMachineFile file = LoadFile(options);
+  const std::vector<std::string> overrides = Overrides(options);
+  const MaybeEmulatedMachineFile file = LoadFile(options, overrides);
+  const MachineSource source = ReadSource(options.config, overrides);
   LoggingOptions logging;
   logging.level = ToSpdlog(file.machine.logging.level);
   if (!file.machine.logging.file.empty()) logging.file = file.machine.logging.file;
   SetUpLogging(logging);
   // Before any thread starts, so that all inherit it.
   const sigset_t signals = BlockSignals();
-  Daemon daemon(options, file);
+  Daemon daemon(options, file, source);
   return daemon.Run(signals);
 }
 

@@ -7,6 +7,7 @@
 #include "core/axis.h"
 #include "core/horizon.h"
 #include "core/mechanics.h"
+#include "core/state_keeper.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/disturbance_observer.h"
 #include "estimator/estimator_config.h"
@@ -53,6 +54,11 @@ class AxisEstimator {
   /// Total friction (bristle, viscous, disturbance) expected along the reference; out gets reference.size()
   /// elements. Zero for kKinematic.
   void PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept;
+
+  /// The extensions of the model stay as constructed.
+  void Keep(StateKeeper& keep) noexcept {
+    keep(filter_, roll_, correction_, rigid_, temperature_degC_, at_rest_);
+  }
 
  private:
   AxisEstimate UpdateFull(const Input& in) noexcept;

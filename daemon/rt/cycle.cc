@@ -159,6 +159,28 @@ void Cycle::EncodeHeartbeat(CycleOutput& out) const noexcept {
   for (const StampedFrame& f : heartbeats_) out.frames.push_back(f);
 }
 
+void Cycle::Keep(StateKeeper& keep) noexcept {
+  keep(master_, axes_, transitions_, follower_, controller_, guard_, estimates_, control_in_, control_out_,
+       guarded_, setpoints_, near_position_m_, near_path_, stale_cycles_);
+}
+
+std::size_t Cycle::StateSize() noexcept {
+  StateKeeper measuring;
+  Keep(measuring);
+  return measuring.used();
+}
+
+void Cycle::SaveState(std::span<std::byte> to) noexcept {
+  StateKeeper saving = StateKeeper::Saving(to);
+  Keep(saving);
+}
+
+bool Cycle::LoadState(std::span<const std::byte> from) noexcept {
+  StateKeeper loading = StateKeeper::Loading(from);
+  Keep(loading);
+  return loading.whole();
+}
+
 void Cycle::Observe(const CycleInput& in) noexcept {
   master_.Receive(in);
   for (const PathPoint& p : in.path) follower_.Accept(p);

@@ -2,12 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "control/contour_controller.h"
 #include "control/torque_guard.h"
 #include "core/cycle_record.h"
 #include "core/horizon.h"
+#include "core/state_keeper.h"
 #include "daemon/rt/cycle_config.h"
 #include "daemon/rt/path_follower.h"
 #include "daemon/rt/transitions.h"
@@ -39,6 +41,13 @@ class Cycle {
   /// The master's heartbeats alone, for a loop whose time stands still.
   void EncodeHeartbeat(CycleOutput& out) const noexcept;
 
+  // The state between two Steps, for a replay that does not begin at the start; see core/state_keeper.h.
+  [[nodiscard]] std::size_t StateSize() noexcept;
+  /// `to` has StateSize() bytes.
+  void SaveState(std::span<std::byte> to) noexcept;
+  /// False when these bytes are not the state of such a cycle; it is then not to be used.
+  bool LoadState(std::span<const std::byte> from) noexcept;
+
  private:
   struct Axis {
     Axis(const CycleAxisConfig& config, ControllerName controller, double period_s);
@@ -48,8 +57,11 @@ class Cycle {
     std::array<double, 3> sent_force_N{};  ///< newest first
     double wanted_torque_Nm = 0.0;         ///< before the guard
     double position_m = 0.0;
+
+    void Keep(StateKeeper& keep) noexcept { keep(estimator, sent_force_N, wanted_torque_Nm, position_m); }
   };
 
+  void Keep(StateKeeper& keep) noexcept;
   void Observe(const CycleInput& in) noexcept;
   void Estimate(const IoInput& io) noexcept;
   [[nodiscard]] Situation Assess(const CycleInput& in) const noexcept;

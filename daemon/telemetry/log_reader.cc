@@ -1,57 +1,52 @@
 #include "daemon/telemetry/log_reader.h"
 
-#include <lcm/eventlog.h>
-
-#include <cerrno>
 #include <contour_lcm/log_footer.hpp>
 #include <contour_lcm/log_header.hpp>
 #include <contour_lcm/log_note.hpp>
-#include <cstdio>
-#include <cstring>
+#include <contour_lcm/log_state.hpp>
 #include <string_view>
 
 #include "daemon/telemetry/log_format.h"
+#include "drivers/lcm/batch_checksums.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "drivers/lcm/telemetry_encoder.h"
 
 namespace contour {
 namespace {
 
-struct EventFree {
-  void operator()(lcm_eventlog_event_t* event) const noexcept { lcm_eventlog_free_event(event); }
-};
-using Event = std::unique_ptr<lcm_eventlog_event_t, EventFree>;
+constexpr std::uint64_t kNowhere = 0;
 
-std::string_view Channel(const lcm_eventlog_event_t& event) {
-  return {event.channel, static_cast<std::size_t>(event.channellen)};
-}
-
-std::string_view Bytes(const lcm_eventlog_event_t& event) {
-  return {static_cast<const char*>(event.data), static_cast<std::size_t>(event.datalen)};
+/// By its type, whatever its channel is called.
+bool IsFooter(const LogEvent& event) {
+  contour_lcm::log_footer footer{};
+  return DecodeChecked(event.bytes, footer);
 }
 
 }  // namespace
 
-void LogReader::Closer::operator()(lcm_eventlog_t* log) const noexcept { lcm_eventlog_destroy(log); }
-
 LogReader::LogReader(const std::filesystem::path& file) : file_(file.string()) {
-  errno = 0;
-  log_.reset(lcm_eventlog_create(file_.c_str(), "r"));
-  if (log_ == nullptr) Fail(std::string("cannot be read: ") + std::strerror(errno));
+  try {
+    events_.emplace(file_);
+  } catch (const std::runtime_error& e) {
+    Fail(e.what());
+  }
   ReadHeader();
 }
 
 void LogReader::ReadHeader() {
-  const Event event(lcm_eventlog_read_next_event(log_.get()));
-  if (event == nullptr || Channel(*event) != kHeaderChannel) Fail("is not a log of contourd");
+  LogEvent event;
+  if (events_->Next(event) != EventFile::Result::kEvent || event.channel != kHeaderChannel)
+    Fail("is not a log of contourd");
   contour_lcm::log_header m{};
-  if (!DecodeChecked(Bytes(*event), m)) Fail("has a damaged header, or one of another format");
+  if (!DecodeChecked(event.bytes, m)) Fail("has a damaged header, or one of another format");
   if (m.format_version != kLogFormatVersion) {
     Fail("has format " + std::to_string(m.format_version) + "; this program reads format " +
          std::to_string(kLogFormatVersion));
   }
-  header_ = {m.build,    m.machine,    m.controller,  m.clock,       m.start_unix_us,
-             m.cycle_us, m.axis_names, m.config_name, m.config_text, m.overrides};
+  header_ = {m.build,       m.machine,     m.controller, m.clock, m.start_unix_us, m.cycle_us, m.axis_names,
+             m.config_name, m.config_text, m.overrides,  {}};
+  for (std::size_t i = 0; i < m.file_names.size(); ++i)
+    header_.files.push_back({m.file_names[i], m.file_texts[i]});
 }
 
 bool LogReader::Next(CycleEntry& entry) {
@@ -60,7 +55,7 @@ bool LogReader::Next(CycleEntry& entry) {
   }
   if (!FromMessage(batch_.entries[next_in_batch_++], entry)) Fail("holds more axes or frames than fit");
   const std::uint64_t cycle = entry.input.cycle;
-  if (cycles_ > 0) {
+  if (cycles_ > 0 || state_) {
     if (cycle <= last_cycle_) Fail("goes back in time at cycle " + std::to_string(cycle));
     // A grid point that the loop skipped was never a cycle; any other gap is a cycle that got lost.
     const std::uint64_t gap = cycle - last_cycle_ - 1;
@@ -75,35 +70,58 @@ bool LogReader::Next(CycleEntry& entry) {
 bool LogReader::ReadBatch() {
   next_in_batch_ = 0;
   batch_.entries.clear();
+  LogEvent event;
   while (batch_.entries.empty()) {
-    const Event event(lcm_eventlog_read_next_event(log_.get()));
-    if (event == nullptr) {
-      // Not at the end: something in the middle is no event.
-      if (std::feof(log_->f) == 0) Fail("is damaged after cycle " + std::to_string(last_cycle_));
-      return false;
+    switch (events_->Next(event)) {
+      case EventFile::Result::kEnd:
+        if (!complete_ && IsFooter(event)) FailAt(last_cycle_, "has a damaged end");
+        return false;
+      case EventFile::Result::kCutShort:
+        return false;
+      case EventFile::Result::kDamaged:
+        FailAt(last_cycle_ + 1, "is damaged after cycle " + std::to_string(last_cycle_));
+      case EventFile::Result::kEvent:
+        break;
     }
-    if (Channel(*event) == kCyclesChannel) OnBatch(Bytes(*event));
-    if (Channel(*event) == kNoteChannel) OnNote(Bytes(*event));
-    if (Channel(*event) == kFooterChannel) OnFooter(Bytes(*event));
+    if (complete_) Fail("goes on behind its end");
+    if (event.channel == kCyclesChannel) OnBatch(event.bytes);
+    if (event.channel == kNoteChannel) OnNote(event.bytes);
+    if (event.channel == kStateChannel) OnState(event.bytes);
+    if (event.channel == kFooterChannel) OnFooter(event.bytes, event.unix_us);
   }
   return true;
 }
 
 void LogReader::OnBatch(std::string_view bytes) {
-  if (!DecodeChecked(bytes, batch_)) Fail("is damaged after cycle " + std::to_string(last_cycle_));
+  if (!DecodeChecked(bytes, batch_)) {
+    const std::uint64_t cycle = last_cycle_ + 1 + FirstDamagedEntry(bytes);
+    FailAt(cycle, "is damaged at cycle " + std::to_string(cycle));
+  }
   if (batch_.batch_number < batches_) Fail("repeats a batch after cycle " + std::to_string(last_cycle_));
   batches_ = batch_.batch_number + 1;
 }
 
+void LogReader::OnState(std::string_view bytes) {
+  contour_lcm::log_state m{};
+  if (!DecodeChecked(bytes, m)) FailAt(last_cycle_ + 1, "has a damaged state at its beginning");
+  state_ = {static_cast<std::uint64_t>(m.cycle), m.build, std::string(m.bytes.begin(), m.bytes.end())};
+  // What came before is not missing.
+  last_cycle_ = state_->cycle;
+}
+
 void LogReader::OnNote(std::string_view bytes) {
   contour_lcm::log_note note{};
-  if (!DecodeChecked(bytes, note)) Fail("has a damaged note after cycle " + std::to_string(last_cycle_));
+  if (!DecodeChecked(bytes, note))
+    FailAt(last_cycle_ + 1, "has a damaged note after cycle " + std::to_string(last_cycle_));
   notes_.push_back({note.cycles_before, note.key, note.text});
 }
 
-void LogReader::OnFooter(std::string_view bytes) {
+void LogReader::OnFooter(std::string_view bytes, std::int64_t unix_us) {
   contour_lcm::log_footer footer{};
-  if (!DecodeChecked(bytes, footer)) Fail("has a damaged end");
+  if (!DecodeChecked(bytes, footer) || footer.unix_us != unix_us)
+    FailAt(last_cycle_, "has a damaged end, after cycle " + std::to_string(last_cycle_));
+  if (static_cast<std::uint32_t>(footer.file_crc32c) != events_->checksum_before())
+    FailAt(kNowhere, "is damaged outside its cycles, in what is meant for looking");
   complete_ = true;
   // A loss at the very end leaves no gap between cycles; the footer still knows of it.
   const auto written = static_cast<std::uint64_t>(footer.cycles);
@@ -116,5 +134,9 @@ void LogReader::OnFooter(std::string_view bytes) {
 }
 
 void LogReader::Fail(const std::string& what) const { throw LogError(file_ + ": " + what); }
+
+void LogReader::FailAt(std::uint64_t cycle, const std::string& what) const {
+  throw LogError(file_ + ": " + what, cycle);
+}
 
 }  // namespace contour

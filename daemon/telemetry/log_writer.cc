@@ -8,6 +8,7 @@
 #include <contour_lcm/log_footer.hpp>
 #include <contour_lcm/log_header.hpp>
 #include <contour_lcm/log_note.hpp>
+#include <contour_lcm/log_state.hpp>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -42,6 +43,11 @@ contour_lcm::log_header ToMessage(const LogHeader& header) {
   m.config_text = header.config_text;
   m.num_overrides = static_cast<std::int32_t>(header.overrides.size());
   m.overrides = header.overrides;
+  m.num_files = static_cast<std::int32_t>(header.files.size());
+  for (const LogFile& file : header.files) {
+    m.file_names.push_back(file.name);
+    m.file_texts.push_back(file.text);
+  }
   return m;
 }
 
@@ -88,6 +94,21 @@ void LogWriter::Note(const std::string& key, const std::string& text) noexcept {
   }
 }
 
+void LogWriter::State(const LogState& state) noexcept {
+  const std::lock_guard lock(mutex_);
+  if (fd_ < 0) return;
+  try {
+    contour_lcm::log_state m{};
+    m.cycle = static_cast<std::int64_t>(state.cycle);
+    m.build = state.build;
+    m.size = static_cast<std::int32_t>(state.bytes.size());
+    m.bytes.assign(state.bytes.begin(), state.bytes.end());
+    Append(kStateChannel, EncodeChecked(m), last_unix_us_);
+  } catch (const std::exception& e) {
+    LosePending(e.what());
+  }
+}
+
 void LogWriter::Close() noexcept {
   const std::lock_guard lock(mutex_);
   if (fd_ < 0) return;
@@ -97,6 +118,8 @@ void LogWriter::Close() noexcept {
     footer.batches = batches_;
     footer.cycles = static_cast<std::int64_t>(stats_.cycles);
     footer.lost_cycles = static_cast<std::int64_t>(stats_.lost_cycles);
+    footer.unix_us = last_unix_us_;
+    footer.file_crc32c = static_cast<std::int32_t>(checksum_);
     Append(kFooterChannel, EncodeChecked(footer), last_unix_us_);
     WritePending();
   } catch (const std::exception& e) {
@@ -144,6 +167,8 @@ bool LogWriter::WritePending() noexcept {
     done += static_cast<std::size_t>(n);
   }
   good_size_ += static_cast<std::int64_t>(done);
+  good_events_ = events_;
+  checksum_ = Crc32c(pending_, checksum_);
   stats_.bytes = static_cast<std::uint64_t>(good_size_);
   stats_.cycles += pending_cycles_;
   pending_.clear();
@@ -160,6 +185,7 @@ void LogWriter::LosePending(const char* why) noexcept {
   stats_.lost_cycles += pending_cycles_;
   pending_.clear();
   pending_cycles_ = 0;
+  events_ = good_events_;
   // Half an event in the file would hide the next one from readers. On a device or pipe there is nothing to
   // cut.
   if (::ftruncate(fd_, good_size_) == 0) ::lseek(fd_, good_size_, SEEK_SET);

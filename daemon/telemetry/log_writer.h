@@ -29,6 +29,8 @@ class LogWriter final : public TelemetrySink {
 
   void OnEvent(const TelemetryEvent& event) noexcept override;
   void Note(const std::string& key, const std::string& text) noexcept;
+  /// Where a log begins that does not begin at the start; before its first cycle.
+  void State(const LogState& state) noexcept;
   /// Writes what is pending and the footer. Nothing is written afterwards.
   void Close() noexcept;
 
@@ -47,6 +49,8 @@ class LogWriter final : public TelemetrySink {
   std::int64_t events_ = 0;
   std::int64_t batches_ = 0;
   std::int64_t good_size_ = 0;  ///< bytes of the file that are whole events
+  std::int64_t good_events_ = 0;
+  std::uint32_t checksum_ = 0;  ///< of the good bytes
   std::int64_t start_unix_us_;
   std::int64_t last_unix_us_;
   std::int64_t first_grid_time_ns_ = 0;

@@ -6,6 +6,7 @@
 #include "core/can_frame.h"
 #include "core/cycle_record.h"
 #include "core/fixed_vector.h"
+#include "core/state_keeper.h"
 #include "drivers/cia301/bring_up_status.h"
 #include "drivers/cia301/messages.h"
 #include "drivers/cia301/sdo_step.h"
@@ -49,6 +50,11 @@ class BringUp {
   [[nodiscard]] bool failed() const noexcept { return status_.error != 0; }
   [[nodiscard]] bool done() const noexcept { return phase_ == BringUpPhase::kOperational; }
   [[nodiscard]] bool running() const noexcept { return phase_ != BringUpPhase::kOff && !done() && !failed(); }
+
+  /// The nodes and their scripts stay as constructed.
+  void Keep(StateKeeper& keep) noexcept {
+    keep(states_, phase_, status_, transfer_, node_, step_, waited_, kept_, kept_valid_, written_, watchdog_);
+  }
 
  private:
   struct NodeState {

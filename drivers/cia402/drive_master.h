@@ -8,6 +8,7 @@
 #include "core/axis.h"
 #include "core/cycle_input.h"
 #include "core/cycle_record.h"
+#include "core/state_keeper.h"
 #include "drivers/cia301/bring_up.h"
 #include "drivers/cia301/messages.h"
 #include "drivers/cia402/drive_config.h"
@@ -86,6 +87,11 @@ class DriveMaster {
   /// Torque of the last Send as the drives understand it: limited, in whole per mille.
   [[nodiscard]] const PerAxis<double>& sent_torque_Nm() const noexcept { return sent_torque_Nm_; }
 
+  void Keep(StateKeeper& keep) noexcept {
+    keep(axes_, buses_, feedback_, status_, sent_torque_Nm_, goal_, cycle_, elapsed_, sync_number_,
+         feedback_sync_, started_, pdos_run_, seen_cycle_);
+  }
+
  private:
   struct Axis {
     std::uint8_t bus = 0;
@@ -108,6 +114,7 @@ class DriveMaster {
     std::uint8_t master_node_id = 127;
     std::uint64_t heartbeat_cycles = 1;
     std::uint64_t heartbeat_due = 0;
+    void Keep(StateKeeper& keep) noexcept { keep(bring_up, heartbeat_due); }
   };
 
   void OnFrame(const StampedFrame& frame) noexcept;

@@ -27,8 +27,8 @@ constexpr Tables kTables = MakeTables();
 
 }  // namespace
 
-std::uint32_t Crc32c(std::string_view bytes) noexcept {
-  std::uint32_t crc = 0xFFFFFFFFu;
+std::uint32_t Crc32c(std::string_view bytes, std::uint32_t before) noexcept {
+  std::uint32_t crc = ~before;
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   std::size_t i = 0;
   for (; i + 8 <= bytes.size(); i += 8) {

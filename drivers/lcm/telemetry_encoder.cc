@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "drivers/lcm/batch_checksums.h"
 #include "drivers/lcm/cycle_messages.h"
 
 namespace contour {
@@ -48,8 +49,7 @@ void TelemetryEncoder::Add(const CycleEntry& entry, std::span<TelemetrySink* con
 
 void TelemetryEncoder::Flush(std::span<TelemetrySink* const> sinks) {
   if (batch_.entries.empty()) return;
-  batch_.count = static_cast<std::int32_t>(batch_.entries.size());
-  const std::string bytes = EncodeChecked(batch_);
+  const std::string bytes = EncodeBatch(batch_);
   Send({kCyclesChannel, bytes, batch_time_ns_, batch_.count}, sinks);
   ++batch_.batch_number;
   batch_.entries.clear();

@@ -12,6 +12,7 @@
 #include "tools/contour/contest_command.h"
 #include "tools/contour/emulate_command.h"
 #include "tools/contour/export_command.h"
+#include "tools/contour/replay_command.h"
 #include "tools/contour/request_command.h"
 #include "tools/contour/run_command.h"
 #include "tools/contour/simulate_command.h"
@@ -61,6 +62,7 @@ int main(int argc, char** argv) {
   contour::AddExportCommand(app, action);
   contour::AddContestCommand(app, action);
   contour::AddTuneCommand(app, action);
+  contour::AddReplayCommand(app, action);
 
   AddVersionFlags(app);
   try {

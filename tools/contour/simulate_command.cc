@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/exit_status.h"
+#include "daemon/make_log_header.h"
 #include "daemon/program/program.h"
 #include "tools/machine/load_emulated_machine.h"
 #include "tools/simulate/simulation_run.h"
@@ -42,6 +43,15 @@ int RunSimulate(const Options& options) {
     return kExitBadUsage;
   }
   request.out = options.out;
+  if (!options.log.empty()) {
+    std::vector<std::string> set = options.set;
+    if (options.seed) set.push_back("emulator.seed=" + std::to_string(*options.seed));
+    set.push_back("machine.controller=" + std::string(Name(request.controller)));
+    request.log = options.log;
+    MachineConfig machine = request.file.machine;
+    machine.machine.controller = request.controller;
+    request.log_header = MakeLogHeader(ReadSource(options.config, set), machine, "virtual", 0);
+  }
   RunSimulation(request);
   std::cout << "wrote " << (std::filesystem::path(options.out) / "metrics.json").string()
             << " and cycles.csv\n";
@@ -62,6 +72,7 @@ void AddSimulateCommand(CLI::App& app, Action& action) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->add_option("--seed", options->seed, "Seed of the emulated machine");
   sub->add_option("--out", options->out, "Directory for metrics.json and cycles.csv")->required();
+  sub->add_option("--log", options->log, "Record every cycle in this log, for `contour replay`");
   sub->callback([options, &action] { action = [options] { return RunSimulate(*options); }; });
 }
 

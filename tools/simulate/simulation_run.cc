@@ -9,6 +9,7 @@
 #include "daemon/telemetry/cycle_csv.h"
 #include "tools/metrics/metrics_json.h"
 #include "tools/metrics/run_metrics.h"
+#include "tools/simulate/run_log.h"
 #include "tools/simulate/virtual_machine.h"
 
 namespace contour {
@@ -119,6 +120,11 @@ void RunSimulation(const SimulationRequest& request) {
   std::filesystem::create_directories(request.out);
   VirtualMachine machine(request.file, request.controller);
   CyclesFile cycles(request.out / "cycles.csv", machine.axis_names(), request.file.machine.machine.cycle_us);
+  std::optional<RunLog> log;
+  if (!request.log.empty()) {
+    log.emplace(request.log, request.log_header);
+    machine.SetRecorder([&](const CycleEntry& entry) { log->Add(entry); });
+  }
   machine.BringUp();
   machine.Enable();
   Scoring scoring(request, machine);
@@ -129,6 +135,7 @@ void RunSimulation(const SimulationRequest& request) {
   });
   machine.Run(request.program);
   cycles.Close();
+  if (log) log->Close();
   scoring.Write(request.out / "metrics.json");
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/controller_name.h"
 #include "daemon/program/program.h"
+#include "daemon/telemetry/log_header.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour {
@@ -12,6 +13,8 @@ struct SimulationRequest {
   EmulatedMachineFile file;
   ControllerName controller = ControllerName::kFull;
   Program program;
+  std::filesystem::path log;  ///< of every cycle, for replay; empty: none
+  LogHeader log_header;
   std::filesystem::path out;  ///< directory for cycles.csv and metrics.json; made when missing
 };
 

@@ -70,6 +70,7 @@ void VirtualMachine::Tick() {
   const GridPoint grid{index_, static_cast<std::int64_t>(index_) * period_ns_, 0};
   runner_->Tick(grid, !settling_, *entry_);
   settling_ = entry_->output.settling;
+  if (record_) record_(*entry_);
   if (observer_) observer_(*entry_, truths_->Find(record().feedback_sync));
 }
 
@@ -97,14 +98,18 @@ void VirtualMachine::Enable() {
   TickUntilSettled(MachineState::kReady, "enabling");
 }
 
-void VirtualMachine::Run(const Program& program) {
+std::uint32_t VirtualMachine::Start(const Program& program) {
   PerAxis<double> start_m;
   for (const AxisRecord& a : record().axes) start_m.push_back(a.reference.position_m);
   auto generator = std::make_unique<PathGenerator>(program, start_m, limits_,
                                                    static_cast<double>(period_ns_) * 1e-9, ++program_id_);
   plan_ = generator->plan();
   feeder_.Begin(std::move(generator));
-  const std::uint32_t sequence = mailbox_.Post(RequestKind::kRun, program_id_);
+  return mailbox_.Post(RequestKind::kRun, program_id_);
+}
+
+void VirtualMachine::Run(const Program& program) {
+  const std::uint32_t sequence = Start(program);
   const auto acknowledged = [&] { return record().acknowledged >= sequence; };
   bool ran = false;
   for (;;) {

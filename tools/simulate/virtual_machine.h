@@ -30,12 +30,16 @@ class VirtualMachine {
   ~VirtualMachine();
 
   void SetObserver(Observer observer) { observer_ = std::move(observer); }
+  /// Sees every cycle, besides the observer.
+  void SetRecorder(std::function<void(const CycleEntry& entry)> record) { record_ = std::move(record); }
 
   /// Brings the drives up and waits until the machine is Idle and at rest. Throws std::runtime_error with the
   /// reason.
   void BringUp();
   /// Enables and waits until the machine holds.
   void Enable();
+  /// Asks for a program and supplies its points from now on; the caller ticks. Gives the request's sequence.
+  std::uint32_t Start(const Program& program);
   /// Runs a program to its end. Throws std::runtime_error with the reason when the machine stops otherwise.
   void Run(const Program& program);
   /// One more cycle, whatever the state.
@@ -76,6 +80,7 @@ class VirtualMachine {
   std::unique_ptr<CycleEntry> entry_;
   std::shared_ptr<const MotionPlan> plan_;
   Observer observer_;
+  std::function<void(const CycleEntry&)> record_;
 };
 
 }  // namespace contour
