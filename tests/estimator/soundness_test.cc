@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "tests/estimator/screw_axis.h"
 
@@ -26,13 +27,17 @@ class Soundness : public testing::TestWithParam<EstimatorKind> {
   }
 };
 
+/// CONTOUR_LONG_TESTS=1 in the environment: the nightly form, ten million steps and an hour of standstill.
+bool LongForm() { return std::getenv("CONTOUR_LONG_TESTS") != nullptr; }
+
 TEST_P(Soundness, AMillionStepsStayFinite) {
   // Driven by a rough measurement that no model explains, in bursts.
+  const int steps = LongForm() ? 10000000 : 1000000;
   AxisEstimator estimator(GetParam(), WrongMechanics(), WrongFriction(), {}, 1e-3, 0.2e-3, 5e-3 / 1048576);
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   double p = 0.0, v = 0.0;
-  for (int k = 0; k < 1000000; ++k) {
+  for (int k = 0; k < steps; ++k) {
     AxisEstimator::Input in;
     in.force_N = {100.0 * std::sin(1e-3 * k), 100.0 * std::sin(1e-3 * (k - 1)), 0.0};
     v += 1e-3 * (5.0 * normal(random) - 3.0 * v);
@@ -54,7 +59,8 @@ TEST_P(Soundness, ThirtySecondsOfStandstillChangeNoParameter) {
   for (int k = 0; k < 3000; ++k) loop.Step(motion);
   const AxisEstimate before = loop.estimate;
   double low = 1e9, high = -1e9;
-  for (int k = 0; k < (SevenStates() ? 30000 : 5000); ++k) {
+  const int held = LongForm() ? 3600000 : SevenStates() ? 30000 : 5000;
+  for (int k = 0; k < held; ++k) {
     const AxisEstimate e = loop.Step(motion);
     ASSERT_NEAR(e.g_plus_N, before.g_plus_N, 1e-9) << k;  // rounding only
     ASSERT_NEAR(e.g_minus_N, before.g_minus_N, 1e-9) << k;
@@ -149,6 +155,76 @@ TEST_P(Soundness, TenThousandRadiansAwayItWorksAsWell) {
   }
   if (SevenStates()) {
     EXPECT_LT(std::abs(worst), 2.0);
+  }
+}
+
+TEST_P(Soundness, AnHourAtRestWearsNothingOut) {
+  // The filter alone, with what a resting axis measures: noise of a third of a count, the torque of a hold.
+  AxisEstimator estimator(GetParam(), WrongMechanics(), WrongFriction(), {}, 1e-3, 0.2e-3, 5e-3 / 1048576);
+  test::Encoder encoder;
+  AxisEstimator::Input in;
+  in.fresh = in.enabled = true;
+  in.at_rest = true;
+  in.force_N = {12.0, 12.0, 12.0};
+  AxisEstimate first, last;
+  const int steps = LongForm() ? 3600000 : 200000;
+  for (int k = 0; k < steps; ++k) {
+    in.position_m = encoder.Read(0.01);
+    last = estimator.Update(in);
+    if (k == 2000) first = last;
+    ASSERT_TRUE(Finite(last)) << k;
+    ASSERT_FALSE(last.diverged) << k;
+  }
+  EXPECT_NEAR(last.position_m, 0.01, 10e-9);
+  EXPECT_NEAR(last.friction_N, first.friction_N, 1.0);
+  EXPECT_LT(last.friction_std_N, first.friction_std_N + 1.0);
+  EXPECT_NEAR(last.g_plus_N, first.g_plus_N, 1e-6);
+  EXPECT_NEAR(last.sigma0_N_m, first.sigma0_N_m, 1e-9 * first.sigma0_N_m);
+}
+
+TEST_P(Soundness, AMillionTurnsAwayItWorksAsWell) {
+  // 5 km of screw: a double still resolves a picometre there.
+  constexpr double kFar_m = 1e6 * 5e-3;
+  Loop here(GetParam(), WrongMechanics(), WrongFriction(), {});
+  Loop there(GetParam(), WrongMechanics(), WrongFriction(), {});
+  for (Loop* loop : {&here, &there}) loop->axis.stroke_part = 0.0;
+  there.axis.s.motor_m = there.axis.s.table_m = there.measured_m = kFar_m;
+  there.estimator.Reset(kFar_m);
+  for (int k = 0; k < 2500; ++k) {
+    const SmoothSine motion;
+    const AxisEstimate a = here.Step(motion);
+    const AxisEstimate b = there.Step([&](double t) {
+      auto r = motion(t);
+      r.position_m += kFar_m;
+      return r;
+    });
+    ASSERT_FALSE(b.diverged) << k;
+    ASSERT_NEAR(a.position_m, b.position_m - kFar_m, 0.2e-6) << k;
+  }
+  EXPECT_NEAR(there.estimate.friction_N, there.true_friction_N,
+              2.0 + 2.0 * std::abs(here.estimate.friction_N - here.true_friction_N));
+}
+
+TEST_P(Soundness, ARestartInTheMiddleOfAStrokeCatchesUp) {
+  // The estimator begins anew, knowing a position and nothing else, while the axis moves at its fastest.
+  Loop loop(GetParam(), WrongMechanics(), WrongFriction(), {});
+  const SmoothSine motion{1e-3, 0.785};
+  for (int k = 0; k < 3000; ++k) loop.Step(motion);
+  while (std::abs(loop.axis.s.motor_m_s) < 4e-3) loop.Step(motion);
+  const double at_speed_m_s = loop.axis.s.motor_m_s;
+  loop.estimator.Reset(loop.measured_m);
+  double late_square = 0.0;
+  for (int k = 0; k < 3000; ++k) {
+    const AxisEstimate e = loop.Step(motion);
+    ASSERT_TRUE(Finite(e)) << k;
+    ASSERT_FALSE(e.diverged) << k;
+    if (k == 100) {
+      EXPECT_NEAR(e.velocity_m_s, loop.axis.s.motor_m_s, 0.1 * std::abs(at_speed_m_s));
+    }
+    if (k >= 1000) late_square += std::pow(e.friction_N - loop.true_friction_N, 2);
+  }
+  if (SevenStates()) {
+    EXPECT_LT(std::sqrt(late_square / 2000.0), 5.0);
   }
 }
 

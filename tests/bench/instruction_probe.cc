@@ -1,0 +1,79 @@
+// instruction_probe WHAT COUNT MACHINE_FILE: does one thing COUNT times, for instructions.py to count.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "daemon/make_cycle_config.h"
+#include "estimator/axis_estimator.h"
+#include "tools/bench/contour_problems.h"
+#include "tools/machine/load_emulated_machine.h"
+#include "tools/simulate/virtual_machine.h"
+
+namespace contour {
+namespace {
+
+void Estimate(EstimatorKind kind, int count) {
+  FrictionConfig f;
+  f.Fs_plus_N = f.Fs_minus_N = 52;
+  f.Fc_plus_N = f.Fc_minus_N = 42;
+  f.vs_mm_s = 2;
+  f.sigma0_N_m = 5e6;
+  f.sigma1_Ns_m = 3000;
+  f.sigma2_Ns_m = 500;
+  AxisEstimator estimator(kind, ToSi(MechanicsConfig{5.0, 5e-5, 10.0, 40.0, 1100.0}), f, {}, 1e-3, 0.2e-3,
+                          5e-3 / 1048576);
+  AxisEstimatorInput in;
+  in.fresh = in.enabled = true;
+  in.at_rest = false;
+  for (int k = 0; k < count; ++k) {
+    const double t = 1e-3 * k;
+    in.position_m = 1e-4 * std::sin(5.0 * t);
+    in.commanded_velocity_m_s = 5e-4 * std::cos(5.0 * t);
+    in.force_N = {42.0 * std::tanh(4.0 * std::cos(5.0 * t)), in.force_N[0], in.force_N[1]};
+    estimator.Update(in);
+  }
+}
+
+void SolveQps(int count) {
+  // Making the problems solves each of them once, with the same start.
+  bench::MakeContourProblems(20, static_cast<std::size_t>(count));
+}
+
+/// The first cycles of a run, stepped from its recorded inputs.
+void StepCycles(const std::string& file, int count) {
+  const EmulatedMachineFile machine_file = LoadEmulatedMachine(file);
+  VirtualMachine machine(machine_file, ControllerName::kFull);
+  std::vector<CycleInput> inputs;
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) { inputs.push_back(entry.input); });
+  machine.BringUp();
+  machine.Enable();
+  machine.Run(ParseProgram("{shape: circle, radius_mm: 0.1, frequency_hz: 2, turns: 1}", "circle",
+                           ProgramFormat::kYaml));
+  Cycle cycle(MakeCycleConfig(machine_file.machine, ControllerName::kFull));
+  auto output = std::make_unique<CycleOutput>();
+  const std::size_t last = inputs.size() - 400 + static_cast<std::size_t>(count);
+  for (std::size_t k = 0; k < last && k < inputs.size(); ++k) cycle.Step(inputs[k], *output);
+}
+
+int Probe(const std::string& what, int count, const std::string& file) {
+  if (what == "srukf4")
+    Estimate(EstimatorKind::kSrukf4, count);
+  else if (what == "srukf7")
+    Estimate(EstimatorKind::kSrukf7, count);
+  else if (what == "mpc20")
+    SolveQps(count);
+  else if (what == "cycle")
+    StepCycles(file, count);
+  else
+    return 2;
+  return 0;
+}
+
+}  // namespace
+}  // namespace contour
+
+int main(int argc, char** argv) {
+  return argc == 4 ? contour::Probe(argv[1], std::atoi(argv[2]), argv[3]) : 2;
+}
