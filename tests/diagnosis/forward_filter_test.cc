@@ -1,0 +1,89 @@
+#include "tools/diagnosis/forward_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/diagnosis/hidden_axis.h"
+#include "tools/diagnosis/problem.h"
+
+namespace contour::diagnosis {
+namespace {
+
+Point Stated(const Problem& problem) {
+  Point p;
+  p.base.assign(problem.terms_.size(), 0.0);
+  return p;
+}
+
+std::vector<double> RmsPerSegment(const std::vector<double>& x, std::size_t rows) {
+  std::vector<double> out;
+  for (std::size_t k = 0; k + 1000 <= rows; k += 1000) {
+    double sum = 0.0;
+    for (std::size_t i = k; i < k + 1000; ++i) sum += x[i] * x[i];
+    out.push_back(std::sqrt(sum / 1000.0));
+  }
+  return out;
+}
+
+// With the true parameters and a fine encoder, what is left is the difference of two integrators: it must be
+// under a fifth of what ordinary noise leaves, in every second of the log.
+void ExpectSmallerThanNoise(bool two_inertia, bool on_load) {
+  test::HiddenOptions o;
+  o.seed = 5;
+  o.duration_s = 30.0;
+  o.two_inertia = two_inertia;
+  o.friction_on_load = on_load;
+  o.parameter_spread = 0.0;
+  const test::HiddenAxis noisy = test::MakeHiddenAxis(o);
+  o.torque_noise_rel = 0.0;
+  o.encoder_step_rad = 1e-7;
+  const test::HiddenAxis silent = test::MakeHiddenAxis(o);
+  const Problem with(noisy.log, noisy.stated, 1), without(silent.log, silent.stated, 1);
+  const Point a = Stated(with), b = Stated(without);
+  const auto noise = RmsPerSegment(with.Raw(std::span(&a, 1))[0], with.rows());
+  const auto left = RmsPerSegment(without.Raw(std::span(&b, 1))[0], without.rows());
+  for (std::size_t i = 0; i < noise.size(); ++i) EXPECT_LT(left[i], 0.2 * noise[i]) << "second " << i;
+}
+
+TEST(ForwardFilter, RigidAxisLeavesLessThanAFifthOfTheNoise) { ExpectSmallerThanNoise(false, false); }
+TEST(ForwardFilter, TwoInertiasLeaveLessThanAFifthOfTheNoise) { ExpectSmallerThanNoise(true, false); }
+TEST(ForwardFilter, FrictionOnTheTableLeavesLessThanAFifthOfTheNoise) { ExpectSmallerThanNoise(true, true); }
+
+TEST(ForwardFilter, LanesAndThreadsDoNotChangeARun) {
+  test::HiddenOptions o;
+  o.duration_s = 5.0;
+  o.two_inertia = true;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Problem problem(axis.log, axis.stated, 1);
+  Point p = Stated(problem);
+  std::vector<AxisModel> models;
+  for (int i = 0; i < 7; ++i) {
+    p.base[0] = 0.01 * i;
+    models.push_back(problem.Build(p));
+  }
+  const auto together = RunFilter(problem.setup_, models, 3);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto alone = RunFilter(problem.setup_, std::span(&models[i], 1), 1);
+    EXPECT_EQ(alone[0].innovation, together[i].innovation);
+  }
+}
+
+TEST(DeliveredMeans, HoldDelayAndLagAreExact) {
+  AxisLog log;
+  log.period_s = 1e-3;
+  log.command.assign(40, 0.0);
+  for (std::size_t k = 10; k < 40; ++k) log.command[k] = 1.0;
+  const double delay_s = 1.3e-3, lag_s = 0.4e-3;
+  const Delivered d = DeliveredMeans(log, delay_s, lag_s, 4);
+  for (std::size_t k = 10; k < 20; ++k)
+    for (std::size_t j = 0; j < 4; ++j) {
+      // Mean over the sub-step of 1 - e^(-(t - t0) / lag), by its integral.
+      const auto integral = [&](double t) { return t <= 0.0 ? 0.0 : t + lag_s * std::expm1(-t / lag_s); };
+      const double t = (static_cast<double>(k) - 10.0) * 1e-3 + 0.25e-3 * static_cast<double>(j) - delay_s;
+      EXPECT_NEAR(d.mean[4 * k + j], (integral(t + 0.25e-3) - integral(t)) / 0.25e-3, 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,254 @@
+#include "tools/diagnosis/diagnose.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include "tools/diagnosis/effects.h"
+#include "tools/diagnosis/fit.h"
+#include "tools/diagnosis/gate.h"
+#include "tools/diagnosis/parameters.h"
+#include "tools/diagnosis/residual_trace.h"
+#include "tools/diagnosis/score.h"
+
+namespace contour::diagnosis {
+namespace {
+
+struct Refit {
+  Fit fit;
+  double score = 0.0;
+};
+
+bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
+
+void CheckInput(const AxisLog& log, const StatedAxis& stated) {
+  const std::size_t n = log.size();
+  const auto same = [&](const std::vector<double>& v, bool optional) {
+    return v.size() == n || (optional && v.empty());
+  };
+  if (!same(log.position, false) || !same(log.table_position_m, true) || !same(log.temperature_degC, true) ||
+      !same(log.axis2_position_m, true) || !same(log.reference_position, true) || log.present.size() != n)
+    throw std::invalid_argument(log.source + ": columns of different length");
+  if (!(log.period_s > 0.0)) throw std::invalid_argument(log.source + ": period is not positive");
+  if (!(stated.motor_inertia > 0.0)) throw std::invalid_argument(stated.source + ": inertia is not positive");
+}
+
+class Engine {
+ public:
+  Engine(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& options)
+      : options_(options), problem_(log, stated, options.threads) {}
+
+  Diagnosis Run() {
+    Diagnosis out;
+    out.false_alarm_rate = options_.false_alarm_rate;
+    Say("base model", 0.0);
+    FitBase();
+    std::vector<SharedEffect> accepted;
+    Fit current = base_;
+    for (int round = 0; round < 3; ++round) {
+      Say("candidates", 0.2 + 0.25 * round);
+      std::vector<Scored> scored = Screen(current);
+      if (round == 0) KeepFirst(scored, out);
+      std::vector<Refit> refits = RefitBest(current, scored);
+      if (refits.empty()) break;
+      // Noise and gate as the best candidate leaves them.
+      problem_.LearnNoise(problem_.Raw(std::span(&refits[0].fit.point, 1))[0]);
+      Rescore(current, refits);
+      const std::vector<Scored> left = Screen(refits[0].fit);
+      const double gate = SignFlipGate(left, options_.false_alarm_rate, options_.seed);
+      if (round == 0) {
+        out.gate = gate;
+        KeepDetectable(scored, gate, out);
+      }
+      const Refit& best = refits[0];
+      if (best.score < gate) break;
+      Accept(current, refits, out);
+      current = best.fit;
+      if (Outside(best.fit.point.effects.back()->kind)) break;
+    }
+    Finish(current, out);
+    return out;
+  }
+
+ private:
+  void Say(std::string_view what, double done) const {
+    if (options_.progress) options_.progress(what, done);
+  }
+
+  void FitBase() {
+    Point start;
+    start.base.assign(problem_.terms_.size(), 0.0);
+    problem_.LearnOutliers(start);
+    problem_.LearnNoise(problem_.Raw(std::span(&start, 1))[0]);
+    base_ = FitPoint(problem_, start, 5);
+    problem_.LearnNoise(problem_.Raw(std::span(&base_.point, 1))[0]);
+    base_ = FitPoint(problem_, base_.point, 8);
+    problem_.LearnSignals(base_.point);
+  }
+
+  std::vector<Scored> Screen(const Fit& fit) const {
+    std::vector<SharedEffect> effects = CatalogueEffects(problem_);
+    for (SharedEffect& e : ScanWaves(problem_, fit)) effects.push_back(std::move(e));
+    std::erase_if(effects, [&](const SharedEffect& e) {
+      return std::any_of(fit.point.effects.begin(), fit.point.effects.end(),
+                         [&](const SharedEffect& f) { return f->kind == e->kind; });
+    });
+    std::vector<Scored> scored = ScoreEffects(problem_, fit, effects);
+    std::stable_sort(scored.begin(), scored.end(),
+                     [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    return scored;
+  }
+
+  void KeepFirst(const std::vector<Scored>& scored, Diagnosis& out) const {
+    for (const Scored& s : scored) {
+      const bool known = std::any_of(out.candidates.begin(), out.candidates.end(),
+                                     [&](const Candidate& c) { return c.kind == s.effect->kind; });
+      if (!known)
+        out.candidates.push_back({s.effect->kind, s.score, std::numeric_limits<double>::quiet_NaN(), false});
+    }
+  }
+
+  /// The best of each kind, jointly with the base and what is accepted already.
+  std::vector<Refit> RefitBest(const Fit& current, const std::vector<Scored>& scored) const {
+    std::vector<Refit> out;
+    std::vector<std::string> done;
+    for (const Scored& s : scored) {
+      if (done.size() >= 5 || s.score < 0.15 * scored[0].score || s.score < 0.0) break;
+      if (std::find(done.begin(), done.end(), s.effect->kind) != done.end()) continue;
+      done.push_back(s.effect->kind);
+      out.push_back(RefitOne(current, s));
+    }
+    if (out.empty() && !scored.empty()) out.push_back(RefitOne(current, scored[0]));
+    std::stable_sort(out.begin(), out.end(),
+                     [](const Refit& a, const Refit& b) { return a.score > b.score; });
+    return out;
+  }
+
+  Refit RefitOne(const Fit& current, const Scored& s) const {
+    Point start = current.point;
+    start.effects.push_back(s.effect);
+    std::vector<double> a(s.effect->steps.size(), 0.0);
+    for (std::size_t i = 0; i < s.effect->tested; ++i) a[i] = s.amplitude(static_cast<Eigen::Index>(i));
+    const auto clamp = [&](std::vector<double> v) {
+      for (std::size_t i = 0; i < v.size() && !s.effect->low.empty(); ++i)
+        v[i] = std::clamp(v[i], s.effect->low[i], s.effect->high[i]);
+      return v;
+    };
+    start.amplitudes.push_back(clamp(a));
+    Refit best;
+    best.fit = FitPoint(problem_, start, 6);
+    if (!s.effect->start.empty()) {
+      start.amplitudes.back() = clamp(s.effect->start);
+      Fit other = FitPoint(problem_, start, 6);
+      if (other.cost < best.fit.cost) best.fit = std::move(other);
+    }
+    best.score = current.cost - best.fit.cost - Penalty(*s.effect);
+    return best;
+  }
+
+  /// Under new noise: the rivals and what they are compared with.
+  void Rescore(Fit& current, std::vector<Refit>& refits) const {
+    current = FitPoint(problem_, current.point, 5);
+    for (Refit& r : refits) {
+      r.fit = FitPoint(problem_, r.fit.point, 4);
+      r.score = current.cost - r.fit.cost - Penalty(*r.fit.point.effects.back());
+    }
+    std::stable_sort(refits.begin(), refits.end(),
+                     [](const Refit& a, const Refit& b) { return a.score > b.score; });
+  }
+
+  void Accept(const Fit& current, const std::vector<Refit>& refits, Diagnosis& out) const {
+    const Refit& best = refits[0];
+    Cause cause;
+    cause.kind = best.fit.point.effects.back()->kind;
+    cause.log_evidence_gain = 0.5 * best.score;
+    for (const Refit& r : refits) {
+      const std::string& kind = r.fit.point.effects.back()->kind;
+      for (Candidate& c : out.candidates)
+        if (c.kind == kind && std::isnan(c.refitted)) {
+          c.refitted = r.score;
+          c.accepted = &r == &best;
+        }
+      if (&r != &best && !Outside(kind) && r.score > best.score - std::max(12.0, 0.03 * best.score))
+        cause.indistinguishable_from.push_back(kind);
+    }
+    DescribeEffect(problem_, best.fit, best.fit.point.effects.size() - 1, cause);
+    std::vector<BlockGain> blocks;
+    HeldOutGain(problem_, current, best.fit, cause.kind == "pitch_error", cause, blocks);
+    if (out.causes.empty()) out.blocks = blocks;
+    out.causes.push_back(std::move(cause));
+  }
+
+  /// 90 % of effects of 1.5 times this size exceed the gate.
+  void KeepDetectable(const std::vector<Scored>& scored, double gate, Diagnosis& out) const {
+    for (const Scored& s : scored) {
+      if (Outside(s.effect->kind) || s.effect->tested != 1) continue;
+      const double sd = std::sqrt(std::max(0.0, s.covariance(0, 0)));
+      const double needed = (std::sqrt(std::max(gate + Penalty(*s.effect), 1.0)) + 1.2816) / 1.5 * sd;
+      Fit at;
+      at.point = base_.point;
+      at.point.effects = {s.effect};
+      at.point.amplitudes = {std::vector<double>(s.effect->steps.size(), 0.0)};
+      at.point.amplitudes[0][0] = needed;
+      at.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(ParameterCount(at.point)),
+                                            static_cast<Eigen::Index>(ParameterCount(at.point)));
+      Cause described;
+      described.kind = s.effect->kind;
+      DescribeEffect(problem_, at, 0, described);
+      const std::string name = MainParameter(s.effect->kind);
+      auto& place = out.smallest_detectable[s.effect->kind];
+      if (!place.contains(name)) place[name] = described.parameters[name].value;
+    }
+  }
+
+  void Finish(const Fit& current, Diagnosis& out) {
+    out.data_quality = problem_.quality_;
+    for (std::size_t i = 0; i < problem_.terms_.size(); ++i) {
+      const BaseTerm& t = problem_.terms_[i];
+      if (t.nuisance) continue;
+      const double x = current.point.base[i];
+      const double sd = std::sqrt(
+          std::max(0.0, current.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))));
+      const double fitted = t.additive ? t.stated + x : t.stated * std::exp(x);
+      out.base.push_back({t.name, t.stated, fitted, t.additive ? sd : fitted * sd});
+    }
+    out.traces = MakeTraces(problem_, base_.point, current.point);
+    std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
+    if (out.causes.empty())
+      out.verdict = Verdict::kNothingFound;
+    else if (std::any_of(out.causes.begin(), out.causes.end(),
+                         [](const Cause& c) { return Outside(c.kind); }))
+      out.verdict = Verdict::kUnexplained;
+    else
+      out.verdict = out.causes[0].indistinguishable_from.empty() ? Verdict::kCauseFound : Verdict::kAmbiguous;
+    for (const Cause& c : out.causes)
+      if (Outside(c.kind))
+        out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
+                            c.kind.substr(std::string_view(kOutside).size()));
+    std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind); });
+    Say("done", 1.0);
+  }
+
+  const DiagnoseOptions& options_;
+  Problem problem_;
+  Fit base_;
+};
+
+}  // namespace
+
+Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& options) {
+  CheckInput(log, stated);
+  if (log.size() < 3000) {
+    Diagnosis out;
+    out.false_alarm_rate = options.false_alarm_rate;
+    out.data_quality.rows = log.rows;
+    out.data_quality.missing = log.missing;
+    out.notes.push_back("The log is shorter than 3000 rows.");
+    return out;
+  }
+  return Engine(log, stated, options).Run();
+}
+
+}  // namespace contour::diagnosis

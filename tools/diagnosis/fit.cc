@@ -1,0 +1,131 @@
+#include "tools/diagnosis/fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace contour::diagnosis {
+namespace {
+
+double StepOf(const Problem& problem, const Point& p, std::size_t i) {
+  if (i < p.base.size()) return problem.terms_[i].step;
+  i -= p.base.size();
+  for (std::size_t e = 0; e < p.effects.size(); ++e) {
+    if (i < p.amplitudes[e].size()) return p.effects[e]->steps[i];
+    i -= p.amplitudes[e].size();
+  }
+  return 0.0;
+}
+
+Point Moved(Point p, const Eigen::VectorXd& by) {
+  Eigen::Index j = 0;
+  for (double& x : p.base) x += by(j++);
+  for (std::size_t e = 0; e < p.effects.size(); ++e)
+    for (std::size_t i = 0; i < p.amplitudes[e].size(); ++i) {
+      double& a = p.amplitudes[e][i];
+      a += by(j++);
+      if (!p.effects[e]->low.empty()) a = std::clamp(a, p.effects[e]->low[i], p.effects[e]->high[i]);
+    }
+  return p;
+}
+
+double PriorOf(const Problem& problem, const Point& p) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms_[i].sigma, 2);
+  return sum;
+}
+
+double SquareOf(const std::vector<double>& r) {
+  return Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size())).squaredNorm();
+}
+
+}  // namespace
+
+std::size_t ParameterCount(const Point& p) {
+  std::size_t n = p.base.size();
+  for (const auto& a : p.amplitudes) n += a.size();
+  return n;
+}
+
+Fit FitPoint(const Problem& problem, Point start, int most_steps) {
+  Fit fit;
+  fit.point = std::move(start);
+  const std::size_t n = ParameterCount(fit.point);
+  const auto columns = static_cast<Eigen::Index>(n);
+  const auto size = static_cast<Eigen::Index>(problem.data_size());
+  fit.residual = problem.Residuals(std::span(&fit.point, 1))[0];
+  fit.prior = PriorOf(problem, fit.point);
+  fit.cost = SquareOf(fit.residual) + fit.prior;
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);
+  for (std::size_t i = 0; i < fit.point.base.size(); ++i)
+    weight(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
+  bool stale = true;
+  Eigen::MatrixXd normal;
+  const auto refresh = [&] {
+    std::vector<Point> around;
+    for (std::size_t i = 0; i < n; ++i) {
+      Eigen::VectorXd by = Eigen::VectorXd::Zero(columns);
+      double step = StepOf(problem, fit.point, i);
+      by(static_cast<Eigen::Index>(i)) = step;
+      around.push_back(Moved(fit.point, by));
+    }
+    fit.jacobian.resize(size, columns);
+    for (std::size_t first = 0; first < n; first += 8) {
+      const std::size_t count = std::min<std::size_t>(8, n - first);
+      const auto runs = problem.Residuals(std::span(around).subspan(first, count));
+      for (std::size_t i = 0; i < count; ++i)
+        fit.jacobian.col(static_cast<Eigen::Index>(first + i)) =
+            (Eigen::Map<const Eigen::VectorXd>(runs[i].data(), size) -
+             Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), size)) /
+            StepOf(problem, fit.point, first + i);
+    }
+    normal = fit.jacobian.transpose() * fit.jacobian;
+    normal.diagonal() += weight;
+    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() * 1e-6;
+    stale = false;
+  };
+  for (int step = 0; step < most_steps; ++step) {
+    const bool fresh = stale;
+    if (stale) refresh();
+    const Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), size);
+    Eigen::VectorXd gradient = fit.jacobian.transpose() * r;
+    for (std::size_t i = 0; i < fit.point.base.size(); ++i)
+      gradient(static_cast<Eigen::Index>(i)) += weight(static_cast<Eigen::Index>(i)) * fit.point.base[i];
+    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
+    Eigen::VectorXd by = -solver.solve(gradient);
+    const double promised = -gradient.dot(by);
+    if (promised < 0.02) {
+      fit.converged = true;
+      if (fresh || promised < 0.01) break;
+    }
+    bool better = false;
+    for (int half = 0; half < 4 && !better; ++half) {
+      Point next = Moved(fit.point, by);
+      std::vector<double> residual = problem.Residuals(std::span(&next, 1))[0];
+      const double prior = PriorOf(problem, next);
+      const double cost = SquareOf(residual) + prior;
+      if (std::isfinite(cost) && cost < fit.cost) {
+        if (fit.cost - cost < 0.6 * promised || half > 0) stale = true;
+        fit.point = std::move(next);
+        fit.residual = std::move(residual);
+        fit.cost = cost;
+        fit.prior = prior;
+        better = true;
+      }
+      by *= 0.35;
+      if (!better && !fresh) break;  // the old sensitivities do not serve any more
+    }
+    if (!better) {
+      if (fresh) {
+        fit.converged = true;
+        break;
+      }
+      stale = true;
+    }
+  }
+  if (stale) refresh();
+  fit.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
+  return fit;
+}
+
+}  // namespace contour::diagnosis

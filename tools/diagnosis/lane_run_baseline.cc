@@ -1,0 +1,9 @@
+#include "tools/diagnosis/lane_run.h"
+// The loops themselves, translated with this file's flags.
+#include "tools/diagnosis/lane_run.inc"
+
+namespace contour::diagnosis {
+
+void RunLanesBaseline(const Lanes& m) { RunLanes(m); }
+
+}  // namespace contour::diagnosis

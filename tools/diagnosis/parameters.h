@@ -1,0 +1,14 @@
+#pragma once
+
+#include "tools/diagnosis/finding.h"
+#include "tools/diagnosis/fit.h"
+
+namespace contour::diagnosis {
+
+/// Parameters of the fit's effect `index` by the catalogue's names, with 95 % intervals, and its shapes.
+void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, Cause& cause);
+
+/// Main parameter of a kind, the one that `smallest_detectable` is stated in.
+std::string MainParameter(const std::string& kind);
+
+}  // namespace contour::diagnosis

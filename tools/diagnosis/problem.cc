@@ -1,0 +1,237 @@
+#include "tools/diagnosis/problem.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kObserverBandwidth_Hz = 35.0;
+constexpr double kSettling_s = 0.3;
+// Without a statement of the model file: what a careful data sheet is worth.
+const std::map<std::string, double> kDefaultSigma = {{"inertia", 0.05},
+                                                     {"load_inertia", 0.05},
+                                                     {"stiffness", 0.10},
+                                                     {"damping", 0.5},
+                                                     {"Fc", 0.10},
+                                                     {"Fs", 0.10},
+                                                     {"vs", 0.20},
+                                                     {"s0", 0.20},
+                                                     {"s1", 0.50},
+                                                     {"s2", 0.10},
+                                                     {"delay", 0.01},
+                                                     {"lag", 0.05},
+                                                     {"torque_constant", 0.0}};
+
+}  // namespace
+
+double StatedSigma(const StatedAxis& stated, const std::string& name) {
+  const auto it = stated.sigma.find(name);
+  if (it != stated.sigma.end()) return it->second;
+  if (name == "inertia" && stated.sigma.contains("motor_inertia")) return stated.sigma.at("motor_inertia");
+  return kDefaultSigma.at(name);
+}
+
+Problem::Problem(const AxisLog& log, const StatedAxis& stated, int threads)
+    : log_(log), stated_(stated), threads_(std::max(1, threads)), nominal_(ModelOf(stated)) {
+  signals_ = std::make_shared<Signals>(MakeSignals(log, stated));
+  setup_.log = &log_;
+  setup_.full = has_scale();
+  setup_.valid = ValidRows(log, *signals_, stated, quality_);
+  const std::size_t n = std::min<std::size_t>(10, rows() - 1);
+  setup_.start = {signals_->position[0],
+                  (signals_->position[n] - signals_->position[0]) / (static_cast<double>(n) * log.period_s)};
+  setup_.gain_two = SteadyObserverGain(nominal_, log.period_s, kObserverBandwidth_Hz);
+  AxisModel rigid = nominal_;
+  rigid.two_inertia = false;
+  setup_.gain = SteadyObserverGain(rigid, log.period_s, kObserverBandwidth_Hz);
+  if (!nominal_.two_inertia)
+    setup_.gain_two = {setup_.gain[0], setup_.gain[1], setup_.gain[0], setup_.gain[1]};
+  ChooseSubsteps();
+  MakeTerms();
+  CountRows();
+}
+
+void Problem::ChooseSubsteps() {
+  // The leapfrog is off by (w h)^2 / 24 in a mode's frequency.
+  const StatedFriction& f = nominal_.friction;
+  const double carried =
+      nominal_.two_inertia && nominal_.friction_on_load ? nominal_.load_inertia : nominal_.motor_inertia;
+  const double presliding = std::sqrt(2.0 * f.s0 / carried);
+  double mode = presliding;
+  if (nominal_.two_inertia)
+    mode = std::max(
+        mode, std::sqrt(nominal_.stiffness * (1.0 / nominal_.motor_inertia + 1.0 / nominal_.load_inertia)));
+  const double damped = 2.0 * f.s1 / carried;
+  const auto steps = [&](int least, double w) {
+    int s = least;
+    while (s < 32 && (w * log_.period_s / s > 0.36 || damped * log_.period_s / s > 0.3)) s *= 2;
+    return s;
+  };
+  setup_.substeps_rigid = steps(4, presliding);
+  setup_.substeps_two = steps(8, mode);
+}
+
+void Problem::MakeTerms() {
+  const auto add = [&](const char* name, double sigma, double step, double* (*field)(AxisModel&)) {
+    BaseTerm t;
+    t.name = name;
+    t.stated = *field(nominal_);
+    t.sigma = sigma;
+    t.step = step;
+    t.field = field;
+    if (t.stated > 0.0 && sigma > 0.0) terms_.push_back(t);
+  };
+  const auto stated = [&](const char* name) { return StatedSigma(stated_, name); };
+  add("inertia", stated("inertia"), 5e-4, [](AxisModel& m) { return &m.motor_inertia; });
+  if (nominal_.two_inertia) {
+    add("load_inertia", stated("load_inertia"), 5e-4, [](AxisModel& m) { return &m.load_inertia; });
+    add("stiffness", stated("stiffness"), 5e-4, [](AxisModel& m) { return &m.stiffness; });
+    add("damping", stated("damping"), 5e-3, [](AxisModel& m) { return &m.damping; });
+  }
+  const StatedFriction& f = nominal_.friction;
+  const bool stribeck = f.Fs_plus + f.Fs_minus > 1.05 * (f.Fc_plus + f.Fc_minus);
+  add("Fc", stated("Fc"), 1e-3, [](AxisModel& m) { return &m.friction.Fc_plus; });
+  if (stribeck) {
+    add("Fs", stated("Fs"), 2e-3, [](AxisModel& m) { return &m.friction.Fs_plus; });
+    add("vs", stated("vs"), 5e-3, [](AxisModel& m) { return &m.friction.vs; });
+  }
+  add("s0", stated("s0"), 3e-3, [](AxisModel& m) { return &m.friction.s0; });
+  add("s1", stated("s1"), 1e-2, [](AxisModel& m) { return &m.friction.s1; });
+  add("s2", stated("s2"), 2e-3, [](AxisModel& m) { return &m.friction.s2; });
+  add("torque_constant", stated("torque_constant"), 5e-4, [](AxisModel& m) { return &m.torque_gain; });
+  const auto timed = [&](const char* name, double* (*field)(AxisModel&)) {
+    BaseTerm t;
+    t.name = name;
+    t.stated = *field(nominal_);
+    t.sigma = stated(name) * t.stated;
+    t.step = 2e-6;
+    t.additive = true;
+    t.field = field;
+    if (t.sigma > 0.0) terms_.push_back(t);
+  };
+  timed("delay", [](AxisModel& m) { return &m.delay_s; });
+  timed("lag", [](AxisModel& m) { return &m.lag_s; });
+  BaseTerm z;
+  z.name = "start_bristle";
+  z.sigma = 0.7 * f.Fc_plus / f.s0;
+  z.step = 0.01 * f.Fc_plus / f.s0;
+  z.additive = z.nuisance = true;
+  z.field = [](AxisModel& m) { return &m.start_bristle; };
+  terms_.push_back(z);
+}
+
+void Problem::CountRows() {
+  const std::size_t n = rows();
+  counted_.assign(n, 1);
+  const auto settled = std::min(n, static_cast<std::size_t>(kSettling_s / log_.period_s));
+  std::fill(counted_.begin(), counted_.begin() + static_cast<std::ptrdiff_t>(settled), std::uint8_t{0});
+  for (std::size_t k = 0; k < n; ++k) {
+    if (setup_.valid[k] != 0) continue;
+    for (std::size_t i = k > 2 ? k - 2 : 0; i < std::min(n, k + 3); ++i) counted_[i] = 0;
+  }
+}
+
+AxisModel Problem::Build(const Point& point) const {
+  AxisModel m = nominal_;
+  for (std::size_t i = 0; i < terms_.size(); ++i) {
+    const BaseTerm& t = terms_[i];
+    const double x = point.base[i];
+    if (t.additive) {
+      *t.field(m) += x;
+      continue;
+    }
+    const double factor = std::exp(std::clamp(x, -3.0, 3.0));
+    *t.field(m) *= factor;
+    if (t.name == "Fc") m.friction.Fc_minus *= factor;
+    if (t.name == "Fs") m.friction.Fs_minus *= factor;
+  }
+  // Without a Stribeck term of its own, the break-away level goes with the Coulomb level.
+  const bool has_stribeck =
+      std::any_of(terms_.begin(), terms_.end(), [](const BaseTerm& t) { return t.name == "Fs"; });
+  if (!has_stribeck) {
+    const double factor = m.friction.Fc_plus / nominal_.friction.Fc_plus;
+    m.friction.Fs_plus = nominal_.friction.Fs_plus * factor;
+    m.friction.Fs_minus = nominal_.friction.Fs_minus * factor;
+  }
+  for (std::size_t i = 0; i < point.effects.size(); ++i) point.effects[i]->apply(point.amplitudes[i], m);
+  return m;
+}
+
+std::vector<std::vector<double>> Problem::Raw(std::span<const Point> points) const {
+  std::vector<AxisModel> models;
+  models.reserve(points.size());
+  for (const Point& p : points) models.push_back(Build(p));
+  std::vector<FilterRun> runs = RunFilter(setup_, models, threads_);
+  std::vector<std::vector<double>> raw(points.size());
+  const std::size_t n = rows();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    raw[i] = std::move(runs[i].innovation);
+    for (std::size_t k = 0; k < n; ++k)
+      if (counted_[k] == 0) raw[i][k] = 0.0;
+    if (!has_scale()) continue;
+    raw[i].resize(2 * n);
+    double sum = 0.0, count = 0.0;
+    const double* error = models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double e = log_.table_position_m[k] - stated_.table_per_q * runs[i].table_position[k] -
+                       (error != nullptr ? error[k] : 0.0);
+      raw[i][n + k] = e;
+      if (counted_[k] != 0 && std::isfinite(e)) {
+        sum += e;
+        count += 1.0;
+      }
+    }
+    const double mean = sum / std::max(1.0, count);
+    for (std::size_t k = n; k < 2 * n; ++k)
+      raw[i][k] = counted_[k - n] != 0 && std::isfinite(raw[i][k]) ? raw[i][k] - mean : 0.0;
+  }
+  return raw;
+}
+
+std::vector<double> Problem::White(const std::vector<double>& raw) const {
+  std::vector<double> white(raw.size());
+  const std::size_t n = rows();
+  innovation_noise_.Apply(std::span(raw).first(n), white.data());
+  if (has_scale()) scale_noise_.Apply(std::span(raw).subspan(n), white.data() + n);
+  for (std::size_t k = 0; k < white.size(); ++k)
+    if (counted_[k % n] == 0) white[k] = 0.0;
+  return white;
+}
+
+std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points) const {
+  std::vector<std::vector<double>> all = Raw(points);
+  for (auto& r : all) r = White(r);
+  return all;
+}
+
+FilterRun Problem::Trace(const Point& point) const {
+  FilterSetup setup = setup_;
+  setup.full = setup.trace = true;
+  const AxisModel m = Build(point);
+  return std::move(RunFilter(setup, std::span(&m, 1), 1)[0]);
+}
+
+void Problem::LearnNoise(const std::vector<double>& raw) {
+  const std::size_t n = rows();
+  innovation_noise_ = Whitener(std::span(raw).first(n), counted_);
+  if (has_scale()) scale_noise_ = Whitener(std::span(raw).subspan(n), counted_);
+}
+
+void Problem::LearnSignals(const Point& point) {
+  auto renewed = std::make_shared<Signals>(*signals_);
+  UpdateFromTrace(Build(point), Trace(point), *renewed);
+  signals_ = renewed;
+}
+
+void Problem::LearnOutliers(const Point& point) {
+  const AxisModel m = Build(point);
+  const FilterRun run = std::move(RunFilter(setup_, std::span(&m, 1), 1)[0]);
+  MarkOutliers(run.innovation, stated_.position_step, setup_.valid, quality_);
+  CountRows();
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tools/diagnosis/axis_log.h"
+#include "tools/diagnosis/axis_model.h"
+#include "tools/diagnosis/finding.h"
+#include "tools/diagnosis/forward_filter.h"
+#include "tools/diagnosis/signals.h"
+#include "tools/diagnosis/stated_axis.h"
+#include "tools/diagnosis/whitener.h"
+
+namespace contour::diagnosis {
+
+/// A number of the stated model, with how far it may be off: value = stated * exp(x), x ~ N(0, sigma).
+struct BaseTerm {
+  std::string name;
+  double stated = 0.0;
+  double sigma = 0.0;
+  double step = 0.0;      ///< of x, for differences of runs
+  bool additive = false;  ///< value = stated + x instead
+  bool nuisance = false;  ///< not a number of the stated model
+  double* (*field)(AxisModel&) = nullptr;
+};
+
+/// A cause in the model: amplitudes, zero when absent, and how they enter.
+struct Effect {
+  std::string kind;
+  std::string label;              ///< grid point, for people
+  double grid = 1.0;              ///< places that were looked at to find this one
+  std::vector<double> steps;      ///< of each amplitude, for differences of runs
+  std::vector<double> start;      ///< where a refit begins; empty: at the linear estimate
+  std::vector<double> low, high;  ///< bounds; empty: none
+  std::size_t tested = 0;         ///< so many amplitudes are tested at zero, the rest is shape; 0: all
+  double order = 0.0;             ///< of a wave: per turn, or Hz
+  double middle = 0.0;            ///< of a wave with free order: rad about which the order turns
+  std::function<void(const std::vector<double>&, AxisModel&)> apply;
+};
+using SharedEffect = std::shared_ptr<const Effect>;
+
+struct Point {
+  std::vector<double> base;  ///< x of every base term
+  std::vector<SharedEffect> effects;
+  std::vector<std::vector<double>> amplitudes;
+};
+
+/// The log, the stated model and the noise: from parameters to a white residual.
+class Problem {
+ public:
+  Problem(const AxisLog& log, const StatedAxis& stated, int threads);
+
+  [[nodiscard]] AxisModel Build(const Point& point) const;
+  /// Innovations, then scale residuals, of every point; 0 where they do not count.
+  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const Point> points) const;
+  [[nodiscard]] std::vector<double> White(const std::vector<double>& raw) const;
+  [[nodiscard]] std::vector<std::vector<double>> Residuals(std::span<const Point> points) const;
+  [[nodiscard]] FilterRun Trace(const Point& point) const;
+  void LearnNoise(const std::vector<double>& raw);
+  /// Traces the point and renews what regressors are made of.
+  void LearnSignals(const Point& point);
+  void LearnOutliers(const Point& point);
+
+  [[nodiscard]] std::size_t rows() const { return log_.size(); }
+  [[nodiscard]] bool has_scale() const { return !log_.table_position_m.empty(); }
+  [[nodiscard]] std::size_t data_size() const { return rows() * (has_scale() ? 2 : 1); }
+
+  const AxisLog& log_;
+  const StatedAxis& stated_;
+  int threads_ = 1;
+  AxisModel nominal_;
+  std::vector<BaseTerm> terms_;
+  std::shared_ptr<Signals> signals_;
+  FilterSetup setup_;
+  std::vector<std::uint8_t> counted_;  ///< rows whose residual counts
+  DataQuality quality_;
+  Whitener innovation_noise_, scale_noise_;
+
+ private:
+  void MakeTerms();
+  void ChooseSubsteps();
+  void CountRows();
+};
+
+double StatedSigma(const StatedAxis& stated, const std::string& name);
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "tools/diagnosis/effects.h"
+#include "tools/diagnosis/score.h"
+
+// Waves of the motor's angle and of time by matched filters: the response of the white innovation to a pulse
+// of torque (or of the reading) is that of the linear observer, friction left out; one transform gives all
+// orders.
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr std::size_t kResponse = 256;
+constexpr std::size_t kTransfer = 4096;
+
+// White innovation after a pulse of one row, from two runs of the filter over a silent log.
+std::vector<double> Response(const Problem& problem, bool reading) {
+  AxisLog silent;
+  silent.period_s = problem.log_.period_s;
+  silent.command.assign(kResponse + 8, 0.0);
+  silent.position.assign(kResponse + 8, 0.0);
+  FilterSetup setup = problem.setup_;
+  setup.log = &silent;
+  setup.valid.assign(silent.size(), 1);
+  setup.start = {0.0, 0.0};
+  setup.full = setup.trace = false;
+  AxisModel m = problem.nominal_;
+  m.offset = 0.0;
+  m.friction.Fc_plus = m.friction.Fc_minus = m.friction.Fs_plus = m.friction.Fs_minus =
+      1e-9 * problem.signals_->coulomb;
+  m.friction.s0 *= 1e-9;
+  m.friction.s1 = 0.0;
+  auto pulse = std::make_shared<Signal>(silent.size(), 0.0);
+  (*pulse)[1] = 1.0;
+  (reading ? m.reading_error : m.motor_force) = pulse;
+  const auto run = RunFilter(setup, std::span(&m, 1), 1);
+  std::vector<double> white(silent.size());
+  problem.innovation_noise_.Apply(run[0].innovation, white.data());
+  return {white.begin() + 1, white.begin() + 1 + kResponse};
+}
+
+struct Matched {
+  std::vector<double> lambda;    // gradient of |r|^2 / 2 by a pulse at each row
+  std::vector<double> transfer;  // |response|^2 by frequency, kTransfer / 2 bins up to half the rate
+  double At(double cycles_per_row) const {
+    const double f = std::fabs(cycles_per_row) * kTransfer;
+    const auto i = static_cast<std::size_t>(f);
+    return i + 1 < transfer.size() ? transfer[i] : 0.0;
+  }
+};
+
+Matched Match(const Problem& problem, const Fit& fit, bool reading) {
+  const std::vector<double> h = Response(problem, reading);
+  const std::size_t n = problem.rows();
+  Matched m;
+  m.lambda.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    double sum = 0.0;
+    const std::size_t count = std::min(h.size(), n - k);
+    const double* r = &fit.residual[k];
+    for (std::size_t i = 0; i < count; ++i) sum += h[i] * r[i];
+    m.lambda[k] = sum;
+  }
+  std::vector<double> re(kTransfer, 0.0), im(kTransfer, 0.0);
+  std::copy(h.begin(), h.end(), re.begin());
+  FourierTransform(re, im, false);
+  m.transfer.resize(kTransfer / 2 + 1);
+  for (std::size_t i = 0; i < m.transfer.size(); ++i) m.transfer[i] = re[i] * re[i] + im[i] * im[i];
+  return m;
+}
+
+struct Peak {
+  double order = 0.0, score = -1.0;
+};
+
+// Best `count` orders, apart by more than `apart`.
+std::vector<double> Best(std::vector<Peak> peaks, std::size_t count, double apart) {
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [](const Peak& a, const Peak& b) { return a.score > b.score; });
+  std::vector<double> out;
+  for (const Peak& p : peaks) {
+    if (out.size() == count || p.score <= 0.0) break;
+    if (std::all_of(out.begin(), out.end(), [&](double o) { return std::fabs(o - p.order) > apart; }))
+      out.push_back(p.order);
+  }
+  return out;
+}
+
+struct Histogram {
+  std::vector<double> weight, speed;  // speed in rad of motor angle per row
+  double InformationAt(const Matched& m, double order) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < weight.size(); ++i) sum += weight[i] * m.At(order * speed[i] / kTwoPi);
+    return 0.5 * sum;
+  }
+};
+
+// Spectrum over the angle of the weighted gradient: score of every order up to `highest`.
+std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
+                              const std::vector<double>& weight, double highest) {
+  const Signals& s = *problem.signals_;
+  const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
+  const double revs = std::max(1.0, (*high - *low) / kTwoPi);
+  double per_rev = std::exp2(std::ceil(std::log2(4.0 * highest)));
+  while (per_rev * revs > double{1 << 20} && per_rev > 64.0) per_rev /= 2.0;
+  const auto length = std::bit_ceil(static_cast<std::size_t>(per_rev * revs * 2.0) + 2);
+  std::vector<double> re(length, 0.0), im(length, 0.0);
+  Histogram histogram;
+  constexpr std::size_t kBins = 200;
+  histogram.weight.assign(kBins, 0.0);
+  histogram.speed.assign(kBins, 0.0);
+  double fastest = 1e-12;
+  const std::size_t n = problem.rows();
+  std::vector<double> speed(n);
+  for (std::size_t k = 1; k < n; ++k) {
+    speed[k] = std::fabs(s.velocity[k]) * problem.log_.period_s * s.angle_per_q;
+    fastest = std::max(fastest, speed[k]);
+  }
+  for (std::size_t i = 0; i < kBins; ++i)
+    histogram.speed[i] = fastest * std::pow((static_cast<double>(i) + 0.5) / kBins, 2);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (problem.counted_[k] == 0 || weight[k] == 0.0) continue;
+    const auto bin = static_cast<std::size_t>((s.angle_rad[k] - *low) / kTwoPi * per_rev + 0.5);
+    re[std::min(bin, length - 1)] += weight[k] * matched.lambda[k];
+    const auto b = std::min(kBins - 1, static_cast<std::size_t>(std::sqrt(speed[k] / fastest) * kBins));
+    histogram.weight[b] += weight[k] * weight[k];
+  }
+  FourierTransform(re, im, false);
+  std::vector<Peak> out;
+  const double step = per_rev / static_cast<double>(length);
+  double info = 0.0, info_at = -1.0;
+  for (std::size_t i = 1; i < length / 2; ++i) {
+    const double order = step * static_cast<double>(i);
+    if (order > highest) break;
+    if (order > info_at * 1.01 + 0.02 || info_at < 0.0) {
+      info = histogram.InformationAt(matched, order);
+      info_at = order;
+    }
+    if (info > 0.0) out.push_back({order, (re[i] * re[i] + im[i] * im[i]) / info});
+  }
+  return out;
+}
+
+std::vector<Peak> Integers(const std::vector<Peak>& all, double lowest) {
+  std::vector<Peak> out;
+  for (std::size_t i = 1; i + 1 < all.size(); ++i) {
+    const double order = std::round(all[i].order);
+    if (order < lowest || std::fabs(all[i].order - order) > 0.5 * (all[i + 1].order - all[i].order) + 1e-12)
+      continue;
+    out.push_back({order, std::max({all[i].score, all[i - 1].score, all[i + 1].score})});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
+  const Signals& s = *problem.signals_;
+  const std::size_t n = problem.rows();
+  std::vector<SharedEffect> out;
+  const auto add = [&](Wave wave, const std::vector<double>& orders, double grid) {
+    for (const double o : orders) out.push_back(WaveEffect(problem, wave, o, grid));
+  };
+  const Matched torque = Match(problem, fit, false);
+  // Stuck, the axis hardly answers to a torque.
+  std::vector<double> sliding(n), signed_sliding(n), loaded(n);
+  double torque_scale = 1e-300;
+  for (std::size_t k = 0; k < n; ++k) torque_scale = std::max(torque_scale, std::fabs(s.model_torque[k]));
+  for (std::size_t k = 0; k < n; ++k) {
+    sliding[k] = std::fabs(s.sign[k]) > 0.8 ? 1.0 : 0.0;
+    signed_sliding[k] = sliding[k] * s.sign[k];
+    loaded[k] = sliding[k] * s.model_torque[k] / torque_scale;
+  }
+  const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
+  const double revs = (*high - *low) / kTwoPi;
+  if (revs > 1.5) {
+    const auto friction = AngleScores(problem, torque, signed_sliding, 40.0);
+    add(Wave::kFrictionOfAngle, Best(Integers(friction, 1.0), 2, 0.5), 12.0);
+    std::vector<Peak> between;
+    for (const Peak& p : friction)
+      if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > 2.0 / revs && p.order < 20.0)
+        between.push_back(p);
+    if (revs > 5.0) add(Wave::kFrictionOfAngle, Best(between, 2, 1.0 / revs), 400.0);
+    add(Wave::kTorqueOfAngle, Best(Integers(AngleScores(problem, torque, sliding, 144.0), 1.0), 2, 0.5),
+        36.0);
+    add(Wave::kGainOfAngle, Best(Integers(AngleScores(problem, torque, loaded, 144.0), 1.0), 1, 0.5), 72.0);
+  }
+  if (revs > 0.05) {
+    const Matched reading = Match(problem, fit, true);
+    const std::vector<double> ones(n, 1.0);
+    add(Wave::kReadingOfAngle, Best(Integers(AngleScores(problem, reading, ones, 4096.0), 8.0), 2, 0.5),
+        72.0);
+  }
+  // Time: one transform of the gradient.
+  const std::size_t length = std::bit_ceil(2 * n);
+  std::vector<double> re(length, 0.0), im(length, 0.0);
+  double moving = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    re[k] = sliding[k] * torque.lambda[k];
+    moving += sliding[k];
+  }
+  FourierTransform(re, im, false);
+  std::vector<Peak> time;
+  for (std::size_t i = 1; i < length / 2; ++i) {
+    const double f = static_cast<double>(i) / static_cast<double>(length);
+    if (f * static_cast<double>(n) < 6.0) continue;
+    time.push_back({f / problem.log_.period_s,
+                    2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
+  }
+  add(Wave::kForceOfTime, Best(time, 2, 2.0 / (static_cast<double>(n) * problem.log_.period_s)), 4000.0);
+  return out;
+}
+
+}  // namespace contour::diagnosis

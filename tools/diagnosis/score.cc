@@ -1,0 +1,99 @@
+#include "tools/diagnosis/score.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace contour::diagnosis {
+namespace {
+
+using Column = Eigen::Map<const Eigen::VectorXd>;
+
+// Inner products of columns with the residual, per block of time.
+void AddBlocks(const double* column, const double* residual, std::size_t rows, std::size_t size,
+               Eigen::Ref<Eigen::RowVectorXd> out) {
+  for (Eigen::Index b = 0; b < kBlocks; ++b) {
+    const std::size_t from = rows * static_cast<std::size_t>(b) / kBlocks;
+    const std::size_t to = rows * static_cast<std::size_t>(b + 1) / kBlocks;
+    double sum = 0.0;
+    for (std::size_t base = 0; base < size; base += rows)
+      for (std::size_t k = base + from; k < base + to; ++k) sum += column[k] * residual[k];
+    out(b) = sum;
+  }
+}
+
+}  // namespace
+
+double Penalty(const Effect& effect) {
+  return 3.0 * static_cast<double>(effect.steps.size()) + 2.0 * std::log(std::max(1.0, effect.grid));
+}
+
+std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
+                                 std::span<const SharedEffect> effects) {
+  const auto size = static_cast<Eigen::Index>(problem.data_size());
+  const std::size_t rows = problem.rows();
+  const Eigen::Index base = fit.jacobian.cols();
+  Eigen::MatrixXd base_blocks(base, kBlocks);
+  for (Eigen::Index i = 0; i < base; ++i) {
+    Eigen::RowVectorXd row(kBlocks);
+    AddBlocks(fit.jacobian.col(i).data(), fit.residual.data(), rows, problem.data_size(), row);
+    base_blocks.row(i) = row;
+  }
+  std::vector<Scored> out;
+  std::size_t at = 0;
+  const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), size);
+  while (at < effects.size()) {
+    // Some sixteen runs at a time bound the memory.
+    std::vector<Point> points;
+    std::size_t end = at;
+    while (end < effects.size() && (points.empty() || points.size() + effects[end]->tested <= 16)) {
+      for (std::size_t i = 0; i < effects[end]->tested; ++i) {
+        Point p = fit.point;
+        p.effects.push_back(effects[end]);
+        p.amplitudes.emplace_back(effects[end]->steps.size(), 0.0);
+        p.amplitudes.back()[i] += effects[end]->steps[i];
+        points.push_back(std::move(p));
+      }
+      ++end;
+    }
+    const auto runs = problem.Residuals(points);
+    std::size_t run = 0;
+    for (; at < end; ++at) {
+      const Effect& effect = *effects[at];
+      Scored s;
+      s.effect = effects[at];
+      const auto n = static_cast<Eigen::Index>(effect.tested);
+      Eigen::MatrixXd g(size, n);
+      for (Eigen::Index i = 0; i < n; ++i)
+        g.col(i) = (Column(runs[run + static_cast<std::size_t>(i)].data(), size) - residual) /
+                   effect.steps[static_cast<std::size_t>(i)];
+      run += effect.tested;
+      const Eigen::MatrixXd cross = fit.jacobian.transpose() * g;
+      const Eigen::MatrixXd onto = fit.covariance * cross;
+      Eigen::MatrixXd information = g.transpose() * g - cross.transpose() * onto;
+      const Eigen::VectorXd own = (g.transpose() * g).diagonal();
+      s.per_block.resize(n, kBlocks);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        Eigen::RowVectorXd row(kBlocks);
+        AddBlocks(g.col(i).data(), fit.residual.data(), rows, problem.data_size(), row);
+        s.per_block.row(i) = row;
+      }
+      s.per_block -= onto.transpose() * base_blocks;
+      // Directions that the base explains already, to rounding, carry nothing.
+      for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-9 * own(i) + 1e-300;
+      // The gradient of the prior belongs to the base; at its optimum both parts cancel.
+      const Eigen::VectorXd gradient = g.transpose() * residual;
+      const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+      s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
+      s.amplitude = -solver.solve(gradient);
+      s.drop = -gradient.dot(s.amplitude);
+      s.score = s.drop - Penalty(effect);
+      const Eigen::RowVectorXd blocks = -s.amplitude.transpose() * s.per_block;
+      s.consistency = blocks.sum() / (blocks.norm() + 1e-300);
+      out.push_back(std::move(s));
+    }
+  }
+  return out;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "tools/diagnosis/fit.h"
+
+namespace contour::diagnosis {
+
+/// Blocks of time for sign flips and held-out figures.
+inline constexpr Eigen::Index kBlocks = 60;
+
+/// A candidate against the residual of a fit: what its amplitudes would explain beyond the base parameters,
+/// to first order (score test; partial regression with the base's priors).
+struct Scored {
+  SharedEffect effect;
+  double drop = 0.0;         ///< of chi^2 and prior
+  double score = 0.0;        ///< less 3 per amplitude and 2 ln(grid)
+  double consistency = 0.0;  ///< sum over root of sum of squares of the drop per block
+  Eigen::VectorXd amplitude;
+  Eigen::MatrixXd covariance;  ///< of the amplitudes
+  Eigen::MatrixXd per_block;   ///< projected gradient, amplitudes x blocks
+};
+
+double Penalty(const Effect& effect);
+
+/// Tests effects at zero amplitude beside whatever `fit` holds.
+std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
+                                 std::span<const SharedEffect> effects);
+
+/// Effects that the scans over orders and frequencies propose.
+std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit);
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace contour::diagnosis {
+
+/// Makes a residual white with unit variance by the inverse of its own spectrum: median over time of Welch
+/// segments (a burst does not count), smoothed over frequency, as an autoregressive filter (causal, so that
+/// blocks of time stay apart).
+class Whitener {
+ public:
+  Whitener() = default;
+  /// `valid`: rows that count; others are 0 in `residual`.
+  Whitener(std::span<const double> residual, const std::vector<std::uint8_t>& valid);
+
+  void Apply(std::span<const double> in, double* out) const;
+  /// Spectral density of the noise at frequency f in cycles per row, two-sided, in units of the input.
+  double Density(double cycles_per_row) const;
+
+ private:
+  std::vector<double> taps_ = {1.0};  ///< prediction error filter over its own sd
+};
+
+/// In place, length a power of two; forward without scale.
+void FourierTransform(std::vector<double>& re, std::vector<double>& im, bool inverse);
+
+}  // namespace contour::diagnosis
