@@ -49,24 +49,32 @@ class Engine {
     Fit current = base_;
     for (int round = 0; round < 3; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
-      std::vector<Scored> scored = Screen(current);
-      if (round == 0) KeepFirst(scored, out);
+      const std::vector<Scored> scored = Screen(current);
+      double gate = SignFlipGate(scored, options_.false_alarm_rate, options_.seed);
+      if (round == 0) {
+        KeepFirst(scored, out);
+        KeepDetectable(scored, gate, out);
+        out.gate = gate;
+      }
+      // Nothing near the gate, even if the residual were as white as its spectrum says.
+      const bool none = std::none_of(scored.begin(), scored.end(), [&](const Scored& s) {
+        return s.drop - Penalty(*s.effect) > std::max(gate, 25.0) || s.score > 0.7 * gate;
+      });
+      if (none) break;
+      Say("rivals", 0.3 + 0.25 * round);
       std::vector<Refit> refits = RefitBest(current, scored);
-      if (refits.empty()) break;
       // Noise and gate as the best candidate leaves them.
       problem_.LearnNoise(problem_.Raw(std::span(&refits[0].fit.point, 1))[0]);
+      Say("rivals under the noise that is left", 0.35 + 0.25 * round);
       Rescore(current, refits);
-      const std::vector<Scored> left = Screen(refits[0].fit);
-      const double gate = SignFlipGate(left, options_.false_alarm_rate, options_.seed);
-      if (round == 0) {
-        out.gate = gate;
-        KeepDetectable(scored, gate, out);
-      }
       const Refit& best = refits[0];
-      if (best.score < gate) break;
+      // From outside the catalogue only what is beyond doubt.
+      const double drop = best.score + Penalty(*best.fit.point.effects.back());
+      const double tested = drop / ExcessOfLast(problem_, best.fit) - Penalty(*best.fit.point.effects.back());
+      if (tested < (Outside(KindOf(best)) ? gate + 25.0 : gate)) break;
       Accept(current, refits, out);
       current = best.fit;
-      if (Outside(best.fit.point.effects.back()->kind)) break;
+      if (Outside(KindOf(best))) break;
     }
     Finish(current, out);
     return out;
@@ -96,8 +104,9 @@ class Engine {
                          [&](const SharedEffect& f) { return f->kind == e->kind; });
     });
     std::vector<Scored> scored = ScoreEffects(problem_, fit, effects);
-    std::stable_sort(scored.begin(), scored.end(),
-                     [](const Scored& a, const Scored& b) { return a.score > b.score; });
+    std::stable_sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
+      return a.drop - Penalty(*a.effect) > b.drop - Penalty(*b.effect);
+    });
     return scored;
   }
 
@@ -110,21 +119,43 @@ class Engine {
     }
   }
 
-  /// The best of each kind, jointly with the base and what is accepted already.
+  /// The best of each kind, jointly with the base and what is accepted already: some of the catalogue, and
+  /// the best from outside it.
   std::vector<Refit> RefitBest(const Fit& current, const std::vector<Scored>& scored) const {
     std::vector<Refit> out;
     std::vector<std::string> done;
+    double most = 0.0;
+    bool outside = false;
+    for (const Scored& s : scored)
+      if (!Outside(s.effect->kind)) most = std::max(most, s.drop);
     for (const Scored& s : scored) {
-      if (done.size() >= 5 || s.score < 0.15 * scored[0].score || s.score < 0.0) break;
+      if (Outside(s.effect->kind)) {
+        if (!outside && s.drop > most) out.push_back(RefitOne(current, s));
+        outside = true;
+        continue;
+      }
+      if (done.size() >= 4 || s.drop < 0.1 * most) continue;
       if (std::find(done.begin(), done.end(), s.effect->kind) != done.end()) continue;
       done.push_back(s.effect->kind);
       out.push_back(RefitOne(current, s));
     }
-    if (out.empty() && !scored.empty()) out.push_back(RefitOne(current, scored[0]));
-    std::stable_sort(out.begin(), out.end(),
-                     [](const Refit& a, const Refit& b) { return a.score > b.score; });
+    Sort(out);
     return out;
   }
+
+  /// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
+  static void Sort(std::vector<Refit>& refits) {
+    std::stable_sort(refits.begin(), refits.end(), [](const Refit& a, const Refit& b) {
+      const bool x = Outside(KindOf(a)), y = Outside(KindOf(b));
+      return x != y ? y : a.score > b.score;
+    });
+    const auto outside =
+        std::find_if(refits.begin(), refits.end(), [](const Refit& r) { return Outside(KindOf(r)); });
+    if (outside == refits.end() || outside == refits.begin()) return;
+    if (outside->score > 1.3 * std::max(0.0, refits[0].score) + 25.0)
+      std::rotate(refits.begin(), outside, outside + 1);
+  }
+  static const std::string& KindOf(const Refit& r) { return r.fit.point.effects.back()->kind; }
 
   Refit RefitOne(const Fit& current, const Scored& s) const {
     Point start = current.point;
@@ -155,8 +186,7 @@ class Engine {
       r.fit = FitPoint(problem_, r.fit.point, 4);
       r.score = current.cost - r.fit.cost - Penalty(*r.fit.point.effects.back());
     }
-    std::stable_sort(refits.begin(), refits.end(),
-                     [](const Refit& a, const Refit& b) { return a.score > b.score; });
+    Sort(refits);
   }
 
   void Accept(const Fit& current, const std::vector<Refit>& refits, Diagnosis& out) const {
@@ -218,8 +248,9 @@ class Engine {
     std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
     if (out.causes.empty())
       out.verdict = Verdict::kNothingFound;
-    else if (std::any_of(out.causes.begin(), out.causes.end(),
-                         [](const Cause& c) { return Outside(c.kind); }))
+    else if (Outside(out.causes[0].kind) ||
+             (Outside(out.causes.back().kind) &&
+              out.causes.back().log_evidence_gain > 0.4 * out.causes[0].log_evidence_gain))
       out.verdict = Verdict::kUnexplained;
     else
       out.verdict = out.causes[0].indistinguishable_from.empty() ? Verdict::kCauseFound : Verdict::kAmbiguous;

@@ -22,7 +22,7 @@ double SignFlipGate(std::span<const Scored> scored, double false_alarm_rate, std
       if (s.effect->grid >= 12.0 && s.effect->order > 0.0 && s.effect->kind != "payload_step")
         continue;  // a scan's
       const Eigen::VectorXd h = s.per_block * signs;
-      best = std::max(best, h.dot(s.covariance * h) - Penalty(*s.effect));
+      best = std::max(best, h.dot(s.covariance * h) / s.excess - Penalty(*s.effect));
     }
     largest.push_back(best);
   }

@@ -37,6 +37,8 @@ struct Lanes {
   double* friction[kLanes] = {};
 };
 
+inline constexpr int kMostSubsteps = 32;
+
 void RunLanesBaseline(const Lanes& m);
 void RunLanesAvx2(const Lanes& m);
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kObserverBandwidth_Hz = 35.0;
 constexpr double kSettling_s = 0.3;
+constexpr std::size_t kSlowRows = 20;
 // Without a statement of the model file: what a careful data sheet is worth.
 const std::map<std::string, double> kDefaultSigma = {{"inertia", 0.05},
                                                      {"load_inertia", 0.05},
@@ -66,13 +67,13 @@ void Problem::ChooseSubsteps() {
     mode = std::max(
         mode, std::sqrt(nominal_.stiffness * (1.0 / nominal_.motor_inertia + 1.0 / nominal_.load_inertia)));
   const double damped = 2.0 * f.s1 / carried;
-  const auto steps = [&](int least, double w) {
+  const auto steps = [&](int least, double w, double finest) {
     int s = least;
-    while (s < 32 && (w * log_.period_s / s > 0.36 || damped * log_.period_s / s > 0.3)) s *= 2;
+    while (s < 32 && (w * log_.period_s / s > finest || damped * log_.period_s / s > 0.3)) s *= 2;
     return s;
   };
-  setup_.substeps_rigid = steps(4, presliding);
-  setup_.substeps_two = steps(8, mode);
+  setup_.substeps_rigid = steps(4, presliding, 0.36);
+  setup_.substeps_two = steps(8, mode, 0.12);
 }
 
 void Problem::MakeTerms() {
@@ -197,8 +198,7 @@ std::vector<double> Problem::White(const std::vector<double>& raw) const {
   const std::size_t n = rows();
   innovation_noise_.Apply(std::span(raw).first(n), white.data());
   if (has_scale()) scale_noise_.Apply(std::span(raw).subspan(n), white.data() + n);
-  for (std::size_t k = 0; k < white.size(); ++k)
-    if (counted_[k % n] == 0) white[k] = 0.0;
+  for (std::size_t k = 0; k < white.size(); ++k) white[k] *= root_weight_[k];
   return white;
 }
 
@@ -215,10 +215,48 @@ FilterRun Problem::Trace(const Point& point) const {
   return std::move(RunFilter(setup, std::span(&m, 1), 1)[0]);
 }
 
+void Problem::Lower(const double* r, std::size_t half, double largest_by_chance, double* w) const {
+  const std::size_t n = rows();
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < n + half; ++k) {
+    if (k < n && counted_[k] != 0) {
+      sum += r[k] * r[k];
+      count += 1.0;
+    }
+    if (k >= 2 * half + 1 && counted_[k - 2 * half - 1] != 0) {
+      sum -= r[k - 2 * half - 1] * r[k - 2 * half - 1];
+      count -= 1.0;
+    }
+    if (k < half) continue;
+    const double mean = count > 0.5 ? sum / count : 1.0;
+    if (mean > largest_by_chance) w[k - half] = std::min(w[k - half], 1.0 / std::sqrt(mean));
+  }
+}
+
 void Problem::LearnNoise(const std::vector<double>& raw) {
   const std::size_t n = rows();
   innovation_noise_ = Whitener(std::span(raw).first(n), counted_);
   if (has_scale()) scale_noise_ = Whitener(std::span(raw).subspan(n), counted_);
+  root_weight_.assign(data_size(), 1.0);
+  const std::vector<double> white = White(raw);
+  for (std::size_t base = 0; base < data_size(); base += n) {
+    const double* r = &white[base];
+    double* w = &root_weight_[base];
+    // Level of the noise over short and longer windows, and of its slow part: stuck, the axis answers to
+    // torque with another spectrum than sliding. Where any stands out, the largest counts.
+    std::vector<double> slow(n, 0.0);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+      sum += r[k] - (k >= kSlowRows ? r[k - kSlowRows] : 0.0);
+      if (k + 1 >= kSlowRows)
+        slow[k + 1 - kSlowRows / 2 - 1] = sum / std::sqrt(static_cast<double>(kSlowRows));
+    }
+    Lower(r, 15, 2.0, w);
+    Lower(r, 150, 1.25, w);
+    Lower(slow.data(), 400, 2.0, w);
+  }
+  for (std::size_t k = 0; k < data_size(); ++k)
+    if (counted_[k % n] == 0) root_weight_[k] = 0.0;
 }
 
 void Problem::LearnSignals(const Point& point) {

@@ -59,6 +59,7 @@ class Problem {
   [[nodiscard]] std::vector<double> White(const std::vector<double>& raw) const;
   [[nodiscard]] std::vector<std::vector<double>> Residuals(std::span<const Point> points) const;
   [[nodiscard]] FilterRun Trace(const Point& point) const;
+  /// Spectrum of the noise, then its level from place to place.
   void LearnNoise(const std::vector<double>& raw);
   /// Traces the point and renews what regressors are made of.
   void LearnSignals(const Point& point);
@@ -76,6 +77,9 @@ class Problem {
   std::shared_ptr<Signals> signals_;
   FilterSetup setup_;
   std::vector<std::uint8_t> counted_;  ///< rows whose residual counts
+  /// Per datum: 1 where the noise is as its spectrum says, less where it is locally larger (slip out of
+  /// stiction makes noise of torque into larger noise of position; a noise level may change).
+  std::vector<double> root_weight_;
   DataQuality quality_;
   Whitener innovation_noise_, scale_noise_;
 
@@ -83,6 +87,8 @@ class Problem {
   void MakeTerms();
   void ChooseSubsteps();
   void CountRows();
+  /// Lowers the weights w where the mean square of r over 2 half + 1 rows exceeds the limit.
+  void Lower(const double* r, std::size_t half, double largest_by_chance, double* w) const;
 };
 
 double StatedSigma(const StatedAxis& stated, const std::string& name);

@@ -58,10 +58,12 @@ Matched Match(const Problem& problem, const Fit& fit, bool reading) {
   const std::size_t n = problem.rows();
   Matched m;
   m.lambda.resize(n);
+  std::vector<double> weighted(n);
+  for (std::size_t k = 0; k < n; ++k) weighted[k] = fit.residual[k] * problem.root_weight_[k];
   for (std::size_t k = 0; k < n; ++k) {
     double sum = 0.0;
     const std::size_t count = std::min(h.size(), n - k);
-    const double* r = &fit.residual[k];
+    const double* r = &weighted[k];
     for (std::size_t i = 0; i < count; ++i) sum += h[i] * r[i];
     m.lambda[k] = sum;
   }
@@ -127,7 +129,7 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
     const auto bin = static_cast<std::size_t>((s.angle_rad[k] - *low) / kTwoPi * per_rev + 0.5);
     re[std::min(bin, length - 1)] += weight[k] * matched.lambda[k];
     const auto b = std::min(kBins - 1, static_cast<std::size_t>(std::sqrt(speed[k] / fastest) * kBins));
-    histogram.weight[b] += weight[k] * weight[k];
+    histogram.weight[b] += weight[k] * weight[k] * problem.root_weight_[k] * problem.root_weight_[k];
   }
   FourierTransform(re, im, false);
   std::vector<Peak> out;
@@ -201,7 +203,7 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   double moving = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     re[k] = sliding[k] * torque.lambda[k];
-    moving += sliding[k];
+    moving += sliding[k] * problem.root_weight_[k] * problem.root_weight_[k];
   }
   FourierTransform(re, im, false);
   std::vector<Peak> time;

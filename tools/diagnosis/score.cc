@@ -22,7 +22,33 @@ void AddBlocks(const double* column, const double* residual, std::size_t rows, s
   }
 }
 
+double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
+  const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
+  return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
+}
+
 }  // namespace
+
+double ExcessOfLast(const Problem& problem, const Fit& fit) {
+  const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
+  const Eigen::Index others = fit.jacobian.cols() - n;
+  Eigen::MatrixXd blocks(fit.jacobian.cols(), kBlocks);
+  for (Eigen::Index i = 0; i < fit.jacobian.cols(); ++i) {
+    Eigen::RowVectorXd row(kBlocks);
+    AddBlocks(fit.jacobian.col(i).data(), fit.residual.data(), problem.rows(), problem.data_size(), row);
+    blocks.row(i) = row;
+  }
+  Eigen::MatrixXd normal = fit.jacobian.transpose() * fit.jacobian;
+  for (std::size_t i = 0; i < fit.point.base.size(); ++i)
+    normal(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) +=
+        std::pow(problem.terms_[i].sigma, -2);
+  const Eigen::MatrixXd onto =
+      normal.topLeftCorner(others, others).ldlt().solve(normal.topRightCorner(others, n));
+  const Eigen::MatrixXd information =
+      normal.bottomRightCorner(n, n) - normal.topRightCorner(others, n).transpose() * onto;
+  const Eigen::MatrixXd projected = blocks.bottomRows(n) - onto.transpose() * blocks.topRows(others);
+  return Excess(projected, information.ldlt().solve(Eigen::MatrixXd::Identity(n, n)));
+}
 
 double Penalty(const Effect& effect) {
   return 3.0 * static_cast<double>(effect.steps.size()) + 2.0 * std::log(std::max(1.0, effect.grid));
@@ -87,7 +113,8 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
       s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
       s.amplitude = -solver.solve(gradient);
       s.drop = -gradient.dot(s.amplitude);
-      s.score = s.drop - Penalty(effect);
+      s.excess = Excess(s.per_block, s.covariance);
+      s.score = s.drop / s.excess - Penalty(effect);
       const Eigen::RowVectorXd blocks = -s.amplitude.transpose() * s.per_block;
       s.consistency = blocks.sum() / (blocks.norm() + 1e-300);
       out.push_back(std::move(s));

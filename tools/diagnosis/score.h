@@ -21,6 +21,9 @@ struct Scored {
   Eigen::VectorXd amplitude;
   Eigen::MatrixXd covariance;  ///< of the amplitudes
   Eigen::MatrixXd per_block;   ///< projected gradient, amplitudes x blocks
+  /// How much larger than white noise would make them the drops are when blocks get random signs; at least 1.
+  /// A residual that is not quite white, or not quite stationary, shows here.
+  double excess = 1.0;
 };
 
 double Penalty(const Effect& effect);
@@ -28,6 +31,9 @@ double Penalty(const Effect& effect);
 /// Tests effects at zero amplitude beside whatever `fit` holds.
 std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
                                  std::span<const SharedEffect> effects);
+
+/// Of the last effect of a fit, from the fit's own residual: free of what the effect explains.
+double ExcessOfLast(const Problem& problem, const Fit& fit);
 
 /// Effects that the scans over orders and frequencies propose.
 std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit);
