@@ -99,6 +99,13 @@ TEST(Effects, PositionFriction) {
   EXPECT_NEAR(Sliding_N(c, -0.1, -0.05), -28.0, 0.01);
 }
 
+TEST(Effects, FrictionMap) {
+  EmulatedAxisConfig c = Plain();
+  c.effects.friction_map = FrictionMapEffect{{-50, 50, 150}, {-0.1, 0.1, 0.4}};
+  EXPECT_NEAR(Sliding_N(c, 0.1, 0.05), 50.0, 0.05);
+  EXPECT_NEAR(Sliding_N(c, 0.0, -0.05), -40.0, 0.05);
+}
+
 TEST(Effects, CableSpringPullsBackInBothDirectionsOfMotion) {
   EmulatedAxisConfig c = Plain(0.0);
   c.effects.cable_spring = CableSpringEffect{0.04, 0.0};

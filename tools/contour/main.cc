@@ -10,6 +10,8 @@
 #include "tools/contour/check_command.h"
 #include "tools/contour/command.h"
 #include "tools/contour/contest_command.h"
+#include "tools/contour/diagnose_command.h"
+#include "tools/contour/emps_command.h"
 #include "tools/contour/emulate_command.h"
 #include "tools/contour/export_command.h"
 #include "tools/contour/replay_command.h"
@@ -54,6 +56,8 @@ int main(int argc, char** argv) {
 
   contour::AddCheckCommand(app, action);
   contour::AddEmulateCommand(app, action);
+  contour::AddDiagnoseCommand(app, action);
+  contour::AddEmpsCommand(app, action);
   contour::AddSimulateCommand(app, action);
   contour::AddRunCommand(app, action);
   contour::AddStatusCommand(app, action);

@@ -94,6 +94,19 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                          m.friction.Fs_minus *= 1.0 - 0.5 * a[0];
                        },
                        {}, {-1.8}, {1.8}));
+  // Guides and wipers that drag one way do so at speed, too: a viscous term that differs with them.
+  const auto way = Make(n, [&](std::size_t k) {
+    return s.velocity[k] > 0.0 ? 1.0 : s.velocity[k] < 0.0 ? -1.0 : 0.0;
+  });
+  out.push_back(Custom("asymmetric_coulomb", "and viscous", 1, {2e-3, 5e-3},
+                       [way](const auto& a, AxisModel& m) {
+                         m.friction.Fc_plus *= 1.0 + 0.5 * a[0];
+                         m.friction.Fs_plus *= 1.0 + 0.5 * a[0];
+                         m.friction.Fc_minus *= 1.0 - 0.5 * a[0];
+                         m.friction.Fs_minus *= 1.0 - 0.5 * a[0];
+                         m.viscous = Add(m.viscous, {way}, {0.5 * a[1]});
+                       },
+                       {}, {-1.8, -1.8}, {1.8, 1.8}));
   out.push_back(
       Custom("constant_torque", "", 1, {0.01 * Fc}, [](const auto& a, AxisModel& m) { m.offset += a[0]; }));
   const StatedFriction& f = p.nominal_.friction;

@@ -54,7 +54,11 @@ Named Evaluate(const Problem& problem, const Point& point, std::size_t index) {
     v["phase_rad"] = std::remainder(phase, kTwoPi);
     return v;
   };
-  if (e.kind == "asymmetric_coulomb") return {{"difference_rel", a[0]}};
+  if (e.kind == "asymmetric_coulomb") {
+    Named v{{"difference_rel", a[0]}};
+    if (a.size() > 1) v["viscous_difference_rel"] = a[1];
+    return v;
+  }
   if (e.kind == "constant_torque") return {{"torque_Nm", a[0]}};
   if (e.kind == "stribeck") {
     const AxisModel m = problem.Build(point);

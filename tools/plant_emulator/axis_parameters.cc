@@ -27,6 +27,12 @@ void Check(const EmulatedAxisConfig& c, const std::string& axis) {
   if (f.position_amplitude_rel + f.ripple_amplitude_rel >= 1.0)
     Refuse(axis,
            "position and ripple variation together must stay below 1, or friction would drive the table");
+  if (const auto& map = c.effects.friction_map) {
+    if (map->position_mm.empty() || map->position_mm.size() != map->friction_rel.size())
+      Refuse(axis, "effects.friction_map: as many positions as values are needed, and at least one");
+    if (!std::is_sorted(map->position_mm.begin(), map->position_mm.end()))
+      Refuse(axis, "effects.friction_map.position_mm must ascend");
+  }
 }
 
 void SetFriction(AxisParameters& p, const EmulatedFrictionConfig& f, Random& random, double variation) {

@@ -23,6 +23,17 @@ double At(const Wave& w, double x) noexcept {
 double Ripple(const RippleEffect& e, double angle_rad) noexcept {
   return e.amplitude_rel * portable::Sin(e.order_per_rev * angle_rad + e.phase_rad);
 }
+/// Constant beyond its ends.
+double At(const FrictionMapEffect& map, double position_m) noexcept {
+  const double x = 1e3 * position_m;
+  if (x <= map.position_mm.front()) return map.friction_rel.front();
+  for (std::size_t i = 1; i < map.position_mm.size(); ++i) {
+    const double x0 = map.position_mm[i - 1], x1 = map.position_mm[i];
+    if (x < x1)
+      return map.friction_rel[i - 1] + (map.friction_rel[i] - map.friction_rel[i - 1]) * (x - x0) / (x1 - x0);
+  }
+  return map.friction_rel.back();
+}
 double Sign(double x) noexcept { return static_cast<double>((x > 0.0) - (x < 0.0)); }
 
 std::variant<LugreFriction, MaxwellSlipFriction> MakeFriction(const AxisParameters& p, double share) {
@@ -83,6 +94,7 @@ FrictionScale AxisPlant::Scale() const noexcept {
     common *= 1.0 + e->amplitude_rel *
                         portable::Sin(kTwoPi * e->periods_per_stroke * table_m_ / (2.0 * p_.half_stroke_m) +
                                       e->phase_rad);
+  if (const auto& e = p_.effects.friction_map) common *= 1.0 + At(*e, table_m_);
   if (const auto& e = p_.effects.friction_ripple) common *= 1.0 + Ripple(*e, angle);
   if (const auto& e = p_.effects.ball_ripple) common *= 1.0 + Ripple(*e, angle);
   if (const auto& e = p_.effects.load_friction) {

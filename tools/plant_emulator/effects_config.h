@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/visit.h"
 
@@ -51,6 +52,18 @@ struct PositionFrictionEffect {
     v.Required("amplitude_rel", amplitude_rel, Range{-0.9, 0.9}, "peak variation, of the friction level");
     v.Optional("periods_per_stroke", periods_per_stroke, kPositive, "periods of the sine over the stroke");
     v.Optional("phase_rad", phase_rad, kAny, "phase of the sine at mid-stroke");
+  }
+};
+
+/// The same by a table; straight lines between its points.
+struct FrictionMapEffect {
+  std::vector<double> position_mm;
+  std::vector<double> friction_rel;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("position_mm", position_mm, "positions of the table, ascending");
+    v.Required("friction_rel", friction_rel, Range{-0.95, 10.0},
+               "friction beyond the friction section's there");
   }
 };
 
@@ -327,6 +340,7 @@ struct EffectsConfig {
   std::optional<ConstantTorqueEffect> constant_torque;
   std::optional<StribeckEffect> stribeck;
   std::optional<PositionFrictionEffect> position_friction;
+  std::optional<FrictionMapEffect> friction_map;
   std::optional<CableSpringEffect> cable_spring;
   std::optional<RippleEffect> friction_ripple;
   std::optional<RippleEffect> ball_ripple;
@@ -359,6 +373,7 @@ struct EffectsConfig {
     v.Optional("constant_torque", constant_torque, "gravity or a sensor offset");
     v.Optional("stribeck", stribeck, "another Stribeck curve");
     v.Optional("position_friction", position_friction, "friction that varies over the stroke");
+    v.Optional("friction_map", friction_map, "friction that varies over the stroke, by a table");
     v.Optional("cable_spring", cable_spring, "a pull back towards mid-stroke");
     v.Optional("friction_ripple", friction_ripple, "friction that varies per turn");
     v.Optional("ball_ripple", ball_ripple, "friction that varies with the balls' circulation");

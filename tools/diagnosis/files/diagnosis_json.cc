@@ -10,6 +10,13 @@ using Json = nlohmann::ordered_json;
 
 Json Number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json ContourJson(const ContourGain& c) {
+  return {{"program", c.program},
+          {"peak_before_um", Number(c.before_um)},
+          {"peak_after_um", Number(c.after_um)},
+          {"gain", Number(c.gain())}};
+}
+
 Json CauseJson(const Cause& cause) {
   Json parameters = Json::object();
   for (const auto& [name, p] : cause.parameters)
@@ -44,7 +51,8 @@ std::string VerdictName(Verdict verdict) {
   return "insufficient_data";
 }
 
-std::string DiagnosisJson(const Diagnosis& d, const std::string& extended_model) {
+std::string DiagnosisJson(const Diagnosis& d, const std::string& extended_model,
+                          const std::optional<ContourGain>& contour) {
   Json causes = Json::array();
   for (const Cause& cause : d.causes) causes.push_back(CauseJson(cause));
   Json detectable = Json::object();
@@ -63,6 +71,7 @@ std::string DiagnosisJson(const Diagnosis& d, const std::string& extended_model)
                        {"stale", d.data_quality.stale},
                        {"outliers", d.data_quality.outliers}}},
                      {"extended_model", extended_model.empty() ? Json(nullptr) : Json(extended_model)},
+                     {"contour_gain", contour ? ContourJson(*contour) : Json(nullptr)},
                      {"notes", d.notes}};
   return json.dump(2) + "\n";
 }

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "config/config_error.h"
+#include "config/extended_model.h"
 #include "config/load_machine.h"
 #include "config/yaml_reader.h"
 #include "tools/diagnosis/files/loose_axis.h"
@@ -50,20 +51,22 @@ bool IsMachineFile(const std::string& file) { return IsMachine(ParseYamlFile(fil
 
 StatedAxis ToStatedAxis(const MachineConfig& machine, const std::string& name) {
   const AxisConfig& a = machine.axes.at(name);
-  const Mechanics m = ToSi(a.model.mechanics);
+  const ExtendedModel model = Extended(a.model);
+  const Mechanics m = ToSi(model.mechanics);
   const double r = m.radius_m_rad;
   StatedAxis axis;
   axis.lead_m = a.model.mechanics.lead_mm * 1e-3;
   axis.table_per_q = r;
   axis.two_inertia = true;
-  axis.motor_inertia = a.model.mechanics.motor_inertia_kgm2;
+  axis.motor_inertia = model.mechanics.motor_inertia_kgm2;
   axis.load_inertia = r * r * m.table_mass_kg;
   axis.stiffness = r * r * m.stiffness_N_m;
   axis.damping = r * r * m.damping_Ns_m;
   axis.friction_on_load = a.model.friction.acts_on == FrictionSide::kTable;
-  axis.friction = SeenAtQ(AtTable(ToSi(a.model.friction, r)), r);
-  axis.delay_s = a.drive.delay_cycles * machine.machine.cycle_us * 1e-6;
-  axis.lag_s = a.drive.lag_ms * 1e-3;
+  axis.friction = SeenAtQ(AtTable(ToSi(model.friction, r)), r);
+  axis.delay_s = a.drive.delay_cycles * machine.machine.cycle_us * 1e-6 + model.added_delay_s;
+  axis.lag_s = a.drive.lag_ms * 1e-3 + model.added_lag_s;
+  if (const auto& e = a.model.extensions.constant_torque) axis.offset = e->torque_Nm;
   axis.position_step = 2.0 * std::numbers::pi / a.drive.encoder_counts_per_rev;
   axis.command_step = a.drive.rated_torque_Nm * 1e-3;  // the bus carries per mille of it
   axis.rated = a.drive.rated_torque_Nm;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/visit.h"
+#include "estimator/extension_config.h"
 #include "estimator/friction_config.h"
 
 // A model that stands alone, for axes that have no machine file. Optional keys that are left out are not
@@ -63,7 +64,7 @@ struct LooseModelConfig {
 
   LooseFrictionConfig friction;
   std::map<std::string, double> uncertainty;
-  std::map<std::string, std::map<std::string, double>> extensions;
+  ExtensionsConfig extensions;
 
   template <class Visitor>
   void Visit(Visitor& v) {

@@ -1,0 +1,81 @@
+#include "tools/diagnosis/files/extended_file.h"
+
+#include <gtest/gtest.h>
+
+#include "config/load_machine.h"
+#include "tests/config/test_files.h"
+#include "tools/diagnosis/files/read_stated_axis.h"
+
+namespace contour::diagnosis {
+namespace {
+
+Cause Cogging(double amplitude_Nm) {
+  Cause c;
+  c.kind = "cogging";
+  c.parameters["amplitude_Nm"] = {amplitude_Nm, 0, 1};
+  c.parameters["order_per_rev"] = {12, 12, 12};
+  c.parameters["phase_rad"] = {0.7, 0.6, 0.8};
+  return c;
+}
+
+Diagnosis Found(std::vector<Cause> causes) {
+  Diagnosis d;
+  d.verdict = Verdict::kCauseFound;
+  d.causes = std::move(causes);
+  return d;
+}
+
+TEST(ExtendedFileTest, AMachineFileKeepsEveryLineAndComment) {
+  const std::string file = ExampleMachine("xy_emulated.yaml");
+  const std::string text = ExtendedFile(file, "x", Found({Cogging(0.0191)}), {});
+  const std::string written = WriteTestFile("machine.yaml", text);
+  const MachineConfig machine = LoadMachine(written);
+  ASSERT_TRUE(machine.axes.at("x").model.extensions.cogging);
+  EXPECT_DOUBLE_EQ(machine.axes.at("x").model.extensions.cogging->amplitude_Nm, 0.0191);
+  EXPECT_FALSE(machine.axes.at("y").model.extensions.cogging);
+  // Without the new block it is the old file.
+  const std::size_t from = text.find("      extensions:");
+  const std::size_t to = text.find("\n\n  y:", from);
+  ASSERT_NE(from, std::string::npos);
+  ASSERT_NE(to, std::string::npos);
+  std::string without = text;
+  without.erase(from, to - from);
+  without.erase(from - 1, 1);
+  EXPECT_EQ(without, ReadText(file));
+
+  // A second diagnosis replaces the block and keeps what it does not know anew.
+  Cause offset;
+  offset.kind = "constant_torque";
+  offset.parameters["torque_Nm"] = {0.01, 0, 0.02};
+  const MachineConfig again =
+      LoadMachine(WriteTestFile("again.yaml", ExtendedFile(written, "x", Found({offset}), {})));
+  EXPECT_TRUE(again.axes.at("x").model.extensions.cogging);
+  EXPECT_DOUBLE_EQ(again.axes.at("x").model.extensions.constant_torque->torque_Nm, 0.01);
+}
+
+TEST(ExtendedFileTest, AModelAloneAndItsTables) {
+  const std::string file = WriteTestFile("model.yaml",
+                                         "model:\n  motor_inertia_kgm2: 5e-5   # measured\n  lead_mm: 5\n"
+                                         "  friction: {acts_on: motor, Fc_plus_Nm: 0.03, Fc_minus_Nm: 0.03, "
+                                         "sigma2_Nms_rad: 1e-4}\ndrive: {delay_ms: 1}\n");
+  Cause map;
+  map.kind = "position_friction";
+  map.parameters["amplitude_rel"] = {0.25, 0.2, 0.3};
+  map.shapes.push_back({"position_mm", "friction_rel", {-10, 0, 10}, {-0.25, 0, 0.25}, {0.01, 0.01, 0.01}});
+  const std::string text = ExtendedFile(file, "", Found({map}), {});
+  EXPECT_NE(text.find("# measured"), std::string::npos);
+  EXPECT_NE(text.find("position_mm: [-10, 0, 10]"), std::string::npos);
+  EXPECT_LT(text.find("friction_rel"), text.find("drive:"));
+  EXPECT_NO_THROW(ReadStatedAxis(WriteTestFile("extended.yaml", text), ""));
+}
+
+TEST(ExtendedFileTest, NothingToAddIsNoFile) {
+  const std::string file = ExampleMachine("xy_emulated.yaml");
+  EXPECT_EQ(ExtendedFile(file, "x", Found({}), {}), "");
+  Cause backlash;
+  backlash.kind = "backlash";
+  EXPECT_EQ(ExtendedFile(file, "x", Found({backlash}), {}), "");
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

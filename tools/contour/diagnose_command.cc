@@ -1,0 +1,169 @@
+#include "tools/contour/diagnose_command.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "config/config_error.h"
+#include "config/load_machine.h"
+#include "config/number_text.h"
+#include "daemon/program/program.h"
+#include "tools/contour/terminal_progress.h"
+#include "tools/diagnosis/diagnose.h"
+#include "tools/diagnosis/files/diagnosis_json.h"
+#include "tools/diagnosis/files/diagnosis_text.h"
+#include "tools/diagnosis/files/extended_file.h"
+#include "tools/diagnosis/files/extensions_of.h"
+#include "tools/diagnosis/files/read_log.h"
+#include "tools/diagnosis/files/read_stated_axis.h"
+#include "tools/diagnosis/predict/contour_gain.h"
+#include "tools/diagnosis/report/report.h"
+
+namespace contour {
+namespace {
+
+using namespace diagnosis;  // NOLINT(google-build-using-namespace): this file is its command
+
+struct Options {
+  std::vector<std::string> logs;
+  std::string model;
+  std::string axis;
+  std::string out;
+  std::string json;
+  std::string columns;
+  std::string program;
+  double false_alarm_rate = 0.05;
+  int bootstrap_runs = 0;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  std::vector<std::string> set;
+};
+
+AxisLog ReadLogs(const Options& options, const StatedAxis& stated) {
+  ReadOptions read;
+  read.axis = options.axis;
+  read.columns = ParseColumnNames(options.columns);
+  read.table_per_q = stated.table_per_q;
+  std::vector<AxisLog> logs;
+  for (const std::string& file : options.logs) {
+    logs.push_back(ReadLog(file, read));
+    if (logs.back().linear != stated.linear)
+      throw ConfigError({file + ": is the log of a " + (logs.back().linear ? "linear" : "rotary") +
+                         " axis, " + options.model + " states a " + (stated.linear ? "linear" : "rotary") +
+                         " one"});
+  }
+  return JoinLogs(std::move(logs));
+}
+
+void WriteFile(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + file.string());
+}
+
+/// The extended model beside the report; its name, or nothing when there is none.
+std::string WriteExtendedModel(const Options& options, const Diagnosis& found, const AxisLog& log) {
+  const std::string text = ExtendedFile(options.model, options.axis, found, log);
+  if (text.empty()) return "";
+  const std::string file = (std::filesystem::path(options.out) / "extended_model.yaml").string();
+  WriteFile(file, text);
+  return file;
+}
+
+/// By simulation of a machine file's machine with the causes found; a model alone has no path to draw.
+std::optional<ContourGain> Predict(const Options& options, const Diagnosis& found, const AxisLog& log) {
+  if (!IsMachineFile(options.model)) return {};
+  const MachineConfig machine = LoadMachine(options.model, options.set);
+  const std::string axis = options.axis.empty() ? machine.axes.begin()->first : options.axis;
+  const Program program = options.program.empty() ? UsualCircle(machine) : LoadProgram(options.program);
+  return PredictContourGain(machine, axis, found, MeanTemperature_degC(log), program);
+}
+
+std::string PredictionText(const ContourGain& gain) {
+  return "On the path, by simulation of " + gain.program + ": largest contour error " +
+         RoundedText(gain.before_um) + " um with the model as stated, " + RoundedText(gain.after_um) +
+         " um with the extended one, " + RoundedText(100.0 * gain.gain()) + " % less.\n";
+}
+
+int RunDiagnose(const Options& options) {
+  const StatedAxis stated = ReadStatedAxis(options.model, options.axis, options.set);
+  const AxisLog log = ReadLogs(options, stated);
+  DiagnoseOptions how;
+  how.false_alarm_rate = options.false_alarm_rate;
+  how.bootstrap_runs = options.bootstrap_runs;
+  how.seed = options.seed;
+  how.threads = options.threads > 0 ? options.threads
+                                    : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  Diagnosis found;
+  std::optional<ContourGain> contour;
+  {
+    TerminalProgress progress;
+    how.progress = [&](std::string_view doing, double share) { progress.Show(doing, share); };
+    found = Diagnose(log, stated, how);
+    if (!options.out.empty()) {
+      progress.Show("simulating the path", 1.0);
+      contour = Predict(options, found, log);
+    }
+  }
+  std::string extended;
+  if (!options.out.empty()) {
+    std::filesystem::create_directories(options.out);
+    extended = WriteExtendedModel(options, found, log);
+  }
+  const std::string json = DiagnosisJson(found, extended, contour);
+  std::cout << DiagnosisText(found);
+  if (contour) std::cout << PredictionText(*contour);
+  if (!extended.empty()) std::cout << "Model with what was found: " << extended << "\n";
+  if (!options.json.empty()) WriteFile(options.json, json);
+  if (!options.out.empty()) {
+    const std::filesystem::path out = options.out;
+    WriteFile(out / "diagnose.json", json);
+    WriteReport(out, log, stated, found, extended, contour);
+    std::cout << "Report: " << (out / "report.html").string() << "\n";
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddDiagnoseCommand(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub =
+      app.add_subcommand("diagnose", "What a simulation gets wrong about an axis, and why, from a log");
+  sub->add_option("logs", options->logs, "Logs of contourd, or tables (CSV) with time, command and position")
+      ->required()
+      ->check(CLI::ExistingFile);
+  sub->add_option("--model", options->model, "Machine file, or a model that stands alone (YAML)")
+      ->required()
+      ->check(CLI::ExistingFile);
+  sub->add_option("--axis", options->axis, "Axis, where the files hold several");
+  sub->add_option("--out", options->out,
+                  "Directory for report, pictures, diagnose.json and the extended model");
+  sub->add_option("--json", options->json, "File for the result as JSON");
+  sub->add_option("--false-alarm-rate", options->false_alarm_rate,
+                  "Share of the logs of a machine that is as stated in which something may be found")
+      ->check(CLI::Range(1e-4, 0.5));
+  sub->add_option("--columns", options->columns, "NAME=HEADER,...: how a table spells what is needed");
+  sub->add_option("--program", options->program,
+                  "Program whose contour error is simulated for the report; default: a circle of 10 mm")
+      ->check(CLI::ExistingFile);
+  sub->add_option("--bootstrap", options->bootstrap_runs,
+                  "Clean logs simulated to calibrate the gate; 0: none")
+      ->check(CLI::Range(0, 100000));
+  sub->add_option("--seed", options->seed, "Of everything drawn; the same seed gives the same answer");
+  sub->add_option("--threads", options->threads, "Cores to use; 0: all")->check(CLI::Range(0, 256));
+  sub->add_option("--set", options->set, "KEY=VALUE: override a key of the model file; repeatable")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  sub->callback([options, &action] { action = [options] { return RunDiagnose(*options); }; });
+}
+
+}  // namespace contour

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "config/machine_config.h"
+#include "daemon/program/program.h"
+#include "tools/diagnosis/files/contour_gain.h"
+#include "tools/diagnosis/finding.h"
+
+namespace contour::diagnosis {
+
+/// What extending the model will do for the path, by simulation of the machine that the diagnosis describes:
+/// the model's numbers as fitted, with the causes found. On it, the controller `full` draws the program once
+/// with the model as stated and once with the extended one. The machine file's own `emulator:` is never
+/// looked at. Nothing where the machine has one axis only (a path is then never left), or where a cause is of
+/// a kind that no model is extended by. Throws std::runtime_error when the simulated machine stops.
+std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, const std::string& axis,
+                                              const Diagnosis& found, double mean_temperature_degC,
+                                              const Program& program);
+
+/// A circle of 10 mm at 3 m/min, or what the axes' limits allow of it.
+Program UsualCircle(const MachineConfig& machine);
+
+}  // namespace contour::diagnosis
