@@ -41,6 +41,7 @@ struct AxisSetpoint {
   DriveGoal goal = DriveGoal::kDisabled;
   double torque_Nm = 0.0;     ///< target torque (0x6071) in CST, torque offset (0x60B2) in CSP
   double position_rad = 0.0;  ///< target position (0x607A) in CSP
+  bool in_motion = false;     ///< the reference moves: torque has to be right on average
 };
 
 /// Reference of one axis at one grid point, table units: its motion, and what experiments ask for besides.

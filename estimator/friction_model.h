@@ -47,12 +47,21 @@ inline double BristleAfter(double bristle_N, double velocity_m_s, double sigma0_
          (target - bristle_N) * BristleRelaxation(sigma0_N_m, std::abs(velocity_m_s), level_N, duration_s);
 }
 
+/// A bristle may exceed its level: after a reversal between unequal levels, and with the lag of a falling
+/// Stribeck curve. By more than this many levels it does so only because the estimated level has just fallen.
+inline constexpr double kMostLevels = 2.0;
+
+/// F / g of a bristle within what it can be.
+inline double ShareOfLevel(double bristle_N, double level_N) noexcept {
+  return std::clamp(bristle_N / level_N, -kMostLevels, kMostLevels);
+}
+
 /// sigma1 z' of eq. 5 with a damping that fades with speed: sigma1(v) = sigma1 exp(-(v / vd)^2). With F =
 /// sigma0 z, z' = v - |v| F / g.
 inline double BristleDamping(const Friction& f, double bristle_N, double velocity_m_s,
                              double level_N) noexcept {
   const double u = velocity_m_s / f.sigma1_decay_m_s;
-  const double rate = velocity_m_s - std::abs(velocity_m_s) * bristle_N / level_N;
+  const double rate = velocity_m_s - std::abs(velocity_m_s) * ShareOfLevel(bristle_N, level_N);
   return f.sigma1_Ns_m * Exp(-u * u) * rate;
 }
 

@@ -32,6 +32,8 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
     const double factor =
         correction.Factor(basis, velocity >= 0.0) * known.effects.LevelFactor(now.position_m);
     const double level_N = model.Level(along, {{}, factor, factor});
+    // The level may have come down since, by more than the bristle can follow.
+    bristle_N = level_N * ShareOfLevel(bristle_N, level_N);
     const double relaxation = BristleRelaxation(sigma0, std::abs(velocity), level_N, period_s_);
     const double next_N = bristle_N + (std::copysign(level_N, velocity) - bristle_N) * relaxation;
     const double middle_N = 0.5 * (bristle_N + next_N);
@@ -41,7 +43,11 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
       bristle_N_ = next_N;
       const double share = (velocity >= 0.0 ? bristle_N : -bristle_N) / level_N;
       const bool sliding = !at_rest && share > kSlidingShare;
-      if (sliding) rigid.Learn(offset_N + d, now.velocity_m_s, now.acceleration_m_s2);
+      if (sliding) {
+        const double level_share =
+            velocity >= 0.0 ? x[kLevelPlus] / f.Fc_plus_N : x[kLevelMinus] / f.Fc_minus_N;
+        rigid.Learn(offset_N + d, now.velocity_m_s, now.acceleration_m_s2, level_share);
+      }
       correction.Learn(basis, velocity >= 0.0, 1.0 - relaxation, (offset_N + d) / level_N,
                        velocity * period_s_, sliding);
     }

@@ -8,6 +8,10 @@ namespace contour {
 /// what the friction model cannot explain and goes with the commanded acceleration is inertia, what goes with
 /// the commanded velocity is viscous. (Coulomb friction only changes sign with the direction of motion.)
 /// Least mean squares, normalised.
+///
+/// How slow a motion still teaches viscous friction depends on how much Coulomb friction there is for it to
+/// be mistaken for. Without any, viscous friction is all there is: it is learnt from slow motions too, and
+/// faster.
 class RigidCorrection {
  public:
   struct Tuning {
@@ -26,15 +30,20 @@ class RigidCorrection {
   [[nodiscard]] double extra_Ns_m() const noexcept { return extra_Ns_m_; }
 
   /// `unexplained_N`: force beyond the friction model and the present correction, positive against positive
-  /// motion.
-  void Learn(double unexplained_N, double velocity_m_s, double acceleration_m_s2) noexcept {
-    const double per_a =
-        acceleration_m_s2 / (acceleration_m_s2 * acceleration_m_s2 + kQuiet_m_s2 * kQuiet_m_s2);
-    const double per_v = velocity_m_s / (velocity_m_s * velocity_m_s + kSlow_m_s * kSlow_m_s);
+  /// motion. `level_share`: the friction level in this direction over the commissioned one.
+  void Learn(double unexplained_N, double velocity_m_s, double acceleration_m_s2,
+             double level_share = 1.0) noexcept {
+    const double a2 = acceleration_m_s2 * acceleration_m_s2;
+    const double quiet2 = kQuiet_m_s2 * kQuiet_m_s2;
+    const double per_a = acceleration_m_s2 / (a2 + quiet2);
+    const double slow_m_s = kSlow_m_s * std::clamp(2.0 * level_share, kLeastSlow, 1.0);
+    const double per_v = velocity_m_s / (velocity_m_s * velocity_m_s + slow_m_s * slow_m_s);
+    // Where the axis accelerates, a wrong mass would be taken for it.
+    const double haste = level_share < kNoLevel ? 1.0 + (kHaste - 1.0) * quiet2 / (a2 + quiet2) : 1.0;
     const double most_kg = kMost * tuning_.mass_kg;
     extra_kg_ = std::clamp(extra_kg_ + tuning_.mass_rate * unexplained_N * per_a, -most_kg, most_kg);
     // Never below no viscous friction at all.
-    extra_Ns_m_ = std::clamp(extra_Ns_m_ + tuning_.viscous_rate * unexplained_N * per_v,
+    extra_Ns_m_ = std::clamp(extra_Ns_m_ + haste * tuning_.viscous_rate * unexplained_N * per_v,
                              -tuning_.viscous_Ns_m, 2.0 * tuning_.viscous_Ns_m + kLeastRoom_Ns_m);
   }
 
@@ -42,6 +51,10 @@ class RigidCorrection {
   // Slower accelerations and velocities than these teach little: a newton then stands for tens of kilograms.
   static constexpr double kQuiet_m_s2 = 0.1;
   static constexpr double kSlow_m_s = 10e-3;
+  static constexpr double kLeastSlow = 0.02;  // of kSlow_m_s
+  // A level below this share of the commissioned one is none.
+  static constexpr double kNoLevel = 0.01;
+  static constexpr double kHaste = 5.0;
   static constexpr double kMost = 0.4;
   static constexpr double kLeastRoom_Ns_m = 100.0;
 

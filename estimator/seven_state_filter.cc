@@ -11,12 +11,15 @@ constexpr double kPreslidingShare = 0.7;
 // Even with a third of the commissioned stiffness a real one has come to 1 - exp(-4/3) = 0.74 by then.
 constexpr double kMissingShare = 0.3;
 constexpr double kSettledLengths = 4.0;
+constexpr double kSettled_s = 0.05;
 // By how much the level then comes down per presliding length.
 constexpr double kGivingUpShare = 0.3;
+// What must hold the axis back for a level that was given up to be taken back, in doubts.
+constexpr double kTakenBackDoubts = 4.0;
 // Standard deviation of a level, at most this share of it.
 constexpr double kLargestLevelStd = 0.25;
 // Lowest level, of the commissioned one: an axis may turn out to have hardly any friction.
-constexpr double kLowestLevelShare = 1e-3;
+constexpr double kLowestLevelShare = 1e-4;
 
 // Largest factor on the noise of parameters and disturbance for a coarse encoder.
 constexpr double kMostCoarse = 7.0;
@@ -75,6 +78,7 @@ void SevenStateFilter<Core>::Reset(double position_m) noexcept {
   core_.s = {};
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = initial_std_[i];
   last_position_m_ = position_m;
+  periods_since_position_ = 1.0;
   Follow(position_m);
 }
 
@@ -83,16 +87,16 @@ template <class Core>
 void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   auto& x = core_.x;
   x[kPosition] = position_m;
-  x[kVelocity] = (position_m - last_position_m_) / setup_.period_s;
+  x[kVelocity] = (position_m - last_position_m_) / (setup_.period_s * periods_since_position_);
   x[kBristle] = 0.0;
   x[kDisturbance] = 0.0;
   X std = initial_std_;
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) std[i] = std::sqrt(core_.Variance(i));
   core_.s = {};
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = std[i];
-  last_position_m_ = position_m;
   surprise_ = 1.0;
-  direction_ = 0;
+  direction_ = travel_direction_ = 0;
+  travel_m_ = travel_s_ = 0.0;
   lag_.Reset();
   predicted_ = x;
   gated_in_a_row_ = 0;
@@ -136,6 +140,8 @@ void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   X noise = noise_;
   noise[kDisturbance] *= moving;
   if (in.at_rest) noise[kBristle] *= setup_.config.rest_noise;
+  // What stirs the bristle comes from the surfaces that make the level. Without friction it is still.
+  noise[kBristle] *= std::min(1.0, 2.0 * x[LevelState()] / CommissionedLevel_N());
   const auto adapted = Adapted(in.at_rest);
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
 
@@ -172,25 +178,54 @@ UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput&
 // After some presliding lengths g / sigma0 of travel in one direction the bristle has come to the level:
 // F = g (1 - exp(-sigma0 x / g)). If it stays far below, there is not that much friction, but the filter
 // cannot see that by itself: far from the level, F does not depend on it (dF/dg = 0 at F = 0). So the level
-// comes down by travel.
+// comes down by travel. Nor does a level of nearly nothing come up again by itself: it is taken from what
+// holds the axis back.
 template <class Core>
-void SevenStateFilter<Core>::GiveUpLevel(bool at_rest) noexcept {
+void SevenStateFilter<Core>::JudgeLevel(bool at_rest) noexcept {
   auto& x = core_.x;
-  const int direction = x[kVelocity] > 0.0 ? 1 : -1;
+  const int direction = LevelState() == kLevelPlus ? 1 : -1;
   if (direction != travel_direction_) {
     travel_direction_ = direction;
-    travel_m_ = 0.0;
+    travel_m_ = travel_s_ = 0.0;
   }
   const double step_m = std::abs(x[kVelocity]) * setup_.period_s;
   travel_m_ += step_m;
+  travel_s_ += setup_.period_s;
   if (at_rest || !setup_.config.adapt) return;
   const double level_N = Level_N();
   // By the commissioned stiffness: the estimated one goes down instead of the level when there is no
   // friction.
-  const double lengths_1_m = setup_.friction.sigma0_N_m / level_N;
-  const double along_N = direction * x[kBristle];
-  if (travel_m_ * lengths_1_m < kSettledLengths || along_N > kMissingShare * level_N) return;
-  x[direction > 0 ? kLevelPlus : kLevelMinus] *= std::exp(-kGivingUpShare * step_m * lengths_1_m);
+  const double length_m = level_N / setup_.friction.sigma0_N_m;
+  // A disturbance as small as an error of the level would be is an error of the level.
+  const double doubt_N = setup_.config.level_error * CommissionedLevel_N();
+  const double held_N = direction * (x[kBristle] + std::clamp(x[kDisturbance], -doubt_N, doubt_N));
+  double& level = x[LevelState()];
+  // A jerk may take the axis over all the lengths before the filter has seen what held it back.
+  const bool settled = travel_m_ > kSettledLengths * length_m && travel_s_ > kSettled_s;
+  if (settled && held_N <= kMissingShare * level_N) {
+    level *= std::exp(-kGivingUpShare * step_m / length_m);
+    // Nothing to act upon is left of it.
+    if (level < doubt_N) level = kLowestLevelShare * CommissionedLevel_N();
+    // The bristle comes down with its level; what it held besides was no friction.
+    const double lowered_N = Level_N();
+    const double excess_N = x[kBristle] - std::clamp(x[kBristle], -lowered_N, lowered_N);
+    x[kBristle] -= excess_N;
+    x[kDisturbance] += excess_N;
+  } else if (travel_m_ > kSettledLengths * CommissionedLevel_N() / setup_.friction.sigma0_N_m) {
+    TakeLevelBack(direction * (x[kBristle] + x[kDisturbance]), kTakenBackDoubts * doubt_N);
+  }
+}
+
+template <class Core>
+void SevenStateFilter<Core>::TakeLevelBack(double held_N, double least_N) noexcept {
+  if (held_N < least_N || Level_N() > kMissingShare * held_N) return;
+  auto& x = core_.x;
+  const std::size_t i = LevelState();
+  x[i] *= held_N / Level_N();
+  x[kBristle] += x[kDisturbance];
+  x[kDisturbance] = 0.0;
+  const double share = initial_std_[i] / std::sqrt(core_.Variance(i));
+  for (double& s : core_.s[i]) s *= share;
 }
 
 template <class Core>
@@ -244,6 +279,7 @@ template <class Core>
 AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexcept {
   AxisEstimate out;
   at_rest_ = in.at_rest;
+  periods_since_position_ += 1.0;
   if (!in.enabled) {
     if (in.fresh) Follow(in.position_m);
   } else {
@@ -258,15 +294,16 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
         surprise_ += kSurpriseShare * (ratio * ratio - surprise_);
       }
       if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
-      if (gated_in_a_row_ >= kGatedBeforeRestart) {
-        last_position_m_ = in.position_m;
-        Follow(in.position_m);
-      }
+      if (gated_in_a_row_ >= kGatedBeforeRestart) Follow(in.position_m);
     }
     out.innovation_m = innovation.value;
     out.innovation_std_m = innovation.std;
-    GiveUpLevel(in.at_rest);
+    JudgeLevel(in.at_rest);
     if (Bound() && out.limit == Reason::kNone) out.limit = Reason::kParameterBound;
+  }
+  if (in.fresh) {
+    last_position_m_ = in.position_m;
+    periods_since_position_ = 0.0;
   }
   LookAhead(in);
 

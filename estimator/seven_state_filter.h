@@ -64,12 +64,20 @@ class SevenStateFilter {
     for (double& f : force_N) f += driving_N_ - inertial_N_ - viscous_N_;
     return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity]), at_rest_};
   }
+  /// Level of the direction of motion: the state, and what it was commissioned with.
+  [[nodiscard]] SevenState LevelState() const noexcept {
+    return core_.x[kVelocity] >= 0.0 ? kLevelPlus : kLevelMinus;
+  }
+  [[nodiscard]] double CommissionedLevel_N() const noexcept {
+    return LevelState() == kLevelPlus ? setup_.friction.Fc_plus_N : setup_.friction.Fc_minus_N;
+  }
   void Follow(double position_m) noexcept;
   void Reverse(double commanded_velocity_m_s) noexcept;
   void TimeUpdate(const AxisEstimatorInput& in) noexcept;
   UpdateResult MeasurementUpdate(const AxisEstimatorInput& in, Innovation& innovation) noexcept;
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
-  void GiveUpLevel(bool at_rest) noexcept;
+  void JudgeLevel(bool at_rest) noexcept;
+  void TakeLevelBack(double held_N, double least_N) noexcept;
   bool Bound() noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
@@ -94,9 +102,11 @@ class SevenStateFilter {
   int direction_ = 0;       // last commanded one; 0 none yet
   double friction_ahead_N_ = 0.0;
   double travel_m_ = 0.0;  // in one direction
+  double travel_s_ = 0.0;
   int travel_direction_ = 0;
   bool at_rest_ = true;
-  double last_position_m_ = 0.0;
+  double last_position_m_ = 0.0;  // of the newest measurement, believed or not
+  double periods_since_position_ = 1.0;
   double surprise_ = 1.0;  // mean square of innovation / its standard deviation
   std::uint32_t gated_in_a_row_ = 0;
   bool following_ = true;

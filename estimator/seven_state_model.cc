@@ -39,7 +39,9 @@ void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, con
     const double target = v[k] >= 0.0 ? level : -level;
     const double per_level = std::abs(v[k]) / level;
     const double gap = target - f[k];
-    const double trailing = 1.0 + s0[k] * compliance_m_N_ * std::abs(gap) / level;
+    // Beyond its level the bristle lets go at once: the unwinding screw only helps.
+    const double missing = std::max(v[k] >= 0.0 ? gap : -gap, 0.0);
+    const double trailing = 1.0 + s0[k] * compliance_m_N_ * missing / level;
     f[k] -= gap * Expm1(-s0[k] * per_level * step_s_ / trailing);
     damping[k] = in.sigma1_Ns_m * (v[k] - per_level * f[k]);
   }
@@ -89,7 +91,7 @@ double SevenStateModel::Sigma1_Ns_m(double velocity_m_s) const noexcept {
 double SevenStateModel::Friction_N(const StateVector<kSevenStates>& x,
                                    const SevenStateInput& in) const noexcept {
   const double v = x[kVelocity];
-  const double damping = in.sigma1_Ns_m * (v - std::abs(v) * x[kBristle] / Level(x, in));
+  const double damping = in.sigma1_Ns_m * (v - std::abs(v) * ShareOfLevel(x[kBristle], Level(x, in)));
   return x[kBristle] + damping + sigma2_ * v + x[kDisturbance];
 }
 
@@ -113,16 +115,17 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
     const double level_v = -sign * g * ripple * (per_g / ripple - 1.0) * slope / friction_.vs_m_s;
 
     const double gap = sign * level - x[kBristle];
-    // a = b / D; b = sigma0 |v| / G, D = 1 + sigma0 C |gap| / G.
+    // a = b / D; b = sigma0 |v| / G, D = 1 + sigma0 C missing / G.
     const double stiff = s0 * compliance_m_N_ / level;
-    const double toward = gap >= 0.0 ? 1.0 : -1.0;
-    const double big_d = 1.0 + stiff * std::abs(gap);
+    const double missing = std::max(sign * gap, 0.0);
+    const double toward = missing > 0.0 ? sign : 0.0;
+    const double big_d = 1.0 + stiff * missing;
     const double b = s0 * speed / level;
     const double a = b / big_d;
     const double relaxed = -Expm1(-a * h);
     const double by_a = gap * h * (1.0 - relaxed);  // dF+/da
     const double a_f = a / big_d * stiff * toward;
-    const double a_level = -a / level - a / big_d * stiff * (toward * sign - std::abs(gap) / level);
+    const double a_level = -a / level - a / big_d * stiff * (toward * sign - missing / level);
     const double f_f = 1.0 - relaxed + by_a * a_f;
     const double f_v = sign * level_v * relaxed + by_a * (s0 * sign / (level * big_d) + a_level * level_v);
     const double f_g = (sign * relaxed + by_a * a_level) * per_g;

@@ -35,8 +35,9 @@ struct SevenStateInput {
 
 /// One rigid axis with LuGre friction in two substeps per period:
 ///   F+ = F + (sgn(v) G - F) (1 - exp(-a h)),  G = g(dir) Stribeck(v) ripple(p)
-///   a = sigma0 |v| / G / (1 + sigma0 C (1 - sgn(v) F / G)): the bristle sees the table, which trails v by C
-///   F' v+ = A v + B (u - F+ - sigma1 (v - |v| F+ / G) - d),  A = exp(-sigma2 h / m),  B = (1 - A) / sigma2
+///   a = sigma0 |v| / G / (1 + sigma0 C max(0, 1 - sgn(v) F / G)): the bristle sees the table,
+///   which trails v by C F'
+///   v+ = A v + B (u - F+ - sigma1 (v - |v| F+ / G) - d),  A = exp(-sigma2 h / m),  B = (1 - A) / sigma2
 ///   p+ = p + h (v + v+) / 2
 /// The new F goes into the velocity update (eq. 9 as printed is unstable in presliding). sigma1 fades with
 /// speed, exp(-(v / vd)^2); it is taken at the mean speed and is the same for all sigma points.

@@ -351,6 +351,7 @@ void Cycle::Command(const Orders& orders, CycleOutput& out) noexcept {
     AxisSetpoint& s = setpoints_[i];
     s.goal = orders.goal;
     s.torque_Nm = guarded_[i].torque_Nm;
+    s.in_motion = control_in_.reference[i][0].velocity_m_s != 0.0;
     // Until the axis is held, the target follows the axis, so that a drive in CSP does not jump when enabled.
     s.position_rad = (orders.torque_allowed ? control_out_.target_position_m[i] : axes_[i].position_m) /
                      axes_[i].radius_m_rad;

@@ -270,8 +270,12 @@ CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoi
   s.left_enabled = a.walk.left_enabled();
 
   const bool follows = setpoint.goal == DriveGoal::kEnabled && f.drive_state == DriveState::kOperationEnabled;
-  const double limited_Nm = std::clamp(setpoint.torque_Nm, -a.torque_limit_Nm, a.torque_limit_Nm);
-  const std::int16_t torque = follows ? a.torque.ToPerMille(limited_Nm) : std::int16_t{0};
+  std::int16_t torque = 0;
+  if (follows) {
+    torque = a.rounding.Round(a.torque, setpoint.torque_Nm, a.torque_limit_Nm, setpoint.in_motion);
+  } else {
+    a.rounding.Reset();
+  }
   sent_torque_Nm_[axis] = a.torque.FromPerMille(torque);
   if (a.mode == DriveMode::kCst) return EncodeTorqueSetpoint(a.node_id, word, torque);
 

@@ -14,6 +14,7 @@
 #include "drivers/cia402/drive_config.h"
 #include "drivers/cia402/drive_walk.h"
 #include "drivers/cia402/scaling.h"
+#include "drivers/cia402/torque_rounding.h"
 
 namespace contour {
 
@@ -100,6 +101,7 @@ class DriveMaster {
     bool torque_offset = false;
     bool has_scale = false;
     TorqueScale torque;
+    TorqueRounding rounding;
     PositionScale position;
     double scale_m_per_count = 0.0;
     double torque_limit_Nm = 0.0;

@@ -23,7 +23,7 @@ TEST(Contour, AndOnTheLargeCircle) {
   const EmulatedMachineFile file = ExampleMachine();
   const RunResult mpc = RunCircle(file, ControllerName::kMpc, large);
   const RunResult full = RunCircle(file, ControllerName::kFull, large);
-  EXPECT_LT(full.circular_deviation_m() * 15.0, mpc.circular_deviation_m());
+  EXPECT_LT(full.circular_deviation_m() * 20.0, mpc.circular_deviation_m());
   EXPECT_LT(full.table_peak_m, 2.5e-6);
 }
 
@@ -42,15 +42,20 @@ TEST(Contour, WithoutFrictionCompensationDoesNoHarm) {
   for (const char* axis : {"x", "y"})
     for (const char* key : {"Fs_plus_N", "Fs_minus_N", "Fc_plus_N", "Fc_minus_N"})
       none.push_back(std::string("emulator.axes.") + axis + ".friction." + key + "=0");
-  const EmulatedMachineFile file = ExampleMachine(none);
-  const Program large = Circle(10.0, 3, 0.7957747155);
-  EXPECT_LE(RunCircle(file, ControllerName::kFull, large).table_peak_m,
-            RunCircle(file, ControllerName::kMpc, large).table_peak_m);
-  // On the small circle both are at the encoder's noise: within a few of its counts (4.8 nm) they are the
-  // same.
-  constexpr double kFewCounts_m = 80e-9;
-  EXPECT_LE(RunCircle(file, ControllerName::kFull, kSmall).table_peak_m,
-            RunCircle(file, ControllerName::kMpc, kSmall).table_peak_m + kFewCounts_m);
+  const Program programs[] = {kSmall, Circle(0.1, 2, 0.125), Circle(10.0, 3, 0.7957747155)};
+  // On the small circles only the encoder's steps and the drive's torque steps are left, and the largest of
+  // thousands of samples is chance: one count of the encoder (5 mm / 2^20) is no difference.
+  constexpr double kCount_m = 5e-3 / 1048576;
+  for (const char* seed : {"1", "2", "3"}) {
+    std::vector<std::string> with_seed = none;
+    with_seed.push_back(std::string("emulator.seed=") + seed);
+    const EmulatedMachineFile file = ExampleMachine(with_seed);
+    for (const Program& program : programs) {
+      const RunResult full = RunCircle(file, ControllerName::kFull, program);
+      const RunResult mpc = RunCircle(file, ControllerName::kMpc, program);
+      EXPECT_LE(full.table_peak_m, mpc.table_peak_m + kCount_m) << "seed " << seed;
+    }
+  }
 }
 
 TEST(Contour, AFrozenEstimatorIsVisiblyWorse) {

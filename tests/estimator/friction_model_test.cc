@@ -90,6 +90,17 @@ TEST(FrictionModel, PreslidingIsAHystereticSpring) {
   EXPECT_GT(down[0] - up[0], 1e-6);
 }
 
+TEST(FrictionModel, DampingOfABristleWhoseLevelHasFallenIsBounded) {
+  const Friction f = Published();
+  const double v = 1e-3;
+  const double most = (1.0 + kMostLevels) * f.sigma1_Ns_m * v;
+  EXPECT_LE(std::abs(BristleDamping(f, 1.0, v, 1e-6)), most);
+  EXPECT_LE(std::abs(BristleDamping(f, -1.0, v, 1e-6)), most);
+  // Within two levels it is eq. 5.
+  const double u = v / f.sigma1_decay_m_s;
+  EXPECT_DOUBLE_EQ(BristleDamping(f, -0.8, v, 0.5), f.sigma1_Ns_m * Exp(-u * u) * (v + v * 0.8 / 0.5));
+}
+
 double LagLoopArea(double frequency_rad_s) {
   const Friction f = Published();
   const double h = 1e-5;

@@ -38,6 +38,18 @@ TEST(RigidCorrection, IsBounded) {
   EXPECT_DOUBLE_EQ(rigid.extra_Ns_m(), -500.0);  // no viscous friction at all
 }
 
+TEST(RigidCorrection, WithoutALevelASlowMotionTeachesViscousFriction) {
+  RigidCorrection none(kTuning), full(kTuning);
+  for (int k = 0; k < 3000; ++k) {  // the circle of 100 um: 0.5 mm/s
+    const double v = 0.5e-3 * std::sin(5e-3 * k), a = 2.5e-3 * std::cos(5e-3 * k);
+    none.Learn((-500.0 - none.extra_Ns_m()) * v, v, a, 1e-4);
+    // Half a newton of a wrong friction level would be a thousand Ns/m.
+    full.Learn(v > 0.0 ? 0.5 : -0.5, v, a, 1.0);
+  }
+  EXPECT_NEAR(none.extra_Ns_m(), -500.0, 5.0);
+  EXPECT_LT(std::abs(full.extra_Ns_m()), 10.0);
+}
+
 TEST(RigidCorrection, AtRestNothingIsLearnt) {
   RigidCorrection rigid(kTuning);
   for (int k = 0; k < 1000; ++k) rigid.Learn(10.0, 0.0, 0.0);

@@ -126,6 +126,18 @@ TEST(SevenStateModel, TangentIsTheDerivative) {
   }
 }
 
+TEST(SevenStateModel, ABristleBeyondItsLevelLetsGoAtOnce) {
+  // The level fell from 40 N to almost nothing: within a millisecond of motion nothing may be left of it,
+  // however soft the screw is.
+  const SevenStateModel model(Nominal(), 90.0, 1e-3, 0.2, 1e-7);
+  StateVector<kSevenStates> x{};
+  x[kVelocity] = 1e-3;
+  x[kBristle] = 40.0;
+  x[kLevelPlus] = x[kLevelMinus] = 0.01;
+  model.Propagate(x, {{}, 1.0, 1.0});
+  EXPECT_NEAR(x[kBristle], 0.0, 0.1);
+}
+
 TEST(SevenStateModel, LevelNeverReachesZero) {
   const SevenStateModel model(Nominal(), 89.0, 1e-3, 0.2);
   X x{};

@@ -274,6 +274,33 @@ TEST_P(Soundness, APlantWithoutFrictionIsFollowed) {
   EXPECT_LT(worst, 20e-6);
 }
 
+TEST_P(Soundness, FrictionThatComesBackIsFoundAgain) {
+  Loop loop(GetParam(), WrongMechanics(), WrongFriction(), {});
+  const test::ScrewAxis with = loop.axis;
+  loop.axis.Fs[0] = loop.axis.Fs[1] = loop.axis.Fc[0] = loop.axis.Fc[1] = 1e-6;
+  loop.axis.sigma0_N_m = 1.0;
+  loop.axis.sigma1_Ns_m = 0.0;
+  const SmoothSine motion{1e-3, 0.785};
+  for (int k = 0; k < 6000; ++k) loop.Step(motion);
+  if (SevenStates()) {
+    EXPECT_LT(loop.estimate.g_plus_N, 1.0);
+    EXPECT_LT(loop.estimate.g_minus_N, 1.0);
+  }
+  const auto state = loop.axis.s;
+  loop.axis = with;
+  loop.axis.s = state;
+  loop.axis.s.bristle_m = 0.0;
+  double square = 0.0;
+  for (int k = 0; k < 12000; ++k) {
+    const AxisEstimate e = loop.Step(motion);
+    ASSERT_FALSE(e.diverged) << k;
+    if (k >= 8000) square += std::pow(e.friction_N - loop.true_friction_N, 2);
+  }
+  if (SevenStates()) {
+    EXPECT_LT(std::sqrt(square / 4000.0), 2.0);
+  }
+}
+
 TEST_P(Soundness, LostFeedbackIsBridged) {
   Loop loop(GetParam(), WrongMechanics(), WrongFriction(), {});
   for (int k = 0; k < 4000; ++k) {
