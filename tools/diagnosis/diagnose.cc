@@ -47,7 +47,7 @@ class Engine {
     FitBase();
     std::vector<SharedEffect> accepted;
     Fit current = base_;
-    for (int round = 0; round < 3; ++round) {
+    for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
       double gate = SignFlipGate(scored, options_.false_alarm_rate, options_.seed);
