@@ -90,6 +90,14 @@ void ContourController::Step(const ControlInput& input, ControlOutput& output) n
 
 void ContourController::Keep(StateKeeper& keep) noexcept { keep(law_, planner_); }
 
+void ContourController::Rest(ControlOutput& output) noexcept {
+  law_->Reset();
+  for (double& force : output.force_N) force = 0.0;
+  for (double& force : output.feedforward_N) force = 0.0;
+  for (Reason& limit : output.limit) limit = Reason::kNone;
+  output.iterations = 0;
+}
+
 int ContourController::horizon_points() const noexcept {
   return planner_ ? std::max(law_->horizon_points(), planner_->horizon_points()) : law_->horizon_points();
 }

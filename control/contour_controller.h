@@ -98,6 +98,8 @@ class ContourController {
   /// too.
   void Plan(ControlInput& input, bool follow) noexcept;
   void Step(const ControlInput& input, ControlOutput& output) noexcept;
+  /// Instead of Step while nothing may move: no force, no computing. The next Step is as after Reset.
+  void Rest(ControlOutput& output) noexcept;
 
   [[nodiscard]] const ControllerOptions& options() const noexcept { return options_; }
   void Keep(StateKeeper& keep) noexcept;

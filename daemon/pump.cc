@@ -12,7 +12,9 @@
 namespace contour {
 namespace {
 
-constexpr std::chrono::milliseconds kPeriod{2};
+constexpr std::chrono::nanoseconds kPeriod = std::chrono::milliseconds(2);
+/// A cycle of real time is not older than this when it comes out of the queue.
+constexpr std::chrono::nanoseconds kFresh = std::chrono::milliseconds(100);
 
 bool Given(MachineState s) {
   return s == MachineState::kFaulted || s == MachineState::kIdle || s == MachineState::kStopping;
@@ -54,15 +56,29 @@ void Pump::Work() {
   while (!finish_) {
     Drain();
     Feed();
-    std::this_thread::sleep_for(kPeriod);
+    std::this_thread::sleep_until(NextRound());
   }
   Drain();
   hub_.Flush();
 }
 
+// In the middle between two grid points. Packets that are on their way through the kernel when the cycle
+// wakes up hold its own frames back: on PREEMPT_RT one lock per processor guards the network's soft
+// interrupts.
+std::chrono::steady_clock::time_point Pump::NextRound() const {
+  const auto now = std::chrono::steady_clock::now();
+  const std::chrono::nanoseconds age = now.time_since_epoch() - last_grid_time_;
+  // In lock-step the grid is not one of the clock.
+  if (age < std::chrono::nanoseconds::zero() || age > kFresh) return now + kPeriod;
+  const auto period = std::chrono::nanoseconds(std::llround(period_s_ * 1e9));
+  const auto grid_points = (age + kPeriod) / period;
+  return std::chrono::steady_clock::time_point(last_grid_time_ + grid_points * period + period / 2);
+}
+
 void Pump::Drain() {
   while (CycleEntry* entry = queue_.Front()) {
     hub_.Consume(*entry);
+    last_grid_time_ = std::chrono::nanoseconds(entry->output.record.grid_time_ns);
     Report(entry->output.record);
     MeasureMotion(entry->output.record);
     queue_.Release();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -40,6 +41,7 @@ class Pump {
 
  private:
   void Work();
+  [[nodiscard]] std::chrono::steady_clock::time_point NextRound() const;
   void Drain();
   void Feed();
   void Report(const CycleRecord& record);
@@ -62,6 +64,7 @@ class Pump {
   std::uint64_t moving_cycles_ = 0;
   PerAxis<double> last_position_m_;
   double period_s_;
+  std::chrono::nanoseconds last_grid_time_{0};
   std::atomic<bool> finish_{false};
   std::thread thread_;
 };

@@ -68,6 +68,11 @@ Transitions::Config TransitionTimes(const CycleConfig& config) {
   return {cycles(3.0 * walk_ms), cycles(1000.0 * StopOnPathTime_s(config) + quick_stop_ms), cycles(5000.0)};
 }
 
+/// Whether carrying these orders out touches what is followed.
+bool ChangesPath(const Orders& o) noexcept {
+  return o.hold_here || o.forget_path || o.expect_path || o.start_path || o.stop_path || !o.torque_allowed;
+}
+
 PerAxis<double> Zeros(std::size_t n) {
   PerAxis<double> zeros(n);
   for (double& z : zeros) z = 0.0;
@@ -305,15 +310,22 @@ void Cycle::CarryOut(const Orders& orders) noexcept {
 }
 
 void Cycle::Decide(const Orders& orders) noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) follower_.Horizon(i, control_in_.reference[i]);
+  // The path ahead is what Observe found, unless an order has just changed it.
+  if (ChangesPath(orders))
+    for (std::size_t i = 0; i < axes_.size(); ++i) follower_.Horizon(i, control_in_.reference[i]);
   controller_.Plan(control_in_, orders.torque_allowed);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].estimator.PreviewFriction(Reference(control_in_)[i], control_in_.friction[i]);
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
   }
   control_in_.estimate = estimates_;
-  controller_.Step(control_in_, control_out_);
-  HoldBySprings();
+  if (orders.torque_allowed) {
+    controller_.Step(control_in_, control_out_);
+    HoldBySprings();
+  } else {
+    // Whatever it found would not be sent, and axes that are moved by hand would keep its solver busy.
+    controller_.Rest(control_out_);
+  }
 }
 
 /// Where an experiment asks for it, a damped spring towards the reference takes the controller's place: weak

@@ -205,6 +205,28 @@ TEST_P(EveryTorqueController, ForgetsEverythingOnReset) {
   EXPECT_EQ(a.force_N[1], b.force_N[1]);
 }
 
+TEST_P(EveryTorqueController, RestsWithoutForceAndGoesOnAsAfterAReset) {
+  ContourLoop loop(GetParam(), ControllerConfig{}, NominalAxes(2), FastCircle());
+  loop.plants[0].motor_m = 1e-3;
+  loop.Run(0.2);
+  ContourController used(GetParam(), ControllerConfig{}, NominalAxes(2), test::kPeriod_s);
+  ContourController fresh(GetParam(), ControllerConfig{}, NominalAxes(2), test::kPeriod_s);
+  ControlOutput a, b;
+  for (int n = 0; n < 20; ++n) used.Step(loop.input, a);
+  ASSERT_NE(a.force_N[0], 0.0);
+  used.Rest(a);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(a.force_N[i], 0.0);
+    EXPECT_EQ(a.feedforward_N[i], 0.0);
+    EXPECT_EQ(a.limit[i], Reason::kNone);
+  }
+  EXPECT_EQ(a.iterations, 0);
+  used.Step(loop.input, a);
+  fresh.Step(loop.input, b);
+  EXPECT_EQ(a.force_N[0], b.force_N[0]);
+  EXPECT_EQ(a.force_N[1], b.force_N[1]);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryTorqueController,
                          ::testing::Values(ControllerName::kPid, ControllerName::kMpc, ControllerName::kFull),
                          [](const auto& name) { return std::string(Name(name.param)); });

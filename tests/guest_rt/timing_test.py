@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""The cycle's timing in the PREEMPT_RT guest: daemon, emulated machine and a listener to the telemetry on vcan0 while a
+program runs. Demands: no late cycle, none without feedback, no telemetry lost; the latest wake-up at most 1.5 times that of
+cyclictest alone in a boot of its own, or under a load at most 15 us; two runs with the same times to the nanosecond.
+
+    timing_test.py --programs DIR --machine FILE --program FILE --seconds N --out DIR [--form systemd --load COMMAND]
+                   [--set KEY=VALUE]...
+"""
+import argparse
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+SKIPPED = 77
+LARGEST_RATIO = 1.5
+LATEST_UNDER_LOAD_us = 15.0
+
+
+class Failed(Exception):
+    """A demand is not met; the message says which."""
+
+
+def guest(out, *words):
+    """Runs a job; what it left behind."""
+    result = subprocess.run([HERE / "run_in_rt_guest", "--out", out, *map(str, words)], stdout=subprocess.PIPE, text=True,
+                            check=False)
+    if result.returncode == SKIPPED:
+        print(result.stdout, end="")
+        sys.exit(SKIPPED)
+    if result.returncode != 0:
+        raise Failed(f"a guest ended with {result.returncode}:\n{result.stdout}")
+    return out
+
+
+def histogram(path):
+    """{nanoseconds: count}"""
+    return {int(time): int(count) for time, count in (line.split() for line in path.read_text().splitlines())}
+
+
+def percentile_us(counts, share):
+    wanted, seen = share * sum(counts.values()), 0
+    for time in sorted(counts):
+        seen += counts[time]
+        if seen >= wanted:
+            return time / 1e3
+    return max(counts) / 1e3
+
+
+def describe(name, counts):
+    print(f"{name:28} {sum(counts.values()):7} cycles: median {percentile_us(counts, 0.5):7.3f} us, "
+          f"99.9 % {percentile_us(counts, 0.999):7.3f} us, max {max(counts) / 1e3:7.3f} us", flush=True)
+
+
+def expect(condition, message):
+    if not condition:
+        raise Failed(message)
+
+
+def run_cyclictest(options, period_us):
+    out = guest(options.out / "cyclictest", "--form", options.form, "--timeout", options.timeout, "--memory", 1500, HERE / "jobs/cyclictest.sh", period_us, options.seconds)
+    return histogram(out / "wakeups")
+
+
+def run_contour(options, number):
+    words = ["--form", options.form, "--timeout", options.timeout, "--memory", 1500, "--program", options.programs / "contourd", "--program", options.programs / "contour",
+             "--program", "lcm-logger", "--file", f"{options.machine}=/job/machine.yaml",
+             "--file", f"{options.program}=/job/program.yaml",
+             HERE / "jobs/contour_on_vcan.sh", "machine.yaml", "program.yaml", options.seconds, options.load, *options.set]
+    return guest(options.out / f"contour{number}", *words)
+
+
+def check_run(out, seconds):
+    """The counters at the end of the program, and the times of every cycle of the daemon's life."""
+    status = json.loads((out / "status.json").read_text())
+    wakeups, sends = histogram(out / "wakeups"), histogram(out / "sends")
+    cycles = sum(wakeups.values())
+    describe("contourd, wake-up", wakeups)
+    describe("contourd, frames sent", sends)
+    expect(cycles >= seconds * 1e6 / status["cycle_us"], f"only {cycles} cycles were logged")
+    late = {key: status[key] for key in ("late_cycles", "skipped_grid_points", "stale_cycles", "dropped_telemetry")}
+    expect(not any(late.values()), f"not every cycle was in time: {late}; worst_cycles in {out} has the rows")
+    deadline_us = 0.2 * status["cycle_us"]
+    expect(max(sends) / 1e3 <= deadline_us, f"frames left {max(sends) / 1e3} us after a grid point, after {deadline_us} us")
+    expect(status["lcm"]["failures"] == 0 and status["lcm"]["messages"] > 0, f"telemetry: {status['lcm']}")
+    return status, wakeups
+
+
+def check_wakeups(options, period_us, wakeups):
+    latest_us = max(wakeups) / 1e3
+    if options.load:
+        expect(latest_us <= LATEST_UNDER_LOAD_us, f"the latest wake-up is {latest_us} us under load, more than {LATEST_UNDER_LOAD_us}")
+        return
+    cyclictest = run_cyclictest(options, period_us)
+    describe("cyclictest alone, wake-up", cyclictest)
+    ratio = max(wakeups) / max(cyclictest)
+    print(f"latest wake-up: {ratio:.2f} times that of cyclictest")
+    expect(ratio <= LARGEST_RATIO, f"the latest wake-up is {ratio:.2f} times that of cyclictest, more than {LARGEST_RATIO}")
+
+
+def check(options):
+    first = run_contour(options, 1)
+    status, wakeups = check_run(first, options.seconds)
+    check_wakeups(options, status["cycle_us"], wakeups)
+    second = run_contour(options, 2)
+    for name in ("wakeups", "sends", "digest"):
+        expect((first / name).read_text() == (second / name).read_text(), f"two runs differ in {name}: see {options.out}")
+    print("two runs are the same: wake-ups and sends to the nanosecond, and the daemon's whole log "
+          f"(SHA-256 {(first / 'digest').read_text()[:16]}...)")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--programs", type=Path, required=True)
+    parser.add_argument("--machine", type=Path, required=True)
+    parser.add_argument("--program", type=Path, required=True)
+    parser.add_argument("--seconds", type=int, required=True)
+    parser.add_argument("--timeout", type=int, default=600, help="for each boot")
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--form", default="mini")
+    parser.add_argument("--load", default="", help="command that runs beside the daemon")
+    parser.add_argument("--set", action="append", default=[])
+    try:
+        check(parser.parse_args())
+    except Failed as failure:
+        print(f"FAILED: {failure}")
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()
