@@ -13,6 +13,10 @@
 namespace contour::diagnosis {
 namespace {
 
+// Fewer periods of friction over the travel than this are friction along the stroke, whose cosines cover
+// them.
+constexpr double kFewestPeriods = 4.5;
+
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kResponse = 256;
 constexpr std::size_t kTransfer = 4096;
@@ -184,7 +188,8 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
     add(Wave::kFrictionOfAngle, Best(Integers(friction, 1.0), 2, 0.5), 12.0);
     std::vector<Peak> between;
     for (const Peak& p : friction)
-      if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > 2.0 / revs && p.order < 20.0)
+      if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > kFewestPeriods / revs &&
+          p.order < 20.0)
         between.push_back(p);
     if (revs > 5.0) add(Wave::kFrictionOfAngle, Best(between, 2, 1.0 / revs), 400.0);
     add(Wave::kTorqueOfAngle, Best(Integers(AngleScores(problem, torque, sliding, 144.0), 1.0), 2, 0.5),
