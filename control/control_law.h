@@ -14,6 +14,7 @@ class ControlLaw {
   virtual void Release(std::size_t axis) noexcept = 0;
   virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
   [[nodiscard]] virtual int horizon_points() const noexcept = 0;
+  /// What changes from Step to Step; gains and all that follows from them stay as constructed.
   virtual void Keep(StateKeeper& keep) noexcept = 0;
 };
 

@@ -17,7 +17,7 @@ class CspLaw final : public ControlLaw {
   void Release(std::size_t) noexcept override {}  // the drive's own cascade goes on holding
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return 5; }
-  void Keep(StateKeeper& keep) noexcept override { keep(feedforward_, plan_); }
+  void Keep(StateKeeper& keep) noexcept override { keep(plan_); }
 
  private:
   bool torque_offset_;

@@ -31,7 +31,7 @@ class MpcGroup final : public MpcGroupBase {
   void Reset() noexcept override;
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   void Keep(StateKeeper& keep) noexcept override {
-    keep(weights_, feedforward_, plan_, planned_m_s2_, has_planned_, problem_, solver_, active_, solution_);
+    keep(plan_, planned_m_s2_, has_planned_, active_, solution_);
   }
 
  private:

@@ -60,7 +60,7 @@ class PlannerGroup final : public PlannerGroupBase {
   }
 
   void Keep(StateKeeper& keep) noexcept override {
-    keep(state_, present_, next_, expected_m_, base_m_s2_, problem_, solver_, active_, solution_);
+    keep(state_, present_, next_, expected_m_, active_, solution_);
   }
 
  private:

@@ -21,6 +21,7 @@ enum class RequestKind : std::uint8_t {
   kStop = 4,       ///< controlled stop on the path, then Ready. Latched: nothing overwrites it
   kReset = 5,      ///< Faulted to Idle, bringing drives up again as needed
   kTerminate = 6,  ///< as kDisable, then the loop ends
+  kTune = 7,       ///< gains have been changed from this cycle on; program_id numbers the change
 };
 
 struct Request {

@@ -4,6 +4,7 @@
 
 #include "core/axis.h"
 #include "core/cycle_input.h"
+#include "core/late_cause.h"
 #include "core/reason.h"
 #include "core/states.h"
 
@@ -63,8 +64,8 @@ struct CycleRecord {
   PerAxis<AxisRecord> axes;
 };
 
-/// Stage stamps of one cycle on the loop's clock, taken by the loop around the cycle, never seen by it.
-/// All zero in virtual time.
+/// Stage stamps of one cycle on the loop's clock, and what the kernel counted, taken by the loop around the
+/// cycle, never seen by it. All zero in virtual time.
 struct CycleTiming {
   std::int64_t wakeup_late_ns = 0;  ///< woken minus grid point
   std::int64_t received_ns = 0;     ///< since the grid point
@@ -72,6 +73,15 @@ struct CycleTiming {
   std::int64_t sent_ns = 0;
   bool late = false;
   std::uint32_t skipped_grid_points = 0;
+  std::int64_t estimated_ns = 0;  ///< since the grid point, as above: estimators updated
+  std::int64_t decided_ns = 0;    ///< controller done
+  LateCause cause = LateCause::kNone;
+  // From the frames of the cycle before to those of this one:
+  std::int64_t after_send_ns = 0;  ///< from the frames of the cycle before to going to sleep
+  std::int64_t run_delay_ns = 0;   ///< ready to run but not running
+  std::uint32_t page_faults = 0;
+  std::uint32_t involuntary_switches = 0;
+  std::uint32_t voluntary_switches = 0;  ///< the sleep until the grid point is one
 };
 
 inline constexpr std::size_t kMaxFramesSentPerCycle = 64;

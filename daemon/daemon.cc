@@ -28,6 +28,7 @@
 #include "daemon/service_notifier.h"
 #include "daemon/supervisor.h"
 #include "daemon/telemetry/telemetry_hub.h"
+#include "drivers/cia301/messages.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour {
@@ -37,6 +38,8 @@ constexpr std::size_t kTelemetryEntries = 2048;
 constexpr std::size_t kRequests = 16;
 constexpr std::size_t kPathPoints = 4096;
 constexpr std::chrono::milliseconds kWatchPeriod{50};
+/// How often the cycle's state is copied: a flight record is longer than asked for by this at most.
+constexpr double kSnapshotPeriod_s = 2.0;
 
 /// The command line as assignments on top of the machine file.
 std::vector<std::string> Overrides(const DaemonOptions& options) {
@@ -68,20 +71,30 @@ std::int64_t UnixTime_us() {
       .count();
 }
 
-/// SIGTERM and SIGINT are taken by the main thread alone.
+std::vector<FeedbackSource> FeedbackSources(const MachineConfig& machine) {
+  std::vector<FeedbackSource> sources;
+  for (const auto& [name, axis] : machine.axes)
+    sources.push_back({static_cast<std::uint8_t>(BusIndex(machine, axis.drive.bus)),
+                       static_cast<std::uint16_t>(cob::kTpdo1 + axis.drive.node_id)});
+  return sources;
+}
+
+/// SIGTERM, SIGINT and SIGHUP are taken by the main thread alone.
 sigset_t BlockSignals() {
   sigset_t set;
   sigemptyset(&set);
   sigaddset(&set, SIGTERM);
   sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   return set;
 }
 
-bool SignalCame(const sigset_t& set) {
+/// Its number, or 0 or less.
+int SignalCame(const sigset_t& set) {
   const timespec wait{0, std::chrono::nanoseconds(kWatchPeriod).count()};
-  return sigtimedwait(&set, nullptr, &wait) > 0;
+  return sigtimedwait(&set, nullptr, &wait);
 }
 
 /// Real time as the machine file asks for it, or why not. Lock-step needs none.
@@ -158,7 +171,10 @@ class Daemon {
       io_ = std::make_unique<NoIo>();
     }
     pump_.AlsoDrain([this] { buses_.DrainTruth(); });
-    const Loop::Config loop{std::int64_t{1000} * machine_.machine.cycle_us, SendDeadline_ns(machine_)};
+    hub_.WatchFeedback(FeedbackSources(machine_));
+    SetUpFlightRecorder();
+    const Loop::Config loop{std::int64_t{1000} * machine_.machine.cycle_us, SendDeadline_ns(machine_),
+                            snapshots_.get()};
     loop_ = std::make_unique<Loop>(loop, cycle_, buses_.all(), mailbox_, *io_, queue_);
   }
 
@@ -178,7 +194,7 @@ class Daemon {
                              ". realtime.required: false in the machine file goes on without");
     }
     Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, refused,
-                          {mailbox_, queue_, hub_, pump_, *loop_, io_client_.get()});
+                          {mailbox_, queue_, hub_, pump_, *loop_, io_client_.get()}, source_);
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);
@@ -189,7 +205,7 @@ class Daemon {
                  socket.socket.string());
     thread.Go(true);
     server.Start();
-    const int status = Watch(signals, thread);
+    const int status = Watch(signals, thread, supervisor);
     thread.Join();
     server.Stop();
     pump_.Finish();
@@ -206,13 +222,32 @@ class Daemon {
                                    MakeLogHeader(source_, machine_, options_.clock, UnixTime_us())};
   }
 
+  void SetUpFlightRecorder() {
+    const TelemetryConfig& telemetry = machine_.telemetry;
+    FlightRecorder::Config config;
+    config.directory = telemetry.flight_directory.empty() ? DefaultFlightDirectory()
+                                                          : std::filesystem::path(telemetry.flight_directory);
+    if (telemetry.flight_recorder_s == 0.0 || config.directory.empty()) return;
+    const double cycles_per_s = 1e6 / machine_.machine.cycle_us;
+    config.window_cycles = static_cast<std::uint64_t>(telemetry.flight_recorder_s * cycles_per_s);
+    snapshots_ = std::make_unique<StateSnapshots>(
+        cycle_.StateSize(), static_cast<std::uint64_t>(kSnapshotPeriod_s * cycles_per_s));
+    pump_.TakeSnapshotsFrom(*snapshots_);
+    hub_.AddFlightRecorder(std::make_unique<FlightRecorder>(
+        std::move(config), MakeLogHeader(source_, machine_, options_.clock, UnixTime_us())));
+  }
+
   /// The main thread's work while the loop runs. A first bring-up that fails ends the daemon with status 1.
-  int Watch(const sigset_t& signals, const RealtimeThread& thread) {
+  int Watch(const sigset_t& signals, const RealtimeThread& thread, Supervisor& supervisor) {
     int status = kExitDone;
     bool up = false;
     ServiceNotifier notifier;
     while (!thread.ended()) {
-      if (SignalCame(signals)) {
+      const int signal = SignalCame(signals);
+      if (signal == SIGHUP) {
+        const Answer answer = supervisor.Reload();
+        spdlog::log(answer.accepted ? spdlog::level::info : spdlog::level::err, "reload: {}", answer.reason);
+      } else if (signal > 0) {
         spdlog::info("asked to end by a signal");
         notifier.Stopping();
         mailbox_.PostTerminate();
@@ -246,6 +281,7 @@ class Daemon {
   Cycle cycle_;
   std::unique_ptr<IoClient> io_client_;
   std::unique_ptr<IoSource> io_;
+  std::unique_ptr<StateSnapshots> snapshots_;
   std::unique_ptr<Loop> loop_;
 };
 

@@ -83,6 +83,15 @@ void Pump::Drain() {
     MeasureMotion(entry->output.record);
     queue_.Release();
   }
+  if (snapshots_ != nullptr) {
+    while (const StateSnapshots::Snapshot* snapshot = snapshots_->Front()) {
+      hub_.OnState(snapshot->cycle,
+                   {reinterpret_cast<const char*>(snapshot->bytes.data()), snapshot->bytes.size()});
+      snapshots_->Release();
+    }
+  }
+  if (const auto message = hub_.TakeHealthMessage()) spdlog::warn("{}", *message);
+  ReportFlight();
   if (report_motion_) report_motion_(travel_m_, static_cast<double>(moving_cycles_) * period_s_);
   if (also_drain_) also_drain_();
   if (const std::uint64_t dropped = queue_.dropped(); dropped != reported_drops_) {
@@ -90,6 +99,19 @@ void Pump::Drain() {
         "{} cycles did not fit into the telemetry queue and are missing in log and telemetry ({} in all)",
         dropped - reported_drops_, dropped);
     reported_drops_ = dropped;
+  }
+}
+
+void Pump::ReportFlight() {
+  const FlightRecordStats flight = hub_.flight();
+  if (flight.file != reported_flight_) {
+    reported_flight_ = flight.file;
+    spdlog::warn("cycles {} to {} are in {}: `contour replay` computes them again", flight.first_cycle,
+                 flight.last_cycle, flight.file);
+  }
+  if (flight.last_error != reported_flight_error_) {
+    reported_flight_error_ = flight.last_error;
+    if (!flight.last_error.empty()) spdlog::warn("no flight record: {}", flight.last_error);
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "daemon/path_feeder.h"
 #include "daemon/rt/command_mailbox.h"
+#include "daemon/rt/state_snapshots.h"
 #include "daemon/rt/telemetry_queue.h"
 #include "daemon/telemetry/telemetry_hub.h"
 
@@ -31,6 +32,8 @@ class Pump {
   void ReportMotionTo(std::function<void(double travel_m, double moving_s)> report) {
     report_motion_ = std::move(report);
   }
+  /// Copies of the cycle's state, on their way to the flight recorder. Before Start().
+  void TakeSnapshotsFrom(StateSnapshots& snapshots) { snapshots_ = &snapshots; }
   void Start();
   /// Empties what is left and ends the thread.
   void Finish();
@@ -45,6 +48,7 @@ class Pump {
   void Drain();
   void Feed();
   void Report(const CycleRecord& record);
+  void ReportFlight();
   void MeasureMotion(const CycleRecord& record);
 
   TelemetryQueue& queue_;
@@ -58,6 +62,9 @@ class Pump {
   MachineState last_state_ = MachineState::kOff;
   Reason last_reason_ = Reason::kNone;
   std::uint64_t reported_drops_ = 0;
+  StateSnapshots* snapshots_ = nullptr;
+  std::string reported_flight_;
+  std::string reported_flight_error_;
   std::function<void()> also_drain_;
   std::function<void(double, double)> report_motion_;
   double travel_m_ = 0.0;

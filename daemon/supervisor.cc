@@ -5,11 +5,14 @@
 #include <thread>
 #include <utility>
 
+#include "config/config_difference.h"
 #include "core/version.h"
+#include "daemon/make_cycle_config.h"
 #include "daemon/program/path_generator.h"
 #include "daemon/program/program.h"
 #include "daemon/program_limits.h"
 #include "daemon/reason_text.h"
+#include "daemon/telemetry/tuning_note.h"
 #include "drivers/cia301/bring_up_text.h"
 
 namespace contour {
@@ -24,8 +27,10 @@ constexpr std::chrono::milliseconds kAnswerPoll{1};
 }  // namespace
 
 Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, std::string clock,
-                       std::vector<std::string> warnings, const SupervisedParts& parts)
-    : machine_name_(machine.machine.name),
+                       std::vector<std::string> warnings, const SupervisedParts& parts, MachineSource source)
+    : machine_(machine),
+      source_(std::move(source)),
+      machine_name_(machine.machine.name),
       controller_(controller),
       clock_(std::move(clock)),
       cycle_us_(machine.machine.cycle_us),
@@ -74,6 +79,43 @@ Answer Supervisor::Enable() { return Ask(RequestKind::kEnable); }
 Answer Supervisor::Disable() { return Ask(RequestKind::kDisable); }
 Answer Supervisor::Stop() { return Ask(RequestKind::kStop); }
 Answer Supervisor::Reset() { return Ask(RequestKind::kReset); }
+
+Answer Supervisor::Reload() {
+  const std::lock_guard lock(reload_);
+  try {
+    const MachineConfig wanted = LoadMachine(ReadSource(source_.name, source_.overrides));
+    const std::vector<ConfigDifference> differences = Differences(machine_, wanted);
+    if (differences.empty()) return {true, "nothing has changed"};
+    std::string changes, refused;
+    for (const ConfigDifference& d : differences) {
+      if (MayChangeWhileRunning(d.key)) {
+        changes += d.key + "=" + d.now + "\n";
+      } else {
+        refused += "\n  " + d.key + ": " + d.was + " in use, " + d.now + " in the file";
+      }
+    }
+    if (!refused.empty())
+      return {false,
+              "nothing was changed: only gains of the controllers may change while contourd runs; restart "
+              "it for the rest:" +
+                  refused};
+    controllers_.push_back(
+        std::make_unique<ContourController>(MakeController(MakeCycleConfig(wanted, controller_))));
+    parts_.hub.Note(kTuningNote + std::to_string(++changes_), changes);
+    const std::uint32_t sequence = parts_.mailbox.PostTune(*controllers_.back(), changes_);
+    if (sequence == 0)
+      return {false, "the cycle takes no requests: the mailbox is full; is the loop running?"};
+    Answer answer = Await(RequestKind::kTune, sequence);
+    if (!answer.accepted) return answer;  // the controller stays: the cycle may be about to take it
+    controllers_.clear();
+    machine_ = wanted;
+    answer.reason = std::to_string(differences.size()) + " keys changed: " + changes;
+    answer.reason.pop_back();
+    return answer;
+  } catch (const std::exception& e) {
+    return {false, e.what()};
+  }
+}
 
 Answer Supervisor::Run(const ProgramUpload& upload) {
   if (!upload.controller.empty() && upload.controller != Name(controller_)) {
@@ -132,15 +174,14 @@ MachineStatus Supervisor::Status() {
   out.cycles = parts_.loop.counters().cycles.load();
   if (clock_ == "wall") out.late_cycles = parts_.loop.counters().late_cycles.load();
   out.skipped_grid_points = parts_.loop.counters().skipped_grid_points.load();
-  out.wakeup_late = s.wakeup_late;
-  out.computing = s.computing;
-  out.sent = s.sent;
+  out.health = s.health;
   out.dropped_entries = parts_.queue.dropped();
   for (std::size_t b = 0; b < bus_names_.size(); ++b)
     out.buses.push_back({bus_names_[b], interfaces_[b], parts_.loop.bus_states().Read(b)});
   if (parts_.io != nullptr) out.io = parts_.io->stats();
   out.publisher = s.publisher;
   out.log = s.log;
+  out.flight = s.flight;
   return out;
 }
 

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
+#include "config/load_machine.h"
 #include "config/machine_config.h"
+#include "control/contour_controller.h"
 #include "daemon/control_socket/operator_desk.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/pump.h"
@@ -29,12 +33,13 @@ struct SupervisedParts {
 class Supervisor final : public OperatorDesk {
  public:
   Supervisor(const MachineConfig& machine, ControllerName controller, std::string clock,
-             std::vector<std::string> warnings, const SupervisedParts& parts);
+             std::vector<std::string> warnings, const SupervisedParts& parts, MachineSource source);
 
   Answer Enable() override;
   Answer Disable() override;
   Answer Stop() override;
   Answer Reset() override;
+  Answer Reload() override;
   Answer Run(const ProgramUpload& program) override;
   MachineStatus Status() override;
   void Attach(std::shared_ptr<RowFeed> feed) override;
@@ -44,6 +49,11 @@ class Supervisor final : public OperatorDesk {
   Answer Ask(RequestKind kind, std::uint32_t program_id = 0);
   Answer Await(RequestKind kind, std::uint32_t sequence);
 
+  MachineConfig machine_;  ///< as it runs now
+  MachineSource source_;   ///< where it came from
+  std::uint32_t changes_ = 0;
+  std::vector<std::unique_ptr<ContourController>> controllers_;  ///< that the cycle may still hold
+  std::mutex reload_;                                            ///< SIGHUP and the socket may both ask
   std::string machine_name_;
   ControllerName controller_;
   std::string clock_;

@@ -48,15 +48,6 @@ json Facts(const AxisFacts& f) {
           {"jerk_m_s3", f.limits.jerk_m_s3},           {"encoder_count_m", f.encoder_count_m}};
 }
 
-json Axes(const MachineStatus& s) {
-  json axes = json::array();
-  for (std::size_t i = 0; i < s.axis_names.size(); ++i) {
-    axes.push_back(Axis(s.axis_names[i], i < s.record.axes.size() ? s.record.axes[i] : AxisRecord{}));
-    if (i < s.axis_facts.size()) axes.back()["facts"] = Facts(s.axis_facts[i]);
-  }
-  return axes;
-}
-
 json Buses(const MachineStatus& s) {
   json buses = json::array();
   for (const BusStatus& b : s.buses) {
@@ -85,6 +76,43 @@ json Io(const MachineStatus& s) {
           {"connections", s.io.connections},
           {"lubrication_pulses", s.io.lubrication_pulses},
           {"last_error", s.io.last_error}};
+}
+
+json Late(const MachineStatus& s) {
+  if (!s.late_cycles) return nullptr;
+  json causes = json::object();
+  for (std::size_t c = 1; c < kLateCauses; ++c)
+    causes[std::string(Name(static_cast<LateCause>(c)))] = s.health.causes[c];
+  const bool any = s.health.late_cycles != 0;
+  return {{"cycles", s.health.late_cycles},
+          {"causes", causes},
+          {"last", any ? json{{"cycle", s.health.last_late_cycle},
+                              {"cause", Name(s.health.last_cause)},
+                              {"sent_us", s.health.last_late_us}}
+                       : json(nullptr)}};
+}
+
+json Feedback(const MachineStatus& s, std::size_t i) {
+  const auto axis = i < s.health.axes.size() ? s.health.axes[i] : CycleHealth::AxisSummary{};
+  return {{"stale_cycles", axis.stale_cycles}, {"response", Summary(axis.response)}};
+}
+
+json Axes(const MachineStatus& s) {
+  json axes = json::array();
+  for (std::size_t i = 0; i < s.axis_names.size(); ++i) {
+    axes.push_back(Axis(s.axis_names[i], i < s.record.axes.size() ? s.record.axes[i] : AxisRecord{}));
+    axes.back()["feedback"] = Feedback(s, i);
+    if (i < s.axis_facts.size()) axes.back()["facts"] = Facts(s.axis_facts[i]);
+  }
+  return axes;
+}
+
+json Flight(const FlightRecordStats& f) {
+  if (!f.enabled) return nullptr;
+  return {{"directory", f.directory},     {"file", f.file.empty() ? json(nullptr) : json(f.file)},
+          {"first_cycle", f.first_cycle}, {"last_cycle", f.last_cycle},
+          {"reason", f.reason},           {"written", f.written},
+          {"last_error", f.last_error}};
 }
 
 json Log(const LogStats& log) {
@@ -134,13 +162,21 @@ nlohmann::json ToJson(const MachineStatus& s) {
       {"skipped_grid_points", s.skipped_grid_points},
       {"dropped_telemetry", s.dropped_entries},
       {"timing",
-       {{"wakeup_late", Summary(s.wakeup_late)},
-        {"computing", Summary(s.computing)},
-        {"sent", Summary(s.sent)}}},
+       {{"wakeup_late", Summary(s.health.wakeup_late)},
+        {"receiving", Summary(s.health.receiving)},
+        {"estimating", Summary(s.health.estimating)},
+        {"deciding", Summary(s.health.deciding)},
+        {"computing", Summary(s.health.computing)},
+        {"sending", Summary(s.health.sending)},
+        {"sent", Summary(s.health.sent)}}},
+      {"late", Late(s)},
+      {"page_faults", s.health.page_faults},
+      {"involuntary_switches", s.health.involuntary_switches},
       {"buses", Buses(s)},
       {"io", Io(s)},
       {"lcm", Lcm(s.publisher)},
       {"log", Log(s.log)},
+      {"flight_record", Flight(s.flight)},
   };
 }
 

@@ -8,8 +8,9 @@
 
 #include "core/cycle_record.h"
 #include "daemon/program/motion_plan.h"
+#include "daemon/telemetry/cycle_health.h"
+#include "daemon/telemetry/flight_recorder.h"
 #include "daemon/telemetry/log_stats.h"
-#include "daemon/telemetry/timing_histogram.h"
 #include "drivers/can/frame_bus.h"
 #include "drivers/lcm/publisher_stats.h"
 #include "drivers/modbus/io_stats.h"
@@ -48,15 +49,14 @@ struct MachineStatus {
   std::uint64_t cycles = 0;
   std::optional<std::uint64_t> late_cycles;  ///< nothing where time is not the wall's
   std::uint64_t skipped_grid_points = 0;
-  TimingSummary wakeup_late;
-  TimingSummary computing;  ///< received to stepped
-  TimingSummary sent;       ///< grid point to frames handed over
+  CycleHealth::Summary health;  ///< stages, causes of late cycles, feedback
 
   std::uint64_t dropped_entries = 0;  ///< cycles that never reached telemetry, log and clients
   std::vector<BusStatus> buses;
   IoStats io;
   PublisherStats publisher;
   LogStats log;
+  FlightRecordStats flight;
 };
 
 /// The status as the socket carries it and `contour status --json` prints it; docs/operating.md lists the

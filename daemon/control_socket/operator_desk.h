@@ -40,6 +40,9 @@ class OperatorDesk {
   virtual Answer Disable() = 0;
   virtual Answer Stop() = 0;
   virtual Answer Reset() = 0;
+  /// Reads the machine file again and takes what may change while running; refused as a whole if anything
+  /// else has changed. Answer::reason says in any case what came of it.
+  virtual Answer Reload() = 0;
   virtual Answer Run(const ProgramUpload& program) = 0;
   virtual MachineStatus Status() = 0;
 

@@ -75,6 +75,12 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   if (kind == "disable") return Reply(desk.Disable());
   if (kind == "stop") return Reply(desk.Stop());
   if (kind == "reset") return Reply(desk.Reset());
+  if (kind == "reload") {
+    const Answer answer = desk.Reload();
+    json reply = Reply(answer);
+    if (answer.accepted) reply["text"] = answer.reason;
+    return reply;
+  }
   if (kind == "run") return Run(request, desk);
   if (kind == "watch") return Watch(request, subscriptions);
   if (kind == "rows") {
@@ -82,7 +88,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     return {{"ok", true}};
   }
   throw BadRequest("unknown request \"" + kind +
-                   "\"; there are status, enable, disable, stop, reset, run, watch, rows");
+                   "\"; there are status, enable, disable, stop, reset, reload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

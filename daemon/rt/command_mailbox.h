@@ -8,6 +8,8 @@
 
 namespace contour {
 
+class ContourController;
+
 /// The door into the real-time side. Requests come one per cycle, in sequence, and are acknowledged in the
 /// cycle record; a stop overtakes them, is latched and is never overwritten; path points come through a
 /// bounded queue of their own. One writer thread for requests, one for path points; any thread may ask for a
@@ -34,6 +36,11 @@ class CommandMailbox {
   }
   /// A request that nobody waits for any more is not carried out, if the cycle has not taken it yet.
   void Withdraw(std::uint32_t sequence) noexcept { withdrawn_.store(sequence, std::memory_order_release); }
+  /// Other gains: the controller to take, until the request is acknowledged; the one in use comes back in it.
+  std::uint32_t PostTune(ContourController& next, std::uint32_t change) noexcept {
+    next_controller_.store(&next, std::memory_order_release);
+    return Post(RequestKind::kTune, change);
+  }
   bool PushPathPoint(const PathPoint& point) noexcept { return path_.Push(point); }
   /// Whether more points of the program are to come; lock-step time waits for them instead of running dry.
   void SetPathSupply(bool more_to_come) noexcept {
@@ -64,6 +71,10 @@ class CommandMailbox {
     return requests_.size() != 0 || stop_.load(std::memory_order_acquire) != 0 ||
            terminate_.load(std::memory_order_acquire) != 0;
   }
+  /// With a request of kind kTune.
+  ContourController* TakeController() noexcept {
+    return next_controller_.exchange(nullptr, std::memory_order_acq_rel);
+  }
   bool TakePathPoint(PathPoint& point) noexcept { return path_.Pop(point); }
 
  private:
@@ -75,6 +86,7 @@ class CommandMailbox {
   std::atomic<std::uint32_t> stop_{0};
   std::atomic<std::uint32_t> terminate_{0};
   std::atomic<std::uint32_t> withdrawn_{0};
+  std::atomic<ContourController*> next_controller_{nullptr};
   std::atomic<bool> more_to_come_{false};
 };
 

@@ -81,6 +81,10 @@ PerAxis<double> Zeros(std::size_t n) {
 
 }  // namespace
 
+ContourController MakeController(const CycleConfig& config) {
+  return {config.controller, config.control, ControlledAxes(config), config.cycle_us * 1e-6};
+}
+
 double StopOnPathTime_s(const CycleConfig& config) {
   // The ramp's steepest slope is 1.5 / T, its sharpest bend 6 / T^2: an axis at its highest speed then just
   // keeps its limits of acceleration and jerk.
@@ -131,14 +135,29 @@ Cycle::Cycle(const CycleConfig& config)
   control_out_.target_position_m = Zeros(n);
   control_out_.limit.resize(n);
   follower_.Hold(Zeros(n));
+  StateKeeper measuring;
+  controller_.Keep(measuring);
+  handover_.resize(measuring.used());
 }
 
-void Cycle::Step(const CycleInput& in, CycleOutput& out) noexcept {
+bool Cycle::TakeController(ContourController& next) noexcept CONTOUR_NONBLOCKING {
+  StateKeeper saving = StateKeeper::Saving(handover_);
+  controller_.Keep(saving);
+  StateKeeper loading = StateKeeper::Loading(handover_);
+  next.Keep(loading);
+  if (!saving.whole() || !loading.whole()) return false;
+  std::swap(controller_, next);
+  return true;
+}
+
+void Cycle::Step(const CycleInput& in, CycleOutput& out, StageSink* stages) noexcept CONTOUR_NONBLOCKING {
   Observe(in);
   Estimate(in.io);
+  if (stages != nullptr) stages->Passed(CycleStage::kEstimated);
   Orders orders = transitions_.Step(Assess(in));
   CarryOut(orders);
   Decide(orders);
+  if (stages != nullptr) stages->Passed(CycleStage::kDecided);
   // Without torque a fault of the guard moves nothing, and the enabling to come starts everything anew.
   if (const FaultSeen fault = Guard(orders); fault.reason != Reason::kNone && orders.torque_allowed) {
     orders = transitions_.RaiseLate(fault);
@@ -175,7 +194,7 @@ std::size_t Cycle::StateSize() noexcept {
   return measuring.used();
 }
 
-void Cycle::SaveState(std::span<std::byte> to) noexcept {
+void Cycle::SaveState(std::span<std::byte> to) noexcept CONTOUR_NONBLOCKING {
   StateKeeper saving = StateKeeper::Saving(to);
   Keep(saving);
 }

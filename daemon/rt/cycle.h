@@ -9,6 +9,8 @@
 #include "control/torque_guard.h"
 #include "core/cycle_record.h"
 #include "core/horizon.h"
+#include "core/nonblocking.h"
+#include "core/stage_sink.h"
 #include "core/state_keeper.h"
 #include "daemon/rt/cycle_config.h"
 #include "daemon/rt/path_follower.h"
@@ -29,7 +31,8 @@ class Cycle {
   /// Takes all memory there will be. Throws std::invalid_argument on a configuration that cannot run.
   explicit Cycle(const CycleConfig& config);
 
-  void Step(const CycleInput& in, CycleOutput& out) noexcept;
+  /// `stages`, if any, is told how far the step has come; what is computed does not depend on it.
+  void Step(const CycleInput& in, CycleOutput& out, StageSink* stages = nullptr) noexcept CONTOUR_NONBLOCKING;
 
   // For the loop around it:
   /// How many path points the next Step can take.
@@ -41,10 +44,14 @@ class Cycle {
   /// The master's heartbeats alone, for a loop whose time stands still.
   void EncodeHeartbeat(CycleOutput& out) const noexcept;
 
+  /// Other gains from the next Step on: takes the controller from `next`, with the memory of the present one,
+  /// which it leaves there. False, and nothing has changed, when they are not of the same kind.
+  bool TakeController(ContourController& next) noexcept CONTOUR_NONBLOCKING;
+
   // The state between two Steps, for a replay that does not begin at the start; see core/state_keeper.h.
   [[nodiscard]] std::size_t StateSize() noexcept;
   /// `to` has StateSize() bytes.
-  void SaveState(std::span<std::byte> to) noexcept;
+  void SaveState(std::span<std::byte> to) noexcept CONTOUR_NONBLOCKING;
   /// False when these bytes are not the state of such a cycle; it is then not to be used.
   bool LoadState(std::span<const std::byte> from) noexcept;
 
@@ -98,6 +105,10 @@ class Cycle {
   std::uint64_t stale_cycles_ = 0;
   FixedVector<StampedFrame, kMaxAxes> answers_;  ///< bus and identifier of each drive's answer to SYNC
   FixedVector<StampedFrame, kMaxBuses> heartbeats_;
+  std::vector<std::byte> handover_;  ///< room for a controller's memory
 };
+
+/// The controller of such a cycle; takes all memory there will be. Throws std::invalid_argument.
+ContourController MakeController(const CycleConfig& config);
 
 }  // namespace contour

@@ -20,6 +20,16 @@ void SleepUntil(std::int64_t time_ns) noexcept {
   }
 }
 
+/// Takes the time where the cycle passes.
+class StageClock final : public StageSink {
+ public:
+  void Passed(CycleStage stage) noexcept override {
+    (stage == CycleStage::kEstimated ? estimated_ns : decided_ns) = Now();
+  }
+  std::int64_t estimated_ns = 0;
+  std::int64_t decided_ns = 0;
+};
+
 /// How often lock-step looks for feedback that no descriptor announces, for path points, for requests.
 constexpr std::int64_t kLockstepPoll_ns = 50'000;
 constexpr std::int64_t kLockstepStarvedPoll_ns = 200'000;
@@ -41,12 +51,17 @@ Loop::Loop(const Config& config, Cycle& cycle, std::span<FrameBus* const> buses,
       runner_(cycle, buses, mailbox, io) {}
 
 void Loop::RunWall() noexcept {
+  ThreadAccounting accounting;
+  StageClock stages;
+  limits_ = {config_.send_deadline_ns, ThrottleTime_ns()};
   // The grid begins one period from now, so that the first wake-up is an ordinary one.
   const std::int64_t origin = Now();
   GridPoint grid{0, origin, 0};
+  std::int64_t last_sent = origin;
   bool finished = false;
   while (!finished) {
-    grid = NextWakeup(origin, config_.period_ns, grid.index, Now());
+    const std::int64_t asleep = Now();
+    grid = NextWakeup(origin, config_.period_ns, grid.index, asleep);
     SleepUntil(grid.time_ns);
     const std::int64_t woken = Now();
     CycleEntry& entry = *telemetry_.Reserve();
@@ -54,30 +69,48 @@ void Loop::RunWall() noexcept {
     runner_.Receive(grid.time_ns, entry.input);
     runner_.Collect(grid, woken, true, entry.input);
     const std::int64_t received = Now();
-    cycle_.Step(entry.input, entry.output);
+    cycle_.Step(entry.input, entry.output, &stages);
     const std::int64_t stepped = Now();
     runner_.Send(grid.time_ns, entry.output);
     finished = entry.output.finished;
-    Finish(entry, grid, woken, received, stepped);
+    const std::int64_t sent = Now();
+    CycleTiming& timing = entry.timing;
+    timing = {};
+    timing.wakeup_late_ns = woken - grid.time_ns;
+    timing.received_ns = received - grid.time_ns;
+    timing.estimated_ns = stages.estimated_ns - grid.time_ns;
+    timing.decided_ns = stages.decided_ns - grid.time_ns;
+    timing.stepped_ns = stepped - grid.time_ns;
+    timing.sent_ns = sent - grid.time_ns;
+    timing.after_send_ns = asleep - last_sent;
+    last_sent = sent;
+    Finish(entry, grid, accounting);
   }
 }
 
-void Loop::Finish(CycleEntry& entry, const GridPoint& grid, std::int64_t woken_ns, std::int64_t received_ns,
-                  std::int64_t stepped_ns) noexcept {
-  const std::int64_t sent = Now();
+// All that is not needed to send the frames comes after them.
+void Loop::Finish(CycleEntry& entry, const GridPoint& grid, ThreadAccounting& accounting) noexcept {
   CycleTiming& timing = entry.timing;
-  timing.wakeup_late_ns = woken_ns - grid.time_ns;
-  timing.received_ns = received_ns - grid.time_ns;
-  timing.stepped_ns = stepped_ns - grid.time_ns;
-  timing.sent_ns = sent - grid.time_ns;
   timing.skipped_grid_points = grid.skipped;
   timing.late = timing.sent_ns > config_.send_deadline_ns || grid.skipped != 0;
+  const ThreadCounts counts = accounting.Read();
+  timing.page_faults = counts.page_faults;
+  timing.involuntary_switches = counts.involuntary_switches;
+  timing.voluntary_switches = counts.voluntary_switches;
+  timing.run_delay_ns = accounting.RunDelay_ns();
+  if (timing.late) {
+    timing.cause = FindLateCause(timing, last_cause_, limits_);
+    counters_.late_cycles.fetch_add(1, std::memory_order_relaxed);
+    counters_.causes[static_cast<std::size_t>(timing.cause)].fetch_add(1, std::memory_order_relaxed);
+  }
+  last_cause_ = timing.cause;
   counters_.cycles.fetch_add(1, std::memory_order_relaxed);
-  if (timing.late) counters_.late_cycles.fetch_add(1, std::memory_order_relaxed);
   counters_.skipped_grid_points.fetch_add(grid.skipped, std::memory_order_relaxed);
   if (timing.wakeup_late_ns > counters_.max_wakeup_late_ns.load(std::memory_order_relaxed))
     counters_.max_wakeup_late_ns.store(timing.wakeup_late_ns, std::memory_order_relaxed);
+  const std::uint64_t cycle = entry.input.cycle;
   telemetry_.Publish();
+  if (config_.snapshots != nullptr) config_.snapshots->TakeWhenDue(cycle_, cycle);
 }
 
 void Loop::RunLockstep() noexcept {
@@ -100,6 +133,7 @@ void Loop::RunLockstep() noexcept {
     entry.timing = {};
     counters_.cycles.fetch_add(1, std::memory_order_relaxed);
     telemetry_.Publish();
+    if (config_.snapshots != nullptr) config_.snapshots->TakeWhenDue(cycle_, grid.index);
   }
 }
 

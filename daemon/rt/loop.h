@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -8,7 +9,10 @@
 #include "daemon/rt/cycle.h"
 #include "daemon/rt/cycle_runner.h"
 #include "daemon/rt/io_source.h"
+#include "daemon/rt/late_attribution.h"
+#include "daemon/rt/state_snapshots.h"
 #include "daemon/rt/telemetry_queue.h"
+#include "daemon/rt/thread_accounting.h"
 #include "drivers/can/frame_bus.h"
 
 namespace contour {
@@ -19,6 +23,7 @@ struct LoopCounters {
   std::atomic<std::uint64_t> late_cycles{0};
   std::atomic<std::uint64_t> skipped_grid_points{0};
   std::atomic<std::int64_t> max_wakeup_late_ns{0};
+  std::array<std::atomic<std::uint64_t>, kLateCauses> causes{};  ///< of late cycles, by LateCause
 };
 
 /// Everything around the cycle: waits for the grid point, receives, steps, sends, stamps the stages and hands
@@ -28,6 +33,8 @@ class Loop {
   struct Config {
     std::int64_t period_ns = 1'000'000;
     std::int64_t send_deadline_ns = 200'000;
+    /// Copies of the cycle's state are made here, if anywhere.
+    StateSnapshots* snapshots = nullptr;
   };
   Loop(const Config& config, Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox,
        IoSource& io, TelemetryQueue& telemetry);
@@ -42,8 +49,7 @@ class Loop {
   [[nodiscard]] const LoopCounters& counters() const noexcept { return counters_; }
 
  private:
-  void Finish(CycleEntry& entry, const GridPoint& grid, std::int64_t woken_ns, std::int64_t received_ns,
-              std::int64_t stepped_ns) noexcept;
+  void Finish(CycleEntry& entry, const GridPoint& grid, ThreadAccounting& accounting) noexcept;
   void WaitForFrames(std::int64_t until_ns) noexcept;
   void WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept;
   void WaitForWork(const CycleOutput& last) noexcept;
@@ -55,6 +61,8 @@ class Loop {
   CommandMailbox& mailbox_;
   TelemetryQueue& telemetry_;
   CycleRunner runner_;
+  LatenessLimits limits_;
+  LateCause last_cause_ = LateCause::kNone;
   LoopCounters counters_;
 };
 

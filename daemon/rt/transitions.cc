@@ -123,6 +123,8 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
         Acknowledge(request, state_ == MachineState::kIdle);
       }
       return;
+    case RequestKind::kTune:
+      return Acknowledge(request, true);
     case RequestKind::kStop:
       Acknowledge(request, true);
       if (state_ == MachineState::kRunning) {

@@ -80,6 +80,11 @@ constexpr CycleColumn kCycleColumns[] = {
     {"sent_us", [](const Row& r, Line& l) { l.Field(Us(r.timing.sent_ns)); }},
     {"late", [](const Row& r, Line& l) { l.Field(r.timing.late); }},
     {"skipped_grid_points", [](const Row& r, Line& l) { l.Field(r.timing.skipped_grid_points); }},
+    {"late_cause", [](const Row& r, Line& l) { l.Field(Name(r.timing.cause)); }},
+    {"estimated_us", [](const Row& r, Line& l) { l.Field(Us(r.timing.estimated_ns)); }},
+    {"decided_us", [](const Row& r, Line& l) { l.Field(Us(r.timing.decided_ns)); }},
+    {"page_faults", [](const Row& r, Line& l) { l.Field(r.timing.page_faults); }},
+    {"involuntary_switches", [](const Row& r, Line& l) { l.Field(r.timing.involuntary_switches); }},
 };
 
 struct AxisColumn {

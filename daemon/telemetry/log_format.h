@@ -6,7 +6,7 @@
 namespace contour {
 
 /// Goes up when a log of an older program could be misread.
-inline constexpr std::int32_t kLogFormatVersion = 3;
+inline constexpr std::int32_t kLogFormatVersion = 4;
 
 inline constexpr std::string_view kHeaderChannel = "CONTOUR_LOG_HEADER";
 inline constexpr std::string_view kStateChannel = "CONTOUR_LOG_STATE";

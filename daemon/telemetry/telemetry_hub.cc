@@ -6,7 +6,7 @@ namespace contour {
 
 TelemetryHub::TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
                            const std::optional<LogTarget>& log)
-    : encoder_(config, cycle_us, axis_names) {
+    : encoder_(config, cycle_us, axis_names), health_(axis_names) {
   if (config.publish) {
     publisher_ = std::make_unique<LcmPublisher>(config.lcm_url);
     sinks_.push_back(publisher_.get());
@@ -19,6 +19,7 @@ TelemetryHub::TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vec
 
 void TelemetryHub::Consume(const CycleEntry& entry) {
   Observe(entry);
+  if (flight_ != nullptr) flight_->OnCycle(entry);
   if (!sinks_.empty()) encoder_.Add(entry, sinks_);
 }
 
@@ -26,6 +27,7 @@ void TelemetryHub::Flush() { encoder_.Flush(sinks_); }
 
 void TelemetryHub::Close() {
   Flush();
+  if (flight_ != nullptr) flight_->Finish();
   if (log_ != nullptr) log_->Close();
 }
 
@@ -36,11 +38,8 @@ void TelemetryHub::Observe(const CycleEntry& entry) {
     ++cycles_;
     record_ = entry.output.record;
     timing_ = entry.timing;
-    late_cycles_ += entry.timing.late ? 1 : 0;
     skipped_grid_points_ += entry.timing.skipped_grid_points;
-    wakeup_late_.Add(entry.timing.wakeup_late_ns);
-    computing_.Add(entry.timing.stepped_ns - entry.timing.received_ns);
-    sent_.Add(entry.timing.sent_ns);
+    health_.Add(entry);
     feeds = feeds_;
   }
   for (const auto& feed : feeds) feed->Push(entry);
@@ -56,8 +55,28 @@ void TelemetryHub::Detach(const std::shared_ptr<RowFeed>& feed) {
   std::erase(feeds_, feed);
 }
 
+void TelemetryHub::WatchFeedback(std::vector<FeedbackSource> sources) {
+  const std::lock_guard lock(mutex_);
+  health_.Watch(std::move(sources));
+}
+
+void TelemetryHub::AddFlightRecorder(std::unique_ptr<FlightRecorder> recorder) {
+  flight_ = std::move(recorder);
+  sinks_.push_back(flight_.get());
+}
+
+void TelemetryHub::OnState(std::uint64_t cycle, std::string bytes) {
+  if (flight_ != nullptr) flight_->OnState(cycle, std::move(bytes));
+}
+
+std::optional<std::string> TelemetryHub::TakeHealthMessage() {
+  const std::lock_guard lock(mutex_);
+  return health_.TakeMessage();
+}
+
 void TelemetryHub::Note(const std::string& key, const std::string& text) {
   if (log_ != nullptr) log_->Note(key, text);
+  if (flight_ != nullptr) flight_->OnNote(key, text);
 }
 
 TelemetryHub::Snapshot TelemetryHub::snapshot() const {
@@ -67,14 +86,12 @@ TelemetryHub::Snapshot TelemetryHub::snapshot() const {
     s.cycles = cycles_;
     s.record = record_;
     s.timing = timing_;
-    s.late_cycles = late_cycles_;
     s.skipped_grid_points = skipped_grid_points_;
-    s.wakeup_late = Summarize(wakeup_late_);
-    s.computing = Summarize(computing_);
-    s.sent = Summarize(sent_);
+    s.health = health_.summary();
   }
   if (publisher_ != nullptr) s.publisher = publisher_->stats();
   if (log_ != nullptr) s.log = log_->stats();
+  if (flight_ != nullptr) s.flight = flight_->stats();
   return s;
 }
 

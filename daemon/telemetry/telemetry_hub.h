@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "core/cycle_record.h"
+#include "daemon/telemetry/cycle_health.h"
+#include "daemon/telemetry/flight_recorder.h"
 #include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/row_feed.h"
-#include "daemon/telemetry/timing_histogram.h"
 #include "drivers/lcm/lcm_publisher.h"
 #include "drivers/lcm/telemetry_config.h"
 #include "drivers/lcm/telemetry_encoder.h"
@@ -40,6 +41,14 @@ class TelemetryHub {
   void Attach(std::shared_ptr<RowFeed> feed);
   void Detach(const std::shared_ptr<RowFeed>& feed);
 
+  /// Before the first cycle: whose feedback to watch, and a recorder of the last seconds.
+  void WatchFeedback(std::vector<FeedbackSource> sources);
+  void AddFlightRecorder(std::unique_ptr<FlightRecorder> recorder);
+  /// A copy of the cycle's state, for the flight recorder.
+  void OnState(std::uint64_t cycle, std::string bytes);
+  /// A line on late cycles and missing feedback, when there is something new to say.
+  std::optional<std::string> TakeHealthMessage();
+
   /// Into the log, when there is one.
   void Note(const std::string& key, const std::string& text);
 
@@ -47,15 +56,14 @@ class TelemetryHub {
     std::uint64_t cycles = 0;  ///< consumed
     CycleRecord record;        ///< of the newest one
     CycleTiming timing;
-    std::uint64_t late_cycles = 0;
     std::uint64_t skipped_grid_points = 0;
-    TimingSummary wakeup_late;
-    TimingSummary computing;  ///< received to stepped
-    TimingSummary sent;
+    CycleHealth::Summary health;
     PublisherStats publisher;
     LogStats log;
+    FlightRecordStats flight;
   };
   [[nodiscard]] Snapshot snapshot() const;
+  [[nodiscard]] FlightRecordStats flight() const { return flight_ ? flight_->stats() : FlightRecordStats{}; }
   /// Newest record alone: cheap enough to poll while waiting for an acknowledgement.
   [[nodiscard]] CycleRecord record() const;
 
@@ -65,18 +73,16 @@ class TelemetryHub {
   TelemetryEncoder encoder_;
   std::unique_ptr<LcmPublisher> publisher_;
   std::unique_ptr<LogWriter> log_;
+  std::unique_ptr<FlightRecorder> flight_;
   std::vector<TelemetrySink*> sinks_;
 
   mutable std::mutex mutex_;  // guards all below
   std::vector<std::shared_ptr<RowFeed>> feeds_;
   std::uint64_t cycles_ = 0;
-  std::uint64_t late_cycles_ = 0;
   std::uint64_t skipped_grid_points_ = 0;
   CycleRecord record_;
   CycleTiming timing_;
-  TimingHistogram wakeup_late_;
-  TimingHistogram computing_;
-  TimingHistogram sent_;
+  CycleHealth health_;
 };
 
 }  // namespace contour

@@ -161,6 +161,14 @@ struct TimingFields {
     copy(core.sent_ns, wire.sent_ns);
     copy(core.late, wire.late);
     copy(core.skipped_grid_points, wire.skipped_grid_points);
+    copy(core.estimated_ns, wire.estimated_ns);
+    copy(core.decided_ns, wire.decided_ns);
+    copy(core.cause, wire.cause);
+    copy(core.after_send_ns, wire.after_send_ns);
+    copy(core.run_delay_ns, wire.run_delay_ns);
+    copy(core.page_faults, wire.page_faults);
+    copy(core.involuntary_switches, wire.involuntary_switches);
+    copy(core.voluntary_switches, wire.voluntary_switches);
   }
 };
 

@@ -12,6 +12,8 @@ struct TelemetryConfig {
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   int batch_cycles = 50;
   int look_hz = 50;
+  double flight_recorder_s = 10.0;
+  std::string flight_directory;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -19,6 +21,10 @@ struct TelemetryConfig {
     v.Optional("lcm_url", lcm_url, "LCM provider; ttl=0 keeps the multicast on this machine");
     v.Optional("batch_cycles", batch_cycles, Range{1, 100}, "cycles in one CONTOUR_CYCLES message");
     v.Optional("look_hz", look_hz, Range{1, 1000}, "rate of the messages meant for looking at");
+    v.Optional("flight_recorder_s", flight_recorder_s, Range{0, 120},
+               "seconds kept in memory, and written to a file when a fault stops the machine; 0: none");
+    v.Optional("flight_directory", flight_directory,
+               "where these files go; empty: the service's log directory, else the user's state directory");
   }
 };
 

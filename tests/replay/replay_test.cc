@@ -11,6 +11,8 @@
 #include "config/load_machine.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/make_log_header.h"
+#include "daemon/telemetry/flight_recorder.h"
+#include "daemon/telemetry/tuning_note.h"
 #include "tests/replay/eventful_run.h"
 #include "tests/support/same_cycle_entry.h"
 #include "tools/simulate/run_log.h"
@@ -234,6 +236,139 @@ TEST_F(ReplayTest, AModelInAFileOfItsOwnComesWithTheLog) {
   EXPECT_EQ(LoadMachine(source).axes.at("x").model.mechanics.table_mass_kg, 11.5);
   const LogHeader header = MakeLogHeader(source, LoadMachine(source), "virtual", 0);
   EXPECT_EQ(SourceOf(header).files, source.files);
+}
+
+/// Gains that change in the middle of a run, as `contour reload` changes them.
+TEST_F(ReplayTest, ChangedGainsAreChangedAgainAtTheSameCycle) {
+  const std::string change = "control.full.contour_bandwidth_Hz=25\ncontrol.planner.torque_share=0.5";
+  const LogHeader header = Header();
+  const auto tuned = [&] {
+    MachineSource source = SourceOf(header);
+    for (const std::string& line : Lines(change)) source.overrides.push_back(line);
+    return MakeController(MakeCycleConfig(LoadMachine(source), ControllerName::kFull));
+  };
+  const auto record = [&](bool with_note) {
+    EventfulRun machine(Machine(), ControllerName::kFull);
+    RunLog log(file_, header);
+    machine.machine().SetRecorder([&](const CycleEntry& entry) { log.Add(entry); });
+    machine.BringUp();
+    machine.Enable();
+    machine.Start("{shape: circle, radius_mm: 0.1, turns: 4, frequency_hz: 4}", 200);
+    ContourController next = tuned();
+    if (with_note) log.Note(kTuningNote + std::string("1"), change);
+    machine.machine().mailbox().PostTune(next, 1);
+    machine.Tick(400);
+    EXPECT_GT(machine.machine().record().acknowledged, 2u);
+    EXPECT_EQ(machine.machine().record().state, MachineState::kRunning);
+    log.Close();
+  };
+  record(true);
+  const ReplayReport report = ReplayFile();
+  EXPECT_EQ(report.verdict, ReplayVerdict::kSame);
+  for (const QuantityDifference& d : report.differences) ADD_FAILURE() << d.quantity << " at " << d.cycle;
+  record(false);
+  EXPECT_THROW(ReplayFile(), LogError) << "without the note nobody can know what was changed";
+}
+
+class FlightRecordTest : public ReplayTest {
+ protected:
+  /// A long run through a flight recorder of 1.5 s; the files it left.
+  std::vector<fs::path> Fly(EventfulRun& run, const std::function<void(EventfulRun&)>& script) {
+    FlightRecorder::Config config;
+    config.directory = directory_ / "flight";
+    config.window_cycles = 1500;
+    FlightRecorder recorder(config, Header());
+    TelemetryEncoder encoder({}, 1000, Header().axis_names);
+    TelemetrySink* sinks[] = {&recorder};
+    Cycle shadow(MakeCycleConfig(Machine().machine, ControllerName::kFull));
+    std::string state(shadow.StateSize(), '\0');
+    CycleOutput ignored;
+    run.machine().SetRecorder([&](const CycleEntry& entry) {
+      shadow.Step(entry.input, ignored);
+      if (entry.input.cycle % 400 == 7) {
+        shadow.SaveState(std::as_writable_bytes(std::span(state)));
+        recorder.OnState(entry.input.cycle, state);
+      }
+      recorder.OnCycle(entry);
+      encoder.Add(entry, sinks);
+    });
+    script(run);
+    encoder.Flush(sinks);
+    recorder.Finish();
+    stats_ = recorder.stats();
+    std::vector<fs::path> files;
+    if (fs::exists(config.directory))
+      for (const auto& file : fs::directory_iterator(config.directory)) files.push_back(file.path());
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+  FlightRecordStats stats_;
+};
+
+TEST_F(FlightRecordTest, TheLastSecondsBeforeAFaultAreKeptAndComeOutBitForBit) {
+  EventfulRun run(Machine(), ControllerName::kFull);
+  const std::vector<fs::path> files = Fly(run, [](EventfulRun& r) {
+    r.BringUp();
+    r.Enable();
+    r.Start("{shape: circle, radius_mm: 10, turns: 5, feed_mm_min: 900}", 4000);
+    r.EmergencyStop();
+    r.Reset();
+    r.Enable();
+    r.Start("{shape: circle, radius_mm: 0.1, turns: 9, frequency_hz: 1}", 300);
+    r.FailDrive();
+  });
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(stats_.written, 2u);
+  EXPECT_EQ(stats_.reason, "drive_fault");
+  EXPECT_EQ(stats_.last_error, "");
+  EXPECT_EQ(fs::path(stats_.file), files[1]);
+  for (const fs::path& file : files) {
+    LogReader log(file);
+    bool faulted = false;
+    std::uint64_t before = 0;
+    const ReplayReport report = Replay(log, {.set = {}, .observer = [&](const CycleEntry& e) {
+                                               faulted =
+                                                   faulted || e.output.record.state == MachineState::kFaulted;
+                                               before += faulted ? 0 : 1;
+                                             }});
+    EXPECT_EQ(report.verdict, ReplayVerdict::kSame) << file << ": " << report.message;
+    EXPECT_TRUE(faulted);
+    EXPECT_GE(before, 1500u);
+    EXPECT_LE(before, 2000u);
+    EXPECT_GT(report.first_cycle, 1u);
+    EXPECT_TRUE(report.closed);
+  }
+}
+
+TEST_F(FlightRecordTest, AFaultSoonAfterTheStartIsRecordedFromTheStart) {
+  EventfulRun run(Machine(), ControllerName::kFull);
+  const std::vector<fs::path> files = Fly(run, [](EventfulRun& r) {
+    r.BringUp();
+    r.Enable();
+    r.EmergencyStop();
+  });
+  ASSERT_EQ(files.size(), 1u);
+  LogReader log(files[0]);
+  const ReplayReport report = Replay(log);
+  EXPECT_EQ(report.verdict, ReplayVerdict::kSame) << report.message;
+  EXPECT_EQ(report.first_cycle, 1u);
+}
+
+TEST_F(FlightRecordTest, AnotherBuildSaysThatItCannotReadTheState) {
+  EventfulRun run(Machine(), ControllerName::kFull);
+  RunLog log(file_, Header());
+  log.State({5, "contourd of another kind", "abc"});
+  run.machine().SetRecorder([&](const CycleEntry& entry) {
+    if (entry.input.cycle > 5) log.Add(entry);
+  });
+  run.BringUp();
+  log.Close();
+  try {
+    ReplayFile();
+    FAIL() << "read the state of another build";
+  } catch (const LogError& e) {
+    EXPECT_NE(std::string(e.what()).find("contourd of another kind"), std::string::npos);
+  }
 }
 
 class CycleState : public ::testing::TestWithParam<ControllerName> {};

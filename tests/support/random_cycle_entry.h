@@ -20,8 +20,15 @@ class RandomCycleEntry {
     FillInput(e.input, axes);
     FillOutput(e.output, axes);
     // Within two seconds of the grid point, so that differences of them are numbers, too.
-    e.timing = {
-        Int<std::int32_t>(), Int<std::int32_t>(), Int<std::int32_t>(), Int<std::int32_t>(), Bool(), 0};
+    for (std::int64_t* ns :
+         {&e.timing.wakeup_late_ns, &e.timing.received_ns, &e.timing.stepped_ns, &e.timing.sent_ns,
+          &e.timing.estimated_ns, &e.timing.decided_ns, &e.timing.after_send_ns, &e.timing.run_delay_ns})
+      *ns = Int<std::int32_t>();
+    e.timing.late = Bool();
+    e.timing.cause = static_cast<LateCause>(Below(kLateCauses));
+    e.timing.page_faults = Int<std::uint32_t>();
+    e.timing.involuntary_switches = Int<std::uint32_t>();
+    e.timing.voluntary_switches = Int<std::uint32_t>();
     e.input.cycle = e.output.record.cycle = cycle;
     e.input.grid_time_ns = e.output.record.grid_time_ns = static_cast<std::int64_t>(cycle) * 1'000'000;
     return e;

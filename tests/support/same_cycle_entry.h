@@ -144,6 +144,14 @@ inline void ExpectSame(const CycleTiming& a, const CycleTiming& b) {
   EXPECT_EQ(a.sent_ns, b.sent_ns);
   EXPECT_EQ(a.late, b.late);
   EXPECT_EQ(a.skipped_grid_points, b.skipped_grid_points);
+  EXPECT_EQ(a.estimated_ns, b.estimated_ns);
+  EXPECT_EQ(a.decided_ns, b.decided_ns);
+  EXPECT_EQ(a.cause, b.cause);
+  EXPECT_EQ(a.after_send_ns, b.after_send_ns);
+  EXPECT_EQ(a.run_delay_ns, b.run_delay_ns);
+  EXPECT_EQ(a.page_faults, b.page_faults);
+  EXPECT_EQ(a.involuntary_switches, b.involuntary_switches);
+  EXPECT_EQ(a.voluntary_switches, b.voluntary_switches);
 }
 
 inline void ExpectSame(const CycleEntry& a, const CycleEntry& b) {

@@ -11,9 +11,11 @@
 #include "tools/contour/command.h"
 #include "tools/contour/contest_command.h"
 #include "tools/contour/diagnose_command.h"
+#include "tools/contour/doctor_command.h"
 #include "tools/contour/emps_command.h"
 #include "tools/contour/emulate_command.h"
 #include "tools/contour/export_command.h"
+#include "tools/contour/reload_command.h"
 #include "tools/contour/replay_command.h"
 #include "tools/contour/request_command.h"
 #include "tools/contour/run_command.h"
@@ -66,6 +68,8 @@ int main(int argc, char** argv) {
   contour::AddExportCommand(app, action);
   contour::AddContestCommand(app, action);
   contour::AddTuneCommand(app, action);
+  contour::AddReloadCommand(app, action);
+  contour::AddDoctorCommand(app, action);
   contour::AddReplayCommand(app, action);
 
   AddVersionFlags(app);

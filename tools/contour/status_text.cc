@@ -55,6 +55,22 @@ std::string Axes(const json& s) {
   return table.Text();
 }
 
+/// Which causes late cycles had, and whose feedback was missing.
+std::string Late(const json& s) {
+  std::string text;
+  if (s["late"].is_object()) {
+    std::string causes;
+    for (const auto& [cause, count] : s["late"]["causes"].items())
+      if (count != 0) causes += (causes.empty() ? "" : ", ") + cause + " " + count.dump();
+    if (!causes.empty()) text += "  late by cause: " + causes + "\n";
+  }
+  for (const json& a : s["axes"])
+    if (a.contains("feedback") && a["feedback"]["stale_cycles"] != 0)
+      text += "  feedback of " + Text(a["name"]) + " missing at " + Text(a["feedback"]["stale_cycles"]) +
+              " grid points, answers within " + Number(a["feedback"]["response"]["max_us"], 1, 0) + " us\n";
+  return text;
+}
+
 std::string Counters(const json& s) {
   std::string text = "  cycles " + Text(s["cycles"]);
   if (!s["late_cycles"].is_null()) text += ", late " + Text(s["late_cycles"]);
@@ -69,9 +85,12 @@ std::string Counters(const json& s) {
                Number(t["max_us"], 1, 1)});
   };
   row("woken after the grid point", "wakeup_late");
-  row("computing", "computing");
+  row("receiving", "receiving");
+  row("estimating", "estimating");
+  row("deciding", "deciding");
+  row("sending", "sending");
   row("sent after the grid point", "sent");
-  return text + table.Text();
+  return text + table.Text() + Late(s);
 }
 
 std::string Buses(const json& s) {
@@ -103,6 +122,11 @@ std::string Around(const json& s) {
   if (const json& lcm = s["lcm"]; !lcm.is_null()) {
     text += "  LCM messages " + Text(lcm["messages"]) + ", not sent " + Text(lcm["failures"]) + "\n";
     if (!Text(lcm["last_error"]).empty()) text += "      " + Text(lcm["last_error"]) + "\n";
+  }
+  if (const json& flight = s["flight_record"]; !flight.is_null()) {
+    if (!flight["file"].is_null()) text += "  flight record " + Text(flight["file"]) + "\n";
+    if (!Text(flight["last_error"]).empty())
+      text += "  flight record failed: " + Text(flight["last_error"]) + "\n";
   }
   if (const json& log = s["log"]; !log.is_null()) {
     text += "  log " + Text(log["file"]) + ": " + Text(log["cycles"]) + " cycles, lost " +

@@ -10,6 +10,7 @@
 #include "daemon/make_cycle_config.h"
 #include "daemon/make_log_header.h"
 #include "daemon/rt/cycle.h"
+#include "daemon/telemetry/tuning_note.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/replay/output_quantities.h"
 
@@ -111,6 +112,18 @@ void LoadState(Cycle& cycle, const LogState& state) {
     throw LogError("the state at the beginning of the log is not that of its configuration");
 }
 
+/// Gains were changed in the run: the same change here, before the same cycle.
+void Tune(Cycle& cycle, MachineSource& source, const std::vector<LogNote>& notes, std::uint32_t change) {
+  for (const LogNote& note : notes) {
+    if (note.key != kTuningNote + std::to_string(change)) continue;
+    for (std::string& assignment : Lines(note.text)) source.overrides.push_back(std::move(assignment));
+    const MachineConfig machine = LoadMachine(source);
+    ContourController next = MakeController(MakeCycleConfig(machine, machine.machine.controller));
+    if (cycle.TakeController(next)) return;
+  }
+  throw LogError("the log does not say what change " + std::to_string(change) + " of the gains was");
+}
+
 ReplayVerdict Judge(const std::vector<QuantityDifference>& differences) {
   if (differences.empty()) return ReplayVerdict::kSame;
   const bool within = std::all_of(differences.begin(), differences.end(),
@@ -167,6 +180,8 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
         break;
       }
       replayed->input = recorded->input;
+      if (recorded->input.request.kind == RequestKind::kTune)
+        Tune(cycle, source, log.notes(), recorded->input.request.program_id);
       cycle.Step(replayed->input, replayed->output);
       if (outputs) differences.Add(recorded->output, replayed->output);
       if (options.observer) options.observer(*replayed);

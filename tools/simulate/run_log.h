@@ -18,6 +18,7 @@ class RunLog {
 
   void Add(const CycleEntry& entry);
   void Note(const std::string& key, const std::string& text) { writer_.Note(key, text); }
+  void State(const LogState& state) { writer_.State(state); }
   /// Throws std::runtime_error when something could not be written.
   void Close();
 

@@ -17,6 +17,7 @@ class FakeDesk final : public OperatorDesk {
   Answer Disable() override { return Do("disable"); }
   Answer Stop() override { return Do("stop"); }
   Answer Reset() override { return Do("reset"); }
+  Answer Reload() override { return Do("reload"); }
   Answer Run(const ProgramUpload& program) override {
     Answer answer = Do("run");
     const std::lock_guard lock(mutex_);

@@ -41,10 +41,10 @@ TEST(TelemetryHubTest, StatusSeesTheNewestCycleAndTheCounts) {
   }
   const TelemetryHub::Snapshot s = hub.snapshot();
   EXPECT_EQ(s.cycles, 10u);
-  EXPECT_EQ(s.late_cycles, 2u);
+  EXPECT_EQ(s.health.late_cycles, 2u);
   EXPECT_EQ(s.skipped_grid_points, 3u);
-  EXPECT_EQ(s.computing.max_us, 40.0);
-  EXPECT_EQ(s.sent.p50_us, 100.0);
+  EXPECT_EQ(s.health.computing.max_us, 40.0);
+  EXPECT_EQ(s.health.sent.p50_us, 100.0);
   test::ExpectSame(entry.output.record, s.record);
   test::ExpectSame(entry.output.record, hub.record());
   EXPECT_FALSE(s.publisher.enabled);

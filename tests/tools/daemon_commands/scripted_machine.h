@@ -20,6 +20,7 @@ class ScriptedMachine final : public OperatorDesk {
   Answer Enable() override { return Go(MachineState::kReady, Reason::kNone); }
   Answer Disable() override { return Go(MachineState::kIdle, Reason::kDisableRequest); }
   Answer Stop() override { return Go(MachineState::kReady, Reason::kOperatorStop); }
+  Answer Reload() override { return {true, "nothing has changed"}; }
   Answer Reset() override { return Go(MachineState::kIdle, Reason::kNone); }
   Answer Run(const ProgramUpload& upload) override;
   MachineStatus Status() override;

@@ -1,0 +1,55 @@
+#include "daemon/rt/late_attribution.h"
+
+#include <array>
+
+namespace contour {
+namespace {
+
+struct Part {
+  LateCause cause;
+  std::int64_t length_ns;
+};
+
+/// The longest part of the time from the grid point to the frames sent.
+Part Longest(const CycleTiming& t) noexcept {
+  const std::array<Part, 5> parts{{
+      {LateCause::kWakeUp, t.wakeup_late_ns},
+      {LateCause::kReceive, t.received_ns - t.wakeup_late_ns},
+      {LateCause::kEstimate, t.estimated_ns - t.received_ns},
+      {LateCause::kControl, t.stepped_ns - t.estimated_ns},
+      {LateCause::kSend, t.sent_ns - t.stepped_ns},
+  }};
+  Part longest = parts[0];
+  for (const Part& part : parts)
+    if (part.length_ns > longest.length_ns) longest = part;
+  return longest;
+}
+
+/// A voluntary switch for the sleep until the grid point; each one more is a wait.
+constexpr std::uint32_t kSwitchesOfASleep = 1;
+
+LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimits& limits) noexcept {
+  // Ready to run and not running: somebody else had the CPU, or nobody was allowed to. Time of this kind
+  // that is more than half of the part explains it.
+  if (t.run_delay_ns > part.length_ns / 2) {
+    const bool as_long = limits.throttle_ns > 0 && part.length_ns > limits.throttle_ns * 8 / 10 &&
+                         part.length_ns < limits.throttle_ns * 12 / 10;
+    return as_long ? LateCause::kThrottled : LateCause::kPreempted;
+  }
+  // A thread that sleeps touches no memory.
+  if (t.page_faults != 0 && part.cause != LateCause::kWakeUp) return LateCause::kPageFault;
+  if (t.voluntary_switches > kSwitchesOfASleep) return LateCause::kStopped;
+  if (t.involuntary_switches != 0 && part.cause != LateCause::kWakeUp) return LateCause::kPreempted;
+  return part.cause;
+}
+
+}  // namespace
+
+LateCause FindLateCause(const CycleTiming& t, LateCause before, const LatenessLimits& limits) noexcept {
+  if (t.sent_ns > limits.send_deadline_ns) return WhatHeldUp(Longest(t), t, limits);
+  if (t.skipped_grid_points == 0) return LateCause::kNone;
+  if (before != LateCause::kNone) return before;
+  return WhatHeldUp({LateCause::kAfterSend, t.after_send_ns}, t, limits);
+}
+
+}  // namespace contour
