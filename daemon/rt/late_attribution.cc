@@ -39,7 +39,10 @@ LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimit
   // A thread that sleeps touches no memory.
   if (t.page_faults != 0 && part.cause != LateCause::kWakeUp) return LateCause::kPageFault;
   if (t.voluntary_switches > kSwitchesOfASleep) return LateCause::kStopped;
-  if (t.involuntary_switches != 0 && part.cause != LateCause::kWakeUp) return LateCause::kPreempted;
+  // Where the kernel tells how long the thread waited, a short wait is no explanation.
+  const bool unknown_wait = t.run_delay_ns == 0;
+  if (unknown_wait && t.involuntary_switches != 0 && part.cause != LateCause::kWakeUp)
+    return LateCause::kPreempted;
   return part.cause;
 }
 

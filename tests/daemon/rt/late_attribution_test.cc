@@ -62,7 +62,9 @@ TEST(LateAttribution, WhatHeldAPartUpComesBeforeThePart) {
   EXPECT_EQ(CauseOf(t), LateCause::kPreempted) << "a few faults do not take as long as another thread did";
   t = Delayed(&CycleTiming::decided_ns, 300 * kUs);
   t.involuntary_switches = 1;
-  EXPECT_EQ(CauseOf(t), LateCause::kPreempted);
+  EXPECT_EQ(CauseOf(t), LateCause::kPreempted) << "a kernel that does not tell how long";
+  t.run_delay_ns = 40 * kUs;
+  EXPECT_EQ(CauseOf(t), LateCause::kControl) << "not for as long as that";
   t = Delayed(&CycleTiming::decided_ns, 300 * kUs);
   t.voluntary_switches = 2;
   EXPECT_EQ(CauseOf(t), LateCause::kStopped);
