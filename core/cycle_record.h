@@ -81,7 +81,7 @@ struct CycleTiming {
   std::int64_t run_delay_ns = 0;   ///< ready to run but not running
   std::uint32_t page_faults = 0;
   std::uint32_t involuntary_switches = 0;
-  std::uint32_t voluntary_switches = 0;  ///< the sleep until the grid point is one
+  std::uint32_t voluntary_switches = 0;  ///< besides the sleep until the grid point
 };
 
 inline constexpr std::size_t kMaxFramesSentPerCycle = 64;

@@ -25,9 +25,6 @@ Part Longest(const CycleTiming& t) noexcept {
   return longest;
 }
 
-/// A voluntary switch for the sleep until the grid point; each one more is a wait.
-constexpr std::uint32_t kSwitchesOfASleep = 1;
-
 LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimits& limits) noexcept {
   // Ready to run and not running: somebody else had the CPU, or nobody was allowed to. Time of this kind
   // that is more than half of the part explains it.
@@ -38,7 +35,7 @@ LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimit
   }
   // A thread that sleeps touches no memory.
   if (t.page_faults != 0 && part.cause != LateCause::kWakeUp) return LateCause::kPageFault;
-  if (t.voluntary_switches > kSwitchesOfASleep) return LateCause::kStopped;
+  if (t.voluntary_switches != 0) return LateCause::kStopped;
   // Where the kernel tells how long the thread waited, a short wait is no explanation.
   const bool unknown_wait = t.run_delay_ns == 0;
   if (unknown_wait && t.involuntary_switches != 0 && part.cause != LateCause::kWakeUp)

@@ -84,19 +84,21 @@ void Loop::RunWall() noexcept {
     timing.sent_ns = sent - grid.time_ns;
     timing.after_send_ns = asleep - last_sent;
     last_sent = sent;
-    Finish(entry, grid, accounting);
+    Finish(entry, grid, asleep < grid.time_ns, accounting);
   }
 }
 
 // All that is not needed to send the frames comes after them.
-void Loop::Finish(CycleEntry& entry, const GridPoint& grid, ThreadAccounting& accounting) noexcept {
+void Loop::Finish(CycleEntry& entry, const GridPoint& grid, bool slept,
+                  ThreadAccounting& accounting) noexcept {
   CycleTiming& timing = entry.timing;
   timing.skipped_grid_points = grid.skipped;
   timing.late = timing.sent_ns > config_.send_deadline_ns || grid.skipped != 0;
   const ThreadCounts counts = accounting.Read();
   timing.page_faults = counts.page_faults;
   timing.involuntary_switches = counts.involuntary_switches;
-  timing.voluntary_switches = counts.voluntary_switches;
+  // After a cycle that ran into this grid point there was no sleep.
+  timing.voluntary_switches = counts.voluntary_switches - (slept && counts.voluntary_switches != 0 ? 1U : 0U);
   timing.run_delay_ns = accounting.RunDelay_ns();
   if (timing.late) {
     timing.cause = FindLateCause(timing, last_cause_, limits_);

@@ -70,7 +70,7 @@ class DisturbedBus final : public FrameBus {
   [[nodiscard]] bool Due() const noexcept { return calls_ % kEvery == 0; }
 
  private:
-  static constexpr std::size_t kMemory = std::size_t{48} << 20;
+  static constexpr std::size_t kMemory = std::size_t{6} << 20;
   Injected what_;
   int calls_ = 0;
   char* memory_ = nullptr;

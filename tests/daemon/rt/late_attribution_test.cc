@@ -17,7 +17,6 @@ CycleTiming Ordinary() {
   t.decided_ns = 80 * kUs;
   t.stepped_ns = 90 * kUs;
   t.sent_ns = 100 * kUs;
-  t.voluntary_switches = 1;
   return t;
 }
 
@@ -66,7 +65,7 @@ TEST(LateAttribution, WhatHeldAPartUpComesBeforeThePart) {
   t.run_delay_ns = 40 * kUs;
   EXPECT_EQ(CauseOf(t), LateCause::kControl) << "not for as long as that";
   t = Delayed(&CycleTiming::decided_ns, 300 * kUs);
-  t.voluntary_switches = 2;
+  t.voluntary_switches = 1;
   EXPECT_EQ(CauseOf(t), LateCause::kStopped);
 }
 
@@ -74,7 +73,7 @@ TEST(LateAttribution, ALateWakeUp) {
   CycleTiming t = Delayed(&CycleTiming::wakeup_late_ns, 5000 * kUs);
   t.page_faults = 3;  // of the telemetry before the sleep
   EXPECT_EQ(CauseOf(t), LateCause::kWakeUp) << "a thread that sleeps touches no memory";
-  t.voluntary_switches = 2;
+  t.voluntary_switches = 1;
   EXPECT_EQ(CauseOf(t), LateCause::kStopped);
   t.run_delay_ns = 4900 * kUs;
   EXPECT_EQ(CauseOf(t), LateCause::kPreempted);
