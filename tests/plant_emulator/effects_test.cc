@@ -386,6 +386,95 @@ TEST(Effects, PeriodicForce) {
   EXPECT_NEAR(plant.motor_velocity_m_s(), 0.0, 0.1 * amplitude);
 }
 
+TEST(OutsideEffects, StickSpotIsAtOnePlaceInOneDirection) {
+  EmulatedAxisConfig c = Plain();
+  c.effects.outside = OutsideEffectsConfig{};
+  c.effects.outside->stick_spot = StickSpotEffect{0.5, 20.0, 3.0, 1};
+  EXPECT_NEAR(Sliding_N(c, 0.020, 0.05), 60.0, 0.01);
+  EXPECT_NEAR(Sliding_N(c, 0.020, -0.05), -40.0, 0.01);
+  EXPECT_NEAR(Sliding_N(c, 0.050, 0.05), 40.0, 0.01);
+}
+
+TEST(OutsideEffects, CableDragsBehindTheMotion) {
+  EmulatedAxisConfig c = Heavy(Plain(0.0));
+  c.effects.outside = OutsideEffectsConfig{};
+  c.effects.outside->cable_hysteresis = CableHysteresisEffect{0.02, 10.0};
+  OutsideEffects cable(*c.effects.outside, kRadius_m_rad);
+  const auto move = [&](double from_mm, double to_mm) {
+    for (int i = 0; i <= 1000; ++i)
+      cable.Advance(1e-4, 1e-3 * (from_mm + (to_mm - from_mm) * i / 1000.0), 0.0);
+    return cable.Force_N(0.0) * kRadius_m_rad;
+  };
+  EXPECT_NEAR(move(0.0, 100.0), -0.02, 1e-5);
+  EXPECT_NEAR(move(100.0, 90.0), 0.02 - 0.04 * std::exp(-1.0), 1e-4) << "remembers where it came from";
+  EXPECT_NEAR(move(90.0, 0.0), 0.02, 1e-5);
+}
+
+TEST(OutsideEffects, TelegraphLubricationAndSpeedBand) {
+  OutsideEffectsConfig c;
+  c.telegraph_torque = TelegraphTorqueEffect{0.01, 0.1};
+  OutsideEffects telegraph(c, kRadius_m_rad);
+  int jumps = 0;
+  double last = telegraph.Force_N(0.0);
+  for (int i = 0; i < 100000; ++i) {  // 10 s
+    telegraph.Advance(1e-4, 0.0, 0.0);
+    EXPECT_NEAR(std::abs(telegraph.Force_N(0.0)) * kRadius_m_rad, 0.01, 1e-12);
+    jumps += telegraph.Force_N(0.0) != last;
+    last = telegraph.Force_N(0.0);
+  }
+  EXPECT_NEAR(jumps, 100, 35);
+
+  c = {};
+  c.lubrication = LubricationEffect{0.4, 50.0};
+  OutsideEffects lubricated(c, kRadius_m_rad);
+  lubricated.Advance(1e-3, 0.0, 0.0);
+  lubricated.Advance(1e-3, 0.025, 0.0);
+  EXPECT_NEAR(lubricated.Level(0.0, 0.0), 0.2, 1e-12);
+  lubricated.Advance(1e-3, 0.0, 0.0);
+  lubricated.Advance(1e-3, 0.001, 0.0);
+  EXPECT_NEAR(lubricated.Level(0.0, 0.0), 0.0, 1e-12) << "fresh oil after 51 mm of way";
+
+  c = {};
+  c.speed_band_torque = SpeedBandTorqueEffect{0.03, 50.0, 60.0};
+  const OutsideEffects band(c, kRadius_m_rad);
+  for (const double sign : {1.0, -1.0}) {
+    EXPECT_NEAR(band.Force_N(sign * 55.0 * kRadius_m_rad) * kRadius_m_rad, 0.03, 1e-12);
+    EXPECT_EQ(band.Force_N(sign * 65.0 * kRadius_m_rad), 0.0);
+  }
+}
+
+/// Noise on the torque is white, as strong as stated as a mean over a cycle, and changes when it should.
+TEST(TorqueNoise, HasTheStatedStrength) {
+  EmulatorConfig c = NominalMachine();
+  EmulatedAxisConfig& axis = c.axes["x"];
+  axis = Heavy(Plain(0.0));
+  axis.encoder_noise_lsb = 0.0;
+  axis.torque_noise_Nm = 1e3;  // against 1e3 kg m^2
+  axis.torque_noise_change = 3.0;
+  axis.torque_noise_change_s = 4.0;
+  DriveHarness h(c, {Place("x", 1)});
+  h.BringUp();
+  h.Enable();
+  double before = h.machine.truth().axes[0].motor_velocity_m_s;
+  double squares[2] = {0.0, 0.0};
+  int count[2] = {0, 0};
+  for (int k = 0; k < 8000; ++k) {
+    h.Cycle(0x0F, 0);
+    const double now = h.machine.truth().axes[0].motor_velocity_m_s;
+    const double torque = (now - before) / 1e-3 / kRadius_m_rad * 1e3;
+    const int half = h.machine.truth().time_s > 4.0 ? 1 : 0;
+    squares[half] += torque * torque;
+    ++count[half];
+    before = now;
+  }
+  const double first = std::sqrt(squares[0] / count[0]);
+  const double second = std::sqrt(squares[1] / count[1]);
+  // The screw spreads a kick over both inertias; what matters is the size and its change.
+  EXPECT_GT(first, 0.5e3);
+  EXPECT_LT(first, 1.5e3);
+  EXPECT_NEAR(second / first, 3.0, 0.3);
+}
+
 TEST(Effects, CuttingForceActsForItsTimeOnly) {
   EmulatedAxisConfig c = Plain(0.0);
   c.effects.cutting_force = CuttingForceEffect{-60.0, 0.01, 0.02};

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kSlowStep_s = 1e-3;
+/// Of the friction level that is left at the least.
+constexpr double kSmallestFactor = 0.01;
 constexpr double kLongestStep_s = 62.5e-6;
 /// Phase per sub-step of the fastest mode: the midpoint rule is off by (omega h)^2 / 12.
 constexpr double kPhasePerStep = 0.15;
@@ -67,6 +69,7 @@ AxisPlant::AxisPlant(const AxisParameters& parameters)
     soft.sigma2_Ns_m = 0.0;
     second_.emplace(soft);
   }
+  if (p_.effects.outside) outside_.emplace(*p_.effects.outside, p_.radius_m_rad);
   std::visit([&](auto& friction) { friction.SetElastic_N(p_.start_bristle_N); }, friction_);
   UpdateSlowThings(0.0);
   ChooseStep();
@@ -102,6 +105,7 @@ FrictionScale AxisPlant::Scale() const noexcept {
     const double load_N = std::fabs(motor_mass_kg_ * motor_m_s2_ + table_mass_kg_ * table_m_s2_);
     common += e->friction_per_torque_rel * load_N / std::max(mean_level, kSmallestLevel_N);
   }
+  if (outside_) common = std::max(kSmallestFactor, common + outside_->Level(table_m_, table_m_s_));
   return {common * (1.0 + At(p_.ripple_plus, angle)), common * (1.0 + At(p_.ripple_minus, angle)),
           viscous_factor_};
 }
@@ -130,6 +134,7 @@ double AxisPlant::MotorForce_N(double torque_Nm) const noexcept {
 
 double AxisPlant::TableForce_N() const noexcept {
   double force = coupling_N_;
+  if (outside_) force += outside_->Force_N(table_m_s_);
   if (const auto& e = p_.effects.cable_spring) {
     const double x = table_m_ / p_.half_stroke_m;
     force -= e->torque_at_stroke_end_Nm / p_.radius_m_rad * x * (1.0 + e->hardening_rel * (x * x - 1.0));
@@ -199,6 +204,7 @@ void AxisPlant::Step(double step_s, double torque_Nm) noexcept {
   motor_m_s_ = portable::WithoutDust(motor_m_s_ + step_s * motor_m_s2_);
   table_m_s_ = portable::WithoutDust(table_m_s_ + step_s * table_m_s2_);
   time_s_ += step_s;
+  if (outside_) outside_->Advance(step_s, table_m_, table_m_s_);
   UpdateSlowThings(step_s);
 }
 

@@ -64,6 +64,7 @@ class AxisPlant {
   AxisParameters p_;
   std::variant<LugreFriction, MaxwellSlipFriction> friction_;
   std::optional<LugreFriction> second_;
+  std::optional<OutsideEffects> outside_;
   double motor_mass_kg_ = 0.0;
   double table_mass_kg_ = 0.0;
   double max_step_s_ = 0.0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/visit.h"
+#include "tools/plant_emulator/outside_effects.h"
 
 // What a real axis does and a textbook model leaves out. Each kind can be switched on in the emulated machine
 // by naming it under `effects:`; absent means off. Kinds and parameter names are those that diagnosis
@@ -365,6 +366,7 @@ struct EffectsConfig {
   std::optional<PeriodicForceEffect> periodic_force;
   std::optional<SampleJitterEffect> sample_jitter;
   std::optional<CuttingForceEffect> cutting_force;
+  std::optional<OutsideEffectsConfig> outside;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -399,6 +401,7 @@ struct EffectsConfig {
     v.Optional("periodic_force", periodic_force, "vibration from outside");
     v.Optional("sample_jitter", sample_jitter, "encoder read at uncertain instants");
     v.Optional("cutting_force", cutting_force, "a force on the table for a while");
+    v.Optional("outside", outside, "effects that diagnosis has no name for");
   }
 };
 

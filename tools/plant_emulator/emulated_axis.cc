@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kTick_s = 1e-9 * static_cast<double>(EmulatedAxis::kTick_ns);
 constexpr std::int64_t kNsPerMs = 1'000'000;
+/// Far from the streams that the axes count up.
+constexpr std::uint64_t kTorqueNoiseStream = 1'000'000;
 constexpr std::int8_t kModeCsp = 8;
 constexpr std::int8_t kModeCst = 10;
 /// Below this the drive takes the axis for standing, once its ramp has ended.
@@ -31,6 +33,9 @@ EmulatedAxis::EmulatedAxis(const AxisParameters& parameters, const EmulatedAxisP
       current_(parameters.lag_s),
       encoder_(parameters, seed, stream),
       scale_noise_(seed, stream + 1),
+      torque_noise_(seed, stream + kTorqueNoiseStream),
+      // A mean over a cycle is one over so many ticks.
+      tick_noise_Nm_(parameters.torque_noise_Nm * std::sqrt(1e-6 * cycle_us / kTick_s)),
       cascade_(parameters.cascade, kTick_s),
       slave_((AddObjects(placement), objects_), *this, placement.node_id) {
   FindObjects();
@@ -274,7 +279,8 @@ void EmulatedAxis::Integrate(std::int64_t duration_ns) noexcept {
   const double duration_s = 1e-9 * static_cast<double>(duration_ns);
   const double steps = std::ceil(duration_s / plant_.MaxStep_s());
   const double step_s = duration_s / steps;
-  for (int i = 0; i < static_cast<int>(steps); ++i) plant_.Step(step_s, current_.StepMean_Nm(step_s));
+  for (int i = 0; i < static_cast<int>(steps); ++i)
+    plant_.Step(step_s, current_.StepMean_Nm(step_s) + torque_noise_now_Nm_);
 }
 
 void EmulatedAxis::Sense() noexcept {
@@ -288,6 +294,10 @@ void EmulatedAxis::Sense() noexcept {
 
 void EmulatedAxis::Tick() noexcept {
   Sense();
+  if (p_.torque_noise_Nm > 0.0) {
+    const bool changed = plant_.time_s() >= p_.torque_noise_change_s;
+    torque_noise_now_Nm_ = tick_noise_Nm_ * (changed ? p_.torque_noise_change : 1.0) * torque_noise_.Normal();
+  }
   slave_.Watch(now_ns_);
   StepPowerState();
   if (braking_ != Braking::kNone)

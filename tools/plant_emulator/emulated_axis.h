@@ -92,6 +92,9 @@ class EmulatedAxis final : private SlaveDevice {
   CurrentLoop current_;
   Encoder encoder_;
   Random scale_noise_;
+  Random torque_noise_;
+  double tick_noise_Nm_;
+  double torque_noise_now_Nm_ = 0.0;
   DriveCascade cascade_;
   TargetInterpolator target_;
   DrivePowerState power_;

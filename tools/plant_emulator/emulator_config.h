@@ -140,6 +140,9 @@ struct EmulatedAxisConfig {
   double start_variation_mm = 2.5;
   int delay_cycles = 1;
   double lag_ms = 0.2;
+  double torque_noise_Nm = 0.0;
+  double torque_noise_change = 1.0;
+  double torque_noise_change_s = 0.0;
   EmulatedFrictionConfig friction;
   EmulatedCascadeConfig cascade;
   EmulatedTemperatureConfig temperature;
@@ -171,6 +174,11 @@ struct EmulatedAxisConfig {
     v.Optional("delay_cycles", delay_cycles, Range{1, 8},
                "SYNCs from a sample to the torque computed from it");
     v.Optional("lag_ms", lag_ms, Range{0.0, 20.0}, "time constant of the current loop");
+    v.Optional("torque_noise_Nm", torque_noise_Nm, kNotNegative,
+               "standard deviation of the noise on the motor's torque, as a mean over one cycle; white");
+    v.Optional("torque_noise_change", torque_noise_change, kNotNegative,
+               "factor on that noise from torque_noise_change_s on");
+    v.Optional("torque_noise_change_s", torque_noise_change_s, kNotNegative, "in the machine's time");
     v.Required("friction", friction, "friction of the table");
     v.Optional("cascade", cascade, "the drive's own control loops");
     v.Optional("temperature", temperature, "temperature of the screw");

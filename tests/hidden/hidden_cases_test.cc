@@ -1,0 +1,102 @@
+// What the hidden cases themselves promise.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "tools/hidden/draw_setting.h"
+#include "tools/hidden/hide_effect.h"
+#include "tools/hidden/judge.h"
+#include "tools/hidden/machine_text.h"
+#include "tools/hidden/record_case.h"
+#include "tools/hidden/residual.h"
+#include "tools/hidden/size_effect.h"
+
+namespace contour::hidden {
+namespace {
+
+class HiddenCases : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = std::filesystem::temp_directory_path() / ("hidden_cases_test." + std::to_string(getpid()));
+    std::filesystem::create_directories(directory_);
+  }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+  std::filesystem::path directory_;
+};
+
+TEST(LowestCredible, IsTheBinomialBound) {
+  // P(X <= 7 | 10, 0.99) = 1.1e-4, P(X <= 8) = 4.3e-3.
+  EXPECT_EQ(LowestCredible(10, 0.99, 1e-3), 8);
+  EXPECT_EQ(LowestCredible(10, 0.99, 5e-3), 9);
+  EXPECT_EQ(LowestCredible(5, 0.999, 1e-3), 4);
+  EXPECT_EQ(LowestCredible(0, 0.9, 1e-3), 0);
+}
+
+TEST(HiddenSettings, TheSameSeedIsTheSameMachineAndTheModelIsNotTheTruth) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Setting a = DrawSetting(seed, "cogging");
+    EXPECT_EQ(MachineText(a), MachineText(DrawSetting(seed, "cogging")));
+    EXPECT_EQ(a.program, DrawSetting(seed, "cogging").program);
+    EXPECT_NE(MachineText(a), MachineText(DrawSetting(seed + 1, "cogging")));
+    EXPECT_NE(a.truth.Fc_N, a.stated.Fc_N);
+    EXPECT_LE(std::abs(a.truth.Fc_N / a.stated.Fc_N - 1.0), 0.2) << "twice the stated uncertainty";
+    EXPECT_LE(std::abs(a.truth.motor_inertia_kgm2 / a.stated.motor_inertia_kgm2 - 1.0), 0.1);
+  }
+}
+
+TEST(HiddenSettings, NothingOfTheEffectStandsInTheFiles) {
+  for (const std::string_view kind : diagnosis::kKinds) {
+    const Setting s = DrawSetting(3, std::string(kind));
+    EXPECT_EQ(MachineText(s).find("effects"), std::string::npos);
+    EXPECT_EQ(ModelText(s).find(kind), std::string::npos) << kind;
+  }
+}
+
+/// A log without encoder steps, without noise and with the model that made it leaves no residual: emulator
+/// and log share the timing of ../ARCHITECTURE.md, and the strengths are measured against noise alone.
+TEST_F(HiddenCases, WithoutNoiseAndEffectTheResidualIsFarBelowTheNoise) {
+  for (const std::uint64_t seed : {1ULL, 2ULL}) {
+    Setting s = DrawSetting(seed, "");
+    const Residuals noisy = ResidualsOf(Simulate(s, {}, directory_), s);
+    s.stated.encoder_counts_per_rev = s.truth.encoder_counts_per_rev = 4194304.0;
+    s.truth.torque_noise_Nm = 0.0;
+    const Residuals quiet = ResidualsOf(Simulate(s, {}, directory_), s);
+    EXPECT_LT(std::sqrt(quiet.torque_Nm2), 0.2 * std::sqrt(noisy.torque_Nm2)) << "seed " << seed;
+  }
+}
+
+TEST_F(HiddenCases, AnEffectIsMadeAsStrongAsItsName) {
+  const Setting s = DrawSetting(5, "cogging");
+  const Hidden drawn = DrawEffect(5, "cogging", s);
+  const auto clear = SizeEffect(s, drawn, Strength::kClear, directory_);
+  const auto barely = SizeEffect(s, drawn, Strength::kBarely, directory_);
+  ASSERT_TRUE(clear && barely);
+  const double clean = ResidualsOf(Simulate(s, {}, directory_), s).torque_Nm2;
+  const double with = ResidualsOf(Simulate(s, {*clear}, directory_), s).torque_Nm2;
+  EXPECT_NEAR(1.0 - clean / with, 0.55, 0.05);
+  EXPECT_NEAR(barely->size / clear->size, std::sqrt((0.02 / 0.98) / (0.55 / 0.45)), 0.02);
+}
+
+TEST_F(HiddenCases, WhatIsReadIsWhatTheMachineDid) {
+  Setting s = DrawSetting(7, "temperature_viscosity");
+  s.truth.scale_counts_per_mm = s.stated.scale_counts_per_mm = 1000.0;
+  const Recorded recorded = Record(s, {}, directory_);
+  const diagnosis::AxisLog direct = Simulate(s, {}, directory_);
+  ASSERT_GE(recorded.log.size(), direct.size());
+  EXPECT_EQ(recorded.log.missing, 0u);
+  for (std::size_t k = 0; k < direct.size(); k += 997) {
+    EXPECT_EQ(recorded.log.command[k], direct.command[k]);
+    EXPECT_EQ(recorded.log.position[k], direct.position[k]);
+  }
+  EXPECT_EQ(recorded.log.temperature_degC.size(), recorded.log.size());
+  EXPECT_EQ(recorded.log.table_position_m.size(), recorded.log.size());
+  const auto [coolest, warmest] =
+      std::minmax_element(recorded.log.temperature_degC.begin(), recorded.log.temperature_degC.end());
+  EXPECT_GT(*warmest - *coolest, 3.0) << "warm-up";
+  EXPECT_LT(recorded.log.temperature_degC.back(), *warmest - 0.5) << "and cool-down";
+}
+
+}  // namespace
+}  // namespace contour::hidden

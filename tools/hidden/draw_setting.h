@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "tools/hidden/hidden_case.h"
+
+namespace contour::hidden {
+
+/// What the kind needs of a machine to be visible at all.
+struct Needs {
+  bool scale = false;
+  bool temperature = false;
+  bool second_axis = false;
+  bool no_stribeck = false;  ///< the model states none
+  bool rigid = false;
+  bool two_inertia = false;
+};
+Needs NeedsOf(const std::string& kind);
+
+/// Draws machine, model and excitation from the seed; `kind` decides only what must be there for it to show.
+/// An empty kind: a clean machine.
+Setting DrawSetting(std::uint64_t seed, const std::string& kind, Misfit misfit = Misfit::kNone);
+
+/// An effect of that kind with everything but its size, and a size to begin with.
+Hidden DrawEffect(std::uint64_t seed, const std::string& kind, const Setting& setting);
+
+}  // namespace contour::hidden

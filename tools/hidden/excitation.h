@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "tools/hidden/hidden_case.h"
+#include "tools/plant_emulator/random.h"
+
+namespace contour::hidden {
+
+/// A program that excites every kind (the column "excitation needed"): rest, torque steps, reversals of six
+/// amplitudes, creep, full strokes at several speeds at the beginning, in the middle and at the end, torque
+/// above 100 Hz while sliding, pulses, warm-up and cool-down; with a second axis, moves of its own. Speeds,
+/// amplitudes and order are drawn.
+std::string ExcitationProgram(plant::Random& random, const Setting& setting);
+
+}  // namespace contour::hidden

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tools/diagnosis/finding.h"
+#include "tools/hidden/hidden_case.h"
+
+namespace contour::hidden {
+
+/// How an answer compares with what was hidden.
+struct Judged {
+  bool right = false;   ///< the hidden kind first, or in a set of at most two that is first
+  bool inside = false;  ///< every true parameter within its stated interval
+  double gain = 0.0;    ///< held-out, of the cause that is right
+  int extra = 0;        ///< accepted causes beyond what was hidden
+  std::string answer;   ///< "cogging", "cogging|periodic_force", "nothing_found", ...
+  std::string outside;  ///< parameters whose truth lies outside: "amplitude_Nm 0.01 not in [..]"
+};
+
+/// The kinds of a cause: itself and what it cannot be told from.
+std::set<std::string> SetOf(const diagnosis::Cause& cause);
+
+Judged Judge(const diagnosis::Diagnosis& answer, const std::vector<Hidden>& hidden, const Setting& setting);
+
+/// Both kinds among the accepted causes or their sets.
+bool BothFound(const diagnosis::Diagnosis& answer, const std::vector<Hidden>& hidden);
+
+/// Smallest count of successes among `n` that happens by chance less than `chance` of the time when each
+/// succeeds with `p`: fewer than this fails a diagnoser that keeps to its specification at most so often.
+int LowestCredible(int n, double p, double chance);
+
+}  // namespace contour::hidden

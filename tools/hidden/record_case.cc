@@ -1,0 +1,131 @@
+#include "tools/hidden/record_case.h"
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include "daemon/program_limits.h"
+#include "daemon/telemetry/log_writer.h"
+#include "drivers/lcm/telemetry_encoder.h"
+#include "tools/diagnosis/files/read_log.h"
+#include "tools/diagnosis/files/read_stated_axis.h"
+#include "tools/hidden/hide_effect.h"
+#include "tools/hidden/machine_text.h"
+#include "tools/simulate/virtual_machine.h"
+
+namespace contour::hidden {
+namespace {
+
+/// Bring-up, enabling and settling of the machine take so long before a program begins.
+constexpr double kBeforeProgram_s = 1.0;
+constexpr double kTimingError_us = 30.0;
+constexpr double kNoiseFactor = 3.0;
+
+/// The machine's thermometer, a tenth of a degree per step; all that is asked for is permitted.
+class Thermometer final : public IoSource {
+ public:
+  Thermometer(const EmulatedMachine& machine, bool fitted) : machine_(machine), fitted_(fitted) {}
+  IoInput Read(std::int64_t) noexcept override {
+    IoInput in{true, true, true, true, std::numeric_limits<double>::quiet_NaN()};
+    if (fitted_ && !machine_.truth().axes.empty())
+      in.screw_temperature_degC = 0.1 * std::round(10.0 * machine_.truth().axes[0].temperature_degC);
+    return in;
+  }
+
+ private:
+  const EmulatedMachine& machine_;
+  bool fitted_;
+};
+
+void WriteText(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << text;
+  stream.close();
+  if (!stream) throw std::runtime_error("cannot write " + file.string());
+}
+
+using SeeCycle = std::function<void(const CycleEntry&)>;
+
+void RunMachine(const Setting& s, const std::vector<Hidden>& hidden, const std::filesystem::path& directory,
+                const std::function<SeeCycle(const EmulatedMachineFile&)>& observer) {
+  const std::filesystem::path machine_file = directory / "machine.yaml";
+  WriteText(machine_file, MachineText(s));
+  EmulatedMachineFile file = LoadEmulatedMachine(machine_file.string());
+  const Program program = ParseProgram(s.program, "program.yaml", ProgramFormat::kYaml);
+  PerAxis<double> start_m;
+  for (std::size_t i = 0; i < file.machine.axes.size(); ++i) start_m.push_back(0.0);
+  const double duration_s = PlanMotion(program, start_m, ProgramLimits(file.machine))->duration_s();
+  EmulatedAxisConfig& axis = file.emulator.axes.at("x");
+  for (const Hidden& h : hidden) HideEffect(h, s, kBeforeProgram_s, duration_s, axis.effects);
+  if (s.misfit == Misfit::kTimingError || s.misfit == Misfit::kDelayAndLag) {
+    InputDelayEffect delay = axis.effects.input_delay.value_or(InputDelayEffect{});
+    delay.delay_us += s.misfit == Misfit::kTimingError ? kTimingError_us : 200.0;
+    axis.effects.input_delay = delay;
+  }
+  if (s.misfit == Misfit::kNoiseLevel) {
+    axis.torque_noise_change = kNoiseFactor;
+    axis.torque_noise_change_s = kBeforeProgram_s + 0.5 * duration_s;
+  }
+  VirtualMachine machine(file, ControllerName::kPid);
+  Thermometer thermometer(machine.emulated(), s.temperature);
+  machine.SetIo(thermometer);
+  machine.BringUp();
+  machine.Enable();
+  const SeeCycle see = observer(file);
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) { see(entry); });
+  machine.Run(program);
+  machine.SetObserver(nullptr);
+}
+
+}  // namespace
+
+Recorded Record(const Setting& s, const std::vector<Hidden>& hidden, const std::filesystem::path& directory) {
+  const std::filesystem::path log_file = directory / "log.lcm";
+  const std::filesystem::path model_file = directory / "model.yaml";
+  WriteText(model_file, ModelText(s));
+  std::unique_ptr<LogWriter> writer;
+  std::unique_ptr<TelemetryEncoder> encoder;
+  RunMachine(s, hidden, directory, [&](const EmulatedMachineFile& file) -> SeeCycle {
+    LogHeader header;
+    header.build = "contour_hidden";
+    header.machine = file.machine.machine.name;
+    header.controller = Name(ControllerName::kPid);
+    header.clock = "virtual";
+    header.cycle_us = file.machine.machine.cycle_us;
+    for (const auto& [name, axis] : file.machine.axes) header.axis_names.push_back(name);
+    writer = std::make_unique<LogWriter>(log_file, header);
+    encoder = std::make_unique<TelemetryEncoder>(TelemetryConfig{}, header.cycle_us, header.axis_names);
+    return [&](const CycleEntry& entry) {
+      TelemetrySink* sinks[] = {writer.get()};
+      encoder->Add(entry, sinks);
+    };
+  });
+  TelemetrySink* sinks[] = {writer.get()};
+  encoder->Flush(sinks);
+  writer->Close();
+  Recorded recorded;
+  recorded.stated = diagnosis::ReadStatedAxis(model_file.string(), "");
+  diagnosis::ReadOptions options;
+  options.axis = "x";
+  options.table_per_q = recorded.stated.table_per_q;
+  recorded.log = diagnosis::ReadLog(log_file.string(), options);
+  return recorded;
+}
+
+diagnosis::AxisLog Simulate(const Setting& s, const std::vector<Hidden>& hidden,
+                            const std::filesystem::path& directory) {
+  diagnosis::AxisLog log;
+  RunMachine(s, hidden, directory, [&](const EmulatedMachineFile&) -> SeeCycle {
+    return [&](const CycleEntry& entry) {
+      const AxisRecord& a = entry.output.record.axes[0];
+      log.command.push_back(a.torque_Nm);
+      log.position.push_back(a.feedback.position_rad);
+      if (a.feedback.has_scale) log.table_position_m.push_back(a.feedback.table_position_m);
+    };
+  });
+  return log;
+}
+
+}  // namespace contour::hidden

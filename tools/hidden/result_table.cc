@@ -1,0 +1,193 @@
+#include "tools/hidden/result_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+
+namespace contour::hidden {
+namespace {
+
+void Add(std::string& text, const char* format, ...) __attribute__((format(printf, 2, 3)));
+void Add(std::string& text, const char* format, ...) {
+  char line[400];
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(line, sizeof line, format, values);
+  va_end(values);
+  text += line;
+}
+
+std::string Kinds(const Outcome& o) {
+  std::string kinds;
+  for (const std::string& k : o.question.kinds) kinds += (kinds.empty() ? "" : "+") + k;
+  return kinds;
+}
+
+struct Count {
+  int right = 0, all = 0;
+  void Take(bool good) {
+    right += good;
+    ++all;
+  }
+};
+
+std::string Text(const Count& c) {
+  return c.all == 0 ? "-" : std::to_string(c.right) + " / " + std::to_string(c.all);
+}
+
+double Percent(const Count& c) { return c.all == 0 ? 0.0 : 100.0 * c.right / c.all; }
+
+bool IsOutside(const Outcome& o) {
+  if (o.question.kinds.empty()) return false;
+  const auto& all = diagnosis::kKinds;
+  return std::find(all.begin(), all.end(), o.question.kinds.front()) == all.end();
+}
+
+/// Right answers of one type of question by kind and strength.
+void AddKinds(std::string& text, const std::vector<Outcome>& outcomes, Misfit misfit) {
+  std::map<std::string, std::map<Strength, Count>> counts;
+  std::map<Strength, Count> sums;
+  Count inside, gained, alone;
+  for (const Outcome& o : outcomes) {
+    if (o.question.type != Question::Type::kEffect || !o.usable || o.question.misfit != misfit ||
+        IsOutside(o))
+      continue;
+    counts[Kinds(o)][o.question.strength].Take(o.judged.right);
+    if (Undecidable(o)) continue;
+    sums[o.question.strength].Take(o.judged.right);
+    alone.Take(o.judged.extra == 0);
+    if (!o.judged.right || o.judged.gain == 0.0) continue;
+    inside.Take(o.judged.inside);
+    gained.Take(o.judged.gain > 0.0);
+  }
+  if (counts.empty()) return;
+  Add(text,
+      "\n### Right cause first, or in a set of two that is%s%s\n\n| effect | clear | moderate | barely |\n",
+      misfit == Misfit::kNone ? "" : "; plant: ", misfit == Misfit::kNone ? "" : Name(misfit));
+  text += "|---|---|---|---|\n";
+  for (auto& [kind, by] : counts)
+    Add(text, "| %s | %s | %s | %s |\n", kind.c_str(), Text(by[Strength::kClear]).c_str(),
+        Text(by[Strength::kModerate]).c_str(), Text(by[Strength::kBarely]).c_str());
+  Add(text, "| **all, without the undecidable** | %.1f %% | %.1f %% | %.1f %% |\n\n",
+      Percent(sums[Strength::kClear]), Percent(sums[Strength::kModerate]), Percent(sums[Strength::kBarely]));
+  Add(text, "Truth inside the stated 95 %% interval: %s (%.1f %%); held-out gain above zero: %s; ",
+      Text(inside).c_str(), Percent(inside), Text(gained).c_str());
+  Add(text, "no second cause invented: %s.\n", Text(alone).c_str());
+}
+
+void AddClean(std::string& text, const std::vector<Outcome>& outcomes) {
+  std::map<std::pair<std::string, double>, Count> alarms;
+  for (const Outcome& o : outcomes)
+    if (o.question.type == Question::Type::kClean && o.usable)
+      alarms[{Name(o.question.misfit), o.question.false_alarm_rate}].Take(!o.judged.right);
+  if (alarms.empty()) return;
+  text += "\n### Machines without an effect\n\n| plant | stated rate | false alarms | |\n|---|---|---|---|\n";
+  for (const auto& [key, c] : alarms)
+    Add(text, "| %s | %g %% | %s | %.1f %% |\n", key.first.c_str(), 100.0 * key.second, Text(c).c_str(),
+        Percent(c));
+}
+
+void AddOthers(std::string& text, const std::vector<Outcome>& outcomes) {
+  Count both, detectable, unexplained, not_misnamed;
+  for (const Outcome& o : outcomes) {
+    if (!o.usable) continue;
+    if (o.question.type == Question::Type::kPair) both.Take(o.both);
+    if (o.question.type == Question::Type::kDetectable) detectable.Take(o.judged.right);
+    if (o.question.type == Question::Type::kEffect && IsOutside(o) &&
+        o.question.strength == Strength::kClear) {
+      unexplained.Take(o.answer.verdict == diagnosis::Verdict::kUnexplained);
+      not_misnamed.Take(o.answer.causes.empty());
+    }
+  }
+  if (both.all + detectable.all + unexplained.all == 0) return;
+  text += "\n### Others\n\n| question | right | |\n|---|---|---|\n";
+  const auto row = [&](const char* what, const Count& c) {
+    if (c.all > 0) Add(text, "| %s | %s | %.1f %% |\n", what, Text(c).c_str(), Percent(c));
+  };
+  row("two clear effects: both found", both);
+  row("effect of 1.5 times smallest_detectable: found", detectable);
+  row("clear effect outside the catalogue: unexplained", unexplained);
+  row("clear effect outside the catalogue: no wrong name", not_misnamed);
+}
+
+void AddTimes(std::string& text, const std::vector<Outcome>& outcomes) {
+  double sum_s = 0.0, log_s = 0.0, longest = 0.0;
+  int n = 0;
+  int unusable = 0;
+  for (const Outcome& o : outcomes) {
+    unusable += !o.usable;
+    if (!o.usable || o.log_s <= 0.0) continue;
+    ++n;
+    sum_s += o.diagnose_s;
+    log_s += o.log_s;
+    longest = std::max(longest, o.diagnose_s);
+  }
+  if (n == 0) return;
+  Add(text, "\n%d logs of %.0f s on average; processor time of a diagnosis %.2f s per 100 s of log, ", n,
+      log_s / n, 100.0 * sum_s / log_s);
+  Add(text, "longest %.2f s. %d cases drawn could not be used (the effect does not get that strong there, ",
+      longest, unusable);
+  text += "or the machine stops).\n";
+}
+
+void AddFailures(std::string& text, const std::vector<Outcome>& outcomes) {
+  std::string list;
+  for (const Outcome& o : outcomes) {
+    if (!o.usable || Undecidable(o)) continue;
+    const bool wrong = o.question.type == Question::Type::kPair ? !o.both : !o.judged.right;
+    if (!wrong && o.judged.extra == 0) continue;
+    if (IsOutside(o) && o.answer.causes.empty()) continue;
+    Add(list, "| %s | %s | %s | %llu | %s | %s | %s |\n", Name(o.question.type), Kinds(o).c_str(),
+        Name(o.question.strength), static_cast<unsigned long long>(o.question.seed), Name(o.question.misfit),
+        o.judged.answer.c_str(), wrong ? "wrong" : "invented a second");
+  }
+  if (list.empty()) return;
+  text += "\n### Where it went wrong\n\n| type | hidden | strength | seed | plant | answer | |\n";
+  text += "|---|---|---|---|---|---|---|\n" + list;
+}
+
+}  // namespace
+
+bool Undecidable(const Outcome& o) {
+  if (o.question.type != Question::Type::kEffect || o.hidden.empty()) return false;
+  const std::string& kind = o.question.kinds.front();
+  if (kind == "torque_constant") return o.question.strength == Strength::kBarely;
+  if (kind == "pitch_error") return std::abs(o.hidden.front().size) <= 0.1;
+  return false;
+}
+
+void AppendCsv(const std::filesystem::path& file, const Outcome& o) {
+  const bool fresh = !std::filesystem::exists(file);
+  std::ofstream out(file, std::ios::app);
+  if (fresh)
+    out << "type,hidden,strength,seed,misfit,rate,usable,size,order,second,answer,right,extra,inside,outside,"
+           "gain,gate,diagnose_s,log_s\n";
+  const Hidden h = o.hidden.empty() ? Hidden{} : o.hidden.front();
+  std::string outside = o.usable ? o.judged.outside : o.why_not;
+  std::replace(outside.begin(), outside.end(), ',', ' ');
+  out << Name(o.question.type) << ',' << Kinds(o) << ',' << Name(o.question.strength) << ','
+      << o.question.seed << ',' << Name(o.question.misfit) << ',' << o.question.false_alarm_rate << ','
+      << o.usable << ',' << h.size << ',' << h.order << ',' << h.second << ',' << o.judged.answer << ','
+      << (o.question.type == Question::Type::kPair ? o.both : o.judged.right) << ',' << o.judged.extra << ','
+      << o.judged.inside << ',' << outside << ',' << o.judged.gain << ',' << o.answer.gate << ','
+      << o.diagnose_s << ',' << o.log_s << '\n';
+  if (!out) throw std::runtime_error("cannot write " + file.string());
+}
+
+std::string ResultTable(const std::vector<Outcome>& outcomes, const std::string& command) {
+  std::string text = "`" + command + "`\n";
+  for (const Misfit m :
+       {Misfit::kNone, Misfit::kMaxwellSlip, Misfit::kTimingError, Misfit::kNoiseLevel, Misfit::kDelayAndLag})
+    AddKinds(text, outcomes, m);
+  AddClean(text, outcomes);
+  AddOthers(text, outcomes);
+  AddTimes(text, outcomes);
+  AddFailures(text, outcomes);
+  return text;
+}
+
+}  // namespace contour::hidden
