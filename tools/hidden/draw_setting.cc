@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "tools/hidden/excitation.h"
+#include "tools/hidden/machine_text.h"
 #include "tools/plant_emulator/random.h"
 
 namespace contour::hidden {
@@ -26,6 +27,12 @@ double Near(plant::Random& r, double stated, double sigma_rel) {
   double n = r.Normal();
   while (std::abs(n) > kTruncation) n = r.Normal();
   return stated * (1.0 + sigma_rel * n);
+}
+
+/// Periods over the emulated stroke that are one or two over the travel of the program: the shape then has no
+/// mean there, which would be part of the friction level (or of the scale's zero) and not of the shape.
+double WholePeriods(plant::Random& r, const Setting& s) {
+  return (r.Uniform() < 0.5 ? 1.0 : 2.0) * EmulatedStroke_mm(s.truth) / (2.0 * s.truth.half_stroke_mm);
 }
 
 }  // namespace
@@ -140,7 +147,7 @@ Hidden DrawEffect(std::uint64_t seed, const std::string& kind, const Setting& s)
   }
   if (kind == "position_friction") {
     h.size = 0.1;
-    h.order = r.Uniform(0.7, 2.2);
+    h.order = WholePeriods(r, s);
   }
   if (kind == "cable_spring") h.size = 0.1 * friction_Nm;
   if (kind == "friction_ripple") {
@@ -190,7 +197,7 @@ Hidden DrawEffect(std::uint64_t seed, const std::string& kind, const Setting& s)
   }
   if (kind == "pitch_error") {
     h.size = 1.0;
-    h.order = r.Uniform(0.7, 2.2);
+    h.order = WholePeriods(r, s);
   }
   if (kind == "cross_coupling") h.size = sign * 1e-3;
   if (kind == "load_friction") h.size = 0.05;

@@ -44,7 +44,7 @@ void AddEmulated(std::string& text, const char* name, const Setting& s) {
   Add(text, "      screw_stiffness_N_um: %.9g\n      screw_damping_Ns_m: %.9g\n", t.stiffness_N_um,
       t.damping_Ns_m);
   Add(text, "      lag_ms: %.9g\n      torque_noise_Nm: %.9g\n      stroke_mm: %.9g\n", t.lag_ms,
-      t.torque_noise_Nm, 2.0 * t.half_stroke_mm + 20.0);
+      t.torque_noise_Nm, EmulatedStroke_mm(t));
   text += "      start_variation_mm: 0\n";
   if (s.temperature)
     text +=
