@@ -6,15 +6,21 @@
 #include <map>
 #include <stdexcept>
 
+#include "tools/diagnosis/detectable.h"
 #include "tools/diagnosis/effects.h"
+#include "tools/diagnosis/experiments.h"
 #include "tools/diagnosis/fit.h"
 #include "tools/diagnosis/gate.h"
+#include "tools/diagnosis/jitter.h"
 #include "tools/diagnosis/parameters.h"
 #include "tools/diagnosis/residual_trace.h"
 #include "tools/diagnosis/score.h"
 
 namespace contour::diagnosis {
 namespace {
+
+constexpr double kJitterPenalty = 3.0;
+constexpr int kRounds = 3;
 
 struct Refit {
   Fit fit;
@@ -45,33 +51,51 @@ class Engine {
     out.false_alarm_rate = options_.false_alarm_rate;
     Say("base model", 0.0);
     FitBase();
-    std::vector<SharedEffect> accepted;
     Fit current = base_;
-    for (int round = 0; round < options_.most_effects; ++round) {
+    bool jitter_known = false;
+    for (int round = 0; round < kRounds; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
-      double gate = SignFlipGate(scored, options_.false_alarm_rate, options_.seed);
+      const double gate = SignFlipGate(scored, options_.false_alarm_rate, options_.seed);
+      const Jitter jitter = TestJitter(problem_, current);
       if (round == 0) {
         KeepFirst(scored, out);
-        KeepDetectable(scored, gate, out);
+        out.candidates.push_back(
+            {"sample_jitter", jitter.drop - kJitterPenalty, std::numeric_limits<double>::quiet_NaN(), false});
+        KeepDetectable(problem_, current, scored, jitter, gate, out);
         out.gate = gate;
       }
+      const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > gate;
       // Nothing near the gate, even if the residual were as white as its spectrum says.
-      const bool none = std::none_of(scored.begin(), scored.end(), [&](const Scored& s) {
-        return s.drop - Penalty(*s.effect) > std::max(gate, 25.0) || s.score > 0.7 * gate;
+      const bool near = std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+        return s.drop - Penalty(*s.effect) > std::max(gate, 60.0) || s.score > 0.7 * gate;
       });
-      if (none) break;
+      if (!near) {
+        if (jitter_there) AcceptJitter(jitter, out);
+        break;
+      }
       Say("rivals", 0.3 + 0.25 * round);
       std::vector<Refit> refits = RefitBest(current, scored);
-      // Noise and gate as the best candidate leaves them.
+      // Noise as the best candidate leaves it.
       problem_.LearnNoise(problem_.Raw(std::span(&refits[0].fit.point, 1))[0]);
       Say("rivals under the noise that is left", 0.35 + 0.25 * round);
       Rescore(current, refits);
       const Refit& best = refits[0];
-      // From outside the catalogue only what is beyond doubt.
       const double drop = best.score + Penalty(*best.fit.point.effects.back());
       const double tested = drop / ExcessOfLast(problem_, best.fit) - Penalty(*best.fit.point.effects.back());
-      if (tested < (Outside(KindOf(best)) ? gate + 25.0 : gate)) break;
+      // From outside the catalogue only what is beyond doubt.
+      const bool found = tested > (Outside(KindOf(best)) ? gate + 25.0 : gate);
+      if (jitter_there) {
+        // A mean effect that the variance was about leaves none behind.
+        const Jitter left = TestJitter(problem_, best.fit);
+        if (left.drop > 0.6 * jitter.drop && (!found || left.drop > tested)) {
+          AcceptJitter(left, out);
+          jitter_known = true;
+          if (!found) break;
+          continue;
+        }
+      }
+      if (!found) break;
       Accept(current, refits, out);
       current = best.fit;
       if (Outside(KindOf(best))) break;
@@ -90,9 +114,9 @@ class Engine {
     start.base.assign(problem_.terms_.size(), 0.0);
     problem_.LearnOutliers(start);
     problem_.LearnNoise(problem_.Raw(std::span(&start, 1))[0]);
-    base_ = FitPoint(problem_, start, 5);
+    base_ = FitPoint(problem_, start, {.most_steps = 5, .most_refreshes = 2, .covariance = false});
     problem_.LearnNoise(problem_.Raw(std::span(&base_.point, 1))[0]);
-    base_ = FitPoint(problem_, base_.point, 8);
+    base_ = FitPoint(problem_, base_.point, {.most_steps = 8, .most_refreshes = 3});
     problem_.LearnSignals(base_.point);
   }
 
@@ -169,24 +193,47 @@ class Engine {
     };
     start.amplitudes.push_back(clamp(a));
     Refit best;
-    best.fit = FitPoint(problem_, start, 6);
+    const FitEffort effort{.most_steps = 6,
+                           .most_refreshes = s.effect->start.empty() ? 1 : 3,
+                           .covariance = false,
+                           .warm = &current};
+    best.fit = FitPoint(problem_, start, effort);
     if (!s.effect->start.empty()) {
       start.amplitudes.back() = clamp(s.effect->start);
-      Fit other = FitPoint(problem_, start, 6);
+      Fit other = FitPoint(problem_, start, effort);
       if (other.cost < best.fit.cost) best.fit = std::move(other);
     }
     best.score = current.cost - best.fit.cost - Penalty(*s.effect);
     return best;
   }
 
-  /// Under new noise: the rivals and what they are compared with.
+  /// Under new noise: the base, the rivals where they stand, and those that may still win fitted anew.
   void Rescore(Fit& current, std::vector<Refit>& refits) const {
-    current = FitPoint(problem_, current.point, 5);
-    for (Refit& r : refits) {
-      r.fit = FitPoint(problem_, r.fit.point, 4);
+    current = FitPoint(problem_, current.point, {.most_steps = 5, .most_refreshes = 2});
+    std::vector<Point> points;
+    for (const Refit& r : refits) points.push_back(r.fit.point);
+    const auto residuals = problem_.Residuals(points);
+    const auto score = [&](Refit& r) {
       r.score = current.cost - r.fit.cost - Penalty(*r.fit.point.effects.back());
+    };
+    for (std::size_t i = 0; i < refits.size(); ++i) {
+      double cost = refits[i].fit.prior;
+      for (const double x : residuals[i]) cost += x * x;
+      refits[i].fit.cost = cost;
+      score(refits[i]);
     }
     Sort(refits);
+    const double best = refits[0].score;
+    for (std::size_t i = 0; i < refits.size(); ++i) {
+      if (i > 0 && refits[i].score < 0.8 * best - 30.0) continue;
+      refits[i].fit = FitPoint(problem_, refits[i].fit.point,
+                               {.most_steps = 5, .most_refreshes = i == 0 ? 3 : 1, .covariance = i == 0});
+      score(refits[i]);
+    }
+    const std::string first = KindOf(refits[0]);
+    Sort(refits);
+    if (KindOf(refits[0]) != first)
+      refits[0].fit = FitPoint(problem_, refits[0].fit.point, {.most_steps = 3, .most_refreshes = 2});
   }
 
   void Accept(const Fit& current, const std::vector<Refit>& refits, Diagnosis& out) const {
@@ -204,6 +251,9 @@ class Engine {
       if (&r != &best && !Outside(kind) && r.score > best.score - std::max(12.0, 0.03 * best.score))
         cause.indistinguishable_from.push_back(kind);
     }
+    const Experiment experiment = DecidingExperiment(problem_, cause.kind, cause.indistinguishable_from);
+    cause.deciding_experiment = experiment.text;
+    cause.deciding_program = experiment.program;
     DescribeEffect(problem_, best.fit, best.fit.point.effects.size() - 1, cause);
     std::vector<BlockGain> blocks;
     HeldOutGain(problem_, current, best.fit, cause.kind == "pitch_error", cause, blocks);
@@ -211,26 +261,18 @@ class Engine {
     out.causes.push_back(std::move(cause));
   }
 
-  /// 90 % of effects of 1.5 times this size exceed the gate.
-  void KeepDetectable(const std::vector<Scored>& scored, double gate, Diagnosis& out) const {
-    for (const Scored& s : scored) {
-      if (Outside(s.effect->kind) || s.effect->tested != 1) continue;
-      const double sd = std::sqrt(std::max(0.0, s.covariance(0, 0)));
-      const double needed = (std::sqrt(std::max(gate + Penalty(*s.effect), 1.0)) + 1.2816) / 1.5 * sd;
-      Fit at;
-      at.point = base_.point;
-      at.point.effects = {s.effect};
-      at.point.amplitudes = {std::vector<double>(s.effect->steps.size(), 0.0)};
-      at.point.amplitudes[0][0] = needed;
-      at.covariance = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(ParameterCount(at.point)),
-                                            static_cast<Eigen::Index>(ParameterCount(at.point)));
-      Cause described;
-      described.kind = s.effect->kind;
-      DescribeEffect(problem_, at, 0, described);
-      const std::string name = MainParameter(s.effect->kind);
-      auto& place = out.smallest_detectable[s.effect->kind];
-      if (!place.contains(name)) place[name] = described.parameters[name].value;
-    }
+  void AcceptJitter(const Jitter& jitter, Diagnosis& out) const {
+    Cause cause;
+    cause.kind = "sample_jitter";
+    cause.log_evidence_gain = 0.5 * (jitter.drop - kJitterPenalty);
+    cause.parameters["rms_us"] = {1e6 * jitter.rms_s,
+                                  1e6 * std::max(0.0, jitter.rms_s - 1.96 * jitter.sigma_s),
+                                  1e6 * (jitter.rms_s + 1.96 * jitter.sigma_s)};
+    cause.unit = problem_.log_.linear ? "N" : "Nm";
+    cause.deciding_experiment = DecidingExperiment(problem_, cause.kind, {}).text;
+    for (Candidate& c : out.candidates)
+      if (c.kind == cause.kind) c.accepted = true;
+    out.causes.push_back(std::move(cause));
   }
 
   void Finish(const Fit& current, Diagnosis& out) {

@@ -47,7 +47,7 @@ std::size_t ParameterCount(const Point& p) {
   return n;
 }
 
-Fit FitPoint(const Problem& problem, Point start, int most_steps) {
+Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort) {
   Fit fit;
   fit.point = std::move(start);
   const std::size_t n = ParameterCount(fit.point);
@@ -61,16 +61,17 @@ Fit FitPoint(const Problem& problem, Point start, int most_steps) {
     weight(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
   bool stale = true;
   Eigen::MatrixXd normal;
-  const auto refresh = [&] {
-    std::vector<Point> around;
-    for (std::size_t i = 0; i < n; ++i) {
+  int refreshes = 0;
+  const auto refresh = [&](std::size_t from) {
+    std::vector<Point> around(from);
+    for (std::size_t i = from; i < n; ++i) {
       Eigen::VectorXd by = Eigen::VectorXd::Zero(columns);
       double step = StepOf(problem, fit.point, i);
       by(static_cast<Eigen::Index>(i)) = step;
       around.push_back(Moved(fit.point, by));
     }
-    fit.jacobian.resize(size, columns);
-    for (std::size_t first = 0; first < n; first += 8) {
+    if (from == 0) fit.jacobian.resize(size, columns);
+    for (std::size_t first = from; first < n; first += 8) {
       const std::size_t count = std::min<std::size_t>(8, n - first);
       const auto runs = problem.Residuals(std::span(around).subspan(first, count));
       for (std::size_t i = 0; i < count; ++i)
@@ -83,10 +84,19 @@ Fit FitPoint(const Problem& problem, Point start, int most_steps) {
     normal.diagonal() += weight;
     normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() * 1e-6;
     stale = false;
+    ++refreshes;
   };
-  for (int step = 0; step < most_steps; ++step) {
-    const bool fresh = stale;
-    if (stale) refresh();
+  bool fresh = false;
+  if (effort.warm != nullptr) {
+    const Eigen::Index known = effort.warm->jacobian.cols();
+    fit.jacobian.resize(size, columns);
+    fit.jacobian.leftCols(known) = effort.warm->jacobian;
+    refresh(static_cast<std::size_t>(known));
+  }
+  for (int step = 0; step < effort.most_steps; ++step) {
+    fresh = stale && refreshes < effort.most_refreshes;
+    if (fresh) refresh(0);
+    const bool last_chance = fresh || refreshes >= effort.most_refreshes;
     const Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), size);
     Eigen::VectorXd gradient = fit.jacobian.transpose() * r;
     for (std::size_t i = 0; i < fit.point.base.size(); ++i)
@@ -96,7 +106,7 @@ Fit FitPoint(const Problem& problem, Point start, int most_steps) {
     const double promised = -gradient.dot(by);
     if (promised < 0.02) {
       fit.converged = true;
-      if (fresh || promised < 0.01) break;
+      if (last_chance || promised < 0.01) break;
     }
     bool better = false;
     for (int half = 0; half < 4 && !better; ++half) {
@@ -113,17 +123,17 @@ Fit FitPoint(const Problem& problem, Point start, int most_steps) {
         better = true;
       }
       by *= 0.35;
-      if (!better && !fresh) break;  // the old sensitivities do not serve any more
+      if (!better && !last_chance) break;  // the old sensitivities do not serve any more
     }
     if (!better) {
-      if (fresh) {
+      if (last_chance) {
         fit.converged = true;
         break;
       }
       stale = true;
     }
   }
-  if (stale) refresh();
+  if (effort.covariance && !fresh && refreshes < effort.most_refreshes + 1 && stale) refresh(0);
   fit.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
   return fit;
 }

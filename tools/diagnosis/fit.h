@@ -18,8 +18,16 @@ struct Fit {
   bool converged = false;
 };
 
+struct FitEffort {
+  int most_steps = 8;
+  int most_refreshes = 8;  ///< of the sensitivities
+  bool covariance = true;  ///< of the end point; else sensitivities may be old
+  const Fit* warm =
+      nullptr;  ///< of the same noise and the same point less the last effect: its sensitivities serve
+};
+
 /// Gauss-Newton with the sensitivities kept while they serve. Noise is the problem's, held.
-Fit FitPoint(const Problem& problem, Point start, int most_steps = 8);
+Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {});
 
 std::size_t ParameterCount(const Point& point);
 

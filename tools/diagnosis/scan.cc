@@ -21,32 +21,6 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kResponse = 256;
 constexpr std::size_t kTransfer = 4096;
 
-// White innovation after a pulse of one row, from two runs of the filter over a silent log.
-std::vector<double> Response(const Problem& problem, bool reading) {
-  AxisLog silent;
-  silent.period_s = problem.log_.period_s;
-  silent.command.assign(kResponse + 8, 0.0);
-  silent.position.assign(kResponse + 8, 0.0);
-  FilterSetup setup = problem.setup_;
-  setup.log = &silent;
-  setup.valid.assign(silent.size(), 1);
-  setup.start = {0.0, 0.0};
-  setup.full = setup.trace = false;
-  AxisModel m = problem.nominal_;
-  m.offset = 0.0;
-  m.friction.Fc_plus = m.friction.Fc_minus = m.friction.Fs_plus = m.friction.Fs_minus =
-      1e-9 * problem.signals_->coulomb;
-  m.friction.s0 *= 1e-9;
-  m.friction.s1 = 0.0;
-  auto pulse = std::make_shared<Signal>(silent.size(), 0.0);
-  (*pulse)[1] = 1.0;
-  (reading ? m.reading_error : m.motor_force) = pulse;
-  const auto run = RunFilter(setup, std::span(&m, 1), 1);
-  std::vector<double> white(silent.size());
-  problem.innovation_noise_.Apply(run[0].innovation, white.data());
-  return {white.begin() + 1, white.begin() + 1 + kResponse};
-}
-
 struct Matched {
   std::vector<double> lambda;    // gradient of |r|^2 / 2 by a pulse at each row
   std::vector<double> transfer;  // |response|^2 by frequency, kTransfer / 2 bins up to half the rate
@@ -58,7 +32,7 @@ struct Matched {
 };
 
 Matched Match(const Problem& problem, const Fit& fit, bool reading) {
-  const std::vector<double> h = Response(problem, reading);
+  const std::vector<double> h = PulseResponse(problem, reading);
   const std::size_t n = problem.rows();
   Matched m;
   m.lambda.resize(n);
@@ -163,6 +137,31 @@ std::vector<Peak> Integers(const std::vector<Peak>& all, double lowest) {
 }
 
 }  // namespace
+
+std::vector<double> PulseResponse(const Problem& problem, bool reading) {
+  AxisLog silent;
+  silent.period_s = problem.log_.period_s;
+  silent.command.assign(kResponse + 8, 0.0);
+  silent.position.assign(kResponse + 8, 0.0);
+  FilterSetup setup = problem.setup_;
+  setup.log = &silent;
+  setup.valid.assign(silent.size(), 1);
+  setup.start = {0.0, 0.0};
+  setup.full = setup.trace = false;
+  AxisModel m = problem.nominal_;
+  m.offset = 0.0;
+  m.friction.Fc_plus = m.friction.Fc_minus = m.friction.Fs_plus = m.friction.Fs_minus =
+      1e-9 * problem.signals_->coulomb;
+  m.friction.s0 *= 1e-9;
+  m.friction.s1 = 0.0;
+  auto pulse = std::make_shared<Signal>(silent.size(), 0.0);
+  (*pulse)[1] = 1.0;
+  (reading ? m.reading_error : m.motor_force) = pulse;
+  const auto run = RunFilter(setup, std::span(&m, 1), 1);
+  std::vector<double> white(silent.size());
+  problem.innovation_noise_.Apply(run[0].innovation, white.data());
+  return {white.begin() + 1, white.begin() + 1 + kResponse};
+}
 
 std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   const Signals& s = *problem.signals_;

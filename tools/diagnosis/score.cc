@@ -22,6 +22,18 @@ void AddBlocks(const double* column, const double* residual, std::size_t rows, s
   }
 }
 
+bool InBase(const Problem& problem, const std::string& kind) {
+  const auto has = [&](const char* name) {
+    return std::any_of(problem.terms_.begin(), problem.terms_.end(),
+                       [&](const BaseTerm& t) { return t.name == name; });
+  };
+  if (kind == "stribeck") return has("Fs");
+  if (kind == "input_delay") return has("delay");
+  if (kind == "current_lag") return has("lag");
+  if (kind == "compliance") return has("stiffness");
+  return kind == "torque_constant";
+}
+
 double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
   const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
   return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
@@ -113,6 +125,8 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
       s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
       s.amplitude = -solver.solve(gradient);
       s.drop = -gradient.dot(s.amplitude);
+      // What a base parameter does already, an effect can only free from its prior.
+      if (InBase(problem, effect.kind)) s.drop = std::min(s.drop, 1.5 * fit.prior + 5.0);
       s.excess = Excess(s.per_block, s.covariance);
       s.score = s.drop / s.excess - Penalty(effect);
       const Eigen::RowVectorXd blocks = -s.amplitude.transpose() * s.per_block;

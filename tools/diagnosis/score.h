@@ -35,6 +35,9 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
 /// Of the last effect of a fit, from the fit's own residual: free of what the effect explains.
 double ExcessOfLast(const Problem& problem, const Fit& fit);
 
+/// White innovation after a pulse of one row of motor torque (or of the reading), friction left out.
+std::vector<double> PulseResponse(const Problem& problem, bool reading);
+
 /// Effects that the scans over orders and frequencies propose.
 std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit);
 

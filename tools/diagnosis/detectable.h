@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+
+#include "tools/diagnosis/finding.h"
+#include "tools/diagnosis/jitter.h"
+#include "tools/diagnosis/score.h"
+
+namespace contour::diagnosis {
+
+/// Fills smallest_detectable and not_excited from the candidates' standard errors: 1.5 times the stated size
+/// exceeds the gate in 90 % of cases. A kind whose smallest detectable size is beyond what such an axis can
+/// have, or whose signal the log lacks, is not excited.
+void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
+                    const Jitter& jitter, double gate, Diagnosis& out);
+
+}  // namespace contour::diagnosis
