@@ -1,10 +1,12 @@
 #include "tools/diagnosis/diagnose.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <utility>
 
 #include "tools/diagnosis/detectable.h"
 #include "tools/diagnosis/effects.h"
@@ -20,7 +22,6 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kJitterPenalty = 3.0;
-constexpr int kRounds = 3;
 
 struct Refit {
   Fit fit;
@@ -53,7 +54,7 @@ class Engine {
     FitBase();
     Fit current = base_;
     bool jitter_known = false;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
       const double gate = SignFlipGate(scored, options_.false_alarm_rate, options_.seed);
@@ -192,6 +193,8 @@ class Engine {
       return v;
     };
     start.amplitudes.push_back(clamp(a));
+    if (s.effect->kind == "torque_constant")
+      ShiftForces(problem_, std::log1p(start.amplitudes.back()[0]), start);
     Refit best;
     const FitEffort effort{.most_steps = 6,
                            .most_refreshes = s.effect->start.empty() ? 1 : 3,
@@ -199,12 +202,56 @@ class Engine {
                            .warm = &current};
     best.fit = FitPoint(problem_, start, effort);
     if (!s.effect->start.empty()) {
-      start.amplitudes.back() = clamp(s.effect->start);
-      Fit other = FitPoint(problem_, start, effort);
-      if (other.cost < best.fit.cost) best.fit = std::move(other);
+      // Far from linear: the kind's whole grid at full size, the base following to first order, shows where
+      // to begin.
+      for (const auto& [effect, amplitudes] : FullStarts(current, s.effect->kind)) {
+        start.effects.back() = effect;
+        start.amplitudes.back() = amplitudes;
+        Fit other = FitPoint(problem_, start, {.most_steps = 10, .most_refreshes = 4, .covariance = false});
+        if (other.cost < best.fit.cost) best.fit = std::move(other);
+      }
     }
     best.score = current.cost - best.fit.cost - Penalty(*s.effect);
     return best;
+  }
+
+  /// The most promising full-size point of a kind's grid.
+  std::vector<std::pair<SharedEffect, std::vector<double>>> FullStarts(const Fit& current,
+                                                                       const std::string& kind) const {
+    std::vector<std::pair<SharedEffect, std::vector<double>>> starts;
+    std::vector<Point> points;
+    for (const SharedEffect& e : CatalogueEffects(problem_)) {
+      if (e->kind != kind) continue;
+      for (const double size : {0.4, 1.0, 2.0}) {
+        std::vector<double> a = e->start;
+        a[0] = std::clamp(size * a[0], e->low[0], e->high[0]);
+        Point p = current.point;
+        p.effects.push_back(e);
+        p.amplitudes.push_back(a);
+        points.push_back(std::move(p));
+        starts.emplace_back(e, std::move(a));
+      }
+    }
+    std::size_t best = 0;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (std::size_t first = 0; first < points.size(); first += 8) {
+      const std::size_t count = std::min<std::size_t>(8, points.size() - first);
+      const auto residuals = problem_.Residuals(std::span(points).subspan(first, count));
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Map<const Eigen::VectorXd> r(residuals[i].data(),
+                                                  static_cast<Eigen::Index>(residuals[i].size()));
+        Eigen::VectorXd gradient = current.jacobian.transpose() * r;
+        for (std::size_t t = 0; t < current.point.base.size(); ++t)
+          gradient(static_cast<Eigen::Index>(t)) +=
+              current.point.base[t] / std::pow(problem_.terms_[t].sigma, 2);
+        const double cost = r.squaredNorm() - gradient.dot(current.covariance * gradient);
+        if (!std::isfinite(cost) || cost >= lowest) continue;
+        lowest = cost;
+        best = first + i;
+      }
+    }
+    if (starts.empty()) return {};
+    return {starts[best]};
   }
 
   /// Under new noise: the base, the rivals where they stand, and those that may still win fitted anew.
@@ -225,7 +272,7 @@ class Engine {
     Sort(refits);
     const double best = refits[0].score;
     for (std::size_t i = 0; i < refits.size(); ++i) {
-      if (i > 0 && refits[i].score < 0.8 * best - 30.0) continue;
+      if (i > 0 && refits[i].score < 0.4 * best - 30.0) continue;
       refits[i].fit = FitPoint(problem_, refits[i].fit.point,
                                {.most_steps = 5, .most_refreshes = i == 0 ? 3 : 1, .covariance = i == 0});
       score(refits[i]);

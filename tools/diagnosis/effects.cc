@@ -200,8 +200,8 @@ void AddDrive(const Problem& p, std::vector<SharedEffect>& out) {
   out.push_back(Custom("torque_saturation", "", 1, {5e-3},
                        [rated](const auto& a, AxisModel& m) { m.saturation += a[0] / (rated * rated); }, {},
                        {-0.3}, {0.5}));
-  out.push_back(Custom("input_delay", "", 1, {5e-6}, [](const auto& a, AxisModel& m) { m.delay_s += a[0]; }));
-  out.push_back(Custom("current_lag", "", 1, {1e-5},
+  out.push_back(Custom("input_delay", "", 1, {2e-6}, [](const auto& a, AxisModel& m) { m.delay_s += a[0]; }));
+  out.push_back(Custom("current_lag", "", 1, {2e-6},
                        [](const auto& a, AxisModel& m) { m.lag_s = std::max(0.0, m.lag_s + a[0]); }));
 }
 
@@ -221,12 +221,14 @@ void AddMechanics(const Problem& p, std::vector<SharedEffect>& out) {
   }
   const double R = p.stated_.table_per_q;
   if (p.nominal_.two_inertia) {
-    out.push_back(Custom("compliance", "", 8, {1e-3, 1e-2},
-                         [](const auto& a, AxisModel& m) {
-                           m.stiffness *= std::exp(a[0]);
-                           m.damping *= std::exp(a[1]);
-                         },
-                         {}, {-4.0, -3.0}, {3.0, 4.0}));
+    // A resonance far from where it is stated cannot be reached step by step: full-size starts both ways.
+    for (const double start : {-0.5, 0.4})
+      out.push_back(Custom("compliance", start < 0.0 ? "softer" : "stiffer", 8, {5e-4, 5e-3},
+                           [](const auto& a, AxisModel& m) {
+                             m.stiffness *= std::exp(a[0]);
+                             m.damping *= std::exp(a[1]);
+                           },
+                           {start, 0.0}, {-4.0, -3.0}, {3.0, 4.0}));
     for (const double gap_um : {2.0, 10.0, 40.0})
       out.push_back(Custom("backlash", std::to_string(gap_um) + " um", 3, {gap_um * 1e-6 / R},
                            [](const auto& a, AxisModel& m) { m.gap = std::max(0.0, a[0]); },

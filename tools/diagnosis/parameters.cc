@@ -204,6 +204,9 @@ void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, C
     for (std::size_t i = 0; i < p.base.size(); ++i) p.base[i] += x(static_cast<Eigen::Index>(i));
     for (Eigen::Index i = 0; i < count; ++i)
       p.amplitudes[0][static_cast<std::size_t>(i)] += x(static_cast<Eigen::Index>(first) + i);
+    const Effect& effect = *p.effects[0];
+    for (std::size_t i = 0; i < p.amplitudes[0].size() && !effect.low.empty(); ++i)
+      p.amplitudes[0][i] = std::clamp(p.amplitudes[0][i], effect.low[i], effect.high[i]);
     for (const auto& [name, v] : Evaluate(problem, p, 0)) drawn[name].push_back(v);
   }
   for (const auto& [name, v] : value) {

@@ -41,7 +41,33 @@ double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covarianc
 
 }  // namespace
 
+namespace {
+
+bool IsForce(const BaseTerm& t) {
+  return !t.nuisance && !t.additive && t.name != "vs" && t.name != "torque_constant";
+}
+
+}  // namespace
+
+CommonFactor FindCommonFactor(const Problem& problem, const Point& point) {
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < point.base.size(); ++i) {
+    const BaseTerm& t = problem.terms_[i];
+    if (!IsForce(t)) continue;
+    const double w = std::pow(t.sigma, -2);
+    sum += w * point.base[i];
+    weight += w;
+  }
+  return {-sum / weight, sum * sum / weight, std::sqrt(1.0 / weight)};
+}
+
+void ShiftForces(const Problem& problem, double log_ratio, Point& point) {
+  for (std::size_t i = 0; i < point.base.size(); ++i)
+    if (IsForce(problem.terms_[i])) point.base[i] += log_ratio;
+}
+
 double ExcessOfLast(const Problem& problem, const Fit& fit) {
+  if (InBase(problem, fit.point.effects.back()->kind)) return 1.0;
   const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
   const Eigen::Index others = fit.jacobian.cols() - n;
   Eigen::MatrixXd blocks(fit.jacobian.cols(), kBlocks);
@@ -118,7 +144,7 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
       }
       s.per_block -= onto.transpose() * base_blocks;
       // Directions that the base explains already, to rounding, carry nothing.
-      for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-9 * own(i) + 1e-300;
+      for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-6 * own(i) + 1e-300;
       // The gradient of the prior belongs to the base; at its optimum both parts cancel.
       const Eigen::VectorXd gradient = g.transpose() * residual;
       const Eigen::LDLT<Eigen::MatrixXd> solver(information);
@@ -126,8 +152,20 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
       s.amplitude = -solver.solve(gradient);
       s.drop = -gradient.dot(s.amplitude);
       // What a base parameter does already, an effect can only free from its prior.
-      if (InBase(problem, effect.kind)) s.drop = std::min(s.drop, 1.5 * fit.prior + 5.0);
       s.excess = Excess(s.per_block, s.covariance);
+      if (InBase(problem, effect.kind)) {
+        // What a base parameter does already, an effect can only free from its prior: the evidence is in the
+        // prior and not in the blocks.
+        s.drop = std::min(s.drop, 1.5 * fit.prior + 5.0);
+        s.per_block.setZero();
+        s.excess = 1.0;
+        if (effect.kind == "torque_constant") {
+          const CommonFactor common = FindCommonFactor(problem, fit.point);
+          s.amplitude(0) = std::expm1(common.log_ratio);
+          s.covariance(0, 0) = common.sigma * common.sigma;
+          s.drop = common.drop;
+        }
+      }
       s.score = s.drop / s.excess - Penalty(effect);
       const Eigen::RowVectorXd blocks = -s.amplitude.transpose() * s.per_block;
       s.consistency = blocks.sum() / (blocks.norm() + 1e-300);
