@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "config/config_difference.h"
+#include "config/yaml_writer.h"
 #include "core/version.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/program/path_generator.h"
@@ -43,6 +44,8 @@ Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, 
     encoder_counts_m_.push_back(axis.model.mechanics.lead_mm * 1e-3 / axis.drive.encoder_counts_per_rev);
   for (const auto& [name, bus] : machine.buses) interfaces_.push_back(bus.interface);
 }
+
+std::string Supervisor::MachineFile() { return WriteYaml(machine_); }
 
 Answer Supervisor::Ask(RequestKind kind, std::uint32_t program_id) {
   const std::uint32_t sequence =

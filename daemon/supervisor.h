@@ -42,6 +42,7 @@ class Supervisor final : public OperatorDesk {
   Answer Reload() override;
   Answer Run(const ProgramUpload& program) override;
   MachineStatus Status() override;
+  std::string MachineFile() override;
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 

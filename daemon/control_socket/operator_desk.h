@@ -45,6 +45,8 @@ class OperatorDesk {
   virtual Answer Reload() = 0;
   virtual Answer Run(const ProgramUpload& program) = 0;
   virtual MachineStatus Status() = 0;
+  /// The machine file as it was read, overrides and defaults in it: YAML that reads back as the same.
+  virtual std::string MachineFile() = 0;
 
   /// From now on every cycle that the pump sees is pushed to this feed, until Detach().
   virtual void Attach(std::shared_ptr<RowFeed> feed) = 0;

@@ -71,6 +71,7 @@ json Watch(const json& request, Subscriptions& subscriptions) {
 json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions) {
   const std::string kind = Text(request, "request");
   if (kind == "status") return {{"ok", true}, {"status", ToJson(desk.Status())}};
+  if (kind == "machine_file") return {{"ok", true}, {"yaml", desk.MachineFile()}};
   if (kind == "enable") return Reply(desk.Enable());
   if (kind == "disable") return Reply(desk.Disable());
   if (kind == "stop") return Reply(desk.Stop());
@@ -88,7 +89,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     return {{"ok", true}};
   }
   throw BadRequest("unknown request \"" + kind +
-                   "\"; there are status, enable, disable, stop, reset, reload, run, watch, rows");
+                   "\"; there are status, machine_file, enable, disable, stop, reset, reload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

@@ -9,12 +9,14 @@
 #include "core/version.h"
 #include "tools/contour/check_command.h"
 #include "tools/contour/command.h"
+#include "tools/contour/commission_command.h"
 #include "tools/contour/contest_command.h"
 #include "tools/contour/diagnose_command.h"
 #include "tools/contour/doctor_command.h"
 #include "tools/contour/emps_command.h"
 #include "tools/contour/emulate_command.h"
 #include "tools/contour/export_command.h"
+#include "tools/contour/identify_command.h"
 #include "tools/contour/reload_command.h"
 #include "tools/contour/replay_command.h"
 #include "tools/contour/request_command.h"
@@ -66,6 +68,8 @@ int main(int argc, char** argv) {
   contour::AddWatchCommand(app, action);
   contour::AddRequestCommands(app, action);
   contour::AddExportCommand(app, action);
+  contour::AddIdentifyCommand(app, action);
+  contour::AddCommissionCommand(app, action);
   contour::AddContestCommand(app, action);
   contour::AddTuneCommand(app, action);
   contour::AddReloadCommand(app, action);

@@ -31,6 +31,7 @@ class FakeDesk final : public OperatorDesk {
     const std::lock_guard lock(mutex_);
     return status_;
   }
+  std::string MachineFile() override { return "machine: {name: fake}\n"; }
   void Attach(std::shared_ptr<RowFeed> feed) override {
     const std::lock_guard lock(mutex_);
     feeds_.push_back(std::move(feed));

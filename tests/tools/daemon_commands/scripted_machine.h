@@ -24,6 +24,7 @@ class ScriptedMachine final : public OperatorDesk {
   Answer Reset() override { return Go(MachineState::kIdle, Reason::kNone); }
   Answer Run(const ProgramUpload& upload) override;
   MachineStatus Status() override;
+  std::string MachineFile() override { return {}; }
   void Attach(std::shared_ptr<RowFeed> feed) override { feed_ = std::move(feed); }
   void Detach(const std::shared_ptr<RowFeed>&) override { feed_.reset(); }
 

@@ -1,0 +1,252 @@
+#include "tools/contour/commission_command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "config/config_error.h"
+#include "config/load_machine.h"
+#include "daemon/control_socket/base64.h"
+#include "drivers/lcm/cycle_messages.h"
+#include "tools/commission/commission_plan.h"
+#include "tools/commission/record_axis.h"
+#include "tools/contour/daemon_link.h"
+#include "tools/contour/identification_report.h"
+#include "tools/diagnosis/files/read_stated_axis.h"
+
+namespace contour {
+namespace {
+
+using nlohmann::json;
+
+struct Options {
+  std::string axis;
+  std::string socket;
+  std::optional<double> travel_mm, max_speed_mm_s, max_torque_Nm;
+  std::string out;
+  std::string report;
+  bool yes = false;
+};
+
+constexpr std::chrono::milliseconds kLookEvery{100};
+constexpr std::chrono::seconds kEnableLimit{60};
+constexpr std::chrono::seconds kLastRows{5};
+
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+void OnSignal(int /*signal*/) { stop_requested.store(true); }
+
+MachineConfig AskForMachine(ControlClient& client) {
+  const json reply = AskOrThrow(client, {{"request", "machine_file"}});
+  std::vector<std::string> errors;
+  MachineConfig machine =
+      ReadMachine(ParseYamlText(reply.at("yaml").get<std::string>(), "the daemon's machine file"), errors);
+  if (!errors.empty()) throw ConfigError(errors);
+  return machine;
+}
+
+/// Takes every cycle from the daemon and watches that the axis keeps to what the operator allowed.
+class Watchman {
+ public:
+  Watchman(ControlClient& client, std::size_t axis, double period_s, const CommissionPlan& plan)
+      : axis_(axis), plan_(plan), recorder_(axis, period_s) {
+    client.OnMessage([this](const json& message) { OnMessage(message); });
+    AskOrThrow(client, {{"request", "rows"}, {"on", true}});
+  }
+  [[nodiscard]] const std::string& offence() const { return offence_; }
+  [[nodiscard]] std::uint64_t newest_cycle() const { return newest_cycle_; }
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  AxisRecorder& recorder() { return recorder_; }
+
+ private:
+  void OnMessage(const json& message) {
+    if (!message.contains("rows")) return;
+    lost_ = message.at("lost");
+    for (const json& text : message.at("rows")) {
+      const auto row = FromBase64(text.get<std::string>());
+      contour_lcm::cycle_entry raw{};
+      if (!row || !Decode(*row, raw) || !FromMessage(raw, entry_))
+        throw std::runtime_error(
+            "contourd sends rows that this program cannot read; are they of one version?");
+      newest_cycle_ = entry_.output.record.cycle;
+      recorder_.Add(entry_.output.record);
+      Watch(entry_.output.record);
+    }
+  }
+  void Watch(const CycleRecord& record) {
+    if (axis_ >= record.axes.size() || record.state != MachineState::kRunning) return;
+    const AxisRecord& a = record.axes[axis_];
+    char text[160];
+    text[0] = '\0';
+    if (std::fabs(a.torque_Nm) > plan_.limits.max_torque_Nm)
+      std::snprintf(text, sizeof text, "torque of %.3f Nm is beyond --max_torque_Nm", a.torque_Nm);
+    if (a.position_m < plan_.low_mm * 1e-3 || a.position_m > plan_.high_mm * 1e-3)
+      std::snprintf(text, sizeof text, "position %.3f mm is beyond --travel_mm", a.position_m * 1e3);
+    if (std::fabs(a.reference.velocity_m_s) > plan_.limits.max_speed_mm_s * 1.001e-3)
+      std::snprintf(text, sizeof text, "speed of %.3f mm/s is beyond --max_speed_mm_s",
+                    a.reference.velocity_m_s * 1e3);
+    if (offence_.empty()) offence_ = text;
+  }
+
+  std::size_t axis_;
+  const CommissionPlan& plan_;
+  AxisRecorder recorder_;
+  CycleEntry entry_;
+  std::string offence_;
+  std::uint64_t newest_cycle_ = 0;
+  std::uint64_t lost_ = 0;
+};
+
+/// Runs one motion to its end; stops the machine and throws when something is not as it should be.
+void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion& motion,
+               const std::string& progress) {
+  const json reply = AskOrThrow(client, {{"request", "run"},
+                                         {"name", "commissioning: " + motion.what},
+                                         {"format", "yaml"},
+                                         {"text", motion.yaml}});
+  const std::uint32_t id = reply.at("program_id");
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  bool stopping = false;
+  for (;;) {
+    const json status = Status(client);
+    const std::string state = status.at("state");
+    const json& program = status.at("program");
+    const bool ours = program.at("id") == id;
+    if (!ours || (state == "Ready" && status.at("reason") != "none") ||
+        (state != "Ready" && state != "Running" && state != "Stopping")) {
+      if (ours && status.at("reason") == "program_end") return;
+      if (!watchman.offence().empty()) throw std::runtime_error("stopped: " + watchman.offence());
+      throw std::runtime_error("\"" + motion.what + "\" did not end by itself: " + StateSentence(status));
+    }
+    if (terminal && program.at("time_s").is_number() && program.at("duration_s").is_number())
+      std::fprintf(stderr, "\r\x1b[K%s  %s  %.1f of %.1f s", progress.c_str(), motion.what.c_str(),
+                   program.at("time_s").get<double>(), program.at("duration_s").get<double>());
+    if ((stop_requested || !watchman.offence().empty()) && !stopping) {
+      stopping = true;
+      client.Ask({{"request", "stop"}});
+    }
+    const auto until = std::chrono::steady_clock::now() + kLookEvery;
+    while (std::chrono::steady_clock::now() < until)
+      client.Listen(std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()));
+  }
+}
+
+bool Confirmed(const Options& options) {
+  if (options.yes) return true;
+  if (::isatty(STDIN_FILENO) == 0)
+    throw ConfigError({"commission moves the machine: confirm with --yes (there is no terminal to ask on)"});
+  std::cout << "The axis will be enabled and will move. Go on? [yes/no] " << std::flush;
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "yes";
+}
+
+int RunCommission(const Options& options) {
+  ControlClient client = ConnectToDaemon(options.socket);
+  const MachineConfig machine = AskForMachine(client);
+  if (!machine.axes.contains(options.axis))
+    throw ConfigError({"--axis: the daemon's machine has no axis \"" + options.axis + "\""});
+  json status = Status(client);
+  const std::string state = status.at("state");
+  if (state != "Idle" && state != "Ready")
+    throw std::runtime_error("commissioning begins from Idle or Ready, but the machine is " +
+                             StateSentence(status));
+  if (status.at("controller") == "csp")
+    throw ConfigError(
+        {"the daemon runs the controller csp, in which the drive makes the torque: start it with another"});
+  std::size_t number = 0;
+  while (status.at("axes").at(number).at("name") != options.axis) ++number;
+  const AxisConfig& axis = machine.axes.at(options.axis);
+  CommissionLimits limits = DefaultCommissionLimits(axis);
+  if (options.travel_mm) limits.travel_mm = *options.travel_mm;
+  if (options.max_speed_mm_s) limits.max_speed_mm_s = *options.max_speed_mm_s;
+  if (options.max_torque_Nm) limits.max_torque_Nm = *options.max_torque_Nm;
+  const double position_mm = 1e3 * status.at("axes").at(number).at("position_m").get<double>();
+  const CommissionPlan plan = PlanCommissioning(machine, options.axis, position_mm, limits);
+  std::cout << Describe(plan);
+  if (status.at("controller") != "pid" && status.at("controller") != "mpc_observer")
+    std::cout << "note: the controller " << status.at("controller").get<std::string>()
+              << " believes the model; where that may be far off, start contourd with --controller pid\n";
+  if (!Confirmed(options)) {
+    std::cout << "nothing was moved\n";
+    return kExitFailed;
+  }
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+
+  Watchman watchman(client, number, machine.machine.cycle_us * 1e-6, plan);
+  AskOrThrow(client, {{"request", "enable"}});
+  status = WaitForStatus(
+      client, [](const json& s) { return s.at("state") != "Enabling" && s.at("state") != "Idle"; },
+      kEnableLimit);
+  if (status.at("state") != "Ready")
+    throw std::runtime_error("could not be enabled: " + StateSentence(status));
+  std::string failure;
+  try {
+    for (std::size_t i = 0; i < plan.motions.size(); ++i)
+      RunMotion(client, watchman, plan.motions[i],
+                std::to_string(i + 1) + " of " + std::to_string(plan.motions.size()));
+  } catch (const std::exception& e) {
+    failure = e.what();
+  }
+  if (::isatty(STDERR_FILENO) != 0) std::fputs("\r\x1b[K", stderr);
+  // Whatever happened, the torque goes off again.
+  const std::uint64_t last = Status(client).at("cycle");
+  client.Ask({{"request", "disable"}});
+  if (!failure.empty()) throw std::runtime_error(failure);
+  const auto deadline = std::chrono::steady_clock::now() + kLastRows;
+  while (watchman.newest_cycle() < last && std::chrono::steady_clock::now() < deadline)
+    client.Listen(kLookEvery);
+  AskOrThrow(client, {{"request", "rows"}, {"on", false}});
+  std::printf("%.1f s of motion recorded", watchman.recorder().seconds());
+  if (watchman.lost() > 0)
+    std::printf("; %llu cycles LOST on the way: this computer is too slow",
+                static_cast<unsigned long long>(watchman.lost()));
+  std::printf("\n");
+  std::fflush(stdout);
+
+  IdentificationJob job;
+  job.stated = diagnosis::ToStatedAxis(machine, options.axis);
+  job.model = axis.model;
+  job.logs.push_back(watchman.recorder().Take());
+  job.sources = {"commissioning of axis " + options.axis + " of " + machine.machine.name};
+  job.out = options.out.empty() ? options.axis + "_model.yaml" : options.out;
+  job.report = options.report.empty() ? options.axis + "_commissioning" : options.report;
+  IdentifyAndReport(job);
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddCommissionCommand(CLI::App& app, Action& action) {
+  auto options = std::make_shared<Options>();
+  CLI::App* sub = app.add_subcommand(
+      "commission",
+      "Move an axis of a running contourd within limits, and identify its friction and mechanics");
+  sub->add_option("--axis", options->axis, "The axis")->required();
+  AddSocketOption(*sub, options->socket);
+  sub->add_option("--travel_mm", options->travel_mm,
+                  "Whole way (default: a tenth of the stroke, at most 20 mm)");
+  sub->add_option("--max_speed_mm_s", options->max_speed_mm_s,
+                  "Largest speed (default: 40 % of the axis's limit, at most 100 mm/s)");
+  sub->add_option("--max_torque_Nm", options->max_torque_Nm,
+                  "Torque at which it stops (default: 60 % of the axis's limit)");
+  sub->add_option("--out", options->out, "Model file to write (default: NAME_model.yaml)");
+  sub->add_option("--report", options->report, "Directory of the report (default: NAME_commissioning)");
+  sub->add_flag("--yes", options->yes, "Do not ask before the axis is enabled and moves");
+  sub->footer(
+      "Enables the machine, runs its motions one after the other, and takes the torque off at the end. An "
+      "interrupt (Ctrl-C) stops the axis, takes the torque off and ends with status 1.");
+  sub->callback([options, &action] { action = [options] { return RunCommission(*options); }; });
+}
+
+}  // namespace contour

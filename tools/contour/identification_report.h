@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "config/model_config.h"
+#include "tools/diagnosis/axis_log.h"
+#include "tools/diagnosis/stated_axis.h"
+
+namespace contour {
+
+/// What identify and commission have in common once the records are there.
+struct IdentificationJob {
+  diagnosis::StatedAxis stated;
+  ModelConfig model;  ///< as stated
+  std::vector<diagnosis::AxisLog> logs;
+  std::vector<std::string> sources;  ///< named in the files
+  std::filesystem::path out;         ///< the model
+  std::filesystem::path report;      ///< directory; empty: none
+};
+
+/// Identifies, with progress on a terminal; writes the model, and with a report directory identification.json
+/// and its pictures; prints the table of results.
+void IdentifyAndReport(const IdentificationJob& job);
+
+}  // namespace contour

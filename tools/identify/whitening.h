@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+namespace contour::identify {
+
+/// Makes prediction errors alike: each block of time is divided by its own level, then an autoregressive
+/// filter takes out what one error says of the next.
+class Whitening {
+ public:
+  /// From errors (0: no value). `order` 0: levels only. No block counts as quieter than `floor`.
+  void Learn(const Eigen::VectorXd& errors, std::size_t block, int order, double floor);
+  [[nodiscard]] Eigen::VectorXd Apply(const Eigen::VectorXd& errors) const;
+
+ private:
+  std::size_t block_ = 1;
+  std::vector<double> weight_;  ///< per block
+  std::vector<double> filter_;  ///< of the errors before
+  double scale_ = 1.0;
+};
+
+}  // namespace contour::identify
