@@ -132,6 +132,9 @@ void CheckMode(const MachineConfig& c, const std::string& key, const DriveConfig
   if (d.mode == DriveMode::kCsp && c.machine.controller != ControllerName::kCsp)
     problems.Add(key + ".mode", "found csp, but machine.controller " +
                                     std::string(Name(c.machine.controller)) + " gives torques; expected cst");
+  if (c.control.csp.torque_offset && !d.csp_torque_offset)
+    problems.Add(key + ".csp_torque_offset",
+                 "found false, but control.csp.torque_offset is true; expected true");
 }
 
 void CheckDrive(const std::string& key, const DriveConfig& d, double period_ms, Problems& problems) {

@@ -21,6 +21,10 @@ void TorqueGuard::Reset() noexcept {
   for (Memory& memory : memory_) memory = Memory{};
 }
 
+void TorqueGuard::Skip(std::uint32_t periods) noexcept {
+  for (Memory& memory : memory_) memory.cycles_since_position += periods;
+}
+
 GuardedTorque TorqueGuard::Limit(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
                                  double reference_position_m, bool enabled) noexcept {
   GuardedTorque out;

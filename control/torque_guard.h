@@ -35,6 +35,9 @@ class TorqueGuard {
   /// Forgets the last torque and position of every axis.
   void Reset() noexcept;
 
+  /// So many periods go by until the drives latch the next position, beyond the usual one.
+  void Skip(std::uint32_t periods) noexcept;
+
   /// To be called once per axis and cycle. `reference_position_m` is the reference at the feedback's instant.
   GuardedTorque Limit(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
                       double reference_position_m, bool enabled) noexcept;

@@ -36,6 +36,7 @@ enum class Reason : std::uint16_t {
   kStopTimeout = 50,
   kEstimatorDiverged = 51,
   kDriveNotFollowing = 52,
+  kGridPointsSkipped = 53,
   // Limits: the output is held back, the machine goes on.
   kTorqueLimit = 96,
   kTorqueRateLimit = 97,
@@ -105,6 +106,8 @@ constexpr std::string_view Name(Reason r) noexcept {
       return "estimator_diverged";
     case Reason::kDriveNotFollowing:
       return "drive_not_following";
+    case Reason::kGridPointsSkipped:
+      return "grid_points_skipped";
     case Reason::kTorqueLimit:
       return "torque_limit";
     case Reason::kTorqueRateLimit:

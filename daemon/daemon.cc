@@ -154,6 +154,7 @@ class Daemon {
   Daemon(const DaemonOptions& options, const MaybeEmulatedMachineFile& file, const MachineSource& source)
       : options_(options),
         source_(source),
+        seed_(file.has_emulator ? std::optional(file.emulator.seed) : std::nullopt),
         machine_(file.machine),
         buses_(machine_, file.has_emulator ? std::optional(file.emulator) : std::nullopt, options.truth),
         mailbox_(kRequests, kPathPoints),
@@ -194,7 +195,7 @@ class Daemon {
                              ". realtime.required: false in the machine file goes on without");
     }
     Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, refused,
-                          {mailbox_, queue_, hub_, pump_, *loop_, io_client_.get()}, source_);
+                          {mailbox_, queue_, hub_, pump_, *loop_, io_client_.get(), seed_}, source_);
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);
@@ -272,6 +273,7 @@ class Daemon {
 
   DaemonOptions options_;
   MachineSource source_;
+  std::optional<std::uint64_t> seed_;  ///< of the emulated machine in this process
   MachineConfig machine_;
   MachineBuses buses_;
   CommandMailbox mailbox_;

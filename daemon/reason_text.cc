@@ -100,6 +100,10 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
       return "a stop on the path did not come to rest in time; quick stop";
     case Reason::kEstimatorDiverged:
       return axis + ": the friction estimate diverged; quick stop. Please report this with the log";
+    case Reason::kGridPointsSkipped:
+      return "the cycle was held up for too many periods while the axes moved; quick stop. The host is "
+             "overloaded "
+             "or gives no real time; then reset";
     case Reason::kDriveNotFollowing:
       return axis + ": the drive does not follow its target" + DriveText(record, at);
     case Reason::kTorqueLimit:

@@ -164,6 +164,7 @@ MachineStatus Supervisor::Status() {
   out.controller = Name(controller_);
   out.clock = clock_;
   out.cycle_us = cycle_us_;
+  out.emulator_seed = parts_.emulator_seed;
   out.axis_names = axis_names_;
   for (std::size_t a = 0; a < axis_names_.size(); ++a)
     out.axis_facts.push_back({limits_[a], encoder_counts_m_[a]});

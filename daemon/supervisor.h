@@ -25,7 +25,8 @@ struct SupervisedParts {
   TelemetryHub& hub;
   Pump& pump;
   Loop& loop;
-  const IoClient* io = nullptr;  ///< null without auxiliary I/O
+  const IoClient* io = nullptr;                  ///< null without auxiliary I/O
+  std::optional<std::uint64_t> emulator_seed{};  ///< of an emulated machine in this process
 };
 
 /// Carries an operator's requests to the cycle and its answers back. It asks through the mailbox and decides

@@ -140,6 +140,7 @@ nlohmann::json ToJson(const MachineStatus& s) {
       {"controller", s.controller},
       {"clock", s.clock},
       {"cycle_us", s.cycle_us},
+      {"emulator_seed", s.emulator_seed ? nlohmann::json(*s.emulator_seed) : nlohmann::json()},
       {"warnings", s.warnings},
       {"state", Name(r.state)},
       {"reason", Name(r.reason)},

@@ -36,6 +36,7 @@ struct MachineStatus {
   std::string controller;
   std::string clock;  ///< "wall", "lockstep" or "virtual"
   int cycle_us = 0;
+  std::optional<std::uint64_t> emulator_seed;  ///< of an emulated machine in this process
   std::vector<std::string> axis_names;
   std::vector<AxisFacts> axis_facts;  ///< one per axis
   std::vector<std::string> warnings;  ///< what the start complained of, such as refused real time

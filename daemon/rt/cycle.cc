@@ -113,6 +113,7 @@ Cycle::Cycle(const CycleConfig& config)
       controller_(config.controller, config.control, ControlledAxes(config), period_s_),
       guard_(config.control.guard, GuardedAxes(config), period_s_),
       csp_(config.controller == ControllerName::kCsp),
+      most_skipped_(static_cast<std::uint32_t>(config.control.guard.stale_cycles)),
       estimates_(config.axes.size()),
       guarded_(config.axes.size()),
       setpoints_(config.axes.size()),
@@ -164,6 +165,7 @@ void Cycle::Step(const CycleInput& in, CycleOutput& out, StageSink* stages) noex
     CarryOut(orders);
     Guard(orders);
   }
+  guard_.Skip(skipped_);
   Command(orders, out);
   Record(in, out);
   out.finished = orders.finished;
@@ -208,7 +210,9 @@ bool Cycle::LoadState(std::span<const std::byte> from) noexcept {
 void Cycle::Observe(const CycleInput& in) noexcept {
   master_.Receive(in);
   for (const PathPoint& p : in.path) follower_.Accept(p);
-  follower_.Advance();
+  // Time has gone by at skipped grid points too, and with it the reference.
+  skipped_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(master_.elapsed_cycles() - 1, most_skipped_));
+  for (std::uint32_t i = 0; i <= skipped_; ++i) follower_.Advance();
   bool stale = false;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const AxisFeedback& f = master_.feedback()[i];
@@ -224,7 +228,7 @@ void Cycle::Estimate(const IoInput& io) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
     const AxisFeedback& f = master_.feedback()[i];
-    const ReferencePoint& commanded = control_in_.reference[i][0];
+    const ReferencePoint commanded = AtSample(i);
     AxisEstimatorInput input;
     input.position_m = axis.position_m;
     input.fresh = f.fresh;
@@ -236,7 +240,35 @@ void Cycle::Estimate(const IoInput& io) noexcept {
     input.at_rest = commanded.velocity_m_s == 0.0 && commanded.extra_torque_Nm == 0.0;
     input.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
     estimates_[i] = axis.estimator.Update(input);
+    if (skipped_ != 0) CatchUp(axis, i, input);
   }
+}
+
+// Nothing was sent at the skipped grid points, so the newest feedback is that much older, and the last torque
+// has acted on since.
+ReferencePoint Cycle::AtSample(std::size_t axis) const noexcept {
+  if (skipped_ == 0) return control_in_.reference[axis][0];
+  return follower_.Near(axis, -static_cast<int>(skipped_));
+}
+
+// From the newest feedback to one period before the torque now being computed, under the torque that acted.
+void Cycle::CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept {
+  const AxisEstimate measured = estimates_[index];
+  const double held_N = axis.sent_force_N[0];
+  input.fresh = false;
+  input.force_N = {held_N, held_N, held_N};
+  for (std::uint32_t s = 1; s <= skipped_; ++s) {
+    const ReferencePoint commanded = follower_.Near(index, static_cast<int>(s) - static_cast<int>(skipped_));
+    input.commanded_velocity_m_s = commanded.velocity_m_s;
+    input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
+    estimates_[index] = axis.estimator.Update(input);
+    axis.sent_force_N = {held_N, axis.sent_force_N[0], axis.sent_force_N[1]};
+  }
+  AxisEstimate& now = estimates_[index];
+  now.innovation_m = measured.innovation_m;
+  now.innovation_std_m = measured.innovation_std_m;
+  if (now.limit == Reason::kNone) now.limit = measured.limit;
+  now.diverged = now.diverged || measured.diverged;
 }
 
 Situation Cycle::Assess(const CycleInput& in) const noexcept {
@@ -259,6 +291,7 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
 
 FaultSeen Cycle::FindFault() const noexcept {
   const MachineState state = transitions_.state();
+  if (skipped_ >= most_skipped_ && follower_.moving()) return {Reason::kGridPointsSkipped, 0xFF};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& status = master_.status()[i];
@@ -366,11 +399,11 @@ void Cycle::HoldBySprings() noexcept {
 FaultSeen Cycle::Guard(const Orders& orders) noexcept {
   FaultSeen fault;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    // In CSP the drive's cascade makes the torque; the guard still watches the axis.
-    const double controller_Nm = csp_ ? 0.0 : control_out_.force_N[i] * axes_[i].radius_m_rad;
+    // In CSP this is the torque offset; the drive's cascade makes the rest, and the guard watches the axis.
+    const double controller_Nm = control_out_.force_N[i] * axes_[i].radius_m_rad;
     axes_[i].wanted_torque_Nm = controller_Nm + control_in_.reference[i][1].extra_torque_Nm;
-    guarded_[i] = guard_.Limit(i, axes_[i].wanted_torque_Nm, master_.feedback()[i],
-                               control_in_.reference[i][0].position_m, orders.torque_allowed);
+    guarded_[i] = guard_.Limit(i, axes_[i].wanted_torque_Nm, master_.feedback()[i], AtSample(i).position_m,
+                               orders.torque_allowed);
     if (guarded_[i].fault != Reason::kNone && fault.reason == Reason::kNone)
       fault = {guarded_[i].fault, static_cast<std::uint8_t>(i)};
   }
@@ -438,7 +471,7 @@ void Cycle::RecordContourError(CycleRecord& record) noexcept {
 
 void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
   r.feedback = master_.feedback()[i];
-  r.reference = control_in_.reference[i][0];
+  r.reference = AtSample(i);
   // What an experiment puts on belongs to the torque of this row, which begins to act one period later.
   r.reference.extra_torque_Nm = control_in_.reference[i][1].extra_torque_Nm;
   r.reference.spring_N_m = control_in_.reference[i][1].spring_N_m;

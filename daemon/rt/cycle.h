@@ -76,6 +76,8 @@ class Cycle {
   [[nodiscard]] FaultSeen FindLost(const CycleInput& in) const noexcept;
   [[nodiscard]] bool PathBeginsHere() const noexcept;
   void CarryOut(const Orders& orders) noexcept;
+  [[nodiscard]] ReferencePoint AtSample(std::size_t axis) const noexcept;
+  void CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept;
   void HoldHere() noexcept;
   void FollowFeedback() noexcept;
   void Decide(const Orders& orders) noexcept;
@@ -94,6 +96,8 @@ class Cycle {
   ContourController controller_;
   TorqueGuard guard_;
   bool csp_;
+  std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
+  std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 
   PerAxis<AxisEstimate> estimates_;
   ControlInput control_in_;

@@ -119,6 +119,10 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
       if (state_ == MachineState::kFaulted) {
         reset_pending_ = true;
         reset_ = request;
+      } else if (state_ == MachineState::kIdle && FaultedDrive(now) != kNone) {
+        // A drive may have fallen into Fault by itself while nothing was asked of it.
+        reset_ = request;
+        BeginReset(orders);
       } else {
         Acknowledge(request, state_ == MachineState::kIdle);
       }

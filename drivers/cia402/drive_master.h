@@ -78,6 +78,8 @@ class DriveMaster {
 
   /// SYNCs sent on each bus since construction, this cycle's included after Send.
   [[nodiscard]] std::uint64_t sync_number() const noexcept { return sync_number_; }
+  /// Periods since the grid point before this one; more than 1 when grid points were skipped.
+  [[nodiscard]] std::uint64_t elapsed_cycles() const noexcept { return elapsed_; }
   /// Number of the SYNC that latched the newest feedback of any axis; 0 none yet.
   [[nodiscard]] std::uint64_t feedback_sync() const noexcept { return feedback_sync_; }
 

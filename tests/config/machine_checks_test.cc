@@ -149,6 +149,12 @@ TEST(MachineChecks, ModeAndController) {
   EXPECT_EQ(Only(c), "axes.x.drive.mode: found csp, but machine.controller full gives torques; expected cst");
   c.machine.controller = ControllerName::kCsp;
   EXPECT_TRUE(Check(c).empty());
+  c.control.csp.torque_offset = true;
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("x").drive.csp_torque_offset = false;
+  EXPECT_EQ(
+      Only(c),
+      "axes.x.drive.csp_torque_offset: found false, but control.csp.torque_offset is true; expected true");
 }
 
 // The axis of CANOPEN's warning: rated torque held for 100 ms gains 0.85 m/s and 42 mm.

@@ -166,6 +166,7 @@ RunRecord::Facts FactsOf(const json& status, const std::string& program) {
   facts.program = program;
   facts.cycle_us = status.at("cycle_us");
   facts.wall_clock = status.at("clock") == "wall";
+  if (status.at("emulator_seed").is_number()) facts.seed = status.at("emulator_seed").get<std::uint64_t>();
   for (const json& axis : status.at("axes"))
     facts.axes.push_back({axis.at("name"), axis.at("facts").at("encoder_count_m")});
   return facts;

@@ -138,6 +138,7 @@ void RunRecord::Write(const Facts& facts, std::shared_ptr<const MotionPlan> plan
   run.controller = facts.controller;
   run.program = facts.program;
   run.cycle_us = facts.cycle_us;
+  run.seed = facts.seed;
   run.cycles = cycles_;
   if (facts.wall_clock) run.late_cycles = late_cycles_;
   run.stale_cycles = stale_last_ - stale_first_;

@@ -37,6 +37,7 @@ class RunRecord {
     std::string program;
     int cycle_us = 1000;
     bool wall_clock = true;
+    std::optional<std::uint64_t> seed;  ///< of an emulated machine in the daemon
     std::vector<ScoredAxisFacts> axes;
   };
   /// Writes both files. Throws std::runtime_error, also when the truth does not belong to this run.

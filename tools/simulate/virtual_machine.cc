@@ -34,12 +34,13 @@ class VirtualMachine::TruthMemory final : public TruthSink {
   std::array<TruthRow, 8> rows_{};
 };
 
-VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName controller)
+VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName controller,
+                               EmulatedClock clock)
     : axis_names_(AxisNames(file.machine)),
       bus_names_(BusNames(file.machine)),
       limits_(ProgramLimits(file.machine)),
       emulated_(file.emulator, EmulatedPlacements(file.machine),
-                static_cast<std::uint32_t>(file.machine.machine.cycle_us)),
+                static_cast<std::uint32_t>(file.machine.machine.cycle_us), clock),
       truths_(std::make_unique<TruthMemory>()),
       mailbox_(kRequests, kPathPoints),
       cycle_(MakeCycleConfig(file.machine, controller)),

@@ -26,7 +26,8 @@ class VirtualMachine {
   /// Sees every cycle with the truth of the instant its feedback was latched at (null before there is any).
   using Observer = std::function<void(const CycleEntry& entry, const TruthRow* truth)>;
 
-  VirtualMachine(const EmulatedMachineFile& file, ControllerName controller);
+  VirtualMachine(const EmulatedMachineFile& file, ControllerName controller,
+                 EmulatedClock clock = EmulatedClock::kSync);
   ~VirtualMachine();
 
   void SetObserver(Observer observer) { observer_ = std::move(observer); }
@@ -44,6 +45,9 @@ class VirtualMachine {
   void Run(const Program& program);
   /// One more cycle, whatever the state.
   void Tick();
+  /// So many grid points go by without a cycle, as on an overloaded host. What time does to the plant
+  /// meanwhile is for EmulatedClock::kWall to show; with kSync it stands still.
+  void SkipGridPoints(std::uint64_t count) { index_ += count; }
 
   CommandMailbox& mailbox() { return mailbox_; }
   LoopbackBus& bus(std::size_t i) { return *buses_[i]; }

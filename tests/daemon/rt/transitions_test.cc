@@ -206,6 +206,19 @@ TEST_F(TransitionsTest, ResetBringsUpAgainAndDoesNotEnable) {
   EXPECT_EQ(machine_.state(), MachineState::kIdle);
 }
 
+TEST_F(TransitionsTest, AResetWhileIdleTakesTheFaultFromADrive) {
+  ToIdle();
+  SetDrives(DriveState::kFault);
+  now_.request = {RequestKind::kReset, ++sequence_, 0};
+  EXPECT_TRUE(machine_.Step(now_).start_bring_up);
+  EXPECT_TRUE(machine_.acknowledged_ok());
+  now_.request = {};
+  EXPECT_EQ(machine_.Step(now_).goal, DriveGoal::kFaultReset);
+  SetDrives(DriveState::kSwitchOnDisabled);
+  machine_.Step(now_);
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+}
+
 TEST_F(TransitionsTest, AResetWaitsForTheEndOfTheQuickStop) {
   ToRunning();
   now_.io.emergency_stop_ok = false;
