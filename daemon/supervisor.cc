@@ -45,7 +45,10 @@ Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, 
   for (const auto& [name, bus] : machine.buses) interfaces_.push_back(bus.interface);
 }
 
-std::string Supervisor::MachineFile() { return WriteYaml(machine_); }
+std::string Supervisor::MachineFile() {
+  const std::lock_guard lock(reload_);
+  return WriteYaml(machine_);
+}
 
 Answer Supervisor::Ask(RequestKind kind, std::uint32_t program_id) {
   const std::uint32_t sequence =
