@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "config/extended_model.h"
 #include "config/number_text.h"
@@ -128,13 +129,14 @@ Program UsualCircle(const MachineConfig& machine) {
 std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, const std::string& axis,
                                               const Diagnosis& found, double mean_temperature_degC,
                                               const Program& program) {
-  if (machine.axes.size() < 2 || found.causes.empty()) return {};
+  std::vector<Cause> simulated;
   for (const Cause& c : found.causes)
-    if (!Simulated(c.kind)) return {};
+    if (Simulated(c.kind)) simulated.push_back(c);
+  if (machine.axes.size() < 2 || simulated.empty()) return {};
   MachineConfig extended = machine;
   ExtensionsConfig causes;
-  AddCauses(found.causes, mean_temperature_degC, causes);
-  AddCauses(found.causes, mean_temperature_degC, extended.axes.at(axis).model.extensions);
+  AddCauses(simulated, mean_temperature_degC, causes);
+  AddCauses(simulated, mean_temperature_degC, extended.axes.at(axis).model.extensions);
   EmulatorConfig emulator;
   emulator.parameter_variation_rel = 0.0;
   for (const auto& [name, config] : machine.axes) {
