@@ -88,8 +88,9 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     subscriptions.rows = Flag(request, "on");
     return {{"ok", true}};
   }
-  throw BadRequest("unknown request \"" + kind +
-                   "\"; there are status, machine_file, enable, disable, stop, reset, reload, run, watch, rows");
+  throw BadRequest(
+      "unknown request \"" + kind +
+      "\"; there are status, machine_file, enable, disable, stop, reset, reload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

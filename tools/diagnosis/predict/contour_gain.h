@@ -13,9 +13,9 @@ namespace contour::diagnosis {
 /// What extending the model will do for the path, by simulation of the machine that the diagnosis describes:
 /// the model's numbers as fitted, with the causes found. On it, the controller `full` draws the program once
 /// with the model as stated and once with the extended one. The machine file's own `emulator:` is never
-/// looked at. Causes of a kind that no model is extended by are left out on both sides; nothing where no other
-/// was found, or where the machine has one axis only (a path is then never left). Throws std::runtime_error
-/// when the simulated machine stops.
+/// looked at. Causes of a kind that no model is extended by are left out on both sides; nothing where no
+/// other was found, or where the machine has one axis only (a path is then never left). Throws
+/// std::runtime_error when the simulated machine stops.
 std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, const std::string& axis,
                                               const Diagnosis& found, double mean_temperature_degC,
                                               const Program& program);
