@@ -9,7 +9,9 @@
 #include "tools/hidden/hide_effect.h"
 #include "tools/hidden/judge.h"
 #include "tools/hidden/machine_text.h"
+#include "tools/hidden/outcome.h"
 #include "tools/hidden/record_case.h"
+#include "tools/hidden/recorded_case.h"
 #include "tools/hidden/residual.h"
 #include "tools/hidden/size_effect.h"
 
@@ -36,10 +38,10 @@ TEST(LowestCredible, IsTheBinomialBound) {
 
 TEST(HiddenSettings, TheSameSeedIsTheSameMachineAndTheModelIsNotTheTruth) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Setting a = DrawSetting(seed, "cogging");
-    EXPECT_EQ(MachineText(a), MachineText(DrawSetting(seed, "cogging")));
-    EXPECT_EQ(a.program, DrawSetting(seed, "cogging").program);
-    EXPECT_NE(MachineText(a), MachineText(DrawSetting(seed + 1, "cogging")));
+    const Setting a = DrawSetting(seed, {"cogging"});
+    EXPECT_EQ(MachineText(a), MachineText(DrawSetting(seed, {"cogging"})));
+    EXPECT_EQ(a.program, DrawSetting(seed, {"cogging"}).program);
+    EXPECT_NE(MachineText(a), MachineText(DrawSetting(seed + 1, {"cogging"})));
     EXPECT_NE(a.truth.Fc_N, a.stated.Fc_N);
     EXPECT_LE(std::abs(a.truth.Fc_N / a.stated.Fc_N - 1.0), 0.2) << "twice the stated uncertainty";
     EXPECT_LE(std::abs(a.truth.motor_inertia_kgm2 / a.stated.motor_inertia_kgm2 - 1.0), 0.1);
@@ -48,7 +50,7 @@ TEST(HiddenSettings, TheSameSeedIsTheSameMachineAndTheModelIsNotTheTruth) {
 
 TEST(HiddenSettings, NothingOfTheEffectStandsInTheFiles) {
   for (const std::string_view kind : diagnosis::kKinds) {
-    const Setting s = DrawSetting(3, std::string(kind));
+    const Setting s = DrawSetting(3, {std::string(kind)});
     EXPECT_EQ(MachineText(s).find("effects"), std::string::npos);
     EXPECT_EQ(ModelText(s).find(kind), std::string::npos) << kind;
   }
@@ -58,7 +60,7 @@ TEST(HiddenSettings, NothingOfTheEffectStandsInTheFiles) {
 /// and log share the timing of ../ARCHITECTURE.md, and the strengths are measured against noise alone.
 TEST_F(HiddenCases, WithoutNoiseAndEffectTheResidualIsFarBelowTheNoise) {
   for (const std::uint64_t seed : {1ULL, 2ULL}) {
-    Setting s = DrawSetting(seed, "");
+    Setting s = DrawSetting(seed, {}, Misfit::kNone, Length::kShort);
     const Residuals noisy = ResidualsOf(Simulate(s, {}, directory_), s);
     s.stated.encoder_counts_per_rev = s.truth.encoder_counts_per_rev = 4194304.0;
     s.truth.torque_noise_Nm = 0.0;
@@ -68,7 +70,7 @@ TEST_F(HiddenCases, WithoutNoiseAndEffectTheResidualIsFarBelowTheNoise) {
 }
 
 TEST_F(HiddenCases, AnEffectIsMadeAsStrongAsItsName) {
-  const Setting s = DrawSetting(5, "cogging");
+  const Setting s = DrawSetting(5, {"cogging"}, Misfit::kNone, Length::kShort);
   const Hidden drawn = DrawEffect(5, "cogging", s);
   const auto clear = SizeEffect(s, drawn, Strength::kClear, directory_);
   const auto barely = SizeEffect(s, drawn, Strength::kBarely, directory_);
@@ -80,9 +82,10 @@ TEST_F(HiddenCases, AnEffectIsMadeAsStrongAsItsName) {
 }
 
 TEST_F(HiddenCases, WhatIsReadIsWhatTheMachineDid) {
-  Setting s = DrawSetting(7, "temperature_viscosity");
+  Setting s = DrawSetting(7, {"temperature_viscosity"});
   s.truth.scale_counts_per_mm = s.stated.scale_counts_per_mm = 1000.0;
-  const Recorded recorded = Record(s, {}, directory_);
+  Record(s, {}, directory_);
+  const Recorded recorded = ReadRecorded(directory_);
   const diagnosis::AxisLog direct = Simulate(s, {}, directory_);
   ASSERT_GE(recorded.log.size(), direct.size());
   EXPECT_EQ(recorded.log.missing, 0u);
@@ -96,6 +99,98 @@ TEST_F(HiddenCases, WhatIsReadIsWhatTheMachineDid) {
       std::minmax_element(recorded.log.temperature_degC.begin(), recorded.log.temperature_degC.end());
   EXPECT_GT(*warmest - *coolest, 3.0) << "warm-up";
   EXPECT_LT(recorded.log.temperature_degC.back(), *warmest - 0.5) << "and cool-down";
+
+  Compact(directory_);
+  EXPECT_FALSE(std::filesystem::exists(directory_ / "log.lcm"));
+  const diagnosis::AxisLog table = ReadRecorded(directory_).log;
+  EXPECT_EQ(table.command, recorded.log.command);
+  EXPECT_EQ(table.position, recorded.log.position);
+  EXPECT_EQ(table.table_position_m, recorded.log.table_position_m);
+  EXPECT_EQ(table.temperature_degC, recorded.log.temperature_degC);
+  EXPECT_EQ(table.reference_position, recorded.log.reference_position);
+  EXPECT_DOUBLE_EQ(table.period_s, recorded.log.period_s);
+}
+
+/// A short case from the drawing to the line of the table; the diagnoser is the test's.
+TEST_F(HiddenCases, AreRecordedWithTheirTruthAndJudgedLater) {
+  const Question q{Question::Type::kEffect, {"friction_drift"}, Strength::kClear, 4,
+                   Misfit::kNone,           Length::kShort};
+  EXPECT_EQ(CaseName(q), "clear_friction_drift_short_0004");
+  EXPECT_FALSE(IsRecorded(directory_));
+  const KnownCase known = RecordCase(q, directory_, true);
+  ASSERT_TRUE(known.usable) << known.why_not;
+  ASSERT_TRUE(IsRecorded(directory_));
+  const KnownCase read = ReadTruth(directory_);
+  EXPECT_EQ(CaseName(read.question), CaseName(q));
+  ASSERT_EQ(read.hidden.size(), 1u);
+  EXPECT_EQ(read.hidden[0].truth, known.hidden[0].truth);
+  const double change = known.hidden[0].truth.at("change_rel");
+  // Most of the drift lies within the log, the rest before it.
+  EXPECT_GT(change / known.hidden[0].size, 0.7);
+  EXPECT_LT(change / known.hidden[0].size, 1.0);
+
+  const auto answers = [](const std::string& kind, double value, double half_width) {
+    return [=](const diagnosis::AxisLog& log, const diagnosis::StatedAxis&, double rate) {
+      EXPECT_GT(log.size(), 30000u);
+      EXPECT_EQ(rate, 0.01);
+      diagnosis::Diagnosis d;
+      d.verdict = diagnosis::Verdict::kCauseFound;
+      d.causes.resize(2);
+      d.causes[0].kind = kind;
+      d.causes[0].heldout_gain = 0.25;
+      d.causes[0].parameters["change_rel"] = {value, value - half_width, value + half_width};
+      d.causes[1].kind = "cogging";
+      return d;
+    };
+  };
+  const Outcome good = AskCase(directory_, answers("friction_drift", change + 0.01, 0.02), 0.01);
+  EXPECT_TRUE(good.judged.right && good.judged.itself && good.judged.inside);
+  EXPECT_EQ(good.judged.extra, 1);
+  const Outcome off = AskCase(directory_, answers("friction_drift", change + 0.01, 0.005), 0.01);
+  EXPECT_TRUE(off.judged.right && !off.judged.inside);
+  const Outcome wrong = AskCase(directory_, answers("payload_step", change, 0.02), 0.01);
+  EXPECT_FALSE(wrong.judged.right || wrong.judged.itself);
+
+  const auto csv = directory_ / "results.csv";
+  for (const Outcome& o : {good, off, wrong}) AppendCsv(csv, o);
+  const std::vector<Outcome> back = ReadCsv(csv);
+  ASSERT_EQ(back.size(), 3u);
+  EXPECT_EQ(CaseName(back[0].known.question), CaseName(q));
+  EXPECT_TRUE(back[0].judged.inside);
+  EXPECT_EQ(back[1].judged.outside.find("change_rel"), 0u);
+  EXPECT_EQ(back[2].judged.answer, "payload_step + cogging");
+  EXPECT_DOUBLE_EQ(back[2].false_alarm_rate, 0.01);
+}
+
+TEST(Judging, LeavesOutWhatOnlyNamesTheMisfit) {
+  diagnosis::Diagnosis d;
+  d.verdict = diagnosis::Verdict::kCauseFound;
+  d.causes.resize(1);
+  d.causes[0].kind = "input_delay";
+  EXPECT_FALSE(Judge(d, {}, Misfit::kNone).right) << "a false alarm";
+  EXPECT_TRUE(Judge(d, {}, Misfit::kTimingError).right) << "the timing is off indeed";
+  EXPECT_FALSE(Judge(d, {}, Misfit::kNoiseLevel).right);
+  d.causes.resize(2);
+  d.causes[1].kind = "cogging";
+  Hidden cogging;
+  cogging.kind = "cogging";
+  EXPECT_TRUE(Judge(d, {cogging}, Misfit::kTimingError).right);
+  EXPECT_FALSE(Judge(d, {cogging}, Misfit::kNone).right) << "the second one only";
+}
+
+TEST(Judging, APairIsFoundWhenBothAreNamedInSetsOfTwoAtMost) {
+  diagnosis::Diagnosis d;
+  d.verdict = diagnosis::Verdict::kCauseFound;
+  d.causes.resize(2);
+  d.causes[0].kind = "cogging";
+  d.causes[1].kind = "input_delay";
+  d.causes[1].indistinguishable_from = {"current_lag"};
+  std::vector<Hidden> hidden(2);
+  hidden[0].kind = "current_lag";
+  hidden[1].kind = "cogging";
+  EXPECT_TRUE(Judge(d, hidden, Misfit::kNone).both);
+  d.causes[1].indistinguishable_from = {"current_lag", "compliance"};
+  EXPECT_FALSE(Judge(d, hidden, Misfit::kNone).both);
 }
 
 }  // namespace

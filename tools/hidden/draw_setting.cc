@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "tools/hidden/excitation.h"
 #include "tools/hidden/machine_text.h"
@@ -69,8 +70,30 @@ const char* Name(Misfit misfit) {
   return "delay_and_lag";
 }
 
+const char* Name(Length length) { return length == Length::kLong ? "long" : "short"; }
+
 double TrueAxis::radius_m_rad() const { return lead_mm * 1e-3 / kTwoPi; }
 double TrueAxis::vs_rad_s() const { return vs_mm_s * 1e-3 / radius_m_rad(); }
+
+namespace {
+
+Needs NeedsOf(const std::vector<std::string>& kinds) {
+  Needs all;
+  for (const std::string& kind : kinds) {
+    const Needs n = hidden::NeedsOf(kind);
+    all.scale |= n.scale;
+    all.temperature |= n.temperature;
+    all.second_axis |= n.second_axis;
+    all.no_stribeck |= n.no_stribeck;
+    all.rigid |= n.rigid;
+    all.two_inertia |= n.two_inertia;
+  }
+  if (all.rigid && all.two_inertia)
+    throw std::runtime_error("one effect needs a model without a screw, the other one with it");
+  return all;
+}
+
+}  // namespace
 
 Needs NeedsOf(const std::string& kind) {
   Needs n;
@@ -83,12 +106,13 @@ Needs NeedsOf(const std::string& kind) {
   return n;
 }
 
-Setting DrawSetting(std::uint64_t seed, const std::string& kind, Misfit misfit) {
+Setting DrawSetting(std::uint64_t seed, const std::vector<std::string>& kinds, Misfit misfit, Length length) {
   plant::Random r(seed, kSettingStream);
-  const Needs needs = NeedsOf(kind);
+  const Needs needs = NeedsOf(kinds);
   Setting s;
   s.seed = seed;
   s.misfit = misfit;
+  s.length = length;
   TrueAxis& m = s.stated;
   m.lead_mm = r.Uniform() < 0.5 ? 5.0 : 10.0;
   m.motor_inertia_kgm2 = LogUniform(r, 3e-5, 1e-4);

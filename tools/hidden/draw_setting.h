@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tools/hidden/hidden_case.h"
 
@@ -17,9 +18,11 @@ struct Needs {
 };
 Needs NeedsOf(const std::string& kind);
 
-/// Draws machine, model and excitation from the seed; `kind` decides only what must be there for it to show.
-/// An empty kind: a clean machine.
-Setting DrawSetting(std::uint64_t seed, const std::string& kind, Misfit misfit = Misfit::kNone);
+/// Draws machine, model and excitation from the seed; `kinds` decide only what must be there for them to
+/// show. No kind: a clean machine. Throws std::runtime_error when the kinds cannot stand together on one
+/// machine.
+Setting DrawSetting(std::uint64_t seed, const std::vector<std::string>& kinds, Misfit misfit = Misfit::kNone,
+                    Length length = Length::kLong);
 
 /// An effect of that kind with everything but its size, and a size to begin with.
 Hidden DrawEffect(std::uint64_t seed, const std::string& kind, const Setting& setting);

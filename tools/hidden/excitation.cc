@@ -23,6 +23,22 @@ std::string Strokes(double stroke_mm, double mm_s, double dwell_s = 0.15) {
               mm_s, dwell_s);
 }
 
+/// Moves of the other axis by itself while this one travels; nothing without another axis.
+std::string OtherAxisMoves(const Setting& s, double stroke_mm, double mm_s) {
+  if (!s.second_axis) return {};
+  return Text(
+      "{together: [{shape: multisine, axis: y, velocity_mm_s: 15, frequency_min_hz: 1.2, frequency_max_hz: "
+      "12, lines: 7, seconds: %d}, %s]}",
+      s.length == Length::kLong ? 10 : 5, Strokes(stroke_mm, mm_s).c_str());
+}
+
+std::string Sequence(const std::vector<std::string>& parts) {
+  std::string text = "sequence:\n";
+  for (const std::string& part : parts)
+    if (!part.empty()) text += "  - " + part + "\n";
+  return text;
+}
+
 }  // namespace
 
 std::string ExcitationProgram(plant::Random& r, const Setting& s) {
@@ -46,8 +62,8 @@ std::string ExcitationProgram(plant::Random& r, const Setting& s) {
       0.5 * stick, -0.5 * stick, 1.25 * stick, -1.25 * stick);
   const std::string reversals = Text(
       "{shape: reversals, axis: x, amplitudes_mm: [0.002, 0.006, 0.02, 0.08, 0.3, %.3g], frequency_hz: %.3g, "
-      "cycles: 2}",
-      r.Uniform(0.8, 1.5), r.Uniform(1.8, 2.4));
+      "cycles: %d}",
+      r.Uniform(0.8, 1.5), r.Uniform(1.8, 2.4), s.length == Length::kLong ? 2 : 1);
   const std::string shake = Text(
       "{shape: creep, axis: x, stroke_mm: 40, velocities_mm_s: [%.3g], dwell_s: 0.1, torque: {axis: x, kind: "
       "multisine, amplitude_Nm: %.3g, frequency_min_hz: 15, frequency_max_hz: 350, lines: 40}}",
@@ -66,23 +82,25 @@ std::string ExcitationProgram(plant::Random& r, const Setting& s) {
     std::swap(head[i], head[static_cast<std::size_t>(r.Uniform() * static_cast<double>(i + 1))]);
   std::vector<std::string> parts = {rest};
   parts.insert(parts.end(), head.begin(), head.end());
+  if (s.length == Length::kShort) {
+    for (const std::string& part :
+         {to_start, Strokes(stroke, middle), Strokes(stroke, fast), Strokes(0.25 * stroke, slow), back,
+          pulses, OtherAxisMoves(s, 0.2 * stroke, slow), shake, to_start, Strokes(stroke, fast), back,
+          reversals})
+      parts.push_back(part);
+    return Sequence(parts);
+  }
   for (const std::string& part :
        {to_start, Strokes(stroke, middle), Strokes(stroke, fast), Strokes(stroke, slow), back, pulses, shake,
         rest, to_start, Strokes(stroke, fast), Strokes(stroke, fast, 0.05), back})
     parts.push_back(part);
-  if (s.second_axis)
-    parts.push_back(Text(
-        "{together: [{shape: multisine, axis: y, velocity_mm_s: 15, frequency_min_hz: 1.2, frequency_max_hz: "
-        "12, lines: 7, seconds: 10}, %s]}",
-        Strokes(0.3 * stroke, slow).c_str()));
+  parts.push_back(OtherAxisMoves(s, 0.3 * stroke, slow));
   // Cooling down at rest, and the first segments once more.
   parts.push_back(Text("{shape: hold, seconds: %.3g}", s.temperature ? 8.0 : 1.0));
   for (const std::string& part :
        {reversals, to_start, Strokes(stroke, middle), Strokes(stroke, fast), back, creep, pulses})
     parts.push_back(part);
-  std::string text = "sequence:\n";
-  for (const std::string& part : parts) text += "  - " + part + "\n";
-  return text;
+  return Sequence(parts);
 }
 
 }  // namespace contour::hidden

@@ -28,6 +28,10 @@ enum class Misfit {
 };
 const char* Name(Misfit misfit);
 
+/// Of the program: everything, or what ten clear effects and as many clean machines can afford in a test.
+enum class Length { kLong, kShort };
+const char* Name(Length length);
+
 /// What the emulated axis is. Friction at the table, symmetric, LuGre.
 struct TrueAxis {
   double lead_mm = 5.0;
@@ -60,6 +64,7 @@ struct Setting {
   bool rigid = false;  ///< the stated model knows no screw
   bool temperature = false;
   bool second_axis = false;
+  Length length = Length::kLong;
   Misfit misfit = Misfit::kNone;
   std::string program;  ///< YAML
 };
@@ -71,6 +76,16 @@ struct Hidden {
   double order = 0.0;
   double phase_rad = 0.0;
   double second = 0.0;  ///< another parameter of the kind, as the case may be
+  /// What an answer must hold within its intervals, by the catalogue's names; known once the log is recorded.
+  std::map<std::string, double> truth;
+};
+
+/// What the parameters of some kinds refer to.
+struct LogSpan {
+  double begin_s = 0.0, end_s = 0.0;  ///< of the log, by the machine's own time
+  double planned_end_s = 0.0;         ///< of the program: a linear drift is complete then
+  double largest_speed_rad_s = 0.0;   ///< of the motor, within the log
+  double speed_limit_rad_s = 0.0;     ///< at which a nonlinear viscous torque has its stated size
 };
 
 /// A recorded log as the user's files would give it.

@@ -3,7 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/hidden/machine_text.h"
+
 namespace contour::hidden {
+namespace {
+
+/// Share of a drift that is done at a time of the machine (the emulator's definition).
+double DriftDone(const Hidden& h, const LogSpan& span, double time_s) {
+  return h.second > 0.0 ? 1.0 - std::exp(-time_s / h.second) : std::min(1.0, time_s / span.planned_end_s);
+}
+
+}  // namespace
 
 const std::vector<std::string>& OutsideKinds() {
   static const std::vector<std::string> kinds = {"stick_spot", "cable_hysteresis", "telegraph_torque",
@@ -13,7 +23,7 @@ const std::vector<std::string>& OutsideKinds() {
 
 void HideEffect(const Hidden& h, const Setting& s, double begin_s, double duration_s, EffectsConfig& e) {
   const TrueAxis& t = s.truth;
-  const double max_rad_s = 250e-3 / t.radius_m_rad();
+  const double max_rad_s = kSpeedLimit_mm_s * 1e-3 / t.radius_m_rad();
   if (h.kind == "asymmetric_coulomb") e.asymmetric_coulomb = AsymmetricCoulombEffect{h.size};
   if (h.kind == "constant_torque") e.constant_torque = ConstantTorqueEffect{h.size};
   if (h.kind == "stribeck") e.stribeck = StribeckEffect{1.0 + h.size, h.second};
@@ -57,7 +67,7 @@ void HideEffect(const Hidden& h, const Setting& s, double begin_s, double durati
   if (std::find(outside.begin(), outside.end(), h.kind) != outside.end()) e.outside = o;
 }
 
-std::map<std::string, double> TruthOf(const Hidden& h, const Setting& s) {
+std::map<std::string, double> TruthOf(const Hidden& h, const LogSpan& span) {
   if (h.kind == "asymmetric_coulomb") return {{"difference_rel", h.size}};
   if (h.kind == "constant_torque") return {{"torque_Nm", h.size}};
   if (h.kind == "stribeck") return {{"Fs_over_Fc", 1.0 + h.size}, {"vs_rad_s", h.second}};
@@ -69,9 +79,15 @@ std::map<std::string, double> TruthOf(const Hidden& h, const Setting& s) {
   if (h.kind == "friction_ripple" || h.kind == "ball_ripple")
     return {{"amplitude_rel", std::abs(h.size)}, {"order_per_rev", h.order}};
   if (h.kind == "cogging") return {{"amplitude_Nm", std::abs(h.size)}, {"order_per_rev", h.order}};
-  if (h.kind == "viscous_nonlinear") return {{"torque_at_max_speed_Nm", h.size}};
+  if (h.kind == "viscous_nonlinear")
+    return {{"torque_at_max_speed_Nm",
+             h.size * std::pow(span.largest_speed_rad_s / span.speed_limit_rad_s, h.order)}};
   if (h.kind == "temperature_viscosity") return {{"rate_1_K", h.size}};
-  if (h.kind == "friction_drift") return {{"change_rel", h.size}};
+  if (h.kind == "friction_drift") {
+    const double first = 1.0 + h.size * DriftDone(h, span, span.begin_s);
+    const double last = 1.0 + h.size * DriftDone(h, span, span.end_s);
+    return {{"change_rel", last / first - 1.0}};
+  }
   if (h.kind == "torque_constant") return {{"ratio", 1.0 + h.size}};
   if (h.kind == "torque_saturation") return {{"loss_at_rated_rel", h.size}};
   if (h.kind == "payload_step") return {{"inertia_change_rel", h.size}};
@@ -88,11 +104,10 @@ std::map<std::string, double> TruthOf(const Hidden& h, const Setting& s) {
   if (h.kind == "load_friction") return {{"friction_per_torque_rel", h.size}};
   if (h.kind == "periodic_force") return {{"amplitude_Nm", std::abs(h.size)}, {"frequency_Hz", h.order}};
   if (h.kind == "sample_jitter") return {{"rms_us", h.size}};
-  static_cast<void>(s);
   return {};
 }
 
-double LargestSize(const Hidden& h, const Setting& s) {
+double LargestSize(const Hidden& h) {
   if (h.kind == "asymmetric_coulomb" || h.kind == "friction_drift") return 0.8;
   if (h.kind == "position_friction" || h.kind == "friction_ripple" || h.kind == "ball_ripple") return 0.8;
   if (h.kind == "stribeck") return 2.0;
@@ -108,7 +123,6 @@ double LargestSize(const Hidden& h, const Setting& s) {
   if (h.kind == "temperature_viscosity") return 0.09;
   if (h.kind == "sample_jitter") return 400.0;
   if (h.kind == "encoder_eccentricity") return 0.05;
-  static_cast<void>(s);
   return 1e9;
 }
 

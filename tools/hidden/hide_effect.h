@@ -14,11 +14,12 @@ namespace contour::hidden {
 void HideEffect(const Hidden& hidden, const Setting& setting, double begin_s, double duration_s,
                 EffectsConfig& effects);
 
-/// The parameters that an answer must hold within its intervals, by the catalogue's names.
-std::map<std::string, double> TruthOf(const Hidden& hidden, const Setting& setting);
+/// The parameters that an answer must hold within its intervals, by the catalogue's names. Over the log means
+/// against its beginning, the largest speed is that within the log.
+std::map<std::string, double> TruthOf(const Hidden& hidden, const LogSpan& span);
 
 /// Largest size that still is a machine.
-double LargestSize(const Hidden& hidden, const Setting& setting);
+double LargestSize(const Hidden& hidden);
 
 /// Effects that no kind of the catalogue describes.
 const std::vector<std::string>& OutsideKinds();

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tools/hidden/hide_effect.h"
-
 namespace contour::hidden {
 namespace {
 
@@ -38,9 +36,9 @@ std::string AnswerText(const Diagnosis& d) {
   return "no_cause";
 }
 
-void CheckIntervals(const Cause& cause, const Hidden& hidden, const Setting& setting, Judged& judged) {
+void CheckIntervals(const Cause& cause, const Hidden& hidden, Judged& judged) {
   judged.inside = true;
-  for (const auto& [name, truth] : TruthOf(hidden, setting)) {
+  for (const auto& [name, truth] : hidden.truth) {
     const auto at = cause.parameters.find(name);
     char text[200];
     if (at == cause.parameters.end()) {
@@ -56,6 +54,28 @@ void CheckIntervals(const Cause& cause, const Hidden& hidden, const Setting& set
   }
 }
 
+bool Holds(const Cause& cause, const std::string& kind) {
+  const std::set<std::string> set = SetOf(cause);
+  return set.size() <= kLargestSet && set.count(kind) > 0;
+}
+
+/// Does the cause say no more than how the plant differs? Not when that kind was hidden besides.
+bool NamesMisfit(const Cause& cause, const std::vector<Hidden>& hidden, Misfit misfit) {
+  for (const Hidden& h : hidden)
+    if (h.kind == cause.kind) return false;
+  switch (misfit) {
+    case Misfit::kTimingError:
+    case Misfit::kDelayAndLag:
+      return cause.kind == "input_delay" || cause.kind == "current_lag";
+    case Misfit::kMaxwellSlip:
+      return cause.kind == "presliding_hysteresis";
+    case Misfit::kNone:
+    case Misfit::kNoiseLevel:
+      break;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::set<std::string> SetOf(const Cause& cause) {
@@ -64,35 +84,31 @@ std::set<std::string> SetOf(const Cause& cause) {
   return set;
 }
 
-Judged Judge(const Diagnosis& answer, const std::vector<Hidden>& hidden, const Setting& setting) {
+Judged Judge(const Diagnosis& answer, const std::vector<Hidden>& hidden, Misfit misfit) {
   Judged judged;
   judged.answer = AnswerText(answer);
+  std::vector<Cause> causes;
+  for (const Cause& cause : answer.causes)
+    if (!NamesMisfit(cause, hidden, misfit)) causes.push_back(cause);
+  judged.extra = std::max(0, static_cast<int>(causes.size()) - static_cast<int>(hidden.size()));
   if (hidden.empty()) {
-    judged.right = answer.verdict == Verdict::kNothingFound;
-    judged.extra = static_cast<int>(answer.causes.size());
+    const bool silent = answer.verdict == Verdict::kNothingFound || misfit != Misfit::kNone;
+    judged.right = causes.empty() && silent;
     return judged;
   }
-  if (!answer.causes.empty()) {
-    const std::set<std::string> first = SetOf(answer.causes.front());
-    judged.right = first.size() <= kLargestSet && first.count(hidden.front().kind) > 0;
-  }
-  judged.extra = std::max(0, static_cast<int>(answer.causes.size()) - static_cast<int>(hidden.size()));
-  for (const Cause& cause : answer.causes) {
+  if (!causes.empty()) judged.right = Holds(causes.front(), hidden.front().kind);
+  judged.both = hidden.size() == 2 && std::all_of(hidden.begin(), hidden.end(), [&](const Hidden& h) {
+                  return std::any_of(causes.begin(), causes.end(),
+                                     [&](const Cause& cause) { return Holds(cause, h.kind); });
+                });
+  for (const Cause& cause : causes) {
     if (cause.kind != hidden.front().kind) continue;
+    judged.itself = true;
     judged.gain = cause.heldout_gain;
-    CheckIntervals(cause, hidden.front(), setting, judged);
+    CheckIntervals(cause, hidden.front(), judged);
     break;
   }
   return judged;
-}
-
-bool BothFound(const Diagnosis& answer, const std::vector<Hidden>& hidden) {
-  return std::all_of(hidden.begin(), hidden.end(), [&](const Hidden& h) {
-    return std::any_of(answer.causes.begin(), answer.causes.end(), [&](const Cause& cause) {
-      const std::set<std::string> set = SetOf(cause);
-      return set.size() <= kLargestSet && set.count(h.kind) > 0;
-    });
-  });
 }
 
 int LowestCredible(int n, double p, double chance) {

@@ -10,9 +10,13 @@
 
 namespace contour::hidden {
 
-/// How an answer compares with what was hidden.
+/// How an answer compares with what was hidden. Causes that only name how the plant differs from what a model
+/// can express (Misfit) are left out before it is judged.
 struct Judged {
-  bool right = false;   ///< the hidden kind first, or in a set of at most two that is first
+  bool right = false;   ///< the hidden kind first, or in a set of at most two that is first; clean: no cause,
+                        ///< and `unexplained` only where there is a misfit to be found
+  bool both = false;    ///< of two: each is among the causes, or in a set of two that is
+  bool itself = false;  ///< the hidden kind is a cause, not only in another one's set
   bool inside = false;  ///< every true parameter within its stated interval
   double gain = 0.0;    ///< held-out, of the cause that is right
   int extra = 0;        ///< accepted causes beyond what was hidden
@@ -23,10 +27,7 @@ struct Judged {
 /// The kinds of a cause: itself and what it cannot be told from.
 std::set<std::string> SetOf(const diagnosis::Cause& cause);
 
-Judged Judge(const diagnosis::Diagnosis& answer, const std::vector<Hidden>& hidden, const Setting& setting);
-
-/// Both kinds among the accepted causes or their sets.
-bool BothFound(const diagnosis::Diagnosis& answer, const std::vector<Hidden>& hidden);
+Judged Judge(const diagnosis::Diagnosis& answer, const std::vector<Hidden>& hidden, Misfit misfit);
 
 /// Smallest count of successes among `n` that happens by chance less than `chance` of the time when each
 /// succeeds with `p`: fewer than this fails a diagnoser that keeps to its specification at most so often.

@@ -23,8 +23,8 @@ void AddAxis(std::string& text, const char* name, int node, const Setting& s) {
   Add(text, "encoder_counts_per_rev: %.9g, lag_ms: %.9g, quick_stop_deceleration_rad_s2: 6000",
       m.encoder_counts_per_rev, m.lag_ms);
   if (m.scale_counts_per_mm > 0.0) Add(text, ", linear_scale: {counts_per_mm: %.9g}", m.scale_counts_per_mm);
-  Add(text, "}\n    limits: {position_mm: [%.9g, %.9g], velocity_mm_s: 250, acceleration_mm_s2: 3000, ",
-      -m.half_stroke_mm - 10.0, m.half_stroke_mm + 10.0);
+  Add(text, "}\n    limits: {position_mm: [%.9g, %.9g], velocity_mm_s: %.9g, acceleration_mm_s2: 3000, ",
+      -m.half_stroke_mm - 10.0, m.half_stroke_mm + 10.0, kSpeedLimit_mm_s);
   text += "jerk_mm_s3: 500000, torque_Nm: 1.5, following_error_mm: 2, safe_travel_mm: 30}\n";
   Add(text, "    model:\n      lead_mm: %.9g\n      motor_inertia_kgm2: %.9g\n      table_mass_kg: %.9g\n",
       m.lead_mm, m.motor_inertia_kgm2, m.table_mass_kg);
@@ -48,7 +48,7 @@ void AddEmulated(std::string& text, const char* name, const Setting& s) {
   text += "      start_variation_mm: 0\n";
   if (s.temperature)
     text +=
-        "      temperature: {start_degC: 22, ambient_degC: 20, reference_degC: 20, rise_K_W: 3, "
+        "      temperature: {start_degC: 20, ambient_degC: 20, reference_degC: 20, rise_K_W: 3, "
         "time_constant_s: 12}\n";
   Add(text, "      friction: {law: %s, stribeck_exponent: 1, Fs_plus_N: %.9g, Fs_minus_N: %.9g, ",
       s.misfit == Misfit::kMaxwellSlip ? "maxwell_slip" : "lugre", t.Fs_N, t.Fs_N);

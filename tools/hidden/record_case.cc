@@ -1,5 +1,6 @@
 #include "tools/hidden/record_case.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <functional>
@@ -12,6 +13,7 @@
 #include "tools/diagnosis/files/read_log.h"
 #include "tools/diagnosis/files/read_stated_axis.h"
 #include "tools/hidden/hide_effect.h"
+#include "tools/hidden/log_table.h"
 #include "tools/hidden/machine_text.h"
 #include "tools/simulate/virtual_machine.h"
 
@@ -22,6 +24,10 @@ namespace {
 constexpr double kBeforeProgram_s = 1.0;
 constexpr double kTimingError_us = 30.0;
 constexpr double kNoiseFactor = 3.0;
+constexpr const char* kLogFile = "log.lcm";
+constexpr const char* kTableFile = "log.csv";
+constexpr const char* kModelFile = "model.yaml";
+constexpr std::size_t kSpeedOver = 20;  ///< cycles: long against the encoder's steps, short against a stroke
 
 /// The machine's thermometer, a tenth of a degree per step; all that is asked for is permitted.
 class Thermometer final : public IoSource {
@@ -46,10 +52,11 @@ void WriteText(const std::filesystem::path& file, const std::string& text) {
   if (!stream) throw std::runtime_error("cannot write " + file.string());
 }
 
-using SeeCycle = std::function<void(const CycleEntry&)>;
+using SeeCycle = std::function<void(const CycleEntry&, const TruthRow*)>;
 
-void RunMachine(const Setting& s, const std::vector<Hidden>& hidden, const std::filesystem::path& directory,
-                const std::function<SeeCycle(const EmulatedMachineFile&)>& observer) {
+/// Gives the time by the machine at which its program was planned to end.
+double RunMachine(const Setting& s, const std::vector<Hidden>& hidden, const std::filesystem::path& directory,
+                  const std::function<SeeCycle(const EmulatedMachineFile&)>& observer) {
   const std::filesystem::path machine_file = directory / "machine.yaml";
   WriteText(machine_file, MachineText(s));
   EmulatedMachineFile file = LoadEmulatedMachine(machine_file.string());
@@ -74,20 +81,22 @@ void RunMachine(const Setting& s, const std::vector<Hidden>& hidden, const std::
   machine.BringUp();
   machine.Enable();
   const SeeCycle see = observer(file);
-  machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) { see(entry); });
+  machine.SetObserver(see);
   machine.Run(program);
   machine.SetObserver(nullptr);
+  return kBeforeProgram_s + duration_s;
 }
 
 }  // namespace
 
-Recorded Record(const Setting& s, const std::vector<Hidden>& hidden, const std::filesystem::path& directory) {
-  const std::filesystem::path log_file = directory / "log.lcm";
-  const std::filesystem::path model_file = directory / "model.yaml";
-  WriteText(model_file, ModelText(s));
+LogSpan Record(const Setting& s, const std::vector<Hidden>& hidden, const std::filesystem::path& directory) {
+  WriteText(directory / kModelFile, ModelText(s));
   std::unique_ptr<LogWriter> writer;
   std::unique_ptr<TelemetryEncoder> encoder;
-  RunMachine(s, hidden, directory, [&](const EmulatedMachineFile& file) -> SeeCycle {
+  LogSpan span;
+  span.speed_limit_rad_s = kSpeedLimit_mm_s * 1e-3 / s.truth.radius_m_rad();
+  std::vector<double> position;
+  span.planned_end_s = RunMachine(s, hidden, directory, [&](const EmulatedMachineFile& file) -> SeeCycle {
     LogHeader header;
     header.build = "contour_hidden";
     header.machine = file.machine.machine.name;
@@ -95,30 +104,48 @@ Recorded Record(const Setting& s, const std::vector<Hidden>& hidden, const std::
     header.clock = "virtual";
     header.cycle_us = file.machine.machine.cycle_us;
     for (const auto& [name, axis] : file.machine.axes) header.axis_names.push_back(name);
-    writer = std::make_unique<LogWriter>(log_file, header);
+    writer = std::make_unique<LogWriter>(directory / kLogFile, header);
     encoder = std::make_unique<TelemetryEncoder>(TelemetryConfig{}, header.cycle_us, header.axis_names);
-    return [&](const CycleEntry& entry) {
+    return [&](const CycleEntry& entry, const TruthRow* truth) {
       TelemetrySink* sinks[] = {writer.get()};
       encoder->Add(entry, sinks);
+      position.push_back(entry.output.record.axes[0].feedback.position_rad);
+      if (truth == nullptr) return;
+      if (position.size() == 1) span.begin_s = truth->time_s;
+      span.end_s = truth->time_s;
     };
   });
   TelemetrySink* sinks[] = {writer.get()};
   encoder->Flush(sinks);
   writer->Close();
+  for (std::size_t k = kSpeedOver; k < position.size(); ++k)
+    span.largest_speed_rad_s =
+        std::max(span.largest_speed_rad_s, std::fabs(position[k] - position[k - kSpeedOver]) /
+                                               (1e-3 * static_cast<double>(kSpeedOver)));
+  return span;
+}
+
+Recorded ReadRecorded(const std::filesystem::path& directory) {
   Recorded recorded;
-  recorded.stated = diagnosis::ReadStatedAxis(model_file.string(), "");
+  recorded.stated = diagnosis::ReadStatedAxis((directory / kModelFile).string(), "");
   diagnosis::ReadOptions options;
   options.axis = "x";
   options.table_per_q = recorded.stated.table_per_q;
-  recorded.log = diagnosis::ReadLog(log_file.string(), options);
+  const std::filesystem::path log = directory / kLogFile;
+  recorded.log = diagnosis::ReadLog(std::filesystem::exists(log) ? log : directory / kTableFile, options);
   return recorded;
+}
+
+void Compact(const std::filesystem::path& directory) {
+  WriteLogTable(ReadRecorded(directory).log, directory / kTableFile);
+  std::filesystem::remove(directory / kLogFile);
 }
 
 diagnosis::AxisLog Simulate(const Setting& s, const std::vector<Hidden>& hidden,
                             const std::filesystem::path& directory) {
   diagnosis::AxisLog log;
   RunMachine(s, hidden, directory, [&](const EmulatedMachineFile&) -> SeeCycle {
-    return [&](const CycleEntry& entry) {
+    return [&](const CycleEntry& entry, const TruthRow*) {
       const AxisRecord& a = entry.output.record.axes[0];
       log.command.push_back(a.torque_Nm);
       log.position.push_back(a.feedback.position_rad);

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
-#include <fstream>
 #include <map>
-#include <stdexcept>
+#include <set>
 
 namespace contour::hidden {
 namespace {
@@ -19,12 +18,6 @@ void Add(std::string& text, const char* format, ...) {
   std::vsnprintf(line, sizeof line, format, values);
   va_end(values);
   text += line;
-}
-
-std::string Kinds(const Outcome& o) {
-  std::string kinds;
-  for (const std::string& k : o.question.kinds) kinds += (kinds.empty() ? "" : "+") + k;
-  return kinds;
 }
 
 struct Count {
@@ -42,9 +35,9 @@ std::string Text(const Count& c) {
 double Percent(const Count& c) { return c.all == 0 ? 0.0 : 100.0 * c.right / c.all; }
 
 bool IsOutside(const Outcome& o) {
-  if (o.question.kinds.empty()) return false;
+  if (o.known.question.kinds.empty()) return false;
   const auto& all = diagnosis::kKinds;
-  return std::find(all.begin(), all.end(), o.question.kinds.front()) == all.end();
+  return std::find(all.begin(), all.end(), o.known.question.kinds.front()) == all.end();
 }
 
 /// Right answers of one type of question by kind and strength.
@@ -53,14 +46,14 @@ void AddKinds(std::string& text, const std::vector<Outcome>& outcomes, Misfit mi
   std::map<Strength, Count> sums;
   Count inside, gained, alone;
   for (const Outcome& o : outcomes) {
-    if (o.question.type != Question::Type::kEffect || !o.usable || o.question.misfit != misfit ||
-        IsOutside(o))
+    if (o.known.question.type != Question::Type::kEffect || !o.known.usable ||
+        o.known.question.misfit != misfit || IsOutside(o))
       continue;
-    counts[Kinds(o)][o.question.strength].Take(o.judged.right);
+    counts[KindsText(o.known.question)][o.known.question.strength].Take(o.judged.right);
     if (Undecidable(o)) continue;
-    sums[o.question.strength].Take(o.judged.right);
+    sums[o.known.question.strength].Take(o.judged.right);
     alone.Take(o.judged.extra == 0);
-    if (!o.judged.right || o.judged.gain == 0.0) continue;
+    if (!o.judged.right || !o.judged.itself) continue;
     inside.Take(o.judged.inside);
     gained.Take(o.judged.gain > 0.0);
   }
@@ -79,28 +72,36 @@ void AddKinds(std::string& text, const std::vector<Outcome>& outcomes, Misfit mi
   Add(text, "no second cause invented: %s.\n", Text(alone).c_str());
 }
 
+/// False alarms by plant and stated rate. Machines that keep silent at a rate are not asked at a stricter
+/// one: they count as silent there.
 void AddClean(std::string& text, const std::vector<Outcome>& outcomes) {
-  std::map<std::pair<std::string, double>, Count> alarms;
-  for (const Outcome& o : outcomes)
-    if (o.question.type == Question::Type::kClean && o.usable)
-      alarms[{Name(o.question.misfit), o.question.false_alarm_rate}].Take(!o.judged.right);
+  std::map<Misfit, std::map<double, int>> alarms;
+  std::map<Misfit, std::set<std::uint64_t>> machines;
+  for (const Outcome& o : outcomes) {
+    const Question& q = o.known.question;
+    if (q.type != Question::Type::kClean || !o.known.usable) continue;
+    alarms[q.misfit][o.false_alarm_rate] += !o.judged.right;
+    machines[q.misfit].insert(q.seed);
+  }
   if (alarms.empty()) return;
   text += "\n### Machines without an effect\n\n| plant | stated rate | false alarms | |\n|---|---|---|---|\n";
-  for (const auto& [key, c] : alarms)
-    Add(text, "| %s | %g %% | %s | %.1f %% |\n", key.first.c_str(), 100.0 * key.second, Text(c).c_str(),
-        Percent(c));
+  for (const auto& [misfit, by_rate] : alarms)
+    for (const auto& [rate, count] : by_rate) {
+      const Count c{count, static_cast<int>(machines[misfit].size())};
+      Add(text, "| %s | %g %% | %s | %.1f %% |\n", Name(misfit), 100.0 * rate, Text(c).c_str(), Percent(c));
+    }
 }
 
 void AddOthers(std::string& text, const std::vector<Outcome>& outcomes) {
   Count both, detectable, unexplained, not_misnamed;
   for (const Outcome& o : outcomes) {
-    if (!o.usable) continue;
-    if (o.question.type == Question::Type::kPair) both.Take(o.both);
-    if (o.question.type == Question::Type::kDetectable) detectable.Take(o.judged.right);
-    if (o.question.type == Question::Type::kEffect && IsOutside(o) &&
-        o.question.strength == Strength::kClear) {
-      unexplained.Take(o.answer.verdict == diagnosis::Verdict::kUnexplained);
-      not_misnamed.Take(o.answer.causes.empty());
+    if (!o.known.usable) continue;
+    if (o.known.question.type == Question::Type::kPair) both.Take(o.judged.both);
+    if (o.known.question.type == Question::Type::kDetectable) detectable.Take(o.judged.right);
+    if (o.known.question.type == Question::Type::kEffect && IsOutside(o) &&
+        o.known.question.strength == Strength::kClear) {
+      unexplained.Take(o.verdict == diagnosis::Verdict::kUnexplained);
+      not_misnamed.Take(!o.named);
     }
   }
   if (both.all + detectable.all + unexplained.all == 0) return;
@@ -119,8 +120,8 @@ void AddTimes(std::string& text, const std::vector<Outcome>& outcomes) {
   int n = 0;
   int unusable = 0;
   for (const Outcome& o : outcomes) {
-    unusable += !o.usable;
-    if (!o.usable || o.log_s <= 0.0) continue;
+    unusable += !o.known.usable;
+    if (!o.known.usable || o.log_s <= 0.0) continue;
     ++n;
     sum_s += o.diagnose_s;
     log_s += o.log_s;
@@ -137,12 +138,13 @@ void AddTimes(std::string& text, const std::vector<Outcome>& outcomes) {
 void AddFailures(std::string& text, const std::vector<Outcome>& outcomes) {
   std::string list;
   for (const Outcome& o : outcomes) {
-    if (!o.usable || Undecidable(o)) continue;
-    const bool wrong = o.question.type == Question::Type::kPair ? !o.both : !o.judged.right;
+    if (!o.known.usable || Undecidable(o)) continue;
+    const bool wrong = o.known.question.type == Question::Type::kPair ? !o.judged.both : !o.judged.right;
     if (!wrong && o.judged.extra == 0) continue;
-    if (IsOutside(o) && o.answer.causes.empty()) continue;
-    Add(list, "| %s | %s | %s | %llu | %s | %s | %s |\n", Name(o.question.type), Kinds(o).c_str(),
-        Name(o.question.strength), static_cast<unsigned long long>(o.question.seed), Name(o.question.misfit),
+    if (IsOutside(o) && !o.named) continue;
+    Add(list, "| %s | %s | %s | %llu | %s | %s | %s |\n", Name(o.known.question.type),
+        KindsText(o.known.question).c_str(), Name(o.known.question.strength),
+        static_cast<unsigned long long>(o.known.question.seed), Name(o.known.question.misfit),
         o.judged.answer.c_str(), wrong ? "wrong" : "invented a second");
   }
   if (list.empty()) return;
@@ -153,29 +155,11 @@ void AddFailures(std::string& text, const std::vector<Outcome>& outcomes) {
 }  // namespace
 
 bool Undecidable(const Outcome& o) {
-  if (o.question.type != Question::Type::kEffect || o.hidden.empty()) return false;
-  const std::string& kind = o.question.kinds.front();
-  if (kind == "torque_constant") return o.question.strength == Strength::kBarely;
-  if (kind == "pitch_error") return std::abs(o.hidden.front().size) <= 0.1;
+  if (o.known.question.type != Question::Type::kEffect || o.known.hidden.empty()) return false;
+  const std::string& kind = o.known.question.kinds.front();
+  if (kind == "torque_constant") return o.known.question.strength == Strength::kBarely;
+  if (kind == "pitch_error") return std::abs(o.known.hidden.front().size) <= 0.1;
   return false;
-}
-
-void AppendCsv(const std::filesystem::path& file, const Outcome& o) {
-  const bool fresh = !std::filesystem::exists(file);
-  std::ofstream out(file, std::ios::app);
-  if (fresh)
-    out << "type,hidden,strength,seed,misfit,rate,usable,size,order,second,answer,right,extra,inside,outside,"
-           "gain,gate,diagnose_s,log_s\n";
-  const Hidden h = o.hidden.empty() ? Hidden{} : o.hidden.front();
-  std::string outside = o.usable ? o.judged.outside : o.why_not;
-  std::replace(outside.begin(), outside.end(), ',', ' ');
-  out << Name(o.question.type) << ',' << Kinds(o) << ',' << Name(o.question.strength) << ','
-      << o.question.seed << ',' << Name(o.question.misfit) << ',' << o.question.false_alarm_rate << ','
-      << o.usable << ',' << h.size << ',' << h.order << ',' << h.second << ',' << o.judged.answer << ','
-      << (o.question.type == Question::Type::kPair ? o.both : o.judged.right) << ',' << o.judged.extra << ','
-      << o.judged.inside << ',' << outside << ',' << o.judged.gain << ',' << o.answer.gate << ','
-      << o.diagnose_s << ',' << o.log_s << '\n';
-  if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
 std::string ResultTable(const std::vector<Outcome>& outcomes, const std::string& command) {

@@ -32,7 +32,7 @@ std::optional<Hidden> SizeEffect(const Setting& setting, Hidden effect, Strength
   const double clean = Relevant(ResidualsOf(Simulate(setting, {}, directory), setting), effect.kind);
   const double wanted = Odds(ShareOf(strength));
   const double measured = std::max(wanted, Odds(kSmallestShareMeasured));
-  const double largest = LargestSize(effect, setting);
+  const double largest = LargestSize(effect);
   double exponent = 2.0;  // the variance grows with the square of most effects
   double low = 0.0, high = largest;
   double last_size = 0.0, last_odds = 0.0;
