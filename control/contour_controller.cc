@@ -98,8 +98,14 @@ void ContourController::Rest(ControlOutput& output) noexcept {
   output.iterations = 0;
 }
 
-int ContourController::horizon_points() const noexcept {
-  return planner_ ? std::max(law_->horizon_points(), planner_->horizon_points()) : law_->horizon_points();
+std::size_t ContourController::horizon_points() const noexcept {
+  const std::size_t planned = planner_ ? static_cast<std::size_t>(planner_->horizon_points()) : 0;
+  // Friction is a mean over the period up to the point after.
+  return std::max(friction_points() + 1, planned);
+}
+
+std::size_t ContourController::friction_points() const noexcept {
+  return static_cast<std::size_t>(law_->horizon_points());
 }
 
 }  // namespace contour

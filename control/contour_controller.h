@@ -104,8 +104,10 @@ class ContourController {
   [[nodiscard]] const ControllerOptions& options() const noexcept { return options_; }
   void Keep(StateKeeper& keep) noexcept;
 
-  /// Points of reference and friction a Step looks at; what lies beyond is ignored.
-  [[nodiscard]] int horizon_points() const noexcept;
+  /// Points of the reference that Plan and Step look at; what lies beyond is ignored.
+  [[nodiscard]] std::size_t horizon_points() const noexcept;
+  /// Points of the friction ahead that Step looks at.
+  [[nodiscard]] std::size_t friction_points() const noexcept;
 
  private:
   ControllerOptions options_;

@@ -103,11 +103,12 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   return filter.Update(in);
 }
 
-void AxisEstimator::PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept {
+void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
+                                    FrictionPreview& out) noexcept {
   if (kind_ == EstimatorKind::kFull) {
     const auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
     roll_.Run(filter.model(), filter.state(), correction_, rigid_, {known_, temperature_degC_}, at_rest_,
-              reference, out);
+              reference, points, out);
     return;
   }
   const double ahead_N = std::visit(
@@ -119,7 +120,7 @@ void AxisEstimator::PreviewFriction(const AxisHorizon& reference, FrictionPrevie
         }
       },
       filter_);
-  out.resize(reference.size());
+  out.resize(std::min(points, reference.size()));
   for (auto& f : out) f = {ahead_N, ahead_N, 0.0};
 }
 

@@ -51,9 +51,9 @@ class AxisEstimator {
   /// Filter at t(k-1) and prediction to t(k).
   AxisEstimate Update(const Input& in) noexcept;
 
-  /// Total friction (bristle, viscous, disturbance) expected along the reference; out gets reference.size()
-  /// elements. Zero for kKinematic.
-  void PreviewFriction(const AxisHorizon& reference, FrictionPreview& out) noexcept;
+  /// Total friction (bristle, viscous, disturbance) expected along the reference; out gets `points` elements,
+  /// or as many as the reference has. Zero for kKinematic.
+  void PreviewFriction(const AxisHorizon& reference, std::size_t points, FrictionPreview& out) noexcept;
 
   /// The extensions of the model stay as constructed.
   void Keep(StateKeeper& keep) noexcept {

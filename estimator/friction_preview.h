@@ -28,13 +28,13 @@ class FrictionRoll {
   /// The rolled bristle starts from this force.
   void Reset(double bristle_N) noexcept { bristle_N_ = bristle_N; }
 
-  /// `x`: filter state at element 0 of the reference. Keeps the bristle at element 1 for the next call and
-  /// lets the corrections learn from the difference at element 0. mid_N, which the torque must overcome, has
-  /// what the axis is heavier than commissioned in it, and known forces on the motor; node_N, which winds the
-  /// screw up, has not.
+  /// `x`: filter state at element 0 of the reference, of which `points` are rolled along. Keeps the bristle
+  /// at element 1 for the next call and lets the corrections learn from the difference at element 0. mid_N,
+  /// which the torque must overcome, has what the axis is heavier than commissioned in it, and known forces
+  /// on the motor; node_N, which winds the screw up, has not.
   void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, LevelCorrection& correction,
            RigidCorrection& rigid, const KnownNow& known, bool at_rest, const AxisHorizon& reference,
-           FrictionPreview& out) noexcept;
+           std::size_t points, FrictionPreview& out) noexcept;
 
  private:
   double period_s_ = 1e-3;

@@ -33,6 +33,8 @@ KnownEffects::Table KnownEffects::MakeTable(const char* kind, const std::vector<
 }
 
 KnownEffects::KnownEffects(const ExtensionsConfig& c, const Mechanics& mechanics, double viscous_Ns_m) {
+  neutral_ = !(c.constant_torque || c.cogging || c.friction_ripple || c.ball_ripple || c.cable_spring ||
+               c.position_friction || c.pitch_error || c.viscous_nonlinear || c.temperature_viscosity);
   const double r = mechanics.radius_m_rad;
   const auto wave = [&](double amplitude, double order, double phase_rad) {
     return Wave{amplitude, order / (kTwoPi * r), phase_rad / kTwoPi};

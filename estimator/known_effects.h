@@ -15,6 +15,8 @@ class KnownEffects {
   /// Throws std::invalid_argument when a table is not one: lengths that differ, positions that do not ascend.
   KnownEffects(const ExtensionsConfig& config, const Mechanics& mechanics, double viscous_Ns_m);
 
+  /// Without extensions: no force, no lead, nothing viscous, factor 1.
+  [[nodiscard]] bool neutral() const noexcept { return neutral_; }
   /// Force on the motor beside the command's, positive towards positive position.
   [[nodiscard]] double Force_N(double position_m) const noexcept;
   /// Factor of the friction level.
@@ -39,6 +41,7 @@ class KnownEffects {
   static Table MakeTable(const char* kind, const std::vector<double>& position_mm,
                          const std::vector<double>& values, double unit);
 
+  bool neutral_ = true;
   double constant_N_ = 0.0;
   Wave cogging_;
   Table spring_N_;

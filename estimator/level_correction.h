@@ -43,6 +43,39 @@ class LevelCorrection {
             Exp(-std::abs(velocity_m_s) * per_speed_s_m_)};
   }
 
+  /// The same for `count` places, row i of `basis` for term i.
+  template <class Row>
+  [[gnu::always_inline]] void Basis(const Row& position_m, const Row& velocity_m_s, std::size_t count,
+                                    std::array<Row, kTerms>& basis) const noexcept {
+    for (std::size_t k = 0; k < count; ++k) {
+      const CosSin one = Turn(position_m[k] * per_turn_1_m_);
+      basis[0][k] = one.cos;
+      basis[1][k] = one.sin;
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const double cos = basis[0][k], sin = basis[1][k];
+      basis[2][k] = cos * cos - sin * sin;
+      basis[3][k] = 2.0 * sin * cos;
+      basis[4][k] = Exp(-std::abs(velocity_m_s[k]) * per_speed_s_m_);
+    }
+  }
+
+  /// Factors at `count` places in the direction of motion there.
+  template <class Row>
+  [[gnu::always_inline]] void Factors(const std::array<Row, kTerms>& basis, const Row& velocity_m_s,
+                                      std::size_t count, Row& factor) const noexcept {
+    const Terms plus = plus_.coefficient, minus = minus_.coefficient;
+    for (std::size_t k = 0; k < count; ++k) {
+      double forward = 0.0, backward = 0.0;
+      for (std::size_t i = 0; i < kTerms; ++i) {
+        forward += plus[i] * basis[i][k];
+        backward += minus[i] * basis[i][k];
+      }
+      const double sum = velocity_m_s[k] >= 0.0 ? forward : backward;
+      factor[k] = 1.0 + std::min(std::max(sum, -kLargest), kLargest);
+    }
+  }
+
   /// Factor of the level, within 1 +- kLargest.
   [[nodiscard]] double Factor(const Terms& basis, bool forward) const noexcept {
     const Terms& c = forward ? plus_.coefficient : minus_.coefficient;

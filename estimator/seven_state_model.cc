@@ -1,5 +1,7 @@
 #include "estimator/seven_state_model.h"
 
+#include "core/wide_vectors.h"
+
 namespace contour {
 
 SevenStateModel::SevenStateModel(const Friction& friction, double mass_kg, double period_s,
@@ -16,34 +18,37 @@ SevenStateModel::SevenStateModel(const Friction& friction, double mass_kg, doubl
 
 // Whole rows at a time, without branches, so that the loop vectorises.
 template <class Row>
-void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm, const Row& s0,
-                              double force_N, const SevenStateInput& in) const noexcept {
+inline void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm,
+                                     const Row& s0, double force_N,
+                                     const SevenStateInput& in) const noexcept {
   const std::size_t n = std::tuple_size_v<Row>;
   const double inverse_vs = 1.0 / friction_.vs_m_s;
   const double per_plus = in.ripple_plus;
   const double per_minus = in.ripple_minus;
   const double more_plus = (ratio_plus_ - 1.0) * per_plus;
   const double more_minus = (ratio_minus_ - 1.0) * per_minus;
-  Row shape, damping;
+  Row shape, level, sign, damping;
   for (std::size_t k = 0; k < n; ++k) shape[k] = std::abs(v[k]) * inverse_vs;
   if (friction_.stribeck_exponent == 2.0) {
     for (std::size_t k = 0; k < n; ++k) shape[k] *= shape[k];
   } else if (friction_.stribeck_exponent != 1.0) {
     for (std::size_t k = 0; k < n; ++k) shape[k] = std::pow(shape[k], friction_.stribeck_exponent);
   }
-  for (std::size_t k = 0; k < n; ++k) shape[k] = Exp(-shape[k]);
   for (std::size_t k = 0; k < n; ++k) {
-    const double level_plus = gp[k] * (per_plus + more_plus * shape[k]);
-    const double level_minus = gm[k] * (per_minus + more_minus * shape[k]);
-    const double level = std::max(v[k] >= 0.0 ? level_plus : level_minus, kLeastLevel_N);
-    const double target = v[k] >= 0.0 ? level : -level;
-    const double per_level = std::abs(v[k]) / level;
-    const double gap = target - f[k];
+    const double low_speed = Exp(-shape[k]);
+    const double level_plus = gp[k] * (per_plus + more_plus * low_speed);
+    const double level_minus = gm[k] * (per_minus + more_minus * low_speed);
+    level[k] = std::max(v[k] >= 0.0 ? level_plus : level_minus, kLeastLevel_N);
+    sign[k] = std::copysign(1.0, v[k] + 0.0);  // of -0.0 as well
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const double speed = std::abs(v[k]);
+    const double gap = sign[k] * level[k] - f[k];
     // Beyond its level the bristle lets go at once: the unwinding screw only helps.
-    const double missing = std::max(v[k] >= 0.0 ? gap : -gap, 0.0);
-    const double trailing = 1.0 + s0[k] * compliance_m_N_ * missing / level;
-    f[k] -= gap * Expm1(-s0[k] * per_level * step_s_ / trailing);
-    damping[k] = in.sigma1_Ns_m * (v[k] - per_level * f[k]);
+    const double missing = std::max(sign[k] * gap, 0.0);
+    const double trailing = level[k] + s0[k] * compliance_m_N_ * missing;
+    f[k] -= gap * Expm1(-s0[k] * speed * step_s_ / trailing);
+    damping[k] = in.sigma1_Ns_m * (v[k] - speed / level[k] * f[k]);
   }
   const double leak = in.at_rest ? 1.0 : leak_;
   for (std::size_t k = 0; k < n; ++k) {
@@ -54,6 +59,7 @@ void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, con
   }
 }
 
+CONTOUR_WIDE_VECTORS
 void SevenStateModel::Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in) const noexcept {
   auto& r = points.row;
   SigmaPoints<kSevenStates>::Row s0;

@@ -62,6 +62,27 @@ class SevenStateModel {
   /// Level G that holds in this state.
   [[nodiscard]] double Level(const StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept;
 
+  /// The same at `count` other velocities, each with its factor of the level.
+  template <class Row>
+  [[gnu::always_inline]] void Levels(const StateVector<kSevenStates>& x, const Row& velocity_m_s,
+                                     const Row& factor, std::size_t count, Row& level_N) const noexcept {
+    const double inverse_vs = 1.0 / friction_.vs_m_s;
+    for (std::size_t k = 0; k < count; ++k) level_N[k] = std::abs(velocity_m_s[k]) * inverse_vs;
+    if (friction_.stribeck_exponent == 2.0) {
+      for (std::size_t k = 0; k < count; ++k) level_N[k] *= level_N[k];
+    } else if (friction_.stribeck_exponent != 1.0) {
+      for (std::size_t k = 0; k < count; ++k) level_N[k] = std::pow(level_N[k], friction_.stribeck_exponent);
+    }
+    const double plus_N = x[kLevelPlus], minus_N = x[kLevelMinus];
+    const double more_plus_N = plus_N * (ratio_plus_ - 1.0), more_minus_N = minus_N * (ratio_minus_ - 1.0);
+    for (std::size_t k = 0; k < count; ++k) {
+      const double low_speed = Exp(-level_N[k]);
+      const double forward_N = plus_N + more_plus_N * low_speed;
+      const double backward_N = minus_N + more_minus_N * low_speed;
+      level_N[k] = std::max((velocity_m_s[k] >= 0.0 ? forward_N : backward_N) * factor[k], kLeastLevel_N);
+    }
+  }
+
   /// Bristle damping at this speed.
   [[nodiscard]] double Sigma1_Ns_m(double velocity_m_s) const noexcept;
 
@@ -74,8 +95,9 @@ class SevenStateModel {
 
  private:
   template <class Row>
-  void Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm, const Row& s0, double force_N,
-               const SevenStateInput& in) const noexcept;
+  [[gnu::always_inline]] void Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm,
+                                      const Row& s0, double force_N,
+                                      const SevenStateInput& in) const noexcept;
 
   Friction friction_;
   double sigma2_ = 0.0;

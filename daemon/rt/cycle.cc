@@ -218,7 +218,7 @@ void Cycle::Observe(const CycleInput& in) noexcept {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
     stale = stale || (f.valid && !f.fresh);
-    follower_.Horizon(i, control_in_.reference[i]);
+    follower_.Horizon(i, controller_.horizon_points(), control_in_.reference[i]);
   }
   if (stale && master_.operational()) ++stale_cycles_;
 }
@@ -364,10 +364,12 @@ void Cycle::CarryOut(const Orders& orders) noexcept {
 void Cycle::Decide(const Orders& orders) noexcept {
   // The path ahead is what Observe found, unless an order has just changed it.
   if (ChangesPath(orders))
-    for (std::size_t i = 0; i < axes_.size(); ++i) follower_.Horizon(i, control_in_.reference[i]);
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      follower_.Horizon(i, controller_.horizon_points(), control_in_.reference[i]);
   controller_.Plan(control_in_, orders.torque_allowed);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    axes_[i].estimator.PreviewFriction(Reference(control_in_)[i], control_in_.friction[i]);
+    axes_[i].estimator.PreviewFriction(Reference(control_in_)[i], controller_.friction_points(),
+                                       control_in_.friction[i]);
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
   }
   control_in_.estimate = estimates_;

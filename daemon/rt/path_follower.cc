@@ -155,9 +155,9 @@ ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const 
           a.spring_N_m + s * (b.spring_N_m - a.spring_N_m)};
 }
 
-void PathFollower::Horizon(std::size_t axis, AxisHorizon& out) const noexcept {
-  out.resize(horizon_);
-  for (std::size_t j = 0; j < horizon_; ++j)
+void PathFollower::Horizon(std::size_t axis, std::size_t points, AxisHorizon& out) const noexcept {
+  out.resize(std::min(points, horizon_));
+  for (std::size_t j = 0; j < out.size(); ++j)
     out[j] = moving() ? Evaluate(axis, pace_[j]) : ReferencePoint{hold_m_[axis], 0.0, 0.0};
 }
 

@@ -39,8 +39,8 @@ class PathFollower {
 
   /// One period further: element 1 of the horizon becomes element 0.
   void Advance() noexcept;
-  /// Reference of one axis, indices as core/horizon.h.
-  void Horizon(std::size_t axis, AxisHorizon& out) const noexcept;
+  /// Reference of one axis, this many points of it at most, indices as core/horizon.h.
+  void Horizon(std::size_t axis, std::size_t points, AxisHorizon& out) const noexcept;
   /// Reference shortly before and after the feedback's instant, all axes, for the geometry of the contour
   /// error: offset in periods, -3..horizon.
   [[nodiscard]] ReferencePoint Near(std::size_t axis, int offset) const noexcept;

@@ -75,7 +75,7 @@ TEST(Extensions, TheEstimatorStillAllocatesNothing) {
   const AllocationGuard guard;
   for (int i = 0; i < 100; ++i) {
     estimator.Update(input);
-    estimator.PreviewFriction(horizon, preview);
+    estimator.PreviewFriction(horizon, horizon.size(), preview);
   }
   EXPECT_EQ(guard.calls(), 0u);
 }

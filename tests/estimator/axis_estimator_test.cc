@@ -68,7 +68,7 @@ TEST(AxisEstimator, NeverTouchesTheHeap) {
       in.at_rest = k > 150;
       in.enabled = k > 3;
       estimator.Update(in);
-      estimator.PreviewFriction(horizon, preview);
+      estimator.PreviewFriction(horizon, horizon.size(), preview);
     }
     EXPECT_EQ(guard.calls(), 0u) << static_cast<int>(kind);
   }

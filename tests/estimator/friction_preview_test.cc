@@ -39,7 +39,7 @@ TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   std::array<double, 6> ahead{};
   for (int k = 0; k < 4000; ++k) {
     x[kBristle] = bristle;
-    roll.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(k, 6), preview);
+    roll.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(k, 6), kMaxHorizonPoints, preview);
     ASSERT_EQ(preview.size(), 6u);
     double f = bristle;
     for (std::size_t j = 0; j < 6; ++j) {
@@ -70,10 +70,10 @@ TEST(FrictionRoll, AnOffsetOfTheEstimateIsKept) {
   x[kLevelMinus] = 36;
   FrictionRoll a(kPeriod_s), b(kPeriod_s);
   FrictionPreview pa, pb;
-  a.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), pa);
+  a.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), kMaxHorizonPoints, pa);
   x[kBristle] += 3.0;
   x[kDisturbance] += 4.0;
-  b.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), pb);
+  b.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), kMaxHorizonPoints, pb);
   for (std::size_t j = 0; j < 10; ++j) {
     EXPECT_NEAR(pb[j].node_N - pa[j].node_N, 7.0, 1e-12);
     EXPECT_NEAR(pb[j].mid_N - pa[j].mid_N, 7.0, 1e-12);
@@ -93,15 +93,50 @@ TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
   roll.Reset(30.0);
   AxisHorizon still(kMaxHorizonPoints);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, kNothingKnown, true, still, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, true, still, kMaxHorizonPoints, preview);
   ASSERT_EQ(preview.size(), kMaxHorizonPoints);
   for (const auto& f : preview) {
     EXPECT_DOUBLE_EQ(f.node_N, -15.0);
     EXPECT_DOUBLE_EQ(f.mid_N, -15.0);
   }
   AxisHorizon none;
-  roll.Run(model, x, correction, rigid, kNothingKnown, true, none, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, true, none, kMaxHorizonPoints, preview);
   EXPECT_TRUE(preview.empty());
+}
+
+// Any length of the roll, whole vectors or not, both directions and a reversal, against the law point by
+// point.
+TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
+  const Friction f{52, 47, 42, 36, 2e-3, 1, 5e6, 3000, 2e-3, 500};
+  const SevenStateModel model(f, 89.0, kPeriod_s, 0.2);
+  LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
+  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
+  StateVector<kSevenStates> x{};
+  x[kLevelPlus] = 43;
+  x[kLevelMinus] = 35;
+  x[kBristle] = 20;
+  Friction estimated = f;
+  estimated.Fc_plus_N = 43, estimated.Fs_plus_N = 52.0 / 42.0 * 43;
+  estimated.Fc_minus_N = 35, estimated.Fs_minus_N = 47.0 / 36.0 * 35;
+  const AxisHorizon h = Horizon(300, 40);  // reverses after 14 points
+  for (const std::size_t points : {1u, 4u, 23u, 39u, 40u}) {
+    FrictionRoll roll(kPeriod_s);
+    roll.Reset(20.0);
+    FrictionPreview preview;
+    roll.Run(model, x, correction, rigid, kNothingKnown, false, h, points, preview);
+    ASSERT_EQ(preview.size(), points);
+    double bristle = 20.0;
+    for (std::size_t j = 0; j < points; ++j) {
+      const double here = h[j].velocity_m_s;
+      const double v = 0.5 * (here + h[std::min<std::size_t>(j + 1, 39)].velocity_m_s);
+      const double level = FrictionLevel(estimated, v);
+      const double next = BristleAfter(bristle, v, f.sigma0_N_m, level, kPeriod_s);
+      const double middle = 0.5 * (bristle + next);
+      EXPECT_NEAR(preview[j].node_N, bristle + BristleDamping(f, bristle, here, level) + 500.0 * here, 1e-9);
+      EXPECT_NEAR(preview[j].mid_N, middle + BristleDamping(f, middle, v, level) + 500.0 * v, 1e-9);
+      bristle = next;
+    }
+  }
 }
 
 TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
@@ -122,7 +157,7 @@ TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   FrictionRoll roll(kPeriod_s);
   roll.Reset(42.0);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, kNothingKnown, false, h, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, false, h, kMaxHorizonPoints, preview);
   // After 1.25 mm, a quarter turn, the level stands 8 % up; sigma2 v = 25 N beside it.
   EXPECT_NEAR(preview[25].node_N, 42.0 * 1.08 + 25.0, 0.5);
 }
@@ -139,7 +174,7 @@ TEST(FrictionRoll, WhatTheAxisIsHeavierThanCommissionedMustBePushedToo) {
   for (int j = 0; j < 5; ++j) h.push_back({0.0, 0.0, 2.0});
   FrictionRoll roll(kPeriod_s);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, kNothingKnown, true, h, preview);
+  roll.Run(model, x, correction, rigid, kNothingKnown, true, h, kMaxHorizonPoints, preview);
   EXPECT_NEAR(preview[1].mid_N, 10.0, 0.01);
   EXPECT_NEAR(preview[1].node_N, 0.0, 1e-12);  // the motor's mass does not wind the screw up
 }

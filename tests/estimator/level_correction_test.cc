@@ -17,6 +17,29 @@ struct Follower {
   void Step(double level, double kept) { value = kept * value + (1.0 - kept) * level; }
 };
 
+TEST(LevelCorrection, ManyPlacesAtOnceAreTheSameAsOneByOne) {
+  LevelCorrection correction(kTuning);
+  for (int k = 0; k < 500; ++k) {
+    const bool forward = k % 100 < 50;
+    const double p = 37e-6 * k, v = forward ? 0.003 : -0.004;
+    correction.Learn(correction.Basis(p, v), forward, 0.1, 0.05 * std::sin(1e3 * p), v * 1e-3, true);
+  }
+  std::array<double, 7> position{}, velocity{}, factor{};
+  for (std::size_t k = 0; k < 7; ++k) {
+    position[k] = 0.7e-3 * static_cast<double>(k) - 2e-3;
+    velocity[k] = 1e-3 * (3.0 - static_cast<double>(k));
+  }
+  std::array<std::array<double, 7>, LevelCorrection::kTerms> basis{};
+  correction.Basis(position, velocity, 7, basis);
+  correction.Factors(basis, velocity, 7, factor);
+  for (std::size_t k = 0; k < 7; ++k) {
+    const auto one = correction.Basis(position[k], velocity[k]);
+    for (std::size_t i = 0; i < one.size(); ++i) EXPECT_DOUBLE_EQ(basis[i][k], one[i]);
+    EXPECT_NEAR(factor[k], correction.Factor(one, velocity[k] >= 0.0), 1e-15);
+    EXPECT_NE(factor[k], 1.0);
+  }
+}
+
 TEST(LevelCorrection, LearnsTheRippleOfEachDirection) {
   LevelCorrection correction(kTuning);
   const auto truth = [](double p, bool forward) {

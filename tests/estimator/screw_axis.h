@@ -139,7 +139,7 @@ class Loop {
     in.at_rest = h[0].velocity_m_s == 0.0;
     in.enabled = cycle > 0;
     estimate = estimator.Update(in);
-    estimator.PreviewFriction(h, preview);
+    estimator.PreviewFriction(h, h.size(), preview);
     true_friction_N = sampled_friction_N;
 
     const double w = 2 * std::numbers::pi * bandwidth_Hz;

@@ -68,7 +68,7 @@ void Estimator(benchmark::State& state, EstimatorKind kind, bool preview) {
         const AxisEstimatorInput& at = inputs[(k + j) % inputs.size()];
         horizon.push_back({at.position_m, at.commanded_velocity_m_s, at.commanded_acceleration_m_s2});
       }
-      estimator.PreviewFriction(horizon, ahead);
+      estimator.PreviewFriction(horizon, horizon.size(), ahead);
       benchmark::DoNotOptimize(ahead);
     }
   }

@@ -97,8 +97,8 @@ class ContourLoop {
       estimate.predicted_velocity_m_s = ahead.motor_m_s;
       AxisHorizon& reference = input.reference[i];
       reference.clear();
-      for (int j = 0; j < controller_.horizon_points(); ++j)
-        reference.push_back(path_(i, time_s + j * kPeriod_s));
+      for (std::size_t j = 0; j < controller_.horizon_points(); ++j)
+        reference.push_back(path_(i, time_s + static_cast<double>(j) * kPeriod_s));
     }
     controller_.Plan(input, true);
     for (std::size_t i = 0; i < plants.size(); ++i) {

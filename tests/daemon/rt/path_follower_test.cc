@@ -51,7 +51,7 @@ class PathFollowerTest : public ::testing::Test {
   }
   ReferencePoint Now(std::size_t axis) {
     AxisHorizon h;
-    follower_->Horizon(axis, h);
+    follower_->Horizon(axis, kHorizon, h);
     return h[0];
   }
 
@@ -66,12 +66,12 @@ TEST_F(PathFollowerTest, GivesThePointsThemselvesBitForBit) {
   ASSERT_TRUE(follower_->Prefetched());
   follower_->Start();
   AxisHorizon x;
-  follower_->Horizon(0, x);
+  follower_->Horizon(0, kHorizon, x);
   EXPECT_EQ(x[0].position_m, 0.0);  // the feedback's instant: still at rest
   for (int k = 0; k < kCount - 1; ++k) {
     follower_->Advance();
     ASSERT_EQ(follower_->moving(), true);
-    follower_->Horizon(0, x);
+    follower_->Horizon(0, kHorizon, x);
     ASSERT_EQ(x[0].position_m, CirclePoint(7, k, kCount).axes[0].position_m) << k;
     ASSERT_EQ(x[0].acceleration_m_s2, CirclePoint(7, k, kCount).axes[0].acceleration_m_s2) << k;
     if (k + 5 < kCount - 1) {
