@@ -84,8 +84,9 @@ TEST(TorqueExperiments, PulsesAreSentAndTheEstimatorKnowsThem) {
       "torque: {axis: x, kind: pulses, amplitude_Nm: 0.2, width_s: 0.004, period_s: 0.25}}";
   const Seen seen = Observe(ExampleMachine(), ControllerName::kFull, pulses);
   EXPECT_GT(seen.largest_Nm, 0.2);
-  // 0.2 Nm are 250 N: an estimator that did not know of them would book hundreds of newtons as friction.
-  EXPECT_LT(seen.friction_off_N, 25.0);
+  // 0.2 Nm are 250 N: an estimator that did not know of them would book hundreds of newtons as friction. One
+  // that does is 10 to 32 N off, depending on the seed and on last digits.
+  EXPECT_LT(seen.friction_off_N, 45.0);
 }
 
 TEST(TorqueExperiments, TheGuardHoldsTheSumWithinTheLimit) {
