@@ -1,10 +1,14 @@
 #include "daemon/telemetry/cycle_csv.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <iterator>
+#include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace contour {
 namespace {
@@ -134,28 +138,47 @@ constexpr AxisColumn kAxisColumns[] = {
 
 }  // namespace
 
-CycleCsv::CycleCsv(std::span<const std::string> axis_names, int cycle_us)
-    : axis_names_(axis_names.begin(), axis_names.end()), cycle_us_(cycle_us) {}
+CycleCsv::CycleCsv(std::span<const std::string> axis_names, int cycle_us,
+                   std::span<const std::string> columns)
+    : cycle_us_(cycle_us) {
+  for (std::size_t i = 0; i < std::size(kCycleColumns); ++i)
+    columns_.push_back({std::string(kCycleColumns[i].name), kNoAxis, i});
+  for (std::size_t axis = 0; axis < axis_names.size(); ++axis) {
+    for (std::size_t i = 0; i < std::size(kAxisColumns); ++i)
+      columns_.push_back({axis_names[axis] + '_' + std::string(kAxisColumns[i].name), axis, i});
+  }
+  if (columns.empty()) return;
+  std::vector<Column> chosen;
+  for (const std::string& name : columns) {
+    const auto found = std::find_if(columns_.begin(), columns_.end(),
+                                    [&](const Column& column) { return column.name == name; });
+    if (found == columns_.end())
+      throw std::invalid_argument("the table of cycles has no column '" + name + "'");
+    chosen.push_back(*found);
+  }
+  columns_ = std::move(chosen);
+}
 
 std::string CycleCsv::Header() const {
   std::string out;
   Line line(out);
-  for (const CycleColumn& column : kCycleColumns) line.Field(column.name);
-  for (const std::string& axis : axis_names_) {
-    for (const AxisColumn& column : kAxisColumns) line.Field(axis + '_' + std::string(column.name));
-  }
+  for (const Column& column : columns_) line.Field(column.name);
   return out += '\n';
 }
 
 void CycleCsv::AppendRow(const CycleRecord& record, const CycleTiming& timing, std::string& out) const {
+  static const AxisRecord kNothing;
   // One division, so that 3 cycles of 1000 us print as 0.003 and not as a neighbour of it.
   const double time_s = (static_cast<double>(record.cycle) - 1.0) * cycle_us_ / 1e6;
   const Row row{record, timing, time_s};
   Line line(out);
-  for (const CycleColumn& column : kCycleColumns) column.write(row, line);
-  for (std::size_t axis = 0; axis < axis_names_.size(); ++axis) {
-    const AxisRecord& of_axis = axis < record.axes.size() ? record.axes[axis] : AxisRecord{};
-    for (const AxisColumn& column : kAxisColumns) column.write(of_axis, line);
+  for (const Column& column : columns_) {
+    if (column.axis == kNoAxis) {
+      kCycleColumns[column.index].write(row, line);
+    } else {
+      kAxisColumns[column.index].write(column.axis < record.axes.size() ? record.axes[column.axis] : kNothing,
+                                       line);
+    }
   }
   out += '\n';
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,7 +18,9 @@ namespace contour {
 /// quantity that does not exist (no linear scale, no temperature sensor) is an empty field.
 class CycleCsv {
  public:
-  CycleCsv(std::span<const std::string> axis_names, int cycle_us);
+  /// `columns`: only these, in this order; none for all. Throws std::invalid_argument for a name that is
+  /// none.
+  CycleCsv(std::span<const std::string> axis_names, int cycle_us, std::span<const std::string> columns = {});
 
   /// The header line, with its line end.
   [[nodiscard]] std::string Header() const;
@@ -26,7 +29,14 @@ class CycleCsv {
   void AppendRow(const CycleRecord& record, const CycleTiming& timing, std::string& out) const;
 
  private:
-  std::vector<std::string> axis_names_;
+  static constexpr std::size_t kNoAxis = ~std::size_t{0};
+  struct Column {
+    std::string name;
+    std::size_t axis = kNoAxis;
+    std::size_t index = 0;  ///< among those of a cycle, or of an axis
+  };
+
+  std::vector<Column> columns_;
   int cycle_us_;
 };
 

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,20 @@ double Parse(const std::string& text) {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::from_chars(text.data(), text.data() + text.size(), value);
   return value;
+}
+
+TEST_F(CycleCsvTest, OnlyTheColumnsAskedForInTheirOrder) {
+  const std::vector<std::string> wanted{"y_torque_Nm", "state", "cycle"};
+  const CycleCsv csv(names_, 1000, wanted);
+  record_.cycle = 4;
+  record_.state = MachineState::kRunning;
+  record_.axes.resize(2);
+  record_.axes[1].torque_Nm = -0.2;
+  std::string row;
+  csv.AppendRow(record_, timing_, row);
+  EXPECT_EQ(csv.Header() + row, "y_torque_Nm,state,cycle\n-0.2,Running,4\n");
+  const std::vector<std::string> none{"z_torque_Nm"};
+  EXPECT_THROW(CycleCsv(names_, 1000, none), std::invalid_argument);
 }
 
 TEST_F(CycleCsvTest, PutsEveryAxisInItsOwnColumnsWithUnits) {

@@ -70,13 +70,11 @@ wait "$logger"
 [ -s /tmp/telemetry.lcm ] || fail "no telemetry came over LCM"
 cp /tmp/contourd.log /out/
 
-# Of the log's many columns those of the times, taken apart once.
-contour export /tmp/cycles.lcm --out /tmp/cycles.csv >/dev/null || fail "the log cannot be read"
+contour export /tmp/cycles.lcm --out /tmp/cycles.csv \
+  --columns cycle,state,wakeup_late_us,received_us,stepped_us,sent_us,solver_iterations >/dev/null || fail "the log cannot be read"
 awk -F, '
-  NR == 1 {for (i = 1; i <= NF; i++) at[$i] = i; next}
-  {printf "%.0f %.0f cycle %d %s woken %.3f received %.3f stepped %.3f sent %.3f us, %d iterations\n",
-          1000 * $at["wakeup_late_us"], 1000 * $at["sent_us"], $at["cycle"], $at["state"], $at["wakeup_late_us"],
-          $at["received_us"], $at["stepped_us"], $at["sent_us"], $at["solver_iterations"]}' /tmp/cycles.csv >/tmp/times
+  NR > 1 {printf "%.0f %.0f cycle %d %s woken %.3f received %.3f stepped %.3f sent %.3f us, %d iterations\n",
+                 1000 * $3, 1000 * $6, $1, $2, $3, $4, $5, $6, $7}' /tmp/cycles.csv >/tmp/times
 histogram() { cut -d' ' -f"$1" /tmp/times | sort -n | uniq -c | awk '{print $2, $1}'; }  # COLUMN
 worst() { sort -rn -k"$1,$1" /tmp/times | head -n 20 | cut -d' ' -f3-; }                # COLUMN
 histogram 1 >/out/wakeups
