@@ -152,6 +152,11 @@ bool Cycle::TakeController(ContourController& next) noexcept CONTOUR_NONBLOCKING
 }
 
 void Cycle::Step(const CycleInput& in, CycleOutput& out, StageSink* stages) noexcept CONTOUR_NONBLOCKING {
+  Act(in, out, stages);
+  Report(in, out);
+}
+
+void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexcept CONTOUR_NONBLOCKING {
   Observe(in);
   Estimate(in.io);
   if (stages != nullptr) stages->Passed(CycleStage::kEstimated);
@@ -167,7 +172,6 @@ void Cycle::Step(const CycleInput& in, CycleOutput& out, StageSink* stages) noex
   }
   guard_.Skip(skipped_);
   Command(orders, out);
-  Record(in, out);
   out.finished = orders.finished;
 }
 
@@ -430,7 +434,7 @@ void Cycle::Command(const Orders& orders, CycleOutput& out) noexcept {
   }
 }
 
-void Cycle::Record(const CycleInput& in, CycleOutput& out) noexcept {
+void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONBLOCKING {
   CycleRecord& r = out.record;
   r.cycle = in.cycle;
   r.grid_time_ns = in.grid_time_ns;

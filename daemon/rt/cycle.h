@@ -34,6 +34,12 @@ class Cycle {
   /// `stages`, if any, is told how far the step has come; what is computed does not depend on it.
   void Step(const CycleInput& in, CycleOutput& out, StageSink* stages = nullptr) noexcept CONTOUR_NONBLOCKING;
 
+  // Step in two parts, for a loop that sends the frames before it does the rest:
+  /// All that the frames need; they and `finished` are in `out` then.
+  void Act(const CycleInput& in, CycleOutput& out, StageSink* stages = nullptr) noexcept CONTOUR_NONBLOCKING;
+  /// Everything else of `out`, of the same input.
+  void Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONBLOCKING;
+
   // For the loop around it:
   /// How many path points the next Step can take.
   [[nodiscard]] std::size_t PathRoom() const noexcept { return follower_.Room(); }
@@ -84,7 +90,6 @@ class Cycle {
   void HoldBySprings() noexcept;
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;
-  void Record(const CycleInput& in, CycleOutput& out) noexcept;
   void RecordContourError(CycleRecord& record) noexcept;
   void RecordAxis(std::size_t i, AxisRecord& record) const noexcept;
 

@@ -69,11 +69,12 @@ void Loop::RunWall() noexcept {
     runner_.Receive(grid.time_ns, entry.input);
     runner_.Collect(grid, woken, true, entry.input);
     const std::int64_t received = Now();
-    cycle_.Step(entry.input, entry.output, &stages);
+    cycle_.Act(entry.input, entry.output, &stages);
     const std::int64_t stepped = Now();
     runner_.Send(grid.time_ns, entry.output);
     finished = entry.output.finished;
     const std::int64_t sent = Now();
+    cycle_.Report(entry.input, entry.output);
     CycleTiming& timing = entry.timing;
     timing = {};
     timing.wakeup_late_ns = woken - grid.time_ns;

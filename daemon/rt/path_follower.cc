@@ -157,8 +157,16 @@ ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const 
 
 void PathFollower::Horizon(std::size_t axis, std::size_t points, AxisHorizon& out) const noexcept {
   out.resize(std::min(points, horizon_));
-  for (std::size_t j = 0; j < out.size(); ++j)
-    out[j] = moving() ? Evaluate(axis, pace_[j]) : ReferencePoint{hold_m_[axis], 0.0, 0.0};
+  std::size_t j = 0;
+  if (!moving()) {
+    for (; j < out.size(); ++j) out[j] = {hold_m_[axis], 0.0, 0.0};
+  }
+  if (mode_ == Mode::kRunning && clock_ > static_cast<std::int64_t>(first_)) {
+    // At the program's own pace elements are the points themselves, see Evaluate.
+    const auto now = static_cast<std::uint64_t>(clock_);
+    for (; j < out.size() && now + j + 1 < end_; ++j) out[j] = At(now + j).axes[axis];
+  }
+  for (; j < out.size(); ++j) out[j] = Evaluate(axis, pace_[j]);
 }
 
 ReferencePoint PathFollower::Near(std::size_t axis, int offset) const noexcept {
