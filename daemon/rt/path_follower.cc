@@ -31,6 +31,7 @@ PathFollower::PathFollower(std::size_t axes, double period_s, double stop_period
       stop_periods_(std::max(1.0, stop_periods)),
       horizon_(std::min(horizon, kMaxHorizonPoints)),
       hold_m_(axes) {
+  for (PathPoint& point : points_) point.axes.resize(axes);
   if (0.5 * stop_periods_ + static_cast<double>(horizon_) + 16.0 > static_cast<double>(kCapacity)) {
     throw std::invalid_argument("a stop on the path would need more than " + std::to_string(kCapacity) +
                                 " path points ahead; raise limits.acceleration_mm_s2 or limits.jerk_mm_s3, "

@@ -5,6 +5,7 @@
 
 #include "core/cycle_input.h"
 #include "core/horizon.h"
+#include "core/state_keeper.h"
 
 namespace contour {
 
@@ -56,6 +57,15 @@ class PathFollower {
   /// Time on the path of horizon element 0, in periods.
   [[nodiscard]] double path_time() const noexcept { return pace_[0].time; }
   [[nodiscard]] std::size_t waiting() const noexcept { return static_cast<std::size_t>(end_ - first_); }
+
+  /// Of the many points only the axes there are: a copy of the rest would hold up the drives' answers.
+  void Keep(StateKeeper& keep) noexcept {
+    keep(mode_, hold_m_, program_id_, expecting_, have_last_, first_, end_, clock_, stop_clock_, pace_);
+    for (PathPoint& point : points_) {
+      keep(point.program_id, point.last);
+      for (std::size_t i = 0; i < axes_; ++i) keep(point.axes[i]);
+    }
+  }
 
  private:
   enum class Mode : std::uint8_t { kHolding, kRunning, kStopping, kEnded };
