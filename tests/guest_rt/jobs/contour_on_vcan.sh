@@ -2,7 +2,7 @@
 # seconds: contour_on_vcan.sh MACHINE PROGRAM SECONDS LOAD [KEY=VALUE...]
 # LOAD is a command that runs beside them from before the program begins until it ends, or empty.
 # Leaves in /out: status.json after the program; wakeups and sends, lines "NANOSECONDS COUNT" over every cycle from the
-# first to the last; worst_cycles; digest, a checksum of the daemon's log.
+# first to the last, sends_running while the program ran; late, how many cycles were in each state; worst_cycles; digest, a checksum of the daemon's log.
 machine=$1 program=$2 seconds=$3 load=$4
 shift 4
 set_keys="--set realtime.cpu=0"
@@ -71,14 +71,17 @@ wait "$logger"
 cp /tmp/contourd.log /out/
 
 contour export /tmp/cycles.lcm --out /tmp/cycles.csv \
-  --columns cycle,state,wakeup_late_us,received_us,stepped_us,sent_us,solver_iterations >/dev/null || fail "the log cannot be read"
+  --columns cycle,state,wakeup_late_us,received_us,stepped_us,sent_us,solver_iterations,late >/dev/null || fail "the log cannot be read"
 awk -F, '
   NR > 1 {printf "%.0f %.0f cycle %d %s woken %.3f received %.3f stepped %.3f sent %.3f us, %d iterations\n",
                  1000 * $3, 1000 * $6, $1, $2, $3, $4, $5, $6, $7}' /tmp/cycles.csv >/tmp/times
+awk -F, 'NR > 1 {late[$2] += $8} END {for (state in late) print state, late[state]}' /tmp/cycles.csv | sort >/out/late
 histogram() { cut -d' ' -f"$1" /tmp/times | sort -n | uniq -c | awk '{print $2, $1}'; }  # COLUMN
 worst() { sort -rn -k"$1,$1" /tmp/times | head -n 20 | cut -d' ' -f3-; }                # COLUMN
 histogram 1 >/out/wakeups
 histogram 2 >/out/sends
+grep " Running " /tmp/times >/tmp/running
+cut -d' ' -f2 /tmp/running | sort -n | uniq -c | awk '{print $2, $1}' >/out/sends_running
 # The cycles to look at when a bar is missed.
 { echo "woken last:"; worst 1; echo "sent last:"; worst 2; } >/out/worst_cycles
 sha256sum </tmp/cycles.lcm | cut -d' ' -f1 >/out/digest

@@ -44,6 +44,19 @@ def state():
         return None
 
 
+def status():
+    return json.loads(contour("status", "--json"))
+
+
+LATE = ("late_cycles", "skipped_grid_points", "stale_cycles")
+
+
+def late():
+    """How many cycles were late, missed or without feedback so far."""
+    said = status()
+    return {key: said[key] for key in LATE}
+
+
 def wait_for(what, condition, seconds=30.0):
     end = time.monotonic() + seconds
     while True:
@@ -105,9 +118,10 @@ def bring_to_motion(program):
     """Enabled by an operator, running the program and moving; a mark in the truth before that."""
     if state() == "Faulted":
         wait_for("the reset to be accepted", lambda: "Idle" in (contour("reset", check=False), state()))
-    wait_for("state Idle", lambda: state() == "Idle")
+    wait_for("state Idle or Ready", lambda: state() in ("Idle", "Ready"))
     before = truth_so_far()
-    contour("enable")
+    if state() == "Idle":
+        contour("enable")
     wait_for("state Ready", lambda: state() == "Ready")
     subprocess.Popen(["contour", "run", program, "--socket", SOCKET], stdin=subprocess.DEVNULL,
                      stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -14,8 +14,8 @@ import threading
 import time
 from pathlib import Path
 
-from guest_machine import (AT_REST_m_s, AXES, MACHINE, bring_to_motion, enabled, expect, main, run, silent_master_bound, speed,
-                           start_drives, state, truth, wait_for, write_machine)
+from guest_machine import (AT_REST_m_s, AXES, MACHINE, bring_to_motion, contour, enabled, expect, last_truth, late, main, run,
+                           silent_master_bound, speed, start_drives, state, truth, wait_for, write_machine)
 
 UNITS = [f"/etc/systemd/system/{name}.service" for name in ("contourd", "can-up@", "vcan-up@")]
 
@@ -51,6 +51,35 @@ def check_started():
     locked_kB = int(re.search(r"VmLck:\s*(\d+)", said)[1])
     expect(locked_kB > 0, "no memory is locked")
     print(f"started: active, READY at Idle, cycle at SCHED_FIFO 80, no capabilities, {locked_kB // 1024} MB locked")
+
+
+def check_reload(program):
+    """A gain changes in motion and no cycle is late; what may not change is refused by name, and nothing happens."""
+    text = MACHINE.read_text(encoding="utf-8")
+    expect("\ncontrol:\n" in text and "\n  full:" not in text, "the machine file is not as this test wants to change it")
+    before = bring_to_motion(program)
+    started = late()
+    time.sleep(0.5)
+    MACHINE.write_text(text.replace("\ncontrol:\n", "\ncontrol:\n  full: {contour_bandwidth_Hz: 20}\n"), encoding="utf-8")
+    run("systemctl", "reload", "contourd")
+    time.sleep(1.0)
+    expect(enabled(last_truth()), "the machine did not go on after the reload")
+    contour("stop")
+    wait_for("state Ready", lambda: state() == "Ready")
+    ended = late()
+    said = [line for line in journal().splitlines() if "full.contour_bandwidth_Hz" in line]
+    expect(said, "the journal does not say which gain was changed")
+    expect(ended == started, f"not every cycle of the reload was in time: {started}, then {ended}")
+    expect(any(speed(row) > 0.03 for row in truth(before)), "the machine did not move")
+    MACHINE.write_text(text.replace("\n  cycle_us: 1000\n", "\n  cycle_us: 2000\n"), encoding="utf-8")
+    run("systemctl", "reload", "contourd", check=False)
+    wait_for("the refusal", lambda: any("machine.cycle_us" in line for line in journal().splitlines()))
+    expect(state() == "Ready", f"after a reload that was refused the machine is {state()}")
+    MACHINE.write_text(text, encoding="utf-8")
+    run("systemctl", "reload", "contourd")
+    contour("disable")
+    wait_for("state Idle", lambda: state() == "Idle")
+    print(f"reload in motion: {said[-1].strip()}; no cycle late, without feedback or missed; another cycle refused")
 
 
 def check_silence(name, program, bound, silence, restarts):
@@ -139,6 +168,7 @@ def test():
     run("systemctl", "start", "vcan-up@vcan0")
     start_drives("vcan0")
     check_started()
+    check_reload(sys.argv[2])
     check_silence("SIGKILL", sys.argv[2], bound, kill, 1)
     check_silence("thread held", sys.argv[2], bound, StoppedThread(), 2)
     expect("Watchdog timeout" in journal(), "systemd's watchdog did not act")
