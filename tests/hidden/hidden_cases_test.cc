@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "tools/hidden/draw_setting.h"
 #include "tools/hidden/hide_effect.h"
@@ -14,6 +15,7 @@
 #include "tools/hidden/recorded_case.h"
 #include "tools/hidden/residual.h"
 #include "tools/hidden/size_effect.h"
+#include "tools/simulate/virtual_machine.h"
 
 namespace contour::hidden {
 namespace {
@@ -46,6 +48,17 @@ TEST(HiddenSettings, TheSameSeedIsTheSameMachineAndTheModelIsNotTheTruth) {
     EXPECT_LE(std::abs(a.truth.Fc_N / a.stated.Fc_N - 1.0), 0.2) << "twice the stated uncertainty";
     EXPECT_LE(std::abs(a.truth.motor_inertia_kgm2 / a.stated.motor_inertia_kgm2 - 1.0), 0.1);
   }
+}
+
+TEST(HiddenSettings, EveryMachineFileIsAccepted) {
+  const auto file = std::filesystem::temp_directory_path() / ("hidden_machine." + std::to_string(getpid()));
+  for (const Misfit misfit : {Misfit::kNone, Misfit::kMaxwellSlip})
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+      std::ofstream(file) << MachineText(DrawSetting(seed, {}, misfit));
+      EXPECT_NO_THROW(VirtualMachine(LoadEmulatedMachine(file.string()), ControllerName::kPid))
+          << Name(misfit) << " " << seed;
+    }
+  std::filesystem::remove(file);
 }
 
 TEST(HiddenSettings, NothingOfTheEffectStandsInTheFiles) {

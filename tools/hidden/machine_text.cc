@@ -6,6 +6,8 @@
 namespace contour::hidden {
 namespace {
 
+constexpr double kBreakAwaySpread = 6.0;
+
 void Add(std::string& text, const char* format, ...) __attribute__((format(printf, 2, 3)));
 void Add(std::string& text, const char* format, ...) {
   char line[500];
@@ -56,7 +58,14 @@ void AddEmulated(std::string& text, const char* name, const Setting& s) {
       t.Fc_N, t.vs_mm_s, t.sigma0_N_m, t.sigma1_Ns_m);
   Add(text, "sigma1_decay_mm_s: %.9g, sigma2_Ns_m: %.9g, position_amplitude_rel: 0, ", t.sigma1_decay_mm_s,
       t.sigma2_Ns_m);
-  text += "ripple_amplitude_rel: 0}\n";
+  text += "ripple_amplitude_rel: 0";
+  if (s.misfit == Misfit::kMaxwellSlip) {
+    // Elements that break away over a range with the axis's own presliding distance in its middle.
+    const double presliding_um = 1e6 * t.Fs_N / t.sigma0_N_m;
+    Add(text, ", breakaway_min_um: %.9g, breakaway_max_um: %.9g", presliding_um / kBreakAwaySpread,
+        presliding_um * kBreakAwaySpread);
+  }
+  text += "}\n";
 }
 
 }  // namespace

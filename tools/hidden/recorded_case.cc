@@ -107,7 +107,7 @@ KnownCase RecordCase(const Question& question, const std::filesystem::path& dire
   try {
     Make(known, directory);
     if (compact) Compact(directory);
-  } catch (const std::runtime_error& e) {
+  } catch (const std::exception& e) {
     known.why_not = e.what();
     std::filesystem::remove(directory / "log.lcm");
   }
