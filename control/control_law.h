@@ -1,6 +1,7 @@
 #pragma once
 
 #include "control/contour_controller.h"
+#include "core/nonblocking.h"
 #include "core/state_keeper.h"
 
 namespace contour {
@@ -9,13 +10,13 @@ namespace contour {
 class ControlLaw {
  public:
   virtual ~ControlLaw() = default;
-  virtual void Reset() noexcept = 0;
+  virtual void Reset() noexcept CONTOUR_NONBLOCKING = 0;
   /// This axis is not under this law's control in this cycle: its integrator must not wind up.
-  virtual void Release(std::size_t axis) noexcept = 0;
-  virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
-  [[nodiscard]] virtual int horizon_points() const noexcept = 0;
+  virtual void Release(std::size_t axis) noexcept CONTOUR_NONBLOCKING = 0;
+  virtual void Step(const ControlInput& input, ControlOutput& output) noexcept CONTOUR_NONBLOCKING = 0;
+  [[nodiscard]] virtual int horizon_points() const noexcept CONTOUR_NONBLOCKING = 0;
   /// What changes from Step to Step; gains and all that follows from them stay as constructed.
-  virtual void Keep(StateKeeper& keep) noexcept = 0;
+  virtual void Keep(StateKeeper& keep) noexcept CONTOUR_NONBLOCKING = 0;
 };
 
 /// Point of a horizon; beyond its end the last one.

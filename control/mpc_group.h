@@ -8,6 +8,7 @@
 #include "control/flat_feedforward.h"
 #include "control/path_weights.h"
 #include "control/qp_solver.h"
+#include "core/nonblocking.h"
 
 namespace contour {
 
@@ -15,9 +16,9 @@ namespace contour {
 class MpcGroupBase {
  public:
   virtual ~MpcGroupBase() = default;
-  virtual void Reset() noexcept = 0;
-  virtual void Step(const ControlInput& input, ControlOutput& output) noexcept = 0;
-  virtual void Keep(StateKeeper& keep) noexcept = 0;
+  virtual void Reset() noexcept CONTOUR_NONBLOCKING = 0;
+  virtual void Step(const ControlInput& input, ControlOutput& output) noexcept CONTOUR_NONBLOCKING = 0;
+  virtual void Keep(StateKeeper& keep) noexcept CONTOUR_NONBLOCKING = 0;
 };
 
 /// MPC of 1 to 3 axes in the frame of their common path. Deviations from the flat feed-forward are predicted

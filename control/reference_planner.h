@@ -7,6 +7,7 @@
 #include "control/contour_controller.h"
 #include "control/control_config.h"
 #include "core/horizon.h"
+#include "core/nonblocking.h"
 #include "core/state_keeper.h"
 
 namespace contour {
@@ -15,9 +16,10 @@ namespace contour {
 class PlannerGroupBase {
  public:
   virtual ~PlannerGroupBase() = default;
-  virtual void Reset() noexcept = 0;
-  virtual void Plan(const PerAxis<AxisHorizon>& wanted, PerAxis<AxisHorizon>& planned) noexcept = 0;
-  virtual void Keep(StateKeeper& keep) noexcept = 0;
+  virtual void Reset() noexcept CONTOUR_NONBLOCKING = 0;
+  virtual void Plan(const PerAxis<AxisHorizon>& wanted,
+                    PerAxis<AxisHorizon>& planned) noexcept CONTOUR_NONBLOCKING = 0;
+  virtual void Keep(StateKeeper& keep) noexcept CONTOUR_NONBLOCKING = 0;
 };
 
 /// Turns a reference that asks for more acceleration than the torque allows, as corners at full feed do, into

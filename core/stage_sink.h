@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/nonblocking.h"
+
 namespace contour {
 
 /// Parts of a cycle, for stamps.
@@ -15,7 +17,7 @@ enum class CycleStage : std::uint8_t {
 class StageSink {
  public:
   virtual ~StageSink() = default;
-  virtual void Passed(CycleStage stage) noexcept = 0;
+  virtual void Passed(CycleStage stage) noexcept CONTOUR_NONBLOCKING = 0;
 };
 
 }  // namespace contour

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 namespace contour {
 namespace {
@@ -37,6 +40,19 @@ FilterSetup Check(const Mechanics& mechanics, const FrictionConfig& config_frict
   // A rounded position is off by at most half a count, uniformly: LSB / sqrt(12).
   const double rounding_m = resolution_m / std::sqrt(12.0);
   return {mechanics, f, config, period_s, lag_s, std::max(config.measurement_noise_um * 1e-6, rounding_m)};
+}
+
+/// Calls `what` with the filter that is there. std::visit does the same but may throw, which the cycle
+/// cannot.
+template <class Filters, class What>
+void WithFilter(Filters& filters, What&& what) noexcept {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    const auto one = [&](auto* filter) {
+      if (filter != nullptr) what(*filter);
+    };
+    (one(std::get_if<I>(&filters)), ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<std::remove_const_t<Filters>>>{});
 }
 
 }  // namespace
@@ -73,7 +89,7 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
 }
 
 void AxisEstimator::Reset(double position_m) noexcept {
-  std::visit([&](auto& filter) noexcept { filter.Reset(position_m); }, filter_);
+  WithFilter(filter_, [&](auto& filter) noexcept { filter.Reset(position_m); });
   roll_.Reset(0.0);
   correction_.Reset();
   rigid_.Reset();
@@ -83,11 +99,13 @@ void AxisEstimator::Reset(double position_m) noexcept {
 AxisEstimate AxisEstimator::Update(const Input& in) noexcept {
   at_rest_ = in.at_rest || !in.enabled;
   if (kind_ == EstimatorKind::kFull) return UpdateFull(in);
-  return std::visit([&](auto& filter) noexcept { return filter.Update(in); }, filter_);
+  AxisEstimate estimate;
+  WithFilter(filter_, [&](auto& filter) noexcept { estimate = filter.Update(in); });
+  return estimate;
 }
 
 AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
-  auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
+  auto& filter = *std::get_if<SevenStateFilter<SqrtUkf<kSevenStates>>>(&filter_);
   const auto& ahead = filter.predicted();
   const auto basis = correction_.Basis(ahead[kPosition], ahead[kVelocity]);
   const double level = known_.LevelFactor(ahead[kPosition]);
@@ -106,20 +124,15 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
                                     FrictionPreview& out) noexcept {
   if (kind_ == EstimatorKind::kFull) {
-    const auto& filter = std::get<SevenStateFilter<SqrtUkf<kSevenStates>>>(filter_);
+    const auto& filter = *std::get_if<SevenStateFilter<SqrtUkf<kSevenStates>>>(&filter_);
     roll_.Run(filter.model(), filter.state(), correction_, rigid_, {known_, temperature_degC_}, at_rest_,
               reference, points, out);
     return;
   }
-  const double ahead_N = std::visit(
-      [](const auto& filter) noexcept {
-        if constexpr (requires { filter.FrictionAhead_N(); }) {
-          return filter.FrictionAhead_N();
-        } else {
-          return 0.0;
-        }
-      },
-      filter_);
+  double ahead_N = 0.0;
+  WithFilter(filter_, [&](const auto& filter) noexcept {
+    if constexpr (requires { filter.FrictionAhead_N(); }) ahead_N = filter.FrictionAhead_N();
+  });
   out.resize(std::min(points, reference.size()));
   for (auto& f : out) f = {ahead_N, ahead_N, 0.0};
 }

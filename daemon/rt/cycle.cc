@@ -147,7 +147,8 @@ bool Cycle::TakeController(ContourController& next) noexcept CONTOUR_NONBLOCKING
   StateKeeper loading = StateKeeper::Loading(handover_);
   next.Keep(loading);
   if (!saving.whole() || !loading.whole()) return false;
-  std::swap(controller_, next);
+  // What is destroyed in between has been moved from, and owns nothing.
+  CONTOUR_KNOWN_NONBLOCKING(std::swap(controller_, next);)
   return true;
 }
 
