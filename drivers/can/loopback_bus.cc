@@ -47,16 +47,6 @@ std::size_t LoopbackBus::Send(std::int64_t now_ns, std::span<const CanFrame> fra
   return accepted;
 }
 
-void LoopbackBus::SetLink(std::int64_t now_ns, bool up) noexcept {
-  AdvanceTo(now_ns);
-  state_.up = up;
-  if (up) return;
-  mailboxes_.clear();
-  send_count_ = 0;
-  busy_ = false;
-  idle_from_ns_ = now_ns_;
-}
-
 // Ends of frames come before timers, timers before the next arbitration. Arbitration at `now_ns` itself waits
 // for the next call, so that what the master sends at that instant takes part.
 void LoopbackBus::AdvanceTo(std::int64_t now_ns) noexcept {

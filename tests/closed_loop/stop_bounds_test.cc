@@ -9,6 +9,7 @@
 
 #include "config/stopping.h"
 #include "tests/closed_loop/test_machine.h"
+#include "tests/support/drive_faults.h"
 
 namespace contour::test {
 namespace {
@@ -128,7 +129,7 @@ TEST_P(StopBounds, Terminate) {
 }
 
 TEST_P(StopBounds, DriveFault) {
-  machine_.emulated().InjectFault(1, 0x3210);
+  DriveFaults::Inject(machine_.emulated(), 1, 0x3210);
   ExpectWithin("fault (quick stop)", Measure(true));
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "tests/closed_loop/test_machine.h"
+#include "tests/support/drive_faults.h"
 
 namespace contour::test {
 namespace {
@@ -139,7 +140,7 @@ TEST_F(Stops, BusDown) {
 }
 
 TEST_F(Stops, DriveFault) {
-  machine_.emulated().InjectFault(1, 0x3210);
+  DriveFaults::Inject(machine_.emulated(), 1, 0x3210);
   EXPECT_LE(TicksToStandstill(300), 80);
   EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
   EXPECT_EQ(machine_.record().reason, Reason::kDriveFault);

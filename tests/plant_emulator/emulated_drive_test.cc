@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/plant_emulator/drive_harness.h"
+#include "tests/support/drive_faults.h"
 
 namespace contour::test {
 namespace {
@@ -267,7 +268,7 @@ TEST_F(EmulatedDrive, FaultReactsReportsAndResetsOnARisingEdgeOnly) {
   h.BringUp();
   h.Enable();
   Cycles(50, 0x0F, 150);
-  h.machine.InjectFault(0, 0x2310);
+  DriveFaults::Inject(h.machine, 0, 0x2310);
   Cycles(1, 0x0F, 150);
   EXPECT_EQ(h.status(1) & 0x4F, 0x0F);
   Cycles(200, 0x8F, 150);  // bit 7 comes while the reaction runs: no edge in Fault
@@ -289,7 +290,7 @@ TEST_F(EmulatedDrive, FaultReactsReportsAndResetsOnARisingEdgeOnly) {
 TEST_F(EmulatedDrive, EmergenciesKeepTheirInhibitTime) {
   h.Expect(1, 0x1015, 0, 2, 500);  // 50 ms
   h.Nmt(0x01);
-  h.machine.InjectFault(0, 0x2310);
+  DriveFaults::Inject(h.machine, 0, 0x2310);
   h.Expect(1, 0x6040, 0, 2, 0x00);
   h.Expect(1, 0x6040, 0, 2, 0x80);
   h.RunTimers(20'000'000);

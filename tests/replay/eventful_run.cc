@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "daemon/program/path_generator.h"
+#include "tests/support/drive_faults.h"
 
 namespace contour::test {
 namespace {
@@ -84,7 +85,7 @@ void EventfulRun::LoseIo() {
 }
 
 void EventfulRun::FailDrive() {
-  machine_.emulated().InjectFault(1, 0x3210);
+  DriveFaults::Inject(machine_.emulated(), 1, 0x3210);
   Tick(200);
 }
 

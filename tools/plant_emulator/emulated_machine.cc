@@ -234,8 +234,6 @@ BusNode& EmulatedMachine::node(std::size_t bus) noexcept { return *impl_->nodes_
 std::size_t EmulatedMachine::bus_count() const noexcept { return impl_->buses_.size(); }
 const TruthRow& EmulatedMachine::truth() const noexcept { return impl_->truth_; }
 void EmulatedMachine::SetTruthSink(TruthSink* sink) noexcept { impl_->sink_ = sink; }
-void EmulatedMachine::InjectFault(std::size_t axis, std::uint16_t error_code) noexcept {
-  impl_->axes_[axis]->InjectFault(error_code);
-}
+plant::EmulatedAxis& EmulatedMachine::axis(std::size_t axis) noexcept { return *impl_->axes_[axis]; }
 
 }  // namespace contour

@@ -12,6 +12,10 @@
 
 namespace contour {
 
+namespace plant {
+class EmulatedAxis;
+}
+
 /// Where an emulated axis sits on the bus, and what its drive is unless the emulator's section says
 /// otherwise.
 struct EmulatedAxisPlacement {
@@ -61,11 +65,11 @@ class EmulatedMachine {
   /// `sink` (may be null) sees every row from now on and must outlive the machine or be taken out again.
   void SetTruthSink(TruthSink* sink) noexcept;
 
-  /// Makes a drive fail, as broken hardware would: EMCY with this code, fault reaction, Fault.
-  void InjectFault(std::size_t axis, std::uint16_t error_code) noexcept;
-
  private:
   class Impl;
+  friend class DriveFaults;  // of the tests: what breaks drives is not part of any program
+  [[nodiscard]] plant::EmulatedAxis& axis(std::size_t axis) noexcept;
+
   std::unique_ptr<Impl> impl_;
 };
 

@@ -10,6 +10,7 @@
 #include "drivers/cia402/drive_master.h"
 #include "tests/plant_emulator/drive_harness.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/drive_faults.h"
 #include "tools/plant_emulator/emulated_machine.h"
 
 // The master and the emulated machine were written apart from each other, from the standards.
@@ -129,7 +130,7 @@ TEST(EmulatedDrive, AFaultIsReportedResetAndDrivenOn) {
   Machine m;
   ASSERT_TRUE(m.BringUp()) << m.Text();
   ASSERT_TRUE(m.Reach(DriveGoal::kEnabled));
-  m.emulated.InjectFault(1, 0x3210);
+  DriveFaults::Inject(m.emulated, 1, 0x3210);
   m.Cycles(5);
   EXPECT_TRUE(m.master.status()[1].fault);
   EXPECT_EQ(m.master.status()[1].emergency_code, 0x3210);
@@ -171,7 +172,7 @@ TEST(EmulatedDrive, TheWholeWayTouchesNoHeap) {
   const bool up = m.BringUp();
   const bool enabled = up && m.Reach(DriveGoal::kEnabled);
   m.Cycles(100);
-  m.emulated.InjectFault(0, 0x3210);
+  DriveFaults::Inject(m.emulated, 0, 0x3210);
   m.Cycles(20);
   m.Reach(DriveGoal::kQuickStop, 50);
   m.Reach(DriveGoal::kFaultReset);
