@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -51,8 +52,12 @@ std::string Supervisor::MachineFile() {
 }
 
 Answer Supervisor::Ask(RequestKind kind, std::uint32_t program_id) {
-  const std::uint32_t sequence =
-      kind == RequestKind::kStop ? parts_.mailbox.PostStop() : parts_.mailbox.Post(kind, program_id);
+  const auto post = [&] {
+    if (kind == RequestKind::kStop) return parts_.mailbox.PostStop();
+    const std::lock_guard lock(posting_);
+    return parts_.mailbox.Post(kind, program_id);
+  };
+  const std::uint32_t sequence = post();
   if (sequence == 0)
     return {false, "the cycle takes no requests: the mailbox is full; is the loop running?", 0, 0};
   return Await(kind, sequence);
@@ -62,13 +67,13 @@ Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence) {
   const auto timeout = clock_ == "lockstep" ? kLockstepAnswerTimeout : kAnswerTimeout;
   const auto deadline = Clock::now() + timeout;
   for (;;) {
-    const CycleRecord record = parts_.hub.record();
-    // Only a stop overtakes; whoever waits behind it waits for its own answer.
-    const bool overtaken = kind == RequestKind::kStop && record.acknowledged > sequence;
-    if (record.acknowledged == sequence || overtaken) {
-      const bool ok = overtaken || record.acknowledged_ok;
-      return {ok, ok ? std::string() : RefusalText(record, kind, axis_names_, bus_names_), sequence, 0};
+    if (const std::optional<CycleRecord> answer = parts_.hub.answer(sequence)) {
+      const bool ok = answer->acknowledged_ok;
+      return {ok, ok ? std::string() : RefusalText(*answer, kind, axis_names_, bus_names_), sequence, 0};
     }
+    // A stop before the cycle has taken the one before it stands for both.
+    if (kind == RequestKind::kStop && parts_.hub.record().acknowledged > sequence)
+      return {true, std::string(), sequence, 0};
     if (Clock::now() >= deadline) {
       // Whoever asked has been told that it failed: it must not happen later either.
       if (kind != RequestKind::kStop) parts_.mailbox.Withdraw(sequence);
@@ -108,7 +113,11 @@ Answer Supervisor::Reload() {
     controllers_.push_back(
         std::make_unique<ContourController>(MakeController(MakeCycleConfig(wanted, controller_))));
     parts_.hub.Note(kTuningNote + std::to_string(++changes_), changes);
-    const std::uint32_t sequence = parts_.mailbox.PostTune(*controllers_.back(), changes_);
+    const auto post = [&] {
+      const std::lock_guard posting(posting_);
+      return parts_.mailbox.PostTune(*controllers_.back(), changes_);
+    };
+    const std::uint32_t sequence = post();
     if (sequence == 0)
       return {false, "the cycle takes no requests: the mailbox is full; is the loop running?"};
     Answer answer = Await(RequestKind::kTune, sequence);
@@ -151,6 +160,7 @@ Answer Supervisor::Run(const ProgramUpload& upload) {
       parts_.pump.Abandon();
       return answer;
     }
+    const std::lock_guard lock(program_);
     program_name_ = upload.name;
     program_duration_s_ = duration_s;
     return answer;
@@ -176,8 +186,11 @@ MachineStatus Supervisor::Status() {
   out.bring_up = BringUpText(s.record.bring_up, axis_names_);
   out.reason_text = s.record.reason == Reason::kBringUpFailed ? out.bring_up
                                                               : ReasonText(s.record, axis_names_, bus_names_);
-  out.program_name = program_name_;
-  out.program_duration_s = program_duration_s_;
+  {
+    const std::lock_guard lock(program_);
+    out.program_name = program_name_;
+    out.program_duration_s = program_duration_s_;
+  }
   out.cycles = parts_.loop.counters().cycles.load();
   if (clock_ == "wall") out.late_cycles = parts_.loop.counters().late_cycles.load();
   out.skipped_grid_points = parts_.loop.counters().skipped_grid_points.load();

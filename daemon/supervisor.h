@@ -30,7 +30,8 @@ struct SupervisedParts {
 };
 
 /// Carries an operator's requests to the cycle and its answers back. It asks through the mailbox and decides
-/// nothing: whether a request is right in the present state is for the cycle to say.
+/// nothing: whether a request is right in the present state is for the cycle to say. Stop(), Status() and the
+/// feeds may be called while another call waits.
 class Supervisor final : public OperatorDesk {
  public:
   Supervisor(const MachineConfig& machine, ControllerName controller, std::string clock,
@@ -67,7 +68,9 @@ class Supervisor final : public OperatorDesk {
   PerAxis<PlanLimits> limits_;
   PerAxis<double> encoder_counts_m_;  ///< way of the table per encoder count
   SupervisedParts parts_;
+  std::mutex posting_;  ///< requests come from the socket's worker and from SIGHUP, a stop from anywhere
   std::uint32_t program_id_ = 0;
+  std::mutex program_;  ///< guards the two below
   std::string program_name_;
   double program_duration_s_ = 0.0;
 };

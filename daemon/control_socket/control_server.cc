@@ -26,6 +26,13 @@ constexpr int kStreamPeriod_ms = 20;
 constexpr std::size_t kRowsPerMessage = 64;
 /// Rows are held back while a client has this much unread.
 constexpr std::size_t kRowsHighWater_bytes = 1u << 20;
+/// Stops of one client under way; more of them wait as other requests do.
+constexpr std::size_t kStopsUnderWay = 8;
+
+/// Text from programs and file names need not be UTF-8; it must not cost anybody the connection.
+std::string Text(const json& message) {
+  return message.dump(-1, ' ', false, json::error_handler_t::replace) + '\n';
+}
 
 }  // namespace
 
@@ -33,20 +40,34 @@ ControlServer::ControlServer(Options options, OperatorDesk& desk)
     : options_(std::move(options)),
       desk_(desk),
       listener_(options_.socket, options_.mode),
-      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
+      wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      requests_(desk,
+                [this](std::uint64_t c, const json& reply) { OnReply(c, RequestClass::kWaits, reply); }),
+      stops_(desk, [this](std::uint64_t c, const json& reply) { OnReply(c, RequestClass::kStop, reply); }) {}
 
 ControlServer::~ControlServer() { Stop(); }
 
 void ControlServer::Start() {
-  if (!thread_.joinable()) thread_ = std::thread(&ControlServer::Serve, this);
+  if (thread_.joinable()) return;
+  requests_.Start();
+  stops_.Start();
+  thread_ = std::thread(&ControlServer::Serve, this);
 }
 
 void ControlServer::Stop() {
   if (!thread_.joinable()) return;
+  // Whoever is being answered gets the answer still.
+  requests_.Stop();
+  stops_.Stop();
+  ending_ = true;
+  Wake();
+  thread_.join();
+}
+
+void ControlServer::Wake() {
   const std::uint64_t one = 1;
   // The counter of an eventfd takes this write always.
   [[maybe_unused]] const ssize_t written = ::write(wake_.get(), &one, sizeof one);
-  thread_.join();
 }
 
 void ControlServer::Serve() {
@@ -58,7 +79,10 @@ void ControlServer::Serve() {
       polled.push_back({client.socket.get(), static_cast<short>(wants_out ? POLLIN | POLLOUT : POLLIN), 0});
     }
     if (::poll(polled.data(), polled.size(), PollTimeout_ms()) < 0 && errno != EINTR) break;
-    if (polled[0].revents != 0) break;
+    if (polled[0].revents != 0) {
+      TakeReplies();
+      if (ending_) break;
+    }
     std::size_t i = 2;
     for (Client& client : clients_) {
       const short events = polled[i++].revents;
@@ -90,6 +114,7 @@ void ControlServer::AcceptClients() {
     Descriptor socket = listener_.Accept();
     if (socket.get() < 0) return;
     Client& client = clients_.emplace_back();
+    client.number = next_number_++;
     client.socket = std::move(socket);
     if (clients_.size() <= options_.max_clients) continue;
     Send(client, {{"ok", false},
@@ -137,6 +162,26 @@ void ControlServer::TakeLines(Client& client) {
 
 void ControlServer::OnLine(Client& client, std::string_view line) {
   if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
+  const RequestClass kind = ClassOf(line);
+  if (kind == RequestClass::kStop && client.stops < kStopsUnderWay) {
+    ++client.stops;
+    stops_.Take(client.number, std::string(line));
+  } else if (client.waits) {
+    client.behind.emplace_back(line);
+    client.behind_bytes += line.size();
+    if (client.behind_bytes > options_.max_line_bytes) client.gone = true;
+  } else {
+    CarryOut(client, line);
+  }
+}
+
+// A client's requests are answered in their order, stops apart.
+void ControlServer::CarryOut(Client& client, std::string_view line) {
+  if (ClassOf(line) != RequestClass::kAtOnce) {
+    client.waits = true;
+    requests_.Take(client.number, std::string(line));
+    return;
+  }
   const bool had_rows = client.subscriptions.rows;
   const json reply = Handle(line, desk_, client.subscriptions);
   Send(client, reply);
@@ -146,6 +191,41 @@ void ControlServer::OnLine(Client& client, std::string_view line) {
   } else if (!client.subscriptions.rows && had_rows) {
     desk_.Detach(client.feed);
     client.feed.reset();
+  }
+}
+
+void ControlServer::OnReply(std::uint64_t client, RequestClass kind, const json& reply) {
+  {
+    const std::lock_guard lock(replies_mutex_);
+    replies_.push_back({client, kind, Text(reply)});
+  }
+  Wake();
+}
+
+void ControlServer::TakeReplies() {
+  std::uint64_t count = 0;
+  [[maybe_unused]] const ssize_t taken = ::read(wake_.get(), &count, sizeof count);
+  std::vector<Reply> replies;
+  {
+    const std::lock_guard lock(replies_mutex_);
+    replies.swap(replies_);
+  }
+  for (const Reply& reply : replies) {
+    const auto client = std::find_if(clients_.begin(), clients_.end(),
+                                     [&](const Client& c) { return c.number == reply.client; });
+    if (client == clients_.end()) continue;
+    SendLine(*client, reply.line);
+    if (reply.kind == RequestClass::kStop) {
+      --client->stops;
+      continue;
+    }
+    client->waits = false;
+    while (!client->waits && !client->behind.empty()) {
+      const std::string line = std::move(client->behind.front());
+      client->behind.pop_front();
+      client->behind_bytes -= line.size();
+      CarryOut(*client, line);
+    }
   }
 }
 
@@ -167,10 +247,10 @@ void ControlServer::SendSubscribed(Client& client) {
   }
 }
 
-void ControlServer::Send(Client& client, const nlohmann::json& message) {
-  // Text from programs and file names need not be UTF-8; it must not cost anybody the connection.
-  client.unsent += message.dump(-1, ' ', false, json::error_handler_t::replace);
-  client.unsent += '\n';
+void ControlServer::Send(Client& client, const nlohmann::json& message) { SendLine(client, Text(message)); }
+
+void ControlServer::SendLine(Client& client, std::string_view line) {
+  client.unsent += line;
   if (client.unsent.size() > options_.max_unread_bytes) client.gone = true;
 }
 

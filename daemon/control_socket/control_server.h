@@ -2,25 +2,34 @@
 
 #include <sys/types.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <list>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "daemon/control_socket/operator_desk.h"
 #include "daemon/control_socket/request_handler.h"
+#include "daemon/control_socket/request_worker.h"
 #include "daemon/control_socket/unix_listener.h"
 
 namespace contour {
 
 /// Serves the operator's desk on a local Unix stream socket, lines of JSON both ways, in a thread of its own.
 /// Who may open the socket may move the machine: its permissions are the access control, and nothing listens
-/// on a network. Sizes are bounded: a client that sends an endless line or does not read its answers is
-/// dropped; rows wait in their feed, which counts what it loses.
+/// on a network. Requests that wait for the cycle are carried out by a worker, in the order of their arrival,
+/// and stops by another: a stop never waits behind an unanswered request, whoever made it. Sizes are bounded:
+/// a client that sends an endless line or does not read its answers is dropped; rows wait in their feed,
+/// which counts what it loses.
 class ControlServer {
  public:
   struct Options {
@@ -42,8 +51,13 @@ class ControlServer {
 
  private:
   struct Client {
+    std::uint64_t number = 0;
     Descriptor socket;
-    std::string received;  ///< the line under way
+    std::string received;            ///< the line under way
+    bool waits = false;              ///< a worker has a request of this client
+    std::deque<std::string> behind;  ///< its requests after that one
+    std::size_t behind_bytes = 0;
+    std::size_t stops = 0;  ///< under way
     std::string unsent;
     Subscriptions subscriptions;
     std::shared_ptr<RowFeed> feed;
@@ -58,8 +72,13 @@ class ControlServer {
   void Receive(Client& client);
   void TakeLines(Client& client);
   void OnLine(Client& client, std::string_view line);
+  void CarryOut(Client& client, std::string_view line);
+  void TakeReplies();
+  void OnReply(std::uint64_t client, RequestClass kind, const nlohmann::json& reply);
+  void Wake();
   void SendSubscribed(Client& client);
   void Send(Client& client, const nlohmann::json& message);
+  void SendLine(Client& client, std::string_view line);
   void Flush(Client& client);
   void DropGoneClients();
 
@@ -68,6 +87,17 @@ class ControlServer {
   UnixListener listener_;
   Descriptor wake_;
   std::list<Client> clients_;
+  std::uint64_t next_number_ = 1;
+  struct Reply {
+    std::uint64_t client;
+    RequestClass kind;
+    std::string line;
+  };
+  std::mutex replies_mutex_;
+  std::vector<Reply> replies_;  ///< of the workers, not yet with their clients
+  std::atomic<bool> ending_{false};
+  RequestWorker requests_;
+  RequestWorker stops_;
   std::thread thread_;
 };
 

@@ -28,7 +28,8 @@ struct Answer {
 
 /// What an operator may ask of the machine. The control socket calls it, the supervisor is it.
 ///
-/// All calls come from the one thread of the socket server, one at a time. A request returns once the cycle
+/// Stop() comes from one thread, Status(), Attach() and Detach() from another, and all others, one at a time,
+/// from a third: a stop and the status do not wait for a request that waits. A request returns once the cycle
 /// has accepted or refused it (not when the machine has got there: a client watches the status for that), and
 /// within two seconds in any case, with a refusal when the cycle does not answer. Implementations do not
 /// throw; a program that cannot be read or does not fit the machine is a refusal with the full message.

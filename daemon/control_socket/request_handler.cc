@@ -111,6 +111,19 @@ json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& sub
 
 }  // namespace
 
+RequestClass ClassOf(std::string_view line) noexcept {
+  try {
+    const json request = json::parse(line, nullptr, false);
+    if (!request.is_object()) return RequestClass::kAtOnce;
+    const std::string kind = request.value("request", std::string());
+    if (kind == "stop") return RequestClass::kStop;
+    const bool at_once = kind == "status" || kind == "watch" || kind == "rows";
+    return at_once ? RequestClass::kAtOnce : RequestClass::kWaits;
+  } catch (const std::exception&) {
+    return RequestClass::kAtOnce;  // "request" is no string: refused
+  }
+}
+
 nlohmann::json Handle(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions) noexcept {
   try {
     return HandleOrThrow(line, desk, subscriptions);

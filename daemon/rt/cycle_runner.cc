@@ -50,6 +50,12 @@ void CycleRunner::Send(std::int64_t bus_time_ns, const CycleOutput& out) noexcep
   }
 }
 
+bool CycleRunner::IoChanged(const IoInput& last, std::int64_t now_ns) noexcept {
+  const IoInput now = io_.Read(now_ns);
+  return now.fresh != last.fresh || now.emergency_stop_ok != last.emergency_stop_ok ||
+         now.enable_chain_ok != last.enable_chain_ok;
+}
+
 void CycleRunner::Tick(const GridPoint& grid, bool take_requests, CycleEntry& entry) noexcept {
   entry.input.frames.clear();
   Receive(grid.time_ns, entry.input);

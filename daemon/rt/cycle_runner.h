@@ -28,6 +28,9 @@ class CycleRunner {
   /// The output's frames to their buses, a batch each.
   void Send(std::int64_t bus_time_ns, const CycleOutput& out) noexcept;
 
+  /// Whether the auxiliary I/O, or the age of its newest sample, permits something else than `last` did.
+  [[nodiscard]] bool IoChanged(const IoInput& last, std::int64_t now_ns) noexcept;
+
   /// Receive, Collect, Step, Send: one cycle in virtual time.
   void Tick(const GridPoint& grid, bool take_requests, CycleEntry& entry) noexcept;
 

@@ -33,8 +33,10 @@ LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimit
                          part.length_ns < limits.throttle_ns * 12 / 10;
     return as_long ? LateCause::kThrottled : LateCause::kPreempted;
   }
-  // A thread that sleeps touches no memory.
-  if (t.page_faults != 0 && part.cause != LateCause::kWakeUp) return LateCause::kPageFault;
+  // A thread that sleeps touches no memory. But the code it wakes up into may be gone: the thread is woken in
+  // time, faults before it can look at the clock, and gives up the CPU until the page is there.
+  if (t.page_faults != 0 && (part.cause != LateCause::kWakeUp || t.voluntary_switches != 0))
+    return LateCause::kPageFault;
   if (t.voluntary_switches != 0) return LateCause::kStopped;
   // Where the kernel tells how long the thread waited, a short wait is no explanation.
   const bool unknown_wait = t.run_delay_ns == 0;

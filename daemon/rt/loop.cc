@@ -120,8 +120,9 @@ void Loop::RunLockstep() noexcept {
   GridPoint grid;
   bool finished = false;
   CycleOutput last;
+  IoInput io;
   while (!finished) {
-    WaitForWork(last);
+    WaitForWork(last, io);
     grid = {grid.index + 1, static_cast<std::int64_t>(grid.index + 1) * config_.period_ns, 0};
     CycleEntry& entry = *telemetry_.Reserve();
     entry.input.frames.clear();
@@ -130,6 +131,7 @@ void Loop::RunLockstep() noexcept {
     cycle_.Step(entry.input, entry.output);
     runner_.Send(grid.time_ns, entry.output);
     finished = entry.output.finished;
+    io = entry.input.io;
     last.finished = finished;
     last.quiescent = entry.output.quiescent;
     last.settling = entry.output.settling;
@@ -142,11 +144,14 @@ void Loop::RunLockstep() noexcept {
 
 void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
   const std::int64_t begin = Now();
-  // Before the drives answer SYNC there is nothing to keep step with but the period itself.
-  const std::int64_t limit = cycle_.ExpectsFeedback() ? kLockstepFeedbackTimeout_ns : config_.period_ns;
+  // Before the drives answer SYNC there is nothing to keep step with but the period itself. A drive that has
+  // let its time go by is not waited for as long again until it answers.
+  const bool expected = cycle_.ExpectsFeedback();
+  const std::int64_t limit = expected && answered_ ? kLockstepFeedbackTimeout_ns : config_.period_ns;
   for (;;) {
     runner_.Receive(grid.time_ns, in);
-    if (cycle_.ExpectsFeedback() && cycle_.FeedbackComplete(in)) return;
+    answered_ = !expected || cycle_.FeedbackComplete(in);
+    if (expected && answered_) return;
     const std::int64_t now = Now();
     if (now - begin >= limit || in.frames.full()) return;
     WaitForFrames(begin + limit);
@@ -173,10 +178,10 @@ void Loop::KeepRealBuses(CycleOutput& out) const noexcept {
   out.frames = real;
 }
 
-void Loop::WaitForWork(const CycleOutput& last) noexcept {
+void Loop::WaitForWork(const CycleOutput& last, const IoInput& io) noexcept {
   std::int64_t next_heartbeat = Now();
   for (;;) {
-    const bool idle = last.quiescent && !mailbox_.request_waiting();
+    const bool idle = last.quiescent && !mailbox_.request_waiting() && !runner_.IoChanged(io, Now());
     const bool starved = cycle_.PathRoom() != 0 && mailbox_.more_path_to_come() &&
                          mailbox_.path_points_waiting() < kMaxPathPointsPerCycle;
     // Nothing waits for real time here, so nothing needs to be dropped either.

@@ -52,7 +52,7 @@ class Loop {
   void Finish(CycleEntry& entry, const GridPoint& grid, bool slept, ThreadAccounting& accounting) noexcept;
   void WaitForFrames(std::int64_t until_ns) noexcept;
   void WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept;
-  void WaitForWork(const CycleOutput& last) noexcept;
+  void WaitForWork(const CycleOutput& last, const IoInput& io) noexcept;
   void KeepRealBuses(CycleOutput& out) const noexcept;
 
   Config config_;
@@ -63,6 +63,7 @@ class Loop {
   CycleRunner runner_;
   LatenessLimits limits_;
   LateCause last_cause_ = LateCause::kNone;
+  bool answered_ = true;  ///< in lock-step: the drives answered the SYNC before
   LoopCounters counters_;
 };
 

@@ -37,6 +37,7 @@ void TelemetryHub::Observe(const CycleEntry& entry) {
     const std::lock_guard lock(mutex_);
     ++cycles_;
     record_ = entry.output.record;
+    answers_.Add(record_);
     timing_ = entry.timing;
     skipped_grid_points_ += entry.timing.skipped_grid_points;
     health_.Add(entry);
@@ -98,6 +99,11 @@ TelemetryHub::Snapshot TelemetryHub::snapshot() const {
 CycleRecord TelemetryHub::record() const {
   const std::lock_guard lock(mutex_);
   return record_;
+}
+
+std::optional<CycleRecord> TelemetryHub::answer(std::uint32_t sequence) const {
+  const std::lock_guard lock(mutex_);
+  return answers_.Find(sequence);
 }
 
 }  // namespace contour

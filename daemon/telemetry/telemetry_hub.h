@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/cycle_record.h"
+#include "daemon/telemetry/answer_book.h"
 #include "daemon/telemetry/cycle_health.h"
 #include "daemon/telemetry/flight_recorder.h"
 #include "daemon/telemetry/log_writer.h"
@@ -64,8 +65,10 @@ class TelemetryHub {
   };
   [[nodiscard]] Snapshot snapshot() const;
   [[nodiscard]] FlightRecordStats flight() const { return flight_ ? flight_->stats() : FlightRecordStats{}; }
-  /// Newest record alone: cheap enough to poll while waiting for an acknowledgement.
+  /// Newest record alone.
   [[nodiscard]] CycleRecord record() const;
+  /// The record that acknowledged a request. Cheap enough to poll while waiting for it.
+  [[nodiscard]] std::optional<CycleRecord> answer(std::uint32_t sequence) const;
 
  private:
   void Observe(const CycleEntry& entry);
@@ -81,6 +84,7 @@ class TelemetryHub {
   std::uint64_t cycles_ = 0;
   std::uint64_t skipped_grid_points_ = 0;
   CycleRecord record_;
+  AnswerBook answers_;
   CycleTiming timing_;
   CycleHealth health_;
 };

@@ -115,6 +115,8 @@ AxisParameters MakeAxisParameters(const EmulatedAxisConfig& config, const Emulat
   if (!(p.rated_torque_Nm > 0.0)) Refuse(placement.name, "rated_torque_Nm must be at least 1 mNm");
   p.lag_s = config.lag_ms * 1e-3;
   p.delay_cycles = config.delay_cycles;
+  p.answer_delay_ns = static_cast<std::int64_t>(config.answer_delay_us * 1e3);
+  p.answer_delay_every = config.answer_delay_every;
   p.encoder_counts_per_rev = config.encoder_counts_per_rev.value_or(placement.encoder_counts_per_rev);
   p.scale_counts_per_m = 1e3 * config.scale_counts_per_mm.value_or(placement.scale_counts_per_mm);
   p.encoder_noise_lsb = config.encoder_noise_lsb;

@@ -39,6 +39,8 @@ struct AxisParameters {
   double lag_s = 0.0;
   std::int64_t delay_ns = 0;  ///< beyond the SYNC at which the command is applied
   int delay_cycles = 1;
+  std::int64_t answer_delay_ns = 0;
+  int answer_delay_every = 1;
 
   double encoder_counts_per_rev = 0.0;
   double encoder_noise_lsb = 0.0;

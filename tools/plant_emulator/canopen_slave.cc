@@ -145,7 +145,9 @@ void CanopenSlave::OnSync(std::int64_t bus_ns, PendingFrames& out) noexcept {
   bus_ns_ = bus_ns;
   if (nmt_ != SlaveNmt::kOperational) return;
   PendingFrame tpdo;
-  tpdo.ready_ns = bus_ns + kTpdoDelay_ns;
+  const bool slow = ++syncs_ % answer_delay_every_ == 0;
+  tpdo.ready_ns = std::max(bus_ns + kTpdoDelay_ns + (slow ? answer_delay_ns_ : 0), last_answer_ns_);
+  last_answer_ns_ = tpdo.ready_ns;
   for (std::size_t i = 0; i < PdoSet::kCount; ++i)
     if (pdo_.DueAtSync(i, tpdo.frame)) out.push_back(tpdo);
   pdo_.ApplySync(device_);

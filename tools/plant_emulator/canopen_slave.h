@@ -36,6 +36,12 @@ class CanopenSlave {
  public:
   CanopenSlave(ObjectDictionary& objects, SlaveDevice& device, std::uint8_t node_id);
 
+  /// Every `every`-th answer to SYNC comes this much later; those after it do not overtake it.
+  void DelayAnswers(std::int64_t delay_ns, int every) noexcept {
+    answer_delay_ns_ = delay_ns;
+    answer_delay_every_ = static_cast<std::uint64_t>(every);
+  }
+
   struct Identity {
     std::uint32_t vendor_id = 0;
     std::uint32_t product_code = 0;
@@ -104,6 +110,10 @@ class CanopenSlave {
   std::int64_t emergency_allowed_ns_ = 0;
   bool reported_ = false;
   std::int64_t bus_ns_ = 0;
+  std::uint64_t syncs_ = 0;
+  std::int64_t answer_delay_ns_ = 0;
+  std::uint64_t answer_delay_every_ = 1;
+  std::int64_t last_answer_ns_ = 0;
 };
 
 }  // namespace contour::plant

@@ -39,6 +39,7 @@ EmulatedAxis::EmulatedAxis(const AxisParameters& parameters, const EmulatedAxisP
       cascade_(parameters.cascade, kTick_s),
       slave_((AddObjects(placement), objects_), *this, placement.node_id) {
   FindObjects();
+  slave_.DelayAnswers(parameters.answer_delay_ns, parameters.answer_delay_every);
   Sense();
   past_counts_.fill(counts_);
   latched_counts_ = counts_;

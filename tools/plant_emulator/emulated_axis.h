@@ -40,6 +40,7 @@ class EmulatedAxis final : private SlaveDevice {
   /// The motor is under the drive's control, or the axis still moves.
   [[nodiscard]] bool alive() const noexcept;
   void FillTruth(AxisTruth& truth) const noexcept;
+  /// Fails as broken hardware would: EMCY with this code, fault reaction, Fault.
   void InjectFault(std::uint16_t error_code) noexcept { Fault(error_code, 0x20); }
 
   [[nodiscard]] std::uint8_t node_id() const noexcept { return node_id_; }

@@ -139,6 +139,8 @@ struct EmulatedAxisConfig {
   double start_position_mm = 0.0;
   double start_variation_mm = 2.5;
   int delay_cycles = 1;
+  double answer_delay_us = 0.0;
+  int answer_delay_every = 1;
   double lag_ms = 0.2;
   double torque_noise_Nm = 0.0;
   double torque_noise_change = 1.0;
@@ -173,6 +175,10 @@ struct EmulatedAxisConfig {
                "the seed moves the start by at most this");
     v.Optional("delay_cycles", delay_cycles, Range{1, 8},
                "SYNCs from a sample to the torque computed from it");
+    v.Optional("answer_delay_us", answer_delay_us, Range{0.0, 20000.0},
+               "a slow drive: added between SYNC and the answer to it");
+    v.Optional("answer_delay_every", answer_delay_every, Range{1, 1000000},
+               "only every so many SYNCs the answer is delayed");
     v.Optional("lag_ms", lag_ms, Range{0.0, 20.0}, "time constant of the current loop");
     v.Optional("torque_noise_Nm", torque_noise_Nm, kNotNegative,
                "standard deviation of the noise on the motor's torque, as a mean over one cycle; white");

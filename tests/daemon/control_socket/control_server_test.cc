@@ -144,6 +144,37 @@ TEST_F(ControlServerTest, PathsThatCannotBeAreNamed) {
   EXPECT_THROW(ControlClient(directory_ / "nobody.sock"), EnvironmentError);
 }
 
+TEST_F(ControlServerTest, AStopWaitsBehindNoUnansweredRequest) {
+  Serve();
+  desk_.Hold(true);
+  RawClient first(options_.socket);
+  first.Send("{\"request\": \"enable\", \"id\": 1}\n{\"request\": \"reset\", \"id\": 2}\n");
+  ASSERT_TRUE(Eventually([this] { return !desk_.asked().empty(); }));
+  // The enabling is held until this very test lets it go: whoever waited for it would wait for ever.
+  EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "stop"}})["ok"], true) << "of a second client";
+  EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "status"}})["ok"], true);
+  first.Send("{\"request\": \"stop\", \"id\": 3}\n");
+  EXPECT_EQ(json::parse(first.Line())["id"], 3) << "of the same client";
+  EXPECT_EQ(desk_.asked(), (std::vector<std::string>{"enable", "stop", "stop"}))
+      << "the rest keeps its order";
+  desk_.Hold(false);
+  EXPECT_EQ(json::parse(first.Line())["id"], 1);
+  EXPECT_EQ(json::parse(first.Line())["id"], 2);
+  EXPECT_EQ(desk_.asked().back(), "reset");
+}
+
+TEST_F(ControlServerTest, WhoeverIsBeingAnsweredAtTheEndGetsTheAnswer) {
+  Serve();
+  desk_.Hold(true);
+  RawClient client(options_.socket);
+  client.Send("{\"request\": \"enable\"}\n");
+  ASSERT_TRUE(Eventually([this] { return !desk_.asked().empty(); }));
+  std::thread ending([this] { server_->Stop(); });
+  desk_.Hold(false);
+  EXPECT_EQ(json::parse(client.Line())["ok"], true);
+  ending.join();
+}
+
 TEST_F(ControlServerTest, ServesSeveralClientsAtOnce) {
   Serve();
   ControlClient a(options_.socket);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -13,7 +14,12 @@ namespace contour::test {
 /// A desk that accepts or refuses as told and keeps what it was asked.
 class FakeDesk final : public OperatorDesk {
  public:
-  Answer Enable() override { return Do("enable"); }
+  Answer Enable() override {
+    Answer answer = Do("enable");
+    std::unique_lock lock(mutex_);
+    answering_.wait(lock, [this] { return !held_; });
+    return answer;
+  }
   Answer Disable() override { return Do("disable"); }
   Answer Stop() override { return Do("stop"); }
   Answer Reset() override { return Do("reset"); }
@@ -41,6 +47,12 @@ class FakeDesk final : public OperatorDesk {
     std::erase(feeds_, feed);
   }
 
+  /// From Hold(true) to Hold(false) an enabling gets no answer.
+  void Hold(bool held) {
+    const std::lock_guard lock(mutex_);
+    held_ = held;
+    answering_.notify_all();
+  }
   void Refuse(std::string reason) {
     const std::lock_guard lock(mutex_);
     refusal_ = std::move(reason);
@@ -78,6 +90,8 @@ class FakeDesk final : public OperatorDesk {
   }
 
   mutable std::mutex mutex_;
+  std::condition_variable answering_;
+  bool held_ = false;
   std::vector<std::string> asked_;
   std::vector<std::shared_ptr<RowFeed>> feeds_;
   std::string refusal_;

@@ -74,6 +74,9 @@ TEST(LateAttribution, ALateWakeUp) {
   t.page_faults = 3;  // of the telemetry before the sleep
   EXPECT_EQ(CauseOf(t), LateCause::kWakeUp) << "a thread that sleeps touches no memory";
   t.voluntary_switches = 1;
+  EXPECT_EQ(CauseOf(t), LateCause::kPageFault)
+      << "of the code that it wakes up into: the wait is for the page";
+  t.page_faults = 0;
   EXPECT_EQ(CauseOf(t), LateCause::kStopped);
   t.run_delay_ns = 4900 * kUs;
   EXPECT_EQ(CauseOf(t), LateCause::kPreempted);

@@ -1,0 +1,129 @@
+// The loop in lock-step: time stands still while nothing is to be done, but not for the auxiliary I/O, and a
+// machine that has died is not waited for over and over.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "daemon/make_cycle_config.h"
+#include "daemon/rt/loop.h"
+#include "drivers/can/loopback_bus.h"
+#include "tools/machine/load_emulated_machine.h"
+#include "tools/machine/placements.h"
+
+namespace contour::test {
+namespace {
+
+/// The bus of the emulated machine, which may fall silent. Counts how often each grid point looked for
+/// frames.
+class SilencedBus final : public FrameBus {
+ public:
+  SilencedBus(std::uint32_t bitrate_bit_s, BusNode& node) : bus_(bitrate_bit_s, {&node}) {}
+  std::size_t Receive(std::int64_t now_ns, std::span<StampedFrame> frames) noexcept override {
+    const std::size_t got = bus_.Receive(now_ns, frames);
+    if (!silent) return got;
+    ++looks[now_ns];
+    return 0;
+  }
+  std::size_t Send(std::int64_t now_ns, std::span<const CanFrame> frames) noexcept override {
+    return bus_.Send(now_ns, frames);
+  }
+  [[nodiscard]] BusState State() const noexcept override { return bus_.State(); }
+
+  std::atomic<bool> silent{false};
+  std::map<std::int64_t, int> looks;  ///< of the loop's thread, until it has ended
+
+ private:
+  LoopbackBus bus_;
+};
+
+class SwitchedIo final : public IoSource {
+ public:
+  IoInput Read(std::int64_t) noexcept override { return {true, true, closed, true, 20.0}; }
+  std::atomic<bool> closed{true};
+};
+
+/// A loop in lock-step in a thread of its own, with the pump's work done by the test.
+class LockstepLoop : public ::testing::Test {
+ protected:
+  LockstepLoop()
+      : file_(LoadEmulatedMachine(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml", {})),
+        emulated_(file_.emulator, EmulatedPlacements(file_.machine),
+                  static_cast<std::uint32_t>(file_.machine.machine.cycle_us), EmulatedClock::kSync),
+        bus_(file_.machine.buses.begin()->second.bitrate_bit_s, emulated_.node(0)),
+        cycle_(MakeCycleConfig(file_.machine, ControllerName::kPid)),
+        loop_({std::int64_t{1000} * file_.machine.machine.cycle_us, 200'000, nullptr}, cycle_, buses_,
+              mailbox_, io_, queue_),
+        thread_([this] { loop_.RunLockstep(); }) {}
+  ~LockstepLoop() override { End(); }
+
+  void End() {
+    mailbox_.PostTerminate();
+    AwaitRecord([this](const CycleRecord&) { return ended_; });
+    if (thread_.joinable()) thread_.join();
+  }
+  /// Until a record is as wanted; CTest ends a test that waits for ever.
+  void AwaitRecord(const std::function<bool(const CycleRecord&)>& wanted) {
+    while (!ended_) {
+      CycleEntry* entry = queue_.Front();
+      if (entry == nullptr) {
+        std::this_thread::yield();
+        continue;
+      }
+      const CycleRecord record = entry->output.record;
+      ended_ = entry->output.finished;
+      queue_.Release();
+      if (wanted(record)) return;
+    }
+  }
+  void AwaitState(MachineState state) {
+    AwaitRecord([state](const CycleRecord& r) { return r.state == state; });
+  }
+
+  EmulatedMachineFile file_;
+  EmulatedMachine emulated_;
+  SilencedBus bus_;
+  FrameBus* buses_[1] = {&bus_};
+  SwitchedIo io_;
+  CommandMailbox mailbox_{16, 64};
+  TelemetryQueue queue_{256};
+  Cycle cycle_;
+  Loop loop_;
+  bool ended_ = false;
+  std::thread thread_;
+};
+
+TEST_F(LockstepLoop, AnOpenedEmergencyStopIsSeenWhileTimeStandsStill) {
+  AwaitState(MachineState::kIdle);
+  mailbox_.Post(RequestKind::kEnable);
+  AwaitState(MachineState::kReady);
+  io_.closed = false;
+  // No request comes: without the I/O nothing would end the wait.
+  CycleRecord seen;
+  AwaitRecord([&](const CycleRecord& r) {
+    seen = r;
+    return r.state == MachineState::kFaulted;
+  });
+  EXPECT_EQ(seen.reason, Reason::kEmergencyStop) << Name(seen.reason);
+}
+
+TEST_F(LockstepLoop, ADeadMachineIsWaitedForOnceNotEveryCycle) {
+  AwaitState(MachineState::kIdle);
+  mailbox_.Post(RequestKind::kEnable);
+  AwaitState(MachineState::kReady);
+  bus_.silent = true;
+  mailbox_.Post(RequestKind::kDisable);
+  AwaitState(MachineState::kFaulted);
+  End();
+  ASSERT_GT(bus_.looks.size(), 4u);
+  int waited_long = 0;
+  // Looks are at least 50 us apart, so that a period has 20 at most, whatever this computer is busy with.
+  for (const auto& [grid, looks] : bus_.looks) waited_long += looks > 25 ? 1 : 0;
+  EXPECT_LE(waited_long, 1);
+}
+
+}  // namespace
+}  // namespace contour::test
