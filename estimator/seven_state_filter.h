@@ -55,7 +55,9 @@ class SevenStateFilter {
   /// Friction (bristle, viscous, disturbance) in the middle of the interval in which the next torque acts.
   [[nodiscard]] double FrictionAhead_N() const noexcept { return friction_ahead_N_; }
   /// Level G in the direction of motion, Stribeck curve and factors included.
-  [[nodiscard]] double Level_N() const noexcept { return model_.Level(core_.x, {{}, factor_plus_, factor_minus_}); }
+  [[nodiscard]] double Level_N() const noexcept {
+    return model_.Level(core_.x, {{}, factor_plus_, factor_minus_});
+  }
 
  private:
   using X = StateVector<kSevenStates>;
