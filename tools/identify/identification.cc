@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 namespace contour::identify {
@@ -11,6 +12,7 @@ constexpr int kHalfWidth = 4;  ///< samples of the average of Kinematics, to eit
 constexpr std::size_t kStride = 4;
 constexpr double kLargestLoop_m = 60e-6;
 constexpr double kOverlay_s = 20.0;
+constexpr double kInertiaFarOff = 0.15;
 
 std::vector<Instant> AllInstants(const std::vector<Measured>& records, const AxisModel& axis,
                                  std::size_t stride) {
@@ -197,6 +199,16 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
   fit.progress = [&](double share) { report("all parameters at once", 0.1 + 0.85 * share); };
   id.fit = FitJointly(id.stepwise, records, fit);
   id.screw_identified = fit.stiffness;
+  const double off = id.fit.axis.mass_kg() / id.stated.mass_kg() - 1.0;
+  if (std::fabs(off) > kInertiaFarOff) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "the inertia is %+.0f %% off the stated one: a controller built on that may have swung while "
+        "recording; run once more from this model before relying on the screw's numbers",
+        100.0 * off);
+    id.notes.push_back(text);
+  }
   report("report", 0.97);
   LookAgain(id, records);
   report("done", 1.0);

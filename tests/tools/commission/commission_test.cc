@@ -1,6 +1,7 @@
 // Commissioning of an emulated axis in virtual time, and the plan of its motions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "config/config_error.h"
@@ -76,6 +77,10 @@ TEST(CommissionTest, AModelThatIsHalfWrongIsPutRightInsideTheLimits) {
                                                  {"screw_stiffness_N_um", 0.06}};
   for (const auto& [key, share] : allowed)
     EXPECT_NEAR(found.at(key).value / truth.at(key), 1.0, share) << key;
+
+  EXPECT_TRUE(std::any_of(id.notes.begin(), id.notes.end(), [](const std::string& note) {
+    return note.find("run once more") != std::string::npos;
+  })) << "the inertia was 30 % off";
 
   // What is written is a model that a machine file takes.
   const ModelConfig model = identify::ToModel(id, stated.model);
