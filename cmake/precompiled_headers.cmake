@@ -16,6 +16,9 @@ function(contour_precompiled name)
   target_compile_options(${name} PRIVATE -pthread)
   target_link_libraries(${name} PRIVATE ${arg_LINK} Eigen3::Eigen)
   target_precompile_headers(${name} PRIVATE ${CONTOUR_STANDARD_HEADERS} ${arg_HEADERS})
+  # For ccache with pch_external_checksum: what was compiled in one folder serves another, although the paths in this file differ.
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${name}.dir/cmake_pch.hxx.gch.sum
+       CONTENT "${CONTOUR_STANDARD_HEADERS};${arg_HEADERS};${Eigen3_VERSION};${GTest_VERSION};${CLI11_VERSION};${nlohmann_json_VERSION}\n" @ONLY)
 endfunction()
 
 # contour_reuse_headers(TARGET NAME): TARGET starts from the headers of NAME; the compiler refuses them when flags differ.
