@@ -6,27 +6,20 @@
 namespace contour::diagnosis {
 namespace {
 
-// First-order response to a constant command over a step, from and to a value.
-struct Lag {
-  double lag_s, value;
-  double moment = 0.0;  // integral of (step/2 - t) u dt of the last step
-
-  double Mean(double command, double step_s) {
-    moment = 0.0;
-    if (step_s <= 0.0) return value;
-    if (lag_s < 1e-7) {
-      value = command;
-      return command;
-    }
-    const double x = step_s / lag_s;
-    const double away = value - command;
-    const double lost = -std::expm1(-x);
-    value = command + away * (1.0 - lost);
-    // Integral of t e^(-t/lag) is lag^2 (1 - (1 + x) e^-x).
-    moment = away * lag_s * (0.5 * step_s * lost - lag_s * (lost - x * (1.0 - lost)));
-    return command + away * lost / x;
-  }
+// First-order response over a step under a constant command, per unit of what the current is away from it:
+// mean, integral of (step / 2 - t) u dt, and what is left.
+struct Step {
+  double mean = 0.0, moment = 0.0, kept = 0.0;
 };
+
+Step StepOver(double step_s, double lag_s) {
+  if (step_s <= 0.0) return {1.0, 0.0, 1.0};
+  if (lag_s < 1e-7) return {};
+  const double x = step_s / lag_s;
+  const double lost = -std::expm1(-x);
+  // Integral of t e^(-t/lag) is lag^2 (1 - (1 + x) e^-x).
+  return {lost / x, lag_s * (0.5 * step_s * lost - lag_s * (lost - x * (1.0 - lost))), 1.0 - lost};
+}
 
 }  // namespace
 
@@ -42,32 +35,42 @@ Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int s
   Delivered out;
   out.mean.resize(n * count);
   out.late.resize(n);
-  Lag lag{std::max(0.0, lag_s), log.command.empty() ? 0.0 : log.command[0]};
-  // Away from the edge all steps are alike: mean and moment per unit of what is away from the command.
-  Lag unit{lag.lag_s, 1.0};
-  const double mean_away = unit.Mean(0.0, h);
-  const double moment_away = unit.moment, kept = unit.value;
+  const double lag = std::max(0.0, lag_s), rest_s = h - before_s;
+  const Step whole_step = StepOver(h, lag), first_part = StepOver(before_s, lag),
+             rest_part = StepOver(rest_s, lag);
+  double value = log.command.empty() ? 0.0 : log.command[0];
+  // Away from the edge all steps are alike.
+  std::vector<double> mean_after(count), kept_after(count + 1, 1.0);
+  for (std::size_t j = 0; j < count; ++j) {
+    mean_after[j] = whole_step.mean * kept_after[j];
+    kept_after[j + 1] = whole_step.kept * kept_after[j];
+  }
+  const std::size_t rest = count - 1 - edge_step;
+  const auto moments = [&](std::size_t steps) {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < steps; ++j) sum += kept_after[j];
+    return sum * whole_step.moment;
+  };
+  const double moment_before = moments(edge_step), moment_rest = moments(rest);
   for (std::size_t k = 0; k < n; ++k) {
     const double now = log.command[k >= whole ? k - whole : 0];
     const double old = log.command[k >= whole + 1 ? k - whole - 1 : 0];
     double* mean = &out.mean[k * count];
-    double late = 0.0;
-    for (std::size_t j = 0; j < count; ++j) {
-      if (j == edge_step) {
-        const double rest_s = h - before_s;
-        const double first = lag.Mean(old, before_s) * before_s;
-        late += lag.moment + first * 0.5 * rest_s;
-        const double rest = lag.Mean(now, rest_s) * rest_s;
-        late += lag.moment - rest * 0.5 * before_s;
-        mean[j] = (first + rest) / h;
-        continue;
-      }
-      const double command = j < edge_step ? old : now;
-      const double away = lag.value - command;
-      mean[j] = command + away * mean_away;
-      late += away * moment_away;
-      lag.value = command + away * kept;
-    }
+    double away = value - old;
+    for (std::size_t j = 0; j < edge_step; ++j) mean[j] = old + away * mean_after[j];
+    double late = away * moment_before;
+    away *= kept_after[edge_step];
+    const double first = (old + away * first_part.mean) * before_s;
+    late += away * first_part.moment + first * 0.5 * rest_s;
+    away = old + away * first_part.kept - now;
+    const double second = (now + away * rest_part.mean) * rest_s;
+    late += away * rest_part.moment - second * 0.5 * before_s;
+    mean[edge_step] = (first + second) / h;
+    away *= rest_part.kept;
+    double* after = mean + edge_step + 1;
+    for (std::size_t j = 0; j < rest; ++j) after[j] = now + away * mean_after[j];
+    late += away * moment_rest;
+    value = now + away * kept_after[rest];
     out.late[k] = late;
   }
   return out;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -22,6 +23,8 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kJitterPenalty = 3.0;
+// Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
+constexpr double kConsistent = 1.0;
 
 struct Refit {
   Fit fit;
@@ -67,10 +70,9 @@ class Engine {
         out.gate = gate;
       }
       const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > gate;
-      // Nothing near the gate, even if the residual were as white as its spectrum says.
-      const bool near = std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
-        return s.drop - Penalty(*s.effect) > std::max(gate, 60.0) || s.score > 0.7 * gate;
-      });
+      // Nothing beyond the gate, even if the residual were as white as its spectrum says.
+      const bool near = std::any_of(scored.begin(), scored.end(),
+                                    [&](const Scored& s) { return s.drop - Penalty(*s.effect) > gate; });
       if (!near) {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
@@ -78,14 +80,26 @@ class Engine {
       Say("rivals", 0.3 + 0.25 * round);
       std::vector<Refit> refits = RefitBest(current, scored);
       // Noise as the best candidate leaves it.
-      problem_.LearnNoise(problem_.Raw(std::span(&refits[0].fit.point, 1))[0]);
+      problem_.LearnNoise(refits[0].fit.point);
       Say("rivals under the noise that is left", 0.35 + 0.25 * round);
       Rescore(current, refits);
+      // The best, or the next that holds where the best does not.
+      double tested = 0.0;
+      bool found = false;
+      for (std::size_t i = 0; i < refits.size() && !found; ++i) {
+        if (i > 0 && refits[i].score < 0.3 * refits[0].score) break;
+        const double score = TestedScore(current, refits[i]);
+        if (i == 0) tested = score;
+        if (!Holds(current, refits[i], score, gate)) continue;
+        found = true;
+        tested = score;
+        if (i == 0) continue;
+        std::rotate(refits.begin(), refits.begin() + static_cast<std::ptrdiff_t>(i),
+                    refits.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        refits[0].fit = FitPoint(problem_, refits[0].fit.point, {.most_steps = 4, .most_refreshes = 2});
+        refits[0].score = current.cost - refits[0].fit.cost - Penalty(*refits[0].fit.point.effects.back());
+      }
       const Refit& best = refits[0];
-      const double drop = best.score + Penalty(*best.fit.point.effects.back());
-      const double tested = drop / ExcessOfLast(problem_, best.fit) - Penalty(*best.fit.point.effects.back());
-      // From outside the catalogue only what is beyond doubt.
-      const bool found = tested > (Outside(KindOf(best)) ? gate + 25.0 : gate);
       if (jitter_there) {
         // A mean effect that the variance was about leaves none behind.
         const Jitter left = TestJitter(problem_, best.fit);
@@ -112,11 +126,12 @@ class Engine {
 
   void FitBase() {
     Point start;
-    start.base.assign(problem_.terms_.size(), 0.0);
+    for (const BaseTerm& t : problem_.terms_) start.base.push_back(t.start);
     problem_.LearnOutliers(start);
-    problem_.LearnNoise(problem_.Raw(std::span(&start, 1))[0]);
-    base_ = FitPoint(problem_, start, {.most_steps = 5, .most_refreshes = 2, .covariance = false});
-    problem_.LearnNoise(problem_.Raw(std::span(&base_.point, 1))[0]);
+    problem_.LearnNoise(start);
+    base_ = FitPoint(problem_, start,
+                     {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false});
+    problem_.LearnNoise(base_.point);
     base_ = FitPoint(problem_, base_.point, {.most_steps = 8, .most_refreshes = 3});
     problem_.LearnSignals(base_.point);
   }
@@ -128,7 +143,7 @@ class Engine {
       return std::any_of(fit.point.effects.begin(), fit.point.effects.end(),
                          [&](const SharedEffect& f) { return f->kind == e->kind; });
     });
-    std::vector<Scored> scored = ScoreEffects(problem_, fit, effects);
+    std::vector<Scored> scored = ScoreEffects(problem_, fit, std::move(effects));
     std::stable_sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
       return a.drop - Penalty(*a.effect) > b.drop - Penalty(*b.effect);
     });
@@ -153,6 +168,7 @@ class Engine {
     bool outside = false;
     for (const Scored& s : scored)
       if (!Outside(s.effect->kind)) most = std::max(most, s.drop);
+    std::vector<const Scored*> far;
     for (const Scored& s : scored) {
       if (Outside(s.effect->kind)) {
         if (!outside && s.drop > most) out.push_back(RefitOne(current, s));
@@ -162,8 +178,15 @@ class Engine {
       if (done.size() >= 4 || s.drop < 0.1 * most) continue;
       if (std::find(done.begin(), done.end(), s.effect->kind) != done.end()) continue;
       done.push_back(s.effect->kind);
-      out.push_back(RefitOne(current, s));
+      if (s.effect->start.empty())
+        out.push_back(RefitOne(current, s));
+      else
+        far.push_back(&s);
     }
+    double best = 0.0;
+    for (const Refit& r : out) best = std::max(best, r.score);
+    for (const Scored* s : far)
+      if (std::optional<Refit> r = RefitFar(current, *s, best)) out.push_back(std::move(*r));
     Sort(out);
     return out;
   }
@@ -196,44 +219,53 @@ class Engine {
     if (s.effect->kind == "torque_constant")
       ShiftForces(problem_, std::log1p(start.amplitudes.back()[0]), start);
     Refit best;
-    const FitEffort effort{.most_steps = 6,
-                           .most_refreshes = s.effect->start.empty() ? 1 : 3,
-                           .covariance = false,
-                           .warm = &current};
-    best.fit = FitPoint(problem_, start, effort);
-    if (!s.effect->start.empty()) {
-      // Far from linear: the kind's whole grid at full size, the base following to first order, shows where
-      // to begin.
-      for (const auto& [effect, amplitudes] : FullStarts(current, s.effect->kind)) {
-        start.effects.back() = effect;
-        start.amplitudes.back() = amplitudes;
-        Fit other = FitPoint(problem_, start, {.most_steps = 10, .most_refreshes = 4, .covariance = false});
-        if (other.cost < best.fit.cost) best.fit = std::move(other);
-      }
-    }
+    best.fit = FitPoint(
+        problem_, start,
+        {.most_steps = 3, .most_refreshes = 1, .close_enough = 1.0, .covariance = false, .warm = &current});
     best.score = current.cost - best.fit.cost - Penalty(*s.effect);
     return best;
   }
 
-  /// The most promising full-size point of a kind's grid.
-  std::vector<std::pair<SharedEffect, std::vector<double>>> FullStarts(const Fit& current,
-                                                                       const std::string& kind) const {
-    std::vector<std::pair<SharedEffect, std::vector<double>>> starts;
+  /// Far from linear: the kind's whole grid at full size, the base following to first order, shows where to
+  /// begin, and whether that is worth while beside what the best of the others explains.
+  std::optional<Refit> RefitFar(const Fit& current, const Scored& s, double others) const {
+    const Start start = FullStart(current, s.effect->kind);
+    if (!start.effect) return std::nullopt;
+    Refit best;
+    Point point = current.point;
+    point.effects.push_back(start.effect);
+    point.amplitudes.push_back(start.amplitudes);
+    // To first order the base follows too little: half of what is promised may still come.
+    if (current.cost - start.cost < 0.2 * others - 0.3 * current.cost) return std::nullopt;
+    best.fit = FitPoint(problem_, point,
+                        {.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false});
+    best.score = current.cost - best.fit.cost - Penalty(*start.effect);
+    return best;
+  }
+
+  struct Start {
+    SharedEffect effect;
+    std::vector<double> amplitudes;
+    double cost = 0.0;
+  };
+
+  Start FullStart(const Fit& current, const std::string& kind) const {
+    std::vector<Start> starts;
     std::vector<Point> points;
     for (const SharedEffect& e : CatalogueEffects(problem_)) {
       if (e->kind != kind) continue;
-      for (const double size : {0.4, 1.0, 2.0}) {
+      for (const double size : {0.15, 0.5, 1.5}) {
         std::vector<double> a = e->start;
         a[0] = std::clamp(size * a[0], e->low[0], e->high[0]);
         Point p = current.point;
         p.effects.push_back(e);
         p.amplitudes.push_back(a);
         points.push_back(std::move(p));
-        starts.emplace_back(e, std::move(a));
+        starts.push_back({e, std::move(a), 0.0});
       }
     }
-    std::size_t best = 0;
-    double lowest = std::numeric_limits<double>::infinity();
+    Start best;
+    best.cost = std::numeric_limits<double>::infinity();
     for (std::size_t first = 0; first < points.size(); first += 8) {
       const std::size_t count = std::min<std::size_t>(8, points.size() - first);
       const auto residuals = problem_.Residuals(std::span(points).subspan(first, count));
@@ -244,14 +276,13 @@ class Engine {
         for (std::size_t t = 0; t < current.point.base.size(); ++t)
           gradient(static_cast<Eigen::Index>(t)) +=
               current.point.base[t] / std::pow(problem_.terms_[t].sigma, 2);
-        const double cost = r.squaredNorm() - gradient.dot(current.covariance * gradient);
-        if (!std::isfinite(cost) || cost >= lowest) continue;
-        lowest = cost;
-        best = first + i;
+        const double cost = r.squaredNorm() + current.prior - gradient.dot(current.covariance * gradient);
+        if (!std::isfinite(cost) || cost >= best.cost) continue;
+        best = starts[first + i];
+        best.cost = cost;
       }
     }
-    if (starts.empty()) return {};
-    return {starts[best]};
+    return best;
   }
 
   /// Under new noise: the base, the rivals where they stand, and those that may still win fitted anew.
@@ -274,13 +305,37 @@ class Engine {
     for (std::size_t i = 0; i < refits.size(); ++i) {
       if (i > 0 && refits[i].score < 0.4 * best - 30.0) continue;
       refits[i].fit = FitPoint(problem_, refits[i].fit.point,
-                               {.most_steps = 5, .most_refreshes = i == 0 ? 3 : 1, .covariance = i == 0});
+                               {.most_steps = 5,
+                                .most_refreshes = i == 0 ? 3 : 1,
+                                .close_enough = i == 0 ? 0.02 : 0.3,
+                                .covariance = i == 0});
       score(refits[i]);
     }
     const std::string first = KindOf(refits[0]);
     Sort(refits);
     if (KindOf(refits[0]) != first)
       refits[0].fit = FitPoint(problem_, refits[0].fit.point, {.most_steps = 3, .most_refreshes = 2});
+  }
+
+  bool Holds(const Fit& current, const Refit& r, double tested, double gate) const {
+    // From outside the catalogue only what is beyond doubt.
+    if (tested <= (Outside(KindOf(r)) ? gate + 25.0 : gate)) return false;
+    // What a base parameter does already shows in the priors; it must not do harm elsewhere.
+    const double unseen = HeldOutStatistic(problem_, current, r.fit);
+    return KindOf(r) == "torque_constant" || unseen > (InBase(problem_, KindOf(r)) ? 0.0 : kConsistent);
+  }
+
+  /// Of a rival, what the gate asks about: the drop of the joint fit, but not more than the score test at
+  /// its own place promises (a cost that is a little rough has lucky points), over the excess of what is
+  /// left.
+  double TestedScore(const Fit& current, const Refit& best) const {
+    const SharedEffect& effect = best.fit.point.effects.back();
+    double drop = best.score + Penalty(*effect);
+    if (effect->signals) {
+      const std::vector<Scored> again = ScoreEffects(problem_, current, {effect});
+      if (again[0].drop < 60.0) drop = std::min(drop, again[0].drop);
+    }
+    return drop / ExcessOfLast(problem_, best.fit) - Penalty(*effect);
   }
 
   void Accept(const Fit& current, const std::vector<Refit>& refits, Diagnosis& out) const {
@@ -301,7 +356,11 @@ class Engine {
     const Experiment experiment = DecidingExperiment(problem_, cause.kind, cause.indistinguishable_from);
     cause.deciding_experiment = experiment.text;
     cause.deciding_program = experiment.program;
-    DescribeEffect(problem_, best.fit, best.fit.point.effects.size() - 1, cause);
+    // The residual's own scatter from block to block widens the intervals where it is more than white
+    // noise's.
+    Fit scattered = best.fit;
+    scattered.covariance *= ExcessOfLast(problem_, best.fit);
+    DescribeEffect(problem_, scattered, best.fit.point.effects.size() - 1, cause);
     std::vector<BlockGain> blocks;
     HeldOutGain(problem_, current, best.fit, cause.kind == "pitch_error", cause, blocks);
     if (out.causes.empty()) out.blocks = blocks;

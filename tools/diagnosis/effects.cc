@@ -1,6 +1,7 @@
 #include "tools/diagnosis/effects.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -10,15 +11,46 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+// One element per row as two per row.
+Signal Doubled(const Signal& s) {
+  Signal out = s;
+  out.insert(out.end(), s.begin() + 1, s.end());
+  out.push_back(s.back());
+  return out;
+}
+
 SharedSignal Add(const SharedSignal& before, const std::vector<SharedSignal>& basis,
                  const std::vector<double>& a) {
   auto sum = before ? std::make_shared<Signal>(*before) : std::make_shared<Signal>(basis[0]->size(), 0.0);
   for (std::size_t i = 0; i < basis.size(); ++i) {
     if (a[i] == 0.0) continue;
-    const Signal& b = *basis[i];
+    if (sum->size() < basis[i]->size()) *sum = Doubled(*sum);
+    const Signal doubled = sum->size() > basis[i]->size() ? Doubled(*basis[i]) : Signal();
+    const Signal& b = doubled.empty() ? *basis[i] : doubled;
     for (std::size_t k = 0; k < sum->size(); ++k) (*sum)[k] += a[i] * b[k];
   }
   return sum;
+}
+
+/// A wave between rows, best straight line over each: at high speed it turns far from row to row. `phase` per
+/// row, `size` of the wave per row.
+SharedSignal WaveSignal(const std::vector<double>& phase, const std::vector<double>& size,
+                        double quadrature) {
+  const std::size_t n = phase.size();
+  auto s = std::make_shared<Signal>(2 * n, 0.0);
+  for (std::size_t k = 0; k + 1 < n; ++k) {
+    const double middle = 0.5 * (phase[k] + phase[k + 1]) + quadrature, d = 0.5 * (phase[k + 1] - phase[k]);
+    const double d2 = d * d;
+    // Mean of sin(middle + d x) over x in -1..1, and its slope by least squares.
+    const double mean = std::fabs(d) < 1e-2 ? 1.0 - d2 / 6.0 : std::sin(d) / d;
+    const double slope =
+        std::fabs(d) < 1e-2 ? d * (1.0 - d2 / 10.0) : 3.0 * (std::sin(d) / d - std::cos(d)) / d;
+    const double a = size.empty() ? 1.0 : 0.5 * (size[k] + size[k + 1]);
+    const double m = a * mean * std::sin(middle), c = a * slope * std::cos(middle);
+    (*s)[k] = m - c;
+    (*s)[n + k] = m + c;
+  }
+  return s;
 }
 
 template <class F>
@@ -76,11 +108,40 @@ SharedEffect Custom(std::string kind, std::string label, double grid, std::vecto
   return e;
 }
 
+SharedEffect AsSignals(const SharedEffect& e) {
+  auto copy = std::make_shared<Effect>(*e);
+  copy->signals = true;
+  return copy;
+}
+
 SharedEffect WithOrder(const SharedEffect& e, double order) {
   auto copy = std::make_shared<Effect>(*e);
   copy->order = order;
   return copy;
 }
+
+SharedSignal& TargetOf(AxisModel& m, Input input) {
+  switch (input) {
+    case Input::kMotorForce:
+      return m.motor_force;
+    case Input::kLoadForce:
+      return m.load_force;
+    case Input::kLevel:
+      return m.level;
+    case Input::kViscous:
+      return m.viscous;
+    case Input::kReading:
+      return m.reading_error;
+    case Input::kScale:
+      break;
+  }
+  return m.scale_error_m;
+}
+
+// A signal times an amplitude, its shape by a second number that is 0 at the grid's place and fitted with the
+// rest.
+SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Input input, double step,
+                          std::array<double, 2> range, std::function<double(std::size_t, double)> shape);
 
 void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
   const Signals& s = *p.signals_;
@@ -117,7 +178,7 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                            m.friction.Fs_minus *= std::exp(a[0]);
                            m.friction.vs *= std::exp(a[1]);
                          },
-                         {}, {-1.5, -2.5}, {1.5, 2.5}));
+                         {}, {-0.4, -1.5}, {1.0, 1.5}));
   } else {
     for (const double part : {0.003, 0.012, 0.05}) {
       const double vs = part * s.max_speed;
@@ -135,26 +196,24 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
   out.push_back(LinearEffect("cable_spring", "linear", 3, Input::kLoadForce, Legendre(s, 1), 0.01 * Fc));
   out.push_back(LinearEffect("cable_spring", "", 3, Input::kLoadForce, Legendre(s, 4), 0.01 * Fc));
   const double top = std::max(s.max_speed, 1e-12);
+  const auto speed = std::make_shared<const Signal>(s.velocity);
+  const Input drag = p.nominal_.friction_on_load ? Input::kLoadForce : Input::kMotorForce;
   for (const double power : {1.5, 2.0, 3.0})
-    out.push_back(WithOrder(LinearEffect("viscous_nonlinear", "power " + std::to_string(power), 3,
-                                         p.nominal_.friction_on_load ? Input::kLoadForce : Input::kMotorForce,
-                                         {Make(n,
-                                               [&](std::size_t k) {
-                                                 const double y = s.velocity[k] / top;
-                                                 return -std::copysign(std::pow(std::fabs(y), power), y);
-                                               })},
-                                         0.02 * Fc),
-                            power));
+    out.push_back(WithOrder(
+        ShapedEffect("viscous_nonlinear", "power " + std::to_string(power), 3, drag, 0.02 * Fc, {-0.45, 0.4},
+                     [speed, top, power](std::size_t k, double x) {
+                       const double y = (*speed)[k] / top;
+                       return -std::copysign(std::pow(std::fabs(y), power * std::exp(x)), y);
+                     }),
+        power));
   for (const double knee : {0.1, 0.3})
-    out.push_back(WithOrder(LinearEffect("viscous_nonlinear", "knee " + std::to_string(knee), 3,
-                                         p.nominal_.friction_on_load ? Input::kLoadForce : Input::kMotorForce,
-                                         {Make(n,
-                                               [&](std::size_t k) {
-                                                 const double y = s.velocity[k] / top;
-                                                 return -y * (1.0 + knee) / (std::fabs(y) + knee);
-                                               })},
-                                         0.02 * Fc),
-                            knee));
+    out.push_back(WithOrder(
+        ShapedEffect("viscous_nonlinear", "knee " + std::to_string(knee), 3, drag, 0.02 * Fc, {-1.0, 1.0},
+                     [speed, top, knee](std::size_t k, double x) {
+                       const double y = (*speed)[k] / top, bend = knee * std::exp(x);
+                       return -y * (1.0 + bend) / (std::fabs(y) + bend);
+                     }),
+        knee));
   if (!s.temperature_K.empty()) {
     const auto T = std::make_shared<const Signal>(s.temperature_K);
     out.push_back(LinearEffect("temperature_viscosity", "", 2, Input::kViscous, {T}, 2e-3));
@@ -169,13 +228,11 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
       {Make(n, [&](std::size_t k) { return static_cast<double>(k) / static_cast<double>(n) - 0.5; })}, 5e-3));
   for (const double tau : {0.08, 0.25})
     out.push_back(WithOrder(
-        LinearEffect("friction_drift", "exponential " + std::to_string(tau), 3, Input::kLevel,
-                     {Make(n,
-                           [&](std::size_t k) {
-                             return 1.0 - std::exp(-static_cast<double>(k) / static_cast<double>(n) / tau) -
-                                    0.5;
-                           })},
-                     5e-3),
+        ShapedEffect(
+            "friction_drift", "exponential " + std::to_string(tau), 3, Input::kLevel, 5e-3, {-1.2, 1.0},
+            [n, tau](std::size_t k, double x) {
+              return 0.5 - std::exp(-static_cast<double>(k) / static_cast<double>(n) / (tau * std::exp(x)));
+            }),
         tau));
   out.push_back(LinearEffect(
       "load_friction", "", 1, Input::kLevel,
@@ -191,6 +248,25 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                            m.soft_ratio = ratio * std::exp(a[1]);
                          },
                          {0.1, 0.0}, {0.0, -2.0}, {0.9, 2.0}));
+}
+
+SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Input input, double step,
+                          std::array<double, 2> range, std::function<double(std::size_t, double)> shape) {
+  auto e = std::make_shared<Effect>();
+  e->kind = std::move(kind);
+  e->label = std::move(label);
+  e->grid = grid;
+  e->steps = {step, 0.01};
+  e->low = {-1e30, range[0]};
+  e->high = {1e30, range[1]};
+  e->tested = 1;
+  e->signals = true;
+  e->apply = [shape = std::move(shape), input](const std::vector<double>& a, AxisModel& m) {
+    if (a[0] == 0.0) return;
+    SharedSignal& target = TargetOf(m, input);
+    target = Add(target, {Make(m.rows, [&](std::size_t k) { return shape(k, a[1]); })}, {a[0]});
+  };
+  return e;
 }
 
 void AddDrive(const Problem& p, std::vector<SharedEffect>& out) {
@@ -211,13 +287,18 @@ void AddMechanics(const Problem& p, std::vector<SharedEffect>& out) {
   const double J = p.nominal_.motor_inertia + p.nominal_.load_inertia;
   for (int i = 1; i < 20; ++i) {
     const std::size_t row = n * static_cast<std::size_t>(i) / 20;
-    out.push_back(WithOrder(Custom("payload_step", "row " + std::to_string(row), 20, {2e-3},
-                                   [J, row](const auto& a, AxisModel& m) {
-                                     m.payload = a[0] * J;
-                                     m.payload_row = row;
-                                   },
-                                   {}, {-0.8}, {5.0}),
-                            p.log_.period_s * static_cast<double>(row)));
+    // The instant moves with the rest, by rows.
+    const double reach_s = p.log_.period_s * static_cast<double>(n) / 30.0, period_s = p.log_.period_s;
+    auto step = std::make_shared<Effect>(*Custom(
+        "payload_step", "row " + std::to_string(row), 20, {2e-3, 0.05},
+        [J, row, period_s](const auto& a, AxisModel& m) {
+          m.payload = a[0] * J;
+          m.payload_row = static_cast<std::size_t>(static_cast<double>(row) + std::round(a[1] / period_s));
+        },
+        {}, {-0.8, -reach_s}, {5.0, reach_s}));
+    step->tested = 1;
+    step->order = p.log_.period_s * static_cast<double>(row);
+    out.push_back(step);
   }
   const double R = p.stated_.table_per_q;
   if (p.nominal_.two_inertia) {
@@ -287,31 +368,11 @@ SharedEffect LinearEffect(std::string kind, std::string label, double grid, Inpu
     if (input == Input::kReading || input == Input::kScale || largest <= 1e-12) steps[i] = step;
   }
   auto shared = std::make_shared<const std::vector<SharedSignal>>(std::move(basis));
-  return Custom(std::move(kind), std::move(label), grid, std::move(steps),
-                [shared, input](const auto& a, AxisModel& m) {
-                  SharedSignal* target = nullptr;
-                  switch (input) {
-                    case Input::kMotorForce:
-                      target = &m.motor_force;
-                      break;
-                    case Input::kLoadForce:
-                      target = &m.load_force;
-                      break;
-                    case Input::kLevel:
-                      target = &m.level;
-                      break;
-                    case Input::kViscous:
-                      target = &m.viscous;
-                      break;
-                    case Input::kReading:
-                      target = &m.reading_error;
-                      break;
-                    case Input::kScale:
-                      target = &m.scale_error_m;
-                      break;
-                  }
-                  *target = Add(*target, *shared, a);
-                });
+  return AsSignals(Custom(std::move(kind), std::move(label), grid, std::move(steps),
+                          [shared, input](const auto& a, AxisModel& m) {
+                            SharedSignal* target = &TargetOf(m, input);
+                            *target = Add(*target, *shared, a);
+                          }));
 }
 
 std::vector<SharedEffect> CatalogueEffects(const Problem& problem) {
@@ -330,9 +391,15 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
   const auto phase = [&](std::size_t k) {
     return of_time ? per * static_cast<double>(k) : per * s.angle_rad[k];
   };
-  const auto size = [&](std::size_t k) { return wave == Wave::kGainOfAngle ? s.model_torque[k] : 1.0; };
-  std::vector<SharedSignal> basis = {Make(n, [&](std::size_t k) { return size(k) * std::sin(phase(k)); }),
-                                     Make(n, [&](std::size_t k) { return size(k) * std::cos(phase(k)); })};
+  std::vector<double> phases(n);
+  for (std::size_t k = 0; k < n; ++k) phases[k] = phase(k);
+  const std::vector<double> sizes = wave == Wave::kGainOfAngle ? s.model_torque : std::vector<double>();
+  std::vector<SharedSignal> basis;
+  if (wave == Wave::kReadingOfAngle)
+    basis = {Make(n, [&](std::size_t k) { return std::sin(phases[k]); }),
+             Make(n, [&](std::size_t k) { return std::cos(phases[k]); })};
+  else
+    basis = {WaveSignal(phases, sizes, 0.0), WaveSignal(phases, sizes, 0.5 * kPi)};
   const std::string label = std::to_string(order);
   std::string kind;
   Input input = Input::kMotorForce;
@@ -379,15 +446,16 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
   e->order = order;
   e->steps = {step, step, 0.05 / span};
   e->tested = 2;
+  e->signals = true;
   e->low = {-1e30, -1e30, -6.0 / span};
   e->high = {1e30, 1e30, 6.0 / span};
   // About the middle, so that order and phase are not the same direction; the phase is reported at zero.
   e->apply = [x, order, middle, input, n](const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0 && a[1] == 0.0) return;
-    auto wave_signal = Make(n, [&](std::size_t k) {
-      const double at = order * (*x)[k] + a[2] * ((*x)[k] - middle);
-      return a[0] * std::sin(at) + a[1] * std::cos(at);
-    });
+    std::vector<double> at(n);
+    const double shift = std::atan2(a[1], a[0]), size = std::hypot(a[0], a[1]);
+    for (std::size_t k = 0; k < n; ++k) at[k] = order * (*x)[k] + a[2] * ((*x)[k] - middle);
+    const SharedSignal wave_signal = WaveSignal(at, std::vector<double>(n, size), shift);
     SharedSignal& target = input == Input::kLevel ? m.level : m.load_force;
     target = Add(target, {wave_signal}, {1.0});
   };

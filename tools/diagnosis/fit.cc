@@ -102,28 +102,31 @@ Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort) {
     for (std::size_t i = 0; i < fit.point.base.size(); ++i)
       gradient(static_cast<Eigen::Index>(i)) += weight(static_cast<Eigen::Index>(i)) * fit.point.base[i];
     const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
-    Eigen::VectorXd by = -solver.solve(gradient);
+    const Eigen::VectorXd by = -solver.solve(gradient);
     const double promised = -gradient.dot(by);
-    if (promised < 0.02) {
+    if (promised < effort.close_enough) {
       fit.converged = true;
-      if (last_chance || promised < 0.01) break;
+      if (last_chance || promised < 0.5 * effort.close_enough) break;
     }
-    bool better = false;
-    for (int half = 0; half < 4 && !better; ++half) {
-      Point next = Moved(fit.point, by);
-      std::vector<double> residual = problem.Residuals(std::span(&next, 1))[0];
-      const double prior = PriorOf(problem, next);
-      const double cost = SquareOf(residual) + prior;
-      if (std::isfinite(cost) && cost < fit.cost) {
-        if (fit.cost - cost < 0.6 * promised || half > 0) stale = true;
-        fit.point = std::move(next);
-        fit.residual = std::move(residual);
-        fit.cost = cost;
-        fit.prior = prior;
-        better = true;
-      }
-      by *= 0.35;
-      if (!better && !last_chance) break;  // the old sensitivities do not serve any more
+    // Shorter and longer steps ride along in the lanes that a single run leaves empty.
+    std::vector<Point> tried;
+    for (const double part : {1.0, 0.5, 0.15, 1.4}) tried.push_back(Moved(fit.point, part * by));
+    std::vector<std::vector<double>> residuals = problem.Residuals(tried);
+    std::size_t chosen = tried.size();
+    const double before = fit.cost;
+    for (std::size_t i = 0; i < tried.size(); ++i) {
+      const double prior = PriorOf(problem, tried[i]);
+      const double cost = SquareOf(residuals[i]) + prior;
+      if (!std::isfinite(cost) || cost >= fit.cost) continue;
+      chosen = i;
+      fit.cost = cost;
+      fit.prior = prior;
+    }
+    const bool better = chosen < tried.size();
+    if (better) {
+      if (before - fit.cost < 0.6 * promised || chosen > 0) stale = true;
+      fit.point = std::move(tried[chosen]);
+      fit.residual = std::move(residuals[chosen]);
     }
     if (!better) {
       if (last_chance) {

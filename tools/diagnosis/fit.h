@@ -20,8 +20,9 @@ struct Fit {
 
 struct FitEffort {
   int most_steps = 8;
-  int most_refreshes = 8;  ///< of the sensitivities
-  bool covariance = true;  ///< of the end point; else sensitivities may be old
+  int most_refreshes = 8;      ///< of the sensitivities
+  double close_enough = 0.02;  ///< what one more step would promise at an end, of |r|^2
+  bool covariance = true;      ///< of the end point; else sensitivities may be old
   const Fit* warm =
       nullptr;  ///< of the same noise and the same point less the last effect: its sensitivities serve
 };

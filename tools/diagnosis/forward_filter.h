@@ -37,8 +37,8 @@ struct FilterSetup {
 };
 
 /// The model driven by the logged command and held to the measured position by a fixed gain: DIAGNOSIS eqs.
-/// of the forward model in innovation form. Lanes of four run together; the result of each does not depend on
-/// the others, nor on the number of threads.
+/// of the forward model in innovation form. Lanes of eight run together; the result of each does not depend
+/// on the others, nor on the number of threads.
 std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisModel> models, int threads);
 
 /// What the drive delivers of the logged command: the hold, the pure delay, the first-order lag, all exact.

@@ -7,18 +7,30 @@
 
 namespace contour::diagnosis {
 
-/// One bundle of runs, as the loops take it: plain arrays, nothing that the two translations of the loops
-/// (baseline and AVX2; the same operations in the same order, so the same bits) could share by accident.
+/// What acts over a row, taken as linear inside it: value at its beginning and at its end.
+struct LaneSignal {
+  const double* from[kLanes] = {};
+  const double* to[kLanes] = {};
+};
+
+/// For linearisation: what each lane is moved by, at every row anew. Lane 0 is not moved.
+struct LanePush {
+  Vec start{}, w{}, acc{}, z{}, soft{}, thl{}, wl{}, accl{};
+  Vec reading{}, motor_from{}, motor_to{}, load_from{}, load_to{}, level_from{}, level_to{};
+  Vec inverse{};  ///< of the push, for the quotient
+};
+/// Numbers kept per row and direction: innovation, then the states in the order of LanePush.
+inline constexpr std::size_t kTangentStates = 9;
+
+/// One bundle of runs, as the loops take it: plain arrays, nothing that the translations of the loops
+/// (by instruction set; the same operations in the same order, so the same bits) could share by accident.
 struct Lanes {
   std::size_t rows = 0;
   int substeps = 0;
   double period_s = 0.0;
   const double* torque[kLanes] = {};  ///< per sub-step
   const double* late[kLanes] = {};    ///< per row, see DeliveredMeans
-  const double* motor[kLanes] = {};
-  const double* load[kLanes] = {};
-  const double* level[kLanes] = {};
-  const double* viscous[kLanes] = {};
+  LaneSignal motor, load, level, viscous;
   const double* reading[kLanes] = {};
   const double* measured = nullptr;
   const std::uint8_t* valid = nullptr;
@@ -26,7 +38,7 @@ struct Lanes {
   VecBits payload_row;
   Vec Fc_plus, Fc_minus, dF_plus, dF_minus, inv_vs, s0, s1, inv_vd, s2, smallest, offset, gain, saturation,
       start_z;
-  Vec soft_level, soft_s0;
+  Vec soft_level, soft_s0, rough;
   double l[4] = {};
   double start_q = 0.0, start_w = 0.0;
   bool square = false, full = false, trace = false;
@@ -35,11 +47,14 @@ struct Lanes {
   double* table[kLanes] = {};
   double* velocity[kLanes] = {};
   double* friction[kLanes] = {};
+  LanePush push;
+  float* tangent = nullptr;  ///< not null: linearise; (rows - 1) x (kLanes - 1) x kTangentStates
 };
 
 inline constexpr int kMostSubsteps = 32;
 
 void RunLanesBaseline(const Lanes& m);
 void RunLanesAvx2(const Lanes& m);
+void RunLanesAvx512(const Lanes& m);
 
 }  // namespace contour::diagnosis

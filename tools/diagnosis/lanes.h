@@ -3,19 +3,19 @@
 #include <bit>
 #include <cstdint>
 
-// Four runs of the same model side by side: the runs differ in parameters only, so one instruction stream
-// serves all four and their latencies hide each other. Each lane's result is the same whatever runs beside
+// Eight runs of the same model side by side: the runs differ in parameters only, so one instruction stream
+// serves all of them and their latencies hide each other. Each lane's result is the same whatever runs beside
 // it.
 namespace contour::diagnosis {
 
-inline constexpr int kLanes = 4;
+inline constexpr int kLanes = 8;
 
-using Vec [[gnu::vector_size(32)]] = double;
-using VecBits [[gnu::vector_size(32)]] = std::int64_t;
+using Vec [[gnu::vector_size(64)]] = double;
+using VecBits [[gnu::vector_size(64)]] = std::int64_t;
 
 #define CONTOUR_LANES_INLINE [[gnu::always_inline]] inline
 
-CONTOUR_LANES_INLINE Vec Spread(double x) { return Vec{x, x, x, x}; }
+CONTOUR_LANES_INLINE Vec Spread(double x) { return Vec{x, x, x, x, x, x, x, x}; }
 
 CONTOUR_LANES_INLINE Vec Abs(const Vec& x) { return x < 0.0 ? -x : x; }
 

@@ -77,20 +77,23 @@ Named Evaluate(const Problem& problem, const Point& point, std::size_t index) {
   if (e.kind == "cogging") return wave("amplitude_Nm", "order_per_rev", 1.0);
   if (e.kind == "viscous_nonlinear") {
     Named v{{"torque_at_max_speed_Nm", a[0]}, {"max_speed_rad_s", s.max_speed}};
-    if (e.order > 1.0) v["exponent"] = e.order;
-    if (e.order > 0.0 && e.order <= 1.0) v["knee_rad_s"] = e.order * s.max_speed;
+    if (e.order > 1.0) v["exponent"] = e.order * std::exp(a[1]);
+    if (e.order > 0.0 && e.order <= 1.0) v["knee_rad_s"] = e.order * std::exp(a[1]) * s.max_speed;
     return v;
   }
-  if (e.kind == "temperature_viscosity") return {{"rate_1_K", a[0]}};
+  // The model's coefficient is that of the mean temperature, the rate is stated of the first.
+  if (e.kind == "temperature_viscosity")
+    return {{"rate_1_K", a[0] / std::max(0.05, 1.0 + a[0] * s.temperature_K.front())}};
   if (e.kind == "friction_drift") {
     const double seconds = problem.log_.period_s * static_cast<double>(problem.rows());
     if (e.order <= 0.0) return {{"change_rel", a[0] / (1.0 - 0.5 * a[0])}};
-    return {{"change_rel", a[0] * (1.0 - std::exp(-1.0 / e.order)) / (1.0 - 0.5 * a[0])},
-            {"time_constant_s", e.order * seconds}};
+    const double tau = e.order * std::exp(a[1]);
+    return {{"change_rel", a[0] * (1.0 - std::exp(-1.0 / tau)) / (1.0 - 0.5 * a[0])},
+            {"time_constant_s", tau * seconds}};
   }
   if (e.kind == "torque_constant") return {{"ratio", 1.0 + a[0]}};
   if (e.kind == "torque_saturation") return {{"loss_at_rated_rel", a[0]}};
-  if (e.kind == "payload_step") return {{"inertia_change_rel", a[0]}, {"time_s", e.order}};
+  if (e.kind == "payload_step") return {{"inertia_change_rel", a[0]}, {"time_s", e.order + a[1]}};
   if (e.kind == "compliance") {
     const AxisModel m = problem.Build(point);
     return {{"antiresonance_Hz", std::sqrt(m.stiffness / std::max(m.load_inertia, 1e-30)) / kTwoPi},

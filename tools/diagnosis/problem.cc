@@ -5,12 +5,15 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <stdexcept>
 
 namespace contour::diagnosis {
 namespace {
 
 constexpr double kObserverBandwidth_Hz = 35.0;
 constexpr double kSettling_s = 0.3;
+// A coupling of 1 kHz; softer ones are for `compliance` to find.
+constexpr double kLagForDelay_s = 25e-6;
 constexpr std::size_t kSlowRows = 20;
 // Without a statement of the model file: what a careful data sheet is worth.
 const std::map<std::string, double> kDefaultSigma = {{"inertia", 0.05},
@@ -39,6 +42,7 @@ double StatedSigma(const StatedAxis& stated, const std::string& name) {
 Problem::Problem(const AxisLog& log, const StatedAxis& stated, int threads)
     : log_(log), stated_(stated), threads_(std::max(1, threads)), nominal_(ModelOf(stated)) {
   signals_ = std::make_shared<Signals>(MakeSignals(log, stated));
+  nominal_.rows = log.size();
   setup_.log = &log_;
   setup_.full = has_scale();
   setup_.valid = ValidRows(log, *signals_, stated, quality_);
@@ -57,7 +61,7 @@ Problem::Problem(const AxisLog& log, const StatedAxis& stated, int threads)
 }
 
 void Problem::ChooseSubsteps() {
-  // The leapfrog is off by (w h)^2 / 24 in a mode's frequency.
+  // The leapfrog is off by (w h)^2 / 24 in a mode's frequency, which MakeLanes takes off the stiffness again.
   const StatedFriction& f = nominal_.friction;
   const double carried =
       nominal_.two_inertia && nominal_.friction_on_load ? nominal_.load_inertia : nominal_.motor_inertia;
@@ -73,7 +77,7 @@ void Problem::ChooseSubsteps() {
     return s;
   };
   setup_.substeps_rigid = steps(4, presliding, 0.36);
-  setup_.substeps_two = steps(8, mode, 0.12);
+  setup_.substeps_two = steps(8, mode, 0.35);
 }
 
 void Problem::MakeTerms() {
@@ -116,6 +120,25 @@ void Problem::MakeTerms() {
   };
   timed("delay", [](AxisModel& m) { return &m.delay_s; });
   timed("lag", [](AxisModel& m) { return &m.lag_s; });
+  // No axis is quite rigid: below its antiresonance a coupling acts as a lag does that came with less delay
+  // (both leave the sum alone; 1 + s^2 / w_ar^2 ... against s^2 lag^2 / 2).
+  if (!nominal_.two_inertia && nominal_.delay_s > 2.0 * kLagForDelay_s) {
+    BaseTerm exchange;
+    exchange.name = "lag_for_delay";
+    exchange.sigma = kLagForDelay_s;
+    exchange.step = 2e-6;
+    exchange.additive = exchange.nuisance = true;
+    exchange.field = [](AxisModel& m) { return &m.lag_for_delay_s; };
+    terms_.push_back(exchange);
+  }
+  BaseTerm rough;
+  rough.name = "rough";
+  rough.sigma = std::pow(0.05 * f.vs, 2);
+  rough.start = 0.04 * rough.sigma;
+  rough.step = 0.002 * rough.sigma;
+  rough.additive = rough.nuisance = true;
+  rough.field = [](AxisModel& m) { return &m.rough; };
+  terms_.push_back(rough);
   BaseTerm z;
   z.name = "start_bristle";
   z.sigma = 0.7 * f.Fc_plus / f.s0;
@@ -168,44 +191,82 @@ std::vector<std::vector<double>> Problem::Raw(std::span<const Point> points) con
   for (const Point& p : points) models.push_back(Build(p));
   std::vector<FilterRun> runs = RunFilter(setup_, models, threads_);
   std::vector<std::vector<double>> raw(points.size());
-  const std::size_t n = rows();
   for (std::size_t i = 0; i < points.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
-    for (std::size_t k = 0; k < n; ++k)
-      if (counted_[k] == 0) raw[i][k] = 0.0;
     if (!has_scale()) continue;
-    raw[i].resize(2 * n);
-    double sum = 0.0, count = 0.0;
-    const double* error = models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr;
-    for (std::size_t k = 0; k < n; ++k) {
-      const double e = log_.table_position_m[k] - stated_.table_per_q * runs[i].table_position[k] -
-                       (error != nullptr ? error[k] : 0.0);
-      raw[i][n + k] = e;
-      if (counted_[k] != 0 && std::isfinite(e)) {
-        sum += e;
-        count += 1.0;
-      }
-    }
-    const double mean = sum / std::max(1.0, count);
-    for (std::size_t k = n; k < 2 * n; ++k)
-      raw[i][k] = counted_[k - n] != 0 && std::isfinite(raw[i][k]) ? raw[i][k] - mean : 0.0;
+    AddScale(runs[i].table_position, models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr,
+             log_.table_position_m.data(), raw[i]);
   }
   return raw;
 }
 
-std::vector<double> Problem::White(const std::vector<double>& raw) const {
-  std::vector<double> white(raw.size());
+void Problem::AddScale(const std::vector<double>& table, const double* error, const double* measured,
+                       std::vector<double>& raw) const {
   const std::size_t n = rows();
-  innovation_noise_.Apply(std::span(raw).first(n), white.data());
-  if (has_scale()) scale_noise_.Apply(std::span(raw).subspan(n), white.data() + n);
-  for (std::size_t k = 0; k < white.size(); ++k) white[k] *= root_weight_[k];
+  raw.resize(2 * n);
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double e = (measured != nullptr ? measured[k] : 0.0) - stated_.table_per_q * table[k] -
+                     (error != nullptr ? error[k] : 0.0);
+    raw[n + k] = e;
+    if (ScaleCounts(k)) {
+      sum += e;
+      count += 1.0;
+    }
+  }
+  const double mean = sum / std::max(1.0, count);
+  for (std::size_t k = 0; k < n; ++k) raw[n + k] = ScaleCounts(k) ? raw[n + k] - mean : 0.0;
+}
+
+std::vector<std::vector<double>> Problem::White(std::span<const std::vector<double>> raw) const {
+  const std::size_t n = rows();
+  std::vector<std::vector<double>> white(raw.size());
+  std::vector<const double*> in;
+  std::vector<double*> out;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    white[i].resize(raw[i].size());
+    in.push_back(raw[i].data());
+    out.push_back(white[i].data());
+  }
+  noise_.Apply(in, out, counted_, root_weight_.data());
+  if (!has_scale()) return white;
+  for (const double*& p : in) p += n;
+  for (double*& p : out) p += n;
+  ApplyColourFilter(scale_noise_, in, out, counted_, root_weight_.data() + n);
   return white;
 }
 
 std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points) const {
-  std::vector<std::vector<double>> all = Raw(points);
-  for (auto& r : all) r = White(r);
-  return all;
+  return White(Raw(points));
+}
+
+std::vector<std::vector<double>> Problem::LinearResponses(const Point& point,
+                                                          std::span<const SharedEffect> effects) const {
+  const AxisModel without = Build(point);
+  std::vector<LinearInput> inputs;
+  std::vector<SharedSignal> errors;
+  for (const SharedEffect& e : effects) {
+    for (std::size_t i = 0; i < e->tested; ++i) {
+      std::vector<double> amplitudes(e->steps.size(), 0.0);
+      amplitudes[i] = e->steps[i];
+      AxisModel with = without;
+      e->apply(amplitudes, with);
+      LinearInput input;
+      SharedSignal error;
+      if (!SignalsOnly(noise_.linear(), without, with, 1.0 / e->steps[i], input, error))
+        throw std::logic_error(e->kind + ": more than a signal");
+      inputs.push_back(std::move(input));
+      errors.push_back(std::move(error));
+    }
+  }
+  std::vector<FilterRun> runs = LinearColumns(noise_.linear(), inputs, has_scale());
+  std::vector<std::vector<double>> raw(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    raw[i] = std::move(runs[i].innovation);
+    if (has_scale())
+      AddScale(runs[i].table_position, errors[i] ? errors[i]->data() : nullptr, nullptr, raw[i]);
+  }
+  return White(raw);
 }
 
 FilterRun Problem::Trace(const Point& point) const {
@@ -233,12 +294,20 @@ void Problem::Lower(const double* r, std::size_t half, double largest_by_chance,
   }
 }
 
-void Problem::LearnNoise(const std::vector<double>& raw) {
+void Problem::LearnNoise(const Point& point) {
   const std::size_t n = rows();
-  innovation_noise_ = Whitener(std::span(raw).first(n), counted_);
-  if (has_scale()) scale_noise_ = Whitener(std::span(raw).subspan(n), counted_);
+  const AxisModel model = Build(point);
+  noise_ = NoiseFilter(std::make_shared<const LinearModel>(Linearise(setup_, model)), counted_,
+                       model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0), log_.period_s,
+                       stated_.position_step);
+  std::vector<double> raw = noise_.linear().innovation;
+  if (has_scale()) {
+    AddScale(noise_.linear().table, model.scale_error_m ? model.scale_error_m->data() : nullptr,
+             log_.table_position_m.data(), raw);
+    scale_noise_ = Whitener(std::span(raw).subspan(n), counted_);
+  }
   root_weight_.assign(data_size(), 1.0);
-  const std::vector<double> white = White(raw);
+  const std::vector<double> white = White(std::span(&raw, 1))[0];
   for (std::size_t base = 0; base < data_size(); base += n) {
     const double* r = &white[base];
     double* w = &root_weight_[base];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <span>
@@ -10,6 +11,8 @@
 #include "tools/diagnosis/axis_model.h"
 #include "tools/diagnosis/finding.h"
 #include "tools/diagnosis/forward_filter.h"
+#include "tools/diagnosis/linear_model.h"
+#include "tools/diagnosis/noise_filter.h"
 #include "tools/diagnosis/signals.h"
 #include "tools/diagnosis/stated_axis.h"
 #include "tools/diagnosis/whitener.h"
@@ -22,6 +25,7 @@ struct BaseTerm {
   double stated = 0.0;
   double sigma = 0.0;
   double step = 0.0;      ///< of x, for differences of runs
+  double start = 0.0;     ///< of x, of the first fit
   bool additive = false;  ///< value = stated + x instead
   bool nuisance = false;  ///< not a number of the stated model
   double* (*field)(AxisModel&) = nullptr;
@@ -36,6 +40,7 @@ struct Effect {
   std::vector<double> start;      ///< where a refit begins; empty: at the linear estimate
   std::vector<double> low, high;  ///< bounds; empty: none
   std::size_t tested = 0;         ///< so many amplitudes are tested at zero, the rest is shape; 0: all
+  bool signals = false;           ///< the tested amplitudes enter as signals and nothing else, in proportion
   double order = 0.0;             ///< of a wave: per turn, or Hz
   double middle = 0.0;            ///< of a wave with free order: rad about which the order turns
   std::function<void(const std::vector<double>&, AxisModel&)> apply;
@@ -54,13 +59,17 @@ class Problem {
   Problem(const AxisLog& log, const StatedAxis& stated, int threads);
 
   [[nodiscard]] AxisModel Build(const Point& point) const;
-  /// Innovations, then scale residuals, of every point; 0 where they do not count.
+  /// Innovations, then scale residuals (0 where they do not count), of every point.
   [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const Point> points) const;
-  [[nodiscard]] std::vector<double> White(const std::vector<double>& raw) const;
+  [[nodiscard]] std::vector<std::vector<double>> White(std::span<const std::vector<double>> raw) const;
   [[nodiscard]] std::vector<std::vector<double>> Residuals(std::span<const Point> points) const;
   [[nodiscard]] FilterRun Trace(const Point& point) const;
-  /// Spectrum of the noise, then its level from place to place.
-  void LearnNoise(const std::vector<double>& raw);
+  /// White differences of the residual per unit of each effect's amplitude at zero beside the point where the
+  /// noise was learnt, effects that are signals and nothing else.
+  [[nodiscard]] std::vector<std::vector<double>> LinearResponses(const Point& point,
+                                                                 std::span<const SharedEffect> effects) const;
+  /// Ratio of the noises of torque and reading, the colour that is left, then the level from place to place.
+  void LearnNoise(const Point& point);
   /// Traces the point and renews what regressors are made of.
   void LearnSignals(const Point& point);
   void LearnOutliers(const Point& point);
@@ -81,9 +90,16 @@ class Problem {
   /// stiction makes noise of torque into larger noise of position; a noise level may change).
   std::vector<double> root_weight_;
   DataQuality quality_;
-  Whitener innovation_noise_, scale_noise_;
+  NoiseFilter noise_;
+  Whitener scale_noise_;
 
  private:
+  bool ScaleCounts(std::size_t k) const {
+    return counted_[k] != 0 && std::isfinite(log_.table_position_m[k]);
+  }
+  /// Appends what the scale reads beyond the table's position and the error, less its mean.
+  void AddScale(const std::vector<double>& table, const double* error, const double* measured,
+                std::vector<double>& raw) const;
   void MakeTerms();
   void ChooseSubsteps();
   void CountRows();

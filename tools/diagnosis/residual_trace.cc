@@ -18,7 +18,8 @@ Signal FromRaw(const Problem& problem, const Point& point, const std::vector<dou
   const std::size_t n = problem.rows();
   Signal r(n, 0.0);
   for (std::size_t k = 0; k + 1 < n; ++k)
-    r[k] = -inertia * (gain[1] * raw[k] / T + gain[0] * (raw[k + 1] - raw[k]) / (T * T));
+    if (problem.counted_[k] != 0 && problem.counted_[k + 1] != 0)
+      r[k] = -inertia * (gain[1] * raw[k] / T + gain[0] * (raw[k + 1] - raw[k]) / (T * T));
   return Smooth(r, 1.3e-3 / T);
 }
 
@@ -35,11 +36,11 @@ Point Stepped(const Point& point, const Eigen::VectorXd& by) {
   return p;
 }
 
-// Sum of squares of the residual in every block, each with the parameters of the fold that did not see it.
-std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool scale) {
+// Where the parameters go to first order when the blocks of one fold are left out, for either fold.
+std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
   const Eigen::Index p = fit.jacobian.cols();
-  std::vector<Point> points;
+  std::vector<Eigen::VectorXd> steps;
   for (std::size_t fold = 0; fold < 2; ++fold) {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
@@ -61,8 +62,21 @@ std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool 
       }
     }
     normal.diagonal() *= 1.0 + 1e-12;
-    points.push_back(Stepped(fit.point, -normal.ldlt().solve(gradient)));
+    // A shape's own number, such as an instant, may be in one block only: it stays.
+    auto j = static_cast<Eigen::Index>(fit.point.base.size());
+    for (std::size_t e = 0; e < fit.point.effects.size(); ++e)
+      for (std::size_t i = 0; i < fit.point.amplitudes[e].size(); ++i, ++j)
+        if (i >= fit.point.effects[e]->tested) normal(j, j) *= 1e12;
+    steps.push_back(-normal.ldlt().solve(gradient));
   }
+  return steps;
+}
+
+// Sum of squares of the residual in every block, each with the parameters of the fold that did not see it.
+std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool scale) {
+  const std::size_t n = problem.rows();
+  std::vector<Point> points;
+  for (const Eigen::VectorXd& step : StepsWithout(problem, fit)) points.push_back(Stepped(fit.point, step));
   const auto raw = problem.Raw(points);
   std::vector<double> squares(kHeldOutBlocks, 0.0);
   for (std::size_t fold = 0; fold < 2; ++fold) {
@@ -75,7 +89,32 @@ std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool 
   return squares;
 }
 
+// The same of the white residual, to first order.
+std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
+  const std::size_t n = problem.rows(), parts = problem.data_size() / n;
+  const std::vector<Eigen::VectorXd> steps = StepsWithout(problem, fit);
+  std::vector<double> squares(kHeldOutBlocks, 0.0);
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b)
+    for (std::size_t part = 0; part < parts; ++part) {
+      const auto from = static_cast<Eigen::Index>(part * n + n * b / kHeldOutBlocks);
+      const auto rows = static_cast<Eigen::Index>(n * (b + 1) / kHeldOutBlocks - n * b / kHeldOutBlocks);
+      const Eigen::Map<const Eigen::VectorXd> r(fit.residual.data() + from, rows);
+      squares[b] += (r + fit.jacobian.middleRows(from, rows) * steps[b % 2]).squaredNorm();
+    }
+  return squares;
+}
+
 }  // namespace
+
+double HeldOutStatistic(const Problem& problem, const Fit& without, const Fit& with) {
+  const std::vector<double> before = WhiteSquares(problem, without), after = WhiteSquares(problem, with);
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
+    sum += before[b] - after[b];
+    squares += std::pow(before[b] - after[b], 2);
+  }
+  return sum / std::sqrt(squares + 1e-300);
+}
 
 Signal TorqueResidual(const Problem& problem, const Point& point) {
   return FromRaw(problem, point, problem.Raw(std::span(&point, 1))[0]);
@@ -125,7 +164,8 @@ Traces MakeTraces(const Problem& problem, const Point& before, const Point& afte
   t.residual_before = FromRaw(problem, before, raw[0]);
   t.residual_after = FromRaw(problem, after, raw[1]);
   const AxisModel m = problem.Build(after);
-  const Delivered delivered = DeliveredMeans(problem.log_, m.delay_s, m.lag_s, 1);
+  const Delivered delivered =
+      DeliveredMeans(problem.log_, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
   t.measured = Smooth(delivered.mean, 1.3e-3 / problem.log_.period_s);
   t.position = s.position;
   t.velocity = s.velocity;

@@ -31,20 +31,10 @@ struct Matched {
   }
 };
 
-Matched Match(const Problem& problem, const Fit& fit, bool reading) {
+Matched Match(const Problem& problem, bool reading, Signal gradient) {
   const std::vector<double> h = PulseResponse(problem, reading);
-  const std::size_t n = problem.rows();
   Matched m;
-  m.lambda.resize(n);
-  std::vector<double> weighted(n);
-  for (std::size_t k = 0; k < n; ++k) weighted[k] = fit.residual[k] * problem.root_weight_[k];
-  for (std::size_t k = 0; k < n; ++k) {
-    double sum = 0.0;
-    const std::size_t count = std::min(h.size(), n - k);
-    const double* r = &weighted[k];
-    for (std::size_t i = 0; i < count; ++i) sum += h[i] * r[i];
-    m.lambda[k] = sum;
-  }
+  m.lambda = std::move(gradient);
   std::vector<double> re(kTransfer, 0.0), im(kTransfer, 0.0);
   std::copy(h.begin(), h.end(), re.begin());
   FourierTransform(re, im, false);
@@ -139,67 +129,66 @@ std::vector<Peak> Integers(const std::vector<Peak>& all, double lowest) {
 }  // namespace
 
 std::vector<double> PulseResponse(const Problem& problem, bool reading) {
-  AxisLog silent;
-  silent.period_s = problem.log_.period_s;
-  silent.command.assign(kResponse + 8, 0.0);
-  silent.position.assign(kResponse + 8, 0.0);
-  FilterSetup setup = problem.setup_;
-  setup.log = &silent;
-  setup.valid.assign(silent.size(), 1);
-  setup.start = {0.0, 0.0};
-  setup.full = setup.trace = false;
-  AxisModel m = problem.nominal_;
-  m.offset = 0.0;
-  m.friction.Fc_plus = m.friction.Fc_minus = m.friction.Fs_plus = m.friction.Fs_minus =
-      1e-9 * problem.signals_->coulomb;
-  m.friction.s0 *= 1e-9;
-  m.friction.s1 = 0.0;
-  auto pulse = std::make_shared<Signal>(silent.size(), 0.0);
-  (*pulse)[1] = 1.0;
-  (reading ? m.reading_error : m.motor_force) = pulse;
-  const auto run = RunFilter(setup, std::span(&m, 1), 1);
-  std::vector<double> white(silent.size());
-  problem.innovation_noise_.Apply(run[0].innovation, white.data());
-  return {white.begin() + 1, white.begin() + 1 + kResponse};
+  // In the middle of the longest slide.
+  const Signals& s = *problem.signals_;
+  const std::size_t n = problem.rows();
+  const double slow = 0.02 * s.max_speed;
+  std::size_t row = n / 2, longest = 0, since = 0;
+  for (std::size_t k = 1; k <= n; ++k) {
+    const bool slides = k < n && problem.counted_[k] != 0 && std::fabs(s.velocity[k]) > slow &&
+                        (s.velocity[k] > 0.0) == (s.velocity[k - 1] > 0.0);
+    if (slides) continue;
+    if (k - since > longest) {
+      longest = k - since;
+      row = (since + k) / 2;
+    }
+    since = k;
+  }
+  return problem.noise_.Pulse(std::min(row, n > kResponse + 2 ? n - kResponse - 2 : 0), reading, kResponse,
+                              problem.counted_);
 }
 
 std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   const Signals& s = *problem.signals_;
   const std::size_t n = problem.rows();
   std::vector<SharedEffect> out;
+  // The grid is what was looked at: every order up to the highest, every frequency that the log resolves.
   const auto add = [&](Wave wave, const std::vector<double>& orders, double grid) {
     for (const double o : orders) out.push_back(WaveEffect(problem, wave, o, grid));
   };
-  const Matched torque = Match(problem, fit, false);
-  // Stuck, the axis hardly answers to a torque.
-  std::vector<double> sliding(n), signed_sliding(n), loaded(n);
+  std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + static_cast<std::ptrdiff_t>(n));
+  NoiseFilter::Gradient back = problem.noise_.Back(innovation, problem.counted_, problem.root_weight_.data());
+  for (double& x : back.level) x /= s.coulomb;
+  const Matched torque = Match(problem, false, std::move(back.motor));
+  const Matched level{std::move(back.level), torque.transfer};
+  // Stuck, the axis hardly answers to a torque: the information is in the slides.
+  std::vector<double> sliding(n), loaded(n);
   double torque_scale = 1e-300;
   for (std::size_t k = 0; k < n; ++k) torque_scale = std::max(torque_scale, std::fabs(s.model_torque[k]));
   for (std::size_t k = 0; k < n; ++k) {
     sliding[k] = std::fabs(s.sign[k]) > 0.8 ? 1.0 : 0.0;
-    signed_sliding[k] = sliding[k] * s.sign[k];
     loaded[k] = sliding[k] * s.model_torque[k] / torque_scale;
   }
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = (*high - *low) / kTwoPi;
   if (revs > 1.5) {
-    const auto friction = AngleScores(problem, torque, signed_sliding, 40.0);
-    add(Wave::kFrictionOfAngle, Best(Integers(friction, 1.0), 2, 0.5), 12.0);
+    const auto friction = AngleScores(problem, level, sliding, 40.0);
+    add(Wave::kFrictionOfAngle, Best(Integers(friction, 1.0), 2, 0.5), 40.0);
     std::vector<Peak> between;
     for (const Peak& p : friction)
       if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > kFewestPeriods / revs &&
           p.order < 20.0)
         between.push_back(p);
-    if (revs > 5.0) add(Wave::kFrictionOfAngle, Best(between, 2, 1.0 / revs), 400.0);
+    if (revs > 5.0) add(Wave::kFrictionOfAngle, Best(between, 2, 1.0 / revs), 20.0 * revs);
     add(Wave::kTorqueOfAngle, Best(Integers(AngleScores(problem, torque, sliding, 144.0), 1.0), 2, 0.5),
-        36.0);
-    add(Wave::kGainOfAngle, Best(Integers(AngleScores(problem, torque, loaded, 144.0), 1.0), 1, 0.5), 72.0);
+        144.0);
+    add(Wave::kGainOfAngle, Best(Integers(AngleScores(problem, torque, loaded, 144.0), 1.0), 1, 0.5), 144.0);
   }
   if (revs > 0.05) {
-    const Matched reading = Match(problem, fit, true);
+    const Matched reading = Match(problem, true, std::move(back.reading));
     const std::vector<double> ones(n, 1.0);
     add(Wave::kReadingOfAngle, Best(Integers(AngleScores(problem, reading, ones, 4096.0), 8.0), 2, 0.5),
-        72.0);
+        4096.0);
   }
   // Time: one transform of the gradient.
   const std::size_t length = std::bit_ceil(2 * n);
@@ -217,7 +206,8 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
     time.push_back({f / problem.log_.period_s,
                     2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
   }
-  add(Wave::kForceOfTime, Best(time, 2, 2.0 / (static_cast<double>(n) * problem.log_.period_s)), 4000.0);
+  add(Wave::kForceOfTime, Best(time, 2, 2.0 / (static_cast<double>(n) * problem.log_.period_s)),
+      0.5 * static_cast<double>(n));
   return out;
 }
 

@@ -22,6 +22,13 @@ void AddBlocks(const double* column, const double* residual, std::size_t rows, s
   }
 }
 
+double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
+  const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
+  return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
+}
+
+}  // namespace
+
 bool InBase(const Problem& problem, const std::string& kind) {
   const auto has = [&](const char* name) {
     return std::any_of(problem.terms_.begin(), problem.terms_.end(),
@@ -33,13 +40,6 @@ bool InBase(const Problem& problem, const std::string& kind) {
   if (kind == "compliance") return has("stiffness");
   return kind == "torque_constant";
 }
-
-double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
-  const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
-  return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
-}
-
-}  // namespace
 
 namespace {
 
@@ -92,8 +92,8 @@ double Penalty(const Effect& effect) {
   return 3.0 * static_cast<double>(effect.steps.size()) + 2.0 * std::log(std::max(1.0, effect.grid));
 }
 
-std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
-                                 std::span<const SharedEffect> effects) {
+std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects) {
+  std::stable_partition(effects.begin(), effects.end(), [](const SharedEffect& e) { return e->signals; });
   const auto size = static_cast<Eigen::Index>(problem.data_size());
   const std::size_t rows = problem.rows();
   const Eigen::Index base = fit.jacobian.cols();
@@ -104,23 +104,37 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
     base_blocks.row(i) = row;
   }
   std::vector<Scored> out;
-  std::size_t at = 0;
   const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), size);
-  while (at < effects.size()) {
-    // Some sixteen runs at a time bound the memory.
-    std::vector<Point> points;
-    std::size_t end = at;
-    while (end < effects.size() && (points.empty() || points.size() + effects[end]->tested <= 16)) {
-      for (std::size_t i = 0; i < effects[end]->tested; ++i) {
-        Point p = fit.point;
-        p.effects.push_back(effects[end]);
-        p.amplitudes.emplace_back(effects[end]->steps.size(), 0.0);
-        p.amplitudes.back()[i] += effects[end]->steps[i];
-        points.push_back(std::move(p));
-      }
+  // Some two dozen columns at a time bound the memory.
+  for (std::size_t at = 0; at < effects.size();) {
+    const bool signals = effects[at]->signals;
+    std::size_t end = at, columns = 0;
+    while (end < effects.size() && effects[end]->signals == signals &&
+           (columns == 0 || columns + effects[end]->tested <= 24)) {
+      columns += effects[end]->tested;
       ++end;
     }
-    const auto runs = problem.Residuals(points);
+    const std::span<const SharedEffect> some = std::span(effects).subspan(at, end - at);
+    std::vector<std::vector<double>> responses;
+    if (!signals) {
+      std::vector<Point> points;
+      for (const SharedEffect& e : some)
+        for (std::size_t i = 0; i < e->tested; ++i) {
+          Point p = fit.point;
+          p.effects.push_back(e);
+          p.amplitudes.emplace_back(e->steps.size(), 0.0);
+          p.amplitudes.back()[i] += e->steps[i];
+          points.push_back(std::move(p));
+        }
+      responses = problem.Residuals(points);
+      std::size_t run = 0;
+      for (const SharedEffect& e : some)
+        for (std::size_t i = 0; i < e->tested; ++i, ++run)
+          Eigen::Map<Eigen::VectorXd>(responses[run].data(), size) =
+              (Column(responses[run].data(), size) - residual) / e->steps[i];
+    } else {
+      responses = problem.LinearResponses(fit.point, some);
+    }
     std::size_t run = 0;
     for (; at < end; ++at) {
       const Effect& effect = *effects[at];
@@ -128,10 +142,7 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
       s.effect = effects[at];
       const auto n = static_cast<Eigen::Index>(effect.tested);
       Eigen::MatrixXd g(size, n);
-      for (Eigen::Index i = 0; i < n; ++i)
-        g.col(i) = (Column(runs[run + static_cast<std::size_t>(i)].data(), size) - residual) /
-                   effect.steps[static_cast<std::size_t>(i)];
-      run += effect.tested;
+      for (Eigen::Index i = 0; i < n; ++i) g.col(i) = Column(responses[run++].data(), size);
       const Eigen::MatrixXd cross = fit.jacobian.transpose() * g;
       const Eigen::MatrixXd onto = fit.covariance * cross;
       Eigen::MatrixXd information = g.transpose() * g - cross.transpose() * onto;
@@ -144,6 +155,7 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
       }
       s.per_block -= onto.transpose() * base_blocks;
       // Directions that the base explains already, to rounding, carry nothing.
+      const bool nearly_base = n == 1 && information(0, 0) < 1e-3 * own(0);
       for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-6 * own(i) + 1e-300;
       // The gradient of the prior belongs to the base; at its optimum both parts cancel.
       const Eigen::VectorXd gradient = g.transpose() * residual;
@@ -153,6 +165,8 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
       s.drop = -gradient.dot(s.amplitude);
       // What a base parameter does already, an effect can only free from its prior.
       s.excess = Excess(s.per_block, s.covariance);
+      // What the base can nearly do itself frees it from its priors and no more.
+      if (nearly_base) s.drop = std::min(s.drop, 1.5 * fit.prior + 5.0);
       if (InBase(problem, effect.kind)) {
         // What a base parameter does already, an effect can only free from its prior: the evidence is in the
         // prior and not in the blocks.

@@ -28,9 +28,11 @@ struct Scored {
 
 double Penalty(const Effect& effect);
 
+/// Whether the kind is a number of the base model: its evidence is in the priors.
+bool InBase(const Problem& problem, const std::string& kind);
+
 /// Tests effects at zero amplitude beside whatever `fit` holds.
-std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit,
-                                 std::span<const SharedEffect> effects);
+std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects);
 
 /// A torque constant that is off by exp(x) looks like all forces off by exp(-x): only the priors tell. The x
 /// that they like best, and what they gain by it.
@@ -44,7 +46,7 @@ void ShiftForces(const Problem& problem, double log_ratio, Point& point);
 /// Of the last effect of a fit, from the fit's own residual: free of what the effect explains.
 double ExcessOfLast(const Problem& problem, const Fit& fit);
 
-/// White innovation after a pulse of one row of motor torque (or of the reading), friction left out.
+/// White innovation after a pulse of one row of motor torque (or of the reading) while the axis slides.
 std::vector<double> PulseResponse(const Problem& problem, bool reading);
 
 /// Effects that the scans over orders and frequencies propose.

@@ -14,6 +14,8 @@ struct StatedFriction {
   double Fs_plus = 0.0, Fs_minus = 0.0;
   double vs = 0.0, exponent = 1.0;
   double s0 = 0.0, s1 = 0.0, vd = 0.0, s2 = 0.0;
+
+  bool operator==(const StatedFriction&) const = default;
 };
 
 /// In the generalised coordinates of AxisLog (rotary: rad, Nm, kg m^2 at the motor; linear: m, N, kg).

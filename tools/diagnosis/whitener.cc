@@ -131,46 +131,4 @@ Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint
   for (double& t : taps_) t /= std::sqrt(error);
 }
 
-void Whitener::Apply(std::span<const double> in, double* out) const {
-  const std::size_t n = in.size(), order = taps_.size();
-  for (std::size_t k = 0; k < std::min(n, order); ++k) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i <= k; ++i) sum += taps_[i] * in[k - i];
-    out[k] = sum;
-  }
-  // Four rows at a time: the taps are read once for all of them.
-  std::size_t k = order;
-  for (; k + 4 <= n; k += 4) {
-    double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0;
-    const double* p = &in[k];
-    for (std::size_t i = 0; i < order; ++i) {
-      const double t = taps_[i];
-      const double* q = p - i;
-      s0 += t * q[0];
-      s1 += t * q[1];
-      s2 += t * q[2];
-      s3 += t * q[3];
-    }
-    out[k] = s0;
-    out[k + 1] = s1;
-    out[k + 2] = s2;
-    out[k + 3] = s3;
-  }
-  for (; k < n; ++k) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < order; ++i) sum += taps_[i] * in[k - i];
-    out[k] = sum;
-  }
-}
-
-double Whitener::Density(double cycles_per_row) const {
-  double re = 0.0, im = 0.0;
-  for (std::size_t i = 0; i < taps_.size(); ++i) {
-    const double phase = 2.0 * std::numbers::pi * cycles_per_row * static_cast<double>(i);
-    re += taps_[i] * std::cos(phase);
-    im += taps_[i] * std::sin(phase);
-  }
-  return 1.0 / (re * re + im * im);
-}
-
 }  // namespace contour::diagnosis

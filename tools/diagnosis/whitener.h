@@ -15,12 +15,11 @@ class Whitener {
   /// `valid`: rows that count; others are 0 in `residual`.
   Whitener(std::span<const double> residual, const std::vector<std::uint8_t>& valid);
 
-  void Apply(std::span<const double> in, double* out) const;
-  /// Spectral density of the noise at frequency f in cycles per row, two-sided, in units of the input.
-  double Density(double cycles_per_row) const;
+  /// Prediction error filter over its own standard deviation.
+  const std::vector<double>& taps() const { return taps_; }
 
  private:
-  std::vector<double> taps_ = {1.0};  ///< prediction error filter over its own sd
+  std::vector<double> taps_ = {1.0};
 };
 
 /// In place, length a power of two; forward without scale.

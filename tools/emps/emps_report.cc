@@ -239,7 +239,7 @@ void WriteEmpsReport(const ReportOptions& options) {
   const std::vector<ScoredModel> models = ScoreModels(data);
   diagnosis::DiagnoseOptions how;
   how.threads = options.threads;
-  how.most_effects = 6;  // a real axis has more than one
+  how.most_effects = 8;  // a real axis has more than one
   how.progress = options.progress;
   const auto train =
       diagnosis::Diagnose(LogOf(options.emps / "emps_train.csv", {100, 24700}), AuthorsAxis(), how);

@@ -38,7 +38,7 @@ bool CanExtend(const std::string& kind) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
-void AddCauses(const std::vector<Cause>& causes, double mean_temperature_degC, ExtensionsConfig& e) {
+void AddCauses(const std::vector<Cause>& causes, double first_temperature_degC, ExtensionsConfig& e) {
   for (const Cause& c : causes) {
     const ShapeTable* shape = Shape(c);
     if (c.kind == "asymmetric_coulomb") e.asymmetric_coulomb = {Value(c, "difference_rel")};
@@ -59,7 +59,7 @@ void AddCauses(const std::vector<Cause>& causes, double mean_temperature_degC, E
       e.viscous_nonlinear = {Value(c, "torque_at_max_speed_Nm"), Value(c, "max_speed_rad_s", 1.0),
                              Value(c, "exponent", 2.0), Value(c, "knee_rad_s")};
     if (c.kind == "temperature_viscosity")
-      e.temperature_viscosity = {Value(c, "rate_1_K"), mean_temperature_degC};
+      e.temperature_viscosity = {Value(c, "rate_1_K"), first_temperature_degC};
     if (c.kind == "torque_constant") e.torque_constant = {Value(c, "ratio", 1.0)};
     if (c.kind == "compliance" && Value(c, "stiffness_Nm_rad") > 0.0)
       e.compliance = {Value(c, "antiresonance_Hz"), Value(c, "stiffness_Nm_rad"),
@@ -69,14 +69,10 @@ void AddCauses(const std::vector<Cause>& causes, double mean_temperature_degC, E
   }
 }
 
-double MeanTemperature_degC(const AxisLog& log) {
-  double sum = 0.0, count = 0.0;
+double FirstTemperature_degC(const AxisLog& log) {
   for (const double t : log.temperature_degC)
-    if (!std::isnan(t)) {
-      sum += t;
-      ++count;
-    }
-  return count > 0.0 ? sum / count : 20.0;
+    if (!std::isnan(t)) return t;
+  return 20.0;
 }
 
 }  // namespace contour::diagnosis

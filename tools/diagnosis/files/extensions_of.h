@@ -13,10 +13,11 @@ namespace contour::diagnosis {
 /// that changes), not what to reckon with.
 bool CanExtend(const std::string& kind);
 
-/// Adds the accepted causes to what a model has already. `mean_temperature_degC` is that of the log.
-void AddCauses(const std::vector<Cause>& causes, double mean_temperature_degC, ExtensionsConfig& extensions);
+/// Adds the accepted causes to what a model has already. `first_temperature_degC` is that of the log; rates
+/// refer to it.
+void AddCauses(const std::vector<Cause>& causes, double first_temperature_degC, ExtensionsConfig& extensions);
 
-/// Of the log; 20 without a sensor.
-double MeanTemperature_degC(const AxisLog& log);
+/// The log's; 20 without a sensor.
+double FirstTemperature_degC(const AxisLog& log);
 
 }  // namespace contour::diagnosis

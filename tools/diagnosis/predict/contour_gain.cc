@@ -127,7 +127,7 @@ Program UsualCircle(const MachineConfig& machine) {
 }
 
 std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, const std::string& axis,
-                                              const Diagnosis& found, double mean_temperature_degC,
+                                              const Diagnosis& found, double first_temperature_degC,
                                               const Program& program) {
   std::vector<Cause> simulated;
   for (const Cause& c : found.causes)
@@ -135,8 +135,8 @@ std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, cons
   if (machine.axes.size() < 2 || simulated.empty()) return {};
   MachineConfig extended = machine;
   ExtensionsConfig causes;
-  AddCauses(simulated, mean_temperature_degC, causes);
-  AddCauses(simulated, mean_temperature_degC, extended.axes.at(axis).model.extensions);
+  AddCauses(simulated, first_temperature_degC, causes);
+  AddCauses(simulated, first_temperature_degC, extended.axes.at(axis).model.extensions);
   EmulatorConfig emulator;
   emulator.parameter_variation_rel = 0.0;
   for (const auto& [name, config] : machine.axes) {

@@ -17,7 +17,7 @@ namespace contour::diagnosis {
 /// other was found, or where the machine has one axis only (a path is then never left). Throws
 /// std::runtime_error when the simulated machine stops.
 std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, const std::string& axis,
-                                              const Diagnosis& found, double mean_temperature_degC,
+                                              const Diagnosis& found, double first_temperature_degC,
                                               const Program& program);
 
 /// A circle of 10 mm at 3 m/min, or what the axes' limits allow of it.

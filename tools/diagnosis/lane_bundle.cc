@@ -1,0 +1,138 @@
+#include "tools/diagnosis/lane_bundle.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour::diagnosis {
+namespace {
+
+void SetSignal(LaneSignal& lane, std::size_t i, const SharedSignal& signal, std::size_t rows,
+               const double* zeros) {
+  lane.from[i] = signal ? signal->data() : zeros;
+  lane.to[i] = signal ? signal->data() + (signal->size() == 2 * rows ? rows : 1) : zeros;
+}
+
+enum class Instructions { kBaseline, kAvx2, kAvx512 };
+
+Instructions Best() {
+  static const Instructions best =
+      __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+              __builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512bw") != 0
+          ? Instructions::kAvx512
+          : (__builtin_cpu_supports("avx2") != 0 ? Instructions::kAvx2 : Instructions::kBaseline);
+  return best;
+}
+
+}  // namespace
+
+void RunLanes(const Lanes& m) {
+  switch (Best()) {
+    case Instructions::kAvx512:
+      return RunLanesAvx512(m);
+    case Instructions::kAvx2:
+      return RunLanesAvx2(m);
+    case Instructions::kBaseline:
+      return RunLanesBaseline(m);
+  }
+}
+
+void RunColumns(const LaneColumns& m) {
+  switch (Best()) {
+    case Instructions::kAvx512:
+      return RunColumnsAvx512(m);
+    case Instructions::kAvx2:
+      return RunColumnsAvx2(m);
+    case Instructions::kBaseline:
+      return RunColumnsBaseline(m);
+  }
+}
+
+void RunWhiten(const LaneWhiten& m) {
+  switch (Best()) {
+    case Instructions::kAvx512:
+      return RunWhitenAvx512(m);
+    case Instructions::kAvx2:
+      return RunWhitenAvx2(m);
+    case Instructions::kBaseline:
+      return RunWhitenBaseline(m);
+  }
+}
+
+Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> models,
+                std::span<const Delivered* const> delivered, const double* measured, const double* zeros) {
+  const AxisModel& first = *models[0];
+  Lanes m;
+  m.rows = setup.log->size();
+  m.substeps = first.two_inertia ? setup.substeps_two : setup.substeps_rigid;
+  m.period_s = setup.log->period_s;
+  m.measured = measured;
+  m.valid = setup.valid.data();
+  const ObserverGain& gain = first.two_inertia ? setup.gain_two : setup.gain;
+  std::copy(gain.begin(), gain.end(), m.l);
+  m.start_q = setup.start[0];
+  m.start_w = setup.start[1];
+  m.square = first.friction.exponent > 1.5;
+  m.full = setup.full;
+  m.trace = setup.trace;
+  m.two = first.two_inertia;
+  m.on_load = first.two_inertia && first.friction_on_load;
+  m.soft = first.soft_share > 0.0;
+  m.fading = first.friction.vd > 0.0;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const std::size_t from = std::min(i, models.size() - 1);
+    const AxisModel& a = *models[from];
+    const StatedFriction& f = a.friction;
+    m.torque[i] = delivered[from]->mean.data();
+    m.late[i] = delivered[from]->late.data();
+    SetSignal(m.motor, i, a.motor_force, m.rows, zeros);
+    SetSignal(m.load, i, a.load_force, m.rows, zeros);
+    SetSignal(m.level, i, a.level, m.rows, zeros);
+    SetSignal(m.viscous, i, a.viscous, m.rows, zeros);
+    m.reading[i] = a.reading_error ? a.reading_error->data() : zeros;
+    m.inv_motor[i] = 1.0 / a.motor_inertia;
+    m.inv_load[i] = a.two_inertia ? 1.0 / a.load_inertia : 0.0;
+    m.inv_payload[i] = 1.0 / ((a.two_inertia ? a.load_inertia : a.motor_inertia) + a.payload);
+    m.payload_row[i] = static_cast<std::int64_t>(a.payload != 0.0 ? a.payload_row : setup.log->size() + 1);
+    // The leapfrog's mode is too fast by (w h)^2 / 24: taken off the stiffness.
+    if (a.two_inertia) {
+      const double w = std::sqrt(a.stiffness * (1.0 / a.motor_inertia + 1.0 / a.load_inertia));
+      const double x = std::min(1.2, 0.5 * w * m.period_s / m.substeps);
+      m.stiffness[i] = a.stiffness * (x > 1e-6 ? std::pow(std::sin(x) / x, 2) : 1.0);
+    } else {
+      m.stiffness[i] = 0.0;
+    }
+    m.damping[i] = a.damping;
+    m.half_gap[i] = 0.5 * a.gap;
+    const double stiff = 1.0 - a.soft_share;
+    m.Fc_plus[i] = f.Fc_plus;
+    m.Fc_minus[i] = f.Fc_minus;
+    m.dF_plus[i] = f.Fs_plus - f.Fc_plus;
+    m.dF_minus[i] = f.Fs_minus - f.Fc_minus;
+    m.inv_vs[i] = 1.0 / f.vs;
+    m.s0[i] = f.s0;
+    m.s1[i] = f.s1;
+    m.inv_vd[i] = f.vd > 0.0 ? 1.0 / f.vd : 0.0;
+    m.s2[i] = f.s2;
+    m.smallest[i] = 1e-3 * 0.5 * (f.Fc_plus + f.Fc_minus) + 1e-30;
+    m.offset[i] = a.offset;
+    m.gain[i] = a.torque_gain;
+    m.saturation[i] = a.saturation;
+    m.start_z[i] = a.start_bristle;
+    m.rough[i] = a.rough;
+    if (a.soft_share > 0.0) {
+      m.Fc_plus[i] *= stiff;
+      m.Fc_minus[i] *= stiff;
+      m.dF_plus[i] *= stiff;
+      m.dF_minus[i] *= stiff;
+      m.s0[i] *= stiff;
+      m.soft_level[i] = a.soft_share / stiff;
+      m.soft_s0[i] = f.s0 * a.soft_share * a.soft_ratio;
+    } else {
+      m.soft_level[i] = 1.0;
+      m.soft_s0[i] = 0.0;
+    }
+  }
+  return m;
+}
+
+}  // namespace contour::diagnosis

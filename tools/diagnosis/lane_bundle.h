@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+
+#include "tools/diagnosis/forward_filter.h"
+#include "tools/diagnosis/lane_linear.h"
+#include "tools/diagnosis/lane_run.h"
+
+namespace contour::diagnosis {
+
+/// Models of one shape as lanes; the last one fills the lanes that are left over. Outputs are for the caller
+/// to set. Everything given must outlive the lanes.
+Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> models,
+                std::span<const Delivered* const> delivered, const double* measured, const double* zeros);
+
+/// By the best instruction set of this machine; all give the same bits.
+void RunLanes(const Lanes& m);
+void RunColumns(const LaneColumns& m);
+void RunWhiten(const LaneWhiten& m);
+
+}  // namespace contour::diagnosis
