@@ -13,6 +13,9 @@
 namespace contour {
 namespace {
 
+/// A planned motion slower than this has come to its end.
+constexpr double kStill_m_s = 1e-6;
+
 void Demand(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(std::string("estimator: ") + what);
 }
@@ -81,8 +84,15 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       break;
   }
   roll_ = FrictionRoll(period_s);
-  rigid_ = RigidCorrection({mechanics.mass_kg, setup.friction.sigma2_Ns_m,
-                            config.adapt ? config.mass_rate : 0.0, config.adapt ? config.viscous_rate : 0.0});
+  viscous_ = ViscousCorrection({setup.friction.sigma2_Ns_m, config.adapt ? config.viscous_rate : 0.0});
+  momentum_ = MomentumBalance({mechanics.mass_kg, period_s, config.adapt ? config.mass_rate : 0.0,
+                               config.adapt ? config.delay_rate : 0.0});
+  lag_ = DriveLag<1>(period_s, lag_s);
+  // A second difference of the position takes sqrt(1 + 4 + 1) of its noise.
+  const double difference_N =
+      std::sqrt(6.0) * setup.measurement_std_m * mechanics.mass_kg / (period_s * period_s);
+  map_ = AngleForceMap({2.0 * std::numbers::pi * mechanics.radius_m_rad, difference_N,
+                        config.adapt ? config.cogging_rate : 0.0});
   correction_ =
       LevelCorrection({2.0 * std::numbers::pi * mechanics.radius_m_rad, setup.friction.vs_m_s,
                        config.adapt ? config.ripple_rate : 0.0, config.adapt ? config.stribeck_rate : 0.0});
@@ -92,13 +102,17 @@ void AxisEstimator::Reset(double position_m) noexcept {
   WithFilter(filter_, [&](auto& filter) noexcept { filter.Reset(position_m); });
   roll_.Reset(0.0);
   correction_.Reset();
-  rigid_.Reset();
+  viscous_.Reset();
+  momentum_.Reset();
+  map_.Reset();
+  lag_.Reset();
   at_rest_ = true;
+  knows_followed_ = false;
 }
 
 AxisEstimate AxisEstimator::Update(const Input& in) noexcept {
-  at_rest_ = in.at_rest || !in.enabled;
   if (kind_ == EstimatorKind::kFull) return UpdateFull(in);
+  at_rest_ = in.at_rest || !in.enabled;
   AxisEstimate estimate;
   WithFilter(filter_, [&](auto& filter) noexcept { estimate = filter.Update(in); });
   return estimate;
@@ -111,22 +125,50 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   const double level = known_.LevelFactor(ahead[kPosition]);
   filter.SetLevelFactors(level * correction_.Factor(basis, true), level * correction_.Factor(basis, false));
   temperature_degC_ = in.temperature_degC;
-  filter.SetKnownForces_N(rigid_.extra_kg() * in.commanded_acceleration_m_s2,
-                          rigid_.extra_Ns_m() * in.commanded_velocity_m_s +
-                              known_.Viscous_N(in.commanded_velocity_m_s, temperature_degC_));
+  Input followed = in;
+  if (knows_followed_) {
+    followed.commanded_velocity_m_s = followed_.velocity_m_s;
+    followed.commanded_acceleration_m_s2 = followed_.acceleration_m_s2;
+    // A planned corner goes on after the program's own motion of the axis has come to its end.
+    followed.at_rest = in.at_rest && std::abs(followed_.velocity_m_s) < kStill_m_s;
+    knows_followed_ = false;
+  }
+  at_rest_ = followed.at_rest || !in.enabled;
+  const double late = momentum_.delay_periods();
+  for (std::size_t i = 0; i + 1 < followed.force_N.size(); ++i)
+    followed.force_N[i] += late * (in.force_N[i + 1] - in.force_N[i]);
+  filter.SetKnownForces_N(momentum_.extra_kg() * followed.commanded_acceleration_m_s2,
+                          viscous_.extra_Ns_m() * followed.commanded_velocity_m_s +
+                              known_.Viscous_N(followed.commanded_velocity_m_s, temperature_degC_));
   // In the middle of the period that has passed, and of the one that lies ahead. ahead is t(k-1) here.
   const double next_m = ahead[kPosition] + ahead[kVelocity] * roll_.period_s();
-  filter.SetDrivingForces_N(known_.Force_N(0.5 * (filter.state()[kPosition] + ahead[kPosition])),
-                            known_.Force_N(0.5 * (ahead[kPosition] + next_m)));
-  return filter.Update(in);
+  const auto driving_N = [&](double position_m) {
+    return known_.Force_N(position_m) + map_.At_N(position_m, ahead[kVelocity]);
+  };
+  filter.SetDrivingForces_N(driving_N(0.5 * (filter.state()[kPosition] + ahead[kPosition])),
+                            driving_N(0.5 * (ahead[kPosition] + next_m)));
+  const AxisEstimate estimate = filter.Update(followed);
+  // Over the period that ends with this measurement.
+  const double force_N = lag_.Step(in.force_N[1])[0];
+  if (in.enabled && in.fresh && !followed.at_rest && estimate.limit != Reason::kInnovationGated) {
+    momentum_.Learn(in.position_m, force_N, roll_.rolled_N());
+    if (const auto& m = momentum_.missing(); m.known)
+      map_.Learn(m.position_m, m.velocity_m_s, m.acceleration_m_s2, m.force_N);
+  } else {
+    momentum_.Pause();
+  }
+  return estimate;
 }
 
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
                                     FrictionPreview& out) noexcept {
   if (kind_ == EstimatorKind::kFull) {
     const auto& filter = *std::get_if<SevenStateFilter<SqrtUkf<kSevenStates>>>(&filter_);
-    roll_.Run(filter.model(), filter.state(), correction_, rigid_, {known_, temperature_degC_}, at_rest_,
+    roll_.Run(filter.model(), filter.state(), correction_, viscous_,
+              {known_, temperature_degC_, map_, momentum_.extra_kg(), filter.lasting_N()}, at_rest_,
               reference, points, out);
+    knows_followed_ = reference.size() > 1;
+    if (knows_followed_) followed_ = reference[1];
     return;
   }
   double ahead_N = 0.0;

@@ -8,8 +8,10 @@
 #include "core/horizon.h"
 #include "core/mechanics.h"
 #include "core/state_keeper.h"
+#include "estimator/angle_force_map.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/disturbance_observer.h"
+#include "estimator/drive_lag.h"
 #include "estimator/estimator_config.h"
 #include "estimator/four_state_filter.h"
 #include "estimator/friction_config.h"
@@ -17,8 +19,9 @@
 #include "estimator/kinematic_observer.h"
 #include "estimator/known_effects.h"
 #include "estimator/level_correction.h"
-#include "estimator/rigid_correction.h"
+#include "estimator/momentum_balance.h"
 #include "estimator/seven_state_filter.h"
+#include "estimator/viscous_correction.h"
 
 namespace contour {
 
@@ -57,7 +60,8 @@ class AxisEstimator {
 
   /// The extensions of the model stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
-    keep(filter_, roll_, correction_, rigid_, temperature_degC_, at_rest_);
+    keep(filter_, roll_, correction_, viscous_, momentum_, map_, lag_, temperature_degC_, at_rest_, followed_,
+         knows_followed_);
   }
 
  private:
@@ -69,10 +73,16 @@ class AxisEstimator {
       filter_;
   FrictionRoll roll_;
   LevelCorrection correction_;
-  RigidCorrection rigid_;
+  ViscousCorrection viscous_;
+  MomentumBalance momentum_;
+  AngleForceMap map_;
+  DriveLag<1> lag_;
   KnownEffects known_;
   double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();
   bool at_rest_ = true;
+  /// Of what is followed, at the next sample: where corners are planned it is not the program's own motion.
+  ReferencePoint followed_;
+  bool knows_followed_ = false;
 };
 
 }  // namespace contour

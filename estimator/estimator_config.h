@@ -10,6 +10,7 @@ namespace contour {
 struct EstimatorConfig {
   double position_noise_um = 1.5e-5;
   double velocity_noise_mm_s = 0.003;
+  double timing_noise = 0.02;
   double bristle_noise_N = 0.4;
   double level_noise_N = 0.015;
   double four_state_level_noise_N = 0.075;
@@ -28,8 +29,12 @@ struct EstimatorConfig {
   double ripple_rate = 0.1;
   double stribeck_rate = 0.3;
   double mass_rate = 0.001;
+  double delay_rate = 0.001;
+  double cogging_rate = 0.05;
   double viscous_rate = 0.001;
   double level_error = 0.05;
+  double lasting_force = 0.3;
+  double level_asymmetry = 0.3;
   double initial_level_std = 0.2;
   double initial_log_sigma0_std = 0.5;
   double mass_std = 0.05;
@@ -39,6 +44,8 @@ struct EstimatorConfig {
   void Visit(Visitor& v) {
     v.Optional("position_noise_um", position_noise_um, kNotNegative, "process noise of the position");
     v.Optional("velocity_noise_mm_s", velocity_noise_mm_s, kNotNegative, "process noise of the velocity");
+    v.Optional("timing_noise", timing_noise, kNotNegative,
+               "process noise of the force, as a share of the change of torque from one cycle to the next");
     v.Optional("bristle_noise_N", bristle_noise_N, kNotNegative, "process noise of the bristle force");
     v.Optional("level_noise_N", level_noise_N, kNotNegative, "process noise of the friction levels");
     v.Optional("four_state_level_noise_N", four_state_level_noise_N, kNotNegative,
@@ -68,11 +75,24 @@ struct EstimatorConfig {
                "screw; 0 none");
     v.Optional("stribeck_rate", stribeck_rate, Range{0.0, 1.0},
                "share of the error that the low-speed rise of the friction level learns per cycle; 0 none");
-    v.Optional("mass_rate", mass_rate, Range{0.0, 1.0},
-               "share of the error that the correction of the moving mass learns per cycle; 0 none");
+    v.Optional(
+        "mass_rate", mass_rate, Range{0.0, 1.0},
+        "share of the error that the correction of the moving mass learns per cycle at 1 m/s^2, once it has "
+        "learnt the most; 0 none");
+    v.Optional("delay_rate", delay_rate, Range{0.0, 1.0},
+               "the same of the drive's delay, per cycle in which the torque changes by 100 N / R; 0 none");
+    v.Optional(
+        "cogging_rate", cogging_rate, Range{0.0, 1.0},
+        "share of the error that the map of forces by the screw's angle learns at least per visit; 0 none");
     v.Optional(
         "level_error", level_error, Range{0.0, 1.0},
         "share of the friction level up to which a disturbance turns round at a reversal as friction does");
+    v.Optional(
+        "lasting_force", lasting_force, kPositive,
+        "share of the friction level beyond which a disturbance is an outside force that does not fade");
+    v.Optional("level_asymmetry", level_asymmetry, kPositive,
+               "share of the friction level by which the levels of the two directions may differ more than "
+               "commissioned; what is beyond is an outside force");
     v.Optional("viscous_rate", viscous_rate, Range{0.0, 1.0},
                "share of the error that the correction of viscous friction learns per cycle; 0 none");
     v.Optional("initial_level_std", initial_level_std, Range{0.0, 2.0},

@@ -104,11 +104,17 @@ void AddKnown(const KnownNow& known, const AxisHorizon& reference, const Along& 
   }
 }
 
+void AddMap(const AngleForceMap& map, const AxisHorizon& reference, const Along& a,
+            FrictionPreview& out) noexcept {
+  for (std::size_t j = 0; j < out.size(); ++j)
+    out[j].mid_N -= map.At_N(0.5 * (a.position_m[j] + After(reference, j).position_m), a.velocity_m_s[j]);
+}
+
 }  // namespace
 
 CONTOUR_WIDE_VECTORS
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
-                       LevelCorrection& correction, RigidCorrection& rigid, const KnownNow& known,
+                       LevelCorrection& correction, ViscousCorrection& viscous, const KnownNow& known,
                        bool at_rest, const AxisHorizon& reference, std::size_t points,
                        FrictionPreview& out) noexcept {
   if (at_rest) {
@@ -134,22 +140,23 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   const double offset_N = x[kBristle] - a.bristle_N[0];
   bristle_N_ = a.next_N[0];
   const double unexplained_N = offset_N + x[kDisturbance];
+  const double friction_lacks_N = unexplained_N - known.lasting_N;
   const double velocity = a.velocity_m_s[0];
   const bool forward = velocity >= 0.0;
   const double share = (forward ? a.bristle_N[0] : -a.bristle_N[0]) * a.per_level_1_N[0];
   const bool sliding = !at_rest && share > kSlidingShare;
   // Of this period and the ones ahead, by what is known before this one teaches more.
-  const double sigma2 = model.sigma2_Ns_m() + rigid.extra_Ns_m();
+  const double sigma2 = model.sigma2_Ns_m() + viscous.extra_Ns_m();
   if (sliding) {
     const double level_share = forward ? x[kLevelPlus] / f.Fc_plus_N : x[kLevelMinus] / f.Fc_minus_N;
-    rigid.Learn(unexplained_N, reference[0].velocity_m_s, reference[0].acceleration_m_s2, level_share);
+    viscous.Learn(friction_lacks_N, reference[0].velocity_m_s, reference[0].acceleration_m_s2, level_share);
   }
   LevelCorrection::Terms terms;
   for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = a.basis[i][0];
-  correction.Learn(terms, forward, 1.0 - a.relaxation[0], unexplained_N * a.per_level_1_N[0],
+  correction.Learn(terms, forward, 1.0 - a.relaxation[0], friction_lacks_N * a.per_level_1_N[0],
                    velocity * period_s_, sliding);
 
-  const double half_extra_kg = 0.5 * rigid.extra_kg();
+  const double half_extra_kg = 0.5 * known.extra_kg;
   for (std::size_t j = 0; j < size; ++j) {
     out[j].node_N = a.node_N[j] + unexplained_N + sigma2 * a.node_velocity_m_s[j];
     out[j].mid_N = a.middle_N[j] + unexplained_N + sigma2 * a.velocity_m_s[j] +
@@ -157,6 +164,9 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
     out[j].lead_m = 0.0;
   }
   if (!known.effects.neutral()) AddKnown(known, reference, a, out);
+  if (known.map.in_use()) AddMap(known.map, reference, a, out);
+  rolled_N_ = out[0].mid_N - unexplained_N -
+              half_extra_kg * (reference[0].acceleration_m_s2 + After(reference, 0).acceleration_m_s2);
 }
 
 }  // namespace contour

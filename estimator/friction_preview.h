@@ -1,17 +1,21 @@
 #pragma once
 
 #include "core/horizon.h"
+#include "estimator/angle_force_map.h"
 #include "estimator/known_effects.h"
 #include "estimator/level_correction.h"
-#include "estimator/rigid_correction.h"
 #include "estimator/seven_state_model.h"
+#include "estimator/viscous_correction.h"
 
 namespace contour {
 
-/// Extensions of the model at the present temperature.
+/// What is known beside the filter's state.
 struct KnownNow {
-  const KnownEffects& effects;
+  const KnownEffects& effects;  ///< extensions of the model, at the present temperature
   double temperature_degC;
+  const AngleForceMap& map;
+  double extra_kg;   ///< by which the axis is heavier than commissioned
+  double lasting_N;  ///< the part of the disturbance that is an outside force for certain
 };
 
 /// Friction the reference motion will meet: the bristle rolled along the reference with the levels and
@@ -25,6 +29,10 @@ class FrictionRoll {
 
   [[nodiscard]] double period_s() const noexcept { return period_s_; }
 
+  /// Friction along the reference from element 0 to 1 of the last Run, by the model alone, less known forces
+  /// on the motor: nothing that was estimated of a disturbance is in it.
+  [[nodiscard]] double rolled_N() const noexcept { return rolled_N_; }
+
   /// The rolled bristle starts from this force.
   void Reset(double bristle_N) noexcept { bristle_N_ = bristle_N; }
 
@@ -33,12 +41,13 @@ class FrictionRoll {
   /// which the torque must overcome, has what the axis is heavier than commissioned in it, and known forces
   /// on the motor; node_N, which winds the screw up, has not.
   void Run(const SevenStateModel& model, const StateVector<kSevenStates>& x, LevelCorrection& correction,
-           RigidCorrection& rigid, const KnownNow& known, bool at_rest, const AxisHorizon& reference,
+           ViscousCorrection& viscous, const KnownNow& known, bool at_rest, const AxisHorizon& reference,
            std::size_t points, FrictionPreview& out) noexcept;
 
  private:
   double period_s_ = 1e-3;
   double bristle_N_ = 0.0;  // rolled, at element 0 of the next reference
+  double rolled_N_ = 0.0;
 };
 
 }  // namespace contour

@@ -24,6 +24,13 @@ constexpr double kLowestLevelShare = 1e-4;
 // Largest factor on the noise of parameters and disturbance for a coarse encoder.
 constexpr double kMostCoarse = 7.0;
 
+// Once there is a lasting force, all of the disturbance becomes part of it at this share per cycle.
+constexpr double kLastingRate = 0.002;
+// Asymmetry moves over to it by this share of what is allowed per cycle.
+constexpr double kShareRate = 0.02;
+constexpr double kGivenUpShare = 0.2;
+constexpr double kComingDownShare = 0.5;
+
 // Mean of the squared, normalised innovations over about a hundred cycles.
 constexpr double kSurpriseShare = 0.01;
 
@@ -95,6 +102,7 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   core_.s = {};
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = std[i];
   surprise_ = 1.0;
+  lasting_N_ = 0.0;
   direction_ = travel_direction_ = 0;
   travel_m_ = travel_s_ = 0.0;
   lag_.Reset();
@@ -124,7 +132,7 @@ void SevenStateFilter<Core>::Reverse(double commanded_velocity_m_s) noexcept {
   if (direction_ != 0) {
     auto& x = core_.x;
     const double largest_N = setup_.config.level_error * Level_N();
-    const double friction_N = std::clamp(x[kDisturbance], -largest_N, largest_N);
+    const double friction_N = std::clamp(x[kDisturbance] - lasting_N_, -largest_N, largest_N);
     x[kBristle] += friction_N;
     x[kDisturbance] -= friction_N;
   }
@@ -142,6 +150,10 @@ void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   if (in.at_rest) noise[kBristle] *= setup_.config.rest_noise;
   // What stirs the bristle comes from the surfaces that make the level. Without friction it is still.
   noise[kBristle] *= std::min(1.0, 2.0 * x[LevelState()] / CommissionedLevel_N());
+  // A torque that changes fast acts for a time, and on a mass, known less well than a steady one does.
+  const double uncertain_N = setup_.config.timing_noise * (in.force_N[1] - in.force_N[2]);
+  const double uncertain_m_s = uncertain_N * setup_.period_s / setup_.mechanics.mass_kg;
+  noise[kVelocity] = std::sqrt(noise[kVelocity] * noise[kVelocity] + uncertain_m_s * uncertain_m_s);
   const auto adapted = Adapted(in.at_rest);
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
 
@@ -198,7 +210,8 @@ void SevenStateFilter<Core>::JudgeLevel(bool at_rest) noexcept {
   const double length_m = level_N / setup_.friction.sigma0_N_m;
   // A disturbance as small as an error of the level would be is an error of the level.
   const double doubt_N = setup_.config.level_error * CommissionedLevel_N();
-  const double held_N = direction * (x[kBristle] + std::clamp(x[kDisturbance], -doubt_N, doubt_N));
+  const double held_N =
+      direction * (x[kBristle] + std::clamp(x[kDisturbance] - lasting_N_, -doubt_N, doubt_N));
   double& level = x[LevelState()];
   // A jerk may take the axis over all the lengths before the filter has seen what held it back.
   const bool settled = travel_m_ > kSettledLengths * length_m && travel_s_ > kSettled_s;
@@ -212,7 +225,7 @@ void SevenStateFilter<Core>::JudgeLevel(bool at_rest) noexcept {
     x[kBristle] -= excess_N;
     x[kDisturbance] += excess_N;
   } else if (travel_m_ > kSettledLengths * CommissionedLevel_N() / setup_.friction.sigma0_N_m) {
-    TakeLevelBack(direction * (x[kBristle] + x[kDisturbance]), kTakenBackDoubts * doubt_N);
+    TakeLevelBack(direction * (x[kBristle] + x[kDisturbance] - lasting_N_), kTakenBackDoubts * doubt_N);
   }
 }
 
@@ -222,10 +235,37 @@ void SevenStateFilter<Core>::TakeLevelBack(double held_N, double least_N) noexce
   auto& x = core_.x;
   const std::size_t i = LevelState();
   x[i] *= held_N / Level_N();
-  x[kBristle] += x[kDisturbance];
-  x[kDisturbance] = 0.0;
+  x[kBristle] += x[kDisturbance] - lasting_N_;
+  x[kDisturbance] = lasting_N_;
   const double share = initial_std_[i] / std::sqrt(core_.Variance(i));
   for (double& s : core_.s[i]) s *= share;
+}
+
+// Beyond what an error of the level may be, a disturbance is a force from outside. It does not fade, or the
+// levels would have to take it up, of which one would come down to nothing.
+template <class Core>
+void SevenStateFilter<Core>::HoldLastingForce() noexcept {
+  const double room_N = setup_.config.lasting_force * CommissionedLevel_N();
+  const double beyond_N = core_.x[kDisturbance] - lasting_N_;
+  lasting_N_ += beyond_N - std::clamp(beyond_N, -room_N, room_N);
+  if (std::abs(lasting_N_) > room_N) lasting_N_ += kLastingRate * (core_.x[kDisturbance] - lasting_N_);
+}
+
+// A force from outside and levels that differ by as much between the directions are the same to one encoder.
+// More asymmetry than a model may lack is such a force.
+template <class Core>
+void SevenStateFilter<Core>::ShareAsymmetry() noexcept {
+  auto& x = core_.x;
+  const Friction& f = setup_.friction;
+  const double most_N = setup_.config.level_asymmetry * 0.5 * (f.Fc_plus_N + f.Fc_minus_N);
+  const double asymmetry_N = 0.5 * ((x[kLevelPlus] - f.Fc_plus_N) - (x[kLevelMinus] - f.Fc_minus_N));
+  const double beyond_N = asymmetry_N - std::clamp(asymmetry_N, -most_N, most_N);
+  const double excess_N = std::clamp(beyond_N, -kShareRate * most_N, kShareRate * most_N);
+  x[kLevelPlus] -= excess_N;
+  x[kLevelMinus] += excess_N;
+  x[kBristle] -= excess_N;
+  x[kDisturbance] += excess_N;
+  lasting_N_ += excess_N;
 }
 
 template <class Core>
@@ -243,6 +283,11 @@ bool SevenStateFilter<Core>::Bound() noexcept {
   clamp(x[kLevelPlus], f.Fc_plus_N * kLowestLevelShare, f.Fc_plus_N * c.level_range);
   clamp(x[kLevelMinus], f.Fc_minus_N * kLowestLevelShare, f.Fc_minus_N * c.level_range);
   clamp(x[kLogSigma0], -c.log_sigma0_range, c.log_sigma0_range);
+  // No bristle holds more than the largest level: the rest is a force from outside.
+  const double most_N = c.level_range * std::max(f.Fs_plus_N, f.Fs_minus_N);
+  const double rest_N = x[kBristle] - std::clamp(x[kBristle], -most_N, most_N);
+  x[kBristle] -= rest_N;
+  x[kDisturbance] += rest_N;
   // A level is positive: its sigma points must be too. Scaling a row of S scales that state's deviation and
   // keeps its correlations.
   for (const auto i : {kLevelPlus, kLevelMinus}) {
@@ -299,7 +344,21 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
     out.innovation_m = innovation.value;
     out.innovation_std_m = innovation.std;
     JudgeLevel(in.at_rest);
-    if (Bound() && out.limit == Reason::kNone) out.limit = Reason::kParameterBound;
+    const bool bounded = Bound();
+    if (!in.at_rest && setup_.config.adapt) {
+      const Friction& f = setup_.friction;
+      const double plus = core_.x[kLevelPlus] / f.Fc_plus_N, minus = core_.x[kLevelMinus] / f.Fc_minus_N;
+      // Without any level there is nothing to tell an outside force from: it may be friction that comes back.
+      if (std::max(plus, minus) < kGivenUpShare) {
+        lasting_N_ = 0.0;
+      } else {
+        HoldLastingForce();
+        // A level that comes down where there is no outside force is being given up; the other one will be
+        // next.
+        if (lasting_N_ != 0.0 || std::min(plus, minus) > kComingDownShare) ShareAsymmetry();
+      }
+    }
+    if (bounded && out.limit == Reason::kNone) out.limit = Reason::kParameterBound;
   }
   if (in.fresh) {
     last_position_m_ = in.position_m;

@@ -54,6 +54,8 @@ class SevenStateFilter {
   [[nodiscard]] const SevenStateModel& model() const noexcept { return model_; }
   /// Friction (bristle, viscous, disturbance) in the middle of the interval in which the next torque acts.
   [[nodiscard]] double FrictionAhead_N() const noexcept { return friction_ahead_N_; }
+  /// The part of the disturbance that is an outside force for certain, because friction cannot be that wrong.
+  [[nodiscard]] double lasting_N() const noexcept { return lasting_N_; }
   /// Level G in the direction of motion, Stribeck curve and factors included.
   [[nodiscard]] double Level_N() const noexcept {
     return model_.Level(core_.x, {{}, factor_plus_, factor_minus_});
@@ -64,7 +66,7 @@ class SevenStateFilter {
 
   [[nodiscard]] SevenStateInput Input(const X& x, std::array<double, kSubsteps> force_N) const noexcept {
     for (double& f : force_N) f += driving_N_ - inertial_N_ - viscous_N_;
-    return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity]), at_rest_};
+    return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity]), at_rest_, lasting_N_};
   }
   /// Level of the direction of motion: the state, and what it was commissioned with.
   [[nodiscard]] SevenState LevelState() const noexcept {
@@ -80,6 +82,8 @@ class SevenStateFilter {
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
   void JudgeLevel(bool at_rest) noexcept;
   void TakeLevelBack(double held_N, double least_N) noexcept;
+  void HoldLastingForce() noexcept;
+  void ShareAsymmetry() noexcept;
   bool Bound() noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
@@ -106,6 +110,7 @@ class SevenStateFilter {
   double travel_m_ = 0.0;  // in one direction
   double travel_s_ = 0.0;
   int travel_direction_ = 0;
+  double lasting_N_ = 0.0;
   bool at_rest_ = true;
   double last_position_m_ = 0.0;  // of the newest measurement, believed or not
   double periods_since_position_ = 1.0;

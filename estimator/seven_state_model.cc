@@ -55,7 +55,7 @@ inline void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& 
     const double next = velocity_decay_ * v[k] + velocity_gain_ * (force_N - f[k] - damping[k] - d[k]);
     p[k] += 0.5 * step_s_ * (v[k] + next);
     v[k] = next;
-    d[k] *= leak;
+    d[k] = in.lasting_N + (d[k] - in.lasting_N) * leak;
   }
 }
 
@@ -150,7 +150,7 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
     x[kPosition] += 0.5 * h * (x[kVelocity] + next);
     x[kVelocity] = next;
     const double leak = in.at_rest ? 1.0 : leak_;
-    x[kDisturbance] *= leak;
+    x[kDisturbance] = in.lasting_N + (x[kDisturbance] - in.lasting_N) * leak;
 
     const auto& active = t[forward ? kLevelPlus : kLevelMinus];
     for (std::size_t k = 0; k < kSevenStates; ++k) {

@@ -31,6 +31,7 @@ struct SevenStateInput {
   double ripple_minus = 1.0;
   double sigma1_Ns_m = 0.0;  ///< bristle damping at the speed of this period
   bool at_rest = false;      ///< the disturbance keeps its value: nothing tells it from the bristle now
+  double lasting_N = 0.0;    ///< what the disturbance fades to
 };
 
 /// One rigid axis with LuGre friction in two substeps per period:

@@ -20,9 +20,13 @@ double Peak_um(const std::vector<std::string>& overrides) {
 
 TEST(Extensions, CoggingOfThreePerCentOfRatedTorque) {
   const std::string cogging = "cogging={amplitude_Nm: 0.0191, order_per_rev: 12, phase_rad: 0.7}";
-  const double hidden = Peak_um({"emulator.axes.x.effects." + cogging});
-  const double known = Peak_um({"emulator.axes.x.effects." + cogging, "axes.x.model.extensions." + cogging});
+  const std::string off = "estimator.cogging_rate=0";
+  const double hidden = Peak_um({"emulator.axes.x.effects." + cogging, off});
+  const double known =
+      Peak_um({"emulator.axes.x.effects." + cogging, "axes.x.model.extensions." + cogging, off});
+  const double learnt = Peak_um({"emulator.axes.x.effects." + cogging});
   EXPECT_GT(hidden, 3.0);
+  EXPECT_LT(learnt, 0.4 * hidden);
   EXPECT_LT(known, 0.3 * hidden);
 }
 

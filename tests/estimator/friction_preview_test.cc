@@ -22,13 +22,14 @@ AxisHorizon Horizon(int k, int points) {
 }
 
 const KnownEffects kNoEffects;
-const KnownNow kNothingKnown{kNoEffects, std::nan("")};
+const AngleForceMap kNoMap;
+const KnownNow kNothingKnown{kNoEffects, std::nan(""), kNoMap, 0.0, 0.0};
 
 TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   FrictionRoll roll(kPeriod_s);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
+  ViscousCorrection viscous({500.0, 0.0});
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
@@ -39,7 +40,7 @@ TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   std::array<double, 6> ahead{};
   for (int k = 0; k < 4000; ++k) {
     x[kBristle] = bristle;
-    roll.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(k, 6), kMaxHorizonPoints, preview);
+    roll.Run(model, x, correction, viscous, kNothingKnown, false, Horizon(k, 6), kMaxHorizonPoints, preview);
     ASSERT_EQ(preview.size(), 6u);
     double f = bristle;
     for (std::size_t j = 0; j < 6; ++j) {
@@ -64,16 +65,16 @@ TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
 TEST(FrictionRoll, AnOffsetOfTheEstimateIsKept) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
+  ViscousCorrection viscous({500.0, 0.0});
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
   FrictionRoll a(kPeriod_s), b(kPeriod_s);
   FrictionPreview pa, pb;
-  a.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), kMaxHorizonPoints, pa);
+  a.Run(model, x, correction, viscous, kNothingKnown, false, Horizon(0, 10), kMaxHorizonPoints, pa);
   x[kBristle] += 3.0;
   x[kDisturbance] += 4.0;
-  b.Run(model, x, correction, rigid, kNothingKnown, false, Horizon(0, 10), kMaxHorizonPoints, pb);
+  b.Run(model, x, correction, viscous, kNothingKnown, false, Horizon(0, 10), kMaxHorizonPoints, pb);
   for (std::size_t j = 0; j < 10; ++j) {
     EXPECT_NEAR(pb[j].node_N - pa[j].node_N, 7.0, 1e-12);
     EXPECT_NEAR(pb[j].mid_N - pa[j].mid_N, 7.0, 1e-12);
@@ -83,7 +84,7 @@ TEST(FrictionRoll, AnOffsetOfTheEstimateIsKept) {
 TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
+  ViscousCorrection viscous({500.0, 0.0});
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
@@ -93,14 +94,14 @@ TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
   roll.Reset(30.0);
   AxisHorizon still(kMaxHorizonPoints);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, kNothingKnown, true, still, kMaxHorizonPoints, preview);
+  roll.Run(model, x, correction, viscous, kNothingKnown, true, still, kMaxHorizonPoints, preview);
   ASSERT_EQ(preview.size(), kMaxHorizonPoints);
   for (const auto& f : preview) {
     EXPECT_DOUBLE_EQ(f.node_N, -15.0);
     EXPECT_DOUBLE_EQ(f.mid_N, -15.0);
   }
   AxisHorizon none;
-  roll.Run(model, x, correction, rigid, kNothingKnown, true, none, kMaxHorizonPoints, preview);
+  roll.Run(model, x, correction, viscous, kNothingKnown, true, none, kMaxHorizonPoints, preview);
   EXPECT_TRUE(preview.empty());
 }
 
@@ -142,7 +143,7 @@ TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
 TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.5, 0.0});
-  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
+  ViscousCorrection viscous({500.0, 0.0});
   for (int k = 0; k < 20000; ++k) {
     const auto basis = correction.Basis(k * 1e-5, 0.05);
     const double truth = 1.0 + 0.08 * basis[1];
@@ -157,7 +158,7 @@ TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   FrictionRoll roll(kPeriod_s);
   roll.Reset(42.0);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, kNothingKnown, false, h, kMaxHorizonPoints, preview);
+  roll.Run(model, x, correction, viscous, kNothingKnown, false, h, kMaxHorizonPoints, preview);
   // After 1.25 mm, a quarter turn, the level stands 8 % up; sigma2 v = 25 N beside it.
   EXPECT_NEAR(preview[25].node_N, 42.0 * 1.08 + 25.0, 0.5);
 }
@@ -165,8 +166,8 @@ TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
 TEST(FrictionRoll, WhatTheAxisIsHeavierThanCommissionedMustBePushedToo) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  RigidCorrection rigid({89.0, 500.0, 0.5, 0.0});
-  for (int k = 0; k < 100; ++k) rigid.Learn((5.0 - rigid.extra_kg()) * 1.0, 0.0, 1.0);
+  ViscousCorrection viscous({500.0, 0.0});
+  const KnownNow heavier{kNoEffects, std::nan(""), kNoMap, 5.0, 0.0};
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;
@@ -174,7 +175,7 @@ TEST(FrictionRoll, WhatTheAxisIsHeavierThanCommissionedMustBePushedToo) {
   for (int j = 0; j < 5; ++j) h.push_back({0.0, 0.0, 2.0});
   FrictionRoll roll(kPeriod_s);
   FrictionPreview preview;
-  roll.Run(model, x, correction, rigid, kNothingKnown, true, h, kMaxHorizonPoints, preview);
+  roll.Run(model, x, correction, viscous, heavier, true, h, kMaxHorizonPoints, preview);
   EXPECT_NEAR(preview[1].mid_N, 10.0, 0.01);
   EXPECT_NEAR(preview[1].node_N, 0.0, 1e-12);  // the motor's mass does not wind the screw up
 }

@@ -66,8 +66,9 @@ void WriteTable(std::ostream& out, const std::vector<Row>& rows) {
 std::string Where(const Heat& h) { return h.program + ", " + h.machine + ", seed " + std::to_string(h.seed); }
 
 void WriteLosses(std::ostream& out, const Verdict& verdict) {
-  out << "\n## Where `full` loses\n\nRuns in which it is more than 10 % behind the best, the worst "
-         "first.\n\n";
+  out << "\n## Where `full` loses\n\nRuns in which it is more than 10 %, and more than one count of the "
+         "finest encoder "
+         "(4.8 nm), behind the best, the worst first.\n\n";
   if (verdict.losses.empty()) {
     out << "None.\n";
     return;

@@ -6,6 +6,8 @@
 namespace contour {
 namespace {
 
+// Differences below one count of the finest encoder here, 5 mm / 2^20, are none.
+constexpr double kSame_um = 0.0048;
 constexpr double kNearBest = 1.1;
 constexpr double kTwice = 2.0;
 constexpr double kFarAboveMedian = 10.0;
@@ -81,10 +83,11 @@ Verdict Judge(const std::vector<Heat>& heats, const std::vector<ExpectedPeak>& e
       loss.best = heat.controllers[i];
       loss.best_um = heat.results[i].peak_um;
     }
-    const bool near = !full->failed() && loss.full_um <= kNearBest * loss.best_um;
+    const bool near =
+        !full->failed() && loss.full_um <= std::max(kNearBest * loss.best_um, loss.best_um + kSame_um);
     v.near_best += near ? 1 : 0;
     if (!near) v.losses.push_back(loss);
-    if (full->failed() || loss.full_um > kTwice * loss.best_um) ++v.twice;
+    if (full->failed() || loss.full_um > std::max(kTwice * loss.best_um, loss.best_um + kSame_um)) ++v.twice;
     if (Unstable(heat, ControllerName::kFull)) v.unstable.push_back(&heat);
   }
   std::stable_sort(v.losses.begin(), v.losses.end(),

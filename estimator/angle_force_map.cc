@@ -1,0 +1,81 @@
+#include "estimator/angle_force_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+// What may be expected of a motor; encoder noise above it takes more visits to learn.
+constexpr double kExpected_N = 5.0;
+// The first visit counts as much as so many that found nothing.
+constexpr double kCaution = 2.0;
+constexpr double kLargest_N = 50.0;
+constexpr double kMeanShare = 0.02;
+constexpr double kPowerShare = 0.005;
+// Used from this share of the missing force's mean square on that it explains, and whole from the second.
+constexpr double kExplainsLittle = 0.3;
+constexpr double kExplainsMuch = 0.6;
+// Slower, the friction filter follows by itself, and the ripple of the friction is in the way. Faster, a
+// cycle is too long to follow the teeth; from half of it on the map fades.
+constexpr double kSlow_m_s = 4e-3;
+constexpr double kFast_m_s = 0.15;
+// Where the axis accelerates more, what is missing is mostly mass.
+constexpr double kQuiet_m_s2 = 1.0;
+
+}  // namespace
+
+AngleForceMap::AngleForceMap(const Tuning& tuning) noexcept
+    : per_turn_1_m_(1.0 / tuning.lead_m),
+      first_visits_(kCaution + tuning.noise_N * tuning.noise_N / (kExpected_N * kExpected_N)),
+      rate_(tuning.rate) {}
+
+void AngleForceMap::Reset() noexcept {
+  force_N_ = visits_ = {};
+  mean_N_ = without_N2_ = with_N2_ = use_ = 0.0;
+}
+
+AngleForceMap::Place AngleForceMap::PlaceOf(double position_m) const noexcept {
+  const double turns = position_m * per_turn_1_m_;
+  const double at = (turns - std::floor(turns)) * static_cast<double>(kBins);
+  const auto bin = std::min(static_cast<std::size_t>(at), kBins - 1);
+  return {bin, (bin + 1) % kBins, at - static_cast<double>(bin)};
+}
+
+double AngleForceMap::Stored_N(const Place& p) const noexcept {
+  return (1.0 - p.share) * force_N_[p.bin] + p.share * force_N_[p.next];
+}
+
+double AngleForceMap::At_N(double position_m, double velocity_m_s) const noexcept {
+  if (!(use_ > 0.0)) return 0.0;
+  const double slow = std::clamp((kFast_m_s - std::abs(velocity_m_s)) / (0.5 * kFast_m_s), 0.0, 1.0);
+  return use_ * slow * Stored_N(PlaceOf(position_m));
+}
+
+void AngleForceMap::Learn(double position_m, double velocity_m_s, double acceleration_m_s2,
+                          double missing_N) noexcept {
+  const double speed_m_s = std::abs(velocity_m_s);
+  if (!(rate_ > 0.0) || !(speed_m_s > kSlow_m_s && speed_m_s < 0.5 * kFast_m_s)) return;
+  if (std::abs(acceleration_m_s2) > kQuiet_m_s2) return;
+  // What does not change with the angle is friction's or a cutting force.
+  const Place p = PlaceOf(position_m);
+  const double stored_N = Stored_N(p);
+  const double whole_N = missing_N + use_ * stored_N;
+  mean_N_ += kMeanShare * (whole_N - mean_N_);
+  const double wanted_N = std::clamp(whole_N - mean_N_, -kLargest_N, kLargest_N);
+  const double error_N = wanted_N - stored_N;
+  without_N2_ += kPowerShare * (wanted_N * wanted_N - without_N2_);
+  with_N2_ += kPowerShare * (error_N * error_N - with_N2_);
+  const double explained = without_N2_ > 0.0 ? 1.0 - with_N2_ / without_N2_ : 0.0;
+  use_ = std::clamp((explained - kExplainsLittle) / (kExplainsMuch - kExplainsLittle), 0.0, 1.0);
+  LearnAt(p.bin, 1.0 - p.share, error_N);
+  LearnAt(p.next, p.share, error_N);
+}
+
+void AngleForceMap::LearnAt(std::size_t bin, double weight, double error_N) noexcept {
+  const double gain = std::max(1.0 / (visits_[bin] + first_visits_), rate_ / first_visits_);
+  force_N_[bin] = std::clamp(force_N_[bin] + weight * gain * error_N, -kLargest_N, kLargest_N);
+  visits_[bin] += weight;
+}
+
+}  // namespace contour

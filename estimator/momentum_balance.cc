@@ -1,0 +1,70 @@
+#include "estimator/momentum_balance.h"
+
+#include <algorithm>
+
+namespace contour {
+namespace {
+
+constexpr double kLow = 0.1;         // low-pass of both, share per period: 10 ms at 1 kHz
+constexpr double kSlowHigh = 0.005;  // high-pass for the mass: 200 ms
+constexpr double kFastHigh = 0.06;   // and for the delay: 16 ms
+// Evidence that the commissioned mass weighs as much as, (m/s^2)^2, and the commissioned delay, N^2.
+constexpr double kMassPrior = 10.0;
+constexpr double kDelayPrior = 2e3;
+constexpr double kMost = 0.4;
+
+}  // namespace
+
+MomentumBalance::Bands MomentumBalance::Filter::Step(double value) noexcept {
+  low += kLow * (value - low);
+  slow_mean += kSlowHigh * (low - slow_mean);
+  fast_mean += kFastHigh * (low - fast_mean);
+  const double s = low - slow_mean, q = low - fast_mean;
+  const Bands out{0.5 * (s + slow), s - slow, 0.5 * (q + fast), q - fast};
+  slow = s;
+  fast = q;
+  return out;
+}
+
+void MomentumBalance::Learn(double position_m, double force_N, double friction_N) noexcept {
+  const double velocity_m_s = (position_m - position_m_) / tuning_.period_s;
+  const double acceleration_m_s2 = (velocity_m_s - velocity_m_s_) / tuning_.period_s;
+  const double driving_N = force_N - friction_N;
+  // The second difference belongs to the middle of two periods.
+  const double both_N = 0.5 * (driving_N + driving_N_);
+  const double m = tuning_.mass_kg + extra_kg_;
+  missing_ = {m * acceleration_m_s2 - both_N, position_m_, 0.5 * (velocity_m_s + velocity_m_s_),
+              acceleration_m_s2, true};
+  position_m_ = position_m;
+  velocity_m_s_ = velocity_m_s;
+  driving_N_ = driving_N;
+  if (known_periods_ < 3) {
+    ++known_periods_;
+    acceleration_ = {};
+    balance_ = {};
+    missing_.known = false;
+    return;
+  }
+  const Bands a = acceleration_.Step(acceleration_m_s2);
+  const Bands f = balance_.Step(both_N);
+  LearnMass(a.slow, a.slow_change, f.slow, m);
+  LearnDelay(a.fast, a.fast_change, f.fast, m);
+}
+
+void MomentumBalance::LearnMass(double a, double change, double f, double m) noexcept {
+  if (!(tuning_.mass_rate > 0.0)) return;
+  const double x = a + delay_periods_ * change;
+  mass_seen_ = std::min(mass_seen_ + x * x, 1.0 / tuning_.mass_rate);
+  const double most_kg = kMost * tuning_.mass_kg;
+  extra_kg_ = std::clamp(extra_kg_ + x * (f - m * x) / (mass_seen_ + kMassPrior), -most_kg, most_kg);
+}
+
+void MomentumBalance::LearnDelay(double a, double change, double f, double m) noexcept {
+  if (!(tuning_.delay_rate > 0.0)) return;
+  const double x = m * change;
+  delay_seen_ = std::min(delay_seen_ + x * x, 1e4 / tuning_.delay_rate);
+  const double error_N = f - m * (a + delay_periods_ * change);
+  delay_periods_ = std::clamp(delay_periods_ + x * error_N / (delay_seen_ + kDelayPrior), 0.0, 1.0);
+}
+
+}  // namespace contour

@@ -1,0 +1,102 @@
+#include "estimator/momentum_balance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace contour {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+constexpr MomentumBalance::Tuning kTuning{90.0, kPeriod_s, 0.001, 0.001};
+
+/// A mass pushed by a force that acts `delay` periods late, and friction that turns round with the motion.
+struct Axis {
+  double mass_kg = 90.0;
+  double delay = 0.0;
+  double friction_N = 0.0;  ///< what really is there beyond what is expected
+  double constant_N = 0.0;
+  double noise_m = 2e-9;
+  double position_m = 0.0;
+  double velocity_m_s = 0.0;
+  double before_N = 0.0;
+  std::uint32_t random = 1;
+
+  double Step(double force_N) {
+    const double acts_N = force_N + delay * (before_N - force_N);
+    before_N = force_N;
+    const double opposing_N = constant_N + (velocity_m_s >= 0.0 ? friction_N : -friction_N);
+    const double a = (acts_N - opposing_N) / mass_kg;
+    position_m += kPeriod_s * (velocity_m_s + 0.5 * kPeriod_s * a);
+    velocity_m_s += kPeriod_s * a;
+    random = random * 1664525u + 1013904223u;
+    return position_m + noise_m * (random / 2147483648.0 - 1.0);
+  }
+};
+
+/// Force of a circle, by default of 10 mm at 3 m/min.
+void Circle(Axis& axis, MomentumBalance& balance, int periods, double omega_1_s = 5.0, double a_m_s2 = 0.25) {
+  axis.velocity_m_s = 0.0;
+  for (int k = 0; k < periods; ++k) {
+    const double force_N = axis.mass_kg * a_m_s2 * std::cos(omega_1_s * kPeriod_s * k) + axis.constant_N;
+    balance.Learn(axis.Step(force_N), force_N, 0.0);
+  }
+}
+
+TEST(MomentumBalance, FindsTheMassOnACircle) {
+  for (const double mass_kg : {63.0, 90.0, 117.0}) {
+    Axis axis{.mass_kg = mass_kg};
+    MomentumBalance balance(kTuning);
+    Circle(axis, balance, 6000);
+    EXPECT_NEAR(balance.extra_kg(), mass_kg - 90.0, 3.0);
+    EXPECT_LT(balance.delay_periods(), 0.02);
+  }
+}
+
+TEST(MomentumBalance, FrictionAndCuttingForceAreNoMass) {
+  Axis axis{.friction_N = 5.0, .constant_N = 60.0};
+  MomentumBalance balance(kTuning);
+  Circle(axis, balance, 6000);
+  EXPECT_NEAR(balance.extra_kg(), 0.0, 3.0);
+}
+
+TEST(MomentumBalance, OneStrongPulseIsEnough) {
+  Axis axis{.mass_kg = 117.0};
+  MomentumBalance balance(kTuning);
+  for (int k = 0; k < 60; ++k) {
+    const double force_N = k < 20 ? 900.0 : 0.0;
+    balance.Learn(axis.Step(force_N), force_N, 0.0);
+  }
+  EXPECT_NEAR(balance.extra_kg(), 27.0, 3.0);
+}
+
+TEST(MomentumBalance, ARingingLoopTeachesTheDelay) {
+  Axis axis{.delay = 0.8};
+  MomentumBalance balance(kTuning);
+  for (int k = 0; k < 2000; ++k) {  // 40 Hz
+    const double force_N = 60.0 * std::sin(0.25 * k);
+    balance.Learn(axis.Step(force_N), force_N, 0.0);
+  }
+  EXPECT_NEAR(balance.delay_periods(), 0.8, 0.1);
+  EXPECT_NEAR(balance.extra_kg(), 0.0, 3.0);
+}
+
+TEST(MomentumBalance, IsBounded) {
+  Axis axis{.mass_kg = 900.0};
+  MomentumBalance balance(kTuning);
+  Circle(axis, balance, 3000);
+  EXPECT_DOUBLE_EQ(balance.extra_kg(), 36.0);
+}
+
+TEST(MomentumBalance, NothingIsLearntFromNoMotionOrAcrossAGap) {
+  MomentumBalance balance(kTuning);
+  for (int k = 0; k < 1000; ++k) balance.Learn(1e-3, 20.0, 0.0);
+  EXPECT_EQ(balance.extra_kg(), 0.0);
+  balance.Pause();
+  for (int k = 0; k < 3; ++k) balance.Learn(0.5, 0.0, 0.0);
+  EXPECT_EQ(balance.extra_kg(), 0.0);
+}
+
+}  // namespace
+}  // namespace contour
