@@ -16,6 +16,9 @@ constexpr double kPowerShare = 0.005;
 // Used from this share of the missing force's mean square on that it explains, and whole from the second.
 constexpr double kExplainsLittle = 0.3;
 constexpr double kExplainsMuch = 0.6;
+// And only when it explains more than the ripple of the friction over a turn does, which is no force of the
+// motor.
+constexpr double kRipple_N2 = 15.0;
 // Slower, the friction filter follows by itself, and the ripple of the friction is in the way. Faster, a
 // cycle is too long to follow the teeth; from half of it on the map fades.
 constexpr double kSlow_m_s = 4e-3;
@@ -67,7 +70,9 @@ void AngleForceMap::Learn(double position_m, double velocity_m_s, double acceler
   without_N2_ += kPowerShare * (wanted_N * wanted_N - without_N2_);
   with_N2_ += kPowerShare * (error_N * error_N - with_N2_);
   const double explained = without_N2_ > 0.0 ? 1.0 - with_N2_ / without_N2_ : 0.0;
-  use_ = std::clamp((explained - kExplainsLittle) / (kExplainsMuch - kExplainsLittle), 0.0, 1.0);
+  const double matters = (without_N2_ - with_N2_ - kRipple_N2) / kRipple_N2;
+  use_ = std::clamp(matters, 0.0, 1.0) *
+         std::clamp((explained - kExplainsLittle) / (kExplainsMuch - kExplainsLittle), 0.0, 1.0);
   LearnAt(p.bin, 1.0 - p.share, error_N);
   LearnAt(p.next, p.share, error_N);
 }

@@ -111,7 +111,7 @@ TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
   const Friction f{52, 47, 42, 36, 2e-3, 1, 5e6, 3000, 2e-3, 500};
   const SevenStateModel model(f, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  RigidCorrection rigid({89.0, 500.0, 0.0, 0.0});
+  ViscousCorrection viscous({500.0, 0.0});
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 43;
   x[kLevelMinus] = 35;
@@ -124,7 +124,7 @@ TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
     FrictionRoll roll(kPeriod_s);
     roll.Reset(20.0);
     FrictionPreview preview;
-    roll.Run(model, x, correction, rigid, kNothingKnown, false, h, points, preview);
+    roll.Run(model, x, correction, viscous, kNothingKnown, false, h, points, preview);
     ASSERT_EQ(preview.size(), points);
     double bristle = 20.0;
     for (std::size_t j = 0; j < points; ++j) {
