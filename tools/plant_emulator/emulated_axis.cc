@@ -28,7 +28,6 @@ EmulatedAxis::EmulatedAxis(const AxisParameters& parameters, const EmulatedAxisP
                            std::uint32_t cycle_us, std::uint64_t seed, std::uint64_t stream)
     : p_(parameters),
       node_id_(placement.node_id),
-      cycle_us_(cycle_us),
       plant_(parameters),
       current_(parameters.lag_s),
       encoder_(parameters, seed, stream),

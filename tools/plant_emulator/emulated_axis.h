@@ -87,7 +87,6 @@ class EmulatedAxis final : private SlaveDevice {
 
   AxisParameters p_;
   std::uint8_t node_id_;
-  std::uint32_t cycle_us_;
   ObjectDictionary objects_;
   AxisPlant plant_;
   CurrentLoop current_;
