@@ -65,8 +65,14 @@ void AddKinds(std::string& text, const std::vector<Outcome>& outcomes, Misfit mi
   for (auto& [kind, by] : counts)
     Add(text, "| %s | %s | %s | %s |\n", kind.c_str(), Text(by[Strength::kClear]).c_str(),
         Text(by[Strength::kModerate]).c_str(), Text(by[Strength::kBarely]).c_str());
-  Add(text, "| **all, without the undecidable** | %.1f %% | %.1f %% | %.1f %% |\n\n",
-      Percent(sums[Strength::kClear]), Percent(sums[Strength::kModerate]), Percent(sums[Strength::kBarely]));
+  text += "| **all, without the undecidable** |";
+  for (const Strength s : {Strength::kClear, Strength::kModerate, Strength::kBarely}) {
+    if (sums[s].all == 0)
+      text += " - |";
+    else
+      Add(text, " %.1f %% |", Percent(sums[s]));
+  }
+  text += "\n\n";
   Add(text, "Truth inside the stated 95 %% interval: %s (%.1f %%); held-out gain above zero: %s; ",
       Text(inside).c_str(), Percent(inside), Text(gained).c_str());
   Add(text, "no second cause invented: %s.\n", Text(alone).c_str());
