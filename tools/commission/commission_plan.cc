@@ -19,7 +19,7 @@ constexpr double kShareOfTorque = 0.6;
 /// Two turns of the motor to average over, one at the least.
 constexpr double kFewestTurns = 1.0;
 /// Strokes and speeds stay this far inside what is allowed: a controller with a wrong model overshoots.
-constexpr double kMargin_mm = 0.1;
+constexpr double kMargin_mm = 0.15;
 constexpr double kShareOfTop = 0.95;
 /// Less room than this on one side is none.
 constexpr double kLeastStroke_mm = 1.0;
