@@ -34,12 +34,17 @@ REAL_TIME = ("mpc", "full")
 RIVALS = ("pid", "csp", "mpc", "mpc_observer", "mpc_srukf4", "mpc_ekf7", "mpc_srukf7", "full")
 START_TIMEOUT_S = 20.0
 END_TIMEOUT_S = 10.0
+ATTEMPTS = 4
 
 
 class DemoError(Exception):
     def __init__(self, message, status=1):
         super().__init__(message)
         self.status = status
+
+
+class HeldUp(DemoError):
+    """The computer took the CPU away for several periods in motion: no fault of the program, ordinary on a shared machine."""
 
 
 def say(text):
@@ -118,7 +123,9 @@ class Daemon:
         result = subprocess.run([self._binaries / "contour", *arguments, "--socket", self.socket],
                                 stdout=subprocess.PIPE, text=True, check=False)
         if result.returncode != 0:
-            raise DemoError(f"contour {arguments[0]} failed; what contourd says is in {self._messages}")
+            held_up = "grid_points_skipped" in self._messages.read_text(encoding="utf-8")
+            raise (HeldUp if held_up else DemoError)(
+                f"contour {arguments[0]} failed; what contourd says is in {self._messages}")
 
 
 def write_programs(out):
@@ -128,16 +135,29 @@ def write_programs(out):
     return files
 
 
+def draw_with(binaries, controller, programs, out):
+    with Daemon(binaries, controller, out) as daemon:
+        daemon.contour("enable")
+        directories = []
+        for program in programs:
+            directory = out / f"{program.stem}_{controller}"
+            say(f"  {controller:5s} draws {program.stem}")
+            daemon.contour("run", str(program), "--out", str(directory), "--truth", str(daemon.truth))
+            directories.append(directory)
+        return directories
+
+
 def run_in_real_time(binaries, programs, out):
     directories = []
     for controller in REAL_TIME:
-        with Daemon(binaries, controller, out) as daemon:
-            daemon.contour("enable")
-            for program in programs:
-                directory = out / f"{program.stem}_{controller}"
-                say(f"  {controller:5s} draws {program.stem}")
-                daemon.contour("run", str(program), "--out", str(directory), "--truth", str(daemon.truth))
-                directories.append(directory)
+        for left in reversed(range(ATTEMPTS)):
+            try:
+                directories += draw_with(binaries, controller, programs, out)
+                break
+            except HeldUp:
+                if not left:
+                    raise
+                say("  the host held the cycle up for some periods; contourd stopped the axes, as it should. Once more")
     return directories
 
 
@@ -192,17 +212,22 @@ def demo(binaries, out):
     out.mkdir(parents=True, exist_ok=True)
     programs = write_programs(out)
     say("== contourd in real time on the in-process bus")
-    real_time = run_in_real_time(binaries, programs, out)
+    try:
+        real_time = run_in_real_time(binaries, programs, out)
+    except HeldUp:
+        say(f"  this computer is too busy for real time ({ATTEMPTS} attempts); what follows is in virtual time only")
+        real_time = []
     say("== every controller in virtual time")
     virtual = simulate_rivals(binaries, programs, out)
+    shown = real_time or [d for d in virtual if d.name.endswith(tuple(f"_{c}" for c in REAL_TIME))]
     metrics = metrics_of(real_time + virtual)
     say("")
     say(table_text(metrics))
     say("")
-    say_gain(metrics[:len(real_time)])
+    say_gain(metrics_of(shown))
     say("")
-    say("== pictures of the real-time runs")
-    for picture in draw(real_time, out):
+    say(f"== pictures of the runs in {'real' if real_time else 'virtual'} time")
+    for picture in draw(shown, out):
         say(f"  {picture}")
     say(f"logs of every cycle for lcm-logplayer, tables and metrics are in {out}")
 
