@@ -116,8 +116,10 @@ std::vector<CycleTiming> RunLoop(Injected what) {
 
 TEST_P(LoopInjection, IsFoundUnderItsCause) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  // The sanitizer's shadow memory is paged in while the loop runs: these page faults are real, and rightly blamed.
-  if (GetParam().what != Injected::kPageFaults) GTEST_SKIP() << "page faults of the sanitizer come before other causes";
+  // The sanitizer's shadow memory is paged in while the loop runs: these page faults are real, and rightly
+  // blamed.
+  if (GetParam().what != Injected::kPageFaults)
+    GTEST_SKIP() << "page faults of the sanitizer come before other causes";
 #endif
   const std::vector<CycleTiming> timings = RunLoop(GetParam().what);
   int clean = 0;
