@@ -10,6 +10,7 @@ namespace contour {
 
 inline constexpr std::size_t kMaxBuses = 4;
 inline constexpr std::size_t kMaxFramesPerCycle = 64;
+using ReceivedFrames = FixedVector<StampedFrame, kMaxFramesPerCycle>;  ///< in order of arrival
 inline constexpr std::size_t kMaxPathPointsPerCycle = 8;
 
 /// A sequenced request of an operator; acknowledged in CycleRecord by its sequence number.
@@ -56,7 +57,7 @@ struct BusInput {
 struct CycleInput {
   std::uint64_t cycle = 0;        ///< number of this grid point; skipped grid points leave a gap
   std::int64_t grid_time_ns = 0;  ///< the grid point on the loop's clock; for records, not for logic
-  FixedVector<StampedFrame, kMaxFramesPerCycle> frames;
+  ReceivedFrames frames;
   FixedVector<BusInput, kMaxBuses> buses;
   FixedVector<PathPoint, kMaxPathPointsPerCycle> path;
   Request request;

@@ -5,13 +5,13 @@
 
 namespace contour {
 
-void CycleRunner::Receive(std::int64_t bus_time_ns, CycleInput& in) noexcept {
+void CycleRunner::Receive(std::int64_t bus_time_ns, ReceivedFrames& frames) noexcept {
   for (std::size_t b = 0; b < buses_.size(); ++b) {
-    const std::size_t have = in.frames.size();
-    const std::span<StampedFrame> room(in.frames.data() + have, in.frames.capacity() - have);
+    const std::size_t have = frames.size();
+    const std::span<StampedFrame> room(frames.data() + have, frames.capacity() - have);
     const std::size_t got = buses_[b]->Receive(bus_time_ns, room);
     for (std::size_t i = 0; i < got; ++i) room[i].bus = static_cast<std::uint8_t>(b);
-    in.frames.resize(have + got);
+    frames.resize(have + got);
   }
 }
 
@@ -58,7 +58,7 @@ bool CycleRunner::IoChanged(const IoInput& last, std::int64_t now_ns) noexcept {
 
 void CycleRunner::Tick(const GridPoint& grid, bool take_requests, CycleEntry& entry) noexcept {
   entry.input.frames.clear();
-  Receive(grid.time_ns, entry.input);
+  Receive(grid.time_ns, entry.input.frames);
   Collect(grid, grid.time_ns, take_requests, entry.input);
   cycle_.Step(entry.input, entry.output);
   Send(grid.time_ns, entry.output);

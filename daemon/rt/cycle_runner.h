@@ -20,7 +20,7 @@ class CycleRunner {
 
   /// Frames of all buses, appended to what is there already. bus_time_ns is the grid point: virtual buses
   /// move there.
-  void Receive(std::int64_t bus_time_ns, CycleInput& in) noexcept;
+  void Receive(std::int64_t bus_time_ns, ReceivedFrames& frames) noexcept;
   /// All the rest of the input, for this grid point. Virtual and lock-step time take requests only when the
   /// last cycle had settled, so that the number of cycles between two requests does not depend on when they
   /// arrive; a stop always passes.

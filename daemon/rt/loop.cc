@@ -1,5 +1,6 @@
 #include "daemon/rt/loop.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <ctime>
 
@@ -37,7 +38,19 @@ constexpr std::int64_t kLockstepIdlePoll_ns = 2'000'000;
 /// Heartbeats while lock-step time stands still.
 constexpr std::int64_t kLockstepHeartbeat_ns = 20'000'000;
 /// Feedback that has not come after this long of wall time will not come.
-constexpr std::int64_t kLockstepFeedbackTimeout_ns = 400'000'000;
+constexpr std::int64_t kLockstepFeedbackTimeout_ns = 2'000'000'000;
+
+/// Of frames that say the same, the latest: while time stands still, repetition is no news.
+void KeepLatestOfEach(ReceivedFrames& frames) noexcept {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool repeated = std::any_of(frames.begin() + i + 1, frames.end(), [&](const StampedFrame& later) {
+      return later.bus == frames[i].bus && later.frame == frames[i].frame;
+    });
+    if (!repeated) frames[kept++] = frames[i];
+  }
+  frames.resize(kept);
+}
 
 }  // namespace
 
@@ -66,7 +79,7 @@ void Loop::RunWall() noexcept {
     const std::int64_t woken = Now();
     CycleEntry& entry = *telemetry_.Reserve();
     entry.input.frames.clear();
-    runner_.Receive(grid.time_ns, entry.input);
+    runner_.Receive(grid.time_ns, entry.input.frames);
     runner_.Collect(grid, woken, true, entry.input);
     const std::int64_t received = Now();
     cycle_.Act(entry.input, entry.output, &stages);
@@ -121,11 +134,13 @@ void Loop::RunLockstep() noexcept {
   bool finished = false;
   CycleOutput last;
   IoInput io;
+  ReceivedFrames frames;
   while (!finished) {
-    WaitForWork(last, io);
     grid = {grid.index + 1, static_cast<std::int64_t>(grid.index + 1) * config_.period_ns, 0};
+    frames.clear();
+    WaitForWork(last, io, grid, frames);
     CycleEntry& entry = *telemetry_.Reserve();
-    entry.input.frames.clear();
+    entry.input.frames = frames;
     WaitForFeedback(grid, entry.input);
     runner_.Collect(grid, Now(), !last.settling, entry.input);
     cycle_.Step(entry.input, entry.output);
@@ -149,7 +164,7 @@ void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
   const bool expected = cycle_.ExpectsFeedback();
   const std::int64_t limit = expected && answered_ ? kLockstepFeedbackTimeout_ns : config_.period_ns;
   for (;;) {
-    runner_.Receive(grid.time_ns, in);
+    runner_.Receive(grid.time_ns, in.frames);
     answered_ = !expected || cycle_.FeedbackComplete(in);
     if (expected && answered_) return;
     const std::int64_t now = Now();
@@ -178,9 +193,14 @@ void Loop::KeepRealBuses(CycleOutput& out) const noexcept {
   out.frames = real;
 }
 
-void Loop::WaitForWork(const CycleOutput& last, const IoInput& io) noexcept {
+void Loop::WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoint& grid,
+                       ReceivedFrames& frames) noexcept {
   std::int64_t next_heartbeat = Now();
   for (;;) {
+    // The drives' hearts go on beating: left in the sockets, they would fill the input of the next cycles and
+    // push the feedback out of it.
+    runner_.Receive(grid.time_ns, frames);
+    KeepLatestOfEach(frames);
     const bool idle = last.quiescent && !mailbox_.request_waiting() && !runner_.IoChanged(io, Now());
     const bool starved = cycle_.PathRoom() != 0 && mailbox_.more_path_to_come() &&
                          mailbox_.path_points_waiting() < kMaxPathPointsPerCycle;

@@ -52,7 +52,8 @@ class Loop {
   void Finish(CycleEntry& entry, const GridPoint& grid, bool slept, ThreadAccounting& accounting) noexcept;
   void WaitForFrames(std::int64_t until_ns) noexcept;
   void WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept;
-  void WaitForWork(const CycleOutput& last, const IoInput& io) noexcept;
+  void WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoint& grid,
+                   ReceivedFrames& frames) noexcept;
   void KeepRealBuses(CycleOutput& out) const noexcept;
 
   Config config_;

@@ -2,6 +2,7 @@
 // machine that has died is not waited for over and over.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <map>
@@ -23,6 +24,7 @@ class SilencedBus final : public FrameBus {
  public:
   SilencedBus(std::uint32_t bitrate_bit_s, BusNode& node) : bus_(bitrate_bit_s, {&node}) {}
   std::size_t Receive(std::int64_t now_ns, std::span<StampedFrame> frames) noexcept override {
+    if (chatter > 0) return Chatter(now_ns, frames);
     const std::size_t got = bus_.Receive(now_ns, frames);
     if (!silent) return got;
     ++looks[now_ns];
@@ -34,9 +36,18 @@ class SilencedBus final : public FrameBus {
   [[nodiscard]] BusState State() const noexcept override { return bus_.State(); }
 
   std::atomic<bool> silent{false};
+  std::atomic<int> chatter{0};        ///< heartbeats that arrive before anything else
   std::map<std::int64_t, int> looks;  ///< of the loop's thread, until it has ended
 
  private:
+  std::size_t Chatter(std::int64_t now_ns, std::span<StampedFrame> frames) noexcept {
+    const std::size_t got = std::min(frames.size(), static_cast<std::size_t>(chatter.load()));
+    const CanFrame operational{0x701, 1, {0x05}};
+    std::fill_n(frames.begin(), got, StampedFrame{operational, 0, now_ns});
+    chatter -= static_cast<int>(got);
+    return got;
+  }
+
   LoopbackBus bus_;
 };
 
@@ -75,6 +86,8 @@ class LockstepLoop : public ::testing::Test {
       }
       const CycleRecord record = entry->output.record;
       ended_ = entry->output.finished;
+      quiescent_ = entry->output.quiescent;
+      stale_cycles_ = record.stale_cycles;
       queue_.Release();
       if (wanted(record)) return;
     }
@@ -93,6 +106,8 @@ class LockstepLoop : public ::testing::Test {
   Cycle cycle_;
   Loop loop_;
   bool ended_ = false;
+  bool quiescent_ = false;          ///< after the latest record
+  std::uint64_t stale_cycles_ = 0;  ///< likewise
   std::thread thread_;
 };
 
@@ -108,6 +123,19 @@ TEST_F(LockstepLoop, AnOpenedEmergencyStopIsSeenWhileTimeStandsStill) {
     return r.state == MachineState::kFaulted;
   });
   EXPECT_EQ(seen.reason, Reason::kEmergencyStop) << Name(seen.reason);
+}
+
+TEST_F(LockstepLoop, HeartbeatsOfALongPauseDoNotHideTheFeedback) {
+  AwaitState(MachineState::kIdle);
+  mailbox_.Post(RequestKind::kEnable);
+  AwaitState(MachineState::kReady);
+  while (!quiescent_) AwaitRecord([](const CycleRecord&) { return true; });
+  const std::uint64_t missing = stale_cycles_;
+  bus_.chatter = 5 * static_cast<int>(kMaxFramesPerCycle);
+  while (bus_.chatter > 0) std::this_thread::yield();
+  mailbox_.Post(RequestKind::kDisable);
+  AwaitState(MachineState::kIdle);
+  EXPECT_EQ(stale_cycles_, missing);
 }
 
 TEST_F(LockstepLoop, ADeadMachineIsWaitedForOnceNotEveryCycle) {

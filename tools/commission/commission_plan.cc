@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 
 #include "config/config_error.h"
 #include "config/machine_checks.h"
+#include "tools/text/format_text.h"
 
 namespace contour {
 namespace {
@@ -31,16 +30,6 @@ constexpr int kLines = 12;
 /// What the model may be wrong by.
 constexpr double kDoubt = 1.5;
 
-std::string Text(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Text(const char* format, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
-
 void Require(bool good, const std::string& message) {
   if (!good) throw ConfigError({message});
 }
@@ -50,7 +39,7 @@ std::string TorqueSteps(double level_Nm, double most_Nm) {
   std::string list;
   for (const double share : {0.3, 0.6, 0.9, 1.3, 1.8})
     for (const double sign : {1.0, -1.0})
-      list += (list.empty() ? "" : ", ") + Text("%.5f", sign * std::min(share * level_Nm, most_Nm));
+      list += (list.empty() ? "" : ", ") + FormatText("%.5f", sign * std::min(share * level_Nm, most_Nm));
   return list;
 }
 
@@ -75,17 +64,20 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
   const double travel = limits.travel_mm;
   Require(
       travel > 0.0 && travel <= l.position_mm[1] - l.position_mm[0],
-      Text("--travel_mm: found %g, expected more than 0 and at most the %g mm of axes.%s.limits.position_mm",
-           travel, l.position_mm[1] - l.position_mm[0], name.c_str()));
-  Require(travel >= kFewestTurns * lead_mm, Text("--travel_mm: found %g, expected a whole turn of the motor "
-                                                 "at least (%g mm): friction varies with it",
-                                                 travel, lead_mm));
+      FormatText(
+          "--travel_mm: found %g, expected more than 0 and at most the %g mm of axes.%s.limits.position_mm",
+          travel, l.position_mm[1] - l.position_mm[0], name.c_str()));
+  Require(travel >= kFewestTurns * lead_mm,
+          FormatText("--travel_mm: found %g, expected a whole turn of the motor "
+                     "at least (%g mm): friction varies with it",
+                     travel, lead_mm));
   Require(limits.max_speed_mm_s >= kSlowestTop_mm_s && limits.max_speed_mm_s <= l.velocity_mm_s,
-          Text("--max_speed_mm_s: found %g, expected %g to %g (axes.%s.limits.velocity_mm_s)",
-               limits.max_speed_mm_s, kSlowestTop_mm_s, l.velocity_mm_s, name.c_str()));
-  Require(limits.max_torque_Nm > 0.0 && limits.max_torque_Nm <= l.torque_Nm,
-          Text("--max_torque_Nm: found %g, expected more than 0 and at most %g (axes.%s.limits.torque_Nm)",
-               limits.max_torque_Nm, l.torque_Nm, name.c_str()));
+          FormatText("--max_speed_mm_s: found %g, expected %g to %g (axes.%s.limits.velocity_mm_s)",
+                     limits.max_speed_mm_s, kSlowestTop_mm_s, l.velocity_mm_s, name.c_str()));
+  Require(
+      limits.max_torque_Nm > 0.0 && limits.max_torque_Nm <= l.torque_Nm,
+      FormatText("--max_torque_Nm: found %g, expected more than 0 and at most %g (axes.%s.limits.torque_Nm)",
+                 limits.max_torque_Nm, l.torque_Nm, name.c_str()));
 
   CommissionPlan plan;
   plan.axis = name;
@@ -93,9 +85,10 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
   // The small motions about the place go both ways: not nearer than this to an end.
   Require(
       position_mm - l.position_mm[0] >= kLeastStroke_mm && l.position_mm[1] - position_mm >= kLeastStroke_mm,
-      Text("axis %s stands at %.3f mm: commissioning needs %g mm to either side; move it away from its end "
-           "first",
-           name.c_str(), position_mm, kLeastStroke_mm));
+      FormatText(
+          "axis %s stands at %.3f mm: commissioning needs %g mm to either side; move it away from its end "
+          "first",
+          name.c_str(), position_mm, kLeastStroke_mm));
   plan.low_mm = std::clamp(position_mm - 0.5 * travel, l.position_mm[0], l.position_mm[1] - travel);
   plan.high_mm = plan.low_mm + travel;
   const double friction_N = std::max({f.Fs_plus_N, f.Fs_minus_N, f.Fc_plus_N, f.Fc_minus_N});
@@ -104,10 +97,11 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
   const double ramp_N = m.mass_kg * l.acceleration_mm_s2 * 1e-3;
   plan.largest_torque_Nm = m.radius_m_rad * kDoubt * std::max(ramp_N + moving_N, kChirp_N + friction_N);
   Require(plan.largest_torque_Nm <= limits.max_torque_Nm,
-          Text("--max_torque_Nm: found %g, but the ramps of %g mm/s^2 may take %.3g Nm (should the model be "
-               "wrong by "
-               "half): allow more, or lower axes.%s.limits.acceleration_mm_s2",
-               limits.max_torque_Nm, l.acceleration_mm_s2, plan.largest_torque_Nm, name.c_str()));
+          FormatText(
+              "--max_torque_Nm: found %g, but the ramps of %g mm/s^2 may take %.3g Nm (should the model be "
+              "wrong by "
+              "half): allow more, or lower axes.%s.limits.acceleration_mm_s2",
+              limits.max_torque_Nm, l.acceleration_mm_s2, plan.largest_torque_Nm, name.c_str()));
 
   const char* axis_name = name.c_str();
   const auto add = [&](std::string what, std::string yaml) {
@@ -115,9 +109,9 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
   };
   const auto creep = [&](double stroke_mm, const std::vector<double>& speeds, double dwell_s) {
     std::string list;
-    for (const double v : speeds) list += (list.empty() ? "" : ", ") + Text("%g", v);
-    return Text("shape: creep\naxis: %s\nstroke_mm: %.6f\nvelocities_mm_s: [%s]\ndwell_s: %g\n", axis_name,
-                stroke_mm, list.c_str(), dwell_s);
+    for (const double v : speeds) list += (list.empty() ? "" : ", ") + FormatText("%g", v);
+    return FormatText("shape: creep\naxis: %s\nstroke_mm: %.6f\nvelocities_mm_s: [%s]\ndwell_s: %g\n",
+                      axis_name, stroke_mm, list.c_str(), dwell_s);
   };
   // Every program ends where it began, so the axis goes up from its place and down from it.
   const double up = plan.high_mm - kMargin_mm - position_mm;
@@ -143,32 +137,34 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
   add("creeping", creep(0.5 * one_turn, {0.5}, 0.1));
   add("creeping", creep(0.2 * one_turn, {0.2}, 0.1));
   add("creeping", creep(0.06 * one_turn, {0.1}, 0.1));
-  add("reversals, from sticking to sliding", Text("shape: reversals\naxis: %s\namplitudes_mm: [0.002, 0.005, "
-                                                  "0.015, 0.05, 0.2, %g]\nfrequency_hz: 1\ncycles: 2\n",
-                                                  axis_name, std::clamp(std::min(up, -down), 0.05, 1.0)));
+  add("reversals, from sticking to sliding",
+      FormatText("shape: reversals\naxis: %s\namplitudes_mm: [0.002, 0.005, "
+                 "0.015, 0.05, 0.2, %g]\nfrequency_hz: 1\ncycles: 2\n",
+                 axis_name, std::clamp(std::min(up, -down), 0.05, 1.0)));
   const double level_Nm = m.radius_m_rad * 0.5 * (f.Fs_plus_N + f.Fs_minus_N);
   const double travel_mm = std::min(0.3, 0.6 * l.following_error_mm);
   add("steps of torque at rest",
-      Text("shape: torque_steps\naxis: %s\ntravel_mm: %g\ntorques_Nm: [%s]\nhold_s: 0.1\nrest_s: 0.1\n",
-           axis_name, travel_mm, TorqueSteps(level_Nm, limits.max_torque_Nm).c_str()));
-  add("shaking at rest, 8 to 120 Hz", Text("shape: hold\nseconds: 4\ntorque: {axis: %s, kind: multisine, "
-                                           "amplitude_Nm: %.6f, frequency_min_hz: 8, "
-                                           "frequency_max_hz: 120, lines: %d}\n",
-                                           axis_name, kLine_N * m.radius_m_rad, kLines));
+      FormatText("shape: torque_steps\naxis: %s\ntravel_mm: %g\ntorques_Nm: [%s]\nhold_s: 0.1\nrest_s: 0.1\n",
+                 axis_name, travel_mm, TorqueSteps(level_Nm, limits.max_torque_Nm).c_str()));
+  add("shaking at rest, 8 to 120 Hz",
+      FormatText("shape: hold\nseconds: 4\ntorque: {axis: %s, kind: multisine, "
+                 "amplitude_Nm: %.6f, frequency_min_hz: 8, "
+                 "frequency_max_hz: 120, lines: %d}\n",
+                 axis_name, kLine_N * m.radius_m_rad, kLines));
   const double top_Hz = std::min(480.0, 0.48e6 / machine.machine.cycle_us);
-  whole_way(Text("chirp while sliding, 100 to %.0f Hz", top_Hz), {std::max(3.0, travel / 4.0)},
-            Text("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: 100, "
-                 "frequency_max_hz: %.0f, "
-                 "period_s: 2}\n",
-                 axis_name, kChirp_N * m.radius_m_rad, top_Hz));
+  whole_way(FormatText("chirp while sliding, 100 to %.0f Hz", top_Hz), {std::max(3.0, travel / 4.0)},
+            FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: 100, "
+                       "frequency_max_hz: %.0f, "
+                       "period_s: 2}\n",
+                       axis_name, kChirp_N * m.radius_m_rad, top_Hz));
   return plan;
 }
 
 std::string Describe(const CommissionPlan& plan) {
   std::string text =
-      Text("axis %s: between %.2f and %.2f mm, at most %g mm/s and %g Nm (expected: %.3f Nm)\n",
-           plan.axis.c_str(), plan.low_mm, plan.high_mm, plan.limits.max_speed_mm_s,
-           plan.limits.max_torque_Nm, plan.largest_torque_Nm);
+      FormatText("axis %s: between %.2f and %.2f mm, at most %g mm/s and %g Nm (expected: %.3f Nm)\n",
+                 plan.axis.c_str(), plan.low_mm, plan.high_mm, plan.limits.max_speed_mm_s,
+                 plan.limits.max_torque_Nm, plan.largest_torque_Nm);
   for (const CommissionMotion& m : plan.motions) text += "  " + m.what + "\n";
   return text;
 }

@@ -2,23 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <map>
 #include <set>
 
+#include "tools/text/format_text.h"
+
 namespace contour::hidden {
 namespace {
-
-void Add(std::string& text, const char* format, ...) __attribute__((format(printf, 2, 3)));
-void Add(std::string& text, const char* format, ...) {
-  char line[400];
-  va_list values;
-  va_start(values, format);
-  std::vsnprintf(line, sizeof line, format, values);
-  va_end(values);
-  text += line;
-}
 
 struct Count {
   int right = 0, all = 0;
@@ -58,24 +48,24 @@ void AddKinds(std::string& text, const std::vector<Outcome>& outcomes, Misfit mi
     gained.Take(o.judged.gain > 0.0);
   }
   if (counts.empty()) return;
-  Add(text,
+  text += FormatText(
       "\n### Right cause first, or in a set of two that is%s%s\n\n| effect | clear | moderate | barely |\n",
       misfit == Misfit::kNone ? "" : "; plant: ", misfit == Misfit::kNone ? "" : Name(misfit));
   text += "|---|---|---|---|\n";
   for (auto& [kind, by] : counts)
-    Add(text, "| %s | %s | %s | %s |\n", kind.c_str(), Text(by[Strength::kClear]).c_str(),
-        Text(by[Strength::kModerate]).c_str(), Text(by[Strength::kBarely]).c_str());
+    text += FormatText("| %s | %s | %s | %s |\n", kind.c_str(), Text(by[Strength::kClear]).c_str(),
+                       Text(by[Strength::kModerate]).c_str(), Text(by[Strength::kBarely]).c_str());
   text += "| **all, without the undecidable** |";
   for (const Strength s : {Strength::kClear, Strength::kModerate, Strength::kBarely}) {
     if (sums[s].all == 0)
       text += " - |";
     else
-      Add(text, " %.1f %% |", Percent(sums[s]));
+      text += FormatText(" %.1f %% |", Percent(sums[s]));
   }
   text += "\n\n";
-  Add(text, "Truth inside the stated 95 %% interval: %s (%.1f %%); held-out gain above zero: %s; ",
-      Text(inside).c_str(), Percent(inside), Text(gained).c_str());
-  Add(text, "no second cause invented: %s.\n", Text(alone).c_str());
+  text += FormatText("Truth inside the stated 95 %% interval: %s (%.1f %%); held-out gain above zero: %s; ",
+                     Text(inside).c_str(), Percent(inside), Text(gained).c_str());
+  text += FormatText("no second cause invented: %s.\n", Text(alone).c_str());
 }
 
 /// False alarms by plant and stated rate. Machines that keep silent at a rate are not asked at a stricter
@@ -94,7 +84,8 @@ void AddClean(std::string& text, const std::vector<Outcome>& outcomes) {
   for (const auto& [misfit, by_rate] : alarms)
     for (const auto& [rate, count] : by_rate) {
       const Count c{count, static_cast<int>(machines[misfit].size())};
-      Add(text, "| %s | %g %% | %s | %.1f %% |\n", Name(misfit), 100.0 * rate, Text(c).c_str(), Percent(c));
+      text += FormatText("| %s | %g %% | %s | %.1f %% |\n", Name(misfit), 100.0 * rate, Text(c).c_str(),
+                         Percent(c));
     }
 }
 
@@ -113,7 +104,7 @@ void AddOthers(std::string& text, const std::vector<Outcome>& outcomes) {
   if (both.all + detectable.all + unexplained.all == 0) return;
   text += "\n### Others\n\n| question | right | |\n|---|---|---|\n";
   const auto row = [&](const char* what, const Count& c) {
-    if (c.all > 0) Add(text, "| %s | %s | %.1f %% |\n", what, Text(c).c_str(), Percent(c));
+    if (c.all > 0) text += FormatText("| %s | %s | %.1f %% |\n", what, Text(c).c_str(), Percent(c));
   };
   row("two clear effects: both found", both);
   row("effect of 1.5 times smallest_detectable: found", detectable);
@@ -134,9 +125,11 @@ void AddTimes(std::string& text, const std::vector<Outcome>& outcomes) {
     longest = std::max(longest, o.diagnose_s);
   }
   if (n == 0) return;
-  Add(text, "\n%d logs of %.0f s on average; processor time of a diagnosis %.2f s per 100 s of log, ", n,
-      log_s / n, 100.0 * sum_s / log_s);
-  Add(text, "longest %.2f s. %d cases drawn could not be used (the effect does not get that strong there, ",
+  text +=
+      FormatText("\n%d logs of %.0f s on average; processor time of a diagnosis %.2f s per 100 s of log, ", n,
+                 log_s / n, 100.0 * sum_s / log_s);
+  text += FormatText(
+      "longest %.2f s. %d cases drawn could not be used (the effect does not get that strong there, ",
       longest, unusable);
   text += "or the machine stops).\n";
 }
@@ -148,10 +141,10 @@ void AddFailures(std::string& text, const std::vector<Outcome>& outcomes) {
     const bool wrong = o.known.question.type == Question::Type::kPair ? !o.judged.both : !o.judged.right;
     if (!wrong && o.judged.extra == 0) continue;
     if (IsOutside(o) && !o.named) continue;
-    Add(list, "| %s | %s | %s | %llu | %s | %s | %s |\n", Name(o.known.question.type),
-        KindsText(o.known.question).c_str(), Name(o.known.question.strength),
-        static_cast<unsigned long long>(o.known.question.seed), Name(o.known.question.misfit),
-        o.judged.answer.c_str(), wrong ? "wrong" : "invented a second");
+    list += FormatText("| %s | %s | %s | %llu | %s | %s | %s |\n", Name(o.known.question.type),
+                       KindsText(o.known.question).c_str(), Name(o.known.question.strength),
+                       static_cast<unsigned long long>(o.known.question.seed), Name(o.known.question.misfit),
+                       o.judged.answer.c_str(), wrong ? "wrong" : "invented a second");
   }
   if (list.empty()) return;
   text += "\n### Where it went wrong\n\n| type | hidden | strength | seed | plant | answer | |\n";

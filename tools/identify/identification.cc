@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
+
+#include "tools/text/format_text.h"
 
 namespace contour::identify {
 namespace {
@@ -201,13 +202,10 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
   id.screw_identified = fit.stiffness;
   const double off = id.fit.axis.mass_kg() / id.stated.mass_kg() - 1.0;
   if (std::fabs(off) > kInertiaFarOff) {
-    char text[200];
-    std::snprintf(
-        text, sizeof text,
+    id.notes.push_back(FormatText(
         "the inertia is %+.0f %% off the stated one: a controller built on that may have swung while "
         "recording; run once more from this model before relying on the screw's numbers",
-        100.0 * off);
-    id.notes.push_back(text);
+        100.0 * off));
   }
   report("report", 0.97);
   LookAgain(id, records);

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "config/yaml_writer.h"
+#include "tools/text/format_text.h"
 
 namespace contour::identify {
 namespace {
@@ -40,16 +39,6 @@ bool IsModelKey(const std::string& key) {
     return true;
   return std::any_of(std::begin(kFrictionKeys), std::end(kFrictionKeys),
                      [&](const KeyPair& k) { return key == k.table; });
-}
-
-std::string Say(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string Say(const char* format, ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
 }
 
 /// Four digits and a bit: more than that nobody knows.
@@ -134,19 +123,20 @@ ModelConfig ToModel(const Identification& id, ModelConfig model) {
 
 void WriteModelFile(const std::filesystem::path& file, const ModelConfig& model, const Identification& id,
                     const std::vector<std::string>& sources) {
-  std::string text = "# Written by contour identify from " + Say("%.0f s of record", id.seconds) + ":\n";
+  std::string text =
+      "# Written by contour identify from " + FormatText("%.0f s of record", id.seconds) + ":\n";
   for (const std::string& s : sources) text += "#   " + s + "\n";
   const AxisModel& a = id.fit.axis;
-  text += Say("# Friction levels are averages from %.1f to %.1f mm.\n", a.variation.low_m * 1e3,
-              a.variation.high_m * 1e3);
+  text += FormatText("# Friction levels are averages from %.1f to %.1f mm.\n", a.variation.low_m * 1e3,
+                     a.variation.high_m * 1e3);
   if (const FittedParameter* lag = Find(id, "lag_s"))
-    text += Say("# Torque path: delay %.3f ms, lag %.3f ms (+- %.3f); these are keys of drive:\n",
-                a.delay_s * 1e3, a.lag_s * 1e3, lag->sigma * 1e3);
+    text += FormatText("# Torque path: delay %.3f ms, lag %.3f ms (+- %.3f); these are keys of drive:\n",
+                       a.delay_s * 1e3, a.lag_s * 1e3, lag->sigma * 1e3);
   if (const FittedParameter* offset = Find(id, "offset_N"))
-    text += Say("# Constant torque: %.5f +- %.5f Nm, no key of the model.\n", a.offset_N * a.radius_m_rad,
-                offset->sigma * a.radius_m_rad);
-  text += Say("# Encoder: one step is %.4g um of travel, noise of a reading %.4g um.\n",
-              id.encoder.step_m * 1e6, id.encoder.noise_m * 1e6);
+    text += FormatText("# Constant torque: %.5f +- %.5f Nm, no key of the model.\n",
+                       a.offset_N * a.radius_m_rad, offset->sigma * a.radius_m_rad);
+  text += FormatText("# Encoder: one step is %.4g um of travel, noise of a reading %.4g um.\n",
+                     id.encoder.step_m * 1e6, id.encoder.noise_m * 1e6);
   for (const std::string& n : id.notes) text += "# Note: " + n + "\n";
   text +=
       "# uncertainty: relative, one standard deviation, from the scatter of the fit over blocks of time.\n";
@@ -241,12 +231,12 @@ std::string ResultTable(const Identification& id, const ModelConfig& before, con
       {"sigma1_decay_mm_s", fb.sigma1_decay_m_s * 1e3, fa.sigma1_decay_m_s * 1e3},
       {"sigma2_Ns_m", fb.sigma2_Ns_m, fa.sigma2_Ns_m},
   };
-  std::string text = Say("%-22s %12s %12s   95 %% interval\n", "", "stated", "identified");
+  std::string text = FormatText("%-22s %12s %12s   95 %% interval\n", "", "stated", "identified");
   for (const Row& row : rows) {
-    text += Say("%-22s %12.5g %12.5g", row.key, row.before, row.after);
+    text += FormatText("%-22s %12.5g %12.5g", row.key, row.before, row.after);
     if (const FittedParameter* p = Find(id, row.key))
-      text += Say("   %.5g to %.5g", row.after * std::exp(-1.96 * p->sigma),
-                  row.after * std::exp(1.96 * p->sigma));
+      text += FormatText("   %.5g to %.5g", row.after * std::exp(-1.96 * p->sigma),
+                         row.after * std::exp(1.96 * p->sigma));
     else
       text += row.before == row.after ? "   not identified, as stated"
                                       : "   with the motor's, in the stated ratio";
