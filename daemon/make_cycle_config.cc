@@ -16,6 +16,10 @@ CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const 
   out.known = KnownEffects(axis.model.extensions, out.mechanics,
                            ToSi(out.friction, out.mechanics.radius_m_rad).sigma2_Ns_m);
   out.estimator = estimator;
+  // What is known well is not to be learnt anew.
+  const auto stated = axis.model.uncertainty.find("screw_stiffness_N_um");
+  if (stated != axis.model.uncertainty.end() && out.estimator.stiffness_std > 0.0)
+    out.estimator.stiffness_std = stated->second;
   out.limits = axis.limits;
   // A delay of a fraction of a period does to the axis what a lag of that time constant does, to first order.
   out.lag_s = std::max(0.0, axis.drive.lag_ms * 1e-3 + model.added_lag_s + model.added_delay_s);

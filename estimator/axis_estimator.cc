@@ -93,6 +93,11 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       std::sqrt(6.0) * setup.measurement_std_m * mechanics.mass_kg / (period_s * period_s);
   map_ = AngleForceMap({2.0 * std::numbers::pi * mechanics.radius_m_rad, difference_N,
                         config.adapt ? config.cogging_rate : 0.0});
+  wind_up_ = WindUpFit({period_s, mechanics.stiffness_N_m, config.adapt ? config.stiffness_std : 0.0,
+                        setup.friction.vs_m_s, setup.friction.sigma1_Ns_m, setup.friction.sigma1_decay_m_s,
+                        setup.friction.sigma2_Ns_m});
+  mass_kg_ = mechanics.mass_kg;
+  table_mass_kg_ = mechanics.table_mass_kg;
   correction_ =
       LevelCorrection({2.0 * std::numbers::pi * mechanics.radius_m_rad, setup.friction.vs_m_s,
                        config.adapt ? config.ripple_rate : 0.0, config.adapt ? config.stribeck_rate : 0.0});
@@ -105,6 +110,8 @@ void AxisEstimator::Reset(double position_m) noexcept {
   viscous_.Reset();
   momentum_.Reset();
   map_.Reset();
+  wind_up_.Reset();
+  drive_N_ = 0.0;
   lag_.Reset();
   at_rest_ = true;
   knows_followed_ = false;
@@ -154,10 +161,42 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
     momentum_.Learn(in.position_m, force_N, roll_.rolled_N());
     if (const auto& m = momentum_.missing(); m.known)
       map_.Learn(m.position_m, m.velocity_m_s, m.acceleration_m_s2, m.force_N);
+    const double acted_N =
+        force_N + late * (drive_N_ - force_N) +
+        driving_N(filter.state()[kPosition] - 0.5 * filter.state()[kVelocity] * roll_.period_s());
+    LearnWindUp(in.position_m, followed.commanded_velocity_m_s, acted_N, estimate);
   } else {
     momentum_.Pause();
+    wind_up_.Pause();
   }
+  drive_N_ = force_N;
   return estimate;
+}
+
+void AxisEstimator::LearnWindUp(double position_m, double velocity_m_s, double force_N,
+                                const AxisEstimate& estimate) noexcept {
+  if (!wind_up_.learns()) return;
+  WindUpFit::Sample sample;
+  sample.position_m = position_m;
+  sample.force_N = force_N;
+  sample.mass_kg = mass_kg_ + momentum_.extra_kg();
+  sample.direction = velocity_m_s > 0.0 ? 1 : velocity_m_s < 0.0 ? -1 : 0;
+  if (wind_up_.NeedsLevels(sample.direction)) {
+    const auto& model = std::get_if<SevenStateFilter<SqrtUkf<kSevenStates>>>(&filter_)->model();
+    StateVector<kSevenStates> x{};
+    x[kLevelPlus] = estimate.g_plus_N;
+    x[kLevelMinus] = estimate.g_minus_N;
+    const auto level_N = [&](double at_m_s) {
+      const auto basis = correction_.Basis(position_m, at_m_s);
+      x[kVelocity] = at_m_s;
+      return model.Level(x, {{}, correction_.Factor(basis, true), correction_.Factor(basis, false)}) *
+             known_.LevelFactor(position_m);
+    };
+    sample.level_N = level_N(std::copysign(kStill_m_s, velocity_m_s));
+    sample.level_ratio = level_N(velocity_m_s) / sample.level_N;
+    sample.sigma0_N_m = estimate.sigma0_N_m;
+  }
+  wind_up_.Learn(sample);
 }
 
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
@@ -167,6 +206,10 @@ void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t po
     roll_.Run(filter.model(), filter.state(), correction_, viscous_,
               {known_, temperature_degC_, map_, momentum_.extra_kg(), filter.lasting_N()}, at_rest_,
               reference, points, out);
+    // The commissioned compliance is made up for where the reference is; what has been learnt of it, here.
+    const double extra_m_N = wind_up_.extra_compliance_m_N();
+    for (std::size_t j = 0; j < out.size(); ++j)
+      out[j].lead_m += extra_m_N * (out[j].node_N + table_mass_kg_ * reference[j].acceleration_m_s2);
     knows_followed_ = reference.size() > 1;
     if (knows_followed_) followed_ = reference[1];
     return;

@@ -22,6 +22,7 @@
 #include "estimator/momentum_balance.h"
 #include "estimator/seven_state_filter.h"
 #include "estimator/viscous_correction.h"
+#include "estimator/wind_up_fit.h"
 
 namespace contour {
 
@@ -60,12 +61,14 @@ class AxisEstimator {
 
   /// The extensions of the model stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
-    keep(filter_, roll_, correction_, viscous_, momentum_, map_, lag_, temperature_degC_, at_rest_, followed_,
-         knows_followed_);
+    keep(filter_, roll_, correction_, viscous_, momentum_, map_, wind_up_, lag_, drive_N_, temperature_degC_,
+         at_rest_, followed_, knows_followed_);
   }
 
  private:
   AxisEstimate UpdateFull(const Input& in) noexcept;
+  void LearnWindUp(double position_m, double velocity_m_s, double force_N,
+                   const AxisEstimate& estimate) noexcept;
 
   EstimatorKind kind_;
   std::variant<KinematicObserver, DisturbanceObserver, FourStateFilter,
@@ -76,7 +79,11 @@ class AxisEstimator {
   ViscousCorrection viscous_;
   MomentumBalance momentum_;
   AngleForceMap map_;
+  WindUpFit wind_up_;
   DriveLag<1> lag_;
+  double drive_N_ = 0.0;  // mean over the period before
+  double mass_kg_ = 0.0;
+  double table_mass_kg_ = 0.0;
   KnownEffects known_;
   double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();
   bool at_rest_ = true;

@@ -38,6 +38,7 @@ struct EstimatorConfig {
   double initial_level_std = 0.2;
   double initial_log_sigma0_std = 0.5;
   double mass_std = 0.05;
+  double stiffness_std = 0.1;
   bool adapt = true;
 
   template <class Visitor>
@@ -101,6 +102,10 @@ struct EstimatorConfig {
                "uncertainty of the logarithm of the commissioned bristle stiffness");
     v.Optional("mass_std", mass_std, Range{0.0, 1.0},
                "relative uncertainty of the moving mass, for the band of the friction estimate");
+    v.Optional(
+        "stiffness_std", stiffness_std, Range{0.0, 1.0},
+        "relative uncertainty of the screw's stiffness where the model states none; 0: reversals do not "
+        "correct the stiffness");
     v.Optional("adapt", adapt, kAny, "false: friction levels and stiffness keep their commissioned values");
   }
 };

@@ -18,6 +18,16 @@ TEST(Contour, CompensationBeatsThePlainMpcOnTheSmallCircle) {
   EXPECT_LT(full.friction_rms_N(), 1.0);
 }
 
+TEST(Contour, ReversalsCorrectTheScrewsStiffness) {
+  for (const char* seed : {"emulator.seed=1", "emulator.seed=4"}) {
+    const RunResult learnt = RunCircle(ExampleMachine({seed}), ControllerName::kFull, kSmall);
+    const RunResult as_stated =
+        RunCircle(ExampleMachine({seed, "estimator.stiffness_std=0"}), ControllerName::kFull, kSmall);
+    EXPECT_LT(learnt.table_peak_m, 0.3e-6);
+    EXPECT_GT(as_stated.table_peak_m, 0.3e-6);
+  }
+}
+
 TEST(Contour, AndOnTheLargeCircle) {
   const Program large = Circle(10.0, 3, 0.7957747155);  // 3 m/min
   const EmulatedMachineFile file = ExampleMachine();
