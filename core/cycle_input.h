@@ -24,11 +24,13 @@ enum class RequestKind : std::uint8_t {
   kTerminate = 6,  ///< as kDisable, then the loop ends
   kTune = 7,       ///< gains have been changed from this cycle on; program_id numbers the change
 };
+/// Number of a change of gains that the cycle could not take: the request is refused.
+inline constexpr std::uint32_t kNothingChanged = 0;
 
 struct Request {
   RequestKind kind = RequestKind::kNone;
   std::uint32_t sequence = 0;
-  std::uint32_t program_id = 0;  ///< kRun only
+  std::uint32_t program_id = 0;  ///< of kRun; of kTune the number of the change
 };
 
 /// One grid point of the path of a program, all axes.

@@ -119,6 +119,8 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
 std::string RefusalText(const CycleRecord& record, RequestKind request,
                         std::span<const std::string> axis_names, std::span<const std::string> bus_names) {
   const std::string state = "the machine is " + std::string(Name(record.state));
+  if (request == RequestKind::kTune)
+    return "the running controller cannot take these gains and keeps its own; restart contourd to use them";
   if (record.state == MachineState::kFaulted)
     return state + " (" + ReasonText(record, axis_names, bus_names) + "); reset it first";
   switch (request) {

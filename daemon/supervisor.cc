@@ -121,7 +121,7 @@ Answer Supervisor::Reload() {
     if (sequence == 0)
       return {false, "the cycle takes no requests: the mailbox is full; is the loop running?"};
     Answer answer = Await(RequestKind::kTune, sequence);
-    if (!answer.accepted) return answer;  // the controller stays: the cycle may be about to take it
+    if (!answer.accepted) return answer;  // the new controller stays: the cycle may be about to take it
     controllers_.clear();
     machine_ = wanted;
     answer.reason = std::to_string(differences.size()) + " keys changed: " + changes;

@@ -28,8 +28,10 @@ void CycleRunner::Collect(const GridPoint& grid, std::int64_t now_ns, bool take_
     failures_seen_[b] = state.send_failures;
   }
   in.request = mailbox_.TakeRequest(take_requests);
-  if (in.request.kind == RequestKind::kTune)
-    if (ContourController* next = mailbox_.TakeController()) cycle_.TakeController(*next);
+  if (in.request.kind == RequestKind::kTune) {
+    ContourController* next = mailbox_.TakeController();
+    if (next == nullptr || !cycle_.TakeController(*next)) in.request.program_id = kNothingChanged;
+  }
   in.io = io_.Read(now_ns);
   in.path.clear();
   const std::size_t room = std::min(in.path.capacity(), cycle_.PathRoom());

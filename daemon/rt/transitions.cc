@@ -128,7 +128,7 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
       }
       return;
     case RequestKind::kTune:
-      return Acknowledge(request, true);
+      return Acknowledge(request, request.program_id != kNothingChanged);
     case RequestKind::kStop:
       Acknowledge(request, true);
       if (state_ == MachineState::kRunning) {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint8_t kNoAxis = 0xFF;
 constexpr std::size_t kNodes = 128;
-constexpr std::uint32_t kFreshEnough_cycles = 5;  // feedback younger than this: the drive is there
+constexpr std::uint32_t kFreshEnough_cycles = 5;   // feedback younger than this: the drive is there
+constexpr std::int64_t kSameClock_periods = 1000;  // stamps further away from the grid are not of its clock
 
 [[noreturn]] void Refuse(const AxisDriveConfig& axis, const std::string& what) {
   throw std::invalid_argument("axis " + axis.name + ": " + what);
@@ -63,7 +64,8 @@ DriveMaster::DriveMaster(const MasterConfig& config)
     : feedback_(config.axes.size()),
       status_(config.axes.size()),
       sent_torque_Nm_(config.axes.size()),
-      axis_of_node_(config.buses.size() * kNodes, kNoAxis) {
+      axis_of_node_(config.buses.size() * kNodes, kNoAxis),
+      period_ns_(std::int64_t{config.cycle_us} * 1000) {
   if (config.axes.empty() || config.axes.size() > kMaxAxes) {
     throw std::invalid_argument("a machine has 1 to " + std::to_string(kMaxAxes) + " axes");
   }
@@ -112,6 +114,7 @@ void DriveMaster::Receive(const CycleInput& in) noexcept {
   // The number of the grid point is the clock: a skipped point counts as time gone by.
   elapsed_ = seen_cycle_ && in.cycle > cycle_ ? in.cycle - cycle_ : 1;
   cycle_ = in.cycle;
+  grid_ns_ = in.grid_time_ns;
   seen_cycle_ = true;
 
   for (AxisFeedback& f : feedback_) f.fresh = false;
@@ -134,7 +137,7 @@ void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
       if (frame.length >= 3) status_[axis].emergency_code = DecodeEmergency(frame).error_code;
       return;
     case cob::kTpdo1:
-      if (frame.length >= kFeedbackLength) OnFeedback(axis, frame);
+      if (frame.length >= kFeedbackLength) OnFeedback(axis, stamped);
       return;
     case cob::kTpdo1 + 0x100:
       if (axes_[axis].has_scale && frame.length >= kScaleLength && status_[axis].configured) {
@@ -162,21 +165,47 @@ void DriveMaster::OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept 
   }
 }
 
-void DriveMaster::OnFeedback(std::size_t axis, const CanFrame& frame) noexcept {
+// A drive answers each SYNC, in their order, and an answer that misses its grid point has the look of one to
+// the next SYNC. What tells them apart after an answer was missed is the time: nobody answers a SYNC much
+// sooner than ever before. From then on the drive is one answer behind, until two come in one cycle. Stamps
+// of another clock (lock-step) are never this close to the grid.
+bool DriveMaster::AnswersNewestSync(Axis& axis, const AxisFeedback& feedback,
+                                    std::int64_t stamp_ns) const noexcept {
+  const bool second = feedback.valid && axis.answer_cycle == cycle_;
+  const bool next = axis.answer_cycle + elapsed_ == cycle_;
+  axis.answer_cycle = cycle_;
+  if (second || !feedback.valid) {
+    axis.behind = false;
+    return true;
+  }
+  const std::int64_t after_ns = stamp_ns - sync_grid_ns_;
+  if (feedback.age_cycles == 0) {
+    if (after_ns > 0) axis.earliest_answer_ns = std::min(axis.earliest_answer_ns, after_ns);
+    return true;
+  }
+  const bool same_clock =
+      axis.earliest_answer_ns <= period_ns_ && after_ns > -kSameClock_periods * period_ns_;
+  const bool too_soon = same_clock && after_ns < axis.earliest_answer_ns - axis.earliest_answer_ns / 4;
+  axis.behind = too_soon || (axis.behind && next);
+  return !axis.behind;
+}
+
+void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept {
   // Before the drive is configured its TPDO may hold anything.
   if (!status_[axis].configured) return;
-  const RawFeedback raw = DecodeFeedback(frame);
+  const RawFeedback raw = DecodeFeedback(stamped.frame);
   AxisFeedback& f = feedback_[axis];
   Axis& a = axes_[axis];
+  const bool newest = AnswersNewestSync(a, f, stamped.stamp_ns);
   f.position_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
   f.torque_Nm = a.torque.FromPerMille(raw.torque_per_mille);
   f.statusword = raw.statusword;
   f.drive_state = DecodeStatusword(raw.statusword);
-  f.fresh = true;
+  f.fresh = newest;
   f.valid = true;
-  f.age_cycles = 0;
+  if (newest) f.age_cycles = 0;
   a.alive_cycle = cycle_;  // it answers every SYNC: a sign of life at least as good as its heartbeat
-  feedback_sync_ = sync_number_;
+  feedback_sync_ = std::max(feedback_sync_, newest ? sync_number_ : sync_number_ - 1);
 }
 
 void DriveMaster::Supervise(std::size_t axis) noexcept {
@@ -215,6 +244,8 @@ void DriveMaster::StartBringUp() noexcept {
     feedback_[i].drive_state = DriveState::kUnknown;
     feedback_[i].age_cycles = 0;
     axes_[i].walk.Reset();
+    axes_[i].earliest_answer_ns = kNeverAnswered;
+    axes_[i].behind = false;
   }
 }
 
@@ -306,7 +337,10 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
       bus.heartbeat_due = cycle_ + bus.heartbeat_cycles;
     }
   }
-  if (pdos) ++sync_number_;
+  if (pdos) {
+    ++sync_number_;
+    sync_grid_ns_ = grid_ns_;
+  }
   StartPdos();
 }
 

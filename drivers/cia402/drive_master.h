@@ -80,7 +80,8 @@ class DriveMaster {
   [[nodiscard]] std::uint64_t sync_number() const noexcept { return sync_number_; }
   /// Periods since the grid point before this one; more than 1 when grid points were skipped.
   [[nodiscard]] std::uint64_t elapsed_cycles() const noexcept { return elapsed_; }
-  /// Number of the SYNC that latched the newest feedback of any axis; 0 none yet.
+  /// Number of the SYNC that latched the newest feedback of any axis; 0 none yet. Feedback that an older SYNC
+  /// latched is not fresh: it came too late.
   [[nodiscard]] std::uint64_t feedback_sync() const noexcept { return feedback_sync_; }
 
   /// Appends this cycle's frames: per bus RPDOs then SYNC (once operational), then NMT, heartbeat and SDO.
@@ -92,10 +93,11 @@ class DriveMaster {
 
   void Keep(StateKeeper& keep) noexcept {
     keep(axes_, buses_, feedback_, status_, sent_torque_Nm_, goal_, cycle_, elapsed_, sync_number_,
-         feedback_sync_, started_, pdos_run_, seen_cycle_);
+         feedback_sync_, sync_grid_ns_, started_, pdos_run_, seen_cycle_);
   }
 
  private:
+  static constexpr std::int64_t kNeverAnswered = INT64_MAX;
   struct Axis {
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;
@@ -111,7 +113,10 @@ class DriveMaster {
     Unwrap scale_unwrap;
     DriveWalk walk;
     std::uint64_t heartbeat_timeout_cycles = 0;
-    std::uint64_t alive_cycle = 0;  ///< cycle of the last heartbeat or feedback
+    std::uint64_t alive_cycle = 0;                     ///< cycle of the last heartbeat or feedback
+    std::uint64_t answer_cycle = 0;                    ///< cycle of the last feedback
+    bool behind = false;                               ///< that was an answer to the SYNC before
+    std::int64_t earliest_answer_ns = kNeverAnswered;  ///< after the grid point whose SYNC it answers
   };
   struct Bus {
     BringUp bring_up;
@@ -123,7 +128,8 @@ class DriveMaster {
 
   void OnFrame(const StampedFrame& frame) noexcept;
   void OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept;
-  void OnFeedback(std::size_t axis, const CanFrame& frame) noexcept;
+  void OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept;
+  bool AnswersNewestSync(Axis& axis, const AxisFeedback& feedback, std::int64_t stamp_ns) const noexcept;
   void Supervise(std::size_t axis) noexcept;
   void StartPdos() noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
@@ -140,6 +146,9 @@ class DriveMaster {
   std::uint64_t elapsed_ = 1;  ///< cycles since the one before; more than 1 when grid points were skipped
   std::uint64_t sync_number_ = 0;
   std::uint64_t feedback_sync_ = 0;
+  std::int64_t grid_ns_ = 0;       ///< this grid point
+  std::int64_t sync_grid_ns_ = 0;  ///< the grid point of the newest SYNC
+  std::int64_t period_ns_;
   bool started_ = false;  ///< ever brought up: the master's heartbeat runs
   bool pdos_run_ = false;
   bool seen_cycle_ = false;

@@ -270,6 +270,25 @@ TEST_F(ReplayTest, ChangedGainsAreChangedAgainAtTheSameCycle) {
   EXPECT_THROW(ReplayFile(), LogError) << "without the note nobody can know what was changed";
 }
 
+/// A controller of another kind cannot take over: refused, nothing changes, and the replay knows it.
+TEST_F(ReplayTest, GainsThatTheControllerCannotTakeAreRefused) {
+  EventfulRun machine(Machine(), ControllerName::kFull);
+  RunLog log(file_, Header());
+  machine.machine().SetRecorder([&](const CycleEntry& entry) { log.Add(entry); });
+  machine.BringUp();
+  machine.Enable();
+  machine.Start("{shape: circle, radius_mm: 0.1, turns: 4, frequency_hz: 4}", 200);
+  const MachineSource source = SourceOf(Header());
+  ContourController other = MakeController(MakeCycleConfig(LoadMachine(source), ControllerName::kPid));
+  const std::uint32_t sequence = machine.machine().mailbox().PostTune(other, 1);
+  machine.Tick(200);
+  EXPECT_EQ(machine.machine().record().acknowledged, sequence);
+  EXPECT_FALSE(machine.machine().record().acknowledged_ok);
+  EXPECT_EQ(machine.machine().record().state, MachineState::kRunning);
+  log.Close();
+  EXPECT_EQ(ReplayFile().verdict, ReplayVerdict::kSame);
+}
+
 class FlightRecordTest : public ReplayTest {
  protected:
   /// A long run through a flight recorder of 1.5 s; the files it left.

@@ -180,7 +180,8 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
         break;
       }
       replayed->input = recorded->input;
-      if (recorded->input.request.kind == RequestKind::kTune)
+      if (recorded->input.request.kind == RequestKind::kTune &&
+          recorded->input.request.program_id != kNothingChanged)
         Tune(cycle, source, log.notes(), recorded->input.request.program_id);
       cycle.Step(replayed->input, replayed->output);
       if (outputs) differences.Add(recorded->output, replayed->output);

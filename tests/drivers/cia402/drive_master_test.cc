@@ -50,11 +50,15 @@ class Machine {
   void Cycle() {
     CycleInput& in = input_;
     in.cycle = ++cycle_;
+    in.grid_time_ns = now_ns();
     in.frames.clear();
     in.buses.clear();
     std::array<StampedFrame, kMaxFramesPerCycle> received;
     const std::size_t n = bus_.Receive(now_ns(), received);
-    for (std::size_t i = 0; i < n; ++i) in.frames.push_back(received[i]);
+    for (std::size_t i = 0; i < n; ++i) {
+      received[i].stamp_ns += stamp_offset_ns;
+      in.frames.push_back(received[i]);
+    }
     in.buses.push_back({bus_.State().up, false, 0});
     master.Receive(in);
     sent.clear();
@@ -91,6 +95,7 @@ class Machine {
   DriveMaster master;
   PerAxis<AxisSetpoint> setpoints;
   DriveMaster::Frames sent;
+  std::int64_t stamp_offset_ns = 0;
 
  private:
   LoopbackBus bus_;
@@ -111,6 +116,72 @@ TEST(DriveMaster, BringsUpTwoDrivesAndExchangesPdos) {
   EXPECT_NEAR(m.master.feedback()[0].position_rad, 1000 * kRadPerCount, 1e-12);
   EXPECT_EQ(m.master.feedback_sync() + 1, m.master.sync_number());  // latched at the SYNC before this cycle's
   EXPECT_EQ(m.slave[0].syncs(), m.master.feedback_sync());
+}
+
+/// The position is that of the SYNC which the master says has latched it.
+void ExpectLatchedBy(const Machine& m, std::uint64_t sync) {
+  EXPECT_EQ(m.master.feedback_sync(), sync);
+  ASSERT_LE(sync, m.slave[0].latched.size());
+  const auto latched = static_cast<double>(m.slave[0].latched[sync - 1]);
+  EXPECT_NEAR(m.master.feedback()[0].position_rad, latched * kRadPerCount, 1e-12);
+}
+
+/// Enabled and moving, so that no two SYNCs latch the same position.
+void BringToMotion(Machine& m) {
+  m.BringUp();
+  m.Reach(DriveGoal::kSwitchedOn);
+  m.Reach(DriveGoal::kEnabled);
+  m.setpoints[0].torque_Nm = 0.1;
+  m.Cycles(10);
+  ExpectLatchedBy(m, m.master.sync_number() - 1);
+  ASSERT_NE(m.slave[0].latched.back(), m.slave[0].latched.end()[-2]);
+}
+
+TEST(DriveMaster, AnAnswerThatCameTooLateBelongsToTheSyncBefore) {
+  Machine m;
+  BringToMotion(m);
+  // From now on every answer comes just after the grid point, before the next SYNC is sent.
+  m.slave[0].behaviour.tpdo_ns = m.slave[1].behaviour.tpdo_ns = 750'000;
+  m.Cycle();  // without one
+  EXPECT_FALSE(m.master.feedback()[0].fresh);
+  for (int late = 1; late < 4; ++late) {
+    m.Cycle();
+    ExpectLatchedBy(m, m.master.sync_number() - 2);
+    EXPECT_FALSE(m.master.feedback()[0].fresh);
+    EXPECT_EQ(m.master.feedback()[0].age_cycles, static_cast<std::uint32_t>(late + 1));
+  }
+  // In time again: two answers in one cycle, and the second is the new one.
+  m.slave[0].behaviour.tpdo_ns = m.slave[1].behaviour.tpdo_ns = 20'000;
+  m.Cycles(2);
+  for (int i = 0; i < 3; ++i, m.Cycle()) {
+    ExpectLatchedBy(m, m.master.sync_number() - 1);
+    EXPECT_TRUE(m.master.feedback()[0].fresh);
+  }
+}
+
+TEST(DriveMaster, AnAnswerInTimeAfterALostOneBelongsToTheNewestSync) {
+  Machine m;
+  BringToMotion(m);
+  m.slave[0].behaviour.unanswered = m.slave[1].behaviour.unanswered = true;
+  m.Cycles(2);
+  EXPECT_FALSE(m.master.feedback()[0].fresh);
+  m.slave[0].behaviour.unanswered = m.slave[1].behaviour.unanswered = false;
+  m.Cycles(2);
+  EXPECT_TRUE(m.master.feedback()[0].fresh);
+  ExpectLatchedBy(m, m.master.sync_number() - 1);
+}
+
+TEST(DriveMaster, StampsOfAnotherClockSayNothing) {
+  Machine m;
+  m.stamp_offset_ns = 5'000'000'000;
+  BringToMotion(m);
+  m.slave[0].behaviour.unanswered = m.slave[1].behaviour.unanswered = true;
+  m.Cycles(2);
+  m.slave[0].behaviour.unanswered = m.slave[1].behaviour.unanswered = false;
+  m.stamp_offset_ns = -5'000'000'000;
+  m.Cycles(2);
+  EXPECT_TRUE(m.master.feedback()[0].fresh);
+  ExpectLatchedBy(m, m.master.sync_number() - 1);
 }
 
 TEST(DriveMaster, WalksToEnabledAndSendsTorque) {

@@ -30,6 +30,8 @@ class FakeSlave : public BusNode {
     std::map<Object, std::uint32_t> read_only;   ///< refuses writes with this code
     DriveState stuck_in = DriveState::kUnknown;  ///< goes no further than this state
     std::int64_t reply_ns = 100'000;
+    std::int64_t tpdo_ns = 20'000;  ///< from SYNC to its TPDO
+    bool unanswered = false;        ///< no TPDO
   };
 
   explicit FakeSlave(std::uint8_t node_id) : node_id_(node_id) {
@@ -58,6 +60,7 @@ class FakeSlave : public BusNode {
   }
 
   Behaviour behaviour;
+  std::vector<std::int64_t> latched;  ///< position at each SYNC, the first one's at [0]
   std::map<Object, std::uint32_t>& objects() { return objects_; }
   [[nodiscard]] DriveState state() const { return state_; }
   [[nodiscard]] NmtState nmt() const { return nmt_; }
@@ -187,10 +190,11 @@ class FakeSlave : public BusNode {
   void OnSync(std::int64_t time_ns, PendingFrames& out) {
     ++syncs_;
     position_ += velocity_;
+    latched.push_back(position_);
     const std::uint32_t cob_id = Value({0x1800, 1});
     const std::uint32_t type = Value({0x1800, 2});
     if ((cob_id & 0x80000000) == 0 && type >= 1 && type <= 240)
-      out.push_back({Feedback(cob_id), time_ns + 20'000});
+      if (!behaviour.unanswered) out.push_back({Feedback(cob_id), time_ns + behaviour.tpdo_ns});
     if (rpdo_waiting_) Apply();
     if (state_ == DriveState::kOperationEnabled) velocity_ += torque_;
     if (state_ != DriveState::kOperationEnabled) velocity_ = 0;
