@@ -1,10 +1,15 @@
 # Daemon, emulated machine and a listener to the telemetry as processes of their own on vcan0, a program running for so many
 # seconds: contour_on_vcan.sh MACHINE PROGRAM SECONDS LOAD [KEY=VALUE...]
-# LOAD is a command that runs beside them from before the program begins until it ends, or empty.
+# LOAD is a command that runs beside them from before the program begins until after it has been stopped, or empty.
 # Leaves in /out: status.json after the program; wakeups and sends, lines "NANOSECONDS COUNT" over every cycle from the
-# first to the last, sends_running while the program ran; late, how many cycles were in each state; worst_cycles; digest, a checksum of the daemon's log.
+# first to the last; window_wakeups, window_sends and window (lines "KEY VALUE") of the program's first so many seconds, in which nothing begins or
+# ends; late_causes, lines "STATE CAUSE COUNT"; worst_cycles; digest, a checksum of the daemon's log.
 machine=$1 program=$2 seconds=$3 load=$4
 shift 4
+period_us=$(sed -n 's/^  cycle_us: \([0-9]*\).*/\1/p' "$machine")
+for key in "$@"; do
+  case $key in machine.cycle_us=*) period_us=${key#*=} ;; esac
+done
 set_keys="--set realtime.cpu=0"
 for key in "$@"; do set_keys="$set_keys --set $key"; done
 socket=/run/contourd.sock
@@ -53,13 +58,13 @@ contour run "$program" --socket "$socket" >/tmp/run.log 2>&1 &
 wait_for "state Running" logged "-> Running"
 sleep "$seconds"
 if logged "Running ->"; then fail "the program ended before its time"; fi
+contour stop --socket "$socket" || fail "stop was refused"
+wait_for "state Ready again" logged "Stopping -> Ready"
 if [ -n "$load" ]; then
   kill -0 "$load_process" || fail "the load ended before its time"
   kill -INT "$load_process"
   wait "$load_process"
 fi
-contour stop --socket "$socket" || fail "stop was refused"
-wait_for "state Ready again" logged "Stopping -> Ready"
 contour status --json --socket "$socket" >/out/status.json || fail "no status"
 kill -TERM "$daemon"
 wait "$daemon"
@@ -70,18 +75,28 @@ wait "$logger"
 [ -s /tmp/telemetry.lcm ] || fail "no telemetry came over LCM"
 cp /tmp/contourd.log /out/
 
-contour export /tmp/cycles.lcm --out /tmp/cycles.csv \
-  --columns cycle,state,wakeup_late_us,received_us,stepped_us,sent_us,solver_iterations,late >/dev/null || fail "the log cannot be read"
+columns=cycle,state,wakeup_late_us,received_us,stepped_us,sent_us,solver_iterations,late_cause,skipped_grid_points,stale_cycles
+contour export /tmp/cycles.lcm --out /tmp/cycles.csv --columns "$columns" >/dev/null || fail "the log cannot be read"
 awk -F, '
   NR > 1 {printf "%.0f %.0f cycle %d %s woken %.3f received %.3f stepped %.3f sent %.3f us, %d iterations\n",
                  1000 * $3, 1000 * $6, $1, $2, $3, $4, $5, $6, $7}' /tmp/cycles.csv >/tmp/times
-awk -F, 'NR > 1 {late[$2] += $8} END {for (state in late) print state, late[state]}' /tmp/cycles.csv | sort >/out/late
-histogram() { cut -d' ' -f"$1" /tmp/times | sort -n | uniq -c | awk '{print $2, $1}'; }  # COLUMN
-worst() { sort -rn -k"$1,$1" /tmp/times | head -n 20 | cut -d' ' -f3-; }                # COLUMN
-histogram 1 >/out/wakeups
-histogram 2 >/out/sends
-grep " Running " /tmp/times >/tmp/running
-cut -d' ' -f2 /tmp/running | sort -n | uniq -c | awk '{print $2, $1}' >/out/sends_running
+awk -F, -v wanted=$((seconds * 1000000 / period_us)) '
+  $2 == "Running" && cycles < wanted {
+    if (cycles++ == 0) stale = $10
+    late += $8 != "none"
+    skipped += $9
+    last_stale = $10
+    printf "%.0f %.0f\n", 1000 * $3, 1000 * $6 >"/tmp/window"
+  }
+  END {printf "cycles %d\nlate_cycles %d\nskipped_grid_points %d\nstale_cycles %d\n", cycles, late, skipped, last_stale - stale}
+' /tmp/cycles.csv >/out/window
+awk -F, 'NR > 1 && $8 != "none" {late[$2 " " $8]++} END {for (key in late) print key, late[key]}' /tmp/cycles.csv | sort >/out/late_causes
+histogram() { cut -d' ' -f"$1" "$2" | sort -n | uniq -c | awk '{print $2, $1}'; }  # COLUMN FILE
+worst() { sort -rn -k"$1,$1" /tmp/times | head -n 20 | cut -d' ' -f3-; }           # COLUMN
+histogram 1 /tmp/times >/out/wakeups
+histogram 2 /tmp/times >/out/sends
+histogram 1 /tmp/window >/out/window_wakeups
+histogram 2 /tmp/window >/out/window_sends
 # The cycles to look at when a bar is missed.
 { echo "woken last:"; worst 1; echo "sent last:"; worst 2; } >/out/worst_cycles
 sha256sum </tmp/cycles.lcm | cut -d' ' -f1 >/out/digest
