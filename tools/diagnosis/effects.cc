@@ -32,25 +32,28 @@ SharedSignal Add(const SharedSignal& before, const std::vector<SharedSignal>& ba
   return sum;
 }
 
-/// A wave between rows, best straight line over each: at high speed it turns far from row to row. `phase` per
-/// row, `size` of the wave per row.
-SharedSignal WaveSignal(const std::vector<double>& phase, const std::vector<double>& size,
-                        double quadrature) {
+/// A wave between rows and the one a quarter period on, best straight line over each row: at high speed it
+/// turns far from row to row. `phase` per row, `size` of the wave per row.
+std::vector<SharedSignal> WaveSignals(const std::vector<double>& phase, const std::vector<double>& size) {
   const std::size_t n = phase.size();
-  auto s = std::make_shared<Signal>(2 * n, 0.0);
+  auto sine = std::make_shared<Signal>(2 * n, 0.0), cosine = std::make_shared<Signal>(2 * n, 0.0);
   for (std::size_t k = 0; k + 1 < n; ++k) {
-    const double middle = 0.5 * (phase[k] + phase[k + 1]) + quadrature, d = 0.5 * (phase[k + 1] - phase[k]);
-    const double d2 = d * d;
+    const double middle = 0.5 * (phase[k] + phase[k + 1]), d = 0.5 * (phase[k + 1] - phase[k]);
     // Mean of sin(middle + d x) over x in -1..1, and its slope by least squares.
-    const double mean = std::fabs(d) < 1e-2 ? 1.0 - d2 / 6.0 : std::sin(d) / d;
-    const double slope =
-        std::fabs(d) < 1e-2 ? d * (1.0 - d2 / 10.0) : 3.0 * (std::sin(d) / d - std::cos(d)) / d;
+    double mean = 1.0 - d * d / 6.0, slope = d * (1.0 - d * d / 10.0);
+    if (std::fabs(d) >= 1e-2) {
+      const double s = std::sin(d) / d;
+      mean = s;
+      slope = 3.0 * (s - std::cos(d)) / d;
+    }
     const double a = size.empty() ? 1.0 : 0.5 * (size[k] + size[k + 1]);
-    const double m = a * mean * std::sin(middle), c = a * slope * std::cos(middle);
-    (*s)[k] = m - c;
-    (*s)[n + k] = m + c;
+    const double s = a * std::sin(middle), c = a * std::cos(middle);
+    (*sine)[k] = mean * s - slope * c;
+    (*sine)[n + k] = mean * s + slope * c;
+    (*cosine)[k] = mean * c + slope * s;
+    (*cosine)[n + k] = mean * c - slope * s;
   }
-  return s;
+  return {sine, cosine};
 }
 
 template <class F>
@@ -114,6 +117,12 @@ SharedEffect AsSignals(const SharedEffect& e) {
   return copy;
 }
 
+SharedEffect WithShorter(const SharedEffect& e, SharedEffect shorter) {
+  auto copy = std::make_shared<Effect>(*e);
+  copy->shorter = std::move(shorter);
+  return copy;
+}
+
 SharedEffect WithOrder(const SharedEffect& e, double order) {
   auto copy = std::make_shared<Effect>(*e);
   copy->order = order;
@@ -147,27 +156,28 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
   const Signals& s = *p.signals_;
   const std::size_t n = p.rows();
   const double Fc = s.coulomb;
-  out.push_back(Custom("asymmetric_coulomb", "", 1, {2e-3},
-                       [](const auto& a, AxisModel& m) {
-                         m.friction.Fc_plus *= 1.0 + 0.5 * a[0];
-                         m.friction.Fs_plus *= 1.0 + 0.5 * a[0];
-                         m.friction.Fc_minus *= 1.0 - 0.5 * a[0];
-                         m.friction.Fs_minus *= 1.0 - 0.5 * a[0];
-                       },
-                       {}, {-1.8}, {1.8}));
+  const SharedEffect levels = Custom("asymmetric_coulomb", "", 1, {2e-3},
+                                     [](const auto& a, AxisModel& m) {
+                                       m.friction.Fc_plus *= 1.0 + 0.5 * a[0];
+                                       m.friction.Fs_plus *= 1.0 + 0.5 * a[0];
+                                       m.friction.Fc_minus *= 1.0 - 0.5 * a[0];
+                                       m.friction.Fs_minus *= 1.0 - 0.5 * a[0];
+                                     },
+                                     {}, {-1.8}, {1.8});
   // Guides and wipers that drag one way do so at speed, too: a viscous term that differs with them.
   const auto way = Make(n, [&](std::size_t k) {
     return s.velocity[k] > 0.0 ? 1.0 : s.velocity[k] < 0.0 ? -1.0 : 0.0;
   });
-  out.push_back(Custom("asymmetric_coulomb", "and viscous", 1, {2e-3, 5e-3},
-                       [way](const auto& a, AxisModel& m) {
-                         m.friction.Fc_plus *= 1.0 + 0.5 * a[0];
-                         m.friction.Fs_plus *= 1.0 + 0.5 * a[0];
-                         m.friction.Fc_minus *= 1.0 - 0.5 * a[0];
-                         m.friction.Fs_minus *= 1.0 - 0.5 * a[0];
-                         m.viscous = Add(m.viscous, {way}, {0.5 * a[1]});
-                       },
-                       {}, {-1.8, -1.8}, {1.8, 1.8}));
+  out.push_back(WithShorter(Custom("asymmetric_coulomb", "and viscous", 1, {2e-3, 5e-3},
+                                   [way](const auto& a, AxisModel& m) {
+                                     m.friction.Fc_plus *= 1.0 + 0.5 * a[0];
+                                     m.friction.Fs_plus *= 1.0 + 0.5 * a[0];
+                                     m.friction.Fc_minus *= 1.0 - 0.5 * a[0];
+                                     m.friction.Fs_minus *= 1.0 - 0.5 * a[0];
+                                     m.viscous = Add(m.viscous, {way}, {0.5 * a[1]});
+                                   },
+                                   {}, {-1.8, -1.8}, {1.8, 1.8}),
+                            levels));
   out.push_back(
       Custom("constant_torque", "", 1, {0.01 * Fc}, [](const auto& a, AxisModel& m) { m.offset += a[0]; }));
   const StatedFriction& f = p.nominal_.friction;
@@ -191,10 +201,12 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                            {0.1, 0.0}, {-0.8, -2.5}, {4.0, 2.5}));
     }
   }
-  out.push_back(LinearEffect("position_friction", "smooth", 3, Input::kLevel, Cosines(s, 1, 3), 5e-3));
-  out.push_back(LinearEffect("position_friction", "", 3, Input::kLevel, Cosines(s, 1, 8), 5e-3));
-  out.push_back(LinearEffect("cable_spring", "linear", 3, Input::kLoadForce, Legendre(s, 1), 0.01 * Fc));
-  out.push_back(LinearEffect("cable_spring", "", 3, Input::kLoadForce, Legendre(s, 4), 0.01 * Fc));
+  out.push_back(
+      WithShorter(LinearEffect("position_friction", "", 3, Input::kLevel, Cosines(s, 1, 8), 5e-3),
+                  LinearEffect("position_friction", "smooth", 3, Input::kLevel, Cosines(s, 1, 3), 5e-3)));
+  out.push_back(
+      WithShorter(LinearEffect("cable_spring", "", 3, Input::kLoadForce, Legendre(s, 4), 0.01 * Fc),
+                  LinearEffect("cable_spring", "linear", 3, Input::kLoadForce, Legendre(s, 1), 0.01 * Fc)));
   const double top = std::max(s.max_speed, 1e-12);
   const auto speed = std::make_shared<const Signal>(s.velocity);
   const Input drag = p.nominal_.friction_on_load ? Input::kLoadForce : Input::kMotorForce;
@@ -216,12 +228,12 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
         knee));
   if (!s.temperature_K.empty()) {
     const auto T = std::make_shared<const Signal>(s.temperature_K);
-    out.push_back(LinearEffect("temperature_viscosity", "", 2, Input::kViscous, {T}, 2e-3));
-    out.push_back(
-        Custom("temperature_viscosity", "and level", 2, {2e-3, 1e-3}, [T](const auto& a, AxisModel& m) {
-          m.viscous = Add(m.viscous, {T}, {a[0]});
-          m.level = Add(m.level, {T}, {a[1]});
-        }));
+    out.push_back(WithShorter(AsSignals(Custom("temperature_viscosity", "and level", 2, {2e-3, 1e-3},
+                                               [T](const auto& a, AxisModel& m) {
+                                                 m.viscous = Add(m.viscous, {T}, {a[0]});
+                                                 m.level = Add(m.level, {T}, {a[1]});
+                                               })),
+                              LinearEffect("temperature_viscosity", "", 2, Input::kViscous, {T}, 2e-3)));
   }
   out.push_back(LinearEffect(
       "friction_drift", "linear", 3, Input::kLevel,
@@ -234,13 +246,10 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
               return 0.5 - std::exp(-static_cast<double>(k) / static_cast<double>(n) / (tau * std::exp(x)));
             }),
         tau));
+  // Over the whole band, which the smoothed acceleration does not have; constant over each row.
   out.push_back(LinearEffect(
       "load_friction", "", 1, Input::kLevel,
-      {Make(n,
-            [&](std::size_t k) {
-              return std::fabs((p.nominal_.motor_inertia + p.nominal_.load_inertia) * s.acceleration[k]) / Fc;
-            })},
-      5e-3));
+      {Make(2 * n, [&](std::size_t k) { return std::fabs(s.net_force[k < n ? k : k - n]) / Fc; })}, 5e-3));
   for (const double ratio : {0.03, 0.1, 0.3})
     out.push_back(Custom("presliding_hysteresis", "ratio " + std::to_string(ratio), 3, {0.03, 0.02},
                          [ratio](const auto& a, AxisModel& m) {
@@ -297,6 +306,8 @@ void AddMechanics(const Problem& p, std::vector<SharedEffect>& out) {
         },
         {}, {-0.8, -reach_s}, {5.0, reach_s}));
     step->tested = 1;
+    step->as_term = p.nominal_.two_inertia ? "load_inertia" : "inertia";
+    step->from_row = row;
     step->order = p.log_.period_s * static_cast<double>(row);
     out.push_back(step);
   }
@@ -399,7 +410,7 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
     basis = {Make(n, [&](std::size_t k) { return std::sin(phases[k]); }),
              Make(n, [&](std::size_t k) { return std::cos(phases[k]); })};
   else
-    basis = {WaveSignal(phases, sizes, 0.0), WaveSignal(phases, sizes, 0.5 * kPi)};
+    basis = WaveSignals(phases, sizes);
   const std::string label = std::to_string(order);
   std::string kind;
   Input input = Input::kMotorForce;
@@ -453,11 +464,9 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
   e->apply = [x, order, middle, input, n](const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0 && a[1] == 0.0) return;
     std::vector<double> at(n);
-    const double shift = std::atan2(a[1], a[0]), size = std::hypot(a[0], a[1]);
     for (std::size_t k = 0; k < n; ++k) at[k] = order * (*x)[k] + a[2] * ((*x)[k] - middle);
-    const SharedSignal wave_signal = WaveSignal(at, std::vector<double>(n, size), shift);
     SharedSignal& target = input == Input::kLevel ? m.level : m.load_force;
-    target = Add(target, {wave_signal}, {1.0});
+    target = Add(target, WaveSignals(at, {}), {a[0], a[1]});
   };
   e->middle = middle;
   return e;

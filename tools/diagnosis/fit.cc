@@ -3,9 +3,17 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "tools/diagnosis/lanes.h"
+#include "tools/diagnosis/products.h"
 
 namespace contour::diagnosis {
 namespace {
+
+using Column = Eigen::Map<const Eigen::VectorXd>;
+
+Column ColumnOf(const std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
 
 double StepOf(const Problem& problem, const Point& p, std::size_t i) {
   if (i < p.base.size()) return problem.terms_[i].step;
@@ -35,9 +43,210 @@ double PriorOf(const Problem& problem, const Point& p) {
   return sum;
 }
 
-double SquareOf(const std::vector<double>& r) {
-  return Eigen::Map<const Eigen::VectorXd>(r.data(), static_cast<Eigen::Index>(r.size())).squaredNorm();
-}
+/// One fit, which says what runs it needs next and goes on when it has them.
+class Descent {
+ public:
+  Descent(const Problem& problem, Beginning beginning) : problem_(problem), effort_(beginning.effort) {
+    fit_.point = std::move(beginning.point);
+    count_ = ParameterCount(fit_.point);
+    const auto columns = static_cast<Eigen::Index>(count_);
+    weight_ = Eigen::VectorXd::Zero(columns);
+    for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
+      weight_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
+    if (beginning.known == nullptr) return;
+    const Fit& known = *beginning.known;
+    known_ = known.jacobian.cols();
+    if (known_ == columns) {
+      fit_ = known;
+      fit_.converged = false;
+    } else {
+      const auto size = static_cast<Eigen::Index>(problem.data_size());
+      fit_.jacobian.resize(size, columns);
+      fit_.raw_jacobian.resize(size, columns);
+      fit_.jacobian.leftCols(known_) = known.jacobian;
+      fit_.raw_jacobian.leftCols(known_) = known.raw_jacobian;
+      fit_.normal = Eigen::MatrixXd::Zero(columns, columns);
+      fit_.normal.topLeftCorner(known_, known_) = known.normal;
+    }
+    stale_ = false;
+  }
+
+  /// None: at the end.
+  std::vector<Point> Ask(bool brief) {
+    if (fit_.raw.empty()) {
+      stage_ = Stage::kBegin;
+      return {fit_.point};
+    }
+    if (stage_ == Stage::kBegin) {
+      stage_ = Stage::kStep;
+      if (!stale_ && known_ < static_cast<Eigen::Index>(count_)) return AskColumns(known_);
+      Plan();
+    }
+    if (stage_ == Stage::kColumns) return AskColumns(0);
+    if (stage_ == Stage::kEnd) return {};
+    // Shorter and longer steps ride along in lanes that would be empty otherwise.
+    tried_.clear();
+    if (brief)
+      for (const double part : {1.0, 0.4}) tried_.push_back(Moved(fit_.point, part * by_));
+    else
+      for (const double part : {1.0, 0.5, 0.15, 1.4}) tried_.push_back(Moved(fit_.point, part * by_));
+    chosen_ = tried_.size();
+    before_ = fit_.cost;
+    return tried_;
+  }
+
+  void Take(std::size_t i, std::vector<double> raw, std::vector<double> white) {
+    switch (stage_) {
+      case Stage::kBegin:
+        fit_.prior = PriorOf(problem_, fit_.point);
+        fit_.cost = ColumnOf(white).squaredNorm() + fit_.prior;
+        fit_.raw = std::move(raw);
+        fit_.residual = std::move(white);
+        break;
+      case Stage::kColumns: {
+        const std::size_t at = static_cast<std::size_t>(from_) + i;
+        const double step = StepOf(problem_, fit_.point, at);
+        const auto column = static_cast<Eigen::Index>(at);
+        fit_.raw_jacobian.col(column) = (ColumnOf(raw) - ColumnOf(fit_.raw)) / step;
+        fit_.jacobian.col(column) = (ColumnOf(white) - ColumnOf(fit_.residual)) / step;
+        break;
+      }
+      case Stage::kStep: {
+        const double prior = PriorOf(problem_, tried_[i]);
+        const double cost = ColumnOf(white).squaredNorm() + prior;
+        if (!std::isfinite(cost) || cost >= fit_.cost) break;
+        chosen_ = i;
+        fit_.cost = cost;
+        fit_.prior = prior;
+        chosen_raw_ = std::move(raw);
+        chosen_white_ = std::move(white);
+        break;
+      }
+      case Stage::kEnd:
+        break;
+    }
+  }
+
+  /// All that was asked for has come.
+  void Proceed() {
+    switch (stage_) {
+      case Stage::kColumns:
+        AddProducts(fit_.jacobian, from_, fit_.normal);
+        stale_ = false;
+        ++refreshes_;
+        if (closing_)
+          stage_ = Stage::kEnd;
+        else
+          PlanStep(from_ == 0);
+        break;
+      case Stage::kStep:
+        Choose();
+        break;
+      case Stage::kBegin:
+      case Stage::kEnd:
+        break;
+    }
+  }
+
+  Fit Result() {
+    const auto columns = static_cast<Eigen::Index>(count_);
+    fit_.covariance = Normal().ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
+    return std::move(fit_);
+  }
+
+ private:
+  enum class Stage { kBegin, kColumns, kStep, kEnd };
+
+  Eigen::MatrixXd Normal() const {
+    Eigen::MatrixXd normal = fit_.normal;
+    normal.diagonal() += weight_;
+    normal.diagonal().array() += 1e-18 * normal.diagonal().maxCoeff();
+    return normal;
+  }
+
+  std::vector<Point> AskColumns(Eigen::Index from) {
+    stage_ = Stage::kColumns;
+    from_ = from;
+    const auto columns = static_cast<Eigen::Index>(count_);
+    if (from == 0) {
+      const auto size = static_cast<Eigen::Index>(problem_.data_size());
+      fit_.jacobian.resize(size, columns);
+      fit_.raw_jacobian.resize(size, columns);
+      fit_.normal.resize(columns, columns);
+    }
+    std::vector<Point> around;
+    for (Eigen::Index i = from; i < columns; ++i) {
+      Eigen::VectorXd by = Eigen::VectorXd::Zero(columns);
+      by(i) = StepOf(problem_, fit_.point, static_cast<std::size_t>(i));
+      around.push_back(Moved(fit_.point, by));
+    }
+    return around;
+  }
+
+  void Plan() {
+    if (steps_ == effort_.most_steps) return Close(false);
+    if (stale_ && refreshes_ < effort_.most_refreshes)
+      stage_ = Stage::kColumns;
+    else
+      PlanStep(false);
+  }
+
+  void PlanStep(bool fresh) {
+    fresh_ = fresh;
+    last_chance_ = fresh || refreshes_ >= effort_.most_refreshes;
+    Eigen::VectorXd gradient = GradientOf(fit_.jacobian, fit_.residual);
+    for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
+      gradient(static_cast<Eigen::Index>(i)) += weight_(static_cast<Eigen::Index>(i)) * fit_.point.base[i];
+    by_ = -Normal().ldlt().solve(gradient);
+    promised_ = -gradient.dot(by_);
+    if (promised_ < effort_.close_enough) {
+      fit_.converged = true;
+      if (last_chance_ || promised_ < 0.5 * effort_.close_enough) return Close(fresh);
+    }
+    if (steps_ == effort_.most_steps) return Close(fresh);
+    if (fit_.cost - promised_ > effort_.hopeless_above) {
+      effort_.covariance = false;
+      return Close(fresh);
+    }
+    stage_ = Stage::kStep;
+  }
+
+  void Choose() {
+    ++steps_;
+    if (chosen_ < tried_.size()) {
+      if (before_ - fit_.cost < 0.6 * promised_ || chosen_ > 0) stale_ = true;
+      fit_.point = std::move(tried_[chosen_]);
+      fit_.raw = std::move(chosen_raw_);
+      fit_.residual = std::move(chosen_white_);
+    } else {
+      if (last_chance_) {
+        fit_.converged = true;
+        return Close(fresh_);
+      }
+      stale_ = true;
+    }
+    Plan();
+  }
+
+  void Close(bool fresh) {
+    closing_ = effort_.covariance && !fresh && stale_ && refreshes_ <= effort_.most_refreshes;
+    stage_ = closing_ ? Stage::kColumns : Stage::kEnd;
+  }
+
+  const Problem& problem_;
+  FitEffort effort_;
+  Fit fit_;
+  std::size_t count_ = 0;
+  Eigen::Index known_ = 0, from_ = 0;
+  Eigen::VectorXd weight_, by_;
+  Stage stage_ = Stage::kBegin;
+  bool stale_ = true, fresh_ = false, last_chance_ = false, closing_ = false;
+  int steps_ = 0, refreshes_ = 0;
+  double promised_ = 0.0, before_ = 0.0;
+  std::vector<Point> tried_;
+  std::size_t chosen_ = 0;
+  std::vector<double> chosen_raw_, chosen_white_;
+};
 
 }  // namespace
 
@@ -47,98 +256,62 @@ std::size_t ParameterCount(const Point& p) {
   return n;
 }
 
-Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort) {
-  Fit fit;
-  fit.point = std::move(start);
-  const std::size_t n = ParameterCount(fit.point);
-  const auto columns = static_cast<Eigen::Index>(n);
-  const auto size = static_cast<Eigen::Index>(problem.data_size());
-  fit.residual = problem.Residuals(std::span(&fit.point, 1))[0];
-  fit.prior = PriorOf(problem, fit.point);
-  fit.cost = SquareOf(fit.residual) + fit.prior;
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(columns);
-  for (std::size_t i = 0; i < fit.point.base.size(); ++i)
-    weight(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
-  bool stale = true;
-  Eigen::MatrixXd normal;
-  int refreshes = 0;
-  const auto refresh = [&](std::size_t from) {
-    std::vector<Point> around(from);
-    for (std::size_t i = from; i < n; ++i) {
-      Eigen::VectorXd by = Eigen::VectorXd::Zero(columns);
-      double step = StepOf(problem, fit.point, i);
-      by(static_cast<Eigen::Index>(i)) = step;
-      around.push_back(Moved(fit.point, by));
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings) {
+  std::vector<Descent> descents;
+  for (Beginning& b : beginnings) descents.emplace_back(problem, std::move(b));
+  std::vector<bool> going(descents.size(), true);
+  for (;;) {
+    const auto left = std::count(going.begin(), going.end(), true);
+    std::vector<Point> points;
+    std::vector<std::pair<std::size_t, std::size_t>> owners;
+    for (std::size_t d = 0; d < descents.size(); ++d) {
+      if (!going[d]) continue;
+      std::vector<Point> asked = descents[d].Ask(left > 2);
+      going[d] = !asked.empty();
+      for (std::size_t i = 0; i < asked.size(); ++i) owners.emplace_back(d, i);
+      std::move(asked.begin(), asked.end(), std::back_inserter(points));
     }
-    if (from == 0) fit.jacobian.resize(size, columns);
-    for (std::size_t first = from; first < n; first += 8) {
-      const std::size_t count = std::min<std::size_t>(8, n - first);
-      const auto runs = problem.Residuals(std::span(around).subspan(first, count));
-      for (std::size_t i = 0; i < count; ++i)
-        fit.jacobian.col(static_cast<Eigen::Index>(first + i)) =
-            (Eigen::Map<const Eigen::VectorXd>(runs[i].data(), size) -
-             Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), size)) /
-            StepOf(problem, fit.point, first + i);
-    }
-    normal = fit.jacobian.transpose() * fit.jacobian;
-    normal.diagonal() += weight;
-    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff() * 1e-6;
-    stale = false;
-    ++refreshes;
-  };
-  bool fresh = false;
-  if (effort.warm != nullptr) {
-    const Eigen::Index known = effort.warm->jacobian.cols();
-    fit.jacobian.resize(size, columns);
-    fit.jacobian.leftCols(known) = effort.warm->jacobian;
-    refresh(static_cast<std::size_t>(known));
-  }
-  for (int step = 0; step < effort.most_steps; ++step) {
-    fresh = stale && refreshes < effort.most_refreshes;
-    if (fresh) refresh(0);
-    const bool last_chance = fresh || refreshes >= effort.most_refreshes;
-    const Eigen::VectorXd r = Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), size);
-    Eigen::VectorXd gradient = fit.jacobian.transpose() * r;
-    for (std::size_t i = 0; i < fit.point.base.size(); ++i)
-      gradient(static_cast<Eigen::Index>(i)) += weight(static_cast<Eigen::Index>(i)) * fit.point.base[i];
-    const Eigen::LDLT<Eigen::MatrixXd> solver(normal);
-    const Eigen::VectorXd by = -solver.solve(gradient);
-    const double promised = -gradient.dot(by);
-    if (promised < effort.close_enough) {
-      fit.converged = true;
-      if (last_chance || promised < 0.5 * effort.close_enough) break;
-    }
-    // Shorter and longer steps ride along in the lanes that a single run leaves empty.
-    std::vector<Point> tried;
-    for (const double part : {1.0, 0.5, 0.15, 1.4}) tried.push_back(Moved(fit.point, part * by));
-    std::vector<std::vector<double>> residuals = problem.Residuals(tried);
-    std::size_t chosen = tried.size();
-    const double before = fit.cost;
-    for (std::size_t i = 0; i < tried.size(); ++i) {
-      const double prior = PriorOf(problem, tried[i]);
-      const double cost = SquareOf(residuals[i]) + prior;
-      if (!std::isfinite(cost) || cost >= fit.cost) continue;
-      chosen = i;
-      fit.cost = cost;
-      fit.prior = prior;
-    }
-    const bool better = chosen < tried.size();
-    if (better) {
-      if (before - fit.cost < 0.6 * promised || chosen > 0) stale = true;
-      fit.point = std::move(tried[chosen]);
-      fit.residual = std::move(residuals[chosen]);
-    }
-    if (!better) {
-      if (last_chance) {
-        fit.converged = true;
-        break;
+    if (points.empty()) break;
+    constexpr std::size_t kAtOnce = 3 * kLanes;  // bounds the memory
+    for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
+      const std::size_t count = std::min(kAtOnce, points.size() - first);
+      std::vector<std::vector<double>> raw = problem.Raw(std::span(points).subspan(first, count));
+      std::vector<std::vector<double>> white = problem.White(raw);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto [owner, place] = owners[first + i];
+        descents[owner].Take(place, std::move(raw[i]), std::move(white[i]));
       }
-      stale = true;
     }
+    for (std::size_t d = 0; d < descents.size(); ++d)
+      if (going[d]) descents[d].Proceed();
   }
-  if (effort.covariance && !fresh && refreshes < effort.most_refreshes + 1 && stale) refresh(0);
-  fit.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
-  return fit;
+  std::vector<Fit> fits;
+  for (Descent& d : descents) fits.push_back(d.Result());
+  return fits;
+}
+
+Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort) {
+  return std::move(FitPoints(problem, {{std::move(start), effort}})[0]);
+}
+
+Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort) {
+  return std::move(FitPoints(problem, {{fit.point, effort, &fit}})[0]);
+}
+
+void Rewhiten(const Problem& problem, Fit& fit) {
+  const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
+  std::vector<std::span<const double>> in;
+  std::vector<std::span<double>> out;
+  in.emplace_back(fit.raw);
+  out.emplace_back(fit.residual);
+  for (Eigen::Index i = 0; i < fit.raw_jacobian.cols(); ++i) {
+    in.emplace_back(fit.raw_jacobian.col(i).data(), size);
+    out.emplace_back(fit.jacobian.col(i).data(), size);
+  }
+  problem.WhitenInto(in, out);
+  fit.prior = PriorOf(problem, fit.point);
+  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
+  AddProducts(fit.jacobian, 0, fit.normal);
 }
 
 }  // namespace contour::diagnosis

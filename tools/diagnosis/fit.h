@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 #include "tools/diagnosis/problem.h"
@@ -12,9 +13,10 @@ struct Fit {
   Point point;
   double cost = 0.0;  ///< |r|^2 + prior
   double prior = 0.0;
-  std::vector<double> residual;  ///< white
-  Eigen::MatrixXd jacobian;      ///< white; base terms, then amplitudes
-  Eigen::MatrixXd covariance;    ///< of the same, noise of unit variance
+  std::vector<double> raw, residual;       ///< as Problem::Raw gives it; white
+  Eigen::MatrixXd raw_jacobian, jacobian;  ///< of the same; base terms, then amplitudes
+  Eigen::MatrixXd normal;                  ///< J' J of the white one, priors not included
+  Eigen::MatrixXd covariance;              ///< of the parameters, noise of unit variance
   bool converged = false;
 };
 
@@ -23,12 +25,28 @@ struct FitEffort {
   int most_refreshes = 8;      ///< of the sensitivities
   double close_enough = 0.02;  ///< what one more step would promise at an end, of |r|^2
   bool covariance = true;      ///< of the end point; else sensitivities may be old
-  const Fit* warm =
-      nullptr;  ///< of the same noise and the same point less the last effect: its sensitivities serve
+  /// Given up where not even the first step's promise leads below.
+  double hopeless_above = std::numeric_limits<double>::infinity();
 };
 
-/// Gauss-Newton with the sensitivities kept while they serve. Noise is the problem's, held.
+/// Where a fit begins.
+struct Beginning {
+  Point point;
+  FitEffort effort;
+  /// Of the same noise: its sensitivities serve for the parameters that it has; its residual too, where it
+  /// has all of them.
+  const Fit* known = nullptr;
+};
+
+/// Gauss-Newton with the sensitivities kept while they serve. Noise is the problem's, held. All fits go step
+/// by step together, so that their runs share the lanes.
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings);
 Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {});
+/// The same from where a fit stands.
+Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort);
+
+/// The fit's own runs under the noise that was learnt since.
+void Rewhiten(const Problem& problem, Fit& fit);
 
 std::size_t ParameterCount(const Point& point);
 

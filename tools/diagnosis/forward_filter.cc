@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "tools/diagnosis/lane_bundle.h"
+#include "tools/diagnosis/lane_loops.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -53,7 +54,7 @@ void RunBundle(const FilterSetup& setup, const MeansCache& means, const std::vec
       m.friction[i] = r.friction.data();
     }
   }
-  RunLanes(m);
+  BestLoops().run(m);
 }
 
 }  // namespace

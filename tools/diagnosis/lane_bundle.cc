@@ -12,51 +12,7 @@ void SetSignal(LaneSignal& lane, std::size_t i, const SharedSignal& signal, std:
   lane.to[i] = signal ? signal->data() + (signal->size() == 2 * rows ? rows : 1) : zeros;
 }
 
-enum class Instructions { kBaseline, kAvx2, kAvx512 };
-
-Instructions Best() {
-  static const Instructions best =
-      __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-              __builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512bw") != 0
-          ? Instructions::kAvx512
-          : (__builtin_cpu_supports("avx2") != 0 ? Instructions::kAvx2 : Instructions::kBaseline);
-  return best;
-}
-
 }  // namespace
-
-void RunLanes(const Lanes& m) {
-  switch (Best()) {
-    case Instructions::kAvx512:
-      return RunLanesAvx512(m);
-    case Instructions::kAvx2:
-      return RunLanesAvx2(m);
-    case Instructions::kBaseline:
-      return RunLanesBaseline(m);
-  }
-}
-
-void RunColumns(const LaneColumns& m) {
-  switch (Best()) {
-    case Instructions::kAvx512:
-      return RunColumnsAvx512(m);
-    case Instructions::kAvx2:
-      return RunColumnsAvx2(m);
-    case Instructions::kBaseline:
-      return RunColumnsBaseline(m);
-  }
-}
-
-void RunWhiten(const LaneWhiten& m) {
-  switch (Best()) {
-    case Instructions::kAvx512:
-      return RunWhitenAvx512(m);
-    case Instructions::kAvx2:
-      return RunWhitenAvx2(m);
-    case Instructions::kBaseline:
-      return RunWhitenBaseline(m);
-  }
-}
 
 Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> models,
                 std::span<const Delivered* const> delivered, const double* measured, const double* zeros) {

@@ -13,9 +13,4 @@ namespace contour::diagnosis {
 Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> models,
                 std::span<const Delivered* const> delivered, const double* measured, const double* zeros);
 
-/// By the best instruction set of this machine; all give the same bits.
-void RunLanes(const Lanes& m);
-void RunColumns(const LaneColumns& m);
-void RunWhiten(const LaneWhiten& m);
-
 }  // namespace contour::diagnosis

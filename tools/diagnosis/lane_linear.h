@@ -6,7 +6,8 @@
 #include "tools/diagnosis/lane_run.h"
 
 // The linearised model's loops, eight columns at a time: what signals do to the innovation, and the
-// time-varying Kalman filter with the autoregressive filter that make a residual white.
+// time-varying Kalman filter with the autoregressive filter that make a residual white; inner products of
+// columns.
 namespace contour::diagnosis {
 
 inline constexpr int kMostStates = 8;
@@ -41,11 +42,13 @@ struct LaneWhiten {
 };
 inline constexpr std::size_t kWhitenTaps = 49;
 
-void RunColumnsBaseline(const LaneColumns& m);
-void RunColumnsAvx2(const LaneColumns& m);
-void RunColumnsAvx512(const LaneColumns& m);
-void RunWhitenBaseline(const LaneWhiten& m);
-void RunWhitenAvx2(const LaneWhiten& m);
-void RunWhitenAvx512(const LaneWhiten& m);
+inline constexpr std::size_t kMostProducts = 32;
+/// Inner products of every column of a with every column of b, at most kMostProducts each.
+struct LaneProducts {
+  std::size_t size = 0, a_count = 0, b_count = 0;
+  const double* const* a = nullptr;
+  const double* const* b = nullptr;
+  double* out = nullptr;  ///< a_count x b_count, by rows
+};
 
 }  // namespace contour::diagnosis

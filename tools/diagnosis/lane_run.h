@@ -53,8 +53,4 @@ struct Lanes {
 
 inline constexpr int kMostSubsteps = 32;
 
-void RunLanesBaseline(const Lanes& m);
-void RunLanesAvx2(const Lanes& m);
-void RunLanesAvx512(const Lanes& m);
-
 }  // namespace contour::diagnosis

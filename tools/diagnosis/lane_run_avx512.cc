@@ -1,4 +1,5 @@
 #include "tools/diagnosis/lane_linear.h"
+#include "tools/diagnosis/lane_loops.h"
 #include "tools/diagnosis/lane_run.h"
 // The loops themselves, translated with this file's flags.
 #include "tools/diagnosis/lane_linear.inc"
@@ -6,8 +7,6 @@
 
 namespace contour::diagnosis {
 
-void RunLanesAvx512(const Lanes& m) { RunAll(m); }
-void RunColumnsAvx512(const LaneColumns& m) { ColumnsAll(m); }
-void RunWhitenAvx512(const LaneWhiten& m) { WhitenAll(m); }
+const LaneLoops kAvx512Loops = {RunAll, ColumnsAll, WhitenAll, ProductsAll};
 
 }  // namespace contour::diagnosis

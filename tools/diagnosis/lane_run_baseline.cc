@@ -1,4 +1,5 @@
 #include "tools/diagnosis/lane_linear.h"
+#include "tools/diagnosis/lane_loops.h"
 #include "tools/diagnosis/lane_run.h"
 // The loops themselves, translated with this file's flags.
 #include "tools/diagnosis/lane_linear.inc"
@@ -6,8 +7,6 @@
 
 namespace contour::diagnosis {
 
-void RunLanesBaseline(const Lanes& m) { RunAll(m); }
-void RunColumnsBaseline(const LaneColumns& m) { ColumnsAll(m); }
-void RunWhitenBaseline(const LaneWhiten& m) { WhitenAll(m); }
+const LaneLoops kBaselineLoops = {RunAll, ColumnsAll, WhitenAll, ProductsAll};
 
 }  // namespace contour::diagnosis

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tools/diagnosis/lane_bundle.h"
+#include "tools/diagnosis/lane_loops.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -110,7 +111,7 @@ LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
       m.push.inverse[i + 1] = 1.0 / d.columns[first + i].size;
     }
     m.tangent = tangent.data();
-    RunLanes(m);
+    BestLoops().run(m);
     for (std::size_t k = 0; k + 1 < rows; ++k) {
       float* to = &out.step[k * out.stride];
       for (std::size_t i = 0; i < count; ++i) {
@@ -169,7 +170,7 @@ std::vector<FilterRun> LinearColumns(const LinearModel& model, std::span<const L
       m.innovation[i] = used ? out[first + i].innovation.data() : spare.data();
       if (table) m.table[i] = used ? out[first + i].table_position.data() : spare.data();
     }
-    RunColumns(m);
+    BestLoops().columns(m);
   }
   return out;
 }

@@ -6,7 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "tools/diagnosis/lane_bundle.h"
+#include "tools/diagnosis/lane_linear.h"
+#include "tools/diagnosis/lane_loops.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -99,7 +100,7 @@ void ApplyAll(LaneWhiten& m, std::span<const double* const> in, std::span<double
       m.in[i] = in[used ? first + i : first];
       m.out[i] = used ? out[first + i] : spare.data();
     }
-    RunWhiten(m);
+    BestLoops().whiten(m);
   }
 }
 

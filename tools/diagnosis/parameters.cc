@@ -93,7 +93,14 @@ Named Evaluate(const Problem& problem, const Point& point, std::size_t index) {
   }
   if (e.kind == "torque_constant") return {{"ratio", 1.0 + a[0]}};
   if (e.kind == "torque_saturation") return {{"loss_at_rated_rel", a[0]}};
-  if (e.kind == "payload_step") return {{"inertia_change_rel", a[0]}, {"time_s", e.order + a[1]}};
+  if (e.kind == "payload_step") {
+    // The amplitude is a share of the stated inertia; what is told is one of the fitted.
+    const AxisModel m = problem.Build(point);
+    const AxisModel& stated = problem.nominal_;
+    const double fitted = m.motor_inertia + (m.two_inertia ? m.load_inertia : 0.0);
+    return {{"inertia_change_rel", a[0] * (stated.motor_inertia + stated.load_inertia) / fitted},
+            {"time_s", e.order + a[1]}};
+  }
   if (e.kind == "compliance") {
     const AxisModel m = problem.Build(point);
     return {{"antiresonance_Hz", std::sqrt(m.stiffness / std::max(m.load_inertia, 1e-30)) / kTwoPi},

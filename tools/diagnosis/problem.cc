@@ -219,21 +219,32 @@ void Problem::AddScale(const std::vector<double>& table, const double* error, co
 }
 
 std::vector<std::vector<double>> Problem::White(std::span<const std::vector<double>> raw) const {
-  const std::size_t n = rows();
   std::vector<std::vector<double>> white(raw.size());
+  std::vector<std::span<const double>> in;
+  std::vector<std::span<double>> out;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    white[i].resize(raw[i].size());
+    in.emplace_back(raw[i]);
+    out.emplace_back(white[i]);
+  }
+  WhitenInto(in, out);
+  return white;
+}
+
+void Problem::WhitenInto(std::span<const std::span<const double>> raw,
+                         std::span<const std::span<double>> white) const {
+  const std::size_t n = rows();
   std::vector<const double*> in;
   std::vector<double*> out;
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    white[i].resize(raw[i].size());
     in.push_back(raw[i].data());
     out.push_back(white[i].data());
   }
   noise_.Apply(in, out, counted_, root_weight_.data());
-  if (!has_scale()) return white;
+  if (!has_scale()) return;
   for (const double*& p : in) p += n;
   for (double*& p : out) p += n;
   ApplyColourFilter(scale_noise_, in, out, counted_, root_weight_.data() + n);
-  return white;
 }
 
 std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points) const {
@@ -330,7 +341,10 @@ void Problem::LearnNoise(const Point& point) {
 
 void Problem::LearnSignals(const Point& point) {
   auto renewed = std::make_shared<Signals>(*signals_);
-  UpdateFromTrace(Build(point), Trace(point), *renewed);
+  const AxisModel m = Build(point);
+  const Delivered delivered =
+      DeliveredMeans(log_, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
+  UpdateFromTrace(m, Trace(point), delivered.mean, *renewed);
   signals_ = renewed;
 }
 

@@ -41,8 +41,13 @@ struct Effect {
   std::vector<double> low, high;  ///< bounds; empty: none
   std::size_t tested = 0;         ///< so many amplitudes are tested at zero, the rest is shape; 0: all
   bool signals = false;           ///< the tested amplitudes enter as signals and nothing else, in proportion
-  double order = 0.0;             ///< of a wave: per turn, or Hz
-  double middle = 0.0;            ///< of a wave with free order: rad about which the order turns
+  /// The same with the first amplitudes only, tested beside it at no cost.
+  std::shared_ptr<const Effect> shorter;
+  /// Acts as this base term does from a row on, which saves the runs of the test; empty: runs.
+  std::string as_term;
+  std::size_t from_row = 0;
+  double order = 0.0;   ///< of a wave: per turn, or Hz
+  double middle = 0.0;  ///< of a wave with free order: rad about which the order turns
   std::function<void(const std::vector<double>&, AxisModel&)> apply;
 };
 using SharedEffect = std::shared_ptr<const Effect>;
@@ -62,6 +67,9 @@ class Problem {
   /// Innovations, then scale residuals (0 where they do not count), of every point.
   [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const Point> points) const;
   [[nodiscard]] std::vector<std::vector<double>> White(std::span<const std::vector<double>> raw) const;
+  /// The same into what is there already.
+  void WhitenInto(std::span<const std::span<const double>> raw,
+                  std::span<const std::span<double>> white) const;
   [[nodiscard]] std::vector<std::vector<double>> Residuals(std::span<const Point> points) const;
   [[nodiscard]] FilterRun Trace(const Point& point) const;
   /// White differences of the residual per unit of each effect's amplitude at zero beside the point where the

@@ -69,15 +69,16 @@ struct Histogram {
   }
 };
 
-// Spectrum over the angle of the weighted gradient: score of every order up to `highest`.
+// Spectrum over the angle of the weighted gradient: score of every order up to `highest`. Folded onto one
+// turn, it has the integer orders and no others.
 std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
-                              const std::vector<double>& weight, double highest) {
+                              const std::vector<double>& weight, double highest, bool folded) {
   const Signals& s = *problem.signals_;
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = std::max(1.0, (*high - *low) / kTwoPi);
-  double per_rev = std::exp2(std::ceil(std::log2(4.0 * highest)));
-  while (per_rev * revs > double{1 << 20} && per_rev > 64.0) per_rev /= 2.0;
-  const auto length = std::bit_ceil(static_cast<std::size_t>(per_rev * revs * 2.0) + 2);
+  const double per_rev = std::exp2(std::ceil(std::log2(4.0 * highest)));
+  const auto length = folded ? static_cast<std::size_t>(per_rev)
+                             : std::bit_ceil(static_cast<std::size_t>(per_rev * revs * 2.0) + 2);
   std::vector<double> re(length, 0.0), im(length, 0.0);
   Histogram histogram;
   constexpr std::size_t kBins = 200;
@@ -95,7 +96,7 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   for (std::size_t k = 0; k < n; ++k) {
     if (problem.counted_[k] == 0 || weight[k] == 0.0) continue;
     const auto bin = static_cast<std::size_t>((s.angle_rad[k] - *low) / kTwoPi * per_rev + 0.5);
-    re[std::min(bin, length - 1)] += weight[k] * matched.lambda[k];
+    re[bin & (length - 1)] += weight[k] * matched.lambda[k];
     const auto b = std::min(kBins - 1, static_cast<std::size_t>(std::sqrt(speed[k] / fastest) * kBins));
     histogram.weight[b] += weight[k] * weight[k] * problem.root_weight_[k] * problem.root_weight_[k];
   }
@@ -111,17 +112,6 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
       info_at = order;
     }
     if (info > 0.0) out.push_back({order, (re[i] * re[i] + im[i] * im[i]) / info});
-  }
-  return out;
-}
-
-std::vector<Peak> Integers(const std::vector<Peak>& all, double lowest) {
-  std::vector<Peak> out;
-  for (std::size_t i = 1; i + 1 < all.size(); ++i) {
-    const double order = std::round(all[i].order);
-    if (order < lowest || std::fabs(all[i].order - order) > 0.5 * (all[i + 1].order - all[i].order) + 1e-12)
-      continue;
-    out.push_back({order, std::max({all[i].score, all[i - 1].score, all[i + 1].score})});
   }
   return out;
 }
@@ -172,23 +162,21 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = (*high - *low) / kTwoPi;
   if (revs > 1.5) {
-    const auto friction = AngleScores(problem, level, sliding, 40.0);
-    add(Wave::kFrictionOfAngle, Best(Integers(friction, 1.0), 2, 0.5), 40.0);
+    add(Wave::kFrictionOfAngle, Best(AngleScores(problem, level, sliding, 40.0, true), 2, 0.5), 40.0);
     std::vector<Peak> between;
-    for (const Peak& p : friction)
-      if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > kFewestPeriods / revs &&
-          p.order < 20.0)
-        between.push_back(p);
-    if (revs > 5.0) add(Wave::kFrictionOfAngle, Best(between, 2, 1.0 / revs), 20.0 * revs);
-    add(Wave::kTorqueOfAngle, Best(Integers(AngleScores(problem, torque, sliding, 144.0), 1.0), 2, 0.5),
-        144.0);
-    add(Wave::kGainOfAngle, Best(Integers(AngleScores(problem, torque, loaded, 144.0), 1.0), 1, 0.5), 144.0);
+    if (revs > 5.0)
+      for (const Peak& p : AngleScores(problem, level, sliding, 20.0, false))
+        if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > kFewestPeriods / revs)
+          between.push_back(p);
+    add(Wave::kFrictionOfAngle, Best(std::move(between), 2, 1.0 / revs), 20.0 * revs);
+    add(Wave::kTorqueOfAngle, Best(AngleScores(problem, torque, sliding, 144.0, true), 2, 0.5), 144.0);
+    add(Wave::kGainOfAngle, Best(AngleScores(problem, torque, loaded, 144.0, true), 1, 0.5), 144.0);
   }
   if (revs > 0.05) {
     const Matched reading = Match(problem, true, std::move(back.reading));
-    const std::vector<double> ones(n, 1.0);
-    add(Wave::kReadingOfAngle, Best(Integers(AngleScores(problem, reading, ones, 4096.0), 8.0), 2, 0.5),
-        4096.0);
+    std::vector<Peak> lines = AngleScores(problem, reading, std::vector<double>(n, 1.0), 4096.0, true);
+    std::erase_if(lines, [](const Peak& peak) { return peak.order < 8.0; });
+    add(Wave::kReadingOfAngle, Best(std::move(lines), 2, 0.5), 4096.0);
   }
   // Time: one transform of the gradient.
   const std::size_t length = std::bit_ceil(2 * n);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/diagnosis/products.h"
+
 namespace contour::diagnosis {
 namespace {
 
@@ -76,7 +78,7 @@ double ExcessOfLast(const Problem& problem, const Fit& fit) {
     AddBlocks(fit.jacobian.col(i).data(), fit.residual.data(), problem.rows(), problem.data_size(), row);
     blocks.row(i) = row;
   }
-  Eigen::MatrixXd normal = fit.jacobian.transpose() * fit.jacobian;
+  Eigen::MatrixXd normal = fit.normal;
   for (std::size_t i = 0; i < fit.point.base.size(); ++i)
     normal(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) +=
         std::pow(problem.terms_[i].sigma, -2);
@@ -92,98 +94,163 @@ double Penalty(const Effect& effect) {
   return 3.0 * static_cast<double>(effect.steps.size()) + 2.0 * std::log(std::max(1.0, effect.grid));
 }
 
-std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects) {
-  std::stable_partition(effects.begin(), effects.end(), [](const SharedEffect& e) { return e->signals; });
-  const auto size = static_cast<Eigen::Index>(problem.data_size());
-  const std::size_t rows = problem.rows();
-  const Eigen::Index base = fit.jacobian.cols();
-  Eigen::MatrixXd base_blocks(base, kBlocks);
-  for (Eigen::Index i = 0; i < base; ++i) {
-    Eigen::RowVectorXd row(kBlocks);
-    AddBlocks(fit.jacobian.col(i).data(), fit.residual.data(), rows, problem.data_size(), row);
-    base_blocks.row(i) = row;
+namespace {
+
+// How a column gets its numbers.
+enum class Means { kSignals, kRuns, kTerm };
+Means MeansOf(const Effect& e) {
+  return e.signals ? Means::kSignals : (e.as_term.empty() ? Means::kRuns : Means::kTerm);
+}
+
+// White columns by runs.
+std::vector<std::vector<double>> RunColumns(const Problem& problem, const Fit& fit,
+                                            std::span<const SharedEffect> effects) {
+  std::vector<Point> points;
+  std::vector<double> steps;
+  for (const SharedEffect& e : effects)
+    for (std::size_t i = 0; i < e->tested; ++i) {
+      Point p = fit.point;
+      p.effects.push_back(e);
+      p.amplitudes.emplace_back(e->steps.size(), 0.0);
+      p.amplitudes.back()[i] += e->steps[i];
+      points.push_back(std::move(p));
+      steps.push_back(e->steps[i]);
+    }
+  std::vector<std::vector<double>> columns = problem.Residuals(points);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (std::size_t k = 0; k < columns[c].size(); ++k)
+      columns[c][k] = (columns[c][k] - fit.residual[k]) / steps[c];
+  return columns;
+}
+
+// White columns of what acts as a base term does from a row on.
+std::vector<std::vector<double>> TermColumns(const Problem& problem, const Fit& fit,
+                                             std::span<const SharedEffect> effects) {
+  const AxisModel m = problem.Build(fit.point);
+  const AxisModel& stated = problem.nominal_;
+  // The term moves the logarithm of its own inertia, the effect a share of the whole stated one.
+  const double factor =
+      (stated.motor_inertia + stated.load_inertia) / (m.two_inertia ? m.load_inertia : m.motor_inertia);
+  std::vector<std::vector<double>> columns;
+  for (const SharedEffect& e : effects) {
+    const auto term = std::find_if(problem.terms_.begin(), problem.terms_.end(),
+                                   [&](const BaseTerm& t) { return t.name == e->as_term; });
+    std::vector<double> column(problem.data_size(), 0.0);
+    if (term != problem.terms_.end()) {
+      const double* from = fit.jacobian.col(term - problem.terms_.begin()).data();
+      for (std::size_t base = 0; base < column.size(); base += problem.rows())
+        for (std::size_t k = base + e->from_row; k < base + problem.rows(); ++k) column[k] = factor * from[k];
+    }
+    columns.push_back(std::move(column));
   }
+  return columns;
+}
+
+class Scorer {
+ public:
+  Scorer(const Problem& problem, const Fit& fit)
+      : problem_(problem), fit_(fit), base_columns_(ColumnsOf(fit.jacobian)) {
+    base_blocks_.resize(fit.jacobian.cols(), kBlocks);
+    for (Eigen::Index i = 0; i < fit.jacobian.cols(); ++i)
+      base_blocks_.row(i) = BlocksOf(fit.jacobian.col(i).data());
+  }
+
+  /// The effect with all its columns, then as much shorter as it may be.
+  void Score(const SharedEffect& effect, std::span<const std::vector<double>> columns,
+             std::vector<Scored>& out) const {
+    const Eigen::Index base = fit_.jacobian.cols(), n = static_cast<Eigen::Index>(columns.size());
+    std::vector<const double*> g;
+    for (const std::vector<double>& c : columns) g.push_back(c.data());
+    std::vector<const double*> with = base_columns_;
+    with.insert(with.end(), g.begin(), g.end());
+    with.push_back(fit_.residual.data());
+    const Eigen::MatrixXd products = ProductsOf(with, g, problem_.data_size());
+    Eigen::MatrixXd blocks(n, kBlocks);
+    for (Eigen::Index i = 0; i < n; ++i) blocks.row(i) = BlocksOf(g[static_cast<std::size_t>(i)]);
+    for (SharedEffect e = effect; e; e = e->shorter) {
+      const auto m = static_cast<Eigen::Index>(e->tested);
+      const Eigen::MatrixXd own = products.block(base, 0, m, m);
+      out.push_back(ScoreOne(e, products.topLeftCorner(base, m), own,
+                             products.row(base + n).head(m).transpose(), blocks.topRows(m)));
+    }
+  }
+
+ private:
+  Eigen::RowVectorXd BlocksOf(const double* column) const {
+    Eigen::RowVectorXd row(kBlocks);
+    AddBlocks(column, fit_.residual.data(), problem_.rows(), problem_.data_size(), row);
+    return row;
+  }
+
+  Scored ScoreOne(const SharedEffect& effect, const Eigen::MatrixXd& cross, const Eigen::MatrixXd& square,
+                  const Eigen::VectorXd& gradient, const Eigen::MatrixXd& blocks) const {
+    Scored s;
+    s.effect = effect;
+    const Eigen::Index n = square.rows();
+    const Eigen::MatrixXd onto = fit_.covariance * cross;
+    Eigen::MatrixXd information = square - cross.transpose() * onto;
+    s.per_block = blocks - onto.transpose() * base_blocks_;
+    // Directions that the base explains already, to rounding, carry nothing.
+    const bool nearly_base = n == 1 && information(0, 0) < 1e-3 * square(0, 0);
+    for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-6 * square(i, i) + 1e-300;
+    // The gradient of the prior belongs to the base; at its optimum both parts cancel.
+    const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+    s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
+    s.amplitude = -solver.solve(gradient);
+    s.drop = -gradient.dot(s.amplitude);
+    s.excess = Excess(s.per_block, s.covariance);
+    // What the base can nearly do itself frees it from its priors and no more.
+    if (nearly_base) s.drop = std::min(s.drop, 1.5 * fit_.prior + 5.0);
+    if (InBase(problem_, effect->kind)) {
+      // A number of the base already: the evidence is in the prior and not in the blocks.
+      s.drop = std::min(s.drop, 1.5 * fit_.prior + 5.0);
+      s.per_block.setZero();
+      s.excess = 1.0;
+      if (effect->kind == "torque_constant") {
+        const CommonFactor common = FindCommonFactor(problem_, fit_.point);
+        s.amplitude(0) = std::expm1(common.log_ratio);
+        s.covariance(0, 0) = common.sigma * common.sigma;
+        s.drop = common.drop;
+      }
+    }
+    s.score = s.drop / s.excess - Penalty(*effect);
+    const Eigen::RowVectorXd gain = -s.amplitude.transpose() * s.per_block;
+    s.consistency = gain.sum() / (gain.norm() + 1e-300);
+    return s;
+  }
+
+  const Problem& problem_;
+  const Fit& fit_;
+  std::vector<const double*> base_columns_;
+  Eigen::MatrixXd base_blocks_;
+};
+
+}  // namespace
+
+std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects) {
+  std::stable_sort(effects.begin(), effects.end(),
+                   [](const SharedEffect& a, const SharedEffect& b) { return MeansOf(*a) < MeansOf(*b); });
+  const Scorer scorer(problem, fit);
   std::vector<Scored> out;
-  const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), size);
   // Some two dozen columns at a time bound the memory.
   for (std::size_t at = 0; at < effects.size();) {
-    const bool signals = effects[at]->signals;
-    std::size_t end = at, columns = 0;
-    while (end < effects.size() && effects[end]->signals == signals &&
-           (columns == 0 || columns + effects[end]->tested <= 24)) {
-      columns += effects[end]->tested;
+    const Means means = MeansOf(*effects[at]);
+    std::size_t end = at, count = 0;
+    while (end < effects.size() && MeansOf(*effects[end]) == means &&
+           (count == 0 || count + effects[end]->tested <= 24)) {
+      count += effects[end]->tested;
       ++end;
     }
     const std::span<const SharedEffect> some = std::span(effects).subspan(at, end - at);
-    std::vector<std::vector<double>> responses;
-    if (!signals) {
-      std::vector<Point> points;
-      for (const SharedEffect& e : some)
-        for (std::size_t i = 0; i < e->tested; ++i) {
-          Point p = fit.point;
-          p.effects.push_back(e);
-          p.amplitudes.emplace_back(e->steps.size(), 0.0);
-          p.amplitudes.back()[i] += e->steps[i];
-          points.push_back(std::move(p));
-        }
-      responses = problem.Residuals(points);
-      std::size_t run = 0;
-      for (const SharedEffect& e : some)
-        for (std::size_t i = 0; i < e->tested; ++i, ++run)
-          Eigen::Map<Eigen::VectorXd>(responses[run].data(), size) =
-              (Column(responses[run].data(), size) - residual) / e->steps[i];
-    } else {
-      responses = problem.LinearResponses(fit.point, some);
-    }
-    std::size_t run = 0;
+    std::vector<std::vector<double>> columns;
+    if (means == Means::kSignals)
+      columns = problem.LinearResponses(fit.point, some);
+    else
+      columns = means == Means::kRuns ? RunColumns(problem, fit, some) : TermColumns(problem, fit, some);
+    std::size_t first = 0;
     for (; at < end; ++at) {
-      const Effect& effect = *effects[at];
-      Scored s;
-      s.effect = effects[at];
-      const auto n = static_cast<Eigen::Index>(effect.tested);
-      Eigen::MatrixXd g(size, n);
-      for (Eigen::Index i = 0; i < n; ++i) g.col(i) = Column(responses[run++].data(), size);
-      const Eigen::MatrixXd cross = fit.jacobian.transpose() * g;
-      const Eigen::MatrixXd onto = fit.covariance * cross;
-      Eigen::MatrixXd information = g.transpose() * g - cross.transpose() * onto;
-      const Eigen::VectorXd own = (g.transpose() * g).diagonal();
-      s.per_block.resize(n, kBlocks);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        Eigen::RowVectorXd row(kBlocks);
-        AddBlocks(g.col(i).data(), fit.residual.data(), rows, problem.data_size(), row);
-        s.per_block.row(i) = row;
-      }
-      s.per_block -= onto.transpose() * base_blocks;
-      // Directions that the base explains already, to rounding, carry nothing.
-      const bool nearly_base = n == 1 && information(0, 0) < 1e-3 * own(0);
-      for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-6 * own(i) + 1e-300;
-      // The gradient of the prior belongs to the base; at its optimum both parts cancel.
-      const Eigen::VectorXd gradient = g.transpose() * residual;
-      const Eigen::LDLT<Eigen::MatrixXd> solver(information);
-      s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
-      s.amplitude = -solver.solve(gradient);
-      s.drop = -gradient.dot(s.amplitude);
-      // What a base parameter does already, an effect can only free from its prior.
-      s.excess = Excess(s.per_block, s.covariance);
-      // What the base can nearly do itself frees it from its priors and no more.
-      if (nearly_base) s.drop = std::min(s.drop, 1.5 * fit.prior + 5.0);
-      if (InBase(problem, effect.kind)) {
-        // What a base parameter does already, an effect can only free from its prior: the evidence is in the
-        // prior and not in the blocks.
-        s.drop = std::min(s.drop, 1.5 * fit.prior + 5.0);
-        s.per_block.setZero();
-        s.excess = 1.0;
-        if (effect.kind == "torque_constant") {
-          const CommonFactor common = FindCommonFactor(problem, fit.point);
-          s.amplitude(0) = std::expm1(common.log_ratio);
-          s.covariance(0, 0) = common.sigma * common.sigma;
-          s.drop = common.drop;
-        }
-      }
-      s.score = s.drop / s.excess - Penalty(effect);
-      const Eigen::RowVectorXd blocks = -s.amplitude.transpose() * s.per_block;
-      s.consistency = blocks.sum() / (blocks.norm() + 1e-300);
-      out.push_back(std::move(s));
+      scorer.Score(effects[at], std::span(columns).subspan(first, effects[at]->tested), out);
+      first += effects[at]->tested;
     }
   }
   return out;

@@ -109,15 +109,19 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   return s;
 }
 
-void UpdateFromTrace(const AxisModel& model, const FilterRun& trace, Signals& s) {
+void UpdateFromTrace(const AxisModel& model, const FilterRun& trace, const std::vector<double>& delivered,
+                     Signals& s) {
   const std::size_t n = s.position.size();
   s.coulomb = 0.5 * (model.friction.Fc_plus + model.friction.Fc_minus);
   s.sign.resize(n);
   s.model_torque.resize(n);
+  s.net_force.assign(n, 0.0);
   const double inertia = model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0);
   for (std::size_t k = 0; k < n; ++k) {
     s.sign[k] = trace.friction[k] / s.coulomb;
-    s.model_torque[k] = inertia * s.acceleration[k] + trace.friction[k] + model.friction.s2 * s.velocity[k];
+    const double friction = trace.friction[k] + model.friction.s2 * s.velocity[k];
+    s.model_torque[k] = inertia * s.acceleration[k] + friction;
+    if (k < delivered.size()) s.net_force[k] = model.torque_gain * delivered[k] + model.offset - friction;
   }
   s.sign = Smooth(s.sign, 1.0);
 }

@@ -21,6 +21,7 @@ struct Signals {
   Signal angle_rad;     ///< of the motor
   Signal sign;  ///< friction without its viscous part over the Coulomb level: a sign good in presliding
   Signal model_torque;           ///< u that the motion needs by the model
+  Signal net_force;              ///< what accelerates over the row: delivered less friction by the model
   Signal temperature_K;          ///< about its mean; empty without a sensor
   Signal axis2_m_s2, axis2_m_s;  ///< empty without a second axis
   double half_stroke_m = 0.0;    ///< of what was travelled
@@ -36,7 +37,9 @@ Signal Derivative(const Signal& x, double sigma_rows, double period_s);
 
 /// Kinematic part; `sign` and `model_torque` wait for UpdateFromTrace.
 Signals MakeSignals(const AxisLog& log, const StatedAxis& stated);
-void UpdateFromTrace(const AxisModel& model, const FilterRun& trace, Signals& signals);
+/// `delivered`: mean over every row.
+void UpdateFromTrace(const AxisModel& model, const FilterRun& trace, const std::vector<double>& delivered,
+                     Signals& signals);
 
 /// Rows whose position may correct the model, and what was wrong with the others. Isolated innovations far
 /// beyond their neighbourhood are outliers; repeated readings of a moving axis are stale.

@@ -1,0 +1,182 @@
+#include "tools/diagnosis/lane_loops.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "tools/diagnosis/lane_linear.h"
+#include "tools/diagnosis/lane_run.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr std::size_t kRows = 700;
+
+std::vector<const LaneLoops*> Available() {
+  std::vector<const LaneLoops*> out = {&kBaselineLoops};
+  if (HasAvx2()) out.push_back(&kAvx2Loops);
+  if (HasAvx512()) out.push_back(&kAvx512Loops);
+  return out;
+}
+
+std::vector<double> Noise(std::size_t size, double scale, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, scale);
+  std::vector<double> out(size);
+  for (double& x : out) x = normal(random);
+  return out;
+}
+
+// Runs of a table axis, every lane with parameters of its own, through rest, slides and reversals.
+std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft) {
+  constexpr int kSubsteps = 4;
+  Lanes m{};
+  m.rows = kRows;
+  m.substeps = kSubsteps;
+  m.period_s = 1e-3;
+  m.two = two;
+  m.on_load = two;
+  m.soft = soft;
+  m.fading = true;
+  m.full = m.trace = true;
+  std::vector<double> torque(kRows * kSubsteps), measured(kRows);
+  for (std::size_t i = 0; i < torque.size(); ++i)
+    torque[i] = 0.05 * std::sin(0.004 * static_cast<double>(i)) + 1e-3;
+  for (std::size_t k = 0; k < kRows; ++k) measured[k] = 2.0 - 2.0 * std::cos(0.016 * static_cast<double>(k));
+  const std::vector<double> noise = Noise(kRows + 1, 1e-3, 5), late = Noise(kRows, 1e-12, 6);
+  std::vector<std::uint8_t> valid(kRows, 1);
+  valid[300] = 0;
+  m.measured = measured.data();
+  m.valid = valid.data();
+  m.l[0] = m.l[2] = 0.2;
+  m.l[1] = m.l[3] = 20.0;
+  std::vector<double> out(4 * kLanes * kRows);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double x = 1.0 + 0.03 * static_cast<double>(i);
+    m.torque[i] = torque.data();
+    m.late[i] = late.data();
+    for (LaneSignal* s : {&m.motor, &m.load, &m.level, &m.viscous}) {
+      s->from[i] = noise.data();
+      s->to[i] = noise.data() + 1;
+    }
+    m.reading[i] = late.data();
+    m.inv_motor[i] = 1e4 / x;
+    m.inv_load[i] = 2e4;
+    m.inv_payload[i] = 9e3;
+    m.payload_row[i] = static_cast<std::int64_t>(400 + i);
+    m.stiffness[i] = 100.0 * x;
+    m.damping[i] = 0.01;
+    m.half_gap[i] = 1e-5 * static_cast<double>(i);
+    m.Fc_plus[i] = 0.02;
+    m.Fc_minus[i] = 0.021;
+    m.dF_plus[i] = m.dF_minus[i] = 0.004 * x;
+    m.inv_vs[i] = 0.7;
+    m.s0[i] = 1.4 * x;
+    m.s1[i] = 1e-3;
+    m.inv_vd[i] = 0.4;
+    m.s2[i] = 1e-4;
+    m.smallest[i] = 1e-6;
+    m.gain[i] = 1.0;
+    m.saturation[i] = 0.1;
+    m.soft_level[i] = 0.2;
+    m.soft_s0[i] = 0.1;
+    m.rough[i] = 1e-4;
+    m.innovation[i] = &out[i * kRows];
+    m.table[i] = &out[(kLanes + i) * kRows];
+    m.velocity[i] = &out[(2 * kLanes + i) * kRows];
+    m.friction[i] = &out[(3 * kLanes + i) * kRows];
+  }
+  loops.run(m);
+  return out;
+}
+
+TEST(LaneLoops, RunsGiveTheSameBitsWithEveryInstructionSet) {
+  for (const bool two : {false, true})
+    for (const bool soft : {false, true}) {
+      const std::vector<double> expected = RunOf(kBaselineLoops, two, soft);
+      double largest = 0.0;
+      for (const double x : expected) largest = std::max(largest, std::fabs(x));
+      EXPECT_TRUE(std::isfinite(largest) && largest > 0.1) << largest;
+      for (const LaneLoops* loops : Available()) EXPECT_EQ(RunOf(*loops, two, soft), expected);
+    }
+}
+
+TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryInstructionSet) {
+  constexpr std::size_t kStates = 4,
+                        kStride = kStates * kStates + 2 * kStates + kLinearInputs * (kStates + 1);
+  const std::vector<double> numbers = Noise(kRows * kStride, 0.2, 7),
+                            signals = Noise(9 * (kRows + 1), 1.0, 8);
+  const std::vector<float> step(numbers.begin(), numbers.end());
+  const std::vector<std::uint8_t> valid(kRows, 1);
+  const std::vector<double> taps = Noise(kWhitenTaps, 0.3, 9);
+  const auto work = [&](const LaneLoops& loops) {
+    std::vector<double> out(2 * kLanes * kRows);
+    LaneColumns c;
+    c.rows = kRows;
+    c.stride = kStride;
+    c.states = kStates;
+    c.step = step.data();
+    c.valid = valid.data();
+    c.has_motor = c.has_level = c.has_reading = true;
+    LaneWhiten w;
+    w.rows = kRows;
+    w.stride = kStride;
+    w.states = kStates;
+    w.step = step.data();
+    w.gain = step.data() + 11;
+    w.taps = taps.data();
+    w.counted = valid.data();
+    w.weight = signals.data();
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double* s = &signals[i * (kRows + 1)];
+      for (LaneSignal* lane : {&c.motor, &c.load, &c.level}) {
+        lane->from[i] = s;
+        lane->to[i] = s + 1;
+      }
+      c.reading[i] = s;
+      c.innovation[i] = &out[i * kRows];
+      w.in[i] = s;
+      w.out[i] = &out[(kLanes + i) * kRows];
+    }
+    loops.columns(c);
+    loops.whiten(w);
+    return out;
+  };
+  const std::vector<double> expected = work(kBaselineLoops);
+  EXPECT_NE(expected[kRows / 2], 0.0);
+  EXPECT_NE(expected.back(), 0.0);
+  for (const LaneLoops* loops : Available()) EXPECT_EQ(work(*loops), expected);
+}
+
+TEST(LaneLoops, ProductsGiveTheSameBitsWithEveryInstructionSetAndTheRightSums) {
+  constexpr std::size_t kSize = 1237, kA = 7, kB = 5;
+  const std::vector<double> numbers = Noise((kA + kB) * kSize, 1.0, 10);
+  const double* columns[kA + kB];
+  for (std::size_t i = 0; i < kA + kB; ++i) columns[i] = &numbers[i * kSize];
+  const auto work = [&](const LaneLoops& loops) {
+    std::vector<double> out(kA * kB);
+    LaneProducts m;
+    m.size = kSize;
+    m.a_count = kA;
+    m.b_count = kB;
+    m.a = columns;
+    m.b = columns + kA;
+    m.out = out.data();
+    loops.products(m);
+    return out;
+  };
+  const std::vector<double> expected = work(kBaselineLoops);
+  for (const LaneLoops* loops : Available()) EXPECT_EQ(work(*loops), expected);
+  for (std::size_t i = 0; i < kA; ++i)
+    for (std::size_t j = 0; j < kB; ++j) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kSize; ++k) sum += columns[i][k] * columns[kA + j][k];
+      EXPECT_NEAR(expected[i * kB + j], sum, 1e-10);
+    }
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

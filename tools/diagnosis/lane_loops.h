@@ -1,0 +1,25 @@
+#pragma once
+
+namespace contour::diagnosis {
+
+struct Lanes;
+struct LaneColumns;
+struct LaneWhiten;
+struct LaneProducts;
+
+/// One translation of the loops; all give the same bits.
+struct LaneLoops {
+  void (*run)(const Lanes& m);
+  void (*columns)(const LaneColumns& m);
+  void (*whiten)(const LaneWhiten& m);
+  void (*products)(const LaneProducts& m);
+};
+
+extern const LaneLoops kBaselineLoops, kAvx2Loops, kAvx512Loops;
+bool HasAvx2();
+bool HasAvx512();
+
+/// The fastest that this machine has.
+const LaneLoops& BestLoops();
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,181 @@
+#include "tools/diagnosis/rivals.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "tools/diagnosis/effects.h"
+#include "tools/diagnosis/products.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr std::size_t kMostKinds = 4;
+
+/// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
+void Sort(std::vector<Rival>& rivals) {
+  std::stable_sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) {
+    const bool x = Outside(a.effect().kind), y = Outside(b.effect().kind);
+    return x != y ? y : a.score > b.score;
+  });
+  const auto outside =
+      std::find_if(rivals.begin(), rivals.end(), [](const Rival& r) { return Outside(r.effect().kind); });
+  if (outside == rivals.end() || outside == rivals.begin()) return;
+  if (outside->score > 1.3 * std::max(0.0, rivals[0].score) + 25.0)
+    std::rotate(rivals.begin(), outside, outside + 1);
+}
+
+void Judge(const Fit& current, Rival& r) { r.score = current.cost - r.fit.cost - Penalty(r.effect()); }
+
+// An effect that is there makes its own score scatter from block to block, too: beyond this, scatter says no
+// more about chance.
+constexpr double kMostExcess = 3.0;
+
+bool Promising(const Scored& s, double gate) {
+  return s.drop / std::min(s.excess, kMostExcess) - Penalty(*s.effect) > gate;
+}
+
+/// From the linear estimate.
+Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
+  Point start = current.point;
+  start.effects.push_back(s.effect);
+  std::vector<double> a(s.effect->steps.size(), 0.0);
+  for (std::size_t i = 0; i < s.effect->tested; ++i) a[i] = s.amplitude(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < a.size() && !s.effect->low.empty(); ++i)
+    a[i] = std::clamp(a[i], s.effect->low[i], s.effect->high[i]);
+  start.amplitudes.push_back(std::move(a));
+  if (s.effect->kind == "torque_constant")
+    ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
+  return {std::move(start),
+          {.most_steps = 3, .most_refreshes = 1, .close_enough = 1.0, .covariance = false},
+          &current};
+}
+
+/// Far from linear: the kind's whole grid at full size, the base following to first order, shows where to
+/// begin.
+std::optional<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind) {
+  std::vector<Point> points;
+  for (const SharedEffect& e : CatalogueEffects(problem)) {
+    if (e->kind != kind) continue;
+    for (const double size : {0.15, 0.5, 1.5}) {
+      std::vector<double> a = e->start;
+      a[0] = std::clamp(size * a[0], e->low[0], e->high[0]);
+      Point p = current.point;
+      p.effects.push_back(e);
+      p.amplitudes.push_back(std::move(a));
+      points.push_back(std::move(p));
+    }
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  const Point* best = nullptr;
+  for (std::size_t first = 0; first < points.size(); first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, points.size() - first);
+    const auto residuals = problem.Residuals(std::span(points).subspan(first, count));
+    for (std::size_t i = 0; i < count; ++i) {
+      Eigen::VectorXd gradient = GradientOf(current.jacobian, residuals[i]);
+      for (std::size_t t = 0; t < current.point.base.size(); ++t)
+        gradient(static_cast<Eigen::Index>(t)) +=
+            current.point.base[t] / std::pow(problem.terms_[t].sigma, 2);
+      const Eigen::Map<const Eigen::VectorXd> r(residuals[i].data(),
+                                                static_cast<Eigen::Index>(residuals[i].size()));
+      const double cost = r.squaredNorm() + current.prior - gradient.dot(current.covariance * gradient);
+      if (!std::isfinite(cost) || cost >= lowest) continue;
+      lowest = cost;
+      best = &points[first + i];
+    }
+  }
+  if (best == nullptr || lowest > current.cost) return std::nullopt;
+  return Beginning{*best,
+                   {.most_steps = 8,
+                    .most_refreshes = 3,
+                    .close_enough = 1.0,
+                    .covariance = false,
+                    .hopeless_above = current.cost},
+                   nullptr};
+}
+
+}  // namespace
+
+bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
+
+std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                             double gate) {
+  std::vector<Beginning> beginnings;
+  std::vector<std::string> done;
+  double most = 0.0;
+  bool outside = false, promising = false;
+  for (const Scored& s : scored)
+    if (!Outside(s.effect->kind)) most = std::max(most, s.drop);
+  for (const Scored& s : scored) {
+    if (Outside(s.effect->kind)) {
+      if (!outside && s.drop > most) beginnings.push_back(Near(problem, current, s));
+      outside = true;
+    } else {
+      if (done.size() >= kMostKinds || s.drop < 0.1 * most) continue;
+      if (std::find(done.begin(), done.end(), s.effect->kind) != done.end()) continue;
+      done.push_back(s.effect->kind);
+      if (!s.effect->start.empty()) {
+        if (!Promising(s, gate)) continue;
+        std::optional<Beginning> far = Far(problem, current, s.effect->kind);
+        promising = promising || far;
+        if (far) beginnings.push_back(std::move(*far));
+        continue;
+      }
+      beginnings.push_back(Near(problem, current, s));
+    }
+    promising = promising || Promising(s, gate);
+  }
+  std::vector<Rival> out;
+  if (!promising) return out;
+  for (Fit& fit : FitPoints(problem, std::move(beginnings))) {
+    out.push_back({std::move(fit), 0.0});
+    Judge(current, out.back());
+  }
+  Sort(out);
+  return out;
+}
+
+void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) {
+  Rewhiten(problem, current);
+  for (Rival& r : rivals) {
+    Rewhiten(problem, r.fit);
+    Judge(current, r);
+  }
+  Sort(rivals);
+  std::vector<Beginning> beginnings = {
+      {current.point, {.most_steps = 10, .most_refreshes = 3, .close_enough = 0.1}, &current}};
+  std::vector<std::size_t> again;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    if (i > 0 && rivals[i].score < 0.4 * rivals[0].score - 30.0) continue;
+    again.push_back(i);
+    beginnings.push_back({rivals[i].fit.point,
+                          {.most_steps = 5,
+                           .most_refreshes = i == 0 ? 2 : 1,
+                           .close_enough = i == 0 ? 0.02 : 0.3,
+                           .covariance = i == 0},
+                          &rivals[i].fit});
+  }
+  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
+  current = std::move(fits[0]);
+  for (std::size_t i = 0; i < again.size(); ++i) rivals[again[i]].fit = std::move(fits[i + 1]);
+  for (Rival& r : rivals) Judge(current, r);
+  const std::string first = rivals[0].effect().kind;
+  Sort(rivals);
+  if (rivals[0].effect().kind != first)
+    rivals[0].fit = FitOn(problem, rivals[0].fit, {.most_steps = 3, .most_refreshes = 2});
+}
+
+double TestedScore(const Problem& problem, const Fit& current, const Rival& rival) {
+  const SharedEffect& effect = rival.fit.point.effects.back();
+  double drop = rival.score + Penalty(*effect);
+  if (effect->signals) {
+    const std::vector<Scored> again = ScoreEffects(problem, current, {effect});
+    if (again[0].drop < 60.0) drop = std::min(drop, again[0].drop);
+  }
+  return drop / ExcessOfLast(problem, rival.fit) - Penalty(*effect);
+}
+
+}  // namespace contour::diagnosis

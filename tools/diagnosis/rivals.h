@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/diagnosis/fit.h"
+#include "tools/diagnosis/score.h"
+
+namespace contour::diagnosis {
+
+/// A candidate fitted jointly with the base and with what is accepted already.
+struct Rival {
+  Fit fit;
+  double score = 0.0;  ///< what it lowers chi^2 and prior by, less its penalty
+
+  [[nodiscard]] const Effect& effect() const { return *fit.point.effects.back(); }
+};
+
+bool Outside(const std::string& kind);
+
+/// The best of each kind: some of the catalogue, and the best from outside it. The best of them first. None
+/// where the score test promises nothing beyond the gate.
+std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                             double gate);
+
+/// Under noise learnt since: the base, and the rivals, those that may still win fitted anew.
+void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals);
+
+/// Of a rival, what the gate asks about: the drop of the joint fit, but not more than the score test at its
+/// own place promises (a cost that is a little rough has lucky points), over the excess of what is left.
+double TestedScore(const Problem& problem, const Fit& current, const Rival& rival);
+
+}  // namespace contour::diagnosis
