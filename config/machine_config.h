@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/logging_config.h"
+#include "config/memory_config.h"
 #include "config/model_config.h"
 #include "config/realtime_config.h"
 #include "control/control_config.h"
@@ -55,6 +56,7 @@ struct MachineConfig {
   IoConfig io;
   TelemetryConfig telemetry;
   LoggingConfig logging;
+  MemoryConfig memory;
   ControllerConfig control;
   EstimatorConfig estimator;
   std::map<std::string, AxisConfig> axes;
@@ -67,6 +69,7 @@ struct MachineConfig {
     v.Optional("io", io, "auxiliary inputs and outputs");
     v.Optional("telemetry", telemetry, "LCM telemetry");
     v.Optional("logging", logging, "messages for people");
+    v.Optional("memory", memory, "what is learnt of the machine and kept for the next start");
     v.Optional("control", control, "tuning of the controllers");
     v.Optional("estimator", estimator, "tuning of the estimators, the same for all axes");
     v.Required("axes", axes, "axes by name");

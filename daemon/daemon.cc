@@ -22,6 +22,7 @@
 #include "daemon/machine_buses.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/make_log_header.h"
+#include "daemon/memory/friction_memory.h"
 #include "daemon/pump.h"
 #include "daemon/rt/loop.h"
 #include "daemon/rt/thread_setup.h"
@@ -151,9 +152,11 @@ class RealtimeThread {
 /// Everything of a running daemon, in the order in which it is taken down again.
 class Daemon {
  public:
-  Daemon(const DaemonOptions& options, const MaybeEmulatedMachineFile& file, const MachineSource& source)
+  Daemon(const DaemonOptions& options, const MaybeEmulatedMachineFile& file, const MachineSource& source,
+         FrictionMemory& memory)
       : options_(options),
         source_(source),
+        memory_(memory),
         seed_(file.has_emulator ? std::optional(file.emulator.seed) : std::nullopt),
         machine_(file.machine),
         buses_(machine_, file.has_emulator ? std::optional(file.emulator) : std::nullopt, options.truth),
@@ -171,6 +174,7 @@ class Daemon {
     } else {
       io_ = std::make_unique<NoIo>();
     }
+    pump_.ShowCyclesTo([this](const CycleRecord& record) { memory_.Consume(record); });
     pump_.AlsoDrain([this] { buses_.DrainTruth(); });
     hub_.WatchFeedback(FeedbackSources(machine_));
     SetUpFlightRecorder();
@@ -200,6 +204,7 @@ class Daemon {
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);
     if (io_client_) io_client_->Start();
+    memory_.Start();
     pump_.Start();
     spdlog::info("{} {}: machine {}, controller {}, cycle {} us, socket {}", "contourd", kVersion,
                  machine_.machine.name, Name(machine_.machine.controller), machine_.machine.cycle_us,
@@ -210,6 +215,7 @@ class Daemon {
     thread.Join();
     server.Stop();
     pump_.Finish();
+    memory_.Finish();
     if (io_client_) io_client_->Stop();
     hub_.Close();
     spdlog::info("ended");
@@ -273,6 +279,7 @@ class Daemon {
 
   DaemonOptions options_;
   MachineSource source_;
+  FrictionMemory& memory_;
   std::optional<std::uint64_t> seed_;  ///< of the emulated machine in this process
   MachineConfig machine_;
   MachineBuses buses_;
@@ -304,16 +311,21 @@ spdlog::level::level_enum ToSpdlog(LogLevel level) {
 }  // namespace
 
 int RunDaemon(const DaemonOptions& options) {
-  const std::vector<std::string> overrides = Overrides(options);
+  std::vector<std::string> overrides = Overrides(options);
+  const MachineConfig stated = LoadMachine(options.config, overrides);
+  FrictionMemory memory(stated, MemoryDirectory(stated.memory));
+  for (const std::string& learnt : memory.Overrides()) overrides.push_back(learnt);
   const MaybeEmulatedMachineFile file = LoadFile(options, overrides);
   const MachineSource source = ReadSource(options.config, overrides);
   LoggingOptions logging;
   logging.level = ToSpdlog(file.machine.logging.level);
   if (!file.machine.logging.file.empty()) logging.file = file.machine.logging.file;
   SetUpLogging(logging);
+  for (const std::string& text : memory.used()) spdlog::info("{}", text);
+  for (const std::string& text : memory.refused()) spdlog::warn("{}", text);
   // Before any thread starts, so that all inherit it.
   const sigset_t signals = BlockSignals();
-  Daemon daemon(options, file, source);
+  Daemon daemon(options, file, source, memory);
   return daemon.Run(signals);
 }
 

@@ -81,6 +81,7 @@ void Pump::Drain() {
     last_grid_time_ = std::chrono::nanoseconds(entry->output.record.grid_time_ns);
     Report(entry->output.record);
     MeasureMotion(entry->output.record);
+    if (show_cycle_) show_cycle_(entry->output.record);
     queue_.Release();
   }
   if (snapshots_ != nullptr) {

@@ -32,6 +32,8 @@ class Pump {
   void ReportMotionTo(std::function<void(double travel_m, double moving_s)> report) {
     report_motion_ = std::move(report);
   }
+  /// Is shown every cycle that comes out of the queue. Before Start().
+  void ShowCyclesTo(std::function<void(const CycleRecord&)> show) { show_cycle_ = std::move(show); }
   /// Copies of the cycle's state, on their way to the flight recorder. Before Start().
   void TakeSnapshotsFrom(StateSnapshots& snapshots) { snapshots_ = &snapshots; }
   void Start();
@@ -66,6 +68,7 @@ class Pump {
   std::string reported_flight_;
   std::string reported_flight_error_;
   std::function<void()> also_drain_;
+  std::function<void(const CycleRecord&)> show_cycle_;
   std::function<void(double, double)> report_motion_;
   double travel_m_ = 0.0;
   std::uint64_t moving_cycles_ = 0;

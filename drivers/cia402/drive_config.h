@@ -58,6 +58,7 @@ struct DriveConfig {
   double rated_torque_Nm = 0.0;
   double peak_torque_Nm = 0.0;
   std::uint32_t encoder_counts_per_rev = 0;
+  bool absolute_encoder = false;
   std::optional<IdentityConfig> identity;
   std::optional<LinearScaleConfig> linear_scale;
   int delay_cycles = 1;
@@ -94,6 +95,9 @@ struct DriveConfig {
     v.Required("peak_torque_Nm", peak_torque_Nm, kPositive, "largest torque drive and motor can give");
     v.Required("encoder_counts_per_rev", encoder_counts_per_rev, Range{1, 4294967295.0},
                "counts of 0x6064 per motor turn; must agree with 0x608F");
+    v.Optional(
+        "absolute_encoder", absolute_encoder,
+        "the drive knows after power-up where the axis is; without, a place learnt before means nothing");
     v.Optional("identity", identity, "who the drive must say it is (0x1018)");
     v.Optional("linear_scale", linear_scale, "scale at the table, read by the drive (0x60E4:01)");
     v.Optional("delay_cycles", delay_cycles, Range{1, 3},
