@@ -152,10 +152,14 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
                  "frequency_max_hz: 120, lines: %d}\n",
                  axis_name, kLine_N * m.radius_m_rad, kLines));
   const double top_Hz = std::min(480.0, 0.48e6 / machine.machine.cycle_us);
-  whole_way(FormatText("chirp while sliding, 100 to %.0f Hz", top_Hz), {std::max(3.0, travel / 4.0)},
+  // Fast enough that a controller which swings, its mass being wrong, does not turn the axis back.
+  std::vector<double> slides;
+  for (const double speed : {std::max(3.0, travel / 4.0), 0.75 * travel, travel})
+    slides.push_back(std::min(speed, 0.8 * top));
+  whole_way(FormatText("chirp while sliding, 100 to %.0f Hz", top_Hz), slides,
             FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: 100, "
                        "frequency_max_hz: %.0f, "
-                       "period_s: 2}\n",
+                       "period_s: 0.5}\n",
                        axis_name, kChirp_N * m.radius_m_rad, top_Hz));
   return plan;
 }

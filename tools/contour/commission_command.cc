@@ -173,9 +173,10 @@ int RunCommission(const Options& options) {
   const double position_mm = 1e3 * status.at("axes").at(number).at("position_m").get<double>();
   const CommissionPlan plan = PlanCommissioning(machine, options.axis, position_mm, limits);
   std::cout << Describe(plan);
-  if (status.at("controller") != "pid" && status.at("controller") != "mpc_observer")
+  if (status.at("controller") != "mpc_observer")
     std::cout << "note: the controller " << status.at("controller").get<std::string>()
-              << " believes the model; where that may be far off, start contourd with --controller pid\n";
+              << " may swing where the model is far off; mpc_observer does not: contourd --controller "
+                 "mpc_observer\n";
   if (!Confirmed(options)) {
     std::cout << "nothing was moved\n";
     return kExitFailed;

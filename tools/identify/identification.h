@@ -8,8 +8,9 @@
 #include "tools/diagnosis/stated_axis.h"
 #include "tools/identify/joint_fit.h"
 #include "tools/identify/presliding_fit.h"
-#include "tools/identify/screw_fit.h"
+#include "tools/identify/shaken_screw.h"
 #include "tools/identify/sliding_fit.h"
+#include "tools/identify/wind_up_fit.h"
 
 namespace contour::identify {
 
@@ -39,11 +40,12 @@ struct Identification {
   PreslidingFit presliding;
   std::vector<LoopPoint> loops;
   std::vector<LoopPoint> loops_simulated;
-  ScrewResonance resonance;
+  ShakenScrew shaken;
   ScrewWindUp wind_up;
   EncoderFindings encoder;
   std::vector<OverlayPoint> overlay;
-  double seconds = 0.0;  ///< of record
+  double seconds = 0.0;   ///< of record
+  double period_s = 0.0;  ///< of its samples
 };
 
 struct IdentifyOptions {

@@ -91,6 +91,12 @@ std::vector<FreeParameter> FreeParameters(const FitOptions& options) {
       "turn_minus_cos2", [](AxisModel& a) { return &a.variation.turn_minus[2]; }, 0.1, 1e-3);
   linear(
       "turn_minus_sin2", [](AxisModel& a) { return &a.variation.turn_minus[3]; }, 0.1, 1e-3);
+  const auto in = [](const std::vector<std::string>& keys, const std::string& key) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  std::erase_if(p, [&](const FreeParameter& f) {
+    return in(options.hold, f.key) || (!options.only.empty() && !in(options.only, f.key));
+  });
   return p;
 }
 
@@ -235,13 +241,20 @@ JointFit Fit::Run() {
     gain_ = MakeFollowGain(At(x), records_.front().period_s, kFollow_Hz);
     const VectorXd raw = Raw(x);
     if (round == 0) result.error_rms_before_m = std::sqrt(raw.squaredNorm() / static_cast<double>(size_));
-    whitening_.Learn(raw, block_, round == 0 ? 0 : 12, records_.front().position_step_m);
+    whitening_.Learn(raw, block_, round == 0 && !options_.refine ? 0 : 12, records_.front().position_step_m);
     Iterate(x, round + 1 < options_.rounds ? 2e-3 : 5e-5);
     if (options_.progress) options_.progress((round + 1.0) / options_.rounds);
   }
-  // Spread: the sandwich of curvature and the blocks' gradients.
   const VectorXd raw = Raw(x);
   result.error_rms_m = std::sqrt(raw.squaredNorm() / static_cast<double>(size_));
+  result.axis = At(x);
+  result.evaluations = evaluations_;
+  if (!options_.spread) {
+    for (FreeParameter& f : free_)
+      result.parameters.push_back({f.key, *f.at(result.axis), 0.0, f.logarithmic});
+    return result;
+  }
+  // Spread: the sandwich of curvature and the blocks' gradients.
   whitening_.Learn(raw, block_, 12, records_.front().position_step_m);
   const VectorXd r = whitening_.Apply(raw);
   MatrixXd jacobian;
@@ -269,7 +282,6 @@ JointFit Fit::Run() {
     gain_ = MakeFollowGain(At(x), records_.front().period_s, follow_Hz);
     method = method.cwiseMax(StepFrom(x).cwiseAbs());
   }
-  result.axis = At(x);
   for (std::size_t i = 0; i < free_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double variance = std::max(result.covariance(k, k), noise * inverse(k, k)) + method(k) * method(k) +
@@ -282,6 +294,12 @@ JointFit Fit::Run() {
 }
 
 }  // namespace
+
+double Sigma(const std::vector<FittedParameter>& parameters, const std::string& key) {
+  for (const FittedParameter& p : parameters)
+    if (p.key == key) return p.sigma;
+  return 0.0;
+}
 
 JointFit FitJointly(const AxisModel& start, const std::vector<Measured>& records, const FitOptions& options) {
   return Fit(start, records, options).Run();

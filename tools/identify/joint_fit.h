@@ -22,10 +22,14 @@ struct FreeParameter {
 struct FitOptions {
   bool screw = true;      ///< motor and table are free, damping, delay and lag too; else only the whole mass
   bool stiffness = true;  ///< of the screw is free
-  double stiffness_prior = 1.0;  ///< relative: how well the start is known
-  int rounds = 3;                ///< weights and whitening are worked out anew in each
-  int iterations = 12;           ///< of a round, at most
-  double block_s = 1.0;          ///< for weights and for the spread
+  double stiffness_prior = 1.0;   ///< relative: how well the start is known
+  std::vector<std::string> only;  ///< keys that move; empty: all
+  std::vector<std::string> hold;  ///< keys that do not
+  int rounds = 3;                 ///< weights and whitening are worked out anew in each
+  bool refine = false;            ///< the start is good: whitened from the first round
+  int iterations = 12;            ///< of a round, at most
+  double block_s = 1.0;           ///< for weights and for the spread
+  bool spread = true;             ///< standard deviations are wanted
   std::function<void(double share)> progress;
 };
 
@@ -35,6 +39,9 @@ struct FittedParameter {
   double sigma = 0.0;  ///< relative for logarithmic ones, else absolute
   bool relative = true;
 };
+
+/// Standard deviation of a parameter; 0: it was not moved.
+double Sigma(const std::vector<FittedParameter>& parameters, const std::string& key);
 
 struct JointFit {
   AxisModel axis;

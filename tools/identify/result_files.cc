@@ -158,7 +158,7 @@ void WriteIdentificationJson(const std::filesystem::path& file, const Identifica
   for (const BreakAway& b : id.break_aways)
     break_aways.push_back({{"force_N", b.force_N}, {"velocity_m_s", b.velocity_m_s}});
   json response = json::array();
-  for (const ResponsePoint& p : id.resonance.response)
+  for (const ResponsePoint& p : id.shaken.response)
     response.push_back({{"frequency_Hz", p.frequency_Hz},
                         {"accelerance_1_kg", p.accelerance_1_kg},
                         {"coherence", p.coherence}});
@@ -190,9 +190,10 @@ void WriteIdentificationJson(const std::filesystem::path& file, const Identifica
         {"measured", Points(id.loops)},
         {"simulated", Points(id.loops_simulated)}}},
       {"screw",
-       {{"found", id.resonance.found},
-        {"antiresonance_Hz", id.resonance.antiresonance_Hz},
-        {"resonance_Hz", id.resonance.resonance_Hz},
+       {{"found", id.shaken.verdict == ShakenScrew::Verdict::kFound},
+        {"antiresonance_Hz", id.shaken.antiresonance_Hz},
+        {"resonance_Hz", id.shaken.resonance_Hz},
+        {"period_s", id.period_s},
         {"wind_up_stiffness_N_m", id.wind_up.found ? json(id.wind_up.stiffness_N_m) : json(nullptr)},
         {"response", response}}},
       {"encoder", {{"step_m", id.encoder.step_m}, {"noise_m", id.encoder.noise_m}}},

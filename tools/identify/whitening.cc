@@ -10,12 +10,14 @@ void Whitening::Learn(const Eigen::VectorXd& errors, std::size_t block, int orde
   weight_.clear();
   filter_.clear();
   scale_ = 1.0;
+  log_error_ = 0.0;
   const auto n = static_cast<std::size_t>(errors.size());
   for (std::size_t b = 0; b < n; b += block) {
     const auto length = static_cast<Eigen::Index>(std::min(block, n - b));
     const auto part = errors.segment(static_cast<Eigen::Index>(b), length);
     const double rms = std::sqrt(part.squaredNorm() / static_cast<double>(length));
     weight_.push_back(1.0 / std::max(rms, floor));
+    log_error_ -= std::log(weight_.back()) * static_cast<double>(length) / static_cast<double>(n);
   }
   if (order <= 0) return;
   const Eigen::VectorXd level = Apply(errors);
@@ -41,6 +43,7 @@ void Whitening::Learn(const Eigen::VectorXd& errors, std::size_t block, int orde
   }
   filter_ = std::move(a);
   scale_ = 1.0 / std::sqrt(std::max(left / static_cast<double>(n), 1e-30));
+  log_error_ -= std::log(scale_);
 }
 
 Eigen::VectorXd Whitening::Apply(const Eigen::VectorXd& errors) const {

@@ -13,12 +13,15 @@ class Whitening {
   /// From errors (0: no value). `order` 0: levels only. No block counts as quieter than `floor`.
   void Learn(const Eigen::VectorXd& errors, std::size_t block, int order, double floor);
   [[nodiscard]] Eigen::VectorXd Apply(const Eigen::VectorXd& errors) const;
+  /// Of the errors learnt from: mean log of what the filter leaves, in their own unit.
+  [[nodiscard]] double log_error() const { return log_error_; }
 
  private:
   std::size_t block_ = 1;
   std::vector<double> weight_;  ///< per block
   std::vector<double> filter_;  ///< of the errors before
   double scale_ = 1.0;
+  double log_error_ = 0.0;
 };
 
 }  // namespace contour::identify

@@ -8,13 +8,14 @@ it, and report.html, one page with all of them. Prints the files it wrote, one p
 """
 import argparse
 import base64
+import cmath
 import html
 import json
 import math
 import sys
 from pathlib import Path
 
-from style import COMPENSATED, PLAIN, QUIET, TRUTH, apply
+from style import COMPENSATED, PLAIN, QUIET, TRUTH, WINDOW, apply
 
 NAMES = {
     "motor_mass_kg": ("inertia of motor and screw, seen at the table", 1, "kg"),
@@ -129,6 +130,22 @@ def draw_overlay(pyplot, data):
     return figure
 
 
+def accelerance(model, frequency, period_s):
+    """Of the motor, two masses joined by a damped spring, behind a held torque with its delay and lag: as the measured
+    one is made, from second differences of the sampled position and the mean of two commands, images included."""
+    motor, table_mass = model["motor_mass_kg"], model["table_mass_kg"]
+    position = 0
+    for image in range(-4, 5):
+        omega = 2 * math.pi * (frequency + image / period_s)
+        link = complex(model["stiffness_N_m"], omega * model["damping_Ns_m"])
+        free = link - table_mass * omega**2
+        held = (1 - cmath.exp(-1j * omega * period_s)) / (1j * omega * period_s)
+        torque = held * cmath.exp(-1j * omega * model["delay_s"]) / complex(1, omega * model["lag_s"])
+        position -= torque * free / (motor * free + table_mass * link) / omega**2
+    phase = 2 * math.pi * frequency * period_s
+    return abs(position) * (2 - 2 * math.cos(phase)) / period_s**2 / abs(math.cos(phase / 2))
+
+
 def draw_screw(pyplot, data):
     response = data["screw"]["response"]
     figure, pane = pyplot.subplots(figsize=(7, 4))
@@ -139,10 +156,15 @@ def draw_screw(pyplot, data):
         for key, word in (("antiresonance_Hz", "antiresonance"), ("resonance_Hz", "resonance")):
             pane.axvline(data["screw"][key], color=COMPENSATED, ls="--",
                          label=f"{word} {data['screw'][key]:.0f} Hz")
+        frequencies = range(int(good[0]["frequency_Hz"]), int(good[-1]["frequency_Hz"]) + 1)
+        period_s = data["screw"]["period_s"]
+        pane.semilogy(frequencies, [accelerance(data["identified"], f, period_s) for f in frequencies], color=WINDOW,
+                      lw=1, label="model as identified, without friction")
     pane.axhline(1 / data["identified"]["mass_kg"], color=QUIET, lw=0.8, label="1 / whole mass")
     pane.set_xlabel("frequency, Hz")
     pane.set_ylabel("acceleration of the motor per force, 1/kg")
-    pane.set_title("The screw's antiresonance and resonance")
+    found = data["screw"]["found"]
+    pane.set_title("The screw's antiresonance and resonance" if found else "No screw to be seen: rigid")
     pane.legend()
     return figure
 

@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Commissioning of emulated machines in virtual time: a table of errors."};
   unsigned seeds = 10;
   unsigned first = 1;
-  std::string controller = "pid";
+  std::string controller = "mpc_observer";
   bool nominal = false;
   bool contour = false;
   bool twice = false;

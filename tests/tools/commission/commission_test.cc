@@ -1,7 +1,6 @@
 // Commissioning of an emulated axis in virtual time, and the plan of its motions.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "config/config_error.h"
@@ -53,7 +52,7 @@ TEST(CommissionPlanTest, RefusesWhatDoesNotFitAndSaysWhatDoes) {
 TEST(CommissionTest, AModelThatIsHalfWrongIsPutRightInsideTheLimits) {
   const EmulatedMachineFile file = WrongMachine(11, 0.5, 0.3);
   const AxisConfig& stated = file.machine.axes.at("x");
-  const VirtualCommissioning run = Commission(file, "x", "pid");
+  const VirtualCommissioning run = Commission(file, "x", "mpc_observer");
   EXPECT_LT(run.machine_time_s, 300.0);
   EXPECT_GE(run.low_m * 1e3, run.plan.low_mm);
   EXPECT_LE(run.high_m * 1e3, run.plan.high_mm);
@@ -72,15 +71,13 @@ TEST(CommissionTest, AModelThatIsHalfWrongIsPutRightInsideTheLimits) {
                                                  {"sigma0_N_m", 0.1},
                                                  {"sigma1_Ns_m", 0.3},
                                                  {"sigma2_Ns_m", 0.05},
-                                                 {"motor_inertia_kgm2", 0.05},
-                                                 {"table_mass_kg", 0.05},
-                                                 {"screw_stiffness_N_um", 0.06}};
+                                                 {"motor_inertia_kgm2", 0.02},
+                                                 {"table_mass_kg", 0.03},
+                                                 {"screw_stiffness_N_um", 0.03}};
   for (const auto& [key, share] : allowed)
     EXPECT_NEAR(found.at(key).value / truth.at(key), 1.0, share) << key;
 
-  EXPECT_TRUE(std::any_of(id.notes.begin(), id.notes.end(), [](const std::string& note) {
-    return note.find("run once more") != std::string::npos;
-  })) << "the inertia was 30 % off";
+  EXPECT_TRUE(id.notes.empty()) << id.notes.front();
 
   // What is written is a model that a machine file takes.
   const ModelConfig model = identify::ToModel(id, stated.model);

@@ -33,7 +33,7 @@ def main():
                   "axes.x.drive.quick_stop_deceleration_rad_s2=15000", "axes.x.limits.safe_travel_mm=5"]
     with tempfile.TemporaryDirectory() as scratch:
         socket = f"{scratch}/control.sock"
-        command = [contourd, "--config", machine_file, "--clock", "lockstep", "--controller", "pid", "--socket", socket]
+        command = [contourd, "--config", machine_file, "--clock", "lockstep", "--controller", "mpc_observer", "--socket", socket]
         for override in overrides:
             command += ["--set", override]
         with open(f"{scratch}/daemon.txt", "w", encoding="utf-8") as messages:
@@ -74,7 +74,7 @@ def main():
             for key, share in allowed.items():
                 is_, found = friction[key], float(model["friction"][key])
                 assert abs(found / is_ - 1) < share, f"{key}: found {found}, is {is_}"
-            for key, share in (("motor_inertia_kgm2", 0.05), ("table_mass_kg", 0.05), ("screw_stiffness_N_um", 0.06)):
+            for key, share in (("motor_inertia_kgm2", 0.05), ("table_mass_kg", 0.03), ("screw_stiffness_N_um", 0.03)):
                 found = float(model[key])
                 assert abs(found / emulated[key] - 1) < share, f"{key}: found {found}, is {emulated[key]}"
             for name in ("identification.json", "report.html", "stribeck.png", "presliding.png", "overlay.png"):
