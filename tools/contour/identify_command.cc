@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "config/config_error.h"
 #include "config/load_machine.h"
 #include "tools/contour/identification_report.h"
 #include "tools/diagnosis/files/read_log.h"
@@ -25,6 +26,11 @@ struct Options {
 int RunIdentify(const Options& options) {
   IdentificationJob job;
   job.stated = diagnosis::ReadStatedAxis(options.model, options.axis);
+  if (job.stated.linear)
+    throw ConfigError(
+        {options.model +
+         ": states a linear axis (mass_kg); identify takes axes with a motor that turns, \"contour "
+         "diagnose\" takes both"});
   std::string axis = options.axis;
   if (diagnosis::IsMachineFile(options.model)) {
     const MachineConfig machine = LoadMachine(options.model);

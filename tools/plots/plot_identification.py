@@ -146,20 +146,23 @@ def accelerance(model, frequency, period_s):
     return abs(position) * (2 - 2 * math.cos(phase)) / period_s**2 / abs(math.cos(phase / 2))
 
 
+def coherent(data):
+    return [p for p in data["screw"]["response"] if p["coherence"] > 0.7]
+
+
 def draw_screw(pyplot, data):
-    response = data["screw"]["response"]
     figure, pane = pyplot.subplots(figsize=(7, 4))
-    good = [p for p in response if p["coherence"] > 0.7]
+    good = coherent(data)
     pane.semilogy([p["frequency_Hz"] for p in good], [p["accelerance_1_kg"] for p in good], color=TRUTH,
                   label="measured")
     if data["screw"]["found"]:
         for key, word in (("antiresonance_Hz", "antiresonance"), ("resonance_Hz", "resonance")):
             pane.axvline(data["screw"][key], color=COMPENSATED, ls="--",
                          label=f"{word} {data['screw'][key]:.0f} Hz")
-        frequencies = range(int(good[0]["frequency_Hz"]), int(good[-1]["frequency_Hz"]) + 1)
-        period_s = data["screw"]["period_s"]
-        pane.semilogy(frequencies, [accelerance(data["identified"], f, period_s) for f in frequencies], color=WINDOW,
-                      lw=1, label="model as identified, without friction")
+    frequencies = range(int(good[0]["frequency_Hz"]), int(good[-1]["frequency_Hz"]) + 1)
+    period_s = data["screw"]["period_s"]
+    pane.semilogy(frequencies, [accelerance(data["identified"], f, period_s) for f in frequencies], color=WINDOW,
+                  lw=1, label="model as identified, without friction")
     pane.axhline(1 / data["identified"]["mass_kg"], color=QUIET, lw=0.8, label="1 / whole mass")
     pane.set_xlabel("frequency, Hz")
     pane.set_ylabel("acceleration of the motor per force, 1/kg")
@@ -217,7 +220,7 @@ def main():
     wanted = [("stribeck", draw_stribeck, data["stribeck_points"]),
               ("presliding", draw_presliding, data["presliding"]["measured"]["time_s"]),
               ("overlay", draw_overlay, data["overlay"]["time_s"]),
-              ("screw", draw_screw, data["screw"]["response"])]
+              ("screw", draw_screw, coherent(data))]
     pictures = []
     for name, draw, there in wanted:
         if not there:
