@@ -104,14 +104,15 @@ def check_whole_run(status):
 def check_window(options, out, status):
     """The same of the time in which the program ran and nothing else began or ended; what is late outside it is printed."""
     window = {key: int(value) for key, value in (line.split() for line in (out / "window").read_text().splitlines())}
-    sends = histogram(out / "window_sends")
-    describe("while the program runs", sends)
+    wakeups, sends = histogram(out / "window_wakeups"), histogram(out / "window_sends")
+    describe("while it runs, wake-up", wakeups)
+    describe("while it runs, frames sent", sends)
     outside = (out / "late_causes").read_text().splitlines()
     print(f"late cycles of the whole run: {', '.join(outside) or 'none'}")
     expect(window["cycles"] == options.seconds * 1_000_000 // status["cycle_us"], f"only {window['cycles']} cycles of the program")
     late = {key: window[key] for key in LATE}
     expect(not any(late.values()), f"not every cycle was in time: {late}; worst_cycles in {out} has the rows")
-    return sends
+    return wakeups, sends
 
 
 def check_run(options, out):
@@ -124,7 +125,7 @@ def check_run(options, out):
     expect(cycles >= options.seconds * 1e6 / status["cycle_us"], f"only {cycles} cycles were logged")
     expect(status["dropped_telemetry"] == 0, f"{status['dropped_telemetry']} cycles of telemetry were dropped")
     if options.program_only or options.load:
-        sends = check_window(options, out, status)
+        wakeups, sends = check_window(options, out, status)
     else:
         check_whole_run(status)
     deadline_us = 0.2 * status["cycle_us"]
