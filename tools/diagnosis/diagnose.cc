@@ -24,9 +24,6 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kJitterPenalty = 3.0;
-// What the sign flips do not see: the model's own errors (integrators, the closed loop, a coupling stiffer
-// than the model can say) look like effects, the more the longer the log.
-constexpr double kModelErrorPerRow = 2e-4;
 // No effect acts quite as its model does: this share of what it explains may look like others.
 constexpr double kUnlike = 5e-3;
 // Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
@@ -60,17 +57,18 @@ class Engine {
     for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
-      const double gate = SignFlipGate(scored, options_.false_alarm_rate, options_.seed) +
-                          kModelErrorPerRow * static_cast<double>(problem_.rows()) + kUnlike * explained;
+      const double gate =
+          SignFlipGate(scored, options_.false_alarm_rate, options_.seed) + kUnlike * explained;
+      const double margin = ModelError(problem_, "");
       const Jitter jitter = TestJitter(problem_, current);
       if (round == 0) {
         KeepFirst(scored, out);
         out.candidates.push_back(
             {"sample_jitter", jitter.drop - kJitterPenalty, std::numeric_limits<double>::quiet_NaN(), false});
-        KeepDetectable(problem_, current, scored, jitter, gate, out);
-        out.gate = gate;
+        KeepDetectable(problem_, current, scored, jitter, gate + margin, out);
+        out.gate = gate + margin;
       }
-      const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > gate;
+      const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > gate + margin;
       Say("rivals", 0.3 + 0.25 * round);
       std::vector<Rival> rivals = FitRivals(problem_, current, scored, gate);
       if (rivals.empty()) {
@@ -161,6 +159,7 @@ class Engine {
 
   bool Holds(const Fit& current, const Rival& r, double tested, double gate) const {
     // From outside the catalogue only what is beyond doubt.
+    gate += ModelError(problem_, r.effect().kind);
     if (tested <= (Outside(r.effect().kind) ? gate + 25.0 : gate)) return false;
     // What a base parameter does already shows in the priors; it must not do harm elsewhere.
     const double unseen = HeldOutStatistic(problem_, current, r.fit);

@@ -43,6 +43,8 @@ double PriorOf(const Problem& problem, const Point& p) {
   return sum;
 }
 
+constexpr double kWorthWhile = 3.0;
+
 /// One fit, which says what runs it needs next and goes on when it has them.
 class Descent {
  public:
@@ -87,9 +89,10 @@ class Descent {
     // Shorter and longer steps ride along in lanes that would be empty otherwise.
     tried_.clear();
     if (brief)
-      for (const double part : {1.0, 0.4}) tried_.push_back(Moved(fit_.point, part * by_));
+      for (const double part : {1.0, 0.4}) tried_.push_back(Moved(fit_.point, part * shrink_ * by_));
     else
-      for (const double part : {1.0, 0.5, 0.15, 1.4}) tried_.push_back(Moved(fit_.point, part * by_));
+      for (const double part : {1.0, 0.5, 0.15, 1.4})
+        tried_.push_back(Moved(fit_.point, part * shrink_ * by_));
     chosen_ = tried_.size();
     before_ = fit_.cost;
     return tried_;
@@ -215,10 +218,16 @@ class Descent {
     ++steps_;
     if (chosen_ < tried_.size()) {
       if (before_ - fit_.cost < 0.6 * promised_ || chosen_ > 0) stale_ = true;
+      shrink_ = 1.0;
       fit_.point = std::move(tried_[chosen_]);
       fit_.raw = std::move(chosen_raw_);
       fit_.residual = std::move(chosen_white_);
     } else {
+      // A curved valley lets only small steps pass.
+      if (last_chance_ && shrink_ == 1.0 && promised_ > kWorthWhile) {
+        shrink_ = 0.1;
+        return;
+      }
       if (last_chance_) {
         fit_.converged = true;
         return Close(fresh_);
@@ -242,7 +251,7 @@ class Descent {
   Stage stage_ = Stage::kBegin;
   bool stale_ = true, fresh_ = false, last_chance_ = false, closing_ = false;
   int steps_ = 0, refreshes_ = 0;
-  double promised_ = 0.0, before_ = 0.0;
+  double promised_ = 0.0, before_ = 0.0, shrink_ = 1.0;
   std::vector<Point> tried_;
   std::size_t chosen_ = 0;
   std::vector<double> chosen_raw_, chosen_white_;
@@ -296,6 +305,10 @@ Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort) {
 
 Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort) {
   return std::move(FitPoints(problem, {{fit.point, effort, &fit}})[0]);
+}
+
+double CostAt(const Problem& problem, const Point& point) {
+  return ColumnOf(problem.Residuals(std::span(&point, 1))[0]).squaredNorm() + PriorOf(problem, point);
 }
 
 void Rewhiten(const Problem& problem, Fit& fit) {

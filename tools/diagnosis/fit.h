@@ -45,6 +45,8 @@ Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {});
 /// The same from where a fit stands.
 Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort);
 
+double CostAt(const Problem& problem, const Point& point);
+
 /// The fit's own runs under the noise that was learnt since.
 void Rewhiten(const Problem& problem, Fit& fit);
 

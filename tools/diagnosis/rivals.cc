@@ -34,8 +34,9 @@ void Judge(const Fit& current, Rival& r) { r.score = current.cost - r.fit.cost -
 // more about chance.
 constexpr double kMostExcess = 3.0;
 
-bool Promising(const Scored& s, double gate) {
-  return s.drop / std::min(s.excess, kMostExcess) - Penalty(*s.effect) > gate;
+bool Promising(const Problem& problem, const Scored& s, double gate) {
+  return s.drop / std::min(s.excess, kMostExcess) - Penalty(*s.effect) >
+         gate + ModelError(problem, s.effect->kind);
 }
 
 /// From the linear estimate.
@@ -99,6 +100,13 @@ std::optional<Beginning> Far(const Problem& problem, const Fit& current, const s
 
 }  // namespace
 
+double ModelError(const Problem& problem, const std::string& kind) {
+  // The model's own errors (integrators, the closed loop, a coupling stiffer than the model can say) look
+  // like effects, the more the longer the log; less so where the evidence is in the priors.
+  const double per_row = InBase(problem, kind) ? 1e-4 : 2e-4;
+  return per_row * static_cast<double>(problem.rows());
+}
+
 bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
 
 std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
@@ -118,7 +126,7 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
       if (std::find(done.begin(), done.end(), s.effect->kind) != done.end()) continue;
       done.push_back(s.effect->kind);
       if (!s.effect->start.empty()) {
-        if (!Promising(s, gate)) continue;
+        if (!Promising(problem, s, gate)) continue;
         std::optional<Beginning> far = Far(problem, current, s.effect->kind);
         promising = promising || far;
         if (far) beginnings.push_back(std::move(*far));
@@ -126,7 +134,7 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
       }
       beginnings.push_back(Near(problem, current, s));
     }
-    promising = promising || Promising(s, gate);
+    promising = promising || Promising(problem, s, gate);
   }
   std::vector<Rival> out;
   if (!promising) return out;
@@ -145,8 +153,14 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
     Judge(current, r);
   }
   Sort(rivals);
-  std::vector<Beginning> beginnings = {
-      {current.point, {.most_steps = 10, .most_refreshes = 3, .close_enough = 0.1}, &current}};
+  // A valley may end in two places: the base goes on from where the best rival's lies, where that is lower.
+  Point other = rivals[0].fit.point;
+  other.effects.pop_back();
+  other.amplitudes.pop_back();
+  const bool there = CostAt(problem, other) < current.cost;
+  std::vector<Beginning> beginnings = {{there ? std::move(other) : current.point,
+                                        {.most_steps = 10, .most_refreshes = 3, .close_enough = 0.1},
+                                        there ? nullptr : &current}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     if (i > 0 && rivals[i].score < 0.4 * rivals[0].score - 30.0) continue;

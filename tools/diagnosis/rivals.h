@@ -18,6 +18,9 @@ struct Rival {
 
 bool Outside(const std::string& kind);
 
+/// Beyond the gate of the sign flips, which do not see what the model itself gets wrong.
+double ModelError(const Problem& problem, const std::string& kind);
+
 /// The best of each kind: some of the catalogue, and the best from outside it. The best of them first. None
 /// where the score test promises nothing beyond the gate.
 std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,

@@ -10,6 +10,7 @@ namespace {
 constexpr std::size_t kSegment = 4096;
 constexpr std::size_t kOrder = 48;
 constexpr int kSmoothBins = 8;
+constexpr std::size_t kLineBins = 12;
 
 }  // namespace
 
@@ -90,6 +91,16 @@ Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint
     std::nth_element(column.begin(), middle, column.end());
     density[i] = *middle / std::numbers::ln2;
   }
+  // A line is no noise: a force of one frequency stays for the candidates to explain.
+  std::vector<double> level(bins), near;
+  for (std::size_t i = 0; i < bins; ++i) {
+    near.clear();
+    const std::size_t from = i > kLineBins ? i - kLineBins : 1, to = std::min(bins - 1, i + kLineBins);
+    for (std::size_t j = from; j <= to; ++j) near.push_back(density[j]);
+    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
+    std::nth_element(near.begin(), middle, near.end());
+    level[i] = *middle;
+  }
   std::vector<double> smooth(bins);
   double largest = 0.0;
   for (std::size_t i = 0; i < bins; ++i) {
@@ -99,7 +110,7 @@ Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint
       const auto j = static_cast<std::ptrdiff_t>(i) + d;
       const auto mirrored = static_cast<std::size_t>(j < 0 ? -j : j);
       if (mirrored >= bins || mirrored == 0) continue;
-      sum += density[mirrored];
+      sum += level[mirrored];
       ++count;
     }
     smooth[i] = sum / std::max(1, count);
