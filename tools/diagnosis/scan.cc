@@ -17,6 +17,9 @@ namespace {
 // them.
 constexpr double kFewestPeriods = 4.5;
 
+// A force held over a row hardly moves anything near half the rate: nothing divided by nothing.
+constexpr double kHighestPerRow = 0.4;
+
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kResponse = 256;
 constexpr std::size_t kTransfer = 4096;
@@ -190,7 +193,7 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   std::vector<Peak> time;
   for (std::size_t i = 1; i < length / 2; ++i) {
     const double f = static_cast<double>(i) / static_cast<double>(length);
-    if (f * static_cast<double>(n) < 6.0) continue;
+    if (f * static_cast<double>(n) < 6.0 || f > kHighestPerRow) continue;
     time.push_back({f / problem.log_.period_s,
                     2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
   }
