@@ -107,7 +107,7 @@ class Engine {
         }
       }
       if (!found) break;
-      Accept(current, rivals, out);
+      Accept(current, rivals, gate, out);
       explained += best.score;
       current = best.fit;
       if (Outside(best.effect().kind)) break;
@@ -167,7 +167,7 @@ class Engine {
            unseen > (InBase(problem_, r.effect().kind) ? 0.0 : kConsistent);
   }
 
-  void Accept(const Fit& current, const std::vector<Rival>& rivals, Diagnosis& out) const {
+  void Accept(const Fit& current, const std::vector<Rival>& rivals, double gate, Diagnosis& out) const {
     const Rival& best = rivals[0];
     Cause cause;
     cause.kind = best.effect().kind;
@@ -179,7 +179,9 @@ class Engine {
           c.refitted = r.score;
           c.accepted = &r == &best;
         }
-      if (&r != &best && !Outside(kind) && r.score > best.score - std::max(12.0, 0.03 * best.score))
+      // What would not have been accepted alone explains too little to be the cause.
+      if (&r != &best && !Outside(kind) && r.score > gate + ModelError(problem_, kind) &&
+          r.score > best.score - std::max(12.0, 0.03 * best.score))
         cause.indistinguishable_from.push_back(kind);
     }
     const Experiment experiment = DecidingExperiment(problem_, cause.kind, cause.indistinguishable_from);
