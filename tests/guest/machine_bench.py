@@ -91,7 +91,9 @@ class MachineBench:
 
     def start_recording(self):
         self.start("candump", "candump", "-D", "-r", "16777216", "-L", self.bus)
-        self.wait_for("candump to listen", lambda: self.bus in Path("/proc/net/can/rcvlist_all").read_text())
+        # Without a listener the list says "(vcan0: no entry)".
+        self.wait_for("candump to listen", lambda: re.search(rf"^ *{self.bus} ", Path("/proc/net/can/rcvlist_all").read_text(),
+                                                             re.MULTILINE))
         # Its output is the recording, not a message.
 
     def start_emulator(self):

@@ -6,7 +6,8 @@ frames=(080#01 201#0F00E803 181#2706CCFFFFFF1234 000#8200)
 
 candump -L -n ${#frames[@]} vcan0 >/tmp/seen &
 reader=$!
-until grep -q vcan0 /proc/net/can/rcvlist_all; do sleep 0.01; done
+# Without a listener the list says "(vcan0: no entry)".
+until grep -q '^ *vcan0 ' /proc/net/can/rcvlist_all; do sleep 0.01; done
 for frame in "${frames[@]}"; do cansend vcan0 "$frame"; done
 wait $reader
 
