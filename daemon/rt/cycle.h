@@ -43,8 +43,8 @@ class Cycle {
   // For the loop around it:
   /// How many path points the next Step can take.
   [[nodiscard]] std::size_t PathRoom() const noexcept { return follower_.Room(); }
-  /// SYNC is running, so the drives answer every cycle.
-  [[nodiscard]] bool ExpectsFeedback() const noexcept { return master_.operational(); }
+  /// The drives have a SYNC to answer.
+  [[nodiscard]] bool ExpectsFeedback() const noexcept { return master_.sync_sent(); }
   /// All drives' answers to the last SYNC are among these frames.
   [[nodiscard]] bool FeedbackComplete(const CycleInput& in) const noexcept;
   /// The master's heartbeats alone, for a loop whose time stands still.

@@ -236,6 +236,7 @@ void DriveMaster::StartBringUp() noexcept {
   for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
   if (!needed || (BringingUp() && !bring_up_failed())) return;
   pdos_run_ = false;
+  sync_sent_ = false;
   started_ = true;
   for (Bus& b : buses_) b.bring_up.Start();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -338,6 +339,7 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
     }
   }
   if (pdos) {
+    sync_sent_ = true;
     ++sync_number_;
     sync_grid_ns_ = grid_ns_;
   }

@@ -73,6 +73,8 @@ class DriveMaster {
   [[nodiscard]] bool BringingUp() const noexcept;
   /// All drives are Operational and configured; SYNC and PDOs run.
   [[nodiscard]] bool operational() const noexcept;
+  /// The drives have a SYNC to answer, since they were last brought up.
+  [[nodiscard]] bool sync_sent() const noexcept { return sync_sent_; }
   /// Bringing up is under way, or a drive is on its way to the last goal.
   [[nodiscard]] bool busy() const noexcept;
 
@@ -93,7 +95,7 @@ class DriveMaster {
 
   void Keep(StateKeeper& keep) noexcept {
     keep(axes_, buses_, feedback_, status_, sent_torque_Nm_, goal_, cycle_, elapsed_, sync_number_,
-         feedback_sync_, sync_grid_ns_, started_, pdos_run_, seen_cycle_);
+         feedback_sync_, sync_grid_ns_, started_, pdos_run_, sync_sent_, seen_cycle_);
   }
 
  private:
@@ -151,6 +153,7 @@ class DriveMaster {
   std::int64_t period_ns_;
   bool started_ = false;  ///< ever brought up: the master's heartbeat runs
   bool pdos_run_ = false;
+  bool sync_sent_ = false;
   bool seen_cycle_ = false;
 };
 

@@ -24,6 +24,9 @@ class SilencedBus final : public FrameBus {
  public:
   SilencedBus(std::uint32_t bitrate_bit_s, BusNode& node) : bus_(bitrate_bit_s, {&node}) {}
   std::size_t Receive(std::int64_t now_ns, std::span<StampedFrame> frames) noexcept override {
+    looks_here_ = now_ns == here_ns_ ? looks_here_ + 1 : 1;
+    here_ns_ = now_ns;
+    most_looks = std::max(most_looks, looks_here_);
     if (chatter > 0) return Chatter(now_ns, frames);
     const std::size_t got = bus_.Receive(now_ns, frames);
     if (!silent) return got;
@@ -36,8 +39,10 @@ class SilencedBus final : public FrameBus {
   [[nodiscard]] BusState State() const noexcept override { return bus_.State(); }
 
   std::atomic<bool> silent{false};
-  std::atomic<int> chatter{0};        ///< heartbeats that arrive before anything else
-  std::map<std::int64_t, int> looks;  ///< of the loop's thread, until it has ended
+  std::atomic<int> chatter{0};  ///< heartbeats that arrive before anything else
+  // Of the loop's thread, until it has ended.
+  std::map<std::int64_t, int> looks;
+  int most_looks = 0;  ///< at one grid point, silent or not
 
  private:
   std::size_t Chatter(std::int64_t now_ns, std::span<StampedFrame> frames) noexcept {
@@ -49,6 +54,8 @@ class SilencedBus final : public FrameBus {
   }
 
   LoopbackBus bus_;
+  std::int64_t here_ns_ = -1;
+  int looks_here_ = 0;
 };
 
 class SwitchedIo final : public IoSource {
@@ -123,6 +130,13 @@ TEST_F(LockstepLoop, AnOpenedEmergencyStopIsSeenWhileTimeStandsStill) {
     return r.state == MachineState::kFaulted;
   });
   EXPECT_EQ(seen.reason, Reason::kEmergencyStop) << Name(seen.reason);
+}
+
+TEST_F(LockstepLoop, NoAnswerIsWaitedForBeforeTheFirstSync) {
+  AwaitState(MachineState::kIdle);
+  End();
+  // Waiting in vain is for 2 s, a look every 50 us; an answer of the emulated machine is there at once.
+  EXPECT_LT(bus_.most_looks, 2000);
 }
 
 TEST_F(LockstepLoop, HeartbeatsOfALongPauseDoNotHideTheFeedback) {
