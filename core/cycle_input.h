@@ -57,8 +57,10 @@ struct BusInput {
 
 /// Everything the cycle takes in. The log holds exactly this, so that a run can be repeated bit for bit.
 struct CycleInput {
-  std::uint64_t cycle = 0;        ///< number of this grid point; skipped grid points leave a gap
-  std::int64_t grid_time_ns = 0;  ///< the grid point on the loop's clock; for records, not for logic
+  std::uint64_t cycle = 0;  ///< number of this grid point; skipped grid points leave a gap
+  /// The grid point on the loop's clock; for records, and to tell by a frame's stamp an answer that came too
+  /// late.
+  std::int64_t grid_time_ns = 0;
   ReceivedFrames frames;
   FixedVector<BusInput, kMaxBuses> buses;
   FixedVector<PathPoint, kMaxPathPointsPerCycle> path;

@@ -32,8 +32,8 @@ void MomentumBalance::Learn(double position_m, double force_N, double friction_N
   const double driving_N = force_N - friction_N;
   // The second difference belongs to the middle of two periods.
   const double both_N = 0.5 * (driving_N + driving_N_);
-  const double m = tuning_.mass_kg + extra_kg_;
-  missing_ = {m * acceleration_m_s2 - both_N, position_m_, 0.5 * (velocity_m_s + velocity_m_s_),
+  const double mass_kg = tuning_.mass_kg + extra_kg_;
+  missing_ = {mass_kg * acceleration_m_s2 - both_N, position_m_, 0.5 * (velocity_m_s + velocity_m_s_),
               acceleration_m_s2, true};
   position_m_ = position_m;
   velocity_m_s_ = velocity_m_s;
@@ -47,24 +47,27 @@ void MomentumBalance::Learn(double position_m, double force_N, double friction_N
   }
   const Bands a = acceleration_.Step(acceleration_m_s2);
   const Bands f = balance_.Step(both_N);
-  LearnMass(a.slow, a.slow_change, f.slow, m);
-  LearnDelay(a.fast, a.fast_change, f.fast, m);
+  LearnMass(a.slow, a.slow_change, f.slow, mass_kg);
+  LearnDelay(a.fast, a.fast_change, f.fast, mass_kg);
 }
 
-void MomentumBalance::LearnMass(double a, double change, double f, double m) noexcept {
+void MomentumBalance::LearnMass(double acceleration_m_s2, double change_m_s2, double force_N,
+                                double mass_kg) noexcept {
   if (!(tuning_.mass_rate > 0.0)) return;
-  const double x = a + delay_periods_ * change;
-  mass_seen_ = std::min(mass_seen_ + x * x, 1.0 / tuning_.mass_rate);
+  const double late_m_s2 = acceleration_m_s2 + delay_periods_ * change_m_s2;
+  mass_seen_ = std::min(mass_seen_ + late_m_s2 * late_m_s2, 1.0 / tuning_.mass_rate);
   const double most_kg = kMost * tuning_.mass_kg;
-  extra_kg_ = std::clamp(extra_kg_ + x * (f - m * x) / (mass_seen_ + kMassPrior), -most_kg, most_kg);
+  extra_kg_ = std::clamp(extra_kg_ + late_m_s2 * (force_N - mass_kg * late_m_s2) / (mass_seen_ + kMassPrior),
+                         -most_kg, most_kg);
 }
 
-void MomentumBalance::LearnDelay(double a, double change, double f, double m) noexcept {
+void MomentumBalance::LearnDelay(double acceleration_m_s2, double change_m_s2, double force_N,
+                                 double mass_kg) noexcept {
   if (!(tuning_.delay_rate > 0.0)) return;
-  const double x = m * change;
-  delay_seen_ = std::min(delay_seen_ + x * x, 1e4 / tuning_.delay_rate);
-  const double error_N = f - m * (a + delay_periods_ * change);
-  delay_periods_ = std::clamp(delay_periods_ + x * error_N / (delay_seen_ + kDelayPrior), 0.0, 1.0);
+  const double change_N = mass_kg * change_m_s2;
+  delay_seen_ = std::min(delay_seen_ + change_N * change_N, 1e4 / tuning_.delay_rate);
+  const double error_N = force_N - mass_kg * (acceleration_m_s2 + delay_periods_ * change_m_s2);
+  delay_periods_ = std::clamp(delay_periods_ + change_N * error_N / (delay_seen_ + kDelayPrior), 0.0, 1.0);
 }
 
 }  // namespace contour

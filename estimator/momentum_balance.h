@@ -61,8 +61,9 @@ class MomentumBalance {
     Bands Step(double value) noexcept;
   };
 
-  void LearnMass(double a, double change, double f, double m) noexcept;
-  void LearnDelay(double a, double change, double f, double m) noexcept;
+  /// `change_m_s2`: of the acceleration, per period; `mass_kg`: as believed so far.
+  void LearnMass(double acceleration_m_s2, double change_m_s2, double force_N, double mass_kg) noexcept;
+  void LearnDelay(double acceleration_m_s2, double change_m_s2, double force_N, double mass_kg) noexcept;
 
   Tuning tuning_;
   double extra_kg_ = 0.0;

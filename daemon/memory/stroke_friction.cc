@@ -17,8 +17,6 @@ constexpr std::size_t kLeastSamples = 20;
 /// A step counts from so many passes in both directions on, and a new pass as much as one of so many.
 constexpr double kLeastPasses = 2.0;
 constexpr double kMostPasses = 20.0;
-/// More than this from one piece to the next is no friction along the stroke.
-constexpr double kLargestStep = 0.3;
 
 std::size_t PiecesOf(const StrokeFriction::Stroke& s) {
   const double length_m = s.highest_m - s.lowest_m;

@@ -32,6 +32,9 @@ class StrokeFriction {
     bool sliding = false;  ///< the drive is on, a program runs, and the estimate is sound
   };
 
+  /// More than this from one piece to the next is no friction along the stroke.
+  static constexpr double kLargestStep = 0.3;
+
   explicit StrokeFriction(const Stroke& stroke);
   /// Goes on from what was learnt before. As many steps as steps().
   StrokeFriction(const Stroke& stroke, std::vector<Step> learnt);

@@ -27,7 +27,6 @@ constexpr std::string_view kChecksumKey = "crc32c: ";
 /// a damaged map.
 constexpr double kLeast = 0.5;
 constexpr double kMost = 2.0;
-constexpr double kLargestStep = 0.3;
 
 /// The file. Lists have one number per step.
 struct Content {
@@ -121,7 +120,8 @@ std::string Read(const fs::path& file, const MappedAxis& axis, std::vector<Strok
     return "it has not one number for every step";
   steps.clear();
   for (std::size_t i = 0; i < n; ++i) {
-    if (!(std::abs(c.forward[i]) <= kLargestStep) || !(std::abs(c.backward[i]) <= kLargestStep))
+    if (!(std::abs(c.forward[i]) <= StrokeFriction::kLargestStep) ||
+        !(std::abs(c.backward[i]) <= StrokeFriction::kLargestStep))
       return "friction cannot change that much from one piece to the next";
     steps.push_back({c.forward[i], c.backward[i], c.forward_passes[i], c.backward_passes[i]});
   }

@@ -197,16 +197,16 @@ void Loop::WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoi
                        ReceivedFrames& frames) noexcept {
   std::int64_t next_heartbeat = Now();
   for (;;) {
-    // The drives' hearts go on beating: left in the sockets, they would fill the input of the next cycles and
-    // push the feedback out of it.
-    runner_.Receive(grid.time_ns, frames);
-    KeepLatestOfEach(frames);
     const bool idle = last.quiescent && !mailbox_.request_waiting() && !runner_.IoChanged(io, Now());
     const bool starved = cycle_.PathRoom() != 0 && mailbox_.more_path_to_come() &&
                          mailbox_.path_points_waiting() < kMaxPathPointsPerCycle;
     // Nothing waits for real time here, so nothing needs to be dropped either.
     const bool crowded = telemetry_.size() + 1 >= telemetry_.capacity();
     if (!idle && !starved && !crowded) return;
+    // The drives' hearts go on beating: left in the sockets, they would fill the input of the next cycles and
+    // push the feedback out of it.
+    runner_.Receive(grid.time_ns, frames);
+    KeepLatestOfEach(frames);
     const std::int64_t now = Now();
     if (now >= next_heartbeat) {
       next_heartbeat = now + kLockstepHeartbeat_ns;

@@ -63,6 +63,15 @@ TEST_F(ModbusIo, CircuitsAreClosedUntilAButtonOpensThem) {
   EXPECT_EQ(Input(1), 1);
 }
 
+TEST_F(ModbusIo, AButtonReleasedWhileARequestIsServedStaysReleased) {
+  for (int i = 0; i < 300; ++i) {
+    server->OpenEnableChain(true);
+    ASSERT_EQ(Input(1), 0) << i;     // the server may still be busy with this request ...
+    server->OpenEnableChain(false);  // ... and must not put back what it showed there
+    ASSERT_EQ(Input(1), 1) << i;
+  }
+}
+
 TEST_F(ModbusIo, TemperatureComesInTenthsSigned) {
   std::uint16_t value = 0;
   server->SetTemperature_degC(23.46);

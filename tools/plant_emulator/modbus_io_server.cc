@@ -90,19 +90,25 @@ bool ModbusIoServer::Answer(int socket) {
 
 void ModbusIoServer::WriteInputs() {
   modbus_mapping_t& m = *modbus_->mapping;
-  m.tab_bits[config_.open_emergency_stop_coil] = open_emergency_stop_.load() ? 1 : 0;
-  m.tab_bits[config_.open_enable_chain_coil] = open_enable_chain_.load() ? 1 : 0;
-  m.tab_input_bits[config_.emergency_stop_ok_input] = open_emergency_stop_.load() ? 0 : 1;
-  m.tab_input_bits[config_.enable_chain_ok_input] = open_enable_chain_.load() ? 0 : 1;
+  shown_emergency_stop_ = open_emergency_stop_.load();
+  shown_enable_chain_ = open_enable_chain_.load();
+  m.tab_bits[config_.open_emergency_stop_coil] = shown_emergency_stop_ ? 1 : 0;
+  m.tab_bits[config_.open_enable_chain_coil] = shown_enable_chain_ ? 1 : 0;
+  m.tab_input_bits[config_.emergency_stop_ok_input] = shown_emergency_stop_ ? 0 : 1;
+  m.tab_input_bits[config_.enable_chain_ok_input] = shown_enable_chain_ ? 0 : 1;
   const double tenths = std::clamp(std::round(10.0 * temperature_degC_.load()), -32768.0, 32767.0);
   m.tab_input_registers[config_.screw_temperature_register] =
       static_cast<std::uint16_t>(static_cast<std::int16_t>(tenths));
 }
 
+/// Takes over what the request wrote. A coil that it left alone is not stored back: another thread may have
+/// pressed or released the button since WriteInputs.
 void ModbusIoServer::ReadCoils() {
   const modbus_mapping_t& m = *modbus_->mapping;
-  open_emergency_stop_.store(m.tab_bits[config_.open_emergency_stop_coil] != 0);
-  open_enable_chain_.store(m.tab_bits[config_.open_enable_chain_coil] != 0);
+  const bool emergency_stop = m.tab_bits[config_.open_emergency_stop_coil] != 0;
+  const bool enable_chain = m.tab_bits[config_.open_enable_chain_coil] != 0;
+  if (emergency_stop != shown_emergency_stop_) open_emergency_stop_.store(emergency_stop);
+  if (enable_chain != shown_enable_chain_) open_enable_chain_.store(enable_chain);
   lubrication_.store(m.tab_bits[config_.lubrication_coil] != 0);
 }
 

@@ -41,6 +41,8 @@ class ModbusIoServer {
   std::atomic<bool> open_enable_chain_{false};
   std::atomic<bool> lubrication_{false};
   std::atomic<bool> stop_{false};
+  bool shown_emergency_stop_ = false;  ///< as WriteInputs last showed it; serving thread only
+  bool shown_enable_chain_ = false;    ///< same
   std::thread thread_;
 };
 
