@@ -11,7 +11,9 @@ where the kernel does not allow what is to be brought in.
 import ctypes
 import json
 import os
+import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -29,17 +31,29 @@ class Refused(Exception):
     """The kernel does not allow it here."""
 
 
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
 class Daemon:
     """contourd on the emulated machine, by the wall clock; killed at the end whatever comes."""
 
     def __init__(self, contourd, contour, machine_file, overrides):
         self.scratch = tempfile.TemporaryDirectory()
-        socket = f"{self.scratch.name}/control.sock"
-        self.ask = [contour, "status", "--json", "--socket", socket]
+        control_socket = f"{self.scratch.name}/control.sock"
+        port = free_port()  # other tests may run beside this one
+        self.ask = [contour, "status", "--json", "--socket", control_socket]
         self.messages = Path(self.scratch.name, "daemon.txt")
-        command = [contourd, "--config", machine_file, "--controller", "pid", "--socket", socket]
+        # A program file of its own, on the disk already: the kernel does not drop pages that another process has mapped as
+        # well, nor such as are still to be written.
+        program = shutil.copy(contourd, self.scratch.name)
+        with open(program, "rb") as file:
+            os.fsync(file.fileno())
+        command = [program, "--config", machine_file, "--controller", "pid", "--socket", control_socket]
         for override in ["telemetry.publish=false", "realtime.required=false", f"realtime.priority={PRIORITY}",
-                         "realtime.cpu=0", *overrides]:
+                         "realtime.cpu=0", f"io.modbus.port={port}", f"emulator.io.port={port}", *overrides]:
             command += ["--set", override]
         self.process = subprocess.Popen(command, stdout=self.messages.open("w"), stderr=subprocess.STDOUT)
 
