@@ -156,8 +156,8 @@ void AddDiagnoseCommand(CLI::App& app, Action& action) {
                   "Program whose contour error is simulated for the report; default: a circle of 10 mm")
       ->check(CLI::ExistingFile);
   sub->add_option("--bootstrap", options->bootstrap_runs,
-                  "Clean logs simulated to calibrate the gate; 0: none")
-      ->check(CLI::Range(0, 100000));
+                  "Refits with every stroke at random, for the intervals; 0: none, else 50 or more")
+      ->check(CLI::Range(0, 0) | CLI::Range(50, 100000));
   sub->add_option("--seed", options->seed, "Of everything drawn; the same seed gives the same answer");
   sub->add_option("--threads", options->threads, "Cores to use; 0: all")->check(CLI::Range(0, 256));
   sub->add_option("--set", options->set, "KEY=VALUE: override a key of the model file; repeatable")

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tools/diagnosis/bootstrap.h"
 #include "tools/diagnosis/detectable.h"
 #include "tools/diagnosis/effects.h"
 #include "tools/diagnosis/experiments.h"
@@ -212,7 +213,24 @@ class Engine {
     out.causes.push_back(std::move(cause));
   }
 
+  /// Intervals of all that was accepted, from the fit of all of it.
+  void Bootstrap(Fit fit, Diagnosis& out) const {
+    const Eigen::MatrixXd draws =
+        StrokeBootstrap(problem_, fit, options_.bootstrap_runs, options_.seed,
+                        [&](double done) { Say("refits with strokes at random", done); });
+    const Eigen::MatrixXd about = draws.colwise() - draws.rowwise().mean();
+    fit.covariance = about * about.transpose() / static_cast<double>(draws.cols() - 1);
+    std::size_t index = 0;
+    for (Cause& cause : out.causes) {
+      if (cause.kind == "sample_jitter") continue;  // not in the fit
+      cause.shapes.clear();
+      DescribeEffect(problem_, fit, index++, draws, cause);
+    }
+    out.bootstrap_runs = options_.bootstrap_runs;
+  }
+
   void Finish(const Fit& current, Diagnosis& out) {
+    if (options_.bootstrap_runs > 0 && !current.point.effects.empty()) Bootstrap(current, out);
     out.data_quality = problem_.quality_;
     for (std::size_t i = 0; i < problem_.terms_.size(); ++i) {
       const BaseTerm& t = problem_.terms_[i];

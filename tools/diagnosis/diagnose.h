@@ -16,7 +16,8 @@ struct DiagnoseOptions {
       1;  ///< of everything drawn; the same seed gives the same answer on any number of threads
   int threads = 1;
   int most_effects = 3;  ///< causes named at most
-  /// Clean logs simulated from the fitted model to calibrate the gate; 0: sign flips of blocks only.
+  /// Refits with the residual of every stroke at random, from which the intervals come; 0: from the fit's
+  /// covariance.
   int bootstrap_runs = 0;
   /// Called now and then from the calling thread with what is being done and how much of it is done, 0..1.
   std::function<void(std::string_view, double)> progress;

@@ -84,7 +84,8 @@ struct Diagnosis {
   std::vector<std::string> not_excited;
   std::map<std::string, std::map<std::string, double>> smallest_detectable;
   double false_alarm_rate = 0.05;
-  double gate = 0.0;  ///< score that the calibrated gate asked for
+  double gate = 0.0;       ///< score that the calibrated gate asked for
+  int bootstrap_runs = 0;  ///< that the intervals come from; 0: from the fit's covariance
   DataQuality data_quality;
   std::vector<Candidate> candidates;
   std::vector<BaseParameter> base;

@@ -25,18 +25,6 @@ double StepOf(const Problem& problem, const Point& p, std::size_t i) {
   return 0.0;
 }
 
-Point Moved(Point p, const Eigen::VectorXd& by) {
-  Eigen::Index j = 0;
-  for (double& x : p.base) x += by(j++);
-  for (std::size_t e = 0; e < p.effects.size(); ++e)
-    for (std::size_t i = 0; i < p.amplitudes[e].size(); ++i) {
-      double& a = p.amplitudes[e][i];
-      a += by(j++);
-      if (!p.effects[e]->low.empty()) a = std::clamp(a, p.effects[e]->low[i], p.effects[e]->high[i]);
-    }
-  return p;
-}
-
 double PriorOf(const Problem& problem, const Point& p) {
   double sum = 0.0;
   for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms_[i].sigma, 2);
@@ -258,6 +246,18 @@ class Descent {
 };
 
 }  // namespace
+
+Point Moved(Point p, const Eigen::VectorXd& by) {
+  Eigen::Index j = 0;
+  for (double& x : p.base) x += by(j++);
+  for (std::size_t e = 0; e < p.effects.size(); ++e)
+    for (std::size_t i = 0; i < p.amplitudes[e].size(); ++i) {
+      double& a = p.amplitudes[e][i];
+      a += by(j++);
+      if (!p.effects[e]->low.empty()) a = std::clamp(a, p.effects[e]->low[i], p.effects[e]->high[i]);
+    }
+  return p;
+}
 
 std::size_t ParameterCount(const Point& p) {
   std::size_t n = p.base.size();

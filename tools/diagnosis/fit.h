@@ -52,4 +52,7 @@ void Rewhiten(const Problem& problem, Fit& fit);
 
 std::size_t ParameterCount(const Point& point);
 
+/// Base terms first; amplitudes stay inside their effects' bounds.
+Point Moved(Point point, const Eigen::VectorXd& by);
+
 }  // namespace contour::diagnosis

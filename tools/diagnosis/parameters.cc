@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr int kDraws = 400;
+constexpr double kTail = 0.025;  // of a 95 % interval, either side
 
 using Named = std::map<std::string, double>;
 
@@ -190,45 +191,46 @@ std::string MainParameter(const std::string& kind) {
   return it == main.end() ? "amplitude" : it->second;
 }
 
-void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, Cause& cause) {
+void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, const Eigen::MatrixXd& draws,
+                    Cause& cause) {
   std::size_t first = fit.point.base.size();
   for (std::size_t e = 0; e < index; ++e) first += fit.point.amplitudes[e].size();
-  const auto count = static_cast<Eigen::Index>(fit.point.amplitudes[index].size());
-  const Named value = Evaluate(problem, fit.point, index);
-  // The whole point is drawn: parameters such as a stiffness depend on the base's values too.
-  const Eigen::Index n = fit.covariance.rows();
-  Eigen::MatrixXd covariance = fit.covariance;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (covariance + covariance.transpose()));
-  const Eigen::MatrixXd root =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  std::mt19937_64 random(20240229);
-  std::normal_distribution<double> normal;
   std::map<std::string, std::vector<double>> drawn;
-  for (int d = 0; d < kDraws; ++d) {
-    Eigen::VectorXd x(n);
-    for (Eigen::Index i = 0; i < n; ++i) x(i) = normal(random);
-    x = (root * x).eval();
-    Point p = fit.point;
-    p.effects = {fit.point.effects[index]};
-    p.amplitudes = {fit.point.amplitudes[index]};
-    for (std::size_t i = 0; i < p.base.size(); ++i) p.base[i] += x(static_cast<Eigen::Index>(i));
-    for (Eigen::Index i = 0; i < count; ++i)
-      p.amplitudes[0][static_cast<std::size_t>(i)] += x(static_cast<Eigen::Index>(first) + i);
-    const Effect& effect = *p.effects[0];
-    for (std::size_t i = 0; i < p.amplitudes[0].size() && !effect.low.empty(); ++i)
-      p.amplitudes[0][i] = std::clamp(p.amplitudes[0][i], effect.low[i], effect.high[i]);
+  // The whole point is drawn: parameters such as a stiffness depend on the base's values too.
+  for (Eigen::Index d = 0; d < draws.cols(); ++d) {
+    Point p = Moved(fit.point, draws.col(d));
+    p.effects = {p.effects[index]};
+    p.amplitudes = {std::vector<double>(p.amplitudes[index])};
     for (const auto& [name, v] : Evaluate(problem, p, 0)) drawn[name].push_back(v);
   }
-  for (const auto& [name, v] : value) {
+  const auto count = static_cast<double>(draws.cols());
+  for (const auto& [name, v] : Evaluate(problem, fit.point, index)) {
     std::vector<double>& d = drawn[name];
     if (name == "phase_rad")
       for (double& x : d) x = v + std::remainder(x - v, kTwoPi);
     std::sort(d.begin(), d.end());
-    const double low = d[kDraws / 40], high = d[kDraws - 1 - kDraws / 40];
+    const auto tail = static_cast<std::size_t>(count * kTail);
+    const double low = d[tail], high = d[d.size() - 1 - tail];
     // A peak of noisy amplitudes is drawn too large on the average: turned over about the value.
     cause.parameters[name] = {v, 2.0 * v - high, 2.0 * v - low};
   }
   AddShape(problem, fit, index, first, cause);
+}
+
+void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, Cause& cause) {
+  const Eigen::Index n = fit.covariance.rows();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 *
+                                                             (fit.covariance + fit.covariance.transpose()));
+  const Eigen::MatrixXd root =
+      eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  std::mt19937_64 random(20240229);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd draws(n, kDraws);
+  for (Eigen::Index d = 0; d < kDraws; ++d) {
+    for (Eigen::Index i = 0; i < n; ++i) draws(i, d) = normal(random);
+    draws.col(d) = (root * draws.col(d)).eval();
+  }
+  DescribeEffect(problem, fit, index, draws, cause);
 }
 
 }  // namespace contour::diagnosis

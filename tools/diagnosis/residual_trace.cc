@@ -23,19 +23,6 @@ Signal FromRaw(const Problem& problem, const Point& point, const std::vector<dou
   return Smooth(r, 1.3e-3 / T);
 }
 
-Point Stepped(const Point& point, const Eigen::VectorXd& by) {
-  Point p = point;
-  Eigen::Index j = 0;
-  for (double& x : p.base) x += by(j++);
-  for (std::size_t e = 0; e < p.effects.size(); ++e)
-    for (std::size_t i = 0; i < p.amplitudes[e].size(); ++i) {
-      double& a = p.amplitudes[e][i];
-      a += by(j++);
-      if (!p.effects[e]->low.empty()) a = std::clamp(a, p.effects[e]->low[i], p.effects[e]->high[i]);
-    }
-  return p;
-}
-
 // Where the parameters go to first order when the blocks of one fold are left out, for either fold.
 std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
@@ -76,7 +63,7 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
 std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool scale) {
   const std::size_t n = problem.rows();
   std::vector<Point> points;
-  for (const Eigen::VectorXd& step : StepsWithout(problem, fit)) points.push_back(Stepped(fit.point, step));
+  for (const Eigen::VectorXd& step : StepsWithout(problem, fit)) points.push_back(Moved(fit.point, step));
   const auto raw = problem.Raw(points);
   std::vector<double> squares(kHeldOutBlocks, 0.0);
   for (std::size_t fold = 0; fold < 2; ++fold) {

@@ -37,7 +37,7 @@ How to judge:
   --only A,B,...       only cases whose names begin so: clean, clear_cogging, ...
   --rate R             false-alarm rate (0.05)
   --strict-rate R      clean machines that raise an alarm are asked again at this rate
-  --bootstrap N        logs simulated to calibrate the gate (0)
+  --bootstrap N        refits with every stroke at random, for the intervals (0)
 
   --threads N          (number of processors)
   --out DIR            results.csv and results.md go there (with --judge: beside the cases)

@@ -96,6 +96,10 @@ std::string VerdictText(const Diagnosis& d) {
 std::string DiagnosisText(const Diagnosis& d) {
   std::string out = Wrapped(VerdictText(d), 0);
   for (std::size_t i = 0; i < d.causes.size(); ++i) out += "\n" + CauseText(d.causes[i], i + 1);
+  if (d.bootstrap_runs > 0)
+    out += "\n" + Wrapped("Intervals of the sizes: from " + std::to_string(d.bootstrap_runs) +
+                              " refits with the residual of every stroke at random.",
+                          0);
   const DataQuality& q = d.data_quality;
   out += "\n" +
          Wrapped("Data: " + std::to_string(q.rows) + " rows, " + std::to_string(q.missing) + " missing, " +
