@@ -11,9 +11,10 @@ struct Part {
 };
 
 /// The longest part of the time from the grid point to the frames sent.
-Part Longest(const CycleTiming& t) noexcept {
-  const std::array<Part, 5> parts{{
-      {LateCause::kWakeUp, t.wakeup_late_ns},
+Part Longest(const CycleTiming& t, std::int64_t overrun_ns) noexcept {
+  const std::array<Part, 6> parts{{
+      {LateCause::kAfterSend, overrun_ns},
+      {LateCause::kWakeUp, t.wakeup_late_ns - overrun_ns},
       {LateCause::kReceive, t.received_ns - t.wakeup_late_ns},
       {LateCause::kEstimate, t.estimated_ns - t.received_ns},
       {LateCause::kControl, t.stepped_ns - t.estimated_ns},
@@ -25,7 +26,8 @@ Part Longest(const CycleTiming& t) noexcept {
   return longest;
 }
 
-LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimits& limits) noexcept {
+LateCause WhatHeldUp(const Part& part, const CycleTiming& t, std::int64_t waited_ns,
+                     const LatenessLimits& limits) noexcept {
   // Ready to run and not running: somebody else had the CPU, or nobody was allowed to. Time of this kind
   // that is more than half of the part explains it.
   if (t.run_delay_ns > part.length_ns / 2) {
@@ -37,7 +39,8 @@ LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimit
   // time, faults before it can look at the clock, and gives up the CPU until the page is there.
   if (t.page_faults != 0 && (part.cause != LateCause::kWakeUp || t.voluntary_switches != 0))
     return LateCause::kPageFault;
-  if (t.voluntary_switches != 0) return LateCause::kStopped;
+  // A short wait for a lock is no explanation of a long part.
+  if (t.voluntary_switches != 0 && waited_ns > part.length_ns / 2) return LateCause::kStopped;
   // Where the kernel tells how long the thread waited, a short wait is no explanation.
   const bool unknown_wait = t.run_delay_ns == 0;
   if (unknown_wait && t.involuntary_switches != 0 && part.cause != LateCause::kWakeUp)
@@ -47,11 +50,16 @@ LateCause WhatHeldUp(const Part& part, const CycleTiming& t, const LatenessLimit
 
 }  // namespace
 
-LateCause FindLateCause(const CycleTiming& t, LateCause before, const LatenessLimits& limits) noexcept {
-  if (t.sent_ns > limits.send_deadline_ns) return WhatHeldUp(Longest(t), t, limits);
-  if (t.skipped_grid_points == 0) return LateCause::kNone;
-  if (before != LateCause::kNone) return before;
-  return WhatHeldUp({LateCause::kAfterSend, t.after_send_ns}, t, limits);
+LateCause FindLateCause(const CycleTiming& t, const CycleSurroundings& around,
+                        const LatenessLimits& limits) noexcept {
+  if (t.sent_ns > limits.send_deadline_ns) {
+    const Part longest = Longest(t, around.overrun_ns);
+    if (longest.cause != LateCause::kAfterSend) return WhatHeldUp(longest, t, around.waited_ns, limits);
+  } else if (t.skipped_grid_points == 0) {
+    return LateCause::kNone;
+  }
+  if (around.before != LateCause::kNone) return around.before;
+  return WhatHeldUp({LateCause::kAfterSend, t.after_send_ns}, t, around.waited_ns, limits);
 }
 
 }  // namespace contour

@@ -75,7 +75,9 @@ void Loop::RunWall() noexcept {
   while (!finished) {
     const std::int64_t asleep = Now();
     grid = NextWakeup(origin, config_.period_ns, grid.index, asleep);
-    SleepUntil(grid.time_ns);
+    // The kernel would give up the processor for a time that has gone by, too.
+    const std::int64_t early_ns = grid.time_ns - asleep;
+    if (early_ns > 0) SleepUntil(grid.time_ns);
     const std::int64_t woken = Now();
     CycleEntry& entry = *telemetry_.Reserve();
     entry.input.frames.clear();
@@ -98,12 +100,12 @@ void Loop::RunWall() noexcept {
     timing.sent_ns = sent - grid.time_ns;
     timing.after_send_ns = asleep - last_sent;
     last_sent = sent;
-    Finish(entry, grid, asleep < grid.time_ns, accounting);
+    Finish(entry, grid, early_ns, accounting);
   }
 }
 
 // All that is not needed to send the frames comes after them.
-void Loop::Finish(CycleEntry& entry, const GridPoint& grid, bool slept,
+void Loop::Finish(CycleEntry& entry, const GridPoint& grid, std::int64_t early_ns,
                   ThreadAccounting& accounting) noexcept {
   CycleTiming& timing = entry.timing;
   timing.skipped_grid_points = grid.skipped;
@@ -111,11 +113,14 @@ void Loop::Finish(CycleEntry& entry, const GridPoint& grid, bool slept,
   const ThreadCounts counts = accounting.Read();
   timing.page_faults = counts.page_faults;
   timing.involuntary_switches = counts.involuntary_switches;
-  // After a cycle that ran into this grid point there was no sleep.
-  timing.voluntary_switches = counts.voluntary_switches - (slept && counts.voluntary_switches != 0 ? 1U : 0U);
+  const bool slept = early_ns > 0 && counts.voluntary_switches != 0;
+  timing.voluntary_switches = counts.voluntary_switches - (slept ? 1U : 0U);
   timing.run_delay_ns = accounting.RunDelay_ns();
+  const std::int64_t waited_ns =
+      accounting.OffCpu_ns() - timing.run_delay_ns - std::max<std::int64_t>(early_ns, 0);
   if (timing.late) {
-    timing.cause = FindLateCause(timing, last_cause_, limits_);
+    timing.cause =
+        FindLateCause(timing, {last_cause_, std::max<std::int64_t>(-early_ns, 0), waited_ns}, limits_);
     counters_.late_cycles.fetch_add(1, std::memory_order_relaxed);
     counters_.causes[static_cast<std::size_t>(timing.cause)].fetch_add(1, std::memory_order_relaxed);
   }

@@ -49,7 +49,8 @@ class Loop {
   [[nodiscard]] const LoopCounters& counters() const noexcept { return counters_; }
 
  private:
-  void Finish(CycleEntry& entry, const GridPoint& grid, bool slept, ThreadAccounting& accounting) noexcept;
+  void Finish(CycleEntry& entry, const GridPoint& grid, std::int64_t early_ns,
+              ThreadAccounting& accounting) noexcept;
   void WaitForFrames(std::int64_t until_ns) noexcept;
   void WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept;
   void WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoint& grid,

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <charconv>
+#include <ctime>
 
 namespace contour {
 namespace {
@@ -19,6 +20,12 @@ std::int64_t NumberIn(const char* text, std::size_t length, int skip) noexcept {
   std::int64_t value = -1;
   std::from_chars(at, end, value);
   return value;
+}
+
+std::int64_t Clock_ns(clockid_t clock) noexcept {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
 }
 
 std::int64_t ReadNumber(const char* file) noexcept {
@@ -36,6 +43,7 @@ ThreadAccounting::ThreadAccounting() noexcept
     : schedstat_(::open("/proc/thread-self/schedstat", O_RDONLY | O_CLOEXEC)) {
   static_cast<void>(Read());
   static_cast<void>(RunDelay_ns());
+  static_cast<void>(OffCpu_ns());
 }
 
 ThreadAccounting::~ThreadAccounting() {
@@ -67,6 +75,13 @@ std::int64_t ThreadAccounting::RunDelay_ns() noexcept {
   if (now < 0) return 0;
   const std::int64_t since = now - run_delay_ns_;
   run_delay_ns_ = now;
+  return since;
+}
+
+std::int64_t ThreadAccounting::OffCpu_ns() noexcept {
+  const std::int64_t now = Clock_ns(CLOCK_MONOTONIC) - Clock_ns(CLOCK_THREAD_CPUTIME_ID);
+  const std::int64_t since = now - off_cpu_ns_;
+  off_cpu_ns_ = now;
   return since;
 }
 

@@ -25,6 +25,8 @@ class ThreadAccounting {
   /// Time that the thread was ready to run and did not run, since the last call; 0 where the kernel does not
   /// tell. One system call.
   std::int64_t RunDelay_ns() noexcept;
+  /// Time that the thread did not run, for whatever reason, since the last call. One system call.
+  std::int64_t OffCpu_ns() noexcept;
 
  private:
   int schedstat_ = -1;
@@ -32,6 +34,7 @@ class ThreadAccounting {
   std::uint64_t involuntary_ = 0;
   std::uint64_t voluntary_ = 0;
   std::int64_t run_delay_ns_ = 0;
+  std::int64_t off_cpu_ns_ = 0;
 };
 
 /// How long the kernel's real-time throttling stops threads at a time; 0 when it is off.

@@ -32,8 +32,8 @@ CycleTiming Delayed(std::int64_t CycleTiming::*from, std::int64_t delay_ns) {
   return t;
 }
 
-LateCause CauseOf(const CycleTiming& t, LateCause before = LateCause::kNone) {
-  return FindLateCause(t, before, kLimits);
+LateCause CauseOf(const CycleTiming& t, LateCause before = LateCause::kNone, std::int64_t overrun_ns = 0) {
+  return FindLateCause(t, {before, overrun_ns, t.voluntary_switches * 4900 * kUs}, kLimits);
 }
 
 TEST(LateAttribution, ACycleInTimeHasNoCause) {
@@ -67,6 +67,8 @@ TEST(LateAttribution, WhatHeldAPartUpComesBeforeThePart) {
   t = Delayed(&CycleTiming::decided_ns, 300 * kUs);
   t.voluntary_switches = 1;
   EXPECT_EQ(CauseOf(t), LateCause::kStopped);
+  EXPECT_EQ(FindLateCause(t, {LateCause::kNone, 0, 30 * kUs}, kLimits), LateCause::kControl)
+      << "it hardly waited";
 }
 
 TEST(LateAttribution, ALateWakeUp) {
@@ -87,7 +89,7 @@ TEST(LateAttribution, ThrottlingIsKnownByItsLength) {
   t.run_delay_ns = 49'900 * kUs;
   t.involuntary_switches = 1;
   EXPECT_EQ(CauseOf(t), LateCause::kThrottled);
-  EXPECT_EQ(FindLateCause(t, LateCause::kNone, {200 * kUs, 0}), LateCause::kPreempted) << "it is off";
+  EXPECT_EQ(FindLateCause(t, {}, {200 * kUs, 0}), LateCause::kPreempted) << "it is off";
   t = Delayed(&CycleTiming::decided_ns, 20'000 * kUs);
   t.run_delay_ns = 19'900 * kUs;
   EXPECT_EQ(CauseOf(t), LateCause::kPreempted);
@@ -101,6 +103,16 @@ TEST(LateAttribution, SkippedGridPointsHaveTheCauseOfTheCycleBefore) {
   EXPECT_EQ(CauseOf(t), LateCause::kAfterSend);
   t.run_delay_ns = 2900 * kUs;
   EXPECT_EQ(CauseOf(t), LateCause::kPreempted);
+}
+
+TEST(LateAttribution, ACycleThatBeganLateHasTheCauseOfTheOneThatRanIntoIt) {
+  CycleTiming t = Delayed(&CycleTiming::wakeup_late_ns, 300 * kUs);
+  EXPECT_EQ(CauseOf(t, LateCause::kPreempted, 300 * kUs), LateCause::kPreempted) << "there was no sleep";
+  EXPECT_EQ(CauseOf(t, LateCause::kPreempted, 0), LateCause::kWakeUp) << "it had slept in between";
+  EXPECT_EQ(CauseOf(t, LateCause::kNone, 300 * kUs), LateCause::kAfterSend)
+      << "the frames before were in time";
+  t.sent_ns += 900 * kUs;
+  EXPECT_EQ(CauseOf(t, LateCause::kPreempted, 300 * kUs), LateCause::kSend) << "it took longer by itself";
 }
 
 }  // namespace

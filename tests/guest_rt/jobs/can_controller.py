@@ -1,4 +1,5 @@
-"""contourd on an emulated CAN controller (SJA1000 of a kvaser_pci): bring-up at 1 Mbit/s, run, bus-off, restart.
+"""contourd on an emulated CAN controller (SJA1000 of a kvaser_pci): bring-up at 1 Mbit/s, run, bus-off, restart, link down and up; then
+all that was recorded of it, computed again.
 
     can_controller.py MACHINE PROGRAM SHORT_PROGRAM
 
@@ -20,6 +21,8 @@ from pathlib import Path
 from guest_machine import (AXES, LATE, MACHINE, Failed, bring_to_motion, contour, enabled, expect, last_truth, main, run,
                            silent_master_bound, speed, start_drives, state, status, truth, wait_for, write_machine)
 
+LOG = Path("/tmp/run.lcmlog")
+FLIGHT = Path("/tmp/flight")
 RESTART_ms = 100
 SERIAL_PORT = ("0x1b36", "0x0002")
 BAR0, BAR1 = 0x10, 0x14
@@ -114,6 +117,16 @@ def check_works_again(short_program):
     contour("run", short_program)
 
 
+def check_replays():
+    """The whole run, faults and all, and each flight record come out again bit for bit."""
+    records = sorted(FLIGHT.iterdir())
+    expect(len(records) == 2, f"two faults left {len(records)} flight records")
+    for file in (LOG, *records):
+        said = json.loads(run("contour", "replay", "--json", file))
+        expect(said["verdict"] == "same" and said["same_build"] and not said["differences"], f"{file} does not come out again: {said}")
+        print(f"{file.name}: {said['cycles']} cycles, {said['first_cycle']} to {said['last_cycle']}: computed again, every output the same")
+
+
 def test():
     write_machine(sys.argv[1])
     program, short_program = sys.argv[2:4]
@@ -125,8 +138,8 @@ def test():
     start_drives("can1")
     Path("/run/contourd").mkdir(exist_ok=True)
     log = open("/tmp/contourd.log", "w", encoding="utf-8")
-    subprocess.Popen(["contourd", "--config", MACHINE, "--bus", "can0", "--socket", "/run/contourd/control.sock"],
-                     stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+    daemon = subprocess.Popen(["contourd", "--config", MACHINE, "--bus", "can0", "--socket", "/run/contourd/control.sock", "--log", LOG,
+                               "--set", f"telemetry.flight_directory={FLIGHT}"], stdin=subprocess.DEVNULL, stdout=log, stderr=log)
     before = bring_to_motion(program)
     time.sleep(2.0)
     running = status()
@@ -160,6 +173,9 @@ def test():
     expect(not enabled(last_truth()), "a drive was enabled when the link came up")
     check_works_again(short_program)
     print("link up again; reset, enabled and run by the operator")
+    daemon.terminate()
+    expect(daemon.wait(60) == 0, f"contourd ended with {daemon.returncode}")
+    check_replays()
 
 
 main(test)
