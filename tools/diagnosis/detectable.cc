@@ -36,7 +36,7 @@ double Largest(const Problem& p, const std::string& kind) {
 }  // namespace
 
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
-                    const Jitter& jitter, double gate, Diagnosis& out) {
+                    const Jitter& jitter, const Gate& gate, Diagnosis& out) {
   std::map<std::string, double> smallest;
   for (const Scored& s : scored) {
     const std::string& kind = s.effect->kind;
@@ -44,7 +44,9 @@ void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Sco
     // The mean standard error over the amplitudes; a shape may lie along any of them.
     const double n = static_cast<double>(s.covariance.rows());
     const double sd = std::sqrt(std::max(0.0, s.covariance.trace() / n) * s.excess);
-    const double needed = (std::sqrt(std::max(gate + Penalty(*s.effect), 1.0)) + 1.2816) / 1.5 * sd;
+    const double needed =
+        (std::sqrt(std::max(Threshold(problem, gate, *s.effect) + Penalty(*s.effect), 1.0)) + 1.2816) / 1.5 *
+        sd;
     if (!std::isfinite(needed) || needed > Largest(problem, kind)) continue;
     Fit at;
     at.point = base.point;
@@ -67,7 +69,8 @@ void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Sco
   if (jitter.tested) {
     smallest["sample_jitter"] = 1.0;
     out.smallest_detectable["sample_jitter"]["rms_us"] =
-        1e6 * std::sqrt((std::sqrt(std::max(gate + 3.0, 1.0)) + 1.2816) / 1.5 * jitter.sigma_s2);
+        1e6 * std::sqrt((std::sqrt(std::max(Threshold(problem, gate) + 3.0, 1.0)) + 1.2816) / 1.5 *
+                        jitter.sigma_s2);
   }
   for (const std::string_view kind : kKinds)
     if (!smallest.contains(std::string(kind))) out.not_excited.emplace_back(kind);

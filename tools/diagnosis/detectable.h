@@ -3,6 +3,7 @@
 #include <span>
 
 #include "tools/diagnosis/finding.h"
+#include "tools/diagnosis/gate.h"
 #include "tools/diagnosis/jitter.h"
 #include "tools/diagnosis/score.h"
 
@@ -12,6 +13,6 @@ namespace contour::diagnosis {
 /// exceeds the gate in 90 % of cases. A kind whose smallest detectable size is beyond what such an axis can
 /// have, or whose signal the log lacks, is not excited.
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
-                    const Jitter& jitter, double gate, Diagnosis& out);
+                    const Jitter& jitter, const Gate& gate, Diagnosis& out);
 
 }  // namespace contour::diagnosis

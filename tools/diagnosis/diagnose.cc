@@ -25,10 +25,8 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kJitterPenalty = 3.0;
-// No effect acts quite as its model does: this share of what it explains may look like others.
-constexpr double kUnlike = 5e-3;
 // Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
-constexpr double kConsistent = 1.0;
+constexpr double kConsistent = 1.2;
 
 void CheckInput(const AxisLog& log, const StatedAxis& stated) {
   const std::size_t n = log.size();
@@ -58,20 +56,20 @@ class Engine {
     for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
-      const double gate =
-          SignFlipGate(scored, options_.false_alarm_rate, options_.seed) + kUnlike * explained;
-      const double margin = ModelError(problem_, "");
+      const Gate gate{SignFlipGate(scored, options_.false_alarm_rate, options_.seed),
+                      options_.false_alarm_rate, explained};
       const Jitter jitter = TestJitter(problem_, current);
       if (round == 0) {
         KeepFirst(scored, out);
         out.candidates.push_back(
             {"sample_jitter", jitter.drop - kJitterPenalty, std::numeric_limits<double>::quiet_NaN(), false});
-        KeepDetectable(problem_, current, scored, jitter, gate + margin, out);
-        out.gate = gate + margin;
+        KeepDetectable(problem_, current, scored, jitter, gate, out);
+        out.gate = Threshold(problem_, gate);
       }
-      const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > gate + margin;
+      const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > Threshold(problem_, gate);
       Say("rivals", 0.3 + 0.25 * round);
-      std::vector<Rival> rivals = FitRivals(problem_, current, scored, gate);
+      std::vector<Rival> rivals =
+          FitRivals(problem_, current, scored, gate, round == 0 && options_.evidence != nullptr);
       if (rivals.empty()) {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
@@ -80,6 +78,7 @@ class Engine {
       problem_.LearnNoise(rivals[0].fit.point);
       Say("rivals under the noise that is left", 0.35 + 0.25 * round);
       FitAgain(problem_, current, rivals);
+      if (options_.evidence && round == 0) TellEvidence(current, scored, rivals, gate.flips);
       // The best, or the next that holds where the best does not.
       double tested = 0.0;
       bool found = false;
@@ -158,17 +157,35 @@ class Engine {
     }
   }
 
-  bool Holds(const Fit& current, const Rival& r, double tested, double gate) const {
-    // From outside the catalogue only what is beyond doubt.
-    gate += ModelError(problem_, r.effect().kind);
-    if (tested <= (Outside(r.effect().kind) ? gate + 25.0 : gate)) return false;
-    // What a base parameter does already shows in the priors; it must not do harm elsewhere.
-    const double unseen = HeldOutStatistic(problem_, current, r.fit);
-    return r.effect().kind == "torque_constant" ||
-           unseen > (InBase(problem_, r.effect().kind) ? 0.0 : kConsistent);
+  void TellEvidence(const Fit& current, const std::vector<Scored>& scored, const std::vector<Rival>& rivals,
+                    double flips) const {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    std::vector<std::string> told;
+    for (const Scored& s : scored) {
+      const std::string& kind = s.effect->kind;
+      if (std::find(told.begin(), told.end(), kind) != told.end()) continue;
+      told.push_back(kind);
+      Evidence e{kind, s.drop, Penalty(*s.effect), s.excess, kNone, kNone, kNone, flips};
+      for (const Rival& r : rivals) {
+        if (r.effect().kind != kind) continue;
+        e.penalty = Penalty(r.effect());
+        e.refitted = r.score + e.penalty;
+        e.tested = TestedScore(problem_, current, r);
+        e.unseen = HeldOutStatistic(problem_, current, r.fit);
+      }
+      options_.evidence(e);
+    }
   }
 
-  void Accept(const Fit& current, const std::vector<Rival>& rivals, double gate, Diagnosis& out) const {
+  bool Holds(const Fit& current, const Rival& r, double tested, const Gate& gate) const {
+    // From outside the catalogue only what is beyond doubt.
+    const double least = Threshold(problem_, gate, r.effect());
+    if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
+    // What a base parameter does already shows in the priors.
+    return InBase(problem_, r.effect().kind) || HeldOutStatistic(problem_, current, r.fit) > kConsistent;
+  }
+
+  void Accept(const Fit& current, const std::vector<Rival>& rivals, const Gate& gate, Diagnosis& out) const {
     const Rival& best = rivals[0];
     Cause cause;
     cause.kind = best.effect().kind;
@@ -181,7 +198,7 @@ class Engine {
           c.accepted = &r == &best;
         }
       // What would not have been accepted alone explains too little to be the cause.
-      if (&r != &best && !Outside(kind) && r.score > gate + ModelError(problem_, kind) &&
+      if (&r != &best && !Outside(kind) && r.score > Threshold(problem_, gate, r.effect()) &&
           r.score > best.score - std::max(12.0, 0.03 * best.score))
         cause.indistinguishable_from.push_back(kind);
     }

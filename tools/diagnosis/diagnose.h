@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "tools/diagnosis/axis_log.h"
@@ -9,6 +10,18 @@
 #include "tools/diagnosis/stated_axis.h"
 
 namespace contour::diagnosis {
+
+/// What one kind of cause scored in the first round, for calibrations.
+struct Evidence {
+  std::string kind;
+  double screened = 0.0;  ///< score test: drop of chi^2 and prior
+  double penalty = 0.0;
+  double excess = 1.0;
+  double refitted = 0.0;  ///< drop of the joint fit; NaN: not fitted
+  double tested = 0.0;    ///< score that the gate is asked about; NaN: not fitted
+  double unseen = 0.0;    ///< held-out statistic; NaN: not fitted
+  double flips = 0.0;     ///< gate of the sign flips
+};
 
 struct DiagnoseOptions {
   double false_alarm_rate = 0.05;
@@ -19,6 +32,9 @@ struct DiagnoseOptions {
   /// Refits with the residual of every stroke at random, from which the intervals come; 0: from the fit's
   /// covariance.
   int bootstrap_runs = 0;
+  /// When given, the best rivals are fitted whether they promise anything or not, and what each kind scored
+  /// is told.
+  std::function<void(const Evidence&)> evidence;
   /// Called now and then from the calling thread with what is being done and how much of it is done, 0..1.
   std::function<void(std::string_view, double)> progress;
 };

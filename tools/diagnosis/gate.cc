@@ -6,6 +6,35 @@
 #include <random>
 
 namespace contour::diagnosis {
+namespace {
+
+// No effect acts quite as its model does: this share of what it explains may look like others.
+constexpr double kUnlike = 5e-3;
+// What is left of an accepted cause looks like others, the more the longer the log.
+constexpr double kBesidePerRow = 2e-4;
+// Each kind that is a number of the base has this share of the false alarms.
+constexpr double kShareInBase = 0.2;
+// A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
+// rate (3.3 standard deviations).
+constexpr double kBeyondStated = 1e-3;
+// The model's own errors (integrators, the closed loop, a coupling stiffer than a rigid model can say) look
+// like effects, the more the longer the log; see docs/diagnosis_method.md for how these were measured.
+constexpr double kMargin = 1.0, kMarginPerRow = 5e-5, kMarginPerRowViscous = 2.5e-4;
+
+double NormalTail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
+
+// Exceeded by chi^2 with the given probability.
+double ChiSquare(std::size_t degrees, double probability) {
+  if (degrees >= 2) return -2.0 * std::log(probability);
+  double low = 0.0, high = 10.0;
+  for (int i = 0; i < 60; ++i) {
+    const double z = 0.5 * (low + high);
+    (2.0 * NormalTail(z) > probability ? low : high) = z;
+  }
+  return low * low;
+}
+
+}  // namespace
 
 double SignFlipGate(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed) {
   constexpr int kDraws = 1500;
@@ -35,6 +64,28 @@ double SignFlipGate(std::span<const Scored> scored, double false_alarm_rate, std
   const auto paper = [](double p) { return -std::log(-std::log(p)); };
   const double slope = (quantile(0.98) - quantile(0.80)) / (paper(0.98) - paper(0.80));
   return quantile(0.98) + slope * (paper(1.0 - false_alarm_rate) - paper(0.98));
+}
+
+double Threshold(const Problem& problem, const Gate& gate) {
+  const auto rows = static_cast<double>(problem.rows());
+  if (gate.accepted > 0.0) return gate.flips + kUnlike * gate.accepted + kBesidePerRow * rows;
+  return gate.flips + kMargin + kMarginPerRow * rows;
+}
+
+double Threshold(const Problem& problem, const Gate& gate, const Effect& effect) {
+  if (!InBase(problem, effect.kind)) {
+    const double extra = gate.accepted <= 0.0 && effect.kind == "viscous_nonlinear"
+                             ? (kMarginPerRowViscous - kMarginPerRow) * static_cast<double>(problem.rows())
+                             : 0.0;
+    return Threshold(problem, gate) + extra;
+  }
+  // The stated uncertainties say what chance does here.
+  const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
+  const double by_chance =
+      ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated)) - Penalty(effect);
+  if (gate.accepted <= 0.0) return by_chance;
+  return std::max(by_chance, gate.flips) + kUnlike * gate.accepted +
+         0.5 * kBesidePerRow * static_cast<double>(problem.rows());
 }
 
 }  // namespace contour::diagnosis

@@ -15,6 +15,7 @@ constexpr double kSettling_s = 0.3;
 // A coupling of 1 kHz; softer ones are for `compliance` to find.
 constexpr double kLagForDelay_s = 25e-6;
 constexpr std::size_t kSlowRows = 20;
+constexpr double kLeastCountsPerRow = 1e-3;
 // Without a statement of the model file: what a careful data sheet is worth.
 const std::map<std::string, double> kDefaultSigma = {{"inertia", 0.05},
                                                      {"load_inertia", 0.05},
@@ -335,8 +336,27 @@ void Problem::LearnNoise(const Point& point) {
     Lower(r, 150, 1.25, w);
     Lower(slow.data(), 400, 2.0, w);
   }
+  if (has_scale()) LowerWhereScaleRests(&root_weight_[n]);
   for (std::size_t k = 0; k < data_size(); ++k)
     if (counted_[k % n] == 0) root_weight_[k] = 0.0;
+}
+
+void Problem::LowerWhereScaleRests(double* w) const {
+  // Within one count of the scale its rounding error is the same from row to row: no more is known than after
+  // the first.
+  const std::vector<double>& x = log_.table_position_m;
+  const std::size_t n = rows();
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k < n; ++k) {
+    const double d = std::fabs(x[k] - x[k - 1]);
+    if (d > 1e-12) step = std::min(step, d);
+  }
+  if (!std::isfinite(step)) return;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double counts_per_row =
+        std::fabs(signals_->velocity[k]) * log_.period_s * stated_.table_per_q / step;
+    w[k] *= std::sqrt(std::clamp(counts_per_row, kLeastCountsPerRow, 1.0));
+  }
 }
 
 void Problem::LearnSignals(const Point& point) {

@@ -111,6 +111,7 @@ class Problem {
   void MakeTerms();
   void ChooseSubsteps();
   void CountRows();
+  void LowerWhereScaleRests(double* w) const;
   /// Lowers the weights w where the mean square of r over 2 half + 1 rows exceeds the limit.
   void Lower(const double* r, std::size_t half, double largest_by_chance, double* w) const;
 };

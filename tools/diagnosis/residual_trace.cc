@@ -23,6 +23,14 @@ Signal FromRaw(const Problem& problem, const Point& point, const std::vector<dou
   return Smooth(r, 1.3e-3 / T);
 }
 
+// A shape's own number, such as an instant, may be in one block only: it stays.
+void HoldShapes(const Fit& fit, Eigen::MatrixXd& normal) {
+  auto j = static_cast<Eigen::Index>(fit.point.base.size());
+  for (std::size_t e = 0; e < fit.point.effects.size(); ++e)
+    for (std::size_t i = 0; i < fit.point.amplitudes[e].size(); ++i, ++j)
+      if (i >= fit.point.effects[e]->tested) normal(j, j) *= 1e12;
+}
+
 // Where the parameters go to first order when the blocks of one fold are left out, for either fold.
 std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
@@ -49,11 +57,7 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
       }
     }
     normal.diagonal() *= 1.0 + 1e-12;
-    // A shape's own number, such as an instant, may be in one block only: it stays.
-    auto j = static_cast<Eigen::Index>(fit.point.base.size());
-    for (std::size_t e = 0; e < fit.point.effects.size(); ++e)
-      for (std::size_t i = 0; i < fit.point.amplitudes[e].size(); ++i, ++j)
-        if (i >= fit.point.effects[e]->tested) normal(j, j) *= 1e12;
+    HoldShapes(fit, normal);
     steps.push_back(-normal.ldlt().solve(gradient));
   }
   return steps;
@@ -76,18 +80,43 @@ std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool 
   return squares;
 }
 
-// The same of the white residual, to first order.
+// Sum of squares of the white residual in every block, to first order, with the parameters that all others
+// ask for.
 std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
-  const std::vector<Eigen::VectorXd> steps = StepsWithout(problem, fit);
+  const Eigen::Index p = fit.jacobian.cols();
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
+  for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
+    const double w = std::pow(problem.terms_[i].sigma, -2);
+    const auto j = static_cast<Eigen::Index>(i);
+    normal(j, j) = w;
+    gradient(j) = w * fit.point.base[i];
+  }
+  std::vector<Eigen::MatrixXd> normals(kHeldOutBlocks, Eigen::MatrixXd::Zero(p, p));
+  std::vector<Eigen::VectorXd> gradients(kHeldOutBlocks, Eigen::VectorXd::Zero(p));
   std::vector<double> squares(kHeldOutBlocks, 0.0);
-  for (std::size_t b = 0; b < kHeldOutBlocks; ++b)
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
     for (std::size_t part = 0; part < parts; ++part) {
       const auto from = static_cast<Eigen::Index>(part * n + n * b / kHeldOutBlocks);
       const auto rows = static_cast<Eigen::Index>(n * (b + 1) / kHeldOutBlocks - n * b / kHeldOutBlocks);
+      const auto j = fit.jacobian.middleRows(from, rows);
       const Eigen::Map<const Eigen::VectorXd> r(fit.residual.data() + from, rows);
-      squares[b] += (r + fit.jacobian.middleRows(from, rows) * steps[b % 2]).squaredNorm();
+      normals[b].selfadjointView<Eigen::Lower>().rankUpdate(j.transpose());
+      gradients[b].noalias() += j.transpose() * r;
+      squares[b] += r.squaredNorm();
     }
+    normals[b].triangularView<Eigen::StrictlyUpper>() = normals[b].transpose();
+    normal += normals[b];
+    gradient += gradients[b];
+  }
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
+    Eigen::MatrixXd others = normal - normals[b];
+    others.diagonal() *= 1.0 + 1e-12;
+    HoldShapes(fit, others);
+    const Eigen::VectorXd step = -others.ldlt().solve(gradient - gradients[b]);
+    squares[b] += 2.0 * step.dot(gradients[b]) + step.dot(normals[b] * step);
+  }
   return squares;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -13,7 +14,10 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr std::size_t kMostKinds = 4;
+constexpr double kNoFault_Hz = 700.0;
+constexpr double kMostDamped = 1.3;  // logarithm of the damping ratio over 0.04
+constexpr double kNever = -1e300;
+constexpr std::size_t kMostKinds = 4, kMostTried = 6, kSmallStarts = 4;
 
 /// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
 void Sort(std::vector<Rival>& rivals) {
@@ -28,15 +32,26 @@ void Sort(std::vector<Rival>& rivals) {
     std::rotate(rivals.begin(), outside, outside + 1);
 }
 
-void Judge(const Fit& current, Rival& r) { r.score = current.cost - r.fit.cost - Penalty(r.effect()); }
+/// A coupling that every screw has; or one that is damped as none is, which stands for something else.
+bool NoFault(const Problem& problem, const Rival& r) {
+  if (r.effect().kind != "compliance" || problem.nominal_.two_inertia) return false;
+  if (r.fit.point.amplitudes.back()[2] > kMostDamped) return true;
+  const AxisModel m = problem.Build(r.fit.point);
+  return m.two_inertia && m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kNoFault_Hz, 2);
+}
+
+void Judge(const Problem& problem, const Fit& current, Rival& r) {
+  // A start may be no machine at all.
+  const bool out = !std::isfinite(r.fit.cost) || NoFault(problem, r);
+  r.score = out ? kNever : current.cost - r.fit.cost - Penalty(r.effect());
+}
 
 // An effect that is there makes its own score scatter from block to block, too: beyond this, scatter says no
 // more about chance.
 constexpr double kMostExcess = 3.0;
 
-bool Promising(const Problem& problem, const Scored& s, double gate) {
-  return s.drop / std::min(s.excess, kMostExcess) - Penalty(*s.effect) >
-         gate + ModelError(problem, s.effect->kind);
+bool Promising(const Problem& problem, const Scored& s, const Gate& gate) {
+  return s.drop / std::min(s.excess, kMostExcess) - Penalty(*s.effect) > Threshold(problem, gate, *s.effect);
 }
 
 /// From the linear estimate.
@@ -47,6 +62,9 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
   for (std::size_t i = 0; i < s.effect->tested; ++i) a[i] = s.amplitude(static_cast<Eigen::Index>(i));
   for (std::size_t i = 0; i < a.size() && !s.effect->low.empty(); ++i)
     a[i] = std::clamp(a[i], s.effect->low[i], s.effect->high[i]);
+  // What the effect does the base need not do any more: the same model, and no deviation.
+  const std::vector<std::size_t> freed = FreedTerms(problem, s.effect->kind);
+  for (std::size_t i = 0; i < freed.size() && i < a.size(); ++i) start.base[freed[i]] -= a[i];
   start.amplitudes.push_back(std::move(a));
   if (s.effect->kind == "torque_constant")
     ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
@@ -57,18 +75,25 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
 
 /// Far from linear: the kind's whole grid at full size, the base following to first order, shows where to
 /// begin.
-std::optional<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind) {
+std::optional<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
+                             const std::vector<Scored>& scored) {
   std::vector<Point> points;
-  for (const SharedEffect& e : CatalogueEffects(problem)) {
-    if (e->kind != kind) continue;
-    for (const double size : {0.15, 0.5, 1.5}) {
-      std::vector<double> a = e->start;
-      a[0] = std::clamp(size * a[0], e->low[0], e->high[0]);
-      Point p = current.point;
-      p.effects.push_back(e);
-      p.amplitudes.push_back(std::move(a));
-      points.push_back(std::move(p));
-    }
+  const auto add = [&](const SharedEffect& e, double first) {
+    std::vector<double> a = e->start;
+    a[0] = std::clamp(first, e->low[0], e->high[0]);
+    Point p = current.point;
+    p.effects.push_back(e);
+    p.amplitudes.push_back(std::move(a));
+    points.push_back(std::move(p));
+  };
+  std::size_t small = 0;
+  for (const Scored& s : scored) {
+    if (s.effect->kind != kind) continue;
+    for (const double size : {0.15, 0.5, 1.5}) add(s.effect, size * s.effect->start[0]);
+    // Small ones from where the score test would have them.
+    if (small >= kSmallStarts || InBase(problem, kind) || s.amplitude(0) <= 0.0) continue;
+    ++small;
+    for (const double size : {1.0, 3.0}) add(s.effect, size * s.amplitude(0));
   }
   double lowest = std::numeric_limits<double>::infinity();
   const Point* best = nullptr;
@@ -100,21 +125,15 @@ std::optional<Beginning> Far(const Problem& problem, const Fit& current, const s
 
 }  // namespace
 
-double ModelError(const Problem& problem, const std::string& kind) {
-  // The model's own errors (integrators, the closed loop, a coupling stiffer than the model can say) look
-  // like effects, the more the longer the log; less so where the evidence is in the priors.
-  const double per_row = InBase(problem, kind) ? 1e-4 : 2e-4;
-  return per_row * static_cast<double>(problem.rows());
-}
-
 bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
 
 std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                             double gate) {
+                             const Gate& gate, bool anyway) {
   std::vector<Beginning> beginnings;
   std::vector<std::string> done;
+  std::size_t fitted = 0;
   double most = 0.0;
-  bool outside = false, promising = false;
+  bool outside = false, promising = anyway;
   for (const Scored& s : scored)
     if (!Outside(s.effect->kind)) most = std::max(most, s.drop);
   for (const Scored& s : scored) {
@@ -122,17 +141,23 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
       if (!outside && s.drop > most) beginnings.push_back(Near(problem, current, s));
       outside = true;
     } else {
-      if (done.size() >= kMostKinds || s.drop < 0.1 * most) continue;
+      // Evidence in the priors is small beside what lies in the residual, and as good.
+      const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, gate);
+      if (!by_priors && (fitted >= kMostKinds || done.size() >= kMostTried || s.drop < 0.1 * most)) continue;
       if (std::find(done.begin(), done.end(), s.effect->kind) != done.end()) continue;
       done.push_back(s.effect->kind);
       if (!s.effect->start.empty()) {
         if (!Promising(problem, s, gate)) continue;
-        std::optional<Beginning> far = Far(problem, current, s.effect->kind);
-        promising = promising || far;
-        if (far) beginnings.push_back(std::move(*far));
+        std::optional<Beginning> far = Far(problem, current, s.effect->kind, scored);
+        if (!far && by_priors) far = Near(problem, current, s);
+        if (!far) continue;
+        promising = true;
+        beginnings.push_back(std::move(*far));
+        if (!by_priors) ++fitted;
         continue;
       }
       beginnings.push_back(Near(problem, current, s));
+      if (!by_priors) ++fitted;
     }
     promising = promising || Promising(problem, s, gate);
   }
@@ -140,7 +165,7 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
   if (!promising) return out;
   for (Fit& fit : FitPoints(problem, std::move(beginnings))) {
     out.push_back({std::move(fit), 0.0});
-    Judge(current, out.back());
+    Judge(problem, current, out.back());
   }
   Sort(out);
   return out;
@@ -150,7 +175,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   Rewhiten(problem, current);
   for (Rival& r : rivals) {
     Rewhiten(problem, r.fit);
-    Judge(current, r);
+    Judge(problem, current, r);
   }
   Sort(rivals);
   // A valley may end in two places: the base goes on from where the best rival's lies, where that is lower.
@@ -175,7 +200,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
   current = std::move(fits[0]);
   for (std::size_t i = 0; i < again.size(); ++i) rivals[again[i]].fit = std::move(fits[i + 1]);
-  for (Rival& r : rivals) Judge(current, r);
+  for (Rival& r : rivals) Judge(problem, current, r);
   const std::string first = rivals[0].effect().kind;
   Sort(rivals);
   if (rivals[0].effect().kind != first)

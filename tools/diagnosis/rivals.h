@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tools/diagnosis/fit.h"
+#include "tools/diagnosis/gate.h"
 #include "tools/diagnosis/score.h"
 
 namespace contour::diagnosis {
@@ -18,13 +19,10 @@ struct Rival {
 
 bool Outside(const std::string& kind);
 
-/// Beyond the gate of the sign flips, which do not see what the model itself gets wrong.
-double ModelError(const Problem& problem, const std::string& kind);
-
 /// The best of each kind: some of the catalogue, and the best from outside it. The best of them first. None
-/// where the score test promises nothing beyond the gate.
+/// where the score test promises nothing beyond the gate, unless they are wanted anyway.
 std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                             double gate);
+                             const Gate& gate, bool anyway);
 
 /// Under noise learnt since: the base, and the rivals, those that may still win fitted anew.
 void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals);

@@ -31,16 +31,21 @@ double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covarianc
 
 }  // namespace
 
+std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& kind) {
+  std::vector<std::string> names;
+  if (kind == "stribeck") names = {"Fs", "vs"};
+  if (kind == "input_delay") names = {"delay"};
+  if (kind == "current_lag") names = {"lag"};
+  if (kind == "compliance") names = {"stiffness", "damping"};
+  std::vector<std::size_t> out;
+  for (const std::string& name : names)
+    for (std::size_t i = 0; i < problem.terms_.size(); ++i)
+      if (problem.terms_[i].name == name) out.push_back(i);
+  return out;
+}
+
 bool InBase(const Problem& problem, const std::string& kind) {
-  const auto has = [&](const char* name) {
-    return std::any_of(problem.terms_.begin(), problem.terms_.end(),
-                       [&](const BaseTerm& t) { return t.name == name; });
-  };
-  if (kind == "stribeck") return has("Fs");
-  if (kind == "input_delay") return has("delay");
-  if (kind == "current_lag") return has("lag");
-  if (kind == "compliance") return has("stiffness");
-  return kind == "torque_constant";
+  return kind == "torque_constant" || !FreedTerms(problem, kind).empty();
 }
 
 namespace {
@@ -176,6 +181,46 @@ class Scorer {
   }
 
  private:
+  /// What the cost falls by when the prior P of the terms that the kind frees is taken away: with x their
+  /// deviations and C their covariance, x'Px + x'P (C^-1 - P)^-1 Px.
+  void Free(Scored& s) const {
+    if (s.effect->kind == "torque_constant") {
+      const CommonFactor common = FindCommonFactor(problem_, fit_.point);
+      s.amplitude(0) = std::expm1(common.log_ratio);
+      s.covariance(0, 0) = common.sigma * common.sigma;
+      s.drop = common.drop;
+      return;
+    }
+    const std::vector<std::size_t> terms = FreedTerms(problem_, s.effect->kind);
+    const auto n = std::min(static_cast<Eigen::Index>(terms.size()), s.amplitude.size());
+    Eigen::VectorXd x(n), prior(n);
+    Eigen::MatrixXd c(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::size_t t = terms[static_cast<std::size_t>(i)];
+      x(i) = fit_.point.base[t];
+      prior(i) = std::pow(problem_.terms_[t].sigma, -2);
+      for (Eigen::Index j = 0; j < n; ++j)
+        c(i, j) = fit_.covariance(static_cast<Eigen::Index>(t),
+                                  static_cast<Eigen::Index>(terms[static_cast<std::size_t>(j)]));
+    }
+    // In units of the prior's deviation; what the data do not know at all stays where it is.
+    const Eigen::VectorXd root = prior.cwiseSqrt();
+    const Eigen::MatrixXd known = root.asDiagonal() * c * root.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (known + known.transpose()));
+    const Eigen::VectorXd z = eigen.eigenvectors().transpose() * root.asDiagonal() * x;
+    Eigen::VectorXd to = z, spread(n);
+    s.drop = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double share = std::clamp(eigen.eigenvalues()(i), 1e-9, 0.9);
+      s.drop += z(i) * z(i) / (1.0 - share);
+      to(i) = z(i) / (1.0 - share);
+      spread(i) = share / (1.0 - share);
+    }
+    const Eigen::MatrixXd back = root.cwiseInverse().asDiagonal() * eigen.eigenvectors();
+    s.amplitude.head(n) = back * to;
+    s.covariance.topLeftCorner(n, n) = back * spread.asDiagonal() * back.transpose();
+  }
+
   Eigen::RowVectorXd BlocksOf(const double* column) const {
     Eigen::RowVectorXd row(kBlocks);
     AddBlocks(column, fit_.residual.data(), problem_.rows(), problem_.data_size(), row);
@@ -203,15 +248,9 @@ class Scorer {
     if (nearly_base) s.drop = std::min(s.drop, 1.5 * fit_.prior + 5.0);
     if (InBase(problem_, effect->kind)) {
       // A number of the base already: the evidence is in the prior and not in the blocks.
-      s.drop = std::min(s.drop, 1.5 * fit_.prior + 5.0);
       s.per_block.setZero();
       s.excess = 1.0;
-      if (effect->kind == "torque_constant") {
-        const CommonFactor common = FindCommonFactor(problem_, fit_.point);
-        s.amplitude(0) = std::expm1(common.log_ratio);
-        s.covariance(0, 0) = common.sigma * common.sigma;
-        s.drop = common.drop;
-      }
+      Free(s);
     }
     s.score = s.drop / s.excess - Penalty(*effect);
     const Eigen::RowVectorXd gain = -s.amplitude.transpose() * s.per_block;

@@ -31,6 +31,9 @@ double Penalty(const Effect& effect);
 /// Whether the kind is a number of the base model: its evidence is in the priors.
 bool InBase(const Problem& problem, const std::string& kind);
 
+/// Of such a kind, the base terms that it frees, in the order of its amplitudes.
+std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& kind);
+
 /// Tests effects at zero amplitude beside whatever `fit` holds.
 std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects);
 

@@ -20,6 +20,7 @@
 #include "tools/hidden/outcome.h"
 #include "tools/hidden/recorded_case.h"
 #include "tools/hidden/result_table.h"
+#include "tools/text/format_text.h"
 
 namespace contour::hidden {
 namespace {
@@ -75,12 +76,22 @@ void PrintJudged(const Outcome& o) {
   std::fflush(stdout);
 }
 
-Diagnoser Ours(int bootstrap) {
-  return [bootstrap](const diagnosis::AxisLog& log, const diagnosis::StatedAxis& stated, double rate) {
+/// Our own, which also writes what every kind scored where that is wanted.
+Diagnoser Ours(const Options& o, const std::string& name) {
+  return [&o, name](const diagnosis::AxisLog& log, const diagnosis::StatedAxis& stated, double rate) {
     diagnosis::DiagnoseOptions options;
     options.false_alarm_rate = rate;
-    options.bootstrap_runs = bootstrap;
-    return diagnosis::Diagnose(log, stated, options);
+    options.bootstrap_runs = o.bootstrap;
+    std::string table;
+    if (!o.evidence.empty())
+      options.evidence = [&](const diagnosis::Evidence& e) {
+        table += FormatText("%s,%zu,%s,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(), log.size(),
+                            e.kind.c_str(), e.screened, e.penalty, e.excess, e.refitted, e.tested, e.unseen,
+                            e.flips);
+      };
+    const diagnosis::Diagnosis answer = diagnosis::Diagnose(log, stated, options);
+    if (!table.empty()) std::ofstream(o.evidence, std::ios::app) << table;
+    return answer;
   };
 }
 
@@ -139,7 +150,7 @@ class Judgement {
           return o.false_alarm_rate == rate && CaseName(o.known.question) == name && FalseAlarm(o);
         });
     }
-    const Outcome outcome = AskCase(directory, Ours(options_.bootstrap), rate);
+    const Outcome outcome = AskCase(directory, Ours(options_, name), rate);
     const std::lock_guard lock(mutex_);
     outcomes_.push_back(outcome);
     AppendCsv(csv_, outcome);

@@ -38,6 +38,7 @@ How to judge:
   --rate R             false-alarm rate (0.05)
   --strict-rate R      clean machines that raise an alarm are asked again at this rate
   --bootstrap N        refits with every stroke at random, for the intervals (0)
+  --evidence FILE      what every kind scored in every log, first round, appended to a table (slower)
 
   --threads N          (number of processors)
   --out DIR            results.csv and results.md go there (with --judge: beside the cases)
@@ -122,8 +123,9 @@ bool Take(const std::string& option, const std::string& value, Options& o) {
       plan.*counts[i] = Number(option, value);
       return true;
     }
-  std::string Options::*const texts[] = {&Options::record, &Options::judge, &Options::keep, &Options::out};
-  const char* const text_names[] = {"--record", "--judge", "--keep", "--out"};
+  std::string Options::*const texts[] = {&Options::record, &Options::judge, &Options::keep, &Options::out,
+                                         &Options::evidence};
+  const char* const text_names[] = {"--record", "--judge", "--keep", "--out", "--evidence"};
   for (std::size_t i = 0; i < std::size(texts); ++i)
     if (option == text_names[i]) {
       o.*texts[i] = value;
