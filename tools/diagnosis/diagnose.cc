@@ -20,6 +20,7 @@
 #include "tools/diagnosis/residual_trace.h"
 #include "tools/diagnosis/rivals.h"
 #include "tools/diagnosis/score.h"
+#include "tools/diagnosis/widen.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -83,10 +84,12 @@ class Engine {
       double tested = 0.0;
       bool found = false;
       for (std::size_t i = 0; i < rivals.size() && !found; ++i) {
-        if (i > 0 && rivals[i].score < 0.3 * rivals[0].score) break;
+        if (i > 0 && rivals[i].score < 0.3 * rivals[0].score && !InBase(problem_, rivals[i].effect().kind))
+          continue;
         const double score = TestedScore(problem_, current, rivals[i]);
         if (i == 0) tested = score;
-        if (!Holds(current, rivals[i], score, gate)) continue;
+        rivals[i].refused = !Holds(current, rivals[i], score, gate);
+        if (rivals[i].refused) continue;
         found = true;
         tested = score;
         if (i == 0) continue;
@@ -198,7 +201,7 @@ class Engine {
           c.accepted = &r == &best;
         }
       // What would not have been accepted alone explains too little to be the cause.
-      if (&r != &best && !Outside(kind) && r.score > Threshold(problem_, gate, r.effect()) &&
+      if (&r != &best && !r.refused && !Outside(kind) && r.score > Threshold(problem_, gate, r.effect()) &&
           r.score > best.score - std::max(12.0, 0.03 * best.score))
         cause.indistinguishable_from.push_back(kind);
     }
@@ -210,6 +213,7 @@ class Engine {
     Fit scattered = best.fit;
     scattered.covariance *= ExcessOfLast(problem_, best.fit);
     DescribeEffect(problem_, scattered, best.fit.point.effects.size() - 1, cause);
+    WidenIntervals(problem_, best.fit.point, cause);
     std::vector<BlockGain> blocks;
     HeldOutGain(problem_, current, best.fit, cause.kind == "pitch_error", cause, blocks);
     if (out.causes.empty()) out.blocks = blocks;
@@ -242,6 +246,7 @@ class Engine {
       if (cause.kind == "sample_jitter") continue;  // not in the fit
       cause.shapes.clear();
       DescribeEffect(problem_, fit, index++, draws, cause);
+      WidenIntervals(problem_, fit.point, cause);
     }
     out.bootstrap_runs = options_.bootstrap_runs;
   }

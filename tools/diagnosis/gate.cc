@@ -15,8 +15,8 @@ constexpr double kBesidePerRow = 2e-4;
 // Each kind that is a number of the base has this share of the false alarms.
 constexpr double kShareInBase = 0.2;
 // A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
-// rate (3.3 standard deviations).
-constexpr double kBeyondStated = 1e-3;
+// rate (3.1 standard deviations).
+constexpr double kBeyondStated = 2e-3;
 // The model's own errors (integrators, the closed loop, a coupling stiffer than a rigid model can say) look
 // like effects, the more the longer the log; see docs/diagnosis_method.md for how these were measured.
 constexpr double kMargin = 1.0, kMarginPerRow = 5e-5, kMarginPerRowViscous = 2.5e-4;

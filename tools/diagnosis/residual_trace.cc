@@ -9,6 +9,8 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr std::size_t kHeldOutBlocks = 24;
+// Short ones: three fast strokes are several blocks, one slip out of stiction is one.
+constexpr std::size_t kUnseenBlocks = 60;
 
 Signal FromRaw(const Problem& problem, const Point& point, const std::vector<double>& raw) {
   const AxisModel m = problem.Build(point);
@@ -93,13 +95,13 @@ std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
     normal(j, j) = w;
     gradient(j) = w * fit.point.base[i];
   }
-  std::vector<Eigen::MatrixXd> normals(kHeldOutBlocks, Eigen::MatrixXd::Zero(p, p));
-  std::vector<Eigen::VectorXd> gradients(kHeldOutBlocks, Eigen::VectorXd::Zero(p));
-  std::vector<double> squares(kHeldOutBlocks, 0.0);
-  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
+  std::vector<Eigen::MatrixXd> normals(kUnseenBlocks, Eigen::MatrixXd::Zero(p, p));
+  std::vector<Eigen::VectorXd> gradients(kUnseenBlocks, Eigen::VectorXd::Zero(p));
+  std::vector<double> squares(kUnseenBlocks, 0.0);
+  for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
     for (std::size_t part = 0; part < parts; ++part) {
-      const auto from = static_cast<Eigen::Index>(part * n + n * b / kHeldOutBlocks);
-      const auto rows = static_cast<Eigen::Index>(n * (b + 1) / kHeldOutBlocks - n * b / kHeldOutBlocks);
+      const auto from = static_cast<Eigen::Index>(part * n + n * b / kUnseenBlocks);
+      const auto rows = static_cast<Eigen::Index>(n * (b + 1) / kUnseenBlocks - n * b / kUnseenBlocks);
       const auto j = fit.jacobian.middleRows(from, rows);
       const Eigen::Map<const Eigen::VectorXd> r(fit.residual.data() + from, rows);
       normals[b].selfadjointView<Eigen::Lower>().rankUpdate(j.transpose());
@@ -110,7 +112,7 @@ std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
     normal += normals[b];
     gradient += gradients[b];
   }
-  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
+  for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
     Eigen::MatrixXd others = normal - normals[b];
     others.diagonal() *= 1.0 + 1e-12;
     HoldShapes(fit, others);
@@ -125,7 +127,7 @@ std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
 double HeldOutStatistic(const Problem& problem, const Fit& without, const Fit& with) {
   const std::vector<double> before = WhiteSquares(problem, without), after = WhiteSquares(problem, with);
   double sum = 0.0, squares = 0.0;
-  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
+  for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
     sum += before[b] - after[b];
     squares += std::pow(before[b] - after[b], 2);
   }

@@ -164,7 +164,7 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
   std::vector<Rival> out;
   if (!promising) return out;
   for (Fit& fit : FitPoints(problem, std::move(beginnings))) {
-    out.push_back({std::move(fit), 0.0});
+    out.push_back({std::move(fit)});
     Judge(problem, current, out.back());
   }
   Sort(out);
@@ -200,7 +200,15 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
   current = std::move(fits[0]);
   for (std::size_t i = 0; i < again.size(); ++i) rivals[again[i]].fit = std::move(fits[i + 1]);
-  for (Rival& r : rivals) Judge(problem, current, r);
+  for (Rival& r : rivals) {
+    Judge(problem, current, r);
+    if (!InBase(problem, r.effect().kind)) continue;
+    // What the priors say is small beside what another valley costs: from where the base lies now.
+    const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
+    if (r.score > s.drop - Penalty(*s.effect) - 1.0) continue;
+    r.fit = std::move(FitPoints(problem, {Near(problem, current, s)})[0]);
+    Judge(problem, current, r);
+  }
   const std::string first = rivals[0].effect().kind;
   Sort(rivals);
   if (rivals[0].effect().kind != first)
@@ -210,7 +218,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
 double TestedScore(const Problem& problem, const Fit& current, const Rival& rival) {
   const SharedEffect& effect = rival.fit.point.effects.back();
   double drop = rival.score + Penalty(*effect);
-  if (effect->signals) {
+  if (effect->signals || !effect->as_term.empty()) {
     const std::vector<Scored> again = ScoreEffects(problem, current, {effect});
     if (again[0].drop < 60.0) drop = std::min(drop, again[0].drop);
   }

@@ -12,7 +12,8 @@ namespace contour::diagnosis {
 /// A candidate fitted jointly with the base and with what is accepted already.
 struct Rival {
   Fit fit;
-  double score = 0.0;  ///< what it lowers chi^2 and prior by, less its penalty
+  double score = 0.0;    ///< what it lowers chi^2 and prior by, less its penalty
+  bool refused = false;  ///< did not hold
 
   [[nodiscard]] const Effect& effect() const { return *fit.point.effects.back(); }
 };

@@ -105,6 +105,10 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
     const Signal other = Filled(log.axis2_position_m);
     s.axis2_m_s = Derivative(other, sigma, log.period_s);
     s.axis2_m_s2 = Derivative(s.axis2_m_s, std::max(1.0, 0.7 * sigma), log.period_s);
+    // What the smoothing took, once more: it would make the coupling look stronger than it is (Tukey's
+    // twicing).
+    const Signal smoother = Smooth(s.axis2_m_s2, std::hypot(sigma, std::max(1.0, 0.7 * sigma)));
+    for (std::size_t k = 0; k < log.size(); ++k) s.axis2_m_s2[k] += s.axis2_m_s2[k] - smoother[k];
   }
   return s;
 }
