@@ -13,6 +13,8 @@ using Leaf = std::pair<std::string, std::string>;
 std::string TextOf(const YamlValue& value) {
   if (value.kind == YamlValue::Kind::kScalar) return value.text;
   std::string text = "[";
+  for (const YamlEntry& e : value.entries)
+    text += (text.size() > 1 ? ", " : "") + e.key + ": " + TextOf(e.value);
   for (const YamlValue& item : value.items) text += (text.size() > 1 ? ", " : "") + TextOf(item);
   return text + "]";
 }

@@ -14,7 +14,8 @@ namespace contour {
 std::string QuotedYaml(std::string_view text);
 
 /// Writes a configuration struct as YAML through its Visit method: every key, defaults included, numbers so
-/// that they read back as the same bits. Absent optionals are left out.
+/// that they read back as the same bits. Absent optionals are left
+/// out, and so are empty lists of maps.
 class YamlWriter {
  public:
   explicit YamlWriter(std::string& out, std::size_t indent = 0) : out_(out), indent_(indent) {}
@@ -43,11 +44,23 @@ class YamlWriter {
     if constexpr (kIsOptional<T>) {
       if (value) Entry(key, *value);
     } else {
+      if constexpr (ListOfMaps<T>()) {
+        if (value.empty()) return;
+      }
       out_.append(indent_, ' ');
       out_ += key;
       out_ += ':';
       Value(value);
     }
+  }
+
+  /// Left out when empty, as maps that are absent are.
+  template <class T>
+  static constexpr bool ListOfMaps() {
+    if constexpr (visit::kIsVector<T>)
+      return visit::Struct<typename T::value_type>;
+    else
+      return false;
   }
 
   template <class T>
@@ -74,8 +87,14 @@ class YamlWriter {
   void List(T& value) {
     using Item = typename T::value_type;
     if constexpr (visit::Struct<Item>) {
-      // Flow style keeps lists of maps simple; no configuration so far has one.
-      static_assert(visit::kUnsupported<T>, "lists of structs are not written");
+      // Each map on the lines after its dash.
+      out_ += '\n';
+      for (Item& item : value) {
+        const std::size_t at = out_.size() + indent_ + 2;
+        YamlWriter inner(out_, indent_ + 4);
+        item.Visit(inner);
+        if (at < out_.size()) out_[at] = '-';
+      }
     } else {
       out_ += " [";
       for (std::size_t i = 0; i < value.size(); ++i) out_ += (i == 0 ? "" : ", ") + Scalar(value[i]);

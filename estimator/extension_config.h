@@ -47,7 +47,7 @@ struct PositionFrictionExtension {
   std::vector<double> friction_rel;
   template <class Visitor>
   void Visit(Visitor& v) {
-    v.Optional("amplitude_rel", amplitude_rel, kNotNegative, "largest of the table, for people");
+    v.Optional("amplitude_rel", amplitude_rel, kNotNegative, "half of highest minus lowest, for people");
     v.Required("position_mm", position_mm, "positions of the table, ascending");
     v.Required("friction_rel", friction_rel, Range{-0.95, 10.0},
                "friction beyond the model's there, relative");
@@ -67,9 +67,7 @@ struct CableSpringExtension {
   }
 };
 
-/// friction_ripple and ball_ripple: 1 + amplitude_rel sin(order_per_rev theta + phase_rad) times the friction
-/// level.
-struct RippleExtension {
+struct RippleWave {
   double amplitude_rel = 0.0;
   double order_per_rev = 1.0;
   double phase_rad = 0.0;
@@ -81,8 +79,18 @@ struct RippleExtension {
   }
 };
 
-/// amplitude_Nm sin(order_per_rev theta + phase_rad)
-struct CoggingExtension {
+/// friction_ripple and ball_ripple: 1 + the sum of amplitude_rel sin(order_per_rev theta + phase_rad) times
+/// the friction level.
+struct RippleExtension : RippleWave {
+  std::vector<RippleWave> further;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    RippleWave::Visit(v);
+    v.Optional("further", further, "waves of other orders beside it");
+  }
+};
+
+struct CoggingWave {
   double amplitude_Nm = 0.0;
   double order_per_rev = 1.0;
   double phase_rad = 0.0;
@@ -94,9 +102,19 @@ struct CoggingExtension {
   }
 };
 
+/// The sum of amplitude_Nm sin(order_per_rev theta + phase_rad).
+struct CoggingExtension : CoggingWave {
+  std::vector<CoggingWave> further;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    CoggingWave::Visit(v);
+    v.Optional("further", further, "waves of other orders beside it");
+  }
+};
+
 /// Friction beyond the linear term, with u = |w| / max_speed_rad_s: torque_at_max_speed_Nm u^exponent; with a
 /// knee, k = knee_rad_s / max_speed_rad_s, torque_at_max_speed_Nm u (1 + k) / (u + k).
-struct ViscousNonlinearExtension {
+struct ViscousCurve {
   double torque_at_max_speed_Nm = 0.0;
   double max_speed_rad_s = 0.0;
   double exponent = 2.0;
@@ -108,6 +126,16 @@ struct ViscousNonlinearExtension {
     v.Required("max_speed_rad_s", max_speed_rad_s, kPositive, "the speed it is stated for");
     v.Optional("exponent", exponent, Range{0.1, 4.0}, "power of the speed");
     v.Optional("knee_rad_s", knee_rad_s, kNotNegative, "speed from which it hardly grows; 0: the power law");
+  }
+};
+
+/// The sum of the curves.
+struct ViscousNonlinearExtension : ViscousCurve {
+  std::vector<ViscousCurve> further;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    ViscousCurve::Visit(v);
+    v.Optional("further", further, "curves beside it");
   }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -36,23 +37,36 @@ KnownEffects::KnownEffects(const ExtensionsConfig& c, const Mechanics& mechanics
   neutral_ = !(c.constant_torque || c.cogging || c.friction_ripple || c.ball_ripple || c.cable_spring ||
                c.position_friction || c.pitch_error || c.viscous_nonlinear || c.temperature_viscosity);
   const double r = mechanics.radius_m_rad;
-  const auto wave = [&](double amplitude, double order, double phase_rad) {
-    return Wave{amplitude, order / (kTwoPi * r), phase_rad / kTwoPi};
+  // Forces of the real machine, in units of the torque that is asked for.
+  const double lever_m_rad = r * (c.torque_constant ? c.torque_constant->ratio : 1.0);
+  const auto add = [&](double amplitude, double order, double phase_rad, Waves& to) {
+    to.push_back({amplitude, order / (kTwoPi * r), phase_rad / kTwoPi});
   };
-  if (const auto& e = c.constant_torque) constant_N_ = e->torque_Nm / r;
-  if (const auto& e = c.cogging) cogging_ = wave(e->amplitude_Nm / r, e->order_per_rev, e->phase_rad);
-  if (const auto& e = c.friction_ripple) ripple_ = wave(e->amplitude_rel, e->order_per_rev, e->phase_rad);
-  if (const auto& e = c.ball_ripple) ball_ = wave(e->amplitude_rel, e->order_per_rev, e->phase_rad);
+  const auto add_ripple = [&](const std::optional<RippleExtension>& e, Waves& to) {
+    if (!e) return;
+    add(e->amplitude_rel, e->order_per_rev, e->phase_rad, to);
+    for (const RippleWave& w : e->further) add(w.amplitude_rel, w.order_per_rev, w.phase_rad, to);
+  };
+  if (const auto& e = c.constant_torque) constant_N_ = e->torque_Nm / lever_m_rad;
+  if (const auto& e = c.cogging) {
+    add(e->amplitude_Nm / lever_m_rad, e->order_per_rev, e->phase_rad, cogging_);
+    for (const CoggingWave& w : e->further)
+      add(w.amplitude_Nm / lever_m_rad, w.order_per_rev, w.phase_rad, cogging_);
+  }
+  add_ripple(c.friction_ripple, ripple_);
+  add_ripple(c.ball_ripple, ball_);
   if (const auto& e = c.cable_spring)
-    spring_N_ = MakeTable("cable_spring", e->position_mm, e->torque_Nm, 1.0 / r);
+    spring_N_ = MakeTable("cable_spring", e->position_mm, e->torque_Nm, 1.0 / lever_m_rad);
   if (const auto& e = c.position_friction)
     friction_rel_ = MakeTable("position_friction", e->position_mm, e->friction_rel, 1.0);
   if (const auto& e = c.pitch_error) pitch_m_ = MakeTable("pitch_error", e->position_mm, e->error_um, 1e-6);
+  const auto add_curve = [&](const ViscousCurve& e) {
+    viscous_.push_back({e.torque_at_max_speed_Nm / lever_m_rad, e.max_speed_rad_s * r, e.exponent,
+                        e.knee_rad_s / e.max_speed_rad_s});
+  };
   if (const auto& e = c.viscous_nonlinear) {
-    viscous_N_ = e->torque_at_max_speed_Nm / r;
-    max_speed_m_s_ = e->max_speed_rad_s * r;
-    exponent_ = e->exponent;
-    knee_ = e->knee_rad_s / e->max_speed_rad_s;
+    add_curve(*e);
+    for (const ViscousCurve& curve : e->further) add_curve(curve);
   }
   if (const auto& e = c.temperature_viscosity) {
     viscous_rate_Ns_m_K_ = viscous_Ns_m * e->rate_1_K;
@@ -73,25 +87,33 @@ double KnownEffects::Wave::At(double position_m) const noexcept {
   return amplitude == 0.0 ? 0.0 : amplitude * Turn(position_m * turns_1_m + phase_turns).sin;
 }
 
+double KnownEffects::Sum(const Waves& waves, double position_m) noexcept {
+  double sum = 0.0;
+  for (const Wave& wave : waves) sum += wave.At(position_m);
+  return sum;
+}
+
 double KnownEffects::Force_N(double position_m) const noexcept {
-  return constant_N_ + cogging_.At(position_m) + spring_N_.At(position_m);
+  return constant_N_ + Sum(cogging_, position_m) + spring_N_.At(position_m);
 }
 
 double KnownEffects::LevelFactor(double position_m) const noexcept {
-  const double factor =
-      (1.0 + friction_rel_.At(position_m)) * (1.0 + ripple_.At(position_m)) * (1.0 + ball_.At(position_m));
+  const double factor = (1.0 + friction_rel_.At(position_m)) * (1.0 + Sum(ripple_, position_m)) *
+                        (1.0 + Sum(ball_, position_m));
   return std::max(factor, kLeastFactor);
+}
+
+double KnownEffects::Curve::At(double velocity_m_s) const noexcept {
+  const double u = std::abs(velocity_m_s) / max_speed_m_s;
+  const double curve = knee > 0.0        ? u * (1.0 + knee) / (u + knee)
+                       : exponent == 2.0 ? u * u
+                                         : std::pow(u, exponent);
+  return std::copysign(force_N * curve, velocity_m_s);
 }
 
 double KnownEffects::Viscous_N(double velocity_m_s, double temperature_degC) const noexcept {
   double force_N = 0.0;
-  if (viscous_N_ != 0.0) {
-    const double u = std::abs(velocity_m_s) / max_speed_m_s_;
-    const double curve = knee_ > 0.0        ? u * (1.0 + knee_) / (u + knee_)
-                         : exponent_ == 2.0 ? u * u
-                                            : std::pow(u, exponent_);
-    force_N = std::copysign(viscous_N_ * curve, velocity_m_s);
-  }
+  for (const Curve& curve : viscous_) force_N += curve.At(velocity_m_s);
   if (viscous_rate_Ns_m_K_ != 0.0 && !std::isnan(temperature_degC))
     force_N += viscous_rate_Ns_m_K_ * (temperature_degC - reference_degC_) * velocity_m_s;
   return force_N;

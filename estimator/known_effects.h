@@ -38,16 +38,23 @@ class KnownEffects {
     double phase_turns = 0.0;
     [[nodiscard]] double At(double position_m) const noexcept;
   };
+  using Waves = std::vector<Wave>;
+  /// Of the speed.
+  struct Curve {
+    double force_N = 0.0, max_speed_m_s = 1.0, exponent = 2.0, knee = 0.0;
+    [[nodiscard]] double At(double velocity_m_s) const noexcept;
+  };
+  static double Sum(const Waves& waves, double position_m) noexcept;
   static Table MakeTable(const char* kind, const std::vector<double>& position_mm,
                          const std::vector<double>& values, double unit);
 
   bool neutral_ = true;
   double constant_N_ = 0.0;
-  Wave cogging_;
+  Waves cogging_;
   Table spring_N_;
-  Wave ripple_, ball_;
+  Waves ripple_, ball_;
   Table friction_rel_;
-  double viscous_N_ = 0.0, max_speed_m_s_ = 1.0, exponent_ = 2.0, knee_ = 0.0;
+  std::vector<Curve> viscous_;
   double viscous_rate_Ns_m_K_ = 0.0, reference_degC_ = 20.0;
   Table pitch_m_;
 };

@@ -67,7 +67,7 @@ TEST(Extensions, TheEstimatorStillAllocatesNothing) {
   const AxisConfig x = ExampleMachine().machine.axes.at("x");
   const Mechanics mechanics = ToSi(x.model.mechanics);
   ExtensionsConfig extensions;
-  extensions.cogging = CoggingExtension{0.02, 12, 0};
+  extensions.cogging = CoggingExtension{{0.02, 12, 0}, {}};
   extensions.position_friction = PositionFrictionExtension{0, {-1, 1}, {0.1, 0.2}};
   AxisEstimator estimator(EstimatorKind::kFull, mechanics, x.model.friction, {}, 1e-3, 2e-4, 0.0,
                           KnownEffects(extensions, mechanics, 500.0));

@@ -47,7 +47,9 @@ TEST(LoadMachine, WrittenOutAndReadBackItIsTheSame) {
   for (const char* name : {"xy_emulated.yaml", "xy_vcan.yaml", "single_axis.yaml"}) {
     const MachineConfig c = LoadMachine(
         ExampleMachine(name), {"axes.x.model.extensions={cogging: {amplitude_Nm: 0.1, order_per_rev: 12, "
-                               "phase_rad: 1}, pitch_error: {position_mm: [0, 1], error_um: [0.5, 2]}}"});
+                               "phase_rad: 1, further: [{amplitude_Nm: 0.05, order_per_rev: 24, phase_rad: "
+                               "0}, {amplitude_Nm: 0.02, order_per_rev: 36, phase_rad: 2}]}, pitch_error: "
+                               "{position_mm: [0, 1], error_um: [0.5, 2]}}"});
     const std::string written = WriteYaml(c);
     const MachineConfig again = LoadMachine(WriteTestFile(name, written));
     EXPECT_EQ(WriteYaml(again), written);

@@ -61,6 +61,31 @@ TEST(Diagnose, FindsNothingOnACleanAxis) {
   EXPECT_FALSE(d.smallest_detectable.empty());
 }
 
+// What one diagnosis found and the model then states is part of the base of the next.
+TEST(Diagnose, DoesNotFindAgainWhatTheModelStates) {
+  test::HiddenOptions o = Hidden(7, {{"cogging", 0.05, 12.0, 0.7, 0.0}});
+  o.duration_s = 20.0;
+  o.scale = o.temperature = o.axis2 = false;
+  test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Diagnosis first = Diagnose(axis.log, axis.stated);
+  ASSERT_FALSE(first.causes.empty());
+  ASSERT_EQ(first.causes[0].kind, "cogging");
+  const auto value = [&](const char* name) { return first.causes[0].parameters.at(name).value; };
+  const StatedWave found{value("amplitude_Nm"), value("order_per_rev"), value("phase_rad")};
+  axis.stated.extras.cogging = {found};
+  const Diagnosis second = Diagnose(axis.log, axis.stated);
+  for (const Cause& c : second.causes) EXPECT_NE(c.kind, "cogging");
+  EXPECT_LT(second.causes.size(), first.causes.size());
+
+  o.effects.push_back({"friction_ripple", 0.1, 3.0, 0.2, 0.0});
+  axis = test::MakeHiddenAxis(o);
+  axis.stated.extras.cogging = {found};
+  const Diagnosis third = Diagnose(axis.log, axis.stated);
+  ASSERT_FALSE(third.causes.empty());
+  EXPECT_EQ(third.causes[0].kind, "friction_ripple");
+  EXPECT_NEAR(third.causes[0].parameters.at("amplitude_rel").value, 0.1, 0.01);
+}
+
 TEST(Diagnose, SaysWhatTheLogCannotShow) {
   test::HiddenOptions o = Hidden(102, {});
   o.scale = o.temperature = o.axis2 = false;

@@ -22,7 +22,7 @@ TEST(KnownEffectsTest, NothingKnownIsNeutral) {
 
 TEST(KnownEffectsTest, ForcesOnTheMotor) {
   ExtensionsConfig c;
-  c.cogging = CoggingExtension{0.02, 12.0, 0.7};
+  c.cogging = CoggingExtension{{0.02, 12.0, 0.7}, {}};
   c.constant_torque = ConstantTorqueExtension{0.01};
   c.cable_spring = CableSpringExtension{0.0, {-100, 100}, {0.05, -0.05}};
   const KnownEffects known(c, kMechanics, 500.0);
@@ -33,10 +33,38 @@ TEST(KnownEffectsTest, ForcesOnTheMotor) {
   }
 }
 
+TEST(KnownEffectsTest, SeveralOfOneKindAddUp) {
+  ExtensionsConfig c;
+  c.cogging = CoggingExtension{{0.02, 12.0, 0.7}, {{0.01, 24.0, 0.1}}};
+  c.friction_ripple = RippleExtension{{0.1, 2.0, 0.3}, {{0.05, 3.0, 0.0}, {0.02, 5.0, 1.0}}};
+  c.viscous_nonlinear = ViscousNonlinearExtension{{0.03, 300.0, 2.0, 0.0}, {{0.01, 300.0, 1.5, 30.0}}};
+  const KnownEffects known(c, kMechanics, 500.0);
+  const double r = kMechanics.radius_m_rad;
+  for (const double x : {-0.123, 0.0, 0.0501}) {
+    const double angle = x / r;
+    EXPECT_NEAR(known.Force_N(x) * r,
+                0.02 * std::sin(12.0 * angle + 0.7) + 0.01 * std::sin(24.0 * angle + 0.1), 1e-12);
+    EXPECT_NEAR(known.LevelFactor(x),
+                1.0 + 0.1 * std::sin(2.0 * angle + 0.3) + 0.05 * std::sin(3.0 * angle) +
+                    0.02 * std::sin(5.0 * angle + 1.0),
+                1e-11);
+  }
+  EXPECT_NEAR(known.Viscous_N(150.0 * r, kNoTemperature) * r, 0.25 * 0.03 + 0.01 * 0.5 * 1.1 / 0.6, 1e-12);
+}
+
+// The model's numbers are in units of the torque that is asked for; so are the forces beside them.
+TEST(KnownEffectsTest, ForcesFollowTheTorqueConstant) {
+  ExtensionsConfig c;
+  c.constant_torque = ConstantTorqueExtension{0.01};
+  c.torque_constant = TorqueConstantExtension{0.8};
+  const KnownEffects known(c, kMechanics, 500.0);
+  EXPECT_NEAR(known.Force_N(0.0) * kMechanics.radius_m_rad, 0.0125, 1e-12);
+}
+
 TEST(KnownEffectsTest, FrictionAlongStrokeAndTurn) {
   ExtensionsConfig c;
   c.position_friction = PositionFrictionExtension{0.2, {0, 10, 30}, {0.0, 0.2, -0.1}};
-  c.friction_ripple = RippleExtension{0.1, 2.0, 0.3};
+  c.friction_ripple = RippleExtension{{0.1, 2.0, 0.3}, {}};
   const KnownEffects known(c, kMechanics, 500.0);
   const auto ripple = [&](double x) { return 1.0 + 0.1 * std::sin(2.0 * x / kMechanics.radius_m_rad + 0.3); };
   EXPECT_NEAR(known.LevelFactor(-1.0), 1.0 * ripple(-1.0), 1e-12);
@@ -47,7 +75,7 @@ TEST(KnownEffectsTest, FrictionAlongStrokeAndTurn) {
 
 TEST(KnownEffectsTest, ViscousFrictionOpposesMotionAndFollowsTemperature) {
   ExtensionsConfig c;
-  c.viscous_nonlinear = ViscousNonlinearExtension{0.03, 300.0, 2.0};
+  c.viscous_nonlinear = ViscousNonlinearExtension{{0.03, 300.0, 2.0}, {}};
   c.temperature_viscosity = TemperatureViscosityExtension{-0.02, 25.0};
   const KnownEffects known(c, kMechanics, 500.0);
   const double r = kMechanics.radius_m_rad;

@@ -116,7 +116,7 @@ TEST(Effects, CableSpringPullsBackInBothDirectionsOfMotion) {
 
 TEST(Effects, FrictionRippleFlipsWithDirection) {
   EmulatedAxisConfig c = Plain();
-  c.effects.friction_ripple = RippleEffect{0.1, 2.0, 0.0};
+  c.effects.friction_ripple = RippleEffect{{0.1, 2.0, 0.0}, {}};
   EXPECT_NEAR(Sliding_N(c, kTurn_m / 8.0, 0.05), 44.0, 0.01);
   EXPECT_NEAR(Sliding_N(c, kTurn_m / 8.0, -0.05), -44.0, 0.01);
   EXPECT_NEAR(Sliding_N(c, 3.0 * kTurn_m / 8.0, 0.05), 36.0, 0.01);
@@ -124,14 +124,14 @@ TEST(Effects, FrictionRippleFlipsWithDirection) {
 
 TEST(Effects, BallRippleIsNotPeriodicInTheTurn) {
   EmulatedAxisConfig c = Plain();
-  c.effects.ball_ripple = RippleEffect{0.1, 0.43, 0.0};
+  c.effects.ball_ripple = RippleEffect{{0.1, 0.43, 0.0}, {}};
   const double angle = 2.0 * std::numbers::pi * 10.0;
   EXPECT_NEAR(Sliding_N(c, 10.0 * kTurn_m, 0.05), 40.0 * (1.0 + 0.1 * std::sin(0.43 * angle)), 0.01);
 }
 
 TEST(Effects, CoggingDoesNotFlipWithDirection) {
   EmulatedAxisConfig c = Plain(0.0);
-  c.effects.cogging = CoggingEffect{0.01, 12.0, 0.0};
+  c.effects.cogging = CoggingEffect{{0.01, 12.0, 0.0}, {}};
   for (const double v : {0.05, -0.05})
     EXPECT_NEAR(Push_N(c, kTurn_m / 48.0, v, 0.0) * kRadius_m_rad, 0.01, 1e-5);
 }

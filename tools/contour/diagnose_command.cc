@@ -84,7 +84,7 @@ std::optional<ContourGain> Predict(const Options& options, const Diagnosis& foun
   const MachineConfig machine = LoadMachine(options.model, options.set);
   const std::string axis = options.axis.empty() ? machine.axes.begin()->first : options.axis;
   const Program program = options.program.empty() ? UsualCircle(machine) : LoadProgram(options.program);
-  return PredictContourGain(machine, axis, found, FirstTemperature_degC(log), program);
+  return PredictContourGain(machine, axis, found, TemperatureOf(log), program);
 }
 
 std::string PredictionText(const ContourGain& gain) {

@@ -26,6 +26,8 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kJitterPenalty = 3.0;
+// An extension that was found in another log may be off by a hundredth of its amplitude.
+constexpr double kOffStated = 1e-4;
 // Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
 constexpr double kConsistent = 1.2;
 
@@ -54,10 +56,11 @@ class Engine {
     Fit current = base_;
     bool jitter_known = false;
     double explained = 0.0;  // by what is accepted
+    const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
     for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
-      const Gate gate{SignFlipGate(scored, options_.false_alarm_rate, options_.seed),
+      const Gate gate{SignFlipGate(scored, options_.false_alarm_rate, options_.seed) + kOffStated * by_extras,
                       options_.false_alarm_rate, explained};
       const Jitter jitter = TestJitter(problem_, current);
       if (round == 0) {

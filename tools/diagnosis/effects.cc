@@ -6,20 +6,14 @@
 #include <numbers>
 #include <utility>
 
+#include "tools/diagnosis/wave_signals.h"
+
 namespace contour::diagnosis {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 // Logarithm of how far a coupling's damping ratio may be from 0.04.
 constexpr double kDampingReach = 2.0;
-
-// One element per row as two per row.
-Signal Doubled(const Signal& s) {
-  Signal out = s;
-  out.insert(out.end(), s.begin() + 1, s.end());
-  out.push_back(s.back());
-  return out;
-}
 
 SharedSignal Add(const SharedSignal& before, const std::vector<SharedSignal>& basis,
                  const std::vector<double>& a) {
@@ -32,30 +26,6 @@ SharedSignal Add(const SharedSignal& before, const std::vector<SharedSignal>& ba
     for (std::size_t k = 0; k < sum->size(); ++k) (*sum)[k] += a[i] * b[k];
   }
   return sum;
-}
-
-/// A wave between rows and the one a quarter period on, best straight line over each row: at high speed it
-/// turns far from row to row. `phase` per row, `size` of the wave per row.
-std::vector<SharedSignal> WaveSignals(const std::vector<double>& phase, const std::vector<double>& size) {
-  const std::size_t n = phase.size();
-  auto sine = std::make_shared<Signal>(2 * n, 0.0), cosine = std::make_shared<Signal>(2 * n, 0.0);
-  for (std::size_t k = 0; k + 1 < n; ++k) {
-    const double middle = 0.5 * (phase[k] + phase[k + 1]), d = 0.5 * (phase[k + 1] - phase[k]);
-    // Mean of sin(middle + d x) over x in -1..1, and its slope by least squares.
-    double mean = 1.0 - d * d / 6.0, slope = d * (1.0 - d * d / 10.0);
-    if (std::fabs(d) >= 1e-2) {
-      const double s = std::sin(d) / d;
-      mean = s;
-      slope = 3.0 * (s - std::cos(d)) / d;
-    }
-    const double a = size.empty() ? 1.0 : 0.5 * (size[k] + size[k + 1]);
-    const double s = a * std::sin(middle), c = a * std::cos(middle);
-    (*sine)[k] = mean * s - slope * c;
-    (*sine)[n + k] = mean * s + slope * c;
-    (*cosine)[k] = mean * c + slope * s;
-    (*cosine)[n + k] = mean * c - slope * s;
-  }
-  return {sine, cosine};
 }
 
 template <class F>
@@ -149,6 +119,20 @@ SharedSignal& TargetOf(AxisModel& m, Input input) {
   return m.scale_error_m;
 }
 
+/// Into one of the model's inputs. Levels multiply: what is there already has the effect in its proportion.
+void Enter(AxisModel& m, Input input, const std::vector<SharedSignal>& basis, const std::vector<double>& a) {
+  SharedSignal& target = TargetOf(m, input);
+  if (input != Input::kLevel || !target) {
+    target = Add(target, basis, a);
+    return;
+  }
+  const SharedSignal own = Add(nullptr, basis, a);
+  const Signal before = target->size() < own->size() ? Doubled(*target) : *target;
+  auto sum = std::make_shared<Signal>(own->size() < before.size() ? Doubled(*own) : *own);
+  for (std::size_t k = 0; k < sum->size(); ++k) (*sum)[k] += before[k] * (1.0 + (*sum)[k]);
+  target = sum;
+}
+
 // A signal times an amplitude, its shape by a second number that is 0 at the grid's place and fitted with the
 // rest.
 SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Input input, double step,
@@ -233,7 +217,7 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
     out.push_back(WithShorter(AsSignals(Custom("temperature_viscosity", "and level", 2, {2e-3, 1e-3},
                                                [T](const auto& a, AxisModel& m) {
                                                  m.viscous = Add(m.viscous, {T}, {a[0]});
-                                                 m.level = Add(m.level, {T}, {a[1]});
+                                                 Enter(m, Input::kLevel, {T}, {a[1]});
                                                })),
                               LinearEffect("temperature_viscosity", "", 2, Input::kViscous, {T}, 2e-3)));
   }
@@ -274,8 +258,7 @@ SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Inpu
   e->signals = true;
   e->apply = [shape = std::move(shape), input](const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0) return;
-    SharedSignal& target = TargetOf(m, input);
-    target = Add(target, {Make(m.rows, [&](std::size_t k) { return shape(k, a[1]); })}, {a[0]});
+    Enter(m, input, {Make(m.rows, [&](std::size_t k) { return shape(k, a[1]); })}, {a[0]});
   };
   return e;
 }
@@ -385,10 +368,7 @@ SharedEffect LinearEffect(std::string kind, std::string label, double grid, Inpu
   }
   auto shared = std::make_shared<const std::vector<SharedSignal>>(std::move(basis));
   return AsSignals(Custom(std::move(kind), std::move(label), grid, std::move(steps),
-                          [shared, input](const auto& a, AxisModel& m) {
-                            SharedSignal* target = &TargetOf(m, input);
-                            *target = Add(*target, *shared, a);
-                          }));
+                          [shared, input](const auto& a, AxisModel& m) { Enter(m, input, *shared, a); }));
 }
 
 std::vector<SharedEffect> CatalogueEffects(const Problem& problem) {
@@ -470,8 +450,7 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
     if (a[0] == 0.0 && a[1] == 0.0) return;
     std::vector<double> at(n);
     for (std::size_t k = 0; k < n; ++k) at[k] = order * (*x)[k] + a[2] * ((*x)[k] - middle);
-    SharedSignal& target = input == Input::kLevel ? m.level : m.load_force;
-    target = Add(target, WaveSignals(at, {}), {a[0], a[1]});
+    Enter(m, input, WaveSignals(at, {}), {a[0], a[1]});
   };
   e->middle = middle;
   return e;

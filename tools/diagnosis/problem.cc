@@ -5,7 +5,10 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
+
+#include "tools/diagnosis/extras.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -44,6 +47,7 @@ Problem::Problem(const AxisLog& log, const StatedAxis& stated, int threads)
     : log_(log), stated_(stated), threads_(std::max(1, threads)), nominal_(ModelOf(stated)) {
   signals_ = std::make_shared<Signals>(MakeSignals(log, stated));
   nominal_.rows = log.size();
+  AddExtras(stated.extras, *signals_, nominal_);
   setup_.log = &log_;
   setup_.full = has_scale();
   setup_.valid = ValidRows(log, *signals_, stated, quality_);
@@ -190,15 +194,33 @@ std::vector<std::vector<double>> Problem::Raw(std::span<const Point> points) con
   std::vector<AxisModel> models;
   models.reserve(points.size());
   for (const Point& p : points) models.push_back(Build(p));
+  return Raw(std::span<const AxisModel>(models));
+}
+
+std::vector<std::vector<double>> Problem::Raw(std::span<const AxisModel> models) const {
   std::vector<FilterRun> runs = RunFilter(setup_, models, threads_);
-  std::vector<std::vector<double>> raw(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  std::vector<std::vector<double>> raw(models.size());
+  for (std::size_t i = 0; i < models.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
     if (!has_scale()) continue;
     AddScale(runs[i].table_position, models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr,
              log_.table_position_m.data(), raw[i]);
   }
   return raw;
+}
+
+double Problem::ExplainedByExtras(const Point& point) const {
+  const AxisModel with = Build(point);
+  AxisModel without = with;
+  without.motor_force = without.load_force = without.level = without.viscous = without.scale_error_m =
+      nullptr;
+  if (with == without) return 0.0;
+  const AxisModel both[] = {with, without};
+  const std::vector<std::vector<double>> white = White(Raw(std::span<const AxisModel>(both)));
+  const auto squares = [](const std::vector<double>& r) {
+    return std::inner_product(r.begin(), r.end(), r.begin(), 0.0);
+  };
+  return squares(white[1]) - squares(white[0]);
 }
 
 void Problem::AddScale(const std::vector<double>& table, const double* error, const double* measured,

@@ -71,6 +71,8 @@ class Problem {
   void WhitenInto(std::span<const std::span<const double>> raw,
                   std::span<const std::span<double>> white) const;
   [[nodiscard]] std::vector<std::vector<double>> Residuals(std::span<const Point> points) const;
+  /// By how much |r|^2 would be larger without what the stated model has beyond its numbers.
+  [[nodiscard]] double ExplainedByExtras(const Point& point) const;
   [[nodiscard]] FilterRun Trace(const Point& point) const;
   /// White differences of the residual per unit of each effect's amplitude at zero beside the point where the
   /// noise was learnt, effects that are signals and nothing else.
@@ -102,6 +104,7 @@ class Problem {
   Whitener scale_noise_;
 
  private:
+  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const AxisModel> models) const;
   bool ScaleCounts(std::size_t k) const {
     return counted_[k] != 0 && std::isfinite(log_.table_position_m[k]);
   }

@@ -100,6 +100,7 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
     double mean = 0.0;
     for (const double t : s.temperature_K) mean += t / static_cast<double>(log.size());
     for (double& t : s.temperature_K) t -= mean;
+    s.mean_degC = mean;
   }
   if (!log.axis2_position_m.empty()) {
     const Signal other = Filled(log.axis2_position_m);

@@ -23,6 +23,7 @@ struct Signals {
   Signal model_torque;           ///< u that the motion needs by the model
   Signal net_force;              ///< what accelerates over the row: delivered less friction by the model
   Signal temperature_K;          ///< about its mean; empty without a sensor
+  double mean_degC = 0.0;        ///< that mean
   Signal axis2_m_s2, axis2_m_s;  ///< empty without a second axis
   double half_stroke_m = 0.0;    ///< of what was travelled
   double max_speed = 0.0;        ///< of q

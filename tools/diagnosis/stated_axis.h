@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 // The model that the simulation runs with, as stated, and how well each of its numbers is known.
 namespace contour::diagnosis {
@@ -16,6 +17,33 @@ struct StatedFriction {
   double s0 = 0.0, s1 = 0.0, vd = 0.0, s2 = 0.0;
 
   bool operator==(const StatedFriction&) const = default;
+};
+
+/// amplitude sin(order_per_rev angle + phase_rad), of the motor's angle.
+struct StatedWave {
+  double amplitude = 0.0, order_per_rev = 1.0, phase_rad = 0.0;
+};
+
+/// Over the table's position; straight lines between the points, constant beyond them. Empty: 0.
+struct StatedTable {
+  std::vector<double> position_m, value;
+};
+
+/// Friction beyond the linear term: at_max_speed y^exponent with y = |w| / max_speed, or with a knee, as
+/// share of the maximum speed, at_max_speed y (1 + knee) / (y + knee).
+struct StatedDrag {
+  double at_max_speed = 0.0, max_speed = 1.0, exponent = 2.0, knee = 0.0;
+};
+
+/// What the model states beyond its basic numbers: effects found before.
+struct StatedExtras {
+  std::vector<StatedWave> cogging;                       ///< u on the motor
+  std::vector<StatedWave> friction_ripple, ball_ripple;  ///< of the friction level
+  StatedTable friction_rel;                              ///< of the friction level
+  StatedTable spring;                                    ///< u, accelerates
+  StatedTable pitch_error_m;                             ///< table beyond what the motor's angle says
+  std::vector<StatedDrag> drag;
+  double viscous_rate_1_K = 0.0, reference_degC = 20.0;
 };
 
 /// In the generalised coordinates of AxisLog (rotary: rad, Nm, kg m^2 at the motor; linear: m, N, kg).
@@ -33,6 +61,7 @@ struct StatedAxis {
   bool friction_on_load = false;  ///< else on the motor's inertia
   StatedFriction friction;
   double offset = 0.0;  ///< constant u that the model states, positive accelerates
+  StatedExtras extras;
 
   double delay_s = 0.0;                           ///< from the row to the beginning of its command
   double lag_s = 0.0;                             ///< first-order current loop

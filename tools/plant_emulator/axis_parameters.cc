@@ -27,12 +27,17 @@ void Check(const EmulatedAxisConfig& c, const std::string& axis) {
   if (f.position_amplitude_rel + f.ripple_amplitude_rel >= 1.0)
     Refuse(axis,
            "position and ripple variation together must stay below 1, or friction would drive the table");
-  if (const auto& map = c.effects.friction_map) {
-    if (map->position_mm.empty() || map->position_mm.size() != map->friction_rel.size())
-      Refuse(axis, "effects.friction_map: as many positions as values are needed, and at least one");
-    if (!std::is_sorted(map->position_mm.begin(), map->position_mm.end()))
-      Refuse(axis, "effects.friction_map.position_mm must ascend");
-  }
+  const auto check_table = [&](const std::string& name, const std::vector<double>& position_mm,
+                               std::size_t values) {
+    if (position_mm.empty() || position_mm.size() != values)
+      Refuse(axis, name + ": as many positions as values are needed, and at least one");
+    if (!std::is_sorted(position_mm.begin(), position_mm.end()))
+      Refuse(axis, name + ".position_mm must ascend");
+  };
+  if (const auto& map = c.effects.friction_map)
+    check_table("effects.friction_map", map->position_mm, map->friction_rel.size());
+  if (const auto& map = c.effects.pitch_map)
+    check_table("effects.pitch_map", map->position_mm, map->error_um.size());
 }
 
 void SetFriction(AxisParameters& p, const EmulatedFrictionConfig& f, Random& random, double variation) {

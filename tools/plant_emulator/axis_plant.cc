@@ -22,19 +22,27 @@ constexpr double kBumperDamping_Ns_m = 5e3;
 double At(const Wave& w, double x) noexcept {
   return w.amplitude == 0.0 ? 0.0 : w.amplitude * portable::Sin(w.per_unit * x + w.phase_rad);
 }
-double Ripple(const RippleEffect& e, double angle_rad) noexcept {
+double Ripple(const RippleTerm& e, double angle_rad) noexcept {
   return e.amplitude_rel * portable::Sin(e.order_per_rev * angle_rad + e.phase_rad);
 }
+double Ripple(const RippleEffect& e, double angle_rad) noexcept {
+  double sum = Ripple(static_cast<const RippleTerm&>(e), angle_rad);
+  for (const RippleTerm& term : e.further) sum += Ripple(term, angle_rad);
+  return sum;
+}
+double Cogging_Nm(const CoggingTerm& e, double angle_rad) noexcept {
+  return e.amplitude_Nm * portable::Sin(e.order_per_rev * angle_rad + e.phase_rad);
+}
 /// Constant beyond its ends.
-double At(const FrictionMapEffect& map, double position_m) noexcept {
+double At(const std::vector<double>& position_mm, const std::vector<double>& value,
+          double position_m) noexcept {
   const double x = 1e3 * position_m;
-  if (x <= map.position_mm.front()) return map.friction_rel.front();
-  for (std::size_t i = 1; i < map.position_mm.size(); ++i) {
-    const double x0 = map.position_mm[i - 1], x1 = map.position_mm[i];
-    if (x < x1)
-      return map.friction_rel[i - 1] + (map.friction_rel[i] - map.friction_rel[i - 1]) * (x - x0) / (x1 - x0);
+  if (x <= position_mm.front()) return value.front();
+  for (std::size_t i = 1; i < position_mm.size(); ++i) {
+    const double x0 = position_mm[i - 1], x1 = position_mm[i];
+    if (x < x1) return value[i - 1] + (value[i] - value[i - 1]) * (x - x0) / (x1 - x0);
   }
-  return map.friction_rel.back();
+  return value.back();
 }
 double Sign(double x) noexcept { return static_cast<double>((x > 0.0) - (x < 0.0)); }
 
@@ -97,7 +105,7 @@ FrictionScale AxisPlant::Scale() const noexcept {
     common *= 1.0 + e->amplitude_rel *
                         portable::Sin(kTwoPi * e->periods_per_stroke * table_m_ / (2.0 * p_.half_stroke_m) +
                                       e->phase_rad);
-  if (const auto& e = p_.effects.friction_map) common *= 1.0 + At(*e, table_m_);
+  if (const auto& e = p_.effects.friction_map) common *= 1.0 + At(e->position_mm, e->friction_rel, table_m_);
   if (const auto& e = p_.effects.friction_ripple) common *= 1.0 + Ripple(*e, angle);
   if (const auto& e = p_.effects.ball_ripple) common *= 1.0 + Ripple(*e, angle);
   if (const auto& e = p_.effects.load_friction) {
@@ -127,8 +135,10 @@ double AxisPlant::DeliveredTorque_Nm(double torque_Nm) const noexcept {
 double AxisPlant::MotorForce_N(double torque_Nm) const noexcept {
   double torque = DeliveredTorque_Nm(torque_Nm);
   if (const auto& e = p_.effects.constant_torque) torque += e->torque_Nm;
-  if (const auto& e = p_.effects.cogging)
-    torque += e->amplitude_Nm * portable::Sin(e->order_per_rev * motor_angle_rad() + e->phase_rad);
+  if (const auto& e = p_.effects.cogging) {
+    torque += Cogging_Nm(*e, motor_angle_rad());
+    for (const CoggingTerm& term : e->further) torque += Cogging_Nm(term, motor_angle_rad());
+  }
   return torque / p_.radius_m_rad;
 }
 
@@ -236,11 +246,14 @@ void AxisPlant::UpdateSlowThings(double step_s) noexcept {
 }
 
 double AxisPlant::table_position_m() const noexcept {
+  double error_um = 0.0;
+  if (const auto& map = p_.effects.pitch_map) error_um = At(map->position_mm, map->error_um, table_m_);
   const auto& e = p_.effects.pitch_error;
-  if (!e) return table_m_;
-  return table_m_ + 1e-6 * e->amplitude_um *
-                        portable::Sin(kTwoPi * e->periods_per_stroke * table_m_ / (2.0 * p_.half_stroke_m) +
-                                      e->phase_rad);
+  if (!e) return table_m_ + 1e-6 * error_um;
+  return table_m_ +
+         1e-6 * (error_um + e->amplitude_um * portable::Sin(kTwoPi * e->periods_per_stroke * table_m_ /
+                                                                (2.0 * p_.half_stroke_m) +
+                                                            e->phase_rad));
 }
 
 double AxisPlant::friction_N() const noexcept {

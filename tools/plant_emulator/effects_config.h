@@ -81,9 +81,7 @@ struct CableSpringEffect {
   }
 };
 
-/// Friction level that varies with the motor angle, an integer (friction_ripple) or any (ball_ripple) number
-/// of times per turn.
-struct RippleEffect {
+struct RippleTerm {
   double amplitude_rel = 0.0;
   double order_per_rev = 1.0;
   double phase_rad = 0.0;
@@ -95,8 +93,18 @@ struct RippleEffect {
   }
 };
 
-/// Detent torque of the motor.
-struct CoggingEffect {
+/// Friction level that varies with the motor angle, an integer (friction_ripple) or any (ball_ripple) number
+/// of times per turn.
+struct RippleEffect : RippleTerm {
+  std::vector<RippleTerm> further;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    RippleTerm::Visit(v);
+    v.Optional("further", further, "of other orders beside it");
+  }
+};
+
+struct CoggingTerm {
   double amplitude_Nm = 0.0;
   double order_per_rev = 12.0;
   double phase_rad = 0.0;
@@ -105,6 +113,16 @@ struct CoggingEffect {
     v.Required("amplitude_Nm", amplitude_Nm, kAny, "peak torque");
     v.Required("order_per_rev", order_per_rev, kPositive, "periods per motor turn");
     v.Optional("phase_rad", phase_rad, kAny, "phase at motor angle zero");
+  }
+};
+
+/// Detent torque of the motor.
+struct CoggingEffect : CoggingTerm {
+  std::vector<CoggingTerm> further;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    CoggingTerm::Visit(v);
+    v.Optional("further", further, "of other orders beside it");
   }
 };
 
@@ -278,6 +296,17 @@ struct PitchErrorEffect {
   }
 };
 
+/// The same by a table; straight lines between its points.
+struct PitchMapEffect {
+  std::vector<double> position_mm;
+  std::vector<double> error_um;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("position_mm", position_mm, "positions of the table, ascending");
+    v.Required("error_um", error_um, "how far it stands off there");
+  }
+};
+
 /// Acceleration of another axis pushes this one.
 struct CrossCouplingEffect {
   std::string axis;
@@ -361,6 +390,7 @@ struct EffectsConfig {
   std::optional<EncoderEccentricityEffect> encoder_eccentricity;
   std::optional<EncoderSubdivisionEffect> encoder_subdivision;
   std::optional<PitchErrorEffect> pitch_error;
+  std::optional<PitchMapEffect> pitch_map;
   std::optional<CrossCouplingEffect> cross_coupling;
   std::optional<LoadFrictionEffect> load_friction;
   std::optional<PeriodicForceEffect> periodic_force;
@@ -396,6 +426,7 @@ struct EffectsConfig {
     v.Optional("encoder_eccentricity", encoder_eccentricity, "once-per-turn error of the encoder");
     v.Optional("encoder_subdivision", encoder_subdivision, "interpolation error of the encoder");
     v.Optional("pitch_error", pitch_error, "error of the screw's lead");
+    v.Optional("pitch_map", pitch_map, "error of the screw's lead, by a table");
     v.Optional("cross_coupling", cross_coupling, "reaction to another axis's acceleration");
     v.Optional("load_friction", load_friction, "friction that grows with load");
     v.Optional("periodic_force", periodic_force, "vibration from outside");

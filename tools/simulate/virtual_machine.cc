@@ -8,6 +8,7 @@
 #include "daemon/reason_text.h"
 #include "drivers/cia301/bring_up_text.h"
 #include "tools/machine/placements.h"
+#include "tools/simulate/simulated_io.h"
 
 namespace contour {
 namespace {
@@ -56,7 +57,12 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
     ++b;
   }
   emulated_.SetTruthSink(truths_.get());
-  SetIo(no_io_);
+  const auto& modbus = file.machine.io.modbus;
+  if (modbus && modbus->inputs.screw_temperature && modbus->inputs.screw_temperature->degC_per_count != 0.0)
+    io_ = std::make_unique<SimulatedIo>(*modbus->inputs.screw_temperature, emulated_);
+  else
+    io_ = std::make_unique<NoIo>();
+  SetIo(*io_);
 }
 
 VirtualMachine::~VirtualMachine() { emulated_.SetTruthSink(nullptr); }

@@ -20,7 +20,8 @@
 namespace contour {
 
 /// The daemon's own cycle on an emulated machine in virtual time: loopback buses, no threads, no waiting. The
-/// same machine file, program and seed give the same cycles every time, on every host.
+/// same machine file, program and seed give the same cycles every time, on every host. A temperature sensor
+/// of the machine file shows the emulated screw's; other inputs are closed.
 class VirtualMachine {
  public:
   /// Sees every cycle with the truth of the instant its feedback was latched at (null before there is any).
@@ -74,7 +75,7 @@ class VirtualMachine {
   std::vector<FrameBus*> bus_pointers_;
   CommandMailbox mailbox_;
   Cycle cycle_;
-  NoIo no_io_;
+  std::unique_ptr<IoSource> io_;
   std::unique_ptr<CycleRunner> runner_;
   PathFeeder feeder_;
   std::int64_t period_ns_;

@@ -110,7 +110,7 @@ std::string ExtendedFile(const std::string& file, const std::string& axis, const
       std::vector<std::string> errors;
       ReadYaml(old->value, extensions, "extensions", errors);
     }
-  AddCauses(found.causes, FirstTemperature_degC(log), extensions);
+  AddCauses(found.causes, TemperatureOf(log).first_degC, extensions);
   if (model->kind == YamlValue::Kind::kMap && !model->entries.empty() && BlockStyle(file, *model))
     return Inserted(file, *model, extensions);
   if (axes == nullptr) return "";

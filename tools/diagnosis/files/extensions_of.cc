@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <optional>
 
 namespace contour::diagnosis {
 namespace {
@@ -24,8 +26,74 @@ std::vector<double> Rounded(std::vector<double> values) {
   return values;
 }
 
-RippleExtension Ripple(const Cause& c) {
-  return {Value(c, "amplitude_rel"), Value(c, "order_per_rev", 1.0), Value(c, "phase_rad")};
+/// A wave beside those that are there; of the same order, their sum.
+template <class Extension, class Wave>
+void AddWave(std::optional<Extension>& to, double Wave::*amplitude, const Wave& wave) {
+  if (!to) {
+    to.emplace();
+    static_cast<Wave&>(*to) = wave;
+    return;
+  }
+  std::vector<Wave*> all = {&*to};
+  for (Wave& w : to->further) all.push_back(&w);
+  for (Wave* w : all) {
+    if (std::abs(w->order_per_rev - wave.order_per_rev) > 1e-9) continue;
+    const std::complex<double> sum =
+        std::polar(w->*amplitude, w->phase_rad) + std::polar(wave.*amplitude, wave.phase_rad);
+    w->*amplitude = std::abs(sum);
+    w->phase_rad = std::arg(sum);
+    return;
+  }
+  to->further.push_back(wave);
+}
+
+void AddRipple(const Cause& c, std::optional<RippleExtension>& to) {
+  AddWave(to, &RippleWave::amplitude_rel,
+          RippleWave{Value(c, "amplitude_rel"), Value(c, "order_per_rev", 1.0), Value(c, "phase_rad")});
+}
+
+double At(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  const auto after = std::upper_bound(x.begin(), x.end(), at);
+  if (after == x.begin()) return y.front();
+  if (after == x.end()) return y.back();
+  const auto i = static_cast<std::size_t>(after - x.begin());
+  return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
+}
+
+/// The shape joined to the table that is there, at the points of both.
+template <class F>
+void AddTable(const ShapeTable& shape, F&& join, std::vector<double>& x, std::vector<double>& y) {
+  const std::vector<double> old_x = x, old_y = y, own_x = Rounded(shape.x), own_y = Rounded(shape.y);
+  if (old_x.empty()) {
+    x = own_x;
+    y = own_y;
+    return;
+  }
+  x.insert(x.end(), own_x.begin(), own_x.end());
+  std::sort(x.begin(), x.end());
+  x.erase(std::unique(x.begin(), x.end()), x.end());
+  y.clear();
+  for (const double at : x) y.push_back(Rounded(join(At(old_x, old_y, at), At(own_x, own_y, at))));
+}
+
+double HalfRange(const std::vector<double>& y) {
+  const auto [low, high] = std::minmax_element(y.begin(), y.end());
+  return 0.5 * (*high - *low);
+}
+
+/// Both rates about one temperature: r (T - T0) = r1 (T - T1) + r2 (T - T2).
+void AddRate(double rate_1_K, double reference_degC, std::optional<TemperatureViscosityExtension>& to) {
+  if (!to) to = TemperatureViscosityExtension{0.0, reference_degC};
+  const double sum_1_K = to->rate_1_K + rate_1_K;
+  if (std::abs(sum_1_K) > 1e-6)
+    to->reference_degC =
+        std::clamp((to->rate_1_K * to->reference_degC + rate_1_K * reference_degC) / sum_1_K, -50.0, 150.0);
+  to->rate_1_K = sum_1_K;
+}
+
+template <class T>
+T& Existing(std::optional<T>& e) {
+  return e ? *e : e.emplace();
 }
 
 }  // namespace
@@ -39,40 +107,68 @@ bool CanExtend(const std::string& kind) {
 }
 
 void AddCauses(const std::vector<Cause>& causes, double first_temperature_degC, ExtensionsConfig& e) {
+  const auto sum = [](double a, double b) { return a + b; };
+  const auto factor = [](double a, double b) { return (1.0 + a) * (1.0 + b) - 1.0; };
   for (const Cause& c : causes) {
     const ShapeTable* shape = Shape(c);
-    if (c.kind == "asymmetric_coulomb") e.asymmetric_coulomb = {Value(c, "difference_rel")};
-    if (c.kind == "constant_torque") e.constant_torque = {Value(c, "torque_Nm")};
+    if (c.kind == "asymmetric_coulomb") {
+      // Factors 1 + d / 2 and 1 - d / 2, twice: the difference of the products over their mean.
+      double& d = Existing(e.asymmetric_coulomb).difference_rel;
+      const double by = Value(c, "difference_rel");
+      d = (d + by) / (1.0 + 0.25 * d * by);
+    }
+    if (c.kind == "constant_torque") Existing(e.constant_torque).torque_Nm += Value(c, "torque_Nm");
     if (c.kind == "stribeck")
       e.stribeck = {std::max(1.0, Value(c, "Fs_over_Fc", 1.0)), Value(c, "vs_rad_s", 1.0)};
-    if (c.kind == "position_friction" && shape != nullptr)
-      e.position_friction = {Value(c, "amplitude_rel"), Rounded(shape->x), Rounded(shape->y)};
-    if (c.kind == "cable_spring" && shape != nullptr)
-      e.cable_spring = {Value(c, "torque_at_stroke_end_Nm"), Rounded(shape->x), Rounded(shape->y)};
-    if (c.kind == "pitch_error" && shape != nullptr)
-      e.pitch_error = {Value(c, "amplitude_um"), Rounded(shape->x), Rounded(shape->y)};
-    if (c.kind == "friction_ripple") e.friction_ripple = Ripple(c);
-    if (c.kind == "ball_ripple") e.ball_ripple = Ripple(c);
+    if (c.kind == "position_friction" && shape != nullptr) {
+      PositionFrictionExtension& table = Existing(e.position_friction);
+      AddTable(*shape, factor, table.position_mm, table.friction_rel);
+      table.amplitude_rel = HalfRange(table.friction_rel);
+    }
+    if (c.kind == "cable_spring" && shape != nullptr) {
+      CableSpringExtension& table = Existing(e.cable_spring);
+      AddTable(*shape, sum, table.position_mm, table.torque_Nm);
+      table.torque_at_stroke_end_Nm += Value(c, "torque_at_stroke_end_Nm");
+    }
+    if (c.kind == "pitch_error" && shape != nullptr) {
+      PitchErrorExtension& table = Existing(e.pitch_error);
+      AddTable(*shape, sum, table.position_mm, table.error_um);
+      table.amplitude_um = HalfRange(table.error_um);
+    }
+    if (c.kind == "friction_ripple") AddRipple(c, e.friction_ripple);
+    if (c.kind == "ball_ripple") AddRipple(c, e.ball_ripple);
     if (c.kind == "cogging")
-      e.cogging = {Value(c, "amplitude_Nm"), Value(c, "order_per_rev", 1.0), Value(c, "phase_rad")};
-    if (c.kind == "viscous_nonlinear")
-      e.viscous_nonlinear = {Value(c, "torque_at_max_speed_Nm"), Value(c, "max_speed_rad_s", 1.0),
-                             Value(c, "exponent", 2.0), Value(c, "knee_rad_s")};
+      AddWave(e.cogging, &CoggingWave::amplitude_Nm,
+              CoggingWave{Value(c, "amplitude_Nm"), Value(c, "order_per_rev", 1.0), Value(c, "phase_rad")});
+    if (c.kind == "viscous_nonlinear") {
+      const ViscousCurve curve = {Value(c, "torque_at_max_speed_Nm"), Value(c, "max_speed_rad_s", 1.0),
+                                  Value(c, "exponent", 2.0), Value(c, "knee_rad_s")};
+      if (e.viscous_nonlinear)
+        e.viscous_nonlinear->further.push_back(curve);
+      else
+        static_cast<ViscousCurve&>(e.viscous_nonlinear.emplace()) = curve;
+    }
     if (c.kind == "temperature_viscosity")
-      e.temperature_viscosity = {Value(c, "rate_1_K"), first_temperature_degC};
-    if (c.kind == "torque_constant") e.torque_constant = {Value(c, "ratio", 1.0)};
+      AddRate(Value(c, "rate_1_K"), first_temperature_degC, e.temperature_viscosity);
+    if (c.kind == "torque_constant") Existing(e.torque_constant).ratio *= Value(c, "ratio", 1.0);
     if (c.kind == "compliance" && Value(c, "stiffness_Nm_rad") > 0.0)
       e.compliance = {Value(c, "antiresonance_Hz"), Value(c, "stiffness_Nm_rad"),
                       std::clamp(Value(c, "damping_ratio"), 0.0, 2.0)};
-    if (c.kind == "input_delay") e.input_delay = {Value(c, "delay_us")};
-    if (c.kind == "current_lag") e.current_lag = {Value(c, "time_constant_us")};
+    if (c.kind == "input_delay") Existing(e.input_delay).delay_us += Value(c, "delay_us");
+    if (c.kind == "current_lag") Existing(e.current_lag).time_constant_us += Value(c, "time_constant_us");
   }
 }
 
-double FirstTemperature_degC(const AxisLog& log) {
-  for (const double t : log.temperature_degC)
-    if (!std::isnan(t)) return t;
-  return 20.0;
+LogTemperature TemperatureOf(const AxisLog& log) {
+  LogTemperature out;
+  bool any = false;
+  for (const double t : log.temperature_degC) {
+    if (std::isnan(t)) continue;
+    if (!any) out = {t, t};
+    any = true;
+    if (std::abs(t - out.first_degC) > std::abs(out.farthest_degC - out.first_degC)) out.farthest_degC = t;
+  }
+  return out;
 }
 
 }  // namespace contour::diagnosis

@@ -17,7 +17,10 @@ bool CanExtend(const std::string& kind);
 /// refer to it.
 void AddCauses(const std::vector<Cause>& causes, double first_temperature_degC, ExtensionsConfig& extensions);
 
-/// The log's; 20 without a sensor.
-double FirstTemperature_degC(const AxisLog& log);
+/// Of a log: its first temperature, and that farthest from it; 20 without a sensor.
+struct LogTemperature {
+  double first_degC = 20.0, farthest_degC = 20.0;
+};
+LogTemperature TemperatureOf(const AxisLog& log);
 
 }  // namespace contour::diagnosis

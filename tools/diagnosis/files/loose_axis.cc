@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "tools/diagnosis/files/apply_extensions.h"
 #include "tools/diagnosis/files/stated_parameters.h"
 
 namespace contour::diagnosis {
@@ -33,6 +34,10 @@ class Converter {
       Rotary();
     axis_.delay_s = drive_.delay_ms * 1e-3;
     axis_.lag_s = drive_.lag_ms * 1e-3;
+    if (!axis_.linear) {
+      ApplyNumbers(model_.extensions, axis_);
+      ApplyExtras(model_.extensions, axis_);
+    }
     if (drive_.stroke_mm) {
       axis_.stroke_min_m = (*drive_.stroke_mm)[0] * 1e-3;
       axis_.stroke_max_m = (*drive_.stroke_mm)[1] * 1e-3;

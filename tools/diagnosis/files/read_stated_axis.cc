@@ -6,6 +6,7 @@
 #include "config/extended_model.h"
 #include "config/load_machine.h"
 #include "config/yaml_reader.h"
+#include "tools/diagnosis/files/apply_extensions.h"
 #include "tools/diagnosis/files/loose_axis.h"
 #include "tools/diagnosis/files/stated_parameters.h"
 
@@ -66,7 +67,7 @@ StatedAxis ToStatedAxis(const MachineConfig& machine, const std::string& name) {
   axis.friction = SeenAtQ(AtTable(ToSi(model.friction, r)), r);
   axis.delay_s = a.drive.delay_cycles * machine.machine.cycle_us * 1e-6 + model.added_delay_s;
   axis.lag_s = a.drive.lag_ms * 1e-3 + model.added_lag_s;
-  if (const auto& e = a.model.extensions.constant_torque) axis.offset = e->torque_Nm;
+  ApplyExtras(a.model.extensions, axis);  // those that are numbers are in Extended() already
   axis.position_step = 2.0 * std::numbers::pi / a.drive.encoder_counts_per_rev;
   axis.command_step = a.drive.rated_torque_Nm * 1e-3;  // the bus carries per mille of it
   axis.rated = a.drive.rated_torque_Nm;

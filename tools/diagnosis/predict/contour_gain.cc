@@ -67,6 +67,18 @@ StatedAxis Fitted(StatedAxis a, const Diagnosis& found) {
   return a;
 }
 
+RippleEffect Ripple(const RippleExtension& r) {
+  RippleEffect e = {{r.amplitude_rel, r.order_per_rev, r.phase_rad}, {}};
+  for (const RippleWave& w : r.further) e.further.push_back({w.amplitude_rel, w.order_per_rev, w.phase_rad});
+  return e;
+}
+
+CoggingEffect Cogging(const CoggingExtension& c) {
+  CoggingEffect e = {{c.amplitude_Nm, c.order_per_rev, c.phase_rad}, {}};
+  for (const CoggingWave& w : c.further) e.further.push_back({w.amplitude_Nm, w.order_per_rev, w.phase_rad});
+  return e;
+}
+
 /// Causes as effects of the emulated machine, from the extensions they are.
 EffectsConfig Effects(const ExtensionsConfig& x) {
   EffectsConfig e;
@@ -76,28 +88,35 @@ EffectsConfig Effects(const ExtensionsConfig& x) {
   if (x.stribeck) e.stribeck = StribeckEffect{x.stribeck->Fs_over_Fc, x.stribeck->vs_rad_s};
   if (x.position_friction)
     e.friction_map = FrictionMapEffect{x.position_friction->position_mm, x.position_friction->friction_rel};
-  const auto ripple = [](const RippleExtension& r) {
-    return RippleEffect{r.amplitude_rel, r.order_per_rev, r.phase_rad};
-  };
-  if (x.friction_ripple) e.friction_ripple = ripple(*x.friction_ripple);
-  if (x.ball_ripple) e.ball_ripple = ripple(*x.ball_ripple);
-  if (x.cogging)
-    e.cogging = CoggingEffect{x.cogging->amplitude_Nm, x.cogging->order_per_rev, x.cogging->phase_rad};
+  if (x.friction_ripple) e.friction_ripple = Ripple(*x.friction_ripple);
+  if (x.ball_ripple) e.ball_ripple = Ripple(*x.ball_ripple);
+  if (x.cogging) e.cogging = Cogging(*x.cogging);
   if (x.viscous_nonlinear)
     e.viscous_nonlinear = ViscousNonlinearEffect{x.viscous_nonlinear->torque_at_max_speed_Nm,
                                                  x.viscous_nonlinear->max_speed_rad_s,
                                                  std::clamp(x.viscous_nonlinear->exponent, 1.0, 4.0)};
+  if (x.temperature_viscosity)
+    e.temperature_viscosity = TemperatureViscosityEffect{x.temperature_viscosity->rate_1_K};
   if (x.torque_constant) e.torque_constant = TorqueConstantEffect{x.torque_constant->ratio};
   if (x.input_delay) e.input_delay = InputDelayEffect{std::max(0.0, x.input_delay->delay_us)};
   if (x.current_lag) e.current_lag = CurrentLagEffect{std::max(0.0, x.current_lag->time_constant_us)};
+  if (x.pitch_error) e.pitch_map = PitchMapEffect{x.pitch_error->position_mm, x.pitch_error->error_um};
   return e;
 }
 
-/// Kinds that Effects() knows, and stiffness, which is in the fitted numbers.
-bool Simulated(const std::string& kind) {
-  return CanExtend(kind) && kind != "cable_spring" && kind != "pitch_error" &&
-         kind != "temperature_viscosity";
+/// What the stated numbers of a model have in them already.
+ExtensionsConfig WithoutNumbers(ExtensionsConfig x) {
+  x.asymmetric_coulomb.reset();
+  x.stribeck.reset();
+  x.torque_constant.reset();
+  x.compliance.reset();
+  x.input_delay.reset();
+  x.current_lag.reset();
+  return x;
 }
+
+/// Kinds that Effects() knows, and stiffness, which is in the fitted numbers.
+bool Simulated(const std::string& kind) { return CanExtend(kind) && kind != "cable_spring"; }
 
 double Peak_um(const MachineConfig& machine, const EmulatorConfig& emulator, const Program& program) {
   ContestCell cell;
@@ -127,27 +146,33 @@ Program UsualCircle(const MachineConfig& machine) {
 }
 
 std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, const std::string& axis,
-                                              const Diagnosis& found, double first_temperature_degC,
+                                              const Diagnosis& found, const LogTemperature& temperature,
                                               const Program& program) {
   std::vector<Cause> simulated;
   for (const Cause& c : found.causes)
     if (Simulated(c.kind)) simulated.push_back(c);
   if (machine.axes.size() < 2 || simulated.empty()) return {};
   MachineConfig extended = machine;
-  ExtensionsConfig causes;
-  AddCauses(simulated, first_temperature_degC, causes);
-  AddCauses(simulated, first_temperature_degC, extended.axes.at(axis).model.extensions);
+  ExtensionsConfig& known = extended.axes.at(axis).model.extensions;
+  ExtensionsConfig all = WithoutNumbers(known);
+  AddCauses(simulated, temperature.first_degC, all);
+  AddCauses(simulated, temperature.first_degC, known);
   EmulatorConfig emulator;
   emulator.parameter_variation_rel = 0.0;
   for (const auto& [name, config] : machine.axes) {
     const StatedAxis stated = ToStatedAxis(machine, name);
-    emulator.axes[name] = Emulated(name == axis ? Fitted(stated, found) : stated, config);
+    EmulatedAxisConfig& e = emulator.axes[name];
+    e = Emulated(name == axis ? Fitted(stated, found) : stated, config);
+    const ExtensionsConfig there = name == axis ? all : WithoutNumbers(config.model.extensions);
+    e.effects = Effects(there);
+    e.temperature.start_degC = e.temperature.ambient_degC = temperature.farthest_degC;
+    if (there.temperature_viscosity)
+      e.temperature.reference_degC = there.temperature_viscosity->reference_degC;
   }
   EmulatedAxisConfig& diagnosed = emulator.axes.at(axis);
-  diagnosed.effects = Effects(causes);
-  if (causes.compliance) {
+  if (all.compliance) {
     ModelConfig with = machine.axes.at(axis).model;
-    with.extensions.compliance = causes.compliance;
+    with.extensions.compliance = all.compliance;
     diagnosed.screw_stiffness_N_um = Extended(with).mechanics.screw_stiffness_N_um;
     diagnosed.screw_damping_Ns_m = Extended(with).mechanics.screw_damping_Ns_m;
   }
