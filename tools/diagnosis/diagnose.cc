@@ -30,6 +30,7 @@ constexpr double kJitterPenalty = 3.0;
 constexpr double kOffStated = 1e-4;
 // Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
 constexpr double kConsistent = 1.2;
+constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
 void CheckInput(const AxisLog& log, const StatedAxis& stated) {
   const std::size_t n = log.size();
@@ -177,7 +178,7 @@ class Engine {
         e.penalty = Penalty(r.effect());
         e.refitted = r.score + e.penalty;
         e.tested = TestedScore(problem_, current, r);
-        e.unseen = HeldOutStatistic(problem_, current, r.fit);
+        e.unseen = Consistency(problem_, current, r.fit, true);
       }
       options_.evidence(e);
     }
@@ -188,7 +189,18 @@ class Engine {
     const double least = Threshold(problem_, gate, r.effect());
     if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
     // What a base parameter does already shows in the priors.
-    return InBase(problem_, r.effect().kind) || HeldOutStatistic(problem_, current, r.fit) > kConsistent;
+    if (InBase(problem_, r.effect().kind)) return true;
+    // A further effect that does harm in the half of the log that it was not fitted on is none.
+    Cause cause;
+    std::vector<BlockGain> blocks;
+    if (gate.accepted > 0.0) {
+      HeldOutGain(problem_, current, r.fit, r.effect().kind == "pitch_error", cause, blocks);
+      if (cause.heldout_gain_high < 0.0) return false;
+    }
+    if (Consistency(problem_, current, r.fit, true) > kConsistent) return true;
+    // Left out, the only stroke that shows a base parameter may take it far. Where chance is out of the
+    // question, it is enough that the drop does not come from one event.
+    return tested > kNoChance && Consistency(problem_, current, r.fit, false) > kNotOneEvent;
   }
 
   void Accept(const Fit& current, const std::vector<Rival>& rivals, const Gate& gate, Diagnosis& out) const {

@@ -19,7 +19,8 @@ constexpr double kShareInBase = 0.2;
 constexpr double kBeyondStated = 2e-3;
 // The model's own errors (integrators, the closed loop, a coupling stiffer than a rigid model can say) look
 // like effects, the more the longer the log; see docs/diagnosis_method.md for how these were measured.
-constexpr double kMargin = 1.0, kMarginPerRow = 5e-5, kMarginPerRowViscous = 2.5e-4;
+constexpr double kMargin = 1.0, kMarginPerRow = 5e-5, kMarginPerRowViscous = 2.5e-4,
+                 kMarginPerRowCompliance = 3e-4;
 
 double NormalTail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
 
@@ -74,9 +75,11 @@ double Threshold(const Problem& problem, const Gate& gate) {
 
 double Threshold(const Problem& problem, const Gate& gate, const Effect& effect) {
   if (!InBase(problem, effect.kind)) {
-    const double extra = gate.accepted <= 0.0 && effect.kind == "viscous_nonlinear"
-                             ? (kMarginPerRowViscous - kMarginPerRow) * static_cast<double>(problem.rows())
-                             : 0.0;
+    double per_row = kMarginPerRow;
+    if (effect.kind == "viscous_nonlinear") per_row = kMarginPerRowViscous;
+    if (effect.kind == "compliance") per_row = kMarginPerRowCompliance;
+    const double extra =
+        gate.accepted > 0.0 ? 0.0 : (per_row - kMarginPerRow) * static_cast<double>(problem.rows());
     return Threshold(problem, gate) + extra;
   }
   // The stated uncertainties say what chance does here.

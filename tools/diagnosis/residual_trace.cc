@@ -82,9 +82,9 @@ std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool 
   return squares;
 }
 
-// Sum of squares of the white residual in every block, to first order, with the parameters that all others
-// ask for.
-std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
+// Sum of squares of the white residual in every block; unseen: to first order, with the parameters that all
+// others ask for.
+std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit, bool unseen) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
   const Eigen::Index p = fit.jacobian.cols();
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
@@ -112,7 +112,7 @@ std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
     normal += normals[b];
     gradient += gradients[b];
   }
-  for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
+  for (std::size_t b = 0; b < kUnseenBlocks && unseen; ++b) {
     Eigen::MatrixXd others = normal - normals[b];
     others.diagonal() *= 1.0 + 1e-12;
     HoldShapes(fit, others);
@@ -124,8 +124,9 @@ std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
 
 }  // namespace
 
-double HeldOutStatistic(const Problem& problem, const Fit& without, const Fit& with) {
-  const std::vector<double> before = WhiteSquares(problem, without), after = WhiteSquares(problem, with);
+double Consistency(const Problem& problem, const Fit& without, const Fit& with, bool unseen) {
+  const std::vector<double> before = WhiteSquares(problem, without, unseen);
+  const std::vector<double> after = WhiteSquares(problem, with, unseen);
   double sum = 0.0, squares = 0.0;
   for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
     sum += before[b] - after[b];

@@ -5,12 +5,13 @@
 
 namespace contour::diagnosis {
 
+/// What the white residual loses in blocks of time, over the root of the sum of squares per block: 1 where a
+/// single block carries it. Unseen: in blocks that the fit has not seen (to first order); then about standard
+/// normal, or less, where there is no effect.
+double Consistency(const Problem& problem, const Fit& without, const Fit& with, bool unseen);
+
 /// u that has to be taken off the command for the model to move as measured (applied minus modelled), from
 /// the observer's corrections, low-passed at about 100 Hz; 0 where rows do not count.
-/// What the white residual loses in blocks that the fit has not seen (to first order), over the root of the
-/// sum of squares per block: about standard normal, or less, where there is no effect.
-double HeldOutStatistic(const Problem& problem, const Fit& without, const Fit& with);
-
 Signal TorqueResidual(const Problem& problem, const Point& point);
 
 /// Gain of `with` over `without` on blocks that the fit did not see (two interleaved folds; parameters of

@@ -15,8 +15,10 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kNoFault_Hz = 700.0;
-constexpr double kMostDamped = 1.3;  // logarithm of the damping ratio over 0.04
+constexpr double kMostDamped = 1.3,
+                 kLeastShare = 0.1;  // logarithm of the damping ratio over 0.04; of the inertia
 constexpr double kNever = -1e300;
+constexpr double kFineStep = 0.05;
 constexpr std::size_t kMostKinds = 4, kMostTried = 6, kSmallStarts = 4;
 
 /// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
@@ -35,7 +37,8 @@ void Sort(std::vector<Rival>& rivals) {
 /// A coupling that every screw has; or one that is damped as none is, which stands for something else.
 bool NoFault(const Problem& problem, const Rival& r) {
   if (r.effect().kind != "compliance" || problem.nominal_.two_inertia) return false;
-  if (r.fit.point.amplitudes.back()[2] > kMostDamped) return true;
+  const std::vector<double>& a = r.fit.point.amplitudes.back();
+  if (a[2] > kMostDamped && a[0] < kLeastShare) return true;
   const AxisModel m = problem.Build(r.fit.point);
   return m.two_inertia && m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kNoFault_Hz, 2);
 }
@@ -81,8 +84,11 @@ std::optional<Beginning> Far(const Problem& problem, const Fit& current, const s
   const auto add = [&](const SharedEffect& e, double first) {
     std::vector<double> a = e->start;
     a[0] = std::clamp(first, e->low[0], e->high[0]);
+    // The test's step is as large as what it looks for; a derivative needs a small one.
+    auto fine = std::make_shared<Effect>(*e);
+    fine->steps[0] = std::min(fine->steps[0], kFineStep * std::fabs(a[0]));
     Point p = current.point;
-    p.effects.push_back(e);
+    p.effects.push_back(std::move(fine));
     p.amplitudes.push_back(std::move(a));
     points.push_back(std::move(p));
   };
