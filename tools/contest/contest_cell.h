@@ -20,6 +20,7 @@ struct ContestCell {
   std::uint64_t seed = 1;
   Program program;
   std::shared_ptr<const EmulatedMachineFile> machine;  ///< but for the seed
+  std::uint64_t source = 0;                            ///< stands for the texts of program and machine
 };
 
 /// What came of it. Errors are those at the table; infinite when the machine stopped on the way.

@@ -34,6 +34,26 @@ std::vector<Named> Chosen(const std::vector<Named>& all, const std::vector<std::
   return out;
 }
 
+// FNV-1a, 64 bits; a byte that no text has ends each of them.
+std::uint64_t Stamp(const std::vector<std::string>& texts) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](unsigned char byte) { hash = (hash ^ byte) * 0x100000001b3u; };
+  for (const std::string& text : texts) {
+    for (const char c : text) add(static_cast<unsigned char>(c));
+    add(0xff);
+  }
+  return hash;
+}
+
+std::uint64_t Stamp(const std::string& program, const std::string& machine_file,
+                    const std::vector<std::string>& set) {
+  const MachineSource source = ReadSource(machine_file, set);
+  std::vector<std::string> texts{program, source.text};
+  for (const auto& [name, text] : source.files) texts.push_back(text);
+  texts.insert(texts.end(), set.begin(), set.end());
+  return Stamp(texts);
+}
+
 }  // namespace
 
 ContestChoice DefaultChoice(const ContestConfig& config, bool shorter) {
@@ -42,8 +62,13 @@ ContestChoice DefaultChoice(const ContestConfig& config, bool shorter) {
   return {config.controllers, Names(config.programs), Names(config.machines), config.seeds};
 }
 
+void CheckControllers(const ContestConfig& config, const std::vector<std::string>& controllers,
+                      const std::string& option) {
+  CheckAmong(config.controllers, controllers, option);
+}
+
 void CheckChoice(const ContestConfig& config, const ContestChoice& choice) {
-  CheckAmong(config.controllers, choice.controllers, "--controllers");
+  CheckControllers(config, choice.controllers, "--controllers");
   CheckAmong(Names(config.programs), choice.programs, "--programs");
   CheckAmong(Names(config.machines), choice.machines, "--machines");
 }
@@ -68,10 +93,11 @@ std::vector<ContestCell> PlanCells(const std::vector<ContestProgram>& programs,
       std::vector<std::string> set = Assignments(machine_file, m, p);
       set.insert(set.end(), extra.begin(), extra.end());
       const auto file = std::make_shared<const EmulatedMachineFile>(LoadEmulatedMachine(machine_file, set));
+      const std::uint64_t source = Stamp(p.program, machine_file, set);
       for (const std::int64_t seed : seeds) {
         for (const std::string& c : controllers) {
           ContestCell cell{
-              ControllerName::kFull, p.name, m.name, static_cast<std::uint64_t>(seed), program, file};
+              ControllerName::kFull, p.name, m.name, static_cast<std::uint64_t>(seed), program, file, source};
           FromName(c, cell.controller);
           cells.push_back(std::move(cell));
         }

@@ -22,6 +22,10 @@ ContestChoice DefaultChoice(const ContestConfig& config, bool shorter);
 /// Throws ConfigError naming the first unknown controller, program or machine, and the known ones.
 void CheckChoice(const ContestConfig& config, const ContestChoice& choice);
 
+/// The same for a list of controllers that an option gives.
+void CheckControllers(const ContestConfig& config, const std::vector<std::string>& controllers,
+                      const std::string& option);
+
 /// The assignments of a machine and a program on a machine file, as `contour simulate --set` takes them.
 std::vector<std::string> Assignments(const std::string& machine_file, const ContestMachine& machine,
                                      const ContestProgram& program);

@@ -11,7 +11,8 @@
 namespace contour {
 
 std::vector<CellResult> RunCells(const std::vector<ContestCell>& cells, unsigned workers,
-                                 const std::function<void(std::size_t)>& done) {
+                                 const std::function<void(std::size_t)>& done,
+                                 const std::function<void(std::size_t, const CellResult&)>& one) {
   std::vector<CellResult> results(cells.size());
   std::atomic<std::size_t> next{0};
   std::size_t finished = 0;
@@ -29,6 +30,12 @@ std::vector<CellResult> RunCells(const std::vector<ContestCell>& cells, unsigned
         next = cells.size();
       }
       const std::lock_guard lock(mutex);
+      try {
+        if (!wrong && one) one(i, results[i]);
+      } catch (...) {
+        wrong = std::current_exception();
+        next = cells.size();
+      }
       if (wrong && !error) error = wrong;
       ++finished;
     }

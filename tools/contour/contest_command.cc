@@ -16,6 +16,7 @@
 #include "core/exit_status.h"
 #include "tools/contest/contest_plan.h"
 #include "tools/contest/contest_report.h"
+#include "tools/contest/kept_cells.h"
 #include "tools/contest/run_cells.h"
 
 namespace contour {
@@ -26,6 +27,8 @@ struct Options {
   std::string contest = "config/contest.yaml";
   bool shorter = false;
   bool check = false;
+  bool resume = false;
+  std::vector<std::string> again;
   ContestChoice choice;
   std::vector<std::string> set;
   unsigned workers = 0;
@@ -66,6 +69,31 @@ void WriteFile(const std::filesystem::path& file, const Writer& write) {
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
+/// The results of all cells; those that are kept are not run again.
+std::vector<CellResult> RunOrRecall(const std::vector<ContestCell>& cells, KeptCells& kept,
+                                    unsigned workers) {
+  std::vector<CellResult> results(cells.size());
+  std::vector<ContestCell> missing;
+  std::vector<std::size_t> place;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (const CellResult* known = kept.Find(cells[i])) {
+      results[i] = *known;
+    } else {
+      missing.push_back(cells[i]);
+      place.push_back(i);
+    }
+  }
+  const Progress progress(missing.size());
+  RunCells(
+      missing, workers, [&](std::size_t done) { progress.Show(done); },
+      [&](std::size_t i, const CellResult& result) {
+        results[place[i]] = result;
+        kept.Keep(missing[i], result);
+      });
+  progress.Clear();
+  return results;
+}
+
 /// The command line that does the same again.
 std::string CommandText(const Options& options) {
   std::string text = "contour contest";
@@ -92,14 +120,13 @@ int RunContest(const Options& options) {
   if (!options.choice.machines.empty()) choice.machines = options.choice.machines;
   if (!options.choice.seeds.empty()) choice.seeds = options.choice.seeds;
   CheckChoice(config, choice);
+  CheckControllers(config, options.again, "--again");
   const std::vector<ContestCell> cells = PlanCells(config, choice, options.config, options.set);
   std::filesystem::create_directories(options.out);
   const unsigned workers =
       options.workers > 0 ? options.workers : std::max(1u, std::thread::hardware_concurrency());
-  const Progress progress(cells.size());
-  const std::vector<CellResult> results =
-      RunCells(cells, workers, [&](std::size_t done) { progress.Show(done); });
-  progress.Clear();
+  KeptCells kept(std::filesystem::path(options.out) / "cells.tsv", options.resume, options.again);
+  const std::vector<CellResult> results = RunOrRecall(cells, kept, workers);
   const std::vector<Heat> heats = Heats(cells, results);
   const Verdict verdict = Judge(heats, config.expected, config.machines.front().name);
   const std::filesystem::path out = options.out;
@@ -130,7 +157,11 @@ void AddContestCommand(CLI::App& app, Action& action) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->add_option("--workers", options->workers, "Runs at a time; default: one per processor");
   sub->add_flag("--check", options->check, "Exit status 1 when an aim is missed");
-  sub->add_option("--out", options->out, "Directory for results.csv and contest.md")->required();
+  auto* resume =
+      sub->add_flag("--resume", options->resume, "Runs that are in the directory already are not made again");
+  sub->add_option("--again", options->again, "With --resume: all runs of these controllers are made again")
+      ->needs(resume);
+  sub->add_option("--out", options->out, "Directory for results.csv, contest.md and cells.tsv")->required();
   sub->callback([options, &action] { action = [options] { return RunContest(*options); }; });
 }
 
