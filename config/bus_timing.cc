@@ -7,6 +7,7 @@
 #include "drivers/can/response_time.h"
 #include "drivers/cia301/messages.h"
 #include "drivers/cia402/drive_script.h"
+#include "drivers/cia402/mode_for.h"
 #include "drivers/cia402/pdo_layout.h"
 
 namespace contour {
@@ -28,7 +29,7 @@ std::int64_t Ms_ns(double ms) { return std::max<std::int64_t>(1, std::llround(ms
 
 void PlanDrive(const std::string& name, DriveConfig drive, ControllerName controller, std::int64_t cycle_ns,
                std::vector<Planned>& plan) {
-  drive.mode = controller == ControllerName::kCsp ? DriveMode::kCsp : DriveMode::kCst;
+  drive.mode = ModeFor(controller, drive);
   const int node = drive.node_id;
   const std::int64_t emergency_ns = std::max(cycle_ns, Ms_ns(drive.emergency_inhibit_ms));
   plan.push_back({{name + " emergency", Id(cob::kEmergency, node), 8, emergency_ns, 0}, Kind::kEmergency});

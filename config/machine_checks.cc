@@ -17,6 +17,7 @@
 #include "core/cycle_input.h"
 #include "core/mechanics.h"
 #include "drivers/cia402/drive_script.h"
+#include "drivers/cia402/mode_for.h"
 
 namespace contour {
 namespace {
@@ -129,9 +130,19 @@ void CheckNodes(const MachineConfig& c, Problems& problems) {
 }
 
 void CheckMode(const MachineConfig& c, const std::string& key, const DriveConfig& d, Problems& problems) {
-  if (d.mode == DriveMode::kCsp && c.machine.controller != ControllerName::kCsp)
-    problems.Add(key + ".mode", "found csp, but machine.controller " +
-                                    std::string(Name(c.machine.controller)) + " gives torques; expected cst");
+  const ControllerName controller = c.machine.controller;
+  const DriveMode mode = ModeFor(controller, d);
+  if (d.mode == DriveMode::kCsp && mode != DriveMode::kCsp)
+    problems.Add(key + ".mode", "found csp, but machine.controller " + std::string(Name(controller)) +
+                                    " gives torques; expected cst");
+  const auto& [first_name, first] = *c.axes.begin();
+  if (const DriveMode other = ModeFor(controller, first.drive); mode != other)
+    problems.Add(key + ".mode", "found " + std::string(Name(mode)) + ", but axis '" + first_name + "' has " +
+                                    std::string(Name(other)) + "; expected one mode for all axes");
+  if (controller == ControllerName::kFull && mode == DriveMode::kCsp && !d.csp_torque_offset)
+    problems.Add(key + ".csp_torque_offset",
+                 "found false, but machine.controller full sends friction as torque offset in mode csp; "
+                 "expected true");
   if (c.control.csp.torque_offset && !d.csp_torque_offset)
     problems.Add(key + ".csp_torque_offset",
                  "found false, but control.csp.torque_offset is true; expected true");

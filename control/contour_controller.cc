@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "control/cascade_law.h"
 #include "control/csp_law.h"
 #include "control/mpc_law.h"
 #include "control/pid_law.h"
@@ -13,7 +14,7 @@ namespace contour {
 namespace {
 
 std::unique_ptr<ControlLaw> MakeLaw(ControllerName name, const ControllerConfig& config,
-                                    const PerAxis<ControlledAxis>& axes, double period_s) {
+                                    const PerAxis<ControlledAxis>& axes, double period_s, bool cascade) {
   const ControllerOptions options = OptionsFor(name);
   switch (options.kind) {
     case ControllerKind::kPid:
@@ -23,6 +24,7 @@ std::unique_ptr<ControlLaw> MakeLaw(ControllerName name, const ControllerConfig&
     case ControllerKind::kMpc:
       break;
   }
+  if (name == ControllerName::kFull && cascade) return std::make_unique<CascadeLaw>(axes, period_s);
   return std::make_unique<MpcLaw>(MpcConfigFor(config, name), options, axes, period_s);
 }
 
@@ -49,11 +51,11 @@ const MpcConfig& MpcConfigFor(const ControllerConfig& config, ControllerName nam
 }
 
 ContourController::ContourController(ControllerName name, const ControllerConfig& config,
-                                     const PerAxis<ControlledAxis>& axes, double period_s)
+                                     const PerAxis<ControlledAxis>& axes, double period_s, bool cascade)
     : options_(OptionsFor(name)) {
   if (axes.empty()) throw std::invalid_argument("controller: there is no axis");
   if (!(period_s > 0.0)) throw std::invalid_argument("controller: the period must be positive");
-  law_ = MakeLaw(name, config, axes, period_s);
+  law_ = MakeLaw(name, config, axes, period_s, cascade);
   if (name == ControllerName::kFull && config.planner.enabled) {
     planner_ = std::make_unique<ReferencePlanner>(config.planner, axes, period_s);
   }

@@ -82,8 +82,9 @@ class ReferencePlanner;
 /// Reference and estimate in, force out. Throws std::invalid_argument at construction only.
 class ContourController {
  public:
+  /// `cascade`: the drives close the position loop themselves; matters to `full` only.
   ContourController(ControllerName name, const ControllerConfig& config, const PerAxis<ControlledAxis>& axes,
-                    double period_s);
+                    double period_s, bool cascade = false);
   ~ContourController();
   ContourController(ContourController&&) noexcept;
   ContourController& operator=(ContourController&&) noexcept;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/extended_model.h"
+#include "drivers/cia402/mode_for.h"
 
 namespace contour {
 namespace {
@@ -40,7 +41,7 @@ CycleConfig MakeCycleConfig(const MachineConfig& machine, ControllerName control
     out.axes.push_back(MakeAxis(name, axis, machine.estimator));
     AxisDriveConfig drive{name, static_cast<std::uint8_t>(BusIndex(machine, axis.drive.bus)), axis.drive,
                           std::min(axis.limits.torque_Nm, axis.drive.peak_torque_Nm)};
-    drive.drive.mode = controller == ControllerName::kCsp ? DriveMode::kCsp : DriveMode::kCst;
+    drive.drive.mode = ModeFor(controller, axis.drive);
     out.master.axes.push_back(drive);
   }
   return out;

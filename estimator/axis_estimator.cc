@@ -15,6 +15,8 @@ namespace {
 
 /// A planned motion slower than this has come to its end.
 constexpr double kStill_m_s = 1e-6;
+/// Reported torque is coarser than commanded torque is known, and each reversal tells less of the screw.
+constexpr double kMostStdInCascade = 0.12;
 
 void Demand(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(std::string("estimator: ") + what);
@@ -64,7 +66,13 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
                              const EstimatorConfig& config, double period_s, double lag_s,
                              double resolution_m, KnownEffects known)
     : kind_(kind), known_(std::move(known)) {
-  const FilterSetup setup = Check(mechanics, friction, config, period_s, lag_s, resolution_m);
+  const bool cascade = kind == EstimatorKind::kFullInCascade;
+  // The torque that a drive reports is what it gives: its lag is behind it.
+  if (cascade) lag_s = 0.0;
+  FilterSetup setup = Check(mechanics, friction, config, period_s, lag_s, resolution_m);
+  // Of the mass a drive in its own loop knows more than the model, and a wrong mass looks like a missing
+  // level.
+  setup.gives_levels_up = !cascade;
   switch (kind) {
     case EstimatorKind::kKinematic:
       filter_.emplace<KinematicObserver>(setup);
@@ -80,10 +88,11 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       break;
     case EstimatorKind::kSrukf7:
     case EstimatorKind::kFull:
+    case EstimatorKind::kFullInCascade:
       filter_.emplace<SevenStateFilter<SqrtUkf<kSevenStates>>>(setup);
       break;
   }
-  roll_ = FrictionRoll(period_s);
+  roll_ = FrictionRoll(period_s, cascade);
   viscous_ = ViscousCorrection({setup.friction.sigma2_Ns_m, config.adapt ? config.viscous_rate : 0.0});
   momentum_ = MomentumBalance({mechanics.mass_kg, period_s, config.adapt ? config.mass_rate : 0.0,
                                config.adapt ? config.delay_rate : 0.0});
@@ -93,9 +102,10 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       std::sqrt(6.0) * setup.measurement_std_m * mechanics.mass_kg / (period_s * period_s);
   map_ = AngleForceMap({2.0 * std::numbers::pi * mechanics.radius_m_rad, difference_N,
                         config.adapt ? config.cogging_rate : 0.0});
-  wind_up_ = WindUpFit({period_s, mechanics.stiffness_N_m, config.adapt ? config.stiffness_std : 0.0,
-                        setup.friction.vs_m_s, setup.friction.sigma1_Ns_m, setup.friction.sigma1_decay_m_s,
-                        setup.friction.sigma2_Ns_m});
+  wind_up_ =
+      WindUpFit({period_s, mechanics.stiffness_N_m, config.adapt ? config.stiffness_std : 0.0,
+                 setup.friction.vs_m_s, setup.friction.sigma1_Ns_m, setup.friction.sigma1_decay_m_s,
+                 setup.friction.sigma2_Ns_m, cascade ? kMostStdInCascade : WindUpFit::Tuning{}.most_std});
   mass_kg_ = mechanics.mass_kg;
   table_mass_kg_ = mechanics.table_mass_kg;
   correction_ =
@@ -118,7 +128,7 @@ void AxisEstimator::Reset(double position_m) noexcept {
 }
 
 AxisEstimate AxisEstimator::Update(const Input& in) noexcept {
-  if (kind_ == EstimatorKind::kFull) return UpdateFull(in);
+  if (is_full()) return UpdateFull(in);
   at_rest_ = in.at_rest || !in.enabled;
   AxisEstimate estimate;
   WithFilter(filter_, [&](auto& filter) noexcept { estimate = filter.Update(in); });
@@ -201,7 +211,7 @@ void AxisEstimator::LearnWindUp(double position_m, double velocity_m_s, double f
 
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
                                     FrictionPreview& out) noexcept {
-  if (kind_ == EstimatorKind::kFull) {
+  if (is_full()) {
     const auto& filter = *std::get_if<SevenStateFilter<SqrtUkf<kSevenStates>>>(&filter_);
     roll_.Run(filter.model(), filter.state(), correction_, viscous_,
               {known_, temperature_degC_, map_, momentum_.extra_kg(), filter.lasting_N()}, at_rest_,

@@ -33,6 +33,7 @@ enum class EstimatorKind : std::uint8_t {
   kEkf7,                 ///< the seven states in an extended Kalman filter
   kSrukf7,               ///< seven states in a square-root unscented Kalman filter
   kFull,                 ///< kSrukf7, level learnt over turn and speed, friction rolled along the reference
+  kFullInCascade,        ///< kFull, for a drive that closes its own position loop and reports its torque
 };
 
 /// State, velocity and friction of one axis from its motor encoder and the torque sent to it.
@@ -66,6 +67,9 @@ class AxisEstimator {
   }
 
  private:
+  [[nodiscard]] bool is_full() const noexcept {
+    return kind_ == EstimatorKind::kFull || kind_ == EstimatorKind::kFullInCascade;
+  }
   AxisEstimate UpdateFull(const Input& in) noexcept;
   void LearnWindUp(double position_m, double velocity_m_s, double force_N,
                    const AxisEstimate& estimate) noexcept;

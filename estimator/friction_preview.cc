@@ -10,6 +10,12 @@ namespace {
 // From this share of its level on the bristle counts as sliding.
 constexpr double kSlidingShare = 0.85;
 
+// Low-pass of unforeseen friction where a drive closes its own loop: while the axis moves, and at rest, where
+// only the noise of the reported torque is left of it.
+constexpr double kLead_Hz = 8.0;
+constexpr double kLeadAtRest_Hz = 0.4;
+constexpr double kTwoPi = 6.283185307179586;
+
 // Points are taken by whole vectors: up to this many at a time, the last point repeated.
 constexpr std::size_t kVector = 4;
 static_assert(kMaxHorizonPoints % kVector == 0);
@@ -112,13 +118,20 @@ void AddMap(const AngleForceMap& map, const AxisHorizon& reference, const Along&
 
 }  // namespace
 
+FrictionRoll::FrictionRoll(double period_s, bool cascade) noexcept
+    : period_s_(period_s),
+      cascade_(cascade),
+      lead_share_(-Expm1(-kTwoPi * kLead_Hz * period_s)),
+      rest_share_(-Expm1(-kTwoPi * kLeadAtRest_Hz * period_s)) {}
+
 CONTOUR_WIDE_VECTORS
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
                        LevelCorrection& correction, ViscousCorrection& viscous, const KnownNow& known,
                        bool at_rest, const AxisHorizon& reference, std::size_t points,
                        FrictionPreview& out) noexcept {
   if (at_rest) {
-    bristle_N_ = x[kBristle];
+    // In a cascade what is foreseen must not take the noise of the estimate over.
+    if (!cascade_) bristle_N_ = x[kBristle];
     correction.Pause();
   }
   const std::size_t size = std::min(points, reference.size());
@@ -156,16 +169,19 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   correction.Learn(terms, forward, 1.0 - a.relaxation[0], friction_lacks_N * a.per_level_1_N[0],
                    velocity * period_s_, sliding);
 
-  const double half_extra_kg = 0.5 * known.extra_kg;
+  if (cascade_) lead_N_ += (at_rest ? rest_share_ : lead_share_) * (unexplained_N - lead_N_);
+  const double node_extra_N = cascade_ ? lead_N_ : unexplained_N;
+  const double mid_extra_N = cascade_ ? 0.0 : unexplained_N;
+  const double half_extra_kg = cascade_ ? 0.0 : 0.5 * known.extra_kg;
   for (std::size_t j = 0; j < size; ++j) {
-    out[j].node_N = a.node_N[j] + unexplained_N + sigma2 * a.node_velocity_m_s[j];
-    out[j].mid_N = a.middle_N[j] + unexplained_N + sigma2 * a.velocity_m_s[j] +
+    out[j].node_N = a.node_N[j] + node_extra_N + sigma2 * a.node_velocity_m_s[j];
+    out[j].mid_N = a.middle_N[j] + mid_extra_N + sigma2 * a.velocity_m_s[j] +
                    half_extra_kg * (reference[j].acceleration_m_s2 + After(reference, j).acceleration_m_s2);
     out[j].lead_m = 0.0;
   }
   if (!known.effects.neutral()) AddKnown(known, reference, a, out);
   if (known.map.in_use()) AddMap(known.map, reference, a, out);
-  rolled_N_ = out[0].mid_N - unexplained_N -
+  rolled_N_ = out[0].mid_N - mid_extra_N -
               half_extra_kg * (reference[0].acceleration_m_s2 + After(reference, 0).acceleration_m_s2);
 }
 

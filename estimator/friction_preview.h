@@ -25,7 +25,10 @@ struct KnownNow {
 class FrictionRoll {
  public:
   FrictionRoll() noexcept = default;
-  explicit FrictionRoll(double period_s) noexcept : period_s_(period_s) {}
+  /// `cascade`: a drive closes the position loop itself and answers at once to what friction is not foreseen.
+  /// Fed forward a second time from here, cycles later, it would swing. So the torque has none of it, nor of
+  /// a mass the drive knows; the wind-up has it, through a low-pass.
+  explicit FrictionRoll(double period_s, bool cascade = false) noexcept;
 
   [[nodiscard]] double period_s() const noexcept { return period_s_; }
 
@@ -34,7 +37,10 @@ class FrictionRoll {
   [[nodiscard]] double rolled_N() const noexcept { return rolled_N_; }
 
   /// The rolled bristle starts from this force.
-  void Reset(double bristle_N) noexcept { bristle_N_ = bristle_N; }
+  void Reset(double bristle_N) noexcept {
+    bristle_N_ = bristle_N;
+    lead_N_ = 0.0;
+  }
 
   /// `x`: filter state at element 0 of the reference, of which `points` are rolled along. Keeps the bristle
   /// at element 1 for the next call and lets the corrections learn from the difference at element 0. mid_N,
@@ -48,6 +54,10 @@ class FrictionRoll {
   double period_s_ = 1e-3;
   double bristle_N_ = 0.0;  // rolled, at element 0 of the next reference
   double rolled_N_ = 0.0;
+  bool cascade_ = false;
+  double lead_share_ = 1.0;  // of the low-pass, per period
+  double rest_share_ = 1.0;
+  double lead_N_ = 0.0;  // unforeseen friction as the wind-up has it
 };
 
 }  // namespace contour

@@ -215,7 +215,7 @@ void SevenStateFilter<Core>::JudgeLevel(bool at_rest) noexcept {
   double& level = x[LevelState()];
   // A jerk may take the axis over all the lengths before the filter has seen what held it back.
   const bool settled = travel_m_ > kSettledLengths * length_m && travel_s_ > kSettled_s;
-  if (settled && held_N <= kMissingShare * level_N) {
+  if (setup_.gives_levels_up && settled && held_N <= kMissingShare * level_N) {
     level *= std::exp(-kGivingUpShare * step_m / length_m);
     // Nothing to act upon is left of it.
     if (level < doubt_N) level = kLowestLevelShare * CommissionedLevel_N();

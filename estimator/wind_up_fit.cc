@@ -16,9 +16,8 @@ constexpr std::size_t kLeastBlocks = 16;
 constexpr std::size_t kBlocksPerCycle = 8;
 // Near its level the bristle moves any way for the same force: rows there weigh no less than this.
 constexpr double kLeastWeight = 0.1;
-// What an answer may be uncertain by, as a share of the commissioned compliance, and how far residuals may
-// hang together: 2 when they do not. A Maxwell-slip friction gives 0.9 to 1.6, LuGre 2.2 to 2.7.
-constexpr double kMostStd = 0.08;
+// How far residuals may hang together: 2 when they do not. A Maxwell-slip friction gives 0.9 to 1.6,
+// LuGre 2.2 to 2.7.
 constexpr double kLeastIndependence = 1.9;
 constexpr double kMostLevelError = 2.0;
 // Stribeck curve and damping of the bristle are believed. What they are wrong by looks like this share of the
@@ -234,7 +233,7 @@ void WindUpFit::EndPass() noexcept {
 
 void WindUpFit::Conclude(double compliance_m_N, double std_m_N) noexcept {
   const double commissioned_m_N = 1.0 / tuning_.stiffness_N_m;
-  if (!(std_m_N < kMostStd * commissioned_m_N)) return;
+  if (!(std_m_N < tuning_.most_std * commissioned_m_N)) return;
   if (!(compliance_m_N > commissioned_m_N / (1.0 + kMostChange) &&
         compliance_m_N < commissioned_m_N * (1.0 + kMostChange)))
     return;

@@ -26,6 +26,8 @@ class WindUpFit {
     double sigma1_Ns_m = 0.0;
     double sigma1_decay_m_s = 1.0;
     double sigma2_Ns_m = 0.0;
+    /// What an answer may be uncertain by, as a share of the commissioned compliance.
+    double most_std = 0.08;
   };
   struct Sample {
     double position_m = 0.0;

@@ -20,7 +20,7 @@ constexpr int kLocalPathReach = 8;
 /// Damping ratio of an axis held by a spring, friction apart.
 constexpr double kSpringDamping = 0.7;
 
-EstimatorKind KindFor(ControllerName name) noexcept {
+EstimatorKind KindFor(ControllerName name, bool cascade) noexcept {
   switch (name) {
     case ControllerName::kPid:
     case ControllerName::kCsp:
@@ -37,7 +37,12 @@ EstimatorKind KindFor(ControllerName name) noexcept {
     case ControllerName::kFull:
       break;
   }
-  return EstimatorKind::kFull;
+  return cascade ? EstimatorKind::kFullInCascade : EstimatorKind::kFull;
+}
+
+/// Whether the drives close the position loop.
+bool InCascade(const CycleConfig& config) noexcept {
+  return !config.master.axes.empty() && config.master.axes.front().drive.mode == DriveMode::kCsp;
 }
 
 PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
@@ -82,7 +87,8 @@ PerAxis<double> Zeros(std::size_t n) {
 }  // namespace
 
 ContourController MakeController(const CycleConfig& config) {
-  return {config.controller, config.control, ControlledAxes(config), config.cycle_us * 1e-6};
+  return {config.controller, config.control, ControlledAxes(config), config.cycle_us * 1e-6,
+          InCascade(config)};
 }
 
 double StopOnPathTime_s(const CycleConfig& config) {
@@ -97,10 +103,9 @@ double StopOnPathTime_s(const CycleConfig& config) {
   return time_s;
 }
 
-Cycle::Axis::Axis(const CycleAxisConfig& config, ControllerName controller, double period_s)
+Cycle::Axis::Axis(const CycleAxisConfig& config, EstimatorKind kind, double period_s)
     : radius_m_rad(config.mechanics.radius_m_rad),
-      estimator(KindFor(controller), config.mechanics, config.friction, config.estimator, period_s,
-                config.lag_s,
+      estimator(kind, config.mechanics, config.friction, config.estimator, period_s, config.lag_s,
                 2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev,
                 config.known),
       mass_kg(config.mechanics.mass_kg) {}
@@ -110,16 +115,18 @@ Cycle::Cycle(const CycleConfig& config)
       master_(config.master),
       transitions_(TransitionTimes(config)),
       follower_(config.axes.size(), period_s_, StopOnPathTime_s(config) / period_s_, kMaxHorizonPoints),
-      controller_(config.controller, config.control, ControlledAxes(config), period_s_),
+      controller_(MakeController(config)),
       guard_(config.control.guard, GuardedAxes(config), period_s_),
-      csp_(config.controller == ControllerName::kCsp),
+      csp_(InCascade(config)),
+      by_reported_torque_(csp_ && config.controller == ControllerName::kFull),
       most_skipped_(static_cast<std::uint32_t>(config.control.guard.stale_cycles)),
       estimates_(config.axes.size()),
       guarded_(config.axes.size()),
       setpoints_(config.axes.size()),
       near_position_m_(config.axes.size()),
       near_path_(config.axes.size()) {
-  for (const CycleAxisConfig& a : config.axes) axes_.emplace_back(a, config.controller, period_s_);
+  for (const CycleAxisConfig& a : config.axes)
+    axes_.emplace_back(a, KindFor(config.controller, csp_), period_s_);
   for (const AxisDriveConfig& a : config.master.axes)
     answers_.push_back({{static_cast<std::uint16_t>(cob::kTpdo1 + a.drive.node_id), 0, {}}, a.bus, 0});
   for (const BusConfig& b : config.master.buses) {
@@ -238,6 +245,12 @@ void Cycle::Estimate(const IoInput& io) noexcept {
     input.position_m = axis.position_m;
     input.fresh = f.fresh;
     input.force_N = axis.sent_force_N;
+    if (by_reported_torque_) {
+      // What the drive's own loops made of it, at the ends of the period that has passed.
+      const double now_N = f.torque_Nm / axis.radius_m_rad;
+      input.force_N = {now_N, 0.5 * (now_N + axis.reported_N), axis.reported_N};
+      axis.reported_N = now_N;
+    }
     input.commanded_velocity_m_s = commanded.velocity_m_s;
     input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
     if (io.configured && io.fresh) input.temperature_degC = io.screw_temperature_degC;
@@ -259,7 +272,7 @@ ReferencePoint Cycle::AtSample(std::size_t axis) const noexcept {
 // From the newest feedback to one period before the torque now being computed, under the torque that acted.
 void Cycle::CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept {
   const AxisEstimate measured = estimates_[index];
-  const double held_N = axis.sent_force_N[0];
+  const double held_N = input.force_N[0];
   input.fresh = false;
   input.force_N = {held_N, held_N, held_N};
   for (std::uint32_t s = 1; s <= skipped_; ++s) {

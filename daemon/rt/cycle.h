@@ -63,15 +63,18 @@ class Cycle {
 
  private:
   struct Axis {
-    Axis(const CycleAxisConfig& config, ControllerName controller, double period_s);
+    Axis(const CycleAxisConfig& config, EstimatorKind kind, double period_s);
     double radius_m_rad;
     AxisEstimator estimator;
     double mass_kg;
     std::array<double, 3> sent_force_N{};  ///< newest first
+    double reported_N = 0.0;               ///< torque at the sample before, as the drive told it
     double wanted_torque_Nm = 0.0;         ///< before the guard
     double position_m = 0.0;
 
-    void Keep(StateKeeper& keep) noexcept { keep(estimator, sent_force_N, wanted_torque_Nm, position_m); }
+    void Keep(StateKeeper& keep) noexcept {
+      keep(estimator, sent_force_N, reported_N, wanted_torque_Nm, position_m);
+    }
   };
 
   void Keep(StateKeeper& keep) noexcept;
@@ -101,6 +104,7 @@ class Cycle {
   ContourController controller_;
   TorqueGuard guard_;
   bool csp_;
+  bool by_reported_torque_;  // the estimators are told what the drives report instead of what they were sent
   std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 

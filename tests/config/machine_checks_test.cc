@@ -145,8 +145,12 @@ TEST(MachineChecks, ModelMustMakeSense) {
 
 TEST(MachineChecks, ModeAndController) {
   MachineConfig c = Good();
-  c.axes.at("x").drive.mode = DriveMode::kCsp;
-  EXPECT_EQ(Only(c), "axes.x.drive.mode: found csp, but machine.controller full gives torques; expected cst");
+  for (auto& [name, axis] : c.axes) axis.drive.mode = DriveMode::kCsp;
+  EXPECT_TRUE(Check(c).empty()) << "full works in either mode";
+  c.axes.at("y").drive.mode = DriveMode::kCst;
+  c.machine.controller = ControllerName::kMpcSrukf7;
+  EXPECT_EQ(Only(c),
+            "axes.x.drive.mode: found csp, but machine.controller mpc_srukf7 gives torques; expected cst");
   c.machine.controller = ControllerName::kCsp;
   EXPECT_TRUE(Check(c).empty());
   c.control.csp.torque_offset = true;
@@ -155,6 +159,19 @@ TEST(MachineChecks, ModeAndController) {
   EXPECT_EQ(
       Only(c),
       "axes.x.drive.csp_torque_offset: found false, but control.csp.torque_offset is true; expected true");
+}
+
+TEST(MachineChecks, FullTakesAllAxesInOneMode) {
+  MachineConfig c = Good();
+  c.axes.at("y").drive.mode = DriveMode::kCsp;
+  EXPECT_EQ(Only(c), "axes.y.drive.mode: found csp, but axis 'x' has cst; expected one mode for all axes");
+  c.axes.at("x").drive.mode = DriveMode::kCsp;
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("y").drive.csp_torque_offset = false;
+  EXPECT_EQ(
+      Only(c),
+      "axes.y.drive.csp_torque_offset: found false, but machine.controller full sends friction as torque "
+      "offset in mode csp; expected true");
 }
 
 // The axis of CANOPEN's warning: rated torque held for 100 ms gains 0.85 m/s and 42 mm.

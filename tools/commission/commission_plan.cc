@@ -5,6 +5,7 @@
 
 #include "config/config_error.h"
 #include "config/machine_checks.h"
+#include "drivers/cia402/mode_for.h"
 #include "tools/text/format_text.h"
 
 namespace contour {
@@ -55,7 +56,7 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
                                  const CommissionLimits& limits) {
   Require(machine.axes.contains(name), "--axis: there is no axis \"" + name + "\" in this machine");
   const AxisConfig& axis = machine.axes.at(name);
-  Require(axis.drive.mode == DriveMode::kCst,
+  Require(ModeFor(machine.machine.controller, axis.drive) == DriveMode::kCst,
           "axis " + name + ": commissioning takes a drive in torque mode (drive.mode: cst)");
   const AxisLimits& l = axis.limits;
   const Mechanics m = ToSi(axis.model.mechanics);

@@ -47,6 +47,10 @@ ContestConfig LoadContest(const std::string& path) {
   CheckPrograms(config.tune.programs, errors);
   for (const std::string& name : config.controllers)
     CheckController(name, WhereIs(tree, "controllers") + ": controllers", errors);
+  for (const ContestEntry& e : config.entries)
+    CheckController(e.controller, WhereIs(tree, "entries") + ": entries", errors);
+  for (const ContestEntry& e : config.entries)
+    CheckNames(config.machines, e.machines, WhereIs(tree, "entries") + ": entries.machines", errors);
   for (const TunedController& c : config.tune.controllers) {
     CheckController(c.name, WhereIs(tree, "tune.controllers") + ": tune.controllers", errors);
     for (const TunedKey& k : c.keys)

@@ -101,12 +101,28 @@ struct TuneConfig {
   }
 };
 
+/// How a controller enters the contest, where the machine file leaves a choice.
+struct ContestEntry {
+  std::string controller;
+  std::vector<std::string> machines;
+  std::vector<std::string> set;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("controller", controller, "a controller");
+    v.Optional("machines", machines, "on these machines; none given: on all");
+    v.Required("set", set,
+               "assignments on the machine file for its runs, as --set takes them; axes.* is every axis");
+  }
+};
+
 /// config/contest.yaml.
 struct ContestConfig {
   std::vector<std::string> controllers;
   std::vector<std::int64_t> seeds;
   std::vector<ContestProgram> programs;
   std::vector<ContestMachine> machines;
+  std::vector<ContestEntry> entries;
   std::vector<ExpectedPeak> expected;
   ContestSelection shorter;
   TuneConfig tune;
@@ -117,6 +133,7 @@ struct ContestConfig {
     v.Required("seeds", seeds, kNotNegative, "seeds of the emulated machine");
     v.Required("programs", programs, "what is drawn");
     v.Required("machines", machines, "on what");
+    v.Optional("entries", entries, "how controllers enter, where the machine file leaves a choice");
     v.Optional("expected", expected, "figures of well-tuned controllers on the first machine");
     v.Required("short", shorter, "what --short runs");
     v.Required("tune", tune, "what tuning runs");

@@ -45,6 +45,19 @@ std::uint64_t Stamp(const std::vector<std::string>& texts) {
   return hash;
 }
 
+/// The assignments with which a controller enters on a machine; a later entry has the last word.
+std::vector<std::string> EntryOf(const std::string& controller, const std::string& machine,
+                                 const std::vector<ContestEntry>& entries, const YamlValue& tree) {
+  std::vector<std::string> set;
+  for (const ContestEntry& e : entries) {
+    const bool here =
+        e.machines.empty() || std::find(e.machines.begin(), e.machines.end(), machine) != e.machines.end();
+    if (e.controller != controller || !here) continue;
+    for (std::string& one : ExpandAssignments(tree, e.set)) set.push_back(std::move(one));
+  }
+  return set;
+}
+
 std::uint64_t Stamp(const std::string& program, const std::string& machine_file,
                     const std::vector<std::string>& set) {
   const MachineSource source = ReadSource(machine_file, set);
@@ -85,20 +98,31 @@ std::vector<ContestCell> PlanCells(const std::vector<ContestProgram>& programs,
                                    const std::vector<ContestMachine>& machines,
                                    const std::vector<std::int64_t>& seeds,
                                    const std::vector<std::string>& controllers,
-                                   const std::string& machine_file, const std::vector<std::string>& extra) {
+                                   const std::string& machine_file, const std::vector<std::string>& extra,
+                                   const std::vector<ContestEntry>& entries) {
+  const YamlValue tree = OpenMachineFile(machine_file, {});
   std::vector<ContestCell> cells;
   for (const ContestProgram& p : programs) {
     const Program program = ParseProgram(p.program, p.name, ProgramFormat::kYaml);
     for (const ContestMachine& m : machines) {
-      std::vector<std::string> set = Assignments(machine_file, m, p);
-      set.insert(set.end(), extra.begin(), extra.end());
-      const auto file = std::make_shared<const EmulatedMachineFile>(LoadEmulatedMachine(machine_file, set));
-      const std::uint64_t source = Stamp(p.program, machine_file, set);
+      std::vector<ContestCell> contestants;
+      for (const std::string& c : controllers) {
+        std::vector<std::string> set = EntryOf(c, m.name, entries, tree);
+        for (std::string& one : Assignments(machine_file, m, p)) set.push_back(std::move(one));
+        set.insert(set.end(), extra.begin(), extra.end());
+        ContestCell cell{ControllerName::kFull,
+                         p.name,
+                         m.name,
+                         0,
+                         program,
+                         std::make_shared<const EmulatedMachineFile>(LoadEmulatedMachine(machine_file, set)),
+                         Stamp(p.program, machine_file, set)};
+        FromName(c, cell.controller);
+        contestants.push_back(std::move(cell));
+      }
       for (const std::int64_t seed : seeds) {
-        for (const std::string& c : controllers) {
-          ContestCell cell{
-              ControllerName::kFull, p.name, m.name, static_cast<std::uint64_t>(seed), program, file, source};
-          FromName(c, cell.controller);
+        for (ContestCell cell : contestants) {
+          cell.seed = static_cast<std::uint64_t>(seed);
           cells.push_back(std::move(cell));
         }
       }
@@ -110,7 +134,7 @@ std::vector<ContestCell> PlanCells(const std::vector<ContestProgram>& programs,
 std::vector<ContestCell> PlanCells(const ContestConfig& config, const ContestChoice& choice,
                                    const std::string& machine_file, const std::vector<std::string>& extra) {
   return PlanCells(Chosen(config.programs, choice.programs), Chosen(config.machines, choice.machines),
-                   choice.seeds, choice.controllers, machine_file, extra);
+                   choice.seeds, choice.controllers, machine_file, extra, config.entries);
 }
 
 }  // namespace contour

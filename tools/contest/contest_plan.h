@@ -35,11 +35,12 @@ std::vector<std::string> Assignments(const std::string& machine_file, const Cont
 std::vector<ContestCell> PlanCells(const ContestConfig& config, const ContestChoice& choice,
                                    const std::string& machine_file, const std::vector<std::string>& extra);
 
-/// Cells of any programs on any machines: tuning has its own.
+/// Cells of any programs on any machines: tuning has its own, and nobody enters in a way of his own there.
 std::vector<ContestCell> PlanCells(const std::vector<ContestProgram>& programs,
                                    const std::vector<ContestMachine>& machines,
                                    const std::vector<std::int64_t>& seeds,
                                    const std::vector<std::string>& controllers,
-                                   const std::string& machine_file, const std::vector<std::string>& extra);
+                                   const std::string& machine_file, const std::vector<std::string>& extra,
+                                   const std::vector<ContestEntry>& entries = {});
 
 }  // namespace contour

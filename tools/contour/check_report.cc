@@ -9,6 +9,7 @@
 #include "config/number_text.h"
 #include "config/stopping.h"
 #include "core/mechanics.h"
+#include "drivers/cia402/mode_for.h"
 #include "tools/contour/text_table.h"
 
 namespace contour {
@@ -43,9 +44,9 @@ std::string Axes(const MachineConfig& c) {
     for (const auto& [name, axis] : c.axes) row.push_back(value(axis));
     table.Add(row);
   };
-  const DriveMode mode = c.machine.controller == ControllerName::kCsp ? DriveMode::kCsp : DriveMode::kCst;
-  line("bus, node, mode", [mode](const AxisConfig& a) {
-    return a.drive.bus + ", " + std::to_string(a.drive.node_id) + ", " + std::string(Name(mode));
+  line("bus, node, mode", [&c](const AxisConfig& a) {
+    return a.drive.bus + ", " + std::to_string(a.drive.node_id) + ", " +
+           std::string(Name(ModeFor(c.machine.controller, a.drive)));
   });
   line("position", [](const AxisConfig& a) {
     return Number(a.limits.position_mm[0]) + " .. " + Number(a.limits.position_mm[1], "mm");

@@ -43,6 +43,21 @@ TEST(ContestFile, EveryMachineOfTheContestIsAMachine) {
   }
 }
 
+TEST(ContestFile, EachControllerEntersInItsOwnWay) {
+  const ContestConfig config = LoadContest(kContest);
+  ContestChoice choice = DefaultChoice(config, false);
+  choice.machines = {"nominal", "encoder_10000"};
+  choice.controllers = {"csp", "full"};
+  std::uint64_t csp = 0, full = 0;
+  for (const ContestCell& c : PlanCells(config, choice, kMachine, {})) {
+    const DriveMode mode = c.machine->machine.axes.at("x").drive.mode;
+    const bool enters = c.controller == ControllerName::kFull && c.machine_name == "nominal";
+    EXPECT_EQ(mode, enters ? DriveMode::kCsp : DriveMode::kCst);
+    (c.controller == ControllerName::kFull ? full : csp) = c.source;
+  }
+  EXPECT_NE(csp, full) << "results of different machine files are kept apart";
+}
+
 TEST(ContestFile, MachinesDifferInWhatTheyAreNotInWhatIsBelieved) {
   const ContestConfig config = LoadContest(kContest);
   ContestChoice choice = DefaultChoice(config, false);

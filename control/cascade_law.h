@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "control/control_law.h"
+
+namespace contour {
+
+/// By how much a drive that closes its own position loop is inside where the motion bends, learnt on line.
+///
+/// Interpolating between targets cuts curves by T^2 a / 8 (a uniform quadratic B-spline); a velocity loop
+/// that takes its velocity from differences of the position sees it late by some t and, with position gain k,
+/// is off by t a / k. What is missing to the wanted position is c a in both cases, with c < 0, and the target
+/// gets it in advance. Along with it a constant delay d is fitted, d v - d^2 a / 2, which is not made up for:
+/// it is the same for axes that draw a contour together.
+class BendCorrection {
+ public:
+  BendCorrection() noexcept = default;
+  explicit BendCorrection(double period_s) noexcept;
+
+  void Reset() noexcept { delay_s_ = share_s2_ = 0.0; }
+  /// `error_m`: by how much the motor was short of where it was to be, with the correction in use.
+  void Learn(double error_m, double velocity_m_s, double acceleration_m_s2) noexcept;
+  [[nodiscard]] double share_s2() const noexcept { return share_s2_; }
+
+ private:
+  double rate_ = 0.0;
+  double most_s2_ = 0.0;
+  double delay_s_ = 0.0;
+  double share_s2_ = 0.0;
+};
+
+/// `full` on a drive that closes its own position loop (CSP): where the motor has to be for the table to be
+/// on the path, and the friction it will meet on the way as torque offset (0x60B2).
+///
+/// Drives that interpolate between targets run half a period behind them: at t(k) the motor is where it was
+/// told to be at t(k-1/2), and the offset is the friction for that time. The drive feeds forward the whole
+/// mass times the acceleration of its target; of that, what belongs to the table's share of the wind-up's
+/// motion is taken back.
+class CascadeLaw final : public ControlLaw {
+ public:
+  CascadeLaw(const PerAxis<ControlledAxis>& axes, double period_s);
+  void Reset() noexcept override;
+  void Release(std::size_t) noexcept override {}  // the drive's own cascade goes on holding
+  void Step(const ControlInput& input, ControlOutput& output) noexcept override;
+  [[nodiscard]] int horizon_points() const noexcept override { return 4; }
+  void Keep(StateKeeper& keep) noexcept override;
+
+ private:
+  /// Where the motor was to be, without corrections, with the motion of the table there.
+  struct Told {
+    double position_m = 0.0;
+    double velocity_m_s = 0.0;
+    double acceleration_m_s2 = 0.0;
+  };
+  struct Axis {
+    BendCorrection bend;
+    std::array<Told, 4> told{};  // newest first: for t(k+1), t(k), ...
+    std::size_t known = 0;
+
+    void Keep(StateKeeper& keep) noexcept;
+  };
+
+  void Learn(Axis& axis, double position_m) noexcept;
+
+  PerAxis<ControlledAxis> axes_;
+  double period_s_;
+  std::vector<Axis> states_;
+};
+
+}  // namespace contour

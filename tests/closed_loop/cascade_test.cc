@@ -1,0 +1,64 @@
+#include <gtest/gtest.h>
+
+#include "daemon/make_cycle_config.h"
+#include "tests/closed_loop/test_machine.h"
+
+namespace contour::test {
+namespace {
+
+// `full` on drives that close their own position loop.
+
+const Program kSmall = Circle(0.1, 5, 0.7853981634);
+const Program kLarge = Circle(10.0, 4, 0.7957747155);  // 3 m/min
+
+std::vector<std::string> InCascade(std::vector<std::string> more = {}) {
+  more.insert(more.end(), {"axes.x.drive.mode=csp", "axes.y.drive.mode=csp"});
+  return more;
+}
+
+std::vector<std::string> OnBoth(const std::vector<std::string>& keys) {
+  std::vector<std::string> out;
+  for (const char* axis : {"x", "y"})
+    for (const std::string& key : keys) out.push_back(std::string("emulator.axes.") + axis + "." + key);
+  return out;
+}
+
+TEST(FullInCascade, BeatsTheDrivesOwnCascade) {
+  const EmulatedMachineFile file = ExampleMachine(InCascade());
+  for (const Program& program : {kSmall, kLarge}) {
+    const RunResult alone = RunCircle(file, ControllerName::kCsp, program);
+    const RunResult full = RunCircle(file, ControllerName::kFull, program);
+    EXPECT_LT(2.0 * full.table_peak_m, alone.table_peak_m);
+    EXPECT_LT(full.table_peak_m, 0.7e-6);
+  }
+}
+
+// What swung when the friction that was not foreseen was fed forward beside the drive's own answer to it.
+TEST(FullInCascade, AWrongModelDoesNotMakeItSwing) {
+  const std::vector<std::vector<std::string>> machines{
+      OnBoth({"motor_inertia_kgm2=3.5e-5", "table_mass_kg=7"}),
+      OnBoth({"motor_inertia_kgm2=6.5e-5", "table_mass_kg=13"}), OnBoth({"screw_stiffness_N_um=20"}),
+      OnBoth({"delay_cycles=2"})};
+  for (const auto& machine : machines) {
+    const EmulatedMachineFile file = ExampleMachine(InCascade(machine));
+    EXPECT_LT(RunCircle(file, ControllerName::kFull, kLarge).table_peak_m, 2.5e-6) << machine.front();
+  }
+}
+
+TEST(FullInCascade, AStepOfCuttingForceCostsLessThanWithTorquesFromHere) {
+  const std::vector<std::string> force = OnBoth({"effects.cutting_force={force_N: 60, start_s: 3}"});
+  const RunResult from_here = RunCircle(ExampleMachine(force), ControllerName::kFull, kLarge);
+  const RunResult cascade = RunCircle(ExampleMachine(InCascade(force)), ControllerName::kFull, kLarge);
+  EXPECT_LT(2.0 * cascade.table_peak_m, from_here.table_peak_m);
+}
+
+TEST(FullInCascade, OnlyFullTakesTheModeOfTheMachineFile) {
+  const MachineConfig machine = ExampleMachine(InCascade()).machine;
+  for (const AxisDriveConfig& axis : MakeCycleConfig(machine, ControllerName::kFull).master.axes)
+    EXPECT_EQ(axis.drive.mode, DriveMode::kCsp);
+  for (const AxisDriveConfig& axis : MakeCycleConfig(machine, ControllerName::kMpcSrukf7).master.axes)
+    EXPECT_EQ(axis.drive.mode, DriveMode::kCst);
+}
+
+}  // namespace
+}  // namespace contour::test
