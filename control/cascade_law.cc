@@ -10,11 +10,11 @@ namespace contour {
 namespace {
 
 // Smaller velocities and accelerations than these teach little.
-constexpr double kSlow_m_s = 0.02;
-constexpr double kGentle_m_s2 = 0.5;
-constexpr double kRate_1_s = 40.0;
+constexpr double kSlowest_m_s = 0.02;
+constexpr double kGentlest_m_s2 = 0.5;
+constexpr double kBendRate_1_s = 40.0;
 // An error above this is something else: a blow, or a torque limit.
-constexpr double kMostError_m = 20e-6;
+constexpr double kLargestBend_m = 20e-6;
 
 FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept {
   if (friction.empty()) return {};
@@ -24,16 +24,16 @@ FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept
 }  // namespace
 
 BendCorrection::BendCorrection(double period_s) noexcept
-    : rate_(1.0 - std::exp(-kRate_1_s * period_s)), most_s2_(period_s * period_s) {}
+    : rate_(1.0 - std::exp(-kBendRate_1_s * period_s)), most_s2_(period_s * period_s) {}
 
 void BendCorrection::Learn(double error_m, double velocity_m_s, double acceleration_m_s2) noexcept {
-  const double v = velocity_m_s / kSlow_m_s, a = acceleration_m_s2 / kGentle_m_s2;
+  const double v = velocity_m_s / kSlowest_m_s, a = acceleration_m_s2 / kGentlest_m_s2;
   // Normalised least mean squares. Being late by d means d v - d^2 a / 2; what is left belongs to the bend.
   const double left_m = error_m - delay_s_ * (velocity_m_s - 0.5 * delay_s_ * acceleration_m_s2);
   const double step = rate_ * left_m / (1.0 + v * v + a * a);
   delay_s_ =
-      std::clamp(delay_s_ + step * v / kSlow_m_s, -3.0 * std::sqrt(most_s2_), 3.0 * std::sqrt(most_s2_));
-  share_s2_ = std::clamp(share_s2_ + step * a / kGentle_m_s2, -most_s2_, most_s2_);
+      std::clamp(delay_s_ + step * v / kSlowest_m_s, -3.0 * std::sqrt(most_s2_), 3.0 * std::sqrt(most_s2_));
+  share_s2_ = std::clamp(share_s2_ + step * a / kGentlest_m_s2, -most_s2_, most_s2_);
 }
 
 CascadeLaw::CascadeLaw(const PerAxis<ControlledAxis>& axes, double period_s)
@@ -67,7 +67,7 @@ void CascadeLaw::Learn(Axis& axis, double position_m) noexcept {
   const double wanted_m =
       0.5 * (later.position_m + earlier.position_m) - 0.125 * period_s_ * period_s_ * acceleration_m_s2;
   const double error_m = wanted_m - position_m;
-  if (!(std::abs(error_m) < kMostError_m + 3.0 * period_s_ * std::abs(velocity_m_s))) return;
+  if (!(std::abs(error_m) < kLargestBend_m + 3.0 * period_s_ * std::abs(velocity_m_s))) return;
   axis.bend.Learn(error_m, velocity_m_s, acceleration_m_s2);
 }
 

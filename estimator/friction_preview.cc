@@ -14,7 +14,7 @@ constexpr double kSlidingShare = 0.85;
 // only the noise of the reported torque is left of it.
 constexpr double kLead_Hz = 8.0;
 constexpr double kLeadAtRest_Hz = 0.4;
-constexpr double kTwoPi = 6.283185307179586;
+constexpr double kRadPerTurn = 6.283185307179586;
 
 // Points are taken by whole vectors: up to this many at a time, the last point repeated.
 constexpr std::size_t kVector = 4;
@@ -121,8 +121,8 @@ void AddMap(const AngleForceMap& map, const AxisHorizon& reference, const Along&
 FrictionRoll::FrictionRoll(double period_s, bool cascade) noexcept
     : period_s_(period_s),
       cascade_(cascade),
-      lead_share_(-Expm1(-kTwoPi * kLead_Hz * period_s)),
-      rest_share_(-Expm1(-kTwoPi * kLeadAtRest_Hz * period_s)) {}
+      lead_share_(-Expm1(-kRadPerTurn * kLead_Hz * period_s)),
+      rest_share_(-Expm1(-kRadPerTurn * kLeadAtRest_Hz * period_s)) {}
 
 CONTOUR_WIDE_VECTORS
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,
