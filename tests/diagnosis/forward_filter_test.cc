@@ -69,6 +69,30 @@ TEST(ForwardFilter, LanesAndThreadsDoNotChangeARun) {
   }
 }
 
+// What a fit's step may end in leaves the runs beside it alone, whose delivered means have another length.
+TEST(ForwardFilter, WhatIsNoMachineHasNoResidualAndDisturbsNone) {
+  test::HiddenOptions o;
+  o.duration_s = 5.0;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Problem problem(axis.log, axis.stated, 1);
+  const AxisModel rigid = problem.Build(Stated(problem));
+  AxisModel two = rigid, no_number = rigid, no_number_two = rigid, negative = rigid;
+  two.two_inertia = true;
+  two.load_inertia = 0.1 * rigid.motor_inertia;
+  two.stiffness = two.load_inertia * 4e6;
+  no_number_two = two;
+  no_number.delay_s = no_number_two.lag_s = std::nan("");
+  negative.payload = -2.0 * rigid.motor_inertia;
+  const std::vector<AxisModel> models = {no_number, rigid, no_number_two, two, negative};
+  const auto runs = RunFilter(problem.setup_, models, 1);
+  for (const std::size_t i : {1U, 3U})
+    EXPECT_EQ(runs[i].innovation, RunFilter(problem.setup_, std::span(&models[i], 1), 1)[0].innovation);
+  for (const std::size_t i : {0U, 2U, 4U}) {
+    ASSERT_EQ(runs[i].innovation.size(), problem.rows());
+    EXPECT_TRUE(std::isnan(runs[i].innovation.back())) << i;
+  }
+}
+
 TEST(DeliveredMeans, HoldDelayAndLagAreExact) {
   AxisLog log;
   log.period_s = 1e-3;

@@ -175,6 +175,7 @@ diagnosis::Diagnosis AlwaysCogging(const diagnosis::AxisLog&, const diagnosis::S
 TEST(HiddenEffects, ShortForm) {
   const std::uint64_t seed = FreshSeed();
   std::printf("CONTOUR_HIDDEN_SEED=%llu repeats this run\n", static_cast<unsigned long long>(seed));
+  std::fflush(stdout);
   const Exams exams(seed);
   ASSERT_EQ(exams.directories().size(), kEffects + kCleanMachines);
   // The test of the test: who does not look at the log must not get through.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <thread>
@@ -20,6 +21,17 @@ using MeansCache = std::map<MeansKey, Delivered>;
 MeansKey KeyOf(const FilterSetup& setup, const AxisModel& m) {
   return {m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s,
           m.two_inertia ? setup.substeps_two : setup.substeps_rigid};
+}
+
+/// A step of a fit may end anywhere; what is no number has no place in the cache of means either.
+bool IsMachine(const AxisModel& m) {
+  const StatedFriction& f = m.friction;
+  const double all = m.motor_inertia + m.load_inertia + m.stiffness + m.damping + m.gap + m.rough +
+                     m.start_bristle + m.offset + m.delay_s + m.lag_s + m.lag_for_delay_s + m.torque_gain +
+                     m.saturation + m.soft_share + m.soft_ratio + m.payload + f.Fc_plus + f.Fc_minus +
+                     f.Fs_plus + f.Fs_minus + f.vs + f.s0 + f.s1 + f.vd + f.s2;
+  const double carried = m.two_inertia ? m.load_inertia : m.motor_inertia;
+  return std::isfinite(all) && m.motor_inertia > 0.0 && carried > 0.0 && carried + m.payload > 0.0;
 }
 
 /// What must be alike in one bundle of lanes.
@@ -78,6 +90,7 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
   std::vector<FilterRun> runs(models.size());
   MeansCache means;
   for (const AxisModel& m : models) {
+    if (!IsMachine(m)) continue;
     const MeansKey key = KeyOf(setup, m);
     if (!means.contains(key))
       means[key] = DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key));
@@ -93,6 +106,13 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
   std::vector<Bundle> bundles;
   std::map<std::tuple<bool, bool, bool, bool>, std::size_t> open;
   for (std::size_t i = 0; i < models.size(); ++i) {
+    if (!IsMachine(models[i])) {
+      const std::vector<double> none(rows, std::numeric_limits<double>::quiet_NaN());
+      runs[i].innovation = none;
+      if (setup.full) runs[i].table_position = none;
+      if (setup.trace) runs[i].velocity = runs[i].friction = none;
+      continue;
+    }
     const auto shape = ShapeOf(models[i]);
     const auto it = open.find(shape);
     if (it == open.end() || bundles[it->second].models.size() == kLanes) {
