@@ -126,14 +126,17 @@ void FrictionMemory::Work() {
 void FrictionMemory::Write() {
   for (Axis& axis : axes_) {
     std::vector<StrokeFriction::Step> steps;
+    std::size_t passes = 0;
     {
       const std::scoped_lock lock(mutex_);
-      if (axis.friction.passes() == axis.written_passes) continue;
-      axis.written_passes = axis.friction.passes();
+      passes = axis.friction.passes();
+      if (passes == axis.written_passes) continue;
       steps = axis.friction.steps();
     }
     try {
       WriteStrokeFriction(StrokeFrictionFile(directory_, axis.mapped), axis.mapped, steps);
+      axis.written_passes = passes;  // what failed is tried again the next time
+      complained_.clear();
     } catch (const std::exception& e) {
       if (complained_ != e.what()) spdlog::warn("friction along the stroke is not kept: {}", e.what());
       complained_ = e.what();

@@ -51,8 +51,8 @@ class FrictionMemory {
     std::size_t index = 0;
     MappedAxis mapped;
     StrokeFriction friction;
-    double viscous_Ns_m = 0.0;  // of the model
-    std::size_t written_passes = 0;
+    double viscous_Ns_m = 0.0;       // of the model
+    std::size_t written_passes = 0;  // of the writing thread alone
     bool in_use = false;
   };
   void Work();

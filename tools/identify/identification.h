@@ -8,9 +8,9 @@
 #include "tools/diagnosis/stated_axis.h"
 #include "tools/identify/joint_fit.h"
 #include "tools/identify/presliding_fit.h"
+#include "tools/identify/scale_wind_up.h"
 #include "tools/identify/shaken_screw.h"
 #include "tools/identify/sliding_fit.h"
-#include "tools/identify/wind_up_fit.h"
 
 namespace contour::identify {
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ class FrictionMemoryTest : public testing::Test {
   }
 
   /// Some strokes over most of the way, watched as the pump would.
-  void Travel(const std::vector<std::string>& set) const {
+  void Travel(const std::vector<std::string>& set,
+              const std::function<void(FrictionMemory&)>& at_the_end = {}) const {
     const EmulatedMachineFile file = ExampleMachine(set);
     FrictionMemory memory(file.machine, directory_);
     VirtualMachine machine(file, ControllerName::kFull);
@@ -49,6 +51,7 @@ class FrictionMemoryTest : public testing::Test {
                      " {shape: line, dx_mm: 340, dy_mm: 340, feed_mm_min: 6000}], repeats: 3}]}",
                      "strokes of the test", ProgramFormat::kYaml));
     memory.Finish();
+    if (at_the_end) at_the_end(memory);
   }
 
   fs::path directory_;
@@ -95,6 +98,19 @@ TEST_F(FrictionMemoryTest, ADamagedFileIsRefusedAndReplaced) {
     EXPECT_TRUE(memory.Overrides().empty());
   }
   Travel(Set());
+  const FrictionMemory memory(ExampleMachine(Set()).machine, directory_);
+  EXPECT_EQ(memory.used().size(), 2u);
+}
+
+TEST_F(FrictionMemoryTest, WhatCouldNotBeWrittenIsTriedAgain) {
+  std::ofstream(directory_) << "a file where the directory should be";
+  Travel(Set(), [this](FrictionMemory& memory) {
+    EXPECT_FALSE(fs::is_directory(directory_));
+    fs::remove(directory_);
+    // No new pass since.
+    memory.Start();
+    memory.Finish();
+  });
   const FrictionMemory memory(ExampleMachine(Set()).machine, directory_);
   EXPECT_EQ(memory.used().size(), 2u);
 }

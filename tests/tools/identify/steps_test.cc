@@ -6,9 +6,9 @@
 
 #include "tests/tools/identify/generated_axis.h"
 #include "tools/identify/presliding_fit.h"
+#include "tools/identify/scale_wind_up.h"
 #include "tools/identify/shaken_screw.h"
 #include "tools/identify/sliding_fit.h"
-#include "tools/identify/wind_up_fit.h"
 
 namespace contour::test {
 namespace {

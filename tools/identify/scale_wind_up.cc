@@ -1,4 +1,4 @@
-#include "tools/identify/wind_up_fit.h"
+#include "tools/identify/scale_wind_up.h"
 
 #include <cmath>
 
