@@ -87,6 +87,14 @@ friction: {Fc_plus_N: 20.3935, Fc_minus_N: 20.3935, sigma2_Ns_m: 203.5034}
   EXPECT_DOUBLE_EQ(a.lead_m, 2.5e-3);
 }
 
+TEST(StatedAxisTest, ExtensionsOfALinearAxisAreRefusedAndNotPassedOver) {
+  const std::string linear = "mass_kg: 95\nfriction: {Fc_plus_N: 20, Fc_minus_N: 20, sigma2_Ns_m: 200}\n";
+  EXPECT_EQ(Error(linear), "");
+  EXPECT_NE(Error(linear + "extensions: {constant_torque: {torque_Nm: 0.1}}\n")
+                .find("extensions: found on a linear axis"),
+            std::string::npos);
+}
+
 TEST(StatedAxisTest, TwoInertiasSeenAtTheMotor) {
   const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml", R"(
 motor_inertia_kgm2: 5e-5

@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "config/yaml_writer.h"
 #include "tools/diagnosis/files/apply_extensions.h"
 #include "tools/diagnosis/files/stated_parameters.h"
 
@@ -69,6 +70,8 @@ class Converter {
     Only("rotary", model_.stiffness_Nm_rad.has_value(), Model("stiffness_Nm_rad"));
     Only("rotary", model_.damping_Nms_rad != 0.0, Model("damping_Nms_rad"));
     Only("rotary", model_.constant_torque_Nm != 0.0, Model("constant_torque_Nm"));
+    // Extensions are stated at a motor; no controller here has a linear one.
+    Only("rotary", !WriteYaml(model_.extensions).empty(), Model("extensions"));
     Only("rotary", drive_.encoder_counts_per_rev != 0.0, "drive.encoder_counts_per_rev");
     Only("rotary", drive_.rated_torque_Nm != 0.0, "drive.rated_torque_Nm");
     Only("rotary", drive_.torque_step_Nm != 0.0, "drive.torque_step_Nm");
