@@ -136,6 +136,13 @@ TEST(Effects, CoggingDoesNotFlipWithDirection) {
     EXPECT_NEAR(Push_N(c, kTurn_m / 48.0, v, 0.0) * kRadius_m_rad, 0.01, 1e-5);
 }
 
+TEST(Effects, FurtherWavesAddUp) {
+  EmulatedAxisConfig c = Plain(0.0);
+  c.effects.cogging = CoggingEffect{{0.01, 12.0, 0.0}, {{0.004, 36.0, 0.0}, {0.002, 24.0, 0.5}}};
+  EXPECT_NEAR(Push_N(c, kTurn_m / 48.0, 0.05, 0.0) * kRadius_m_rad, 0.01 - 0.004 - 0.002 * std::sin(0.5),
+              1e-5);
+}
+
 TEST(Effects, TorqueRippleScalesWithTorque) {
   EmulatedAxisConfig c = Plain(0.0);
   c.effects.torque_ripple = TorqueRippleEffect{0.05, 6.0, 0.0};
@@ -338,6 +345,16 @@ TEST(Effects, PitchErrorStandsInTheTableOnly) {
   EXPECT_NEAR(plant.table_position_m(), 0.1 + 12e-6, 1e-12);
   EXPECT_EQ(plant.motor_position_m(), 0.1);
   EXPECT_NEAR(Push_N(c, 0.1, 0.0, 0.0), 0.0, 1e-9);
+}
+
+TEST(Effects, PitchMapIsTheSameByATable) {
+  EmulatedAxisConfig c = Plain(0.0);
+  c.effects.pitch_map = PitchMapEffect{{0.0, 80.0, 120.0}, {0.0, 4.0, 8.0}};
+  AxisPlant plant = Make(c);
+  plant.SetState(0.1, 0.0, 0.1, 0.0);
+  EXPECT_NEAR(plant.table_position_m(), 0.1 + 6e-6, 1e-12);
+  plant.SetState(0.15, 0.0, 0.15, 0.0);
+  EXPECT_NEAR(plant.table_position_m(), 0.15 + 8e-6, 1e-12);
 }
 
 TEST(Effects, CrossCouplingPushesWhileTheOtherAccelerates) {
