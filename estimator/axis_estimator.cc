@@ -70,9 +70,7 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
   // The torque that a drive reports is what it gives: its lag is behind it.
   if (cascade) lag_s = 0.0;
   FilterSetup setup = Check(mechanics, friction, config, period_s, lag_s, resolution_m);
-  // Of the mass a drive in its own loop knows more than the model, and a wrong mass looks like a missing
-  // level.
-  setup.gives_levels_up = !cascade;
+  setup.reported_torque = cascade;
   switch (kind) {
     case EstimatorKind::kKinematic:
       filter_.emplace<KinematicObserver>(setup);

@@ -16,7 +16,7 @@ struct FilterSetup {
   double period_s = 1e-3;
   double lag_s = 0.0;
   double measurement_std_m = 2e-8;  ///< position noise, quantisation included
-  bool gives_levels_up = true;      ///< a level that nothing is held by is taken for none
+  bool reported_torque = false;     ///< torque as the drive tells it, at the samples, not as it was commanded
 
   /// Noise that one period adds, from the noise of one millisecond.
   [[nodiscard]] double PerPeriod(double per_millisecond) const noexcept {

@@ -21,6 +21,9 @@ constexpr double kLargestLevelStd = 0.25;
 // Lowest level, of the commissioned one: an axis may turn out to have hardly any friction.
 constexpr double kLowestLevelShare = 1e-4;
 
+// A drive reports rounded torque, of the instant of the sample: its mean over the period is less certain.
+constexpr double kReportedTorqueNoise = 3.0;
+
 // Largest factor on the noise of parameters and disturbance for a coarse encoder.
 constexpr double kMostCoarse = 7.0;
 
@@ -54,6 +57,7 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
   const double coarse = std::min(setup.measurement_std_m / (c.measurement_noise_um * 1e-6), kMostCoarse);
   noise_[kPosition] = setup.PerPeriod(c.position_noise_um * 1e-6);
   noise_[kVelocity] = setup.PerPeriod(c.velocity_noise_mm_s * 1e-3) * std::sqrt(coarse);
+  if (setup.reported_torque) noise_[kVelocity] *= kReportedTorqueNoise;
   noise_[kBristle] = setup.PerPeriod(c.bristle_noise_N);
   noise_[kDisturbance] = setup.PerPeriod(c.disturbance_noise_N) * coarse;
   noise_[kLevelPlus] = setup.PerPeriod(c.level_noise_N) * coarse;
@@ -215,7 +219,8 @@ void SevenStateFilter<Core>::JudgeLevel(bool at_rest) noexcept {
   double& level = x[LevelState()];
   // A jerk may take the axis over all the lengths before the filter has seen what held it back.
   const bool settled = travel_m_ > kSettledLengths * length_m && travel_s_ > kSettled_s;
-  if (setup_.gives_levels_up && settled && held_N <= kMissingShare * level_N) {
+  // A drive that holds the axis by itself, with a wrong mass in the model, looks like a missing level.
+  if (!setup_.reported_torque && settled && held_N <= kMissingShare * level_N) {
     level *= std::exp(-kGivingUpShare * step_m / length_m);
     // Nothing to act upon is left of it.
     if (level < doubt_N) level = kLowestLevelShare * CommissionedLevel_N();
