@@ -20,7 +20,7 @@ constexpr double kBeyondStated = 2e-3;
 // The model's own errors (integrators, the closed loop, a coupling stiffer than a rigid model can say) look
 // like effects, the more the longer the log; see docs/diagnosis_method.md for how these were measured.
 constexpr double kMargin = 1.0, kMarginPerRow = 5e-5, kMarginPerRowViscous = 2.5e-4,
-                 kMarginPerRowCompliance = 3e-4;
+                 kMarginPerRowCompliance = 3e-4, kMarginPerRowSaturation = 4e-4;
 
 double NormalTail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
 
@@ -78,6 +78,7 @@ double Threshold(const Problem& problem, const Gate& gate, const Effect& effect)
     double per_row = kMarginPerRow;
     if (effect.kind == "viscous_nonlinear") per_row = kMarginPerRowViscous;
     if (effect.kind == "compliance") per_row = kMarginPerRowCompliance;
+    if (effect.kind == "torque_saturation") per_row = kMarginPerRowSaturation;
     const double extra =
         gate.accepted > 0.0 ? 0.0 : (per_row - kMarginPerRow) * static_cast<double>(problem.rows());
     return Threshold(problem, gate) + extra;
