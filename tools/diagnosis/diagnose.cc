@@ -26,6 +26,9 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kJitterPenalty = 3.0;
+// Most effects show in a few strokes only, whose scatter says the less of an interval: Student's t of six
+// over normal.
+constexpr double kFewStrokes = 1.25;
 // An extension that was found in another log may be off by a hundredth of its amplitude.
 constexpr double kOffStated = 1e-4;
 // Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
@@ -226,7 +229,7 @@ class Engine {
     // The residual's own scatter from block to block widens the intervals where it is more than white
     // noise's.
     Fit scattered = best.fit;
-    scattered.covariance *= ExcessOfLast(problem_, best.fit);
+    scattered.covariance *= ExcessOfLast(problem_, best.fit) * kFewStrokes * kFewStrokes;
     DescribeEffect(problem_, scattered, best.fit.point.effects.size() - 1, cause);
     WidenIntervals(problem_, best.fit.point, cause);
     std::vector<BlockGain> blocks;

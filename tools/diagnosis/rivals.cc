@@ -208,12 +208,16 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   for (std::size_t i = 0; i < again.size(); ++i) rivals[again[i]].fit = std::move(fits[i + 1]);
   for (Rival& r : rivals) {
     Judge(problem, current, r);
-    if (!InBase(problem, r.effect().kind)) continue;
-    // What the priors say is small beside what another valley costs: from where the base lies now.
+    const bool by_priors = InBase(problem, r.effect().kind);
+    if (!by_priors && !r.effect().signals) continue;
+    // The base may lie in another valley since: from there anew, where the score test promises far more.
     const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
-    if (r.score > s.drop - Penalty(*s.effect) - 1.0) continue;
-    r.fit = std::move(FitPoints(problem, {Near(problem, current, s)})[0]);
-    Judge(problem, current, r);
+    const double promised = s.drop - Penalty(*s.effect);
+    if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;
+    Rival anew{std::move(FitPoints(problem, {Near(problem, current, s)})[0])};
+    anew.fit = FitOn(problem, anew.fit, {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3});
+    Judge(problem, current, anew);
+    if (anew.score > r.score) r = std::move(anew);
   }
   const std::string first = rivals[0].effect().kind;
   Sort(rivals);
