@@ -9,20 +9,11 @@
 namespace contour::diagnosis {
 namespace {
 
-double At(const StatedTable& t, double x) {
-  const auto after = std::upper_bound(t.position_m.begin(), t.position_m.end(), x);
-  if (after == t.position_m.begin()) return t.value.front();
-  if (after == t.position_m.end()) return t.value.back();
-  const auto i = static_cast<std::size_t>(after - t.position_m.begin());
-  return t.value[i - 1] +
-         (t.value[i] - t.value[i - 1]) * (x - t.position_m[i - 1]) / (t.position_m[i] - t.position_m[i - 1]);
-}
-
 /// Along the log; empty without a table.
 Signal Along(const StatedTable& table, const Signals& s) {
   Signal out;
   if (table.position_m.empty()) return out;
-  for (const double x : s.table_m) out.push_back(At(table, x + s.middle_m));
+  for (const double x : s.table_m) out.push_back(ValueAt(table, x + s.middle_m));
   return out;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -28,6 +30,15 @@ struct StatedWave {
 struct StatedTable {
   std::vector<double> position_m, value;
 };
+/// The table must not be empty.
+inline double ValueAt(const StatedTable& t, double x) {
+  const auto after = std::upper_bound(t.position_m.begin(), t.position_m.end(), x);
+  if (after == t.position_m.begin()) return t.value.front();
+  if (after == t.position_m.end()) return t.value.back();
+  const auto i = static_cast<std::size_t>(after - t.position_m.begin());
+  return t.value[i - 1] +
+         (t.value[i] - t.value[i - 1]) * (x - t.position_m[i - 1]) / (t.position_m[i] - t.position_m[i - 1]);
+}
 
 /// Friction beyond the linear term: at_max_speed y^exponent with y = |w| / max_speed, or with a knee, as
 /// share of the maximum speed, at_max_speed y (1 + knee) / (y + knee).

@@ -5,6 +5,8 @@
 #include <complex>
 #include <optional>
 
+#include "tools/diagnosis/stated_axis.h"
+
 namespace contour::diagnosis {
 namespace {
 
@@ -52,28 +54,20 @@ void AddRipple(const Cause& c, std::optional<RippleExtension>& to) {
           RippleWave{Value(c, "amplitude_rel"), Value(c, "order_per_rev", 1.0), Value(c, "phase_rad")});
 }
 
-double At(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  const auto after = std::upper_bound(x.begin(), x.end(), at);
-  if (after == x.begin()) return y.front();
-  if (after == x.end()) return y.back();
-  const auto i = static_cast<std::size_t>(after - x.begin());
-  return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
-}
-
 /// The shape joined to the table that is there, at the points of both.
 template <class F>
 void AddTable(const ShapeTable& shape, F&& join, std::vector<double>& x, std::vector<double>& y) {
-  const std::vector<double> old_x = x, old_y = y, own_x = Rounded(shape.x), own_y = Rounded(shape.y);
-  if (old_x.empty()) {
-    x = own_x;
-    y = own_y;
+  const StatedTable old{x, y}, own{Rounded(shape.x), Rounded(shape.y)};  // here in mm
+  if (x.empty()) {
+    x = own.position_m;
+    y = own.value;
     return;
   }
-  x.insert(x.end(), own_x.begin(), own_x.end());
+  x.insert(x.end(), own.position_m.begin(), own.position_m.end());
   std::sort(x.begin(), x.end());
   x.erase(std::unique(x.begin(), x.end()), x.end());
   y.clear();
-  for (const double at : x) y.push_back(Rounded(join(At(old_x, old_y, at), At(own_x, own_y, at))));
+  for (const double at : x) y.push_back(Rounded(join(ValueAt(old, at), ValueAt(own, at))));
 }
 
 double HalfRange(const std::vector<double>& y) {
