@@ -4,16 +4,11 @@
 #include <cerrno>
 #include <ctime>
 
+#include "drivers/can/clock_ns.h"
 #include "drivers/can/socketcan_bus.h"
 
 namespace contour {
 namespace {
-
-std::int64_t Now() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
-}
 
 void SleepUntil(std::int64_t time_ns) noexcept {
   const timespec t{time_ns / 1'000'000'000, time_ns % 1'000'000'000};
@@ -25,7 +20,7 @@ void SleepUntil(std::int64_t time_ns) noexcept {
 class StageClock final : public StageSink {
  public:
   void Passed(CycleStage stage) noexcept override {
-    (stage == CycleStage::kEstimated ? estimated_ns : decided_ns) = Now();
+    (stage == CycleStage::kEstimated ? estimated_ns : decided_ns) = ClockNow_ns();
   }
   std::int64_t estimated_ns = 0;
   std::int64_t decided_ns = 0;
@@ -68,27 +63,27 @@ void Loop::RunWall() noexcept {
   StageClock stages;
   limits_ = {config_.send_deadline_ns, ThrottleTime_ns()};
   // The grid begins one period from now, so that the first wake-up is an ordinary one.
-  const std::int64_t origin = Now();
+  const std::int64_t origin = ClockNow_ns();
   GridPoint grid{0, origin, 0};
   std::int64_t last_sent = origin;
   bool finished = false;
   while (!finished) {
-    const std::int64_t asleep = Now();
+    const std::int64_t asleep = ClockNow_ns();
     grid = NextWakeup(origin, config_.period_ns, grid.index, asleep);
     // The kernel would give up the processor for a time that has gone by, too.
     const std::int64_t early_ns = grid.time_ns - asleep;
     if (early_ns > 0) SleepUntil(grid.time_ns);
-    const std::int64_t woken = Now();
+    const std::int64_t woken = ClockNow_ns();
     CycleEntry& entry = *telemetry_.Reserve();
     entry.input.frames.clear();
     runner_.Receive(grid.time_ns, entry.input.frames);
     runner_.Collect(grid, woken, true, entry.input);
-    const std::int64_t received = Now();
+    const std::int64_t received = ClockNow_ns();
     cycle_.Act(entry.input, entry.output, &stages);
-    const std::int64_t stepped = Now();
+    const std::int64_t stepped = ClockNow_ns();
     runner_.Send(grid.time_ns, entry.output);
     finished = entry.output.finished;
-    const std::int64_t sent = Now();
+    const std::int64_t sent = ClockNow_ns();
     cycle_.Report(entry.input, entry.output);
     CycleTiming& timing = entry.timing;
     timing = {};
@@ -147,7 +142,7 @@ void Loop::RunLockstep() noexcept {
     CycleEntry& entry = *telemetry_.Reserve();
     entry.input.frames = frames;
     WaitForFeedback(grid, entry.input);
-    runner_.Collect(grid, Now(), !last.settling, entry.input);
+    runner_.Collect(grid, ClockNow_ns(), !last.settling, entry.input);
     cycle_.Step(entry.input, entry.output);
     runner_.Send(grid.time_ns, entry.output);
     finished = entry.output.finished;
@@ -163,7 +158,7 @@ void Loop::RunLockstep() noexcept {
 }
 
 void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
-  const std::int64_t begin = Now();
+  const std::int64_t begin = ClockNow_ns();
   // Before the drives answer SYNC there is nothing to keep step with but the period itself. A drive that has
   // let its time go by is not waited for as long again until it answers.
   const bool expected = cycle_.ExpectsFeedback();
@@ -172,7 +167,7 @@ void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
     runner_.Receive(grid.time_ns, in.frames);
     answered_ = !expected || cycle_.FeedbackComplete(in);
     if (expected && answered_) return;
-    const std::int64_t now = Now();
+    const std::int64_t now = ClockNow_ns();
     if (now - begin >= limit || in.frames.full()) return;
     WaitForFrames(begin + limit);
   }
@@ -183,7 +178,7 @@ void Loop::WaitForFrames(std::int64_t until_ns) noexcept {
   for (const FrameBus* bus : buses_)
     if (bus->fd() >= 0) fds.push_back(bus->fd());
   if (fds.empty()) {
-    SleepUntil(Now() + kLockstepPoll_ns);
+    SleepUntil(ClockNow_ns() + kLockstepPoll_ns);
   } else {
     static_cast<void>(WaitReadable(std::span(fds.data(), fds.size()), until_ns));
   }
@@ -200,9 +195,9 @@ void Loop::KeepRealBuses(CycleOutput& out) const noexcept {
 
 void Loop::WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoint& grid,
                        ReceivedFrames& frames) noexcept {
-  std::int64_t next_heartbeat = Now();
+  std::int64_t next_heartbeat = ClockNow_ns();
   for (;;) {
-    const bool idle = last.quiescent && !mailbox_.request_waiting() && !runner_.IoChanged(io, Now());
+    const bool idle = last.quiescent && !mailbox_.request_waiting() && !runner_.IoChanged(io, ClockNow_ns());
     const bool starved = cycle_.PathRoom() != 0 && mailbox_.more_path_to_come() &&
                          mailbox_.path_points_waiting() < kMaxPathPointsPerCycle;
     // Nothing waits for real time here, so nothing needs to be dropped either.
@@ -212,7 +207,7 @@ void Loop::WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoi
     // push the feedback out of it.
     runner_.Receive(grid.time_ns, frames);
     KeepLatestOfEach(frames);
-    const std::int64_t now = Now();
+    const std::int64_t now = ClockNow_ns();
     if (now >= next_heartbeat) {
       next_heartbeat = now + kLockstepHeartbeat_ns;
       CycleOutput alive;

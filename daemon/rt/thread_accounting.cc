@@ -6,7 +6,8 @@
 
 #include <array>
 #include <charconv>
-#include <ctime>
+
+#include "drivers/can/clock_ns.h"
 
 namespace contour {
 namespace {
@@ -20,12 +21,6 @@ std::int64_t NumberIn(const char* text, std::size_t length, int skip) noexcept {
   std::int64_t value = -1;
   std::from_chars(at, end, value);
   return value;
-}
-
-std::int64_t Clock_ns(clockid_t clock) noexcept {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
 }
 
 std::int64_t ReadNumber(const char* file) noexcept {
@@ -79,7 +74,7 @@ std::int64_t ThreadAccounting::RunDelay_ns() noexcept {
 }
 
 std::int64_t ThreadAccounting::OffCpu_ns() noexcept {
-  const std::int64_t now = Clock_ns(CLOCK_MONOTONIC) - Clock_ns(CLOCK_THREAD_CPUTIME_ID);
+  const std::int64_t now = ClockNow_ns() - ClockNow_ns(CLOCK_THREAD_CPUTIME_ID);
   const std::int64_t since = now - off_cpu_ns_;
   off_cpu_ns_ = now;
   return since;

@@ -12,7 +12,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <ctime>
+
+#include "drivers/can/clock_ns.h"
 
 namespace contour {
 namespace {
@@ -22,13 +23,7 @@ constexpr int kReceiveBuffer_bytes = 1 << 20;     // thousands of frames: some s
 constexpr std::uint32_t kCallsBetweenBinds = 64;  // a vanished interface is looked for this rarely
 constexpr std::size_t kMaxWaitDescriptors = 8;
 
-std::int64_t Now_ns(clockid_t clock) noexcept {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<std::int64_t>(t.tv_sec) * 1'000'000'000 + t.tv_nsec;
-}
-
-std::int64_t RealtimeToMonotonic_ns() noexcept { return Now_ns(CLOCK_MONOTONIC) - Now_ns(CLOCK_REALTIME); }
+std::int64_t RealtimeToMonotonic_ns() noexcept { return ClockNow_ns() - ClockNow_ns(CLOCK_REALTIME); }
 
 template <class T>
 bool SetOption(int fd, int level, int option, const T& value) noexcept {
@@ -253,7 +248,7 @@ bool WaitReadable(std::span<const int> fds, std::int64_t deadline_monotonic_ns) 
   const std::size_t count = std::min(fds.size(), polled.size());
   for (std::size_t i = 0; i < count; ++i) polled[i] = {fds[i], POLLIN, 0};
   while (true) {
-    const std::int64_t left_ns = std::max<std::int64_t>(0, deadline_monotonic_ns - Now_ns(CLOCK_MONOTONIC));
+    const std::int64_t left_ns = std::max<std::int64_t>(0, deadline_monotonic_ns - ClockNow_ns());
     const timespec timeout{static_cast<std::time_t>(left_ns / 1'000'000'000),
                            static_cast<long>(left_ns % 1'000'000'000)};
     const int ready = ppoll(polled.data(), static_cast<nfds_t>(count), &timeout, nullptr);

@@ -1,11 +1,10 @@
 #include "tools/plant_emulator/emulator_process.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <array>
 #include <memory>
 
+#include "drivers/can/clock_ns.h"
 #include "drivers/can/socketcan_bus.h"
 #include "tools/plant_emulator/modbus_io_server.h"
 #include "tools/plant_emulator/truth_writer.h"
@@ -16,12 +15,6 @@ namespace {
 constexpr std::int64_t kLongestWait_ns = 50'000'000;  ///< how soon a stop is noticed
 constexpr std::int64_t kFlushPeriod_ns = 10'000'000;
 constexpr std::size_t kBatch = 64;
-
-std::int64_t Now_ns() noexcept {
-  timespec t{};
-  ::clock_gettime(CLOCK_MONOTONIC, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
 
 /// One bus and the emulated drives on it.
 class EmulatedBus {
@@ -80,9 +73,9 @@ void RunEmulatorProcess(EmulatedMachine& machine, const EmulatorProcessOptions& 
   ready(options);
 
   std::vector<int> fds(buses.size());
-  std::int64_t flushed_ns = Now_ns();
+  std::int64_t flushed_ns = ClockNow_ns();
   while (!stop.load()) {
-    const std::int64_t now_ns = Now_ns();
+    const std::int64_t now_ns = ClockNow_ns();
     for (const auto& bus : buses) bus->Run(now_ns);
     if (truth && now_ns - flushed_ns >= kFlushPeriod_ns) {
       truth->Flush();
