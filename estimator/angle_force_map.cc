@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/share_of_period.h"
+
 namespace contour {
 namespace {
 
 // What may be expected of a motor; encoder noise above it takes more visits to learn.
 constexpr double kExpected_N = 5.0;
-// The first visit counts as much as so many that found nothing.
+// The first visit counts as much as so many that found nothing. A visit is a millisecond.
 constexpr double kCaution = 2.0;
 constexpr double kLargest_N = 50.0;
+// Of the mean and of the mean squares, per millisecond.
 constexpr double kMeanShare = 0.02;
 constexpr double kPowerShare = 0.005;
 // Used from this share of the missing force's mean square on that it explains, and whole from the second.
@@ -30,8 +33,12 @@ constexpr double kQuiet_m_s2 = 1.0;
 
 AngleForceMap::AngleForceMap(const Tuning& tuning) noexcept
     : per_turn_1_m_(1.0 / tuning.lead_m),
-      first_visits_(kCaution + tuning.noise_N * tuning.noise_N / (kExpected_N * kExpected_N)),
-      rate_(tuning.rate) {}
+      first_visits_(kCaution +
+                    tuning.period_s / 1e-3 * tuning.noise_N * tuning.noise_N / (kExpected_N * kExpected_N)),
+      rate_(tuning.rate),
+      visit_(tuning.period_s / 1e-3),
+      mean_share_(ShareOfPeriod(kMeanShare, tuning.period_s)),
+      power_share_(ShareOfPeriod(kPowerShare, tuning.period_s)) {}
 
 void AngleForceMap::Reset() noexcept {
   force_N_ = visits_ = {};
@@ -64,11 +71,11 @@ void AngleForceMap::Learn(double position_m, double velocity_m_s, double acceler
   const Place p = PlaceOf(position_m);
   const double stored_N = Stored_N(p);
   const double whole_N = missing_N + use_ * stored_N;
-  mean_N_ += kMeanShare * (whole_N - mean_N_);
+  mean_N_ += mean_share_ * (whole_N - mean_N_);
   const double wanted_N = std::clamp(whole_N - mean_N_, -kLargest_N, kLargest_N);
   const double error_N = wanted_N - stored_N;
-  without_N2_ += kPowerShare * (wanted_N * wanted_N - without_N2_);
-  with_N2_ += kPowerShare * (error_N * error_N - with_N2_);
+  without_N2_ += power_share_ * (wanted_N * wanted_N - without_N2_);
+  with_N2_ += power_share_ * (error_N * error_N - with_N2_);
   const double explained = without_N2_ > 0.0 ? 1.0 - with_N2_ / without_N2_ : 0.0;
   const double matters = (without_N2_ - with_N2_ - kRipple_N2) / kRipple_N2;
   use_ = std::clamp(matters, 0.0, 1.0) *
@@ -78,9 +85,10 @@ void AngleForceMap::Learn(double position_m, double velocity_m_s, double acceler
 }
 
 void AngleForceMap::LearnAt(std::size_t bin, double weight, double error_N) noexcept {
-  const double gain = std::max(1.0 / (visits_[bin] + first_visits_), rate_ / first_visits_);
+  const double gain =
+      std::min(visit_ * std::max(1.0 / (visits_[bin] + first_visits_), rate_ / first_visits_), 1.0);
   force_N_[bin] = std::clamp(force_N_[bin] + weight * gain * error_N, -kLargest_N, kLargest_N);
-  visits_[bin] += weight;
+  visits_[bin] += visit_ * weight;
 }
 
 }  // namespace contour

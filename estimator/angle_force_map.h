@@ -12,8 +12,10 @@ class AngleForceMap {
  public:
   struct Tuning {
     double lead_m = 5e-3;
-    double noise_N = 1.0;  ///< of what is learnt from, by the encoder
-    double rate = 0.0;     ///< share of the error learnt at least per visit; 0: nothing is learnt
+    double noise_N = 1.0;  ///< of what is learnt from in a cycle, by the encoder
+    double rate =
+        0.0;  ///< share of the error learnt at least per visit of a millisecond; 0: nothing is learnt
+    double period_s = 1e-3;
   };
 
   AngleForceMap() noexcept = default;
@@ -41,6 +43,9 @@ class AngleForceMap {
   double per_turn_1_m_ = 200.0;
   double first_visits_ = 1.0;
   double rate_ = 0.0;
+  double visit_ = 1.0;  // of a cycle, in milliseconds
+  double mean_share_ = 0.0;
+  double power_share_ = 0.0;
   double mean_N_ = 0.0;
   double without_N2_ = 0.0;  // mean squares of what is missing without the map and with it
   double with_N2_ = 0.0;

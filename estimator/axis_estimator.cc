@@ -91,7 +91,8 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       break;
   }
   roll_ = FrictionRoll(period_s, cascade);
-  viscous_ = ViscousCorrection({setup.friction.sigma2_Ns_m, config.adapt ? config.viscous_rate : 0.0});
+  viscous_ =
+      ViscousCorrection({setup.friction.sigma2_Ns_m, config.adapt ? config.viscous_rate : 0.0, period_s});
   momentum_ = MomentumBalance({mechanics.mass_kg, period_s, config.adapt ? config.mass_rate : 0.0,
                                config.adapt ? config.delay_rate : 0.0});
   lag_ = DriveLag<1>(period_s, lag_s);
@@ -99,16 +100,16 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
   const double difference_N =
       std::sqrt(6.0) * setup.measurement_std_m * mechanics.mass_kg / (period_s * period_s);
   map_ = AngleForceMap({2.0 * std::numbers::pi * mechanics.radius_m_rad, difference_N,
-                        config.adapt ? config.cogging_rate : 0.0});
+                        config.adapt ? config.cogging_rate : 0.0, period_s});
   wind_up_ =
       WindUpFit({period_s, mechanics.stiffness_N_m, config.adapt ? config.stiffness_std : 0.0,
                  setup.friction.vs_m_s, setup.friction.sigma1_Ns_m, setup.friction.sigma1_decay_m_s,
                  setup.friction.sigma2_Ns_m, cascade ? kMostStdInCascade : WindUpFit::Tuning{}.most_std});
   mass_kg_ = mechanics.mass_kg;
   table_mass_kg_ = mechanics.table_mass_kg;
-  correction_ =
-      LevelCorrection({2.0 * std::numbers::pi * mechanics.radius_m_rad, setup.friction.vs_m_s,
-                       config.adapt ? config.ripple_rate : 0.0, config.adapt ? config.stribeck_rate : 0.0});
+  correction_ = LevelCorrection({2.0 * std::numbers::pi * mechanics.radius_m_rad, setup.friction.vs_m_s,
+                                 config.adapt ? config.ripple_rate : 0.0,
+                                 config.adapt ? config.stribeck_rate : 0.0, period_s});
 }
 
 void AxisEstimator::Reset(double position_m) noexcept {

@@ -74,17 +74,20 @@ struct EstimatorConfig {
     v.Optional("ripple_rate", ripple_rate, Range{0.0, 1.0},
                "share of the error that the per-turn ripple of the friction level learns per radian of the "
                "screw; 0 none");
-    v.Optional("stribeck_rate", stribeck_rate, Range{0.0, 1.0},
-               "share of the error that the low-speed rise of the friction level learns per cycle; 0 none");
     v.Optional(
-        "mass_rate", mass_rate, Range{0.0, 1.0},
-        "share of the error that the correction of the moving mass learns per cycle at 1 m/s^2, once it has "
-        "learnt the most; 0 none");
-    v.Optional("delay_rate", delay_rate, Range{0.0, 1.0},
-               "the same of the drive's delay, per cycle in which the torque changes by 100 N / R; 0 none");
+        "stribeck_rate", stribeck_rate, Range{0.0, 1.0},
+        "share of the error that the low-speed rise of the friction level learns per millisecond; 0 none");
+    v.Optional("mass_rate", mass_rate, Range{0.0, 1.0},
+               "share of the error that the correction of the moving mass learns per millisecond at 1 m/s^2, "
+               "once it has "
+               "learnt the most; 0 none");
+    v.Optional(
+        "delay_rate", delay_rate, Range{0.0, 1.0},
+        "the same of the drive's delay, per millisecond in which the torque changes by 100 N / R; 0 none");
     v.Optional(
         "cogging_rate", cogging_rate, Range{0.0, 1.0},
-        "share of the error that the map of forces by the screw's angle learns at least per visit; 0 none");
+        "share of the error that the map of forces by the screw's angle learns at least per visit of a "
+        "millisecond; 0 none");
     v.Optional(
         "level_error", level_error, Range{0.0, 1.0},
         "share of the friction level up to which a disturbance turns round at a reversal as friction does");
@@ -95,7 +98,7 @@ struct EstimatorConfig {
                "share of the friction level by which the levels of the two directions may differ more than "
                "commissioned; what is beyond is an outside force");
     v.Optional("viscous_rate", viscous_rate, Range{0.0, 1.0},
-               "share of the error that the correction of viscous friction learns per cycle; 0 none");
+               "share of the error that the correction of viscous friction learns per millisecond; 0 none");
     v.Optional("initial_level_std", initial_level_std, Range{0.0, 2.0},
                "relative uncertainty of the commissioned friction levels");
     v.Optional("initial_log_sigma0_std", initial_log_sigma0_std, Range{0.0, 3.0},

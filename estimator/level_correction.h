@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "estimator/exponential.h"
+#include "estimator/share_of_period.h"
 #include "estimator/turn.h"
 
 namespace contour {
@@ -27,12 +28,17 @@ class LevelCorrection {
     double lead_m = 5e-3;
     double vs_m_s = 2e-3;
     double ripple_rate = 0.1;     ///< share of the error taken over per radian of the screw
-    double stribeck_rate = 0.05;  ///< and per cycle, by the low-speed term
+    double stribeck_rate = 0.05;  ///< and per millisecond, by the low-speed term
+    double period_s = 1e-3;
   };
 
   LevelCorrection() noexcept = default;
   explicit LevelCorrection(const Tuning& tuning) noexcept
-      : tuning_(tuning), per_turn_1_m_(1.0 / tuning.lead_m), per_speed_s_m_(1.0 / tuning.vs_m_s) {}
+      : tuning_(tuning),
+        stribeck_share_(ShareOfPeriod(tuning.stribeck_rate, tuning.period_s)),
+        mean_share_(ShareOfPeriod(kMeanShare, tuning.period_s)),
+        per_turn_1_m_(1.0 / tuning.lead_m),
+        per_speed_s_m_(1.0 / tuning.vs_m_s) {}
 
   void Reset() noexcept { plus_ = minus_ = {}; }
 
@@ -97,16 +103,16 @@ class LevelCorrection {
     // The low-speed term is told from the level itself by comparison with what was seen at speed, not long
     // ago.
     if (sliding && low_speed < kAtSpeed) {
-      active.excess_at_speed += kMeanShare * (along - active.excess_at_speed);
-      active.cycles_since_speed = 0;
+      active.excess_at_speed += mean_share_ * (along - active.excess_at_speed);
+      active.since_speed_s = 0.0;
     } else {
-      active.cycles_since_speed = std::min(active.cycles_since_speed + 1, kForgotten);
+      active.since_speed_s = std::min(active.since_speed_s + tuning_.period_s, kForgotten_s);
     }
     for (std::size_t i = 0; i < kTerms; ++i) {
       if (sliding) {
         const bool slow = i == kRippleTerms;
-        const bool known = low_speed >= kAtSpeed && active.cycles_since_speed < kForgotten;
-        const double rate = slow ? (known ? tuning_.stribeck_rate : 0.0) : ripple;
+        const bool known = low_speed >= kAtSpeed && active.since_speed_s < kForgotten_s;
+        const double rate = slow ? (known ? stribeck_share_ : 0.0) : ripple;
         const double error = slow ? along - active.excess_at_speed : along;
         active.coefficient[i] =
             std::clamp(active.coefficient[i] + rate * error * active.follows[i], -kLargest, kLargest);
@@ -125,18 +131,20 @@ class LevelCorrection {
  private:
   static constexpr double kLargest = 0.5;
   static constexpr double kTwoPi = 6.283185307179586;
-  static constexpr double kMeanShare = 0.02;
-  static constexpr double kAtSpeed = 0.1;  // exp(-|v| / vs) above 2.3 Stribeck velocities
-  static constexpr int kForgotten = 1000;  // cycles
+  static constexpr double kMeanShare = 0.02;  // per millisecond
+  static constexpr double kAtSpeed = 0.1;     // exp(-|v| / vs) above 2.3 Stribeck velocities
+  static constexpr double kForgotten_s = 1.0;
 
   struct Direction {
     Terms coefficient{};
     Terms follows{};  ///< terms as the bristle follows them: d(bristle / level) / d(coefficient)
     double excess_at_speed = 0.0;
-    int cycles_since_speed = kForgotten;
+    double since_speed_s = kForgotten_s;
   };
 
   Tuning tuning_;
+  double stribeck_share_ = 0.0;  // per period
+  double mean_share_ = 0.0;
   double per_turn_1_m_ = 0.0;
   double per_speed_s_m_ = 0.0;
   Direction plus_;

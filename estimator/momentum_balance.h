@@ -17,12 +17,12 @@ class MomentumBalance {
   struct Tuning {
     double mass_kg = 1.0;  ///< as commissioned
     double period_s = 1e-3;
-    double mass_rate = 0.0;   ///< share of the error learnt per cycle at 1 m/s^2 in the long run; 0: none
-    double delay_rate = 0.0;  ///< and per cycle at 100 N of change per cycle
+    double mass_rate = 0.0;   ///< share of the error learnt per ms at 1 m/s^2 in the long run; 0: none
+    double delay_rate = 0.0;  ///< and per ms at 100 N of change per ms
   };
 
   MomentumBalance() noexcept = default;
-  explicit MomentumBalance(const Tuning& tuning) noexcept : tuning_(tuning) {}
+  explicit MomentumBalance(const Tuning& tuning) noexcept;
 
   void Reset() noexcept {
     extra_kg_ = delay_periods_ = 0.0;
@@ -55,10 +55,14 @@ class MomentumBalance {
   struct Bands {
     double slow, slow_change, fast, fast_change;
   };
+  /// Of the low-pass and of the means that the high-passes take away, per period.
+  struct Shares {
+    double low = 0.0, slow = 0.0, fast = 0.0;
+  };
   /// One signal in both bands, and by how much it changes per period, at the middle of the newest period.
   struct Filter {
     double low = 0.0, slow_mean = 0.0, fast_mean = 0.0, slow = 0.0, fast = 0.0;
-    Bands Step(double value) noexcept;
+    Bands Step(double value, const Shares& shares) noexcept;
   };
 
   /// `change_m_s2`: of the acceleration, per period; `mass_kg`: as believed so far.
@@ -66,6 +70,8 @@ class MomentumBalance {
   void LearnDelay(double acceleration_m_s2, double change_m_s2, double force_N, double mass_kg) noexcept;
 
   Tuning tuning_;
+  Shares shares_;
+  double period_ms_ = 1.0;
   double extra_kg_ = 0.0;
   double delay_periods_ = 0.0;
   double mass_seen_ = 0.0;

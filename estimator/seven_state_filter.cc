@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "estimator/share_of_period.h"
+
 namespace contour {
 namespace {
 
@@ -27,14 +29,14 @@ constexpr double kReportedTorqueNoise = 3.0;
 // Largest factor on the noise of parameters and disturbance for a coarse encoder.
 constexpr double kMostCoarse = 7.0;
 
-// Once there is a lasting force, all of the disturbance becomes part of it at this share per cycle.
+// Once there is a lasting force, all of the disturbance becomes part of it at this share per millisecond.
 constexpr double kLastingRate = 0.002;
-// Asymmetry moves over to it by this share of what is allowed per cycle.
+// Asymmetry moves over to it by this share of what is allowed per millisecond.
 constexpr double kShareRate = 0.02;
 constexpr double kGivenUpShare = 0.2;
 constexpr double kComingDownShare = 0.5;
 
-// Mean of the squared, normalised innovations over about a hundred cycles.
+// Mean of the squared, normalised innovations; share per millisecond.
 constexpr double kSurpriseShare = 0.01;
 
 // The centre of mass runs ahead of the table by (1 - Mt/m) of the wind-up F / K.
@@ -50,7 +52,10 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
       model_(setup.friction, setup.mechanics.mass_kg, setup.period_s,
              setup.config.disturbance_decay_ms * 1e-3, AheadOfTable(setup.mechanics)),
       lag_(setup.period_s, setup.lag_s),
-      gate_{setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6} {
+      gate_{setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6},
+      lasting_share_(ShareOfPeriod(kLastingRate, setup.period_s)),
+      asymmetry_share_(ShareOfPeriod(kShareRate, setup.period_s)),
+      surprise_share_(ShareOfPeriod(kSurpriseShare, setup.period_s)) {
   const auto& c = setup.config;
   // A coarse encoder would slow the parameters down with the rest of the filter, more than their drift
   // allows.
@@ -253,7 +258,7 @@ void SevenStateFilter<Core>::HoldLastingForce() noexcept {
   const double room_N = setup_.config.lasting_force * CommissionedLevel_N();
   const double beyond_N = core_.x[kDisturbance] - lasting_N_;
   lasting_N_ += beyond_N - std::clamp(beyond_N, -room_N, room_N);
-  if (std::abs(lasting_N_) > room_N) lasting_N_ += kLastingRate * (core_.x[kDisturbance] - lasting_N_);
+  if (std::abs(lasting_N_) > room_N) lasting_N_ += lasting_share_ * (core_.x[kDisturbance] - lasting_N_);
 }
 
 // A force from outside and levels that differ by as much between the directions are the same to one encoder.
@@ -265,7 +270,7 @@ void SevenStateFilter<Core>::ShareAsymmetry() noexcept {
   const double most_N = setup_.config.level_asymmetry * 0.5 * (f.Fc_plus_N + f.Fc_minus_N);
   const double asymmetry_N = 0.5 * ((x[kLevelPlus] - f.Fc_plus_N) - (x[kLevelMinus] - f.Fc_minus_N));
   const double beyond_N = asymmetry_N - std::clamp(asymmetry_N, -most_N, most_N);
-  const double excess_N = std::clamp(beyond_N, -kShareRate * most_N, kShareRate * most_N);
+  const double excess_N = std::clamp(beyond_N, -asymmetry_share_ * most_N, asymmetry_share_ * most_N);
   x[kLevelPlus] -= excess_N;
   x[kLevelMinus] += excess_N;
   x[kBristle] -= excess_N;
@@ -341,7 +346,7 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
       gated_in_a_row_ = result == UpdateResult::kGated ? gated_in_a_row_ + 1 : 0;
       if (result == UpdateResult::kOk) {
         const double ratio = innovation.value / innovation.std;
-        surprise_ += kSurpriseShare * (ratio * ratio - surprise_);
+        surprise_ += surprise_share_ * (ratio * ratio - surprise_);
       }
       if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
       if (gated_in_a_row_ >= kGatedBeforeRestart) Follow(in.position_m);

@@ -94,6 +94,9 @@ class SevenStateFilter {
   DriveLag<kSubsteps> lag_;
   InnovationGate gate_;
   X noise_{};
+  double lasting_share_ = 0.0;  // shares per period
+  double asymmetry_share_ = 0.0;
+  double surprise_share_ = 0.0;
   X std_limit_{};
   X initial_std_{};
   Core core_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/share_of_period.h"
+
 namespace contour {
 
 /// By how much the axis is more viscous than commissioned, learnt on line: while the axis slides, what the
@@ -17,11 +19,15 @@ class ViscousCorrection {
  public:
   struct Tuning {
     double viscous_Ns_m = 0.0;    ///< as commissioned
-    double viscous_rate = 0.001;  ///< share of the error taken over per cycle
+    double viscous_rate = 0.001;  ///< share of the error taken over per millisecond
+    double period_s = 1e-3;
   };
 
   ViscousCorrection() noexcept = default;
-  explicit ViscousCorrection(const Tuning& tuning) noexcept : tuning_(tuning) {}
+  explicit ViscousCorrection(const Tuning& tuning) noexcept
+      : tuning_(tuning),
+        rate_(ShareOfPeriod(tuning.viscous_rate, tuning.period_s)),
+        mean_share_(ShareOfPeriod(kMeanShare, tuning.period_s)) {}
 
   void Reset() noexcept { extra_Ns_m_ = mean_speed_m_s_ = mean_along_N_ = 0.0; }
 
@@ -44,17 +50,17 @@ class ViscousCorrection {
     const double x = none ? speed_m_s : speed_m_s - mean_speed_m_s_;
     const double y = none ? along_N : along_N - mean_along_N_;
     const double per_v = x / (x * x + slow_m_s * slow_m_s);
-    mean_speed_m_s_ += kMeanShare * (speed_m_s - mean_speed_m_s_);
-    mean_along_N_ += kMeanShare * (along_N - mean_along_N_);
+    mean_speed_m_s_ += mean_share_ * (speed_m_s - mean_speed_m_s_);
+    mean_along_N_ += mean_share_ * (along_N - mean_along_N_);
     // Where the axis accelerates, a wrong mass would be taken for it.
     const double haste = none ? 1.0 + (kHaste - 1.0) * quiet2 / (a2 + quiet2) : 1.0;
     // Never below no viscous friction at all.
-    extra_Ns_m_ = std::clamp(extra_Ns_m_ + haste * tuning_.viscous_rate * y * per_v, -tuning_.viscous_Ns_m,
+    extra_Ns_m_ = std::clamp(extra_Ns_m_ + haste * rate_ * y * per_v, -tuning_.viscous_Ns_m,
                              2.0 * tuning_.viscous_Ns_m + kLeastRoom_Ns_m);
   }
 
  private:
-  static constexpr double kMeanShare = 2e-3;  // per cycle
+  static constexpr double kMeanShare = 2e-3;  // per millisecond
   // Slower accelerations and velocities than these teach little: a newton then stands for tens of kilograms.
   static constexpr double kQuiet_m_s2 = 0.1;
   static constexpr double kSlow_m_s = 10e-3;
@@ -65,6 +71,8 @@ class ViscousCorrection {
   static constexpr double kLeastRoom_Ns_m = 100.0;
 
   Tuning tuning_;
+  double rate_ = 0.0;  // shares per period
+  double mean_share_ = 0.0;
   double extra_Ns_m_ = 0.0;
   double mean_speed_m_s_ = 0.0;
   double mean_along_N_ = 0.0;

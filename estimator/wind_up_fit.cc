@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimator/exponential.h"
+#include "estimator/share_of_period.h"
 
 namespace contour {
 namespace {
@@ -28,7 +29,7 @@ constexpr double kMostSpeed = 0.3;   // Stribeck velocities at the end of the wi
 constexpr double kMostChange = 2.0;  // of the compliance, and the inverse
 // Standard deviations by which the screw must be found softer than commissioned.
 constexpr double kDoubts = 2.0;
-// Share of a new answer that is put to use per cycle.
+// Share of a new answer that is put to use per millisecond.
 constexpr double kUseShare = 0.02;
 
 /// Solves a x = b for a symmetric positive definite a, in place; false when it is not. Returns x in b.
@@ -61,7 +62,10 @@ bool Solve(std::array<std::array<double, N>, N>& a, std::array<std::array<double
 
 }  // namespace
 
-WindUpFit::WindUpFit(const Tuning& tuning) noexcept : tuning_(tuning) { Reset(); }
+WindUpFit::WindUpFit(const Tuning& tuning) noexcept
+    : tuning_(tuning), use_share_(ShareOfPeriod(kUseShare, tuning.period_s)) {
+  Reset();
+}
 
 void WindUpFit::Reset() noexcept {
   compliance_m_N_ = 1.0 / tuning_.stiffness_N_m;
@@ -79,7 +83,7 @@ void WindUpFit::Pause() noexcept {
 }
 
 void WindUpFit::Learn(const Sample& s) noexcept {
-  used_m_N_ += kUseShare * (Believed_m_N() - used_m_N_);
+  used_m_N_ += use_share_ * (Believed_m_N() - used_m_N_);
   const double velocity_m_s = (s.position_m - position_m_) / tuning_.period_s;
   const double acceleration_m_s2 = (velocity_m_s - velocity_m_s_) / tuning_.period_s;
   // The second difference belongs to the sample before.

@@ -80,6 +80,7 @@ class WindUpFit {
   void Conclude(double compliance_m_N, double std_m_N) noexcept;
 
   Tuning tuning_;
+  double use_share_ = 0.0;       // per period
   double compliance_m_N_ = 0.0;  // estimate and the inverse of its variance
   double certainty_ = 0.0;
   double used_m_N_ = 0.0;

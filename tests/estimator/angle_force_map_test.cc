@@ -14,8 +14,9 @@ constexpr double kTurn = 6.283185307179586;
 double Cogging_N(double position_m) { return 12.0 * std::sin(12.0 * kTurn * position_m / kLead_m + 1.0); }
 
 /// So many turns at a speed under a force that goes with the angle and one that does not.
-double Slide(AngleForceMap& map, double position_m, double turns, double velocity_m_s) {
-  const double step_m = velocity_m_s * 1e-3;
+double Slide(AngleForceMap& map, double position_m, double turns, double velocity_m_s,
+             double period_s = 1e-3) {
+  const double step_m = velocity_m_s * period_s;
   const auto steps = static_cast<int>(turns * kLead_m / std::abs(step_m));
   for (int k = 0; k < steps; ++k) {
     const double missing_N = Cogging_N(position_m) - map.At_N(position_m, velocity_m_s);
@@ -39,6 +40,25 @@ TEST(AngleForceMap, AFewTurnsAreEnoughInEitherDirection) {
   Slide(map, there, 6.0, -0.05);
   EXPECT_LT(LargestError_N(map, -0.05), 4.0);
   EXPECT_LT(LargestError_N(map, 0.001), 4.0);  // used when it is too slow to learn, too
+}
+
+// As much is learnt in a turn of short cycles as in one of long ones.
+TEST(AngleForceMap, LearnsBySecondsNotByCycles) {
+  // Share of the cogging that is known, for an encoder whose noise averages out as fast.
+  const auto learnt = [](double period_s) {
+    AngleForceMap map({kLead_m, 15.0 * std::sqrt(1e-3 / period_s), 0.05, period_s});
+    Slide(map, 0.1, 4.0, 0.017, period_s);
+    double product = 0.0, square = 0.0;
+    for (double p = 0.0; p < kLead_m; p += 1e-6) {
+      product += Cogging_N(p) * map.At_N(p, 0.017);
+      square += Cogging_N(p) * Cogging_N(p);
+    }
+    return product / square;
+  };
+  const double usual = learnt(1e-3);
+  EXPECT_GT(usual, 0.2);
+  EXPECT_LT(usual, 0.8);  // on the way, not there
+  EXPECT_NEAR(learnt(0.5e-3), usual, 0.1 * usual);
 }
 
 TEST(AngleForceMap, FadesWhereACycleIsTooLong) {

@@ -86,6 +86,29 @@ TEST(LevelCorrection, LearnsTheRiseAtLowSpeedFromReversals) {
   EXPECT_NEAR(correction.minus()[4], -0.1, 0.06);
 }
 
+// As much is learnt in a second of short cycles as in a second of long ones.
+TEST(LevelCorrection, LearnsBySecondsNotByCycles) {
+  const auto learnt = [](double period_s) {
+    LevelCorrection correction({kLead_m, 2e-3, 0.0, 0.05, period_s});
+    Follower real, rolled;
+    for (int k = 0; k < std::lround(4.0 / period_s); ++k) {
+      const double v = 0.05 * std::sin(5.0 * (k + 0.5) * period_s);
+      const bool forward = v >= 0.0;
+      const auto basis = correction.Basis(0.0, v);
+      const double kept = std::exp(-std::abs(v) * period_s / 10e-6);
+      const double force = forward ? 1.0 : -1.0;
+      correction.Learn(basis, forward, kept, force * (real.value - rolled.value), v * period_s, true);
+      real.Step(1.0 + 0.2 * basis[4], kept);
+      rolled.Step(correction.Factor(basis, forward), kept);
+    }
+    return correction.plus()[4];
+  };
+  const double usual = learnt(1e-3);
+  EXPECT_GT(usual, 0.02);
+  EXPECT_LT(usual, 0.18);  // on the way, not there
+  EXPECT_NEAR(learnt(0.5e-3), usual, 0.1 * usual);
+}
+
 TEST(LevelCorrection, WithoutHighSpeedTheLowSpeedTermIsLeftAlone) {
   // It could not be told from the level itself.
   LevelCorrection correction(kTuning);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace contour {
 namespace {
@@ -21,6 +22,7 @@ struct Axis {
   double position_m = 0.0;
   double velocity_m_s = 0.0;
   double before_N = 0.0;
+  double period_s = kPeriod_s;
   std::uint32_t random = 1;
 
   double Step(double force_N) {
@@ -28,8 +30,8 @@ struct Axis {
     before_N = force_N;
     const double opposing_N = constant_N + (velocity_m_s >= 0.0 ? friction_N : -friction_N);
     const double a = (acts_N - opposing_N) / mass_kg;
-    position_m += kPeriod_s * (velocity_m_s + 0.5 * kPeriod_s * a);
-    velocity_m_s += kPeriod_s * a;
+    position_m += period_s * (velocity_m_s + 0.5 * period_s * a);
+    velocity_m_s += period_s * a;
     random = random * 1664525u + 1013904223u;
     return position_m + noise_m * (random / 2147483648.0 - 1.0);
   }
@@ -80,6 +82,29 @@ TEST(MomentumBalance, ARingingLoopTeachesTheDelay) {
   }
   EXPECT_NEAR(balance.delay_periods(), 0.8, 0.1);
   EXPECT_NEAR(balance.extra_kg(), 0.0, 3.0);
+}
+
+// As much is learnt in a second of short cycles as in a second of long ones.
+TEST(MomentumBalance, LearnsBySecondsNotByCycles) {
+  const auto learnt = [](double period_s, double duration_s, double omega_1_s, double late_s) {
+    Axis axis{.mass_kg = 117.0, .delay = late_s / period_s, .noise_m = 0.0};
+    axis.period_s = period_s;
+    MomentumBalance balance({90.0, period_s, 0.001, 0.001});
+    for (int k = 0; k < std::lround(duration_s / period_s); ++k) {
+      // Mean over the period.
+      const double from = omega_1_s * period_s * k, to = omega_1_s * period_s * (k + 1);
+      const double force_N = 60.0 * (std::cos(from) - std::cos(to)) / (to - from);
+      balance.Learn(axis.Step(force_N), force_N, 0.0);
+    }
+    return std::pair{balance.extra_kg(), balance.delay_periods() * period_s};
+  };
+  const double slow_kg = learnt(1e-3, 0.3, 12.0, 0.0).first;
+  EXPECT_GT(slow_kg, 3.0);
+  EXPECT_LT(slow_kg, 24.0);  // on the way, not there
+  EXPECT_NEAR(learnt(0.5e-3, 0.3, 12.0, 0.0).first, slow_kg, 0.05 * slow_kg);
+  const double late_s = learnt(1e-3, 0.1, 250.0, 0.4e-3).second;
+  EXPECT_GT(late_s, 0.05e-3);
+  EXPECT_NEAR(learnt(0.5e-3, 0.1, 250.0, 0.4e-3).second, late_s, 0.1 * late_s);
 }
 
 TEST(MomentumBalance, IsBounded) {

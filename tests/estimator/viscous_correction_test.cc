@@ -52,6 +52,25 @@ TEST(ViscousCorrection, WithoutALevelASlowMotionTeachesIt) {
   EXPECT_LT(std::abs(full.extra_Ns_m()), 10.0);
 }
 
+// As much is learnt in a second of short cycles as in a second of long ones.
+TEST(ViscousCorrection, LearnsBySecondsNotByCycles) {
+  const auto after_s = [](double duration_s, double period_s) {
+    ViscousCorrection viscous({500.0, 0.001, period_s});
+    for (int k = 0; k < std::lround(duration_s / period_s); ++k) {
+      const double t = period_s * k, v = 0.05 * std::sin(5.0 * t), a = 0.25 * std::cos(5.0 * t);
+      viscous.Learn((-80.0 - viscous.extra_Ns_m()) * v, v, a);
+    }
+    return viscous.extra_Ns_m();
+  };
+  for (const double duration_s : {0.5, 2.0}) {
+    const double usual = after_s(duration_s, 1e-3);
+    EXPECT_LT(usual, -10.0);
+    EXPECT_GT(usual, -75.0);  // on the way, not there
+    EXPECT_NEAR(after_s(duration_s, 0.5e-3), usual, 0.03 * std::abs(usual));
+    EXPECT_NEAR(after_s(duration_s, 2e-3), usual, 0.03 * std::abs(usual));
+  }
+}
+
 TEST(ViscousCorrection, AtRestNothingIsLearnt) {
   ViscousCorrection viscous(kTuning);
   for (int k = 0; k < 1000; ++k) viscous.Learn(10.0, 0.0, 0.0);
