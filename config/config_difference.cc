@@ -12,11 +12,12 @@ using Leaf = std::pair<std::string, std::string>;
 
 std::string TextOf(const YamlValue& value) {
   if (value.kind == YamlValue::Kind::kScalar) return value.text;
-  std::string text = "[";
+  const bool map = value.kind == YamlValue::Kind::kMap;
+  std::string text = map ? "{" : "[";
   for (const YamlEntry& e : value.entries)
     text += (text.size() > 1 ? ", " : "") + e.key + ": " + TextOf(e.value);
   for (const YamlValue& item : value.items) text += (text.size() > 1 ? ", " : "") + TextOf(item);
-  return text + "]";
+  return text + (map ? "}" : "]");
 }
 
 void Flatten(const YamlValue& value, const std::string& path, std::vector<Leaf>& leaves) {

@@ -323,8 +323,13 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     CheckStopping(c, key, axis, problems);
     Append(Check(axis.model, key + ".model"), problems);
   }
-  if (c.io.modbus)
+  if (c.io.modbus) {
     if (std::string text = Problem(*c.io.modbus); !text.empty()) problems.Add("io.modbus.timeout_ms", text);
+    const auto& temperature = c.io.modbus->inputs.screw_temperature;
+    if (temperature && temperature->degC_per_count == 0.0)
+      problems.Add("io.modbus.inputs.screw_temperature.degC_per_count",
+                   "found 0, expected what a count is worth: the temperature would never change");
+  }
   return problems.Take();
 }
 

@@ -14,8 +14,7 @@ namespace contour {
 std::string QuotedYaml(std::string_view text);
 
 /// Writes a configuration struct as YAML through its Visit method: every key, defaults included, numbers so
-/// that they read back as the same bits. Absent optionals are left
-/// out, and so are empty lists of maps.
+/// that they read back as the same bits. Absent optionals are left out, and so are empty lists of maps.
 class YamlWriter {
  public:
   explicit YamlWriter(std::string& out, std::size_t indent = 0) : out_(out), indent_(indent) {}

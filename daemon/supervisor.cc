@@ -14,6 +14,7 @@
 #include "daemon/program/program.h"
 #include "daemon/program_limits.h"
 #include "daemon/reason_text.h"
+#include "daemon/rt/cycle_parts.h"
 #include "daemon/telemetry/tuning_note.h"
 #include "drivers/cia301/bring_up_text.h"
 

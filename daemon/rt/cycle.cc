@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/contour_error.h"
+#include "daemon/rt/cycle_parts.h"
 #include "drivers/cia301/messages.h"
 
 namespace contour {
@@ -20,59 +21,6 @@ constexpr int kLocalPathReach = 8;
 /// Damping ratio of an axis held by a spring, friction apart.
 constexpr double kSpringDamping = 0.7;
 
-EstimatorKind KindFor(ControllerName name, bool cascade) noexcept {
-  switch (name) {
-    case ControllerName::kPid:
-    case ControllerName::kCsp:
-    case ControllerName::kMpc:
-      return EstimatorKind::kKinematic;
-    case ControllerName::kMpcObserver:
-      return EstimatorKind::kDisturbanceObserver;
-    case ControllerName::kMpcSrukf4:
-      return EstimatorKind::kSrukf4;
-    case ControllerName::kMpcEkf7:
-      return EstimatorKind::kEkf7;
-    case ControllerName::kMpcSrukf7:
-      return EstimatorKind::kSrukf7;
-    case ControllerName::kFull:
-      break;
-  }
-  return cascade ? EstimatorKind::kFullInCascade : EstimatorKind::kFull;
-}
-
-/// Whether the drives close the position loop.
-bool InCascade(const CycleConfig& config) noexcept {
-  return !config.master.axes.empty() && config.master.axes.front().drive.mode == DriveMode::kCsp;
-}
-
-PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
-  PerAxis<ControlledAxis> axes;
-  for (const CycleAxisConfig& a : config.axes) {
-    const double r = a.mechanics.radius_m_rad;
-    axes.push_back({a.mechanics, ToSi(a.limits, r), a.lag_s, ToSi(a.friction, r).sigma2_Ns_m});
-  }
-  return axes;
-}
-
-PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config) {
-  PerAxis<GuardedAxis> axes;
-  for (const CycleAxisConfig& a : config.axes)
-    axes.push_back({ToSi(a.limits, a.mechanics.radius_m_rad), a.mechanics.radius_m_rad});
-  return axes;
-}
-
-Transitions::Config TransitionTimes(const CycleConfig& config) {
-  const auto cycles = [&](double ms) { return static_cast<std::uint32_t>(ms * 1e3 / config.cycle_us) + 1; };
-  double walk_ms = 0.0;
-  double quick_stop_ms = 0.0;
-  for (const AxisDriveConfig& a : config.master.axes) {
-    walk_ms = std::max(walk_ms, a.drive.transition_ms);
-    quick_stop_ms = std::max(quick_stop_ms, a.drive.quick_stop_ms);
-  }
-  // From Switch On Disabled to Operation Enabled there are three transitions.
-  return {cycles(3.0 * walk_ms), cycles(1000.0 * StopOnPathTime_s(config) + quick_stop_ms), cycles(5000.0)};
-}
-
 /// Whether carrying these orders out touches what is followed.
 bool ChangesPath(const Orders& o) noexcept {
   return o.hold_here || o.forget_path || o.expect_path || o.start_path || o.stop_path || !o.torque_allowed;
@@ -85,23 +33,6 @@ PerAxis<double> Zeros(std::size_t n) {
 }
 
 }  // namespace
-
-ContourController MakeController(const CycleConfig& config) {
-  return {config.controller, config.control, ControlledAxes(config), config.cycle_us * 1e-6,
-          InCascade(config)};
-}
-
-double StopOnPathTime_s(const CycleConfig& config) {
-  // The ramp's steepest slope is 1.5 / T, its sharpest bend 6 / T^2: an axis at its highest speed then just
-  // keeps its limits of acceleration and jerk.
-  double time_s = 0.0;
-  for (const CycleAxisConfig& a : config.axes) {
-    const AxisLimits& l = a.limits;
-    time_s = std::max({time_s, 1.5 * l.velocity_mm_s / l.acceleration_mm_s2,
-                       std::sqrt(6.0 * l.velocity_mm_s / l.jerk_mm_s3)});
-  }
-  return time_s;
-}
 
 Cycle::Axis::Axis(const CycleAxisConfig& config, EstimatorKind kind, double period_s)
     : radius_m_rad(config.mechanics.radius_m_rad),
@@ -125,8 +56,7 @@ Cycle::Cycle(const CycleConfig& config)
       setpoints_(config.axes.size()),
       near_position_m_(config.axes.size()),
       near_path_(config.axes.size()) {
-  for (const CycleAxisConfig& a : config.axes)
-    axes_.emplace_back(a, KindFor(config.controller, csp_), period_s_);
+  for (const CycleAxisConfig& a : config.axes) axes_.emplace_back(a, EstimatorFor(config), period_s_);
   for (const AxisDriveConfig& a : config.master.axes)
     answers_.push_back({{static_cast<std::uint16_t>(cob::kTpdo1 + a.drive.node_id), 0, {}}, a.bus, 0});
   for (const BusConfig& b : config.master.buses) {

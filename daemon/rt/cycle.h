@@ -20,9 +20,6 @@
 
 namespace contour {
 
-/// Length of a stop on the path: an axis at its highest speed keeps its limits of acceleration and jerk.
-double StopOnPathTime_s(const CycleConfig& config);
-
 /// One period of the machine, top to bottom: frames in, axis feedback, estimate, machine state, wanted
 /// torque, torque limits, frames out, record. A pure function of its input and its state; the same in real
 /// time, in virtual time and in replay.
@@ -120,8 +117,5 @@ class Cycle {
   FixedVector<StampedFrame, kMaxBuses> heartbeats_;
   std::vector<std::byte> handover_;  ///< room for a controller's memory
 };
-
-/// The controller of such a cycle; takes all memory there will be. Throws std::invalid_argument.
-ContourController MakeController(const CycleConfig& config);
 
 }  // namespace contour

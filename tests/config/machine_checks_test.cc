@@ -161,6 +161,14 @@ TEST(MachineChecks, ModeAndController) {
       "axes.x.drive.csp_torque_offset: found false, but control.csp.torque_offset is true; expected true");
 }
 
+TEST(MachineChecks, ATemperatureThatNeverChangesIsNone) {
+  MachineConfig c = Good();
+  c.io.modbus.emplace().inputs.screw_temperature.emplace().degC_per_count = 0.0;
+  EXPECT_EQ(Only(c),
+            "io.modbus.inputs.screw_temperature.degC_per_count: found 0, expected what a count is worth: the "
+            "temperature would never change");
+}
+
 TEST(MachineChecks, FullTakesAllAxesInOneMode) {
   MachineConfig c = Good();
   c.axes.at("y").drive.mode = DriveMode::kCsp;

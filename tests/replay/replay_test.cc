@@ -1,8 +1,6 @@
 #include "tools/replay/replay_run.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
-
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,10 +9,12 @@
 #include "config/load_machine.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/make_log_header.h"
+#include "daemon/rt/cycle_parts.h"
 #include "daemon/telemetry/flight_recorder.h"
 #include "daemon/telemetry/tuning_note.h"
 #include "tests/replay/eventful_run.h"
 #include "tests/support/same_cycle_entry.h"
+#include "tests/support/scratch_directory.h"
 #include "tools/simulate/run_log.h"
 
 namespace contour::test {
@@ -33,13 +33,7 @@ LogHeader Header(const std::vector<std::string>& more = {}) {
 
 class ReplayTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "contour_replay_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    directory_ = name;
-    file_ = directory_ / "run.lcmlog";
-  }
-  void TearDown() override { fs::remove_all(directory_); }
+  void SetUp() override { file_ = directory_ / "run.lcmlog"; }
 
   /// The log of a run with everything in it; what was seen.
   std::set<Reason> Record(std::uint64_t cycles, const LogHeader& header) const {
@@ -75,7 +69,8 @@ class ReplayTest : public ::testing::Test {
     std::ofstream(file_, std::ios::binary | std::ios::trunc) << content;
   }
 
-  fs::path directory_;
+  ScratchDirectory scratch_;
+  const fs::path directory_ = scratch_.path();
   fs::path file_;
 };
 

@@ -10,6 +10,7 @@
 #include "daemon/make_cycle_config.h"
 #include "daemon/make_log_header.h"
 #include "daemon/rt/cycle.h"
+#include "daemon/rt/cycle_parts.h"
 #include "daemon/telemetry/tuning_note.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/replay/output_quantities.h"

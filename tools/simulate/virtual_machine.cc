@@ -58,7 +58,7 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
   }
   emulated_.SetTruthSink(truths_.get());
   const auto& modbus = file.machine.io.modbus;
-  if (modbus && modbus->inputs.screw_temperature && modbus->inputs.screw_temperature->degC_per_count != 0.0)
+  if (modbus && modbus->inputs.screw_temperature)
     io_ = std::make_unique<SimulatedIo>(*modbus->inputs.screw_temperature, emulated_);
   else
     io_ = std::make_unique<NoIo>();

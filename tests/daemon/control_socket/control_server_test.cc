@@ -1,7 +1,6 @@
 #include "daemon/control_socket/control_server.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,6 +23,7 @@
 #include "tests/daemon/control_socket/fake_desk.h"
 #include "tests/support/random_cycle_entry.h"
 #include "tests/support/same_cycle_entry.h"
+#include "tests/support/scratch_directory.h"
 
 namespace contour {
 namespace {
@@ -42,16 +42,8 @@ bool Eventually(const std::function<bool()>& so) {
 
 class ControlServerTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "contour_socket_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    directory_ = name;
-    options_.socket = directory_ / "run" / "control.sock";
-  }
-  void TearDown() override {
-    server_.reset();
-    fs::remove_all(directory_);
-  }
+  void SetUp() override { options_.socket = directory_ / "run" / "control.sock"; }
+  void TearDown() override { server_.reset(); }
   void Serve() {
     server_ = std::make_unique<ControlServer>(options_, desk_);
     server_->Start();
@@ -62,7 +54,8 @@ class ControlServerTest : public ::testing::Test {
     return found.st_mode & 07777;
   }
 
-  fs::path directory_;
+  test::ScratchDirectory scratch_;
+  const fs::path directory_ = scratch_.path();
   test::FakeDesk desk_;
   ControlServer::Options options_;
   std::unique_ptr<ControlServer> server_;

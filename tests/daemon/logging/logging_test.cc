@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <spdlog/logger.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +11,7 @@
 #include <string>
 
 #include "core/exit_status.h"
+#include "tests/support/scratch_directory.h"
 
 namespace contour {
 namespace {
@@ -20,19 +20,15 @@ namespace fs = std::filesystem;
 
 class LoggingTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "contour_logging_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    directory_ = name;
-  }
-  void TearDown() override { fs::remove_all(directory_); }
+  void SetUp() override {}
 
   static std::string Read(const fs::path& file) {
     std::ifstream in(file);
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  fs::path directory_;
+  test::ScratchDirectory scratch_;
+  const fs::path directory_ = scratch_.path();
 };
 
 TEST_F(LoggingTest, TheJournalGetsAPriorityAndNoTime) {

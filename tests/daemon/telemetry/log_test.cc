@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 #include <lcm/eventlog.h>
 #include <signal.h>
-#include <stdlib.h>
 #include <sys/resource.h>
 
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "daemon/telemetry/log_writer.h"
 #include "tests/support/random_cycle_entry.h"
 #include "tests/support/same_cycle_entry.h"
+#include "tests/support/scratch_directory.h"
 
 namespace contour {
 namespace {
@@ -23,13 +23,7 @@ namespace fs = std::filesystem;
 
 class LogTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "contour_log_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    directory_ = name;
-    file_ = directory_ / "run.lcmlog";
-  }
-  void TearDown() override { fs::remove_all(directory_); }
+  void SetUp() override { file_ = directory_ / "run.lcmlog"; }
 
   static LogHeader Header() {
     LogHeader h;
@@ -90,7 +84,8 @@ class LogTest : public ::testing::Test {
     return result;
   }
 
-  fs::path directory_;
+  test::ScratchDirectory scratch_;
+  const fs::path directory_ = scratch_.path();
   fs::path file_;
 };
 

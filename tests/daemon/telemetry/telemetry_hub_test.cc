@@ -1,7 +1,6 @@
 #include "daemon/telemetry/telemetry_hub.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <contour_lcm/cycle_entry.hpp>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "drivers/lcm/cycle_messages.h"
 #include "tests/support/random_cycle_entry.h"
 #include "tests/support/same_cycle_entry.h"
+#include "tests/support/scratch_directory.h"
 
 namespace contour {
 namespace {
@@ -87,10 +87,9 @@ TEST(TelemetryHubTest, ClientsGetRowsWhileAttached) {
 }
 
 TEST(TelemetryHubTest, TheLogHoldsEveryCycleAndEveryNote) {
-  std::string directory = (std::filesystem::temp_directory_path() / "contour_hub_XXXXXX").string();
-  ASSERT_NE(::mkdtemp(directory.data()), nullptr);
+  const test::ScratchDirectory directory;
   TelemetryHub::LogTarget target;
-  target.file = directory + "/run.lcmlog";
+  target.file = directory.path() / "run.lcmlog";
   target.header.axis_names = kAxes;
   test::RandomCycleEntry random(3);
   {
@@ -108,7 +107,6 @@ TEST(TelemetryHubTest, TheLogHoldsEveryCycleAndEveryNote) {
   EXPECT_TRUE(reader.complete());
   ASSERT_EQ(reader.notes().size(), 1u);
   EXPECT_EQ(reader.notes()[0].text, "shape: hold");
-  std::filesystem::remove_all(directory);
 }
 
 }  // namespace

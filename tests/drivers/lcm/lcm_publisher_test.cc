@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,6 +16,7 @@
 #include "drivers/lcm/cycle_messages.h"
 #include "tests/support/random_cycle_entry.h"
 #include "tests/support/same_cycle_entry.h"
+#include "tests/support/scratch_directory.h"
 
 namespace contour {
 namespace {
@@ -97,9 +97,8 @@ TEST(TelemetryEncoderTest, ABatchOfAFullMachineFitsAnLcmMessage) {
 TEST(LcmPublisherTest, WhatIsPublishedArrivesOnTheChannel) {
   // LCM's own file provider in write mode stands for the network: publish() is the same call, and no route is
   // needed.
-  std::string name = (std::filesystem::temp_directory_path() / "contour_lcm_XXXXXX").string();
-  ASSERT_NE(::mkdtemp(name.data()), nullptr);
-  const std::string file = name + "/events";
+  const test::ScratchDirectory directory;
+  const std::string file = (directory.path() / "events").string();
   const CycleEntry entry = test::RandomCycleEntry(4).Next(20, 2);
   {
     LcmPublisher publisher("file://" + file + "?mode=w");
@@ -132,7 +131,6 @@ TEST(LcmPublisherTest, WhatIsPublishedArrivesOnTheChannel) {
   }
   EXPECT_TRUE(axis_seen);
   EXPECT_TRUE(batch_seen);
-  std::filesystem::remove_all(name);
 }
 
 TEST(LcmPublisherTest, AProviderThatCannotBeOpenedIsCountedAndNeverFatal) {

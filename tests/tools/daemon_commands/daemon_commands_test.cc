@@ -1,7 +1,6 @@
 // The subcommands that talk to a running daemon, as their users meet them: the real program against a control
 // socket.
 #include <gtest/gtest.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -18,6 +17,7 @@
 #include "daemon/telemetry/log_writer.h"
 #include "drivers/lcm/telemetry_encoder.h"
 #include "tests/support/random_cycle_entry.h"
+#include "tests/support/scratch_directory.h"
 #include "tests/tools/daemon_commands/scripted_machine.h"
 
 namespace contour {
@@ -42,19 +42,13 @@ class DaemonCommandsTest : public ::testing::Test {
   };
 
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "contour_commands_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    directory_ = name;
     ControlServer::Options options;
     options.socket = directory_ / "control.sock";
     server_ = std::make_unique<ControlServer>(options, machine_);
     server_->Start();
     std::ofstream(directory_ / "circle.yaml") << "shape: circle\nradius_mm: 0.1\nfrequency_hz: 1\nturns: 3\n";
   }
-  void TearDown() override {
-    server_.reset();
-    fs::remove_all(directory_);
-  }
+  void TearDown() override { server_.reset(); }
 
   Outcome Contour(const std::string& arguments) const {
     const fs::path errors = directory_ / "stderr.txt";
@@ -73,7 +67,8 @@ class DaemonCommandsTest : public ::testing::Test {
     return Contour(arguments + " --socket " + (directory_ / "control.sock").string());
   }
 
-  fs::path directory_;
+  test::ScratchDirectory scratch_;
+  const fs::path directory_ = scratch_.path();
   test::ScriptedMachine machine_;
   std::unique_ptr<ControlServer> server_;
 };

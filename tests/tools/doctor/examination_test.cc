@@ -1,11 +1,11 @@
 #include "tools/doctor/examination.h"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
-
 #include <filesystem>
 #include <fstream>
 #include <map>
+
+#include "tests/support/scratch_directory.h"
 
 namespace contour {
 namespace {
@@ -16,9 +16,6 @@ namespace fs = std::filesystem;
 class ExaminationTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "contour_doctor_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    root_ = name;
     Put("proc/sys/kernel/osrelease", "6.1.0-rt");
     Put("sys/kernel/realtime", "1");
     Put("proc/cmdline", "isolcpus=1");
@@ -39,7 +36,6 @@ class ExaminationTest : public ::testing::Test {
     request_.root = root_;
     request_.cpu = 1;
   }
-  void TearDown() override { fs::remove_all(root_); }
 
   void Put(const std::string& file, const std::string& text) const {
     fs::create_directories((root_ / file).parent_path());
@@ -62,7 +58,8 @@ class ExaminationTest : public ::testing::Test {
     }
   }
 
-  fs::path root_;
+  test::ScratchDirectory scratch_;
+  const fs::path root_ = scratch_.path();
   ExaminationRequest request_;
 };
 

@@ -1,0 +1,80 @@
+#include "daemon/rt/cycle_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
+  PerAxis<ControlledAxis> axes;
+  for (const CycleAxisConfig& a : config.axes) {
+    const double r = a.mechanics.radius_m_rad;
+    axes.push_back({a.mechanics, ToSi(a.limits, r), a.lag_s, ToSi(a.friction, r).sigma2_Ns_m});
+  }
+  return axes;
+}
+
+}  // namespace
+
+bool InCascade(const CycleConfig& config) noexcept {
+  return !config.master.axes.empty() && config.master.axes.front().drive.mode == DriveMode::kCsp;
+}
+
+EstimatorKind EstimatorFor(const CycleConfig& config) noexcept {
+  switch (config.controller) {
+    case ControllerName::kPid:
+    case ControllerName::kCsp:
+    case ControllerName::kMpc:
+      return EstimatorKind::kKinematic;
+    case ControllerName::kMpcObserver:
+      return EstimatorKind::kDisturbanceObserver;
+    case ControllerName::kMpcSrukf4:
+      return EstimatorKind::kSrukf4;
+    case ControllerName::kMpcEkf7:
+      return EstimatorKind::kEkf7;
+    case ControllerName::kMpcSrukf7:
+      return EstimatorKind::kSrukf7;
+    case ControllerName::kFull:
+      break;
+  }
+  return InCascade(config) ? EstimatorKind::kFullInCascade : EstimatorKind::kFull;
+}
+
+PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config) {
+  PerAxis<GuardedAxis> axes;
+  for (const CycleAxisConfig& a : config.axes)
+    axes.push_back({ToSi(a.limits, a.mechanics.radius_m_rad), a.mechanics.radius_m_rad});
+  return axes;
+}
+
+Transitions::Config TransitionTimes(const CycleConfig& config) {
+  const auto cycles = [&](double ms) { return static_cast<std::uint32_t>(ms * 1e3 / config.cycle_us) + 1; };
+  double walk_ms = 0.0;
+  double quick_stop_ms = 0.0;
+  for (const AxisDriveConfig& a : config.master.axes) {
+    walk_ms = std::max(walk_ms, a.drive.transition_ms);
+    quick_stop_ms = std::max(quick_stop_ms, a.drive.quick_stop_ms);
+  }
+  // From Switch On Disabled to Operation Enabled there are three transitions.
+  return {cycles(3.0 * walk_ms), cycles(1000.0 * StopOnPathTime_s(config) + quick_stop_ms), cycles(5000.0)};
+}
+
+ContourController MakeController(const CycleConfig& config) {
+  return {config.controller, config.control, ControlledAxes(config), config.cycle_us * 1e-6,
+          InCascade(config)};
+}
+
+double StopOnPathTime_s(const CycleConfig& config) {
+  // The ramp's steepest slope is 1.5 / T, its sharpest bend 6 / T^2: an axis at its highest speed then just
+  // keeps its limits of acceleration and jerk.
+  double time_s = 0.0;
+  for (const CycleAxisConfig& a : config.axes) {
+    const AxisLimits& l = a.limits;
+    time_s = std::max({time_s, 1.5 * l.velocity_mm_s / l.acceleration_mm_s2,
+                       std::sqrt(6.0 * l.velocity_mm_s / l.jerk_mm_s3)});
+  }
+  return time_s;
+}
+
+}  // namespace contour

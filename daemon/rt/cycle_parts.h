@@ -1,0 +1,28 @@
+#pragma once
+
+#include "control/contour_controller.h"
+#include "control/torque_guard.h"
+#include "daemon/rt/cycle_config.h"
+#include "daemon/rt/transitions.h"
+#include "estimator/axis_estimator.h"
+
+// What the parts of a cycle are made of, from its configuration. Before the first Step only: all of it may
+// take memory.
+namespace contour {
+
+/// Whether the drives close the position loop.
+[[nodiscard]] bool InCascade(const CycleConfig& config) noexcept;
+
+[[nodiscard]] EstimatorKind EstimatorFor(const CycleConfig& config) noexcept;
+
+[[nodiscard]] PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config);
+
+/// The controller of such a cycle; takes all memory there will be. Throws std::invalid_argument.
+[[nodiscard]] ContourController MakeController(const CycleConfig& config);
+
+/// Length of a stop on the path: an axis at its highest speed keeps its limits of acceleration and jerk.
+[[nodiscard]] double StopOnPathTime_s(const CycleConfig& config);
+
+[[nodiscard]] Transitions::Config TransitionTimes(const CycleConfig& config);
+
+}  // namespace contour
