@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "tests/diagnosis/hidden_axis.h"
 
@@ -84,6 +85,20 @@ TEST(Diagnose, DoesNotFindAgainWhatTheModelStates) {
   ASSERT_FALSE(third.causes.empty());
   EXPECT_EQ(third.causes[0].kind, "friction_ripple");
   EXPECT_NEAR(third.causes[0].parameters.at("amplitude_rel").value, 0.1, 0.01);
+}
+
+// Several orders of one kind are several causes.
+TEST(Diagnose, FindsASecondOrderOfTheSameKind) {
+  test::HiddenOptions o = Hidden(9, {{"cogging", 0.05, 12.0, 0.7, 0.0}, {"cogging", 0.05, 4.0, 0.2, 0.0}});
+  o.duration_s = 20.0;
+  o.scale = o.temperature = o.axis2 = false;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Diagnosis d = Diagnose(axis.log, axis.stated);
+  std::vector<double> orders;
+  for (const Cause& c : d.causes)
+    if (c.kind == "cogging") orders.push_back(c.parameters.at("order_per_rev").value);
+  std::sort(orders.begin(), orders.end());
+  EXPECT_EQ(orders, (std::vector{4.0, 12.0}));
 }
 
 TEST(Diagnose, SaysWhatTheLogCannotShow) {

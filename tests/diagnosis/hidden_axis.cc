@@ -109,7 +109,8 @@ HiddenAxis MakeHiddenAxis(const HiddenOptions& o) {
   t.K = s.stiffness * off("stiffness");
   t.D = s.damping * off("damping");
   t.Fc_plus = t.Fc_minus = f.Fc_plus * off("Fc");
-  t.Fs_ratio = std::max(1.02, 1.3 * off("Fs") / 1.0);
+  // The stated uncertainty is that of the level, not of its ratio to the other.
+  t.Fs_ratio = std::max(1.02, f.Fs_plus * off("Fs") / t.Fc_plus);
   t.vs = f.vs * off("vs");
   t.s0 = f.s0 * off("s0");
   t.s1 = f.s1 * off("s1");

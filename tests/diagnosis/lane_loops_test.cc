@@ -31,7 +31,7 @@ std::vector<double> Noise(std::size_t size, double scale, unsigned seed) {
 }
 
 // Runs of a table axis, every lane with parameters of its own, through rest, slides and reversals.
-std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft) {
+std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool square) {
   constexpr int kSubsteps = 4;
   Lanes m{};
   m.rows = kRows;
@@ -41,6 +41,8 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft) {
   m.on_load = two;
   m.soft = soft;
   m.fading = true;
+  m.linear = square ? 0.0 : 1.0;
+  m.square = square ? 1.0 : 0.0;
   m.full = m.trace = true;
   std::vector<double> torque(kRows * kSubsteps), measured(kRows);
   for (std::size_t i = 0; i < torque.size(); ++i)
@@ -95,13 +97,14 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft) {
 
 TEST(LaneLoops, RunsGiveTheSameBitsWithEveryInstructionSet) {
   for (const bool two : {false, true})
-    for (const bool soft : {false, true}) {
-      const std::vector<double> expected = RunOf(kBaselineLoops, two, soft);
-      double largest = 0.0;
-      for (const double x : expected) largest = std::max(largest, std::fabs(x));
-      EXPECT_TRUE(std::isfinite(largest) && largest > 0.1) << largest;
-      for (const LaneLoops* loops : Available()) EXPECT_EQ(RunOf(*loops, two, soft), expected);
-    }
+    for (const bool soft : {false, true})
+      for (const bool square : {false, true}) {
+        const std::vector<double> expected = RunOf(kBaselineLoops, two, soft, square);
+        double largest = 0.0;
+        for (const double x : expected) largest = std::max(largest, std::fabs(x));
+        EXPECT_TRUE(std::isfinite(largest) && largest > 0.1) << largest;
+        for (const LaneLoops* loops : Available()) EXPECT_EQ(RunOf(*loops, two, soft, square), expected);
+      }
 }
 
 TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryInstructionSet) {

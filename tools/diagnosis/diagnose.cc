@@ -33,6 +33,8 @@ constexpr double kFewStrokes = 1.25;
 constexpr double kOffStated = 1e-4;
 // Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
 constexpr double kConsistent = 1.2;
+// Waves of one kind that are two, by order or Hz.
+constexpr double kOrdersApart = 0.9;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
 void CheckInput(const AxisLog& log, const StatedAxis& stated) {
@@ -148,8 +150,11 @@ class Engine {
     std::vector<SharedEffect> effects = CatalogueEffects(problem_);
     for (SharedEffect& e : ScanWaves(problem_, fit)) effects.push_back(std::move(e));
     std::erase_if(effects, [&](const SharedEffect& e) {
-      return std::any_of(fit.point.effects.begin(), fit.point.effects.end(),
-                         [&](const SharedEffect& f) { return f->kind == e->kind; });
+      return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
+        // A wave may have further orders.
+        const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kOrdersApart;
+        return f->kind == e->kind && !another;
+      });
     });
     std::vector<Scored> scored = ScoreEffects(problem_, fit, std::move(effects));
     std::stable_sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {

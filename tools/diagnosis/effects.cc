@@ -426,6 +426,7 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
   if (!free_order) {
     auto e = std::make_shared<Effect>(*LinearEffect(kind, label, grid, input, std::move(basis), step));
     e->order = order;
+    e->wave = true;
     return e;
   }
   // The order is found to a part of a turn over the travel (of a cycle over the log), and fitted with the
@@ -440,6 +441,7 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
   e->label = label;
   e->grid = grid;
   e->order = order;
+  e->wave = true;
   e->steps = {step, step, 0.05 / span};
   e->tested = 2;
   e->signals = true;

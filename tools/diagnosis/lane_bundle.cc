@@ -27,7 +27,9 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
   std::copy(gain.begin(), gain.end(), m.l);
   m.start_q = setup.start[0];
   m.start_w = setup.start[1];
-  m.square = first.friction.exponent > 1.5;
+  const bool square = first.friction.exponent > 1.5;
+  m.linear = square ? 0.0 : 1.0;
+  m.square = square ? 1.0 : 0.0;
   m.full = setup.full;
   m.trace = setup.trace;
   m.two = first.two_inertia;

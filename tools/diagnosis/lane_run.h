@@ -41,7 +41,8 @@ struct Lanes {
   Vec soft_level, soft_s0, rough;
   double l[4] = {};
   double start_q = 0.0, start_w = 0.0;
-  bool square = false, full = false, trace = false;
+  double linear = 1.0, square = 0.0;  ///< exponent of the Stribeck curve: 1, 0 or 0, 1
+  bool full = false, trace = false;
   bool two = false, on_load = false, soft = false, fading = false;  ///< which of the loops
   double* innovation[kLanes] = {};
   double* table[kLanes] = {};
