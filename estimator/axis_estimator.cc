@@ -71,6 +71,7 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
   if (cascade) lag_s = 0.0;
   FilterSetup setup = Check(mechanics, friction, config, period_s, lag_s, resolution_m);
   setup.reported_torque = cascade;
+  setup.looks_ahead = !is_full();
   switch (kind) {
     case EstimatorKind::kKinematic:
       filter_.emplace<KinematicObserver>(setup);
@@ -198,7 +199,8 @@ void AxisEstimator::LearnWindUp(double position_m, double velocity_m_s, double f
     const auto level_N = [&](double at_m_s) {
       const auto basis = correction_.Basis(position_m, at_m_s);
       x[kVelocity] = at_m_s;
-      return model.Level(x, {{}, correction_.Factor(basis, true), correction_.Factor(basis, false)}) *
+      return model.Level(x, model.TermsAt(at_m_s),
+                         {{}, correction_.Factor(basis, true), correction_.Factor(basis, false)}) *
              known_.LevelFactor(position_m);
     };
     sample.level_N = level_N(std::copysign(kStill_m_s, velocity_m_s));

@@ -16,7 +16,8 @@ struct FilterSetup {
   double period_s = 1e-3;
   double lag_s = 0.0;
   double measurement_std_m = 2e-8;  ///< position noise, quantisation included
-  bool reported_torque = false;     ///< torque as the drive tells it, at the samples, not as it was commanded
+  bool looks_ahead = true;  ///< FrictionAhead_N is wanted; not where friction is rolled along the reference
+  bool reported_torque = false;  ///< torque as the drive tells it, at the samples, not as it was commanded
 
   /// Noise that one period adds, from the noise of one millisecond.
   [[nodiscard]] double PerPeriod(double per_millisecond) const noexcept {

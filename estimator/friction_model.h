@@ -13,11 +13,16 @@ namespace contour {
 /// Friction levels never reach zero: eq. 9 divides by g.
 inline constexpr double kLeastLevel_N = 1e-3;
 
+/// exp(-(|v| / vs)^n).
+inline double StribeckDecay(double speed_m_s, double vs_m_s, double exponent) noexcept {
+  const double u = speed_m_s / vs_m_s;
+  return Exp(-(exponent == 1.0 ? u : std::pow(u, exponent)));
+}
+
 /// Stribeck factor of the level: g(v) / Fc = 1 + (Fs / Fc - 1) exp(-(|v| / vs)^n).
 inline double StribeckFactor(double breakaway_ratio, double speed_m_s, double vs_m_s,
                              double exponent) noexcept {
-  const double u = speed_m_s / vs_m_s;
-  return 1.0 + (breakaway_ratio - 1.0) * Exp(-(exponent == 1.0 ? u : std::pow(u, exponent)));
+  return 1.0 + (breakaway_ratio - 1.0) * StribeckDecay(speed_m_s, vs_m_s, exponent);
 }
 
 /// g(v) of eq. 7, positive in both directions (the printed sgn() makes the bristle grow without bound for v <

@@ -115,6 +115,7 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   direction_ = travel_direction_ = 0;
   travel_m_ = travel_s_ = 0.0;
   lag_.Reset();
+  at_ = model_.TermsAt(x[kVelocity]);
   predicted_ = x;
   gated_in_a_row_ = 0;
   following_ = true;
@@ -123,11 +124,11 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
 // The encoder sees the motor; the model moves the centre of mass, which trails it by Mt/m of the screw's
 // wind-up (F + sigma2 v + Mt a) / K.
 template <class Core>
-double SevenStateFilter<Core>::WindUpShare_m(const X& x, double force_N) const noexcept {
+double SevenStateFilter<Core>::WindUpShare_m(double total_N, double disturbance_N,
+                                             double force_N) const noexcept {
   const Mechanics& m = setup_.mechanics;
-  const double total = model_.Friction_N(x, Input(x, {})) + viscous_N_;
-  const double friction = total - x[kDisturbance];
-  const double acceleration = (force_N + driving_N_ - inertial_N_ - total) / m.mass_kg;
+  const double friction = total_N - disturbance_N;
+  const double acceleration = (force_N + driving_N_ - inertial_N_ - total_N) / m.mass_kg;
   return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
 }
 
@@ -149,7 +150,7 @@ void SevenStateFilter<Core>::Reverse(double commanded_velocity_m_s) noexcept {
 }
 
 template <class Core>
-void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
+CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   auto& x = core_.x;
   Reverse(in.commanded_velocity_m_s);
   driving_N_ = driving_before_N_;
@@ -166,7 +167,7 @@ void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
   const auto adapted = Adapted(in.at_rest);
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
 
-  const SevenStateInput input = Input(x, lag_.Step(in.force_N[1]));
+  const SevenStateInput input = Input(at_, lag_.Step(in.force_N[1]));
   if constexpr (requires { core_.Draw(std::declval<SigmaPoints<kSevenStates>&>()); }) {
     core_.Predict([&](SigmaPoints<kSevenStates>& points) noexcept { model_.Propagate(points, input); },
                   noise);
@@ -175,6 +176,7 @@ void SevenStateFilter<Core>::TimeUpdate(const AxisEstimatorInput& in) noexcept {
         [&](X& mean, SquareMatrix<kSevenStates>& t) noexcept { model_.PropagateTangent(mean, t, input); },
         noise);
   }
+  at_ = model_.TermsAt(x[kVelocity]);
 }
 
 template <class Core>
@@ -192,8 +194,12 @@ StateMask<kSevenStates> SevenStateFilter<Core>::Adapted(bool at_rest) const noex
 template <class Core>
 UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput& in,
                                                        Innovation& innovation) noexcept {
-  const double y = in.position_m - WindUpShare_m(core_.x, lag_.force_N());
-  return core_.UpdateState0(y, setup_.measurement_std_m, gate_, Adapted(in.at_rest), innovation);
+  const auto& x = core_.x;
+  const double y = in.position_m - WindUpShare_m(Total_N(x, at_), x[kDisturbance], lag_.force_N());
+  const UpdateResult result =
+      core_.UpdateState0(y, setup_.measurement_std_m, gate_, Adapted(in.at_rest), innovation);
+  at_ = model_.TermsAt(x[kVelocity]);
+  return result;
 }
 
 // After some presliding lengths g / sigma0 of travel in one direction the bristle has come to the level:
@@ -312,20 +318,24 @@ template <class Core>
 void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
   driving_N_ = driving_ahead_N_;
   predicted_ = core_.x;
-  model_.Propagate(predicted_, Input(predicted_, lag_.Look(in.force_N[0])));
+  model_.Propagate(predicted_, Input(at_, lag_.Look(in.force_N[0])));
+  if (!setup_.looks_ahead) return;
   // On to the end of [t(k), t(k+1)), for the middle of it. The torque that acts there is being computed: the
   // newest stands for it.
+  const SpeedTerms begin_at = model_.TermsAt(predicted_[kVelocity]);
   X end = predicted_;
-  model_.Propagate(end, Input(end, {in.force_N[0], in.force_N[0]}));
-  friction_ahead_N_ =
-      0.5 * (model_.Friction_N(predicted_, Input(predicted_, {})) + model_.Friction_N(end, Input(end, {})));
+  model_.Propagate(end, Input(begin_at, {in.force_N[0], in.force_N[0]}));
+  const SpeedTerms end_at = model_.TermsAt(end[kVelocity]);
+  friction_ahead_N_ = 0.5 * (model_.Friction_N(predicted_, begin_at, Input(begin_at, {})) +
+                             model_.Friction_N(end, end_at, Input(end_at, {})));
 }
 
 // The covariance says what noise does. Innovations larger than it expects (a wrong model) widen the band in
 // proportion, and a wrong mass is seen by nothing but the acceleration it is multiplied with.
 template <class Core>
 double SevenStateFilter<Core>::FrictionStd_N(double acceleration_m_s2) const noexcept {
-  const double filter_N = core_.Std({0.0, model_.sigma2_Ns_m(), 1.0, 1.0, 0.0, 0.0, 0.0});
+  const double filter_N =
+      core_.Std({0.0, model_.sigma2_Ns_m(), 1.0, 1.0, 0.0, 0.0, 0.0}, kVelocity, kLevelPlus);
   const double mass_N = setup_.config.mass_std * setup_.mechanics.mass_kg * acceleration_m_s2;
   return std::sqrt(std::max(1.0, surprise_) * filter_N * filter_N + mass_N * mass_N);
 }
@@ -377,14 +387,16 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   LookAhead(in);
 
   const auto& x = core_.x;
-  const double wind_up = WindUpShare_m(x, lag_.force_N());
-  out.position_m = x[kPosition] + wind_up;
+  const double friction_N = Total_N(x, at_);
+  const double ahead_N = Total_N(predicted_, model_.TermsAt(predicted_[kVelocity]));
+  out.position_m = x[kPosition] + WindUpShare_m(friction_N, x[kDisturbance], lag_.force_N());
   out.velocity_m_s = x[kVelocity];
-  out.predicted_position_m = predicted_[kPosition] + WindUpShare_m(predicted_, in.force_N[0]);
+  out.predicted_position_m =
+      predicted_[kPosition] + WindUpShare_m(ahead_N, predicted_[kDisturbance], in.force_N[0]);
   out.predicted_velocity_m_s = predicted_[kVelocity];
   out.bristle_N = x[kBristle];
   out.disturbance_N = x[kDisturbance];
-  out.friction_N = model_.Friction_N(x, Input(x, {})) + viscous_N_;
+  out.friction_N = friction_N;
   out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
   out.g_plus_N = x[kLevelPlus];
   out.g_minus_N = x[kLevelMinus];

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/axis.h"
+#include "core/wide_vectors.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/drive_lag.h"
 #include "estimator/filter_setup.h"
@@ -58,15 +59,20 @@ class SevenStateFilter {
   [[nodiscard]] double lasting_N() const noexcept { return lasting_N_; }
   /// Level G in the direction of motion, Stribeck curve and factors included.
   [[nodiscard]] double Level_N() const noexcept {
-    return model_.Level(core_.x, {{}, factor_plus_, factor_minus_});
+    return model_.Level(core_.x, at_, {{}, factor_plus_, factor_minus_});
   }
 
  private:
   using X = StateVector<kSevenStates>;
 
-  [[nodiscard]] SevenStateInput Input(const X& x, std::array<double, kSubsteps> force_N) const noexcept {
+  /// `at`: the terms at the mean's velocity.
+  [[nodiscard]] SevenStateInput Input(const SpeedTerms& at,
+                                      std::array<double, kSubsteps> force_N) const noexcept {
     for (double& f : force_N) f += driving_N_ - inertial_N_ - viscous_N_;
-    return {force_N, factor_plus_, factor_minus_, model_.Sigma1_Ns_m(x[kVelocity]), at_rest_, lasting_N_};
+    return {force_N, factor_plus_, factor_minus_, at.sigma1_Ns_m, at_rest_, lasting_N_};
+  }
+  [[nodiscard]] double Total_N(const X& x, const SpeedTerms& at) const noexcept {
+    return model_.Friction_N(x, at, Input(at, {})) + viscous_N_;
   }
   /// Level of the direction of motion: the state, and what it was commissioned with.
   [[nodiscard]] SevenState LevelState() const noexcept {
@@ -77,7 +83,7 @@ class SevenStateFilter {
   }
   void Follow(double position_m) noexcept;
   void Reverse(double commanded_velocity_m_s) noexcept;
-  void TimeUpdate(const AxisEstimatorInput& in) noexcept;
+  CONTOUR_WIDE_VECTORS void TimeUpdate(const AxisEstimatorInput& in) noexcept;
   UpdateResult MeasurementUpdate(const AxisEstimatorInput& in, Innovation& innovation) noexcept;
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
   void JudgeLevel(bool at_rest) noexcept;
@@ -87,7 +93,7 @@ class SevenStateFilter {
   bool Bound() noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
-  [[nodiscard]] double WindUpShare_m(const X& x, double force_N) const noexcept;
+  [[nodiscard]] double WindUpShare_m(double total_N, double disturbance_N, double force_N) const noexcept;
 
   FilterSetup setup_;
   SevenStateModel model_;
@@ -100,6 +106,7 @@ class SevenStateFilter {
   X std_limit_{};
   X initial_std_{};
   Core core_;
+  SpeedTerms at_;  // at the velocity of core_.x, whenever that has changed
   X predicted_{};
   double factor_plus_ = 1.0;
   double factor_minus_ = 1.0;

@@ -81,24 +81,10 @@ void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateIn
   x[kDisturbance] = d[0];
 }
 
-double SevenStateModel::Level(const StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept {
-  const bool forward = x[kVelocity] >= 0.0;
-  const double g = forward ? x[kLevelPlus] * in.ripple_plus : x[kLevelMinus] * in.ripple_minus;
-  return std::max(g * StribeckFactor(forward ? ratio_plus_ : ratio_minus_, std::abs(x[kVelocity]),
-                                     friction_.vs_m_s, friction_.stribeck_exponent),
-                  kLeastLevel_N);
-}
-
-double SevenStateModel::Sigma1_Ns_m(double velocity_m_s) const noexcept {
+SpeedTerms SevenStateModel::TermsAt(double velocity_m_s) const noexcept {
   const double u = velocity_m_s / friction_.sigma1_decay_m_s;
-  return friction_.sigma1_Ns_m * Exp(-u * u);
-}
-
-double SevenStateModel::Friction_N(const StateVector<kSevenStates>& x,
-                                   const SevenStateInput& in) const noexcept {
-  const double v = x[kVelocity];
-  const double damping = in.sigma1_Ns_m * (v - std::abs(v) * ShareOfLevel(x[kBristle], Level(x, in)));
-  return x[kBristle] + damping + sigma2_ * v + x[kDisturbance];
+  return {StribeckDecay(std::abs(velocity_m_s), friction_.vs_m_s, friction_.stribeck_exponent),
+          friction_.sigma1_Ns_m * Exp(-u * u)};
 }
 
 void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& t,

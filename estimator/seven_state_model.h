@@ -34,6 +34,12 @@ struct SevenStateInput {
   double lasting_N = 0.0;    ///< what the disturbance fades to
 };
 
+/// What of the law depends on the velocity alone.
+struct SpeedTerms {
+  double low_speed = 1.0;    ///< exp(-(|v| / vs)^n) of the Stribeck curve
+  double sigma1_Ns_m = 0.0;  ///< bristle damping
+};
+
 /// One rigid axis with LuGre friction in two substeps per period:
 ///   F+ = F + (sgn(v) G - F) (1 - exp(-a h)),  G = g(dir) Stribeck(v) ripple(p)
 ///   a = sigma0 |v| / G / (1 + sigma0 C max(0, 1 - sgn(v) F / G)): the bristle sees the table,
@@ -60,8 +66,16 @@ class SevenStateModel {
   void PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& tangent,
                         const SevenStateInput& in) const noexcept;
 
-  /// Level G that holds in this state.
-  [[nodiscard]] double Level(const StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept;
+  [[nodiscard]] SpeedTerms TermsAt(double velocity_m_s) const noexcept;
+
+  /// Level G that holds in this state; `at`: the terms at its velocity.
+  [[nodiscard]] double Level(const StateVector<kSevenStates>& x, const SpeedTerms& at,
+                             const SevenStateInput& in) const noexcept {
+    const bool forward = x[kVelocity] >= 0.0;
+    const double g = forward ? x[kLevelPlus] * in.ripple_plus : x[kLevelMinus] * in.ripple_minus;
+    const double ratio = forward ? ratio_plus_ : ratio_minus_;
+    return std::max(g * (1.0 + (ratio - 1.0) * at.low_speed), kLeastLevel_N);
+  }
 
   /// The same at `count` other velocities, each with its factor of the level.
   template <class Row>
@@ -84,12 +98,13 @@ class SevenStateModel {
     }
   }
 
-  /// Bristle damping at this speed.
-  [[nodiscard]] double Sigma1_Ns_m(double velocity_m_s) const noexcept;
-
   /// Bristle, its damping, viscous friction and disturbance together.
-  [[nodiscard]] double Friction_N(const StateVector<kSevenStates>& x,
-                                  const SevenStateInput& in) const noexcept;
+  [[nodiscard]] double Friction_N(const StateVector<kSevenStates>& x, const SpeedTerms& at,
+                                  const SevenStateInput& in) const noexcept {
+    const double v = x[kVelocity];
+    const double damping = in.sigma1_Ns_m * (v - std::abs(v) * ShareOfLevel(x[kBristle], Level(x, at, in)));
+    return x[kBristle] + damping + sigma2_ * v + x[kDisturbance];
+  }
 
   [[nodiscard]] double sigma2_Ns_m() const noexcept { return sigma2_; }
   [[nodiscard]] const Friction& friction() const noexcept { return friction_; }

@@ -54,7 +54,7 @@ class SqrtUkf : public Gaussian<N> {
   /// Time update. `process(points)` moves every sigma point in place (SigmaPoints<N>&, noexcept); noise_std
   /// is the square root of the diagonal of Q.
   template <class Process>
-  void Predict(Process&& process, const StateVector<N>& noise_std) noexcept {
+  [[gnu::always_inline]] void Predict(Process&& process, const StateVector<N>& noise_std) noexcept {
     SigmaPoints<N> points;
     Draw(points);
     process(points);
@@ -116,16 +116,19 @@ class SqrtUkf : public Gaussian<N> {
 
   /// Sigma points of the present mean and covariance (eqs. 11, 12): x, x +- sqrt(n + lambda) S_i, the columns
   /// of the lower factor.
-  void Draw(SigmaPoints<N>& points) const noexcept {
+  [[gnu::always_inline]] void Draw(SigmaPoints<N>& points) const noexcept {
     constexpr double kSpread = square_root::Sqrt(Weights::kScale);
     for (std::size_t i = 0; i < N; ++i) {
       double* row = points.row[i].data();
-      for (std::size_t k = 0; k < SigmaPoints<N>::kStride; ++k) row[k] = this->x[i];
-      for (std::size_t j = 0; j <= i; ++j) {
+      const double centre = this->x[i];
+      row[0] = centre;
+      // S is zero above its diagonal: there the points are the centre.
+      for (std::size_t j = 0; j < N; ++j) {
         const double d = kSpread * this->s[i][j];
-        row[1 + j] += d;
-        row[1 + N + j] -= d;
+        row[1 + j] = centre + d;
+        row[1 + N + j] = centre - d;
       }
+      if constexpr (SigmaPoints<N>::kStride > SigmaPoints<N>::kCount) row[SigmaPoints<N>::kCount] = centre;
     }
   }
 
@@ -137,16 +140,14 @@ class SqrtUkf : public Gaussian<N> {
 
   /// The weights sum to one, so the mean is the centre plus the weighted differences from it: W0m drops out
   /// and nothing is lost when a state is large against its spread.
-  static double Mean(const double* row) noexcept {
-    double a = 0.0, b = 0.0;
-    for (std::size_t k = 1; k < 2 * N; k += 2) {
-      a += row[k] - row[0];
-      b += row[k + 1] - row[0];
-    }
-    return row[0] + Weights::kOther * (a + b);
+  [[gnu::always_inline]] static double Mean(const double* row) noexcept {
+    const square_root::Pair centre{row[0], row[0]};
+    square_root::Pair sums{};
+    for (std::size_t k = 1; k < 2 * N; k += 2) sums += square_root::Load(row + k) - centre;
+    return row[0] + Weights::kOther * (sums[0] + sums[1]);
   }
 
-  static void Deviations(const double* row, double mean, double* out) noexcept {
+  [[gnu::always_inline]] static void Deviations(const double* row, double mean, double* out) noexcept {
     constexpr double kOther = square_root::Sqrt(Weights::kOther);
     constexpr double kZero = square_root::Sqrt(Weights::kCovariance0);
     for (std::size_t k = 0; k < 2 * N; ++k) out[k] = kOther * (row[k + 1] - mean);

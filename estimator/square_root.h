@@ -40,16 +40,24 @@ inline Pair Load(const double* p) noexcept {
 }
 inline void Store(double* p, Pair v) noexcept { std::memcpy(p, &v, sizeof v); }
 
+/// Four neighbours: two registers of the baseline, one where there is AVX2. Only ever a local variable of
+/// something inlined, since how it would be passed depends on the processor.
+using Quad = double __attribute__((vector_size(32)));
+
 /// Scalar product with four partial sums: the order of additions is stated, so the result is the same on
 /// every machine.
 template <std::size_t K>
-inline double Dot(const double* a, const double* b) noexcept {
-  Pair s{}, t{};
+[[gnu::always_inline]] inline double Dot(const double* a, const double* b) noexcept {
+  Quad sums{};
   std::size_t k = 0;
   for (; k + 4 <= K; k += 4) {
-    s += Load(a + k) * Load(b + k);
-    t += Load(a + k + 2) * Load(b + k + 2);
+    Quad u, v;
+    std::memcpy(&u, a + k, sizeof u);
+    std::memcpy(&v, b + k, sizeof v);
+    sums += u * v;
   }
+  Pair s{sums[0], sums[1]};
+  const Pair t{sums[2], sums[3]};
   if (k + 2 <= K) {
     s += Load(a + k) * Load(b + k);
     k += 2;
@@ -62,9 +70,17 @@ inline double Dot(const double* a, const double* b) noexcept {
 
 /// a += t v.
 template <std::size_t K>
-inline void AddScaled(double* a, double t, const double* v) noexcept {
+[[gnu::always_inline]] inline void AddScaled(double* a, double t, const double* v) noexcept {
+  const Quad four{t, t, t, t};
   const Pair tt{t, t};
   std::size_t k = 0;
+  for (; k + 4 <= K; k += 4) {
+    Quad u, w;
+    std::memcpy(&u, a + k, sizeof u);
+    std::memcpy(&w, v + k, sizeof w);
+    u += four * w;
+    std::memcpy(a + k, &u, sizeof u);
+  }
   for (; k + 2 <= K; k += 2) Store(a + k, Load(a + k) + tt * Load(v + k));
   if (k < K) a[k] += t * v[k];
 }
@@ -82,16 +98,16 @@ class Triangulariser {
   static constexpr std::size_t kWidth = M + N;
 
   /// Row i: deviations in 0 .. M-1, noise at M + i; everything else zero. Destroyed by Run.
-  std::array<std::array<double, kWidth>, N> row{};
+  std::array<std::array<double, kWidth>, N> row;
 
-  void SetNoise(const StateVector<N>& noise) noexcept {
+  [[gnu::always_inline]] void SetNoise(const StateVector<N>& noise) noexcept {
     for (std::size_t i = 0; i < N; ++i) {
       for (std::size_t k = M; k < kWidth; ++k) row[i][k] = 0.0;
       row[i][M + i] = noise[i];
     }
   }
 
-  void Run(SquareMatrix<N>& s) noexcept {
+  [[gnu::always_inline]] void Run(SquareMatrix<N>& s) noexcept {
     for (std::size_t i = 0; i < N; ++i) {
       double* v = row[i].data() + i;
       const double x0 = v[0];

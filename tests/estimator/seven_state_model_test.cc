@@ -38,7 +38,7 @@ TEST(SevenStateModel, OnePeriodMatchesAFineIntegration) {
       x[kVelocity] = std::copysign(std::abs(x[kVelocity]) + 0.2 * speed, x[kVelocity]);
       const double sigma1 = 3000.0 * std::exp(-std::pow(x[kVelocity] / 2e-3, 2));
       const SevenStateInput in{{60.0, 40.0}, 1.05, 0.9, sigma1};
-      EXPECT_NEAR(model.Sigma1_Ns_m(x[kVelocity]), sigma1, 1e-9);
+      EXPECT_NEAR(model.TermsAt(x[kVelocity]).sigma1_Ns_m, sigma1, 1e-9);
       X coarse = x;
       model.Propagate(coarse, in);
 
@@ -144,7 +144,7 @@ TEST(SevenStateModel, LevelNeverReachesZero) {
   x[kVelocity] = 1e-3;
   x[kLevelPlus] = -5.0;
   x[kBristle] = 10.0;
-  EXPECT_GE(model.Level(x, {}), kLeastLevel_N);
+  EXPECT_GE(model.Level(x, model.TermsAt(x[kVelocity]), {}), kLeastLevel_N);
   model.Propagate(x, {});
   for (const double v : x) EXPECT_TRUE(std::isfinite(v));
 }
