@@ -68,10 +68,12 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
     }
   }
   double at = best_at;
+  path.At(at, sample);
   for (int i = 0; i < kNewtonSteps; ++i) {
-    path.At(at, sample);
+    const double before = at;
     at = std::clamp(at + StepToFoot(position_m, sample, period_s), std::min(from, best_at),
                     std::max(to, best_at));
+    if (at == before) break;
     path.At(at, sample);
     const double distance2 = Distance2(position_m, sample);
     if (distance2 <= best) {

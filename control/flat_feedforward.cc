@@ -1,19 +1,62 @@
 #include "control/flat_feedforward.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
-#include "control/control_law.h"
+#include "core/wide_vectors.h"
 
 namespace contour {
 namespace {
 
-FrictionAhead FrictionAt(const FrictionPreview& friction, std::size_t index) noexcept {
-  if (friction.empty()) return {};
-  return friction[index < friction.size() ? index : friction.size() - 1];
-}
+using Row = std::array<double, kMaxHorizonPoints>;
+static_assert(kMaxHorizon + 4 <= kMaxHorizonPoints);
 
 }  // namespace
+
+struct FlatFeedforward::Nodes {
+  Row position_m, velocity_m_s, windup_m;
+  Row mid_N;  // friction
+};
+
+// Beyond the ends of reference and friction their last elements hold.
+[[gnu::always_inline]] inline void FlatFeedforward::Lay(const AxisHorizon& reference,
+                                                        const FrictionPreview& friction, std::size_t nodes,
+                                                        Nodes& at) const noexcept {
+  Row acceleration_m_s2, node_N{}, lead_m{};
+  const std::size_t there = std::min(nodes, reference.size());
+  for (std::size_t n = 0; n < there; ++n) {
+    at.position_m[n] = reference[n].position_m;
+    at.velocity_m_s[n] = reference[n].velocity_m_s;
+    acceleration_m_s2[n] = reference[n].acceleration_m_s2;
+  }
+  for (std::size_t n = there; n < nodes; ++n) {
+    at.position_m[n] = at.position_m[there - 1];
+    at.velocity_m_s[n] = at.velocity_m_s[there - 1];
+    acceleration_m_s2[n] = acceleration_m_s2[there - 1];
+  }
+  at.mid_N = {};
+  if (options_.friction_feedforward && !friction.empty()) {
+    const std::size_t known = std::min(nodes, friction.size());
+    for (std::size_t n = 0; n < known; ++n) {
+      node_N[n] = friction[n].node_N;
+      at.mid_N[n] = friction[n].mid_N;
+      lead_m[n] = friction[n].lead_m;
+    }
+    for (std::size_t n = known; n < nodes; ++n) {
+      node_N[n] = node_N[known - 1];
+      at.mid_N[n] = at.mid_N[known - 1];
+      lead_m[n] = lead_m[known - 1];
+    }
+  }
+  if (!options_.windup_compensation) {
+    at.windup_m = {};
+    return;
+  }
+  const double table_mass = mechanics_.table_mass_kg, stiffness = mechanics_.stiffness_N_m;
+  for (std::size_t n = 0; n < nodes; ++n)
+    at.windup_m[n] = (node_N[n] + table_mass * acceleration_m_s2[n]) / stiffness + lead_m[n];
+}
 
 FlatFeedforward::FlatFeedforward(const ControlledAxis& axis, const ControllerOptions& options,
                                  double period_s)
@@ -31,54 +74,56 @@ FlatFeedforward::FlatFeedforward(const ControlledAxis& axis, const ControllerOpt
   makes_up_lag_ = nominal_.velocity_from_previous < 0.5 * nominal_.velocity_from_command;
 }
 
-double FlatFeedforward::Windup(const ReferencePoint& point, const FrictionAhead& friction) const noexcept {
-  if (!options_.windup_compensation) return 0.0;
-  return (friction.node_N + mechanics_.table_mass_kg * point.acceleration_m_s2) / mechanics_.stiffness_N_m +
-         friction.lead_m;
-}
-
+// Quantities that hold at a node or over an interval are rows, so that all but the recursion of the commands
+// vectorises.
+CONTOUR_WIDE_VECTORS
 void FlatFeedforward::Plan(const AxisHorizon& reference, const FrictionPreview& friction,
                            double previous_command_m_s2, std::size_t horizon, AxisPlan& plan) const noexcept {
-  const bool with_friction = options_.friction_feedforward && !friction.empty();
-  const AxisDynamics& d = nominal_;
-  const double half_rate = 0.5 / period_s_;
-  const auto windup = [&](std::size_t node) {
-    return Windup(PointAt(reference, node), with_friction ? FrictionAt(friction, node) : FrictionAhead{});
-  };
-  // Node n is t(k-1+n); w[0..3] belong to nodes n-1 .. n+2 of the interval that starts at node n.
-  std::array<double, 4> w{windup(0), windup(1), windup(2), windup(3)};
-  double position = PointAt(reference, 1).position_m + w[1];
-  double velocity = PointAt(reference, 1).velocity_m_s + (w[2] - w[0]) * half_rate;
-  plan.start_position_m = position;
-  plan.start_velocity_m_s = velocity;
-  double previous = previous_command_m_s2;
+  // Node n is t(k-1+n). The interval j lies between nodes j+1 and j+2, and its wind-up's derivatives need one
+  // more on either side.
+  const std::size_t nodes = horizon + 4;
+  Nodes at;
+  Lay(reference, friction, nodes, at);
+  const AxisDynamics d = nominal_;
+  const double mass = mechanics_.mass_kg, table_mass = mechanics_.table_mass_kg;
+  const double half_rate = 0.5 / period_s_, period_s = period_s_;
+  Row position, velocity;  // of the motor
+  for (std::size_t n = 1; n + 1 < nodes; ++n) {
+    position[n] = at.position_m[n] + at.windup_m[n];
+    velocity[n] = at.velocity_m_s[n] + (at.windup_m[n + 1] - at.windup_m[n - 1]) * half_rate;
+  }
+  Row known, wanted;
   for (std::size_t j = 0; j < horizon; ++j) {
-    const ReferencePoint& end = PointAt(reference, j + 2);
-    const double end_position = end.position_m + w[2];
-    const double end_velocity = end.velocity_m_s + (w[3] - w[1]) * half_rate;
-    const double w_acceleration = (w[3] - w[2] - w[1] + w[0]) * half_rate / period_s_;
+    const double w_acceleration =
+        (at.windup_m[j + 3] - at.windup_m[j + 2] - at.windup_m[j + 1] + at.windup_m[j]) * half_rate /
+        period_s;
     // Everything but the command: friction, and the table's mass, which takes no part in the wind-up's
     // motion.
-    double known = mechanics_.table_mass_kg * w_acceleration / mechanics_.mass_kg;
-    if (with_friction) known -= FrictionAt(friction, j + 1).mid_N / mechanics_.mass_kg;
-    const double wanted = end_velocity - d.velocity_kept * velocity - d.velocity_from_known * known;
-    const double left_over = d.velocity_from_previous * previous;
-    double command = wanted / (d.velocity_from_command + d.velocity_from_previous);
-    if (makes_up_lag_) command = (wanted - left_over) / d.velocity_from_command;
+    known[j] = table_mass * w_acceleration / mass - at.mid_N[j + 1] / mass;
+    wanted[j] = velocity[j + 2] - d.velocity_kept * velocity[j + 1] - d.velocity_from_known * known[j];
+  }
+  Row command;  // of the interval before j in element j
+  command[0] = previous_command_m_s2;
+  const double gain =
+      makes_up_lag_ ? d.velocity_from_command : d.velocity_from_command + d.velocity_from_previous;
+  const double made_up = makes_up_lag_ ? d.velocity_from_previous : 0.0;
+  for (std::size_t j = 0; j < horizon; ++j) {
     // What the axis cannot do is not planned: it would be made up for in the intervals after without having
     // happened.
-    command = std::clamp(command, -bound_m_s2_, bound_m_s2_);
-    plan.command_m_s2[j] = command;
-    plan.velocity_defect_m_s[j] = d.velocity_from_command * command + left_over - wanted;
-    plan.position_defect_m[j] = position - end_position + d.position_from_velocity * velocity +
-                                d.position_from_command * command + d.position_from_previous * previous +
-                                d.position_from_known * known;
-    if (j == 0) plan.target_position_m = end_position;
-    previous = command;
-    position = end_position;
-    velocity = end_velocity;
-    w = {w[1], w[2], w[3], windup(j + 4)};
+    command[j + 1] = std::clamp((wanted[j] - made_up * command[j]) / gain, -bound_m_s2_, bound_m_s2_);
   }
+  for (std::size_t j = 0; j < horizon; ++j) {
+    plan.command_m_s2[j] = command[j + 1];
+    plan.velocity_defect_m_s[j] =
+        d.velocity_from_command * command[j + 1] + d.velocity_from_previous * command[j] - wanted[j];
+    plan.position_defect_m[j] = position[j + 1] - position[j + 2] +
+                                d.position_from_velocity * velocity[j + 1] +
+                                d.position_from_command * command[j + 1] +
+                                d.position_from_previous * command[j] + d.position_from_known * known[j];
+  }
+  plan.start_position_m = position[1];
+  plan.start_velocity_m_s = velocity[1];
+  plan.target_position_m = position[2];
 }
 
 }  // namespace contour

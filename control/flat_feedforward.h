@@ -37,7 +37,10 @@ class FlatFeedforward {
             std::size_t horizon, AxisPlan& plan) const noexcept;
 
  private:
-  [[nodiscard]] double Windup(const ReferencePoint& point, const FrictionAhead& friction) const noexcept;
+  /// Reference, friction and wind-up at the nodes.
+  struct Nodes;
+  void Lay(const AxisHorizon& reference, const FrictionPreview& friction, std::size_t nodes,
+           Nodes& at) const noexcept;
 
   Mechanics mechanics_;
   ControllerOptions options_;

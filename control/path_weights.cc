@@ -28,33 +28,38 @@ PathWeights<Axes>::PathWeights(double contour_bandwidth_Hz, double lag_bandwidth
 }
 
 template <std::size_t Axes>
-AxisVector<Axes> PathWeights<Axes>::Tangent(const PerAxis<AxisHorizon>& reference, std::size_t first,
-                                            std::size_t node) const noexcept {
-  AxisVector<Axes> tangent;
-  double square = rest_velocity_m_s_ * rest_velocity_m_s_;
-  for (std::size_t i = 0; i < Axes; ++i) {
-    tangent[i] = PointAt(reference[first + i], node).velocity_m_s;
-    square += tangent[i] * tangent[i];
+CONTOUR_WIDE_VECTORS void PathWeights<Axes>::Normalise(std::size_t count,
+                                                       Tangents& velocity_m_s) const noexcept {
+  const double rest2 = rest_velocity_m_s_ * rest_velocity_m_s_;
+  for (std::size_t j = 0; j < count; ++j) {
+    double square = rest2;
+    for (std::size_t i = 0; i < Axes; ++i) square += velocity_m_s[i][j] * velocity_m_s[i][j];
+    const double inverse = 1.0 / std::sqrt(square);
+    for (std::size_t i = 0; i < Axes; ++i) velocity_m_s[i][j] *= inverse;
   }
-  const double inverse = 1.0 / std::sqrt(square);
-  for (double& t : tangent) t *= inverse;
-  return tangent;
 }
 
 template <std::size_t Axes>
 void PathWeights<Axes>::Fill(const PerAxis<AxisHorizon>& reference, std::size_t first,
                              QpProblem<Axes>& problem) const noexcept {
-  AxisVector<Axes> tangent{};
-  for (std::size_t j = 0; j < problem.horizon; ++j) {
-    tangent = Tangent(reference, first, j + 2);
+  const std::size_t horizon = problem.horizon;
+  Tangents tangent;
+  for (std::size_t i = 0; i < Axes; ++i)
+    for (std::size_t j = 0; j < horizon; ++j)
+      tangent[i][j] = PointAt(reference[first + i], j + 2).velocity_m_s;
+  Normalise(horizon, tangent);
+  const double more = lag_weight_ - contour_weight_;
+  for (std::size_t j = 0; j < horizon; ++j) {
     for (std::size_t i = 0; i < Axes; ++i) {
       for (std::size_t k = 0; k < Axes; ++k) {
         problem.stage[j].weight[i][k] =
-            (i == k ? contour_weight_ : 0.0) + (lag_weight_ - contour_weight_) * tangent[i] * tangent[k];
+            (i == k ? contour_weight_ : 0.0) + more * tangent[i][j] * tangent[k][j];
       }
     }
   }
-  FillTerminal(tangent, problem);
+  AxisVector<Axes> last{};
+  for (std::size_t i = 0; i < Axes && horizon > 0; ++i) last[i] = tangent[i][horizon - 1];
+  FillTerminal(last, problem);
 }
 
 // Cost-to-go of the rotated weights: exact when all axes have the same dynamics, positive semidefinite

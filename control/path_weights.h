@@ -7,6 +7,7 @@
 #include "control/qp_problem.h"
 #include "core/axis.h"
 #include "core/horizon.h"
+#include "core/wide_vectors.h"
 
 namespace contour {
 
@@ -25,9 +26,11 @@ class PathWeights {
             QpProblem<Axes>& problem) const noexcept;
 
  private:
-  // Direction of the path, shrinking to zero at rest so that then all directions weigh the same.
-  [[nodiscard]] AxisVector<Axes> Tangent(const PerAxis<AxisHorizon>& reference, std::size_t first,
-                                         std::size_t node) const noexcept;
+  // Per axis, along the horizon.
+  using Tangents = std::array<std::array<double, kMaxHorizon>, Axes>;
+  // Velocities into the direction of the path, shrinking to zero at rest so that then all directions weigh
+  // the same.
+  CONTOUR_WIDE_VECTORS void Normalise(std::size_t count, Tangents& velocity_m_s) const noexcept;
   void FillTerminal(const AxisVector<Axes>& tangent, QpProblem<Axes>& problem) const noexcept;
 
   double contour_weight_;

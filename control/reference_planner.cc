@@ -38,23 +38,33 @@ class PlannerGroup final : public PlannerGroupBase {
 
   void Reset() noexcept override { state_ = State::kUnknown; }
 
-  void Plan(const PerAxis<AxisHorizon>& wanted, PerAxis<AxisHorizon>& planned) noexcept override {
+  bool Decide(const PerAxis<AxisHorizon>& wanted) noexcept override {
     if (state_ != State::kUnknown && !Continues(wanted)) state_ = State::kUnknown;
     const bool possible = Possible(wanted);
     if (state_ == State::kPlanning && possible && Joined(wanted)) state_ = State::kFollowing;
     if (state_ == State::kUnknown || (state_ == State::kFollowing && possible)) {
       state_ = State::kFollowing;
-      for (std::size_t i = 0; i < Axes; ++i) planned[first_ + i] = wanted[first_ + i];
       active_ = {};
-    } else {
-      if (state_ == State::kFollowing) StartHere(wanted);
-      state_ = State::kPlanning;
-      Solve(wanted);
-      RollOut(wanted, planned);
+      return false;
     }
+    if (state_ == State::kFollowing) StartHere(wanted);
+    state_ = State::kPlanning;
+    Solve(wanted);
+    return true;
+  }
+
+  void Write(const PerAxis<AxisHorizon>& wanted, PerAxis<AxisHorizon>* planned) noexcept override {
+    if (planned != nullptr) {
+      if (state_ == State::kPlanning) {
+        RollOut(wanted, *planned);
+      } else {
+        for (std::size_t i = 0; i < Axes; ++i) (*planned)[first_ + i] = wanted[first_ + i];
+      }
+    }
+    const PerAxis<AxisHorizon>& followed = planned != nullptr ? *planned : wanted;
     for (std::size_t i = 0; i < Axes; ++i) {
-      present_[i] = PointAt(planned[first_ + i], 1);
-      next_[i] = PointAt(planned[first_ + i], 2);
+      present_[i] = PointAt(followed[first_ + i], 1);
+      next_[i] = PointAt(followed[first_ + i], 2);
       expected_m_[i] = PointAt(wanted[first_ + i], 1).position_m;
     }
   }
@@ -88,9 +98,13 @@ class PlannerGroup final : public PlannerGroupBase {
   [[nodiscard]] bool Possible(const PerAxis<AxisHorizon>& wanted) const noexcept {
     for (std::size_t i = 0; i < Axes; ++i) {
       const AxisHorizon& axis = wanted[first_ + i];
-      for (std::size_t j = 0; j <= problem_.horizon; ++j) {
-        if (std::abs(Acceleration(axis, j + 1)) > bound_m_s2_[i]) return false;
+      double most_m_s = 0.0, before_m_s = PointAt(axis, 1).velocity_m_s;
+      for (std::size_t n = 2; n < axis.size() && n <= problem_.horizon + 2; ++n) {
+        const double now_m_s = axis[n].velocity_m_s;
+        most_m_s = std::max(most_m_s, std::abs(now_m_s - before_m_s));
+        before_m_s = now_m_s;
       }
+      if (most_m_s / period_s_ > bound_m_s2_[i]) return false;
     }
     return true;
   }
@@ -208,8 +222,10 @@ void ReferencePlanner::Reset() noexcept {
 }
 
 void ReferencePlanner::Plan(const PerAxis<AxisHorizon>& wanted, PerAxis<AxisHorizon>& planned) noexcept {
-  planned.resize(wanted.size());
-  for (auto& group : groups_) group->Plan(wanted, planned);
+  bool any = false;
+  for (auto& group : groups_) any = group->Decide(wanted) || any;
+  planned.resize(any ? wanted.size() : 0);
+  for (auto& group : groups_) group->Write(wanted, any ? &planned : nullptr);
 }
 
 }  // namespace contour

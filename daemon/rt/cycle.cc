@@ -410,8 +410,7 @@ void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONB
 void Cycle::RecordContourError(CycleRecord& record) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     near_position_m_[i] = axes_[i].position_m;
-    near_path_[i].clear();
-    for (int j = -kLocalPathReach; j <= kLocalPathReach; ++j) near_path_[i].push_back(follower_.Near(i, j));
+    follower_.Around(i, kLocalPathReach, near_path_[i]);
   }
   const ContourError error =
       FindContourError(near_position_m_, near_path_, period_s_, static_cast<std::size_t>(kLocalPathReach));

@@ -107,7 +107,12 @@ PathFollower::Pace PathFollower::PaceAfter(int periods_from_head) const noexcept
 
 void PathFollower::UpdatePaces() noexcept {
   if (!moving()) return;
-  for (std::size_t j = 0; j < horizon_; ++j) pace_[j] = PaceAfter(static_cast<int>(j));
+  const std::size_t count = mode_ == Mode::kRunning ? 1 : horizon_;
+  for (std::size_t j = 0; j < count; ++j) pace_[j] = PaceAfter(static_cast<int>(j));
+}
+
+PathFollower::Pace PathFollower::PaceAt(std::size_t j) const noexcept {
+  return mode_ == Mode::kRunning ? PaceAfter(static_cast<int>(j)) : pace_[j];
 }
 
 void PathFollower::Advance() noexcept {
@@ -167,7 +172,7 @@ void PathFollower::Horizon(std::size_t axis, std::size_t points, AxisHorizon& ou
     const auto now = static_cast<std::uint64_t>(clock_);
     for (; j < out.size() && now + j + 1 < end_; ++j) out[j] = At(now + j).axes[axis];
   }
-  for (; j < out.size(); ++j) out[j] = Evaluate(axis, pace_[j]);
+  for (; j < out.size(); ++j) out[j] = Evaluate(axis, PaceAt(j));
 }
 
 ReferencePoint PathFollower::Near(std::size_t axis, int offset) const noexcept {
@@ -175,6 +180,17 @@ ReferencePoint PathFollower::Near(std::size_t axis, int offset) const noexcept {
   Pace pace = pace_[0];
   pace.time += offset;
   return Evaluate(axis, pace);
+}
+
+void PathFollower::Around(std::size_t axis, int reach, AxisHorizon& out) const noexcept {
+  out.clear();
+  const auto first = static_cast<std::int64_t>(first_), end = static_cast<std::int64_t>(end_);
+  if (mode_ == Mode::kRunning && clock_ > 0 && clock_ - reach >= first && clock_ + reach + 1 < end) {
+    for (int j = -reach; j <= reach; ++j)
+      out.push_back(At(static_cast<std::uint64_t>(clock_ + j)).axes[axis]);
+    return;
+  }
+  for (int j = -reach; j <= reach; ++j) out.push_back(Near(axis, j));
 }
 
 }  // namespace contour

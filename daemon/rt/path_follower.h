@@ -45,6 +45,8 @@ class PathFollower {
   /// Reference shortly before and after the feedback's instant, all axes, for the geometry of the contour
   /// error: offset in periods, -3..horizon.
   [[nodiscard]] ReferencePoint Near(std::size_t axis, int offset) const noexcept;
+  /// Near from -reach to reach.
+  void Around(std::size_t axis, int reach, AxisHorizon& out) const noexcept;
 
   [[nodiscard]] bool moving() const noexcept { return mode_ == Mode::kRunning || mode_ == Mode::kStopping; }
   [[nodiscard]] bool stopping() const noexcept { return mode_ == Mode::kStopping; }
@@ -83,6 +85,7 @@ class PathFollower {
   [[nodiscard]] const PathPoint& At(std::uint64_t index) const noexcept { return points_[index % kCapacity]; }
   [[nodiscard]] ReferencePoint Evaluate(std::size_t axis, const Pace& pace) const noexcept;
   [[nodiscard]] Pace PaceAfter(int periods_from_head) const noexcept;
+  [[nodiscard]] Pace PaceAt(std::size_t j) const noexcept;
   void UpdatePaces() noexcept;
   void DropPassed() noexcept;
 
@@ -95,11 +98,11 @@ class PathFollower {
   std::uint32_t program_id_ = 0;
   bool expecting_ = false;
   bool have_last_ = false;
-  std::uint64_t first_ = 0;      ///< oldest point kept
-  std::uint64_t end_ = 0;        ///< one past the newest
-  std::int64_t clock_ = 0;       ///< periods since Start() of horizon element 0
-  std::int64_t stop_clock_ = 0;  ///< clock of the horizon element at which the stop ramp began
-  std::array<Pace, kMaxHorizonPoints> pace_{};
+  std::uint64_t first_ = 0;                     ///< oldest point kept
+  std::uint64_t end_ = 0;                       ///< one past the newest
+  std::int64_t clock_ = 0;                      ///< periods since Start() of horizon element 0
+  std::int64_t stop_clock_ = 0;                 ///< clock of the horizon element at which the stop ramp began
+  std::array<Pace, kMaxHorizonPoints> pace_{};  ///< at the program's own pace the first one only, see PaceAt
   std::array<PathPoint, kCapacity> points_{};
 };
 

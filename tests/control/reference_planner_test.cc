@@ -34,20 +34,20 @@ double Distance(const ReferencePoint& a, const ReferencePoint& b) {
   return std::abs(a.position_m - b.position_m);
 }
 
-TEST(ReferencePlanner, PassesOnWhatIsPossibleBitForBit) {
+/// What is followed.
+void Plan(ReferencePlanner& planner, const PerAxis<AxisHorizon>& wanted, PerAxis<AxisHorizon>& followed) {
+  planner.Plan(wanted, followed);
+  if (followed.empty()) followed = wanted;
+}
+
+TEST(ReferencePlanner, PlansNothingWhereAllIsPossible) {
   ReferencePlanner planner(PlannerConfig{}, NominalAxes(2), kPeriod_s);
   const test::Path circle = test::Circle(0.01, 0.8);
   PerAxis<AxisHorizon> wanted(2), planned;
   for (int k = 0; k < 1000; ++k) {
     Fill(circle, k * kPeriod_s, planner.horizon_points(), wanted);
     planner.Plan(wanted, planned);
-    for (std::size_t i = 0; i < 2; ++i) {
-      ASSERT_EQ(planned[i].size(), wanted[i].size());
-      for (std::size_t j = 0; j < wanted[i].size(); ++j) {
-        ASSERT_EQ(planned[i][j].position_m, wanted[i][j].position_m);
-        ASSERT_EQ(planned[i][j].velocity_m_s, wanted[i][j].velocity_m_s);
-      }
-    }
+    ASSERT_TRUE(planned.empty());
   }
 }
 
@@ -60,7 +60,7 @@ TEST(ReferencePlanner, CornersStayWithinTheTorqueShareAndNearThePath) {
   double peak_m = 0.0, highest_m_s2 = 0.0, last_m = 0.0;
   for (int k = 0; k < 500; ++k) {
     Fill(Corner(0.05), k * kPeriod_s, planner.horizon_points(), wanted);
-    planner.Plan(wanted, planned);
+    Plan(planner, wanted, planned);
     const double x = planned[0][0].position_m, y = planned[1][0].position_m;
     peak_m = std::max(peak_m, std::min(std::hypot(std::max(x, 0.0), y), std::hypot(x, std::min(y, 0.0))));
     for (std::size_t i = 0; i < 2; ++i) {
@@ -89,12 +89,12 @@ TEST(ReferencePlanner, AReferenceSetAnewIsTakenAsItIs) {
   PerAxis<AxisHorizon> wanted(2), planned;
   for (int k = 0; k < 102; ++k) {  // in the middle of a corner
     Fill(Corner(0.05), k * kPeriod_s, planner.horizon_points(), wanted);
-    planner.Plan(wanted, planned);
+    Plan(planner, wanted, planned);
   }
   ASSERT_NE(planned[0][0].position_m, wanted[0][0].position_m);
   const auto hold = [](std::size_t, double) { return ReferencePoint{0.123, 0.0, 0.0}; };
   Fill(hold, 0.0, planner.horizon_points(), wanted);
-  planner.Plan(wanted, planned);
+  Plan(planner, wanted, planned);
   EXPECT_EQ(planned[0][0].position_m, 0.123);
   EXPECT_EQ(planned[1][5].position_m, 0.123);
 }
@@ -105,7 +105,7 @@ TEST(ReferencePlanner, AnyNumberOfAxesAndShortHorizons) {
     PerAxis<AxisHorizon> wanted(count), planned;
     for (int k = 0; k < 150; ++k) {
       Fill(Corner(0.05), k * kPeriod_s, 5, wanted);
-      planner.Plan(wanted, planned);
+      Plan(planner, wanted, planned);
       ASSERT_EQ(planned.size(), count);
       for (std::size_t i = 0; i < count; ++i) {
         ASSERT_EQ(planned[i].size(), 5u);
