@@ -16,51 +16,24 @@ constexpr double kLead_Hz = 8.0;
 constexpr double kLeadAtRest_Hz = 0.4;
 constexpr double kRadPerTurn = 6.283185307179586;
 
-// Points are taken by whole vectors: up to this many at a time, the last point repeated.
-constexpr std::size_t kVector = 4;
-static_assert(kMaxHorizonPoints % kVector == 0);
-
 using Row = std::array<double, kMaxHorizonPoints>;
+using View = ReferenceTerms::View;
 
-/// The reference and the law along it, one row per quantity. Only the bristle itself needs one point after
-/// the other.
+/// The law along the reference, one row per quantity. Only the bristle itself needs one point after the
+/// other.
 struct Along {
-  alignas(32) Row position_m, node_velocity_m_s,
-      velocity_m_s;  // at the point, and in the middle of the period from there
-  alignas(32) std::array<Row, LevelCorrection::kTerms> basis;
   alignas(32) Row factor, level_N, target_N, per_level_1_N, relaxation;
   alignas(32) Row bristle_N, next_N;  // at the point and at the next
   alignas(32) Row node_N, middle_N;   // friction
 };
 
-/// The point after `j`, or the last one.
-const ReferencePoint& After(const AxisHorizon& reference, std::size_t j) noexcept {
-  return reference[std::min(j + 1, reference.size() - 1)];
-}
-
-[[gnu::always_inline]] inline void Lay(const AxisHorizon& reference, std::size_t count, Along& a) noexcept {
-  const std::size_t size = std::min(count, reference.size());
-  for (std::size_t j = 0; j < size; ++j) {
-    a.position_m[j] = reference[j].position_m;
-    a.node_velocity_m_s[j] = reference[j].velocity_m_s;
-  }
-  for (std::size_t j = size; j < count; ++j) {
-    a.position_m[j] = a.position_m[size - 1];
-    a.node_velocity_m_s[j] = a.node_velocity_m_s[size - 1];
-  }
-  for (std::size_t j = 0; j + 1 < count; ++j)
-    a.velocity_m_s[j] = 0.5 * (a.node_velocity_m_s[j] + a.node_velocity_m_s[j + 1]);
-  a.velocity_m_s[count - 1] =
-      0.5 * (a.node_velocity_m_s[count - 1] + After(reference, count - 1).velocity_m_s);
-}
-
 /// BristleRelaxation at every point, and where the bristle goes.
-[[gnu::always_inline]] inline void Relax(double sigma0_N_m, double period_s, std::size_t count,
-                                         Along& a) noexcept {
+[[gnu::always_inline]] inline void Relax(double sigma0_N_m, double period_s, const View& at,
+                                         std::size_t count, Along& a) noexcept {
   for (std::size_t j = 0; j < count; ++j) {
     a.per_level_1_N[j] = 1.0 / a.level_N[j];
-    a.relaxation[j] = -Expm1(-sigma0_N_m * std::abs(a.velocity_m_s[j]) * a.per_level_1_N[j] * period_s);
-    a.target_N[j] = std::copysign(a.level_N[j], a.velocity_m_s[j]);
+    a.relaxation[j] = -Expm1(-sigma0_N_m * std::abs(at.velocity_m_s[j]) * a.per_level_1_N[j] * period_s);
+    a.target_N[j] = std::copysign(a.level_N[j], at.velocity_m_s[j]);
   }
 }
 
@@ -80,40 +53,35 @@ const ReferencePoint& After(const AxisHorizon& reference, std::size_t j) noexcep
 
 /// Bristle with its damping: sigma1(v) (v - |v| F / G), see BristleDamping.
 [[gnu::always_inline]] inline double Damped_N(double bristle_N, double per_level_1_N, double velocity_m_s,
-                                              double sigma1_Ns_m, double per_decay_s_m) noexcept {
-  const double u = velocity_m_s * per_decay_s_m;
+                                              double sigma1_Ns_m) noexcept {
   const double share = std::min(std::max(bristle_N * per_level_1_N, -kMostLevels), kMostLevels);
-  return bristle_N + sigma1_Ns_m * Exp(-u * u) * (velocity_m_s - std::abs(velocity_m_s) * share);
+  return bristle_N + sigma1_Ns_m * (velocity_m_s - std::abs(velocity_m_s) * share);
 }
 
-[[gnu::always_inline]] inline void AddDamping(const Friction& f, std::size_t count, Along& a) noexcept {
-  const double sigma1 = f.sigma1_Ns_m;
-  const double per_decay = 1.0 / f.sigma1_decay_m_s;
+[[gnu::always_inline]] inline void AddDamping(double sigma1_Ns_m, const View& at, std::size_t count,
+                                              Along& a) noexcept {
   for (std::size_t j = 0; j < count; ++j) a.node_N[j] = a.bristle_N[j];
   for (std::size_t j = 0; j < count; ++j) a.middle_N[j] = 0.5 * (a.bristle_N[j] + a.next_N[j]);
-  if (sigma1 == 0.0) return;
+  if (sigma1_Ns_m == 0.0) return;
   for (std::size_t j = 0; j < count; ++j) {
-    a.node_N[j] = Damped_N(a.node_N[j], a.per_level_1_N[j], a.node_velocity_m_s[j], sigma1, per_decay);
-    a.middle_N[j] = Damped_N(a.middle_N[j], a.per_level_1_N[j], a.velocity_m_s[j], sigma1, per_decay);
+    a.node_N[j] = Damped_N(a.node_N[j], a.per_level_1_N[j], at.node_velocity_m_s[j], at.node_sigma1_Ns_m[j]);
+    a.middle_N[j] = Damped_N(a.middle_N[j], a.per_level_1_N[j], at.velocity_m_s[j], at.middle_sigma1_Ns_m[j]);
   }
 }
 
 /// What extensions of the model add.
-void AddKnown(const KnownNow& known, const AxisHorizon& reference, const Along& a,
-              FrictionPreview& out) noexcept {
+void AddKnown(const KnownNow& known, const View& at, FrictionPreview& out) noexcept {
   for (std::size_t j = 0; j < out.size(); ++j) {
-    const double next_m = After(reference, j).position_m;
-    out[j].node_N += known.effects.Viscous_N(a.node_velocity_m_s[j], known.temperature_degC);
-    out[j].mid_N += known.effects.Viscous_N(a.velocity_m_s[j], known.temperature_degC) -
-                    known.effects.Force_N(0.5 * (a.position_m[j] + next_m));
-    out[j].lead_m = known.effects.Lead_m(a.position_m[j]);
+    out[j].node_N += known.effects.Viscous_N(at.node_velocity_m_s[j], known.temperature_degC);
+    out[j].mid_N += known.effects.Viscous_N(at.velocity_m_s[j], known.temperature_degC) -
+                    known.effects.Force_N(0.5 * (at.position_m[j] + at.position_m[j + 1]));
+    out[j].lead_m = known.effects.Lead_m(at.position_m[j]);
   }
 }
 
-void AddMap(const AngleForceMap& map, const AxisHorizon& reference, const Along& a,
-            FrictionPreview& out) noexcept {
+void AddMap(const AngleForceMap& map, const View& at, FrictionPreview& out) noexcept {
   for (std::size_t j = 0; j < out.size(); ++j)
-    out[j].mid_N -= map.At_N(0.5 * (a.position_m[j] + After(reference, j).position_m), a.velocity_m_s[j]);
+    out[j].mid_N -= map.At_N(0.5 * (at.position_m[j] + at.position_m[j + 1]), at.velocity_m_s[j]);
 }
 
 }  // namespace
@@ -137,24 +105,24 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   const std::size_t size = std::min(points, reference.size());
   out.resize(size);
   if (size == 0) return;
+  constexpr std::size_t kVector = ReferenceTerms::kVector;
   const std::size_t count = (size + kVector - 1) / kVector * kVector;
   const Friction& f = model.friction();
+  const View at = terms_.Follow(model, correction, reference, count);
   Along a;
-  Lay(reference, count, a);
-  correction.Basis(a.position_m, a.velocity_m_s, count, a.basis);
-  correction.Factors(a.basis, a.velocity_m_s, count, a.factor);
+  correction.Factors(at.basis, at.velocity_m_s, count, a.factor);
   if (!known.effects.neutral())
-    for (std::size_t j = 0; j < count; ++j) a.factor[j] *= known.effects.LevelFactor(a.position_m[j]);
-  model.Levels(x, a.velocity_m_s, a.factor, count, a.level_N);
-  Relax(f.sigma0_N_m * Exp(x[kLogSigma0]), period_s_, count, a);
+    for (std::size_t j = 0; j < count; ++j) a.factor[j] *= known.effects.LevelFactor(at.position_m[j]);
+  model.Levels(x, at.velocity_m_s, at.low_speed, a.factor, count, a.level_N);
+  Relax(f.sigma0_N_m * Exp(x[kLogSigma0]), period_s_, at, count, a);
   RollBristle(bristle_N_, size, count, a);
-  AddDamping(f, count, a);
+  AddDamping(f.sigma1_Ns_m, at, count, a);
 
   const double offset_N = x[kBristle] - a.bristle_N[0];
   bristle_N_ = a.next_N[0];
   const double unexplained_N = offset_N + x[kDisturbance];
   const double friction_lacks_N = unexplained_N - known.lasting_N;
-  const double velocity = a.velocity_m_s[0];
+  const double velocity = at.velocity_m_s[0];
   const bool forward = velocity >= 0.0;
   const double share = (forward ? a.bristle_N[0] : -a.bristle_N[0]) * a.per_level_1_N[0];
   const bool sliding = !at_rest && share > kSlidingShare;
@@ -165,7 +133,7 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
     viscous.Learn(friction_lacks_N, reference[0].velocity_m_s, reference[0].acceleration_m_s2, level_share);
   }
   LevelCorrection::Terms terms;
-  for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = a.basis[i][0];
+  for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = at.basis[i][0];
   correction.Learn(terms, forward, 1.0 - a.relaxation[0], friction_lacks_N * a.per_level_1_N[0],
                    velocity * period_s_, sliding);
 
@@ -173,16 +141,16 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   const double node_extra_N = cascade_ ? lead_N_ : unexplained_N;
   const double mid_extra_N = cascade_ ? 0.0 : unexplained_N;
   const double half_extra_kg = cascade_ ? 0.0 : 0.5 * known.extra_kg;
-  for (std::size_t j = 0; j < size; ++j) {
-    out[j].node_N = a.node_N[j] + node_extra_N + sigma2 * a.node_velocity_m_s[j];
-    out[j].mid_N = a.middle_N[j] + mid_extra_N + sigma2 * a.velocity_m_s[j] +
-                   half_extra_kg * (reference[j].acceleration_m_s2 + After(reference, j).acceleration_m_s2);
-    out[j].lead_m = 0.0;
+  for (std::size_t j = 0; j < count; ++j) {
+    a.node_N[j] = a.node_N[j] + node_extra_N + sigma2 * at.node_velocity_m_s[j];
+    a.middle_N[j] = a.middle_N[j] + mid_extra_N + sigma2 * at.velocity_m_s[j] +
+                    half_extra_kg * (at.acceleration_m_s2[j] + at.acceleration_m_s2[j + 1]);
   }
-  if (!known.effects.neutral()) AddKnown(known, reference, a, out);
-  if (known.map.in_use()) AddMap(known.map, reference, a, out);
-  rolled_N_ = out[0].mid_N - mid_extra_N -
-              half_extra_kg * (reference[0].acceleration_m_s2 + After(reference, 0).acceleration_m_s2);
+  for (std::size_t j = 0; j < size; ++j) out[j] = {a.node_N[j], a.middle_N[j], 0.0};
+  if (!known.effects.neutral()) AddKnown(known, at, out);
+  if (known.map.in_use()) AddMap(known.map, at, out);
+  rolled_N_ =
+      out[0].mid_N - mid_extra_N - half_extra_kg * (at.acceleration_m_s2[0] + at.acceleration_m_s2[1]);
 }
 
 }  // namespace contour

@@ -1,9 +1,11 @@
 #pragma once
 
 #include "core/horizon.h"
+#include "core/state_keeper.h"
 #include "estimator/angle_force_map.h"
 #include "estimator/known_effects.h"
 #include "estimator/level_correction.h"
+#include "estimator/reference_terms.h"
 #include "estimator/seven_state_model.h"
 #include "estimator/viscous_correction.h"
 
@@ -42,6 +44,9 @@ class FrictionRoll {
     lead_N_ = 0.0;
   }
 
+  /// The terms along the reference are not part of the state: they are the same however they were come by.
+  void Keep(StateKeeper& keep) noexcept { keep(bristle_N_, rolled_N_, lead_N_); }
+
   /// `x`: filter state at element 0 of the reference, of which `points` are rolled along. Keeps the bristle
   /// at element 1 for the next call and lets the corrections learn from the difference at element 0. mid_N,
   /// which the torque must overcome, has what the axis is heavier than commissioned in it, and known forces
@@ -58,6 +63,7 @@ class FrictionRoll {
   double lead_share_ = 1.0;  // of the low-pass, per period
   double rest_share_ = 1.0;
   double lead_N_ = 0.0;  // unforeseen friction as the wind-up has it
+  ReferenceTerms terms_;
 };
 
 }  // namespace contour

@@ -67,8 +67,8 @@ class LevelCorrection {
   }
 
   /// Factors at `count` places in the direction of motion there.
-  template <class Row>
-  [[gnu::always_inline]] void Factors(const std::array<Row, kTerms>& basis, const Row& velocity_m_s,
+  template <class Basis, class Velocity, class Row>
+  [[gnu::always_inline]] void Factors(const std::array<Basis, kTerms>& basis, const Velocity& velocity_m_s,
                                       std::size_t count, Row& factor) const noexcept {
     const Terms plus = plus_.coefficient, minus = minus_.coefficient;
     for (std::size_t k = 0; k < count; ++k) {

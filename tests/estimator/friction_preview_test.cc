@@ -140,6 +140,38 @@ TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
   }
 }
 
+// What is kept from cycle to cycle changes nothing: a roll that has followed the reference gives the bits of
+// one that sees it for the first time, through jumps and other lengths too.
+TEST(FrictionRoll, WhatWasSeenBeforeLeavesNoTrace) {
+  const Friction f{52, 47, 42, 36, 2e-3, 1, 5e6, 3000, 2e-3, 500};
+  const SevenStateModel model(f, 89.0, kPeriod_s, 0.2);
+  LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
+  ViscousCorrection viscous({500.0, 0.0});
+  StateVector<kSevenStates> x{};
+  x[kLevelPlus] = 43;
+  x[kLevelMinus] = 35;
+  FrictionRoll following(kPeriod_s);
+  for (int k = 0; k < 400; ++k) {
+    x[kBristle] = 40.0 * std::cos(5.0 * kPeriod_s * k);
+    const int at = k / 150 * 37 + k % 150 / 50 * 3 + k;  // jumps now and then
+    AxisHorizon h = Horizon(at, 24);
+    if (k % 100 > 95) h[17].acceleration_m_s2 += 1.0;
+    if (k % 100 > 90 && k % 100 < 95) h[23].position_m += 1e-9;
+    const std::size_t points = k % 200 < 150 ? 23 : 17;
+    following.Reset(x[kBristle]);
+    FrictionRoll fresh(kPeriod_s);
+    fresh.Reset(x[kBristle]);
+    FrictionPreview kept, anew;
+    following.Run(model, x, correction, viscous, kNothingKnown, false, h, points, kept);
+    fresh.Run(model, x, correction, viscous, kNothingKnown, false, h, points, anew);
+    ASSERT_EQ(kept.size(), anew.size());
+    for (std::size_t j = 0; j < kept.size(); ++j) {
+      ASSERT_EQ(kept[j].node_N, anew[j].node_N) << k << " " << j;
+      ASSERT_EQ(kept[j].mid_N, anew[j].mid_N) << k << " " << j;
+    }
+  }
+}
+
 TEST(FrictionRoll, RippleOfTheLevelShowsAhead) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.5, 0.0});
