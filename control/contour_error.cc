@@ -60,6 +60,7 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
   const double from = origin - reach;
   const double to = std::min(origin + reach, path.end());
   for (double at = from; at <= to; at += 1.0) {
+    if (at == origin) continue;
     path.At(at, sample);
     const double distance2 = Distance2(position_m, sample);
     if (distance2 < best) {

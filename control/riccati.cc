@@ -2,12 +2,16 @@
 
 #include <cstring>
 
+#include "core/wide_vectors.h"
+
 namespace contour {
 namespace {
 
-// Two doubles side by side, one instruction for both on every x86-64. GCC and Clang know this notation on all
-// targets.
+// Two doubles side by side, one instruction for both on every x86-64, and the rows of a 2 x 2 block, one for
+// all four where there is AVX2. GCC and Clang know this notation on all targets. Blocks are only ever local
+// variables of something inlined, since how they would be passed depends on the processor.
 using Pair = double __attribute__((vector_size(16)));
+using Block = double __attribute__((vector_size(32)));
 
 inline Pair Load(const std::array<double, 2>& from) noexcept {
   Pair pair;
@@ -19,19 +23,22 @@ inline void Store(Pair pair, std::array<double, 2>& to) noexcept {
 }
 inline Pair Both(double x) noexcept { return Pair{x, x}; }
 
-// The rows of a 2 x 2 block.
-struct PairBlock {
-  Pair row[2];
-};
-inline PairBlock Load(const std::array<std::array<double, 2>, 2>& from) noexcept {
-  return {{Load(from[0]), Load(from[1])}};
+using SquareOfTwo = std::array<std::array<double, 2>, 2>;
+[[gnu::always_inline]] inline void Load(const SquareOfTwo& from, Block& block) noexcept {
+  std::memcpy(&block, &from, sizeof block);
 }
-inline void Store(const PairBlock& block, std::array<std::array<double, 2>, 2>& to) noexcept {
-  Store(block.row[0], to[0]);
-  Store(block.row[1], to[1]);
+[[gnu::always_inline]] inline void Store(const Block& block, SquareOfTwo& to) noexcept {
+  std::memcpy(&to, &block, sizeof block);
 }
-inline PairBlock Transposed(const PairBlock& b) noexcept {
-  return {{Pair{b.row[0][0], b.row[1][0]}, Pair{b.row[0][1], b.row[1][1]}}};
+
+/// offset + on_position p + on_velocity v of two axes, column by column.
+inline Pair FreePairInput(const SquareOfTwo& on_position, const SquareOfTwo& on_velocity,
+                          const AxisVector<2>& offset, const DriftState<2>& s) noexcept {
+  const Pair first = Pair{on_position[0][0], on_position[1][0]} * Both(s.position[0]) +
+                     Pair{on_velocity[0][0], on_velocity[1][0]} * Both(s.velocity[0]);
+  const Pair second = Pair{on_position[0][1], on_position[1][1]} * Both(s.position[1]) +
+                      Pair{on_velocity[0][1], on_velocity[1][1]} * Both(s.velocity[1]);
+  return Load(offset) + first + second;
 }
 
 }  // namespace
@@ -64,18 +71,18 @@ void Riccati<Axes>::Factor(const Problem& problem, const Holding& holding, std::
       coefficients_.b_v[i] = d.velocity_kept * d.velocity_from_command + d.velocity_from_previous;
     }
   }
-  for (std::size_t j = top + 1; j-- > 0;) FactorStage(problem, holding[j], j);
+  for (std::size_t j = top + 1; j-- > 0;) {
+    if (!has_ties_[j + 1] && FreePair(holding[j])) {
+      j = FactorFreePairs(problem, holding, j);
+    } else {
+      FactorStage(problem, holding[j], j);
+    }
+  }
 }
 
 template <std::size_t Axes>
 void Riccati<Axes>::FactorStage(const Problem& problem, const HeldInputs<Axes>& held,
                                 std::size_t j) noexcept {
-  if constexpr (Axes == 2) {
-    if (!has_ties_[j + 1] && held.how[0] == Hold::kFree && held.how[1] == Hold::kFree) {
-      FactorFreePair(problem, j);
-      return;
-    }
-  }
   StageForm form;
   Value& value = value_[j];
   Policy& policy = policy_[j];
@@ -208,81 +215,102 @@ void Riccati<Axes>::ChooseAll(const StageForm& form, Value& value, Policy& polic
   }
 }
 
-// The same arithmetic as BuildForm and ChooseAll, which say what it means.
+// The same arithmetic as BuildForm and ChooseAll, which say what it means, on whole blocks. Of a block b with
+// rows r and s: its transpose, (r|r) and (s|s), and every element of r or of s as a row.
+#define CONTOUR_TRANSPOSED(b) __builtin_shufflevector(b, b, 0, 2, 1, 3)
+#define CONTOUR_FIRST_ROWS(b) __builtin_shufflevector(b, b, 0, 1, 0, 1)
+#define CONTOUR_SECOND_ROWS(b) __builtin_shufflevector(b, b, 2, 3, 2, 3)
+#define CONTOUR_FIRST_ROW_DOWN(b) __builtin_shufflevector(b, b, 0, 0, 1, 1)
+#define CONTOUR_SECOND_ROW_DOWN(b) __builtin_shufflevector(b, b, 2, 2, 3, 3)
+#define CONTOUR_SYMMETRIC(b) __builtin_shufflevector(b, b, 0, 1, 1, 3)
+
 template <std::size_t Axes>
-void Riccati<Axes>::FactorFreePair(const Problem& problem, std::size_t j) noexcept {
+CONTOUR_WIDE_VECTORS std::size_t Riccati<Axes>::FactorFreePairs(const Problem& problem,
+                                                                const Holding& holding,
+                                                                std::size_t j) noexcept {
   if constexpr (Axes == 2) {
+    const Coefficients k = coefficients_;
+    // Along a row by axis, and down the rows.
+    const Block a{k.a[0], k.a[1], k.a[0], k.a[1]}, a_down{k.a[0], k.a[0], k.a[1], k.a[1]};
+    const Block e{k.e[0], k.e[1], k.e[0], k.e[1]}, e_down{k.e[0], k.e[0], k.e[1], k.e[1]};
+    const Block c{k.c[0], k.c[1], k.c[0], k.c[1]}, c_down{k.c[0], k.c[0], k.c[1], k.c[1]};
+    const Block b_p{k.b_p[0], k.b_p[1], k.b_p[0], k.b_p[1]}, b_p_down{k.b_p[0], k.b_p[0], k.b_p[1], k.b_p[1]};
+    const Block b_v{k.b_v[0], k.b_v[1], k.b_v[0], k.b_v[1]}, b_v_down{k.b_v[0], k.b_v[0], k.b_v[1], k.b_v[1]};
+    const Pair row_a = Load(k.a), row_e = Load(k.e), row_b_p = Load(k.b_p), row_b_v = Load(k.b_v);
+    const double effort_0 = problem.effort[0], effort_1 = problem.effort[1];
     const Value& next = value_[j + 1];
-    const Pair a = Load(coefficients_.a), e = Load(coefficients_.e), c = Load(coefficients_.c);
-    const Pair b_p = Load(coefficients_.b_p), b_v = Load(coefficients_.b_v);
-    const PairBlock pp = Load(next.pp), pv = Load(next.pv), vv = Load(next.vv);
-    const PairBlock vp = Transposed(pv);
-    const PairBlock weight = Load(problem.stage[j].weight);
-
+    Block pp, pv, vv;
+    Load(next.pp, pp);
+    Load(next.pv, pv);
+    Load(next.vv, vv);
     Pair h_p = Load(next.p), h_v = Load(next.v);
-    if (j + 1 < problem.horizon) {
-      const AxisVector<2>& d_p = problem.stage[j + 1].position_defect;
-      const AxisVector<2>& d_v = problem.stage[j + 1].velocity_defect;
-      h_p += pp.row[0] * Both(d_p[0]) + pp.row[1] * Both(d_p[1]) + vp.row[0] * Both(d_v[0]) +
-             vp.row[1] * Both(d_v[1]);
-      h_v += pv.row[0] * Both(d_p[0]) + pv.row[1] * Both(d_p[1]) + vv.row[0] * Both(d_v[0]) +
-             vv.row[1] * Both(d_v[1]);
-    }
+    for (;; --j) {
+      Block weight;
+      Load(problem.stage[j].weight, weight);
+      const Block vp = CONTOUR_TRANSPOSED(pv);
 
-    PairBlock w_p, w_v, uu, base_v;
-    for (int i = 0; i < 2; ++i) {
-      w_p.row[i] = pp.row[i] * b_p + pv.row[i] * b_v;
-      w_v.row[i] = vp.row[i] * b_p + vv.row[i] * b_v;
-      uu.row[i] = Both(b_p[i]) * w_p.row[i] + Both(b_v[i]) * w_v.row[i] + Both(c[i]) * weight.row[i] * c;
-      base_v.row[i] = a * pp.row[i] + e * pv.row[i];
-    }
-    const PairBlock w_p_t = Transposed(w_p), w_v_t = Transposed(w_v);
-    PairBlock up, uv;
-    for (int i = 0; i < 2; ++i) {
-      up.row[i] = w_p_t.row[i] + Both(c[i]) * weight.row[i];
-      uv.row[i] = a * w_p_t.row[i] + e * w_v_t.row[i];
-    }
-    const Pair u = b_p * h_p + b_v * h_v;
+      if (j + 1 < problem.horizon) {
+        const AxisVector<2>& d_p = problem.stage[j + 1].position_defect;
+        const AxisVector<2>& d_v = problem.stage[j + 1].velocity_defect;
+        h_p += Pair{pp[0], pp[1]} * Both(d_p[0]) + Pair{pp[2], pp[3]} * Both(d_p[1]) +
+               Pair{vp[0], vp[1]} * Both(d_v[0]) + Pair{vp[2], vp[3]} * Both(d_v[1]);
+        h_v += Pair{pv[0], pv[1]} * Both(d_p[0]) + Pair{pv[2], pv[3]} * Both(d_p[1]) +
+               Pair{vv[0], vv[1]} * Both(d_v[0]) + Pair{vv[2], vv[3]} * Both(d_v[1]);
+      }
 
-    const double u00 = uu.row[0][0] + problem.effort[0];
-    const double u11 = uu.row[1][1] + problem.effort[1];
-    const double u01 = uu.row[0][1];
-    const double scale = -1.0 / (u00 * u11 - u01 * u01);
-    const PairBlock inverse{{Pair{scale * u11, -scale * u01}, Pair{-scale * u01, scale * u00}}};
-    const Pair k_0 = inverse.row[0] * Both(u[0]) + inverse.row[1] * Both(u[1]);
-    PairBlock k_p, k_v;
-    for (int i = 0; i < 2; ++i) {
-      k_p.row[i] = Both(inverse.row[i][0]) * up.row[0] + Both(inverse.row[i][1]) * up.row[1];
-      k_v.row[i] = Both(inverse.row[i][0]) * uv.row[0] + Both(inverse.row[i][1]) * uv.row[1];
-    }
+      const Block w_p = pp * b_p + pv * b_v;
+      const Block w_v = vp * b_p + vv * b_v;
+      const Block uu = b_p_down * w_p + b_v_down * w_v + c_down * weight * c;
+      const Block base_v = a * pp + e * pv;
+      const Block w_p_t = CONTOUR_TRANSPOSED(w_p), w_v_t = CONTOUR_TRANSPOSED(w_v);
+      const Block up = w_p_t + c_down * weight;
+      const Block uv = a * w_p_t + e * w_v_t;
+      const Pair u = row_b_p * h_p + row_b_v * h_v;
 
-    PairBlock new_pp, new_pv, new_vv;
-    for (int m = 0; m < 2; ++m) {
-      const Pair up_0 = Both(up.row[0][m]), up_1 = Both(up.row[1][m]);
-      new_pp.row[m] = pp.row[m] + weight.row[m] + up_0 * k_p.row[0] + up_1 * k_p.row[1];
-      new_pv.row[m] = base_v.row[m] + up_0 * k_v.row[0] + up_1 * k_v.row[1];
-      new_vv.row[m] = Both(a[m]) * base_v.row[m] + Both(e[m]) * (a * vp.row[m] + e * vv.row[m]) +
-                      Both(uv.row[0][m]) * k_v.row[0] + Both(uv.row[1][m]) * k_v.row[1];
-    }
-    new_pp.row[1][0] = new_pp.row[0][1];
-    new_vv.row[1][0] = new_vv.row[0][1];
+      const double u00 = uu[0] + effort_0;
+      const double u11 = uu[3] + effort_1;
+      const double u01 = uu[1];
+      const double scale = -1.0 / (u00 * u11 - u01 * u01);
+      const double i00 = scale * u11, i01 = -scale * u01, i11 = scale * u00;
+      const Pair k_0 = Pair{i00, i01} * Both(u[0]) + Pair{i01, i11} * Both(u[1]);
+      const Block by_first{i00, i00, i01, i01}, by_second{i01, i01, i11, i11};
+      const Block k_p = by_first * CONTOUR_FIRST_ROWS(up) + by_second * CONTOUR_SECOND_ROWS(up);
+      const Block k_v = by_first * CONTOUR_FIRST_ROWS(uv) + by_second * CONTOUR_SECOND_ROWS(uv);
 
-    Value& value = value_[j];
-    Store(new_pp, value.pp);
-    Store(new_pv, value.pv);
-    Store(new_vv, value.vv);
-    Store(h_p + up.row[0] * Both(k_0[0]) + up.row[1] * Both(k_0[1]), value.p);
-    Store(a * h_p + e * h_v + uv.row[0] * Both(k_0[0]) + uv.row[1] * Both(k_0[1]), value.v);
-    Policy& policy = policy_[j];
-    Store(k_p, policy.on_position);
-    Store(k_v, policy.on_velocity);
-    Store(k_0, policy.offset);
-    policy.curvature = {u00, u11};
-    policy.all_free = true;
-    has_ties_[j] = false;
+      const Block up_0 = CONTOUR_FIRST_ROW_DOWN(up), up_1 = CONTOUR_SECOND_ROW_DOWN(up);
+      const Block k_v_0 = CONTOUR_FIRST_ROWS(k_v), k_v_1 = CONTOUR_SECOND_ROWS(k_v);
+      const Block new_pp = pp + weight + up_0 * CONTOUR_FIRST_ROWS(k_p) + up_1 * CONTOUR_SECOND_ROWS(k_p);
+      const Block new_pv = base_v + up_0 * k_v_0 + up_1 * k_v_1;
+      const Block new_vv = a_down * base_v + e_down * (a * vp + e * vv) + CONTOUR_FIRST_ROW_DOWN(uv) * k_v_0 +
+                           CONTOUR_SECOND_ROW_DOWN(uv) * k_v_1;
+
+      pp = CONTOUR_SYMMETRIC(new_pp);
+      pv = new_pv;
+      vv = CONTOUR_SYMMETRIC(new_vv);
+      const Pair at_p = h_p, at_v = h_v;
+      h_p = at_p + Pair{up[0], up[1]} * Both(k_0[0]) + Pair{up[2], up[3]} * Both(k_0[1]);
+      h_v =
+          row_a * at_p + row_e * at_v + Pair{uv[0], uv[1]} * Both(k_0[0]) + Pair{uv[2], uv[3]} * Both(k_0[1]);
+
+      Value& value = value_[j];
+      Store(pp, value.pp);
+      Store(pv, value.pv);
+      Store(vv, value.vv);
+      Store(h_p, value.p);
+      Store(h_v, value.v);
+      Policy& policy = policy_[j];
+      Store(k_p, policy.on_position);
+      Store(k_v, policy.on_velocity);
+      Store(k_0, policy.offset);
+      policy.curvature = {u00, u11};
+      policy.all_free = true;
+      has_ties_[j] = false;
+      if (j == 0 || !FreePair(holding[j - 1])) return j;
+    }
   } else {
     static_cast<void>(problem);
-    static_cast<void>(j);
+    static_cast<void>(holding);
+    return j;
   }
 }
 
@@ -368,10 +396,14 @@ void Riccati<Axes>::RollOut(const Problem& problem, const Holding& holding, Inpu
     const Policy& policy = policy_[j];
     AxisVector<Axes> u{};
     if (policy.all_free) {
-      u = policy.offset;
-      for (std::size_t i = 0; i < Axes; ++i) {
-        for (std::size_t k = 0; k < Axes; ++k) {
-          u[i] += policy.on_position[i][k] * s.position[k] + policy.on_velocity[i][k] * s.velocity[k];
+      if constexpr (Axes == 2) {
+        Store(FreePairInput(policy.on_position, policy.on_velocity, policy.offset, s), u);
+      } else {
+        u = policy.offset;
+        for (std::size_t i = 0; i < Axes; ++i) {
+          for (std::size_t k = 0; k < Axes; ++k) {
+            u[i] += policy.on_position[i][k] * s.position[k] + policy.on_velocity[i][k] * s.velocity[k];
+          }
         }
       }
       input[j] = u;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "control/qp_problem.h"
+#include "core/wide_vectors.h"
 
 namespace contour {
 
@@ -83,8 +84,14 @@ class Riccati {
   void BuildForm(const Problem& problem, std::size_t j, StageForm& form, Value& value) const noexcept;
   static void AddTies(const Problem& problem, const Coefficients& k, const Ties& next, std::size_t j,
                       StageForm& form) noexcept;
-  // BuildForm and ChooseAll of two axes in one, on pairs of doubles.
-  void FactorFreePair(const Problem& problem, std::size_t j) noexcept;
+  // Two axes, neither held.
+  [[nodiscard]] static bool FreePair(const HeldInputs<Axes>& held) noexcept {
+    return Axes == 2 && held.how[0] == Hold::kFree && held.how[Axes - 1] == Hold::kFree;
+  }
+  // FactorStage from stage j, of which FreePair is true, down to the last one of which it is; returns that
+  // one. BuildForm and ChooseAll of two axes in one, on blocks.
+  CONTOUR_WIDE_VECTORS std::size_t FactorFreePairs(const Problem& problem, const Holding& holding,
+                                                   std::size_t j) noexcept;
   static void ChooseAll(const StageForm& form, Value& value, Policy& policy) noexcept;
   static void ChooseFree(const HeldInputs<Axes>& held, StageForm& form, Value& value,
                          Policy& policy) noexcept;
