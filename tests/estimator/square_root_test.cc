@@ -74,7 +74,7 @@ TEST(Triangulariser, ReproducesTheProduct) {
 TEST(Triangulariser, KeepsItsDigitsWhenStatesDifferByTenDecades) { CheckRandom<7, 15>(5.0); }
 
 TEST(Triangulariser, TakesRowsOfZeros) {
-  Triangulariser<3, 7> a;
+  Triangulariser<3, 7> a{};
   a.row[1][2] = -2.0;
   a.SetNoise({});
   SquareMatrix<3> s;
