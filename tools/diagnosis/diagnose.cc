@@ -63,18 +63,20 @@ class Engine {
     bool jitter_known = false;
     double explained = 0.0;  // by what is accepted
     const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
+    bool first = true;
     for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
       const Gate gate{SignFlipGate(scored, options_.false_alarm_rate, options_.seed) + kOffStated * by_extras,
                       options_.false_alarm_rate, explained};
       const Jitter jitter = TestJitter(problem_, current);
-      if (round == 0) {
+      if (first) {
         KeepFirst(scored, out);
         out.candidates.push_back(
             {"sample_jitter", jitter.drop - kJitterPenalty, std::numeric_limits<double>::quiet_NaN(), false});
         KeepDetectable(problem_, current, scored, jitter, gate, out);
         out.gate = Threshold(problem_, gate);
+        first = false;
       }
       const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > Threshold(problem_, gate);
       Say("rivals", 0.3 + 0.25 * round);
@@ -88,6 +90,17 @@ class Engine {
       problem_.LearnNoise(rivals[0].fit.point);
       Say("rivals under the noise that is left", 0.35 + 0.25 * round);
       FitAgain(problem_, current, rivals);
+      if (rivals[0].no_fault && rivals[0].score > Threshold(problem_, gate, rivals[0].effect())) {
+        // No cause of a deviation, but there; unless the model has it, others stand for it.
+        current = std::move(rivals[0].fit);
+        --round;
+        continue;
+      }
+      std::erase_if(rivals, [](const Rival& r) { return r.no_fault; });
+      if (rivals.empty()) {
+        if (jitter_there) AcceptJitter(jitter, out);
+        break;
+      }
       if (options_.evidence && round == 0) TellEvidence(current, scored, rivals, gate.flips);
       // The best, or the next that holds where the best does not.
       double tested = 0.0;
@@ -211,7 +224,7 @@ class Engine {
     return tested > kNoChance && Consistency(problem_, current, r.fit, false) > kNotOneEvent;
   }
 
-  void Accept(const Fit& current, const std::vector<Rival>& rivals, const Gate& gate, Diagnosis& out) const {
+  void Accept(const Fit& current, const std::vector<Rival>& rivals, const Gate& gate, Diagnosis& out) {
     const Rival& best = rivals[0];
     Cause cause;
     cause.kind = best.effect().kind;
@@ -241,6 +254,7 @@ class Engine {
     HeldOutGain(problem_, current, best.fit, cause.kind == "pitch_error", cause, blocks);
     if (out.causes.empty()) out.blocks = blocks;
     out.causes.push_back(std::move(cause));
+    places_.push_back(best.fit.point.effects.size() - 1);
   }
 
   void AcceptJitter(const Jitter& jitter, Diagnosis& out) const {
@@ -268,7 +282,7 @@ class Engine {
     for (Cause& cause : out.causes) {
       if (cause.kind == "sample_jitter") continue;  // not in the fit
       cause.shapes.clear();
-      DescribeEffect(problem_, fit, index++, draws, cause);
+      DescribeEffect(problem_, fit, places_[index++], draws, cause);
       WidenIntervals(problem_, fit.point, cause);
     }
     out.bootstrap_runs = options_.bootstrap_runs;
@@ -307,6 +321,7 @@ class Engine {
   const DiagnoseOptions& options_;
   Problem problem_;
   Fit base_;
+  std::vector<std::size_t> places_;  ///< of the accepted causes in the fit, jitter left out
 };
 
 }  // namespace

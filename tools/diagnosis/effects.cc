@@ -315,19 +315,20 @@ void AddMechanics(const Problem& p, std::vector<SharedEffect>& out) {
     // others so that these do not have to stand for them.
     for (const double f :
          {15.0, 25.0, 40.0, 65.0, 100.0, 140.0, 180.0, 220.0, 270.0, 340.0, 430.0, 560.0, 750.0, 1000.0})
-      out.push_back(Custom("compliance", std::to_string(f) + " Hz", 14, {0.02, 0.02, 0.1},
-                           [f](const auto& a, AxisModel& m) {
-                             if (a[0] <= 1e-6) return;
-                             const double all = m.motor_inertia, share = std::min(a[0], 0.95);
-                             m.two_inertia = true;
-                             m.load_inertia = share * all;
-                             m.motor_inertia = (1.0 - share) * all;
-                             const double w = 2.0 * kPi * f * std::exp(a[1]);
-                             m.stiffness = m.load_inertia * w * w;
-                             m.damping = 2.0 * 0.04 * std::exp(a[2]) * w * m.load_inertia;
-                             m.friction_on_load = false;
-                           },
-                           {0.3, 0.0, 0.0}, {0.0, -0.7, -kDampingReach}, {0.9, 0.7, kDampingReach}));
+      out.push_back(WithOrder(Custom("compliance", std::to_string(f) + " Hz", 14, {0.02, 0.02, 0.1},
+                                     [f](const auto& a, AxisModel& m) {
+                                       if (a[0] <= 1e-6) return;
+                                       const double all = m.motor_inertia, share = std::min(a[0], 0.95);
+                                       m.two_inertia = true;
+                                       m.load_inertia = share * all;
+                                       m.motor_inertia = (1.0 - share) * all;
+                                       const double w = 2.0 * kPi * f * std::exp(a[1]);
+                                       m.stiffness = m.load_inertia * w * w;
+                                       m.damping = 2.0 * 0.04 * std::exp(a[2]) * w * m.load_inertia;
+                                       m.friction_on_load = false;
+                                     },
+                                     {0.3, 0.0, 0.0}, {0.0, -0.7, -kDampingReach}, {0.9, 0.7, kDampingReach}),
+                              f));
     for (const double gap_um : {2.0, 10.0, 40.0})
       out.push_back(Custom("backlash", std::to_string(gap_um) + " um", 3, {gap_um * 1e-6 / R},
                            [](const auto& a, AxisModel& m) {

@@ -49,8 +49,7 @@ double SignFlipGate(std::span<const Scored> scored, double false_alarm_rate, std
     double best = -1e300;
     for (int i = 0; i < kScans; ++i) best = std::max(best, -2.0 * std::log(-std::log(uniform(random))) - 6.0);
     for (const Scored& s : scored) {
-      if (s.effect->grid >= 12.0 && s.effect->order > 0.0 && s.effect->kind != "payload_step")
-        continue;  // a scan's
+      if (s.effect->wave && s.effect->grid >= 12.0) continue;  // a scan's
       const Eigen::VectorXd h = s.per_block * signs;
       best = std::max(best, h.dot(s.covariance * h) / s.excess - Penalty(*s.effect));
     }

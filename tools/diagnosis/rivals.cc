@@ -3,19 +3,20 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "tools/diagnosis/effects.h"
+#include "tools/diagnosis/lanes.h"
 #include "tools/diagnosis/products.h"
 
 namespace contour::diagnosis {
 namespace {
 
 constexpr double kNoFault_Hz = 700.0;
-constexpr double kMostDamped = 1.3,
+constexpr double kMostDamped = 1.0,
                  kLeastShare = 0.1;  // logarithm of the damping ratio over 0.04; of the inertia
 constexpr double kNever = -1e300;
 constexpr double kFineStep = 0.05;
@@ -34,18 +35,27 @@ void Sort(std::vector<Rival>& rivals) {
     std::rotate(rivals.begin(), outside, outside + 1);
 }
 
-/// A coupling that every screw has; or one that is damped as none is, which stands for something else.
-bool NoFault(const Problem& problem, const Rival& r) {
-  if (r.effect().kind != "compliance" || problem.nominal_.two_inertia) return false;
+bool AddsCoupling(const Problem& problem, const Rival& r) {
+  return r.effect().kind == "compliance" && !problem.nominal_.two_inertia;
+}
+
+/// Damped as no coupling is: it stands for something else.
+bool NoCoupling(const Rival& r) {
   const std::vector<double>& a = r.fit.point.amplitudes.back();
-  if (a[2] > kMostDamped && a[0] < kLeastShare) return true;
+  return a[2] > kMostDamped && a[0] < kLeastShare;
+}
+
+/// A coupling that every screw has.
+bool NoFault(const Problem& problem, const Rival& r) {
   const AxisModel m = problem.Build(r.fit.point);
   return m.two_inertia && m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kNoFault_Hz, 2);
 }
 
 void Judge(const Problem& problem, const Fit& current, Rival& r) {
   // A start may be no machine at all.
-  const bool out = !std::isfinite(r.fit.cost) || NoFault(problem, r);
+  const bool coupling = AddsCoupling(problem, r);
+  const bool out = !std::isfinite(r.fit.cost) || (coupling && NoCoupling(r));
+  r.no_fault = !out && coupling && NoFault(problem, r);
   r.score = out ? kNever : current.cost - r.fit.cost - Penalty(r.effect());
 }
 
@@ -76,10 +86,14 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
           &current};
 }
 
-/// Far from linear: the kind's whole grid at full size, the base following to first order, shows where to
-/// begin.
-std::optional<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
-                             const std::vector<Scored>& scored) {
+/// A place of a grid at full size, and what the cost would be there, the base following to first order.
+struct Place {
+  Point point;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+std::vector<Place> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
+                            const std::vector<Scored>& scored) {
   std::vector<Point> points;
   const auto add = [&](const SharedEffect& e, double first) {
     std::vector<double> a = e->start;
@@ -101,10 +115,9 @@ std::optional<Beginning> Far(const Problem& problem, const Fit& current, const s
     ++small;
     for (const double size : {1.0, 3.0}) add(s.effect, size * s.amplitude(0));
   }
-  double lowest = std::numeric_limits<double>::infinity();
-  const Point* best = nullptr;
-  for (std::size_t first = 0; first < points.size(); first += 8) {
-    const std::size_t count = std::min<std::size_t>(8, points.size() - first);
+  std::vector<Place> out;
+  for (std::size_t first = 0; first < points.size(); first += kLanes) {
+    const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
     const auto residuals = problem.Residuals(std::span(points).subspan(first, count));
     for (std::size_t i = 0; i < count; ++i) {
       Eigen::VectorXd gradient = GradientOf(current.jacobian, residuals[i]);
@@ -114,19 +127,34 @@ std::optional<Beginning> Far(const Problem& problem, const Fit& current, const s
       const Eigen::Map<const Eigen::VectorXd> r(residuals[i].data(),
                                                 static_cast<Eigen::Index>(residuals[i].size()));
       const double cost = r.squaredNorm() + current.prior - gradient.dot(current.covariance * gradient);
-      if (!std::isfinite(cost) || cost >= lowest) continue;
-      lowest = cost;
-      best = &points[first + i];
+      if (std::isfinite(cost) && cost < current.cost) out.push_back({std::move(points[first + i]), cost});
     }
   }
-  if (best == nullptr || lowest > current.cost) return std::nullopt;
-  return Beginning{*best,
-                   {.most_steps = 8,
-                    .most_refreshes = 3,
-                    .close_enough = 1.0,
-                    .covariance = false,
-                    .hopeless_above = current.cost},
-                   nullptr};
+  return out;
+}
+
+/// Far from linear: the kind's whole grid at full size shows where to begin. A coupling that every screw has
+/// begins beside the best, which may be a softer one that stands for it.
+std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
+                           const std::vector<Scored>& scored) {
+  Place best, stiff;
+  const bool coupling = kind == "compliance" && !problem.nominal_.two_inertia;
+  for (Place& p : FullSize(problem, current, kind, scored)) {
+    Place& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
+    if (p.cost < of.cost) of = std::move(p);
+  }
+  std::vector<Beginning> out;
+  // The base's sensitivities serve until they lead astray.
+  for (Place* p : {&best, &stiff})
+    if (std::isfinite(p->cost))
+      out.push_back({std::move(p->point),
+                     {.most_steps = 8,
+                      .most_refreshes = 3,
+                      .close_enough = 1.0,
+                      .covariance = false,
+                      .hopeless_above = current.cost},
+                     &current});
+  return out;
 }
 
 }  // namespace
@@ -154,11 +182,11 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
       done.push_back(s.effect->kind);
       if (!s.effect->start.empty()) {
         if (!Promising(problem, s, gate)) continue;
-        std::optional<Beginning> far = Far(problem, current, s.effect->kind, scored);
-        if (!far && by_priors) far = Near(problem, current, s);
-        if (!far) continue;
+        std::vector<Beginning> far = Far(problem, current, s.effect->kind, scored);
+        if (far.empty() && by_priors) far.push_back(Near(problem, current, s));
+        if (far.empty()) continue;
         promising = true;
-        beginnings.push_back(std::move(*far));
+        std::move(far.begin(), far.end(), std::back_inserter(beginnings));
         if (!by_priors) ++fitted;
         continue;
       }

@@ -14,6 +14,8 @@ struct Rival {
   Fit fit;
   double score = 0.0;    ///< what it lowers chi^2 and prior by, less its penalty
   bool refused = false;  ///< did not hold
+  /// A coupling that every screw has, no cause of a deviation: it belongs to the base.
+  bool no_fault = false;
 
   [[nodiscard]] const Effect& effect() const { return *fit.point.effects.back(); }
 };
