@@ -16,7 +16,7 @@ namespace {
 /// A planned motion slower than this has come to its end.
 constexpr double kStill_m_s = 1e-6;
 /// Reported torque is coarser than commanded torque is known, and each reversal tells less of the screw.
-constexpr double kMostStdInCascade = 0.12;
+constexpr double kMostStdInCascade = 0.25;
 
 void Demand(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(std::string("estimator: ") + what);
@@ -174,7 +174,7 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
     const double acted_N =
         force_N + late * (drive_N_ - force_N) +
         driving_N(filter.state()[kPosition] - 0.5 * filter.state()[kVelocity] * roll_.period_s());
-    LearnWindUp(in.position_m, followed.commanded_velocity_m_s, acted_N, estimate);
+    LearnWindUp(in.position_m, followed.commanded_velocity_m_s, acted_N, in.alone, estimate);
   } else {
     momentum_.Pause();
     wind_up_.Pause();
@@ -183,10 +183,11 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   return estimate;
 }
 
-void AxisEstimator::LearnWindUp(double position_m, double velocity_m_s, double force_N,
+void AxisEstimator::LearnWindUp(double position_m, double velocity_m_s, double force_N, bool alone,
                                 const AxisEstimate& estimate) noexcept {
   if (!wind_up_.learns()) return;
   WindUpFit::Sample sample;
+  sample.alone = alone;
   sample.position_m = position_m;
   sample.force_N = force_N;
   sample.mass_kg = mass_kg_ + momentum_.extra_kg();

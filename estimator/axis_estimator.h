@@ -71,7 +71,7 @@ class AxisEstimator {
     return kind_ == EstimatorKind::kFull || kind_ == EstimatorKind::kFullInCascade;
   }
   AxisEstimate UpdateFull(const Input& in) noexcept;
-  void LearnWindUp(double position_m, double velocity_m_s, double force_N,
+  void LearnWindUp(double position_m, double velocity_m_s, double force_N, bool alone,
                    const AxisEstimate& estimate) noexcept;
 
   EstimatorKind kind_;

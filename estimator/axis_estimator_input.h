@@ -16,6 +16,7 @@ struct AxisEstimatorInput {
   double commanded_acceleration_m_s2 = 0.0;
   double temperature_degC = std::numeric_limits<double>::quiet_NaN();  ///< of the screw; NaN: unknown
   bool at_rest = true;   ///< commanded velocity is zero: friction parameters keep their values
+  bool alone = true;     ///< no other axis is commanded to move
   bool enabled = false;  ///< the drive turns torque into motion; otherwise only the position is followed
 };
 

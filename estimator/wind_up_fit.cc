@@ -10,25 +10,31 @@ namespace contour {
 namespace {
 
 // What is followed after a reversal, in presliding lengths, and how it is divided.
-constexpr double kWindow = 4.0;
-constexpr double kBlockShare = 0.01;
+constexpr double kWindow = 6.0;
+constexpr double kBlockShare = kWindow / 128.0;
 constexpr int kLeastInBlock = 4;
 constexpr std::size_t kLeastBlocks = 16;
 constexpr std::size_t kBlocksPerCycle = 8;
 // Near its level the bristle moves any way for the same force: rows there weigh no less than this.
 constexpr double kLeastWeight = 0.1;
-// How far residuals may hang together: 2 when they do not. A Maxwell-slip friction gives 0.9 to 1.6,
-// LuGre 2.2 to 2.7.
-constexpr double kLeastIndependence = 1.9;
+// How far residuals may hang together: 2 when they do not. By a drive's commanded torque a Maxwell-slip
+// friction gives 0.1 to 0.8 and LuGre 2 to 3, by its reported torque, which is noisier, 0.2 to 1.6 and 1
+// to 2.8. The mean over the reversals counts, beginning with one of kIndependent.
+constexpr double kIndependent = 2.0;
+constexpr double kLeastIndependence = 1.3;
+constexpr double kMostJudged = 20.0;
 constexpr double kMostLevelError = 2.0;
 // Stribeck curve and damping of the bristle are believed. What they are wrong by looks like this share of the
 // bristle's compliance, and like one of the screw's; and the faster it goes the more.
-constexpr double kLawOfBristle = 0.015;
+constexpr double kLawOfBristle = 0.01;
+constexpr double kLawAtSpeed = 0.03;  // per Stribeck velocity at the end of the window
 constexpr double kLawOfScrew = 0.05;
-constexpr double kMostSpeed = 0.3;   // Stribeck velocities at the end of the window
+constexpr double kMostSpeed = 0.4;   // Stribeck velocities at the end of the window
 constexpr double kMostChange = 2.0;  // of the compliance, and the inverse
-// Standard deviations by which the screw must be found softer than commissioned.
-constexpr double kDoubts = 2.0;
+// Standard deviations that an axis moving alone stays short by.
+constexpr double kDoubts = 5.0;
+// What is stated may be quite wrong: its tails are those of a Student distribution.
+constexpr double kTailDegrees = 4.0;
 // Share of a new answer that is put to use per millisecond.
 constexpr double kUseShare = 0.02;
 
@@ -70,7 +76,10 @@ WindUpFit::WindUpFit(const Tuning& tuning) noexcept
 void WindUpFit::Reset() noexcept {
   compliance_m_N_ = 1.0 / tuning_.stiffness_N_m;
   const double std_m_N = tuning_.stiffness_std * compliance_m_N_;
-  certainty_ = learns() ? 1.0 / (std_m_N * std_m_N) : 0.0;
+  stated_certainty_ = certainty_ = learns() ? 1.0 / (std_m_N * std_m_N) : 0.0;
+  found_m_N_ = found_certainty_ = 0.0;
+  independence_ = kIndependent;
+  judged_ = 1.0;
   used_m_N_ = 0.0;
   reversals_ = 0;
   Pause();
@@ -83,7 +92,7 @@ void WindUpFit::Pause() noexcept {
 }
 
 void WindUpFit::Learn(const Sample& s) noexcept {
-  used_m_N_ += use_share_ * (Believed_m_N() - used_m_N_);
+  used_m_N_ += use_share_ * (Believed_m_N(s.alone) - used_m_N_);
   const double velocity_m_s = (s.position_m - position_m_) / tuning_.period_s;
   const double acceleration_m_s2 = (velocity_m_s - velocity_m_s_) / tuning_.period_s;
   // The second difference belongs to the sample before.
@@ -112,12 +121,15 @@ void WindUpFit::Learn(const Sample& s) noexcept {
     Follow(direction_ * at_m, direction_ * at_N, direction_ * at_m_s, s.level_ratio);
 }
 
-// Too much lead takes the table past its turning points, too little not quite there. So less compliance than
-// commissioned is believed as it is found, more only beyond doubt.
-double WindUpFit::Believed_m_N() const noexcept {
+// Where only this axis moves, being short along the path is no error of the contour, and going past its ends
+// is: what counts then is the smallest compliance that may well be. Where others move too, an error either
+// way is as bad.
+double WindUpFit::Believed_m_N(bool alone) const noexcept {
   const double extra_m_N = compliance_m_N_ - 1.0 / tuning_.stiffness_N_m;
-  if (extra_m_N <= 0.0) return extra_m_N;
-  return std::max(0.0, extra_m_N - kDoubts / std::sqrt(certainty_));
+  if (!alone || !learns()) return extra_m_N;
+  // What the law is wrong by is the same at every reversal.
+  const double law_m_N = kLawOfScrew * compliance_m_N_ * found_certainty_ / certainty_;
+  return extra_m_N - kDoubts * std::sqrt(1.0 / certainty_ + law_m_N * law_m_N);
 }
 
 void WindUpFit::Begin(const Sample& s, double position_m) noexcept {
@@ -144,6 +156,7 @@ void WindUpFit::Follow(double position_m, double force_N, double velocity_m_s, d
   }
   if (position_m - begin_m_ > kWindow * length_m_ || count_ == kMostBlocks) {
     phase_ = Phase::kIdle;
+    end_m_s_ = velocity_m_s;
     if (count_ < kLeastBlocks || velocity_m_s > kMostSpeed * tuning_.vs_m_s) return;
     phase_ = Phase::kFitting;
     pass_ = 0;
@@ -226,26 +239,57 @@ void WindUpFit::EndPass() noexcept {
     return sum;
   };
   const double residual2 = quadratic(moments_);
-  if (!(residual2 > 0.0) || quadratic(steps_) < kLeastIndependence * residual2) return;
+  if (!(residual2 > 0.0)) return;
+  const double independence = quadratic(steps_) / residual2;
+  if (!Follows(independence)) return;
   const double noise2 = residual2 / static_cast<double>(rows_ - kUnknowns);
   const double compliance_m_N = -theta[2] / (per_level * sigma0_N_m_);
   const double by_level = -compliance_m_N / per_level, by_square = -1.0 / (per_level * sigma0_N_m_);
   const double variance = noise2 * (by_level * by_level * x[1][1] + 2.0 * by_level * by_square * x[1][2] +
                                     by_square * by_square * x[2][2]);
-  Conclude(compliance_m_N, std::sqrt(std::max(variance, 0.0)));
+  Conclude(compliance_m_N, std::sqrt(std::max(variance, 0.0)), independence);
 }
 
-void WindUpFit::Conclude(double compliance_m_N, double std_m_N) noexcept {
+// Whether residuals hang together shows over some reversals, not at each. If they do, nothing has been
+// learnt.
+bool WindUpFit::Follows(double independence) noexcept {
+  judged_ = std::min(judged_ + 1.0, kMostJudged);
+  independence_ += (independence - independence_) / judged_;
+  if (independence_ > kLeastIndependence) return true;
+  found_m_N_ = found_certainty_ = 0.0;
+  Weigh();
+  return false;
+}
+
+void WindUpFit::Conclude(double compliance_m_N, double std_m_N, double independence) noexcept {
   const double commissioned_m_N = 1.0 / tuning_.stiffness_N_m;
   if (!(std_m_N < tuning_.most_std * commissioned_m_N)) return;
   if (!(compliance_m_N > commissioned_m_N / (1.0 + kMostChange) &&
         compliance_m_N < commissioned_m_N * (1.0 + kMostChange)))
     return;
-  const double bristle_m_N = kLawOfBristle / sigma0_N_m_, screw_m_N = kLawOfScrew * compliance_m_N;
-  const double certainty = 1.0 / (std_m_N * std_m_N + bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
-  certainty_ += certainty;
-  compliance_m_N_ += certainty / certainty_ * (compliance_m_N - compliance_m_N_);
+  const double bristle_m_N = (kLawOfBristle + kLawAtSpeed * end_m_s_ / tuning_.vs_m_s) / sigma0_N_m_;
+  const double screw_m_N = kLawOfScrew * compliance_m_N;
+  const double whole = std::min(1.0, independence / kIndependent);
+  const double certainty =
+      whole * whole / (std_m_N * std_m_N + bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
+  found_certainty_ += certainty;
+  found_m_N_ += certainty / found_certainty_ * (compliance_m_N - found_m_N_);
   ++reversals_;
+  Weigh();
+}
+
+// What was stated counts as long as what is found may well be the same: as a Student distribution with
+// kTailDegrees of freedom, the farther off, in standard deviations of both, the less.
+void WindUpFit::Weigh() noexcept {
+  const double stated_m_N = 1.0 / tuning_.stiffness_N_m;
+  compliance_m_N_ = stated_m_N;
+  certainty_ = stated_certainty_;
+  if (found_certainty_ == 0.0) return;
+  const double off_m_N = found_m_N_ - stated_m_N;
+  const double off2 = off_m_N * off_m_N / (1.0 / stated_certainty_ + 1.0 / found_certainty_);
+  const double stated = stated_certainty_ * (kTailDegrees + 1.0) / (kTailDegrees + off2);
+  certainty_ = stated + found_certainty_;
+  compliance_m_N_ += found_certainty_ / certainty_ * off_m_N;
 }
 
 }  // namespace contour

@@ -34,6 +34,7 @@ class WindUpFit {
     double force_N = 0.0;  ///< of the drive, mean over the period that ends here
     double mass_kg = 0.0;
     int direction = 0;         ///< commanded; 0: none
+    bool alone = false;        ///< no other axis moves
     double level_N = 0.0;      ///< friction level at the lowest speed
     double level_ratio = 1.0;  ///< level at the present speed over it
     double sigma0_N_m = 0.0;
@@ -70,19 +71,27 @@ class WindUpFit {
   };
   enum class Phase { kIdle, kFollowing, kFitting };
 
-  [[nodiscard]] double Believed_m_N() const noexcept;
+  [[nodiscard]] double Believed_m_N(bool alone) const noexcept;
   void Begin(const Sample& sample, double position_m) noexcept;
   void Follow(double position_m, double force_N, double velocity_m_s, double level_ratio) noexcept;
   void CloseBlock() noexcept;
   void BeginPass() noexcept;
   void Take(const Block& block) noexcept;
   void EndPass() noexcept;
-  void Conclude(double compliance_m_N, double std_m_N) noexcept;
+  [[nodiscard]] bool Follows(double independence) noexcept;
+  void Weigh() noexcept;
+  void Conclude(double compliance_m_N, double std_m_N, double independence) noexcept;
 
   Tuning tuning_;
   double use_share_ = 0.0;       // per period
   double compliance_m_N_ = 0.0;  // estimate and the inverse of its variance
   double certainty_ = 0.0;
+  double stated_certainty_ = 0.0;
+  double found_m_N_ = 0.0;  // by reversals alone
+  double found_certainty_ = 0.0;
+  double independence_ = 0.0;  // of the residuals, mean over so many reversals
+  double judged_ = 0.0;
+  double end_m_s_ = 0.0;  // speed where a window ended
   double used_m_N_ = 0.0;
   int reversals_ = 0;
 

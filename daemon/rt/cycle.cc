@@ -167,6 +167,8 @@ void Cycle::Observe(const CycleInput& in) noexcept {
 
 void Cycle::Estimate(const IoInput& io) noexcept {
   const bool holds = transitions_.holds_torque();
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < axes_.size(); ++i) moving += AtSample(i).velocity_m_s != 0.0 ? 1u : 0u;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
     const AxisFeedback& f = master_.feedback()[i];
@@ -184,6 +186,7 @@ void Cycle::Estimate(const IoInput& io) noexcept {
     input.commanded_velocity_m_s = commanded.velocity_m_s;
     input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
     if (io.configured && io.fresh) input.temperature_degC = io.screw_temperature_degC;
+    input.alone = moving == (commanded.velocity_m_s != 0.0 ? 1u : 0u);
     // An experiment pushes the axis although nothing commands it to move.
     input.at_rest = commanded.velocity_m_s == 0.0 && commanded.extra_torque_Nm == 0.0;
     input.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
