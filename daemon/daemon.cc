@@ -13,6 +13,7 @@
 
 #include "config/config_error.h"
 #include "config/load_machine.h"
+#include "config/mode_advice.h"
 #include "core/exit_status.h"
 #include "core/version.h"
 #include "daemon/control_socket/control_server.h"
@@ -198,7 +199,12 @@ class Daemon {
       throw EnvironmentError("the kernel refused real time: " + refused.front() +
                              ". realtime.required: false in the machine file goes on without");
     }
-    Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, refused,
+    std::vector<std::string> warnings = refused;
+    for (const std::string& advice : ModeAdvice(machine_)) {
+      spdlog::warn(advice);
+      warnings.push_back(advice);
+    }
+    Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, warnings,
                           {mailbox_, queue_, hub_, pump_, *loop_, io_client_.get(), seed_}, source_);
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/load_machine.h"
+#include "config/mode_advice.h"
 #include "config/stopping.h"
 #include "tests/config/test_files.h"
 
@@ -159,6 +160,20 @@ TEST(MachineChecks, ModeAndController) {
   EXPECT_EQ(
       Only(c),
       "axes.x.drive.csp_torque_offset: found false, but control.csp.torque_offset is true; expected true");
+}
+
+TEST(ModeAdvice, CspWithACoarseEncoderIsAdvisedAgainst) {
+  MachineConfig c = Good();
+  c.axes.at("x").drive.encoder_counts_per_rev = 10000;
+  EXPECT_TRUE(ModeAdvice(c).empty()) << "the example works in cst";
+  for (auto& [name, axis] : c.axes) axis.drive.mode = DriveMode::kCsp;
+  EXPECT_EQ(ModeAdvice(c),
+            std::vector<std::string>{
+                "axes.x.drive.mode: csp with an encoder of 10000 counts per turn; below 65536, "
+                "cst draws better circles"});
+  EXPECT_TRUE(Check(c).empty()) << "advice refuses nothing";
+  c.machine.controller = ControllerName::kCsp;
+  EXPECT_TRUE(ModeAdvice(c).empty()) << "csp has no other mode";
 }
 
 TEST(MachineChecks, ATemperatureThatNeverChangesIsNone) {

@@ -6,6 +6,7 @@
 
 #include "config/bus_timing.h"
 #include "config/machine_checks.h"
+#include "config/mode_advice.h"
 #include "config/number_text.h"
 #include "config/stopping.h"
 #include "core/mechanics.h"
@@ -151,10 +152,16 @@ std::string Timing(const MachineConfig& c) {
   return text;
 }
 
+std::string Advice(const MachineConfig& c) {
+  std::string text;
+  for (const std::string& advice : ModeAdvice(c)) text += "  " + advice + "\n";
+  return text.empty() ? text : "\nAdvice\n" + text;
+}
+
 }  // namespace
 
 std::string CheckReport(const MachineConfig& c) {
-  return Head(c) + Axes(c) + Stops(c) + Buses(c) + Timing(c);
+  return Head(c) + Axes(c) + Stops(c) + Buses(c) + Timing(c) + Advice(c);
 }
 
 }  // namespace contour
