@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kFarthestPeriods = 16.0;
 constexpr int kNewtonSteps = 5;
+// Nearer to the foot the distance does not change any more: it grows with the square.
+constexpr double kThere_periods = 1e-6;
 
 double Distance2(const PerAxis<double>& position_m, const PathSample& sample) noexcept {
   double sum = 0.0;
@@ -34,6 +36,16 @@ double StepToFoot(const PerAxis<double>& position_m, const PathSample& sample, d
   return curvature > 0.0 ? ev / (curvature * period_s) : 0.0;
 }
 
+bool StandsStill(const PerAxis<AxisHorizon>& reference) noexcept {
+  for (const AxisHorizon& axis : reference) {
+    const double here_m = axis[0].position_m;
+    for (const ReferencePoint& point : axis)
+      if (point.position_m != here_m || point.velocity_m_s != 0.0 || point.acceleration_m_s2 != 0.0)
+        return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<AxisHorizon>& reference,
@@ -52,6 +64,11 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
   }
   const double speed = std::sqrt(speed2);
   error.lag_m = speed > 0.0 ? error.lag_m / speed : 0.0;
+
+  if (speed == 0.0 && StandsStill(reference)) {
+    error.contour_m = std::sqrt(best);
+    return error;
+  }
 
   // The nearest point is no farther than the reference: twice the time to it, for paths that slow down
   // nearby.
@@ -76,11 +93,13 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
                     std::max(to, best_at));
     if (at == before) break;
     path.At(at, sample);
+    const bool there = std::abs(at - before) < kThere_periods;
     const double distance2 = Distance2(position_m, sample);
     if (distance2 <= best) {
       best = distance2;
       best_at = at;
     }
+    if (there) break;
   }
   error.contour_m = std::sqrt(best);
   error.nearest_periods = best_at - origin;

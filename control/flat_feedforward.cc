@@ -23,7 +23,7 @@ struct FlatFeedforward::Nodes {
 [[gnu::always_inline]] inline void FlatFeedforward::Lay(const AxisHorizon& reference,
                                                         const FrictionPreview& friction, std::size_t nodes,
                                                         Nodes& at) const noexcept {
-  Row acceleration_m_s2, node_N{}, lead_m{};
+  Row acceleration_m_s2, node_N, lead_m;
   const std::size_t there = std::min(nodes, reference.size());
   for (std::size_t n = 0; n < there; ++n) {
     at.position_m[n] = reference[n].position_m;
@@ -35,7 +35,6 @@ struct FlatFeedforward::Nodes {
     at.velocity_m_s[n] = at.velocity_m_s[there - 1];
     acceleration_m_s2[n] = acceleration_m_s2[there - 1];
   }
-  at.mid_N = {};
   if (options_.friction_feedforward && !friction.empty()) {
     const std::size_t known = std::min(nodes, friction.size());
     for (std::size_t n = 0; n < known; ++n) {
@@ -48,9 +47,11 @@ struct FlatFeedforward::Nodes {
       at.mid_N[n] = at.mid_N[known - 1];
       lead_m[n] = lead_m[known - 1];
     }
+  } else {
+    for (std::size_t n = 0; n < nodes; ++n) node_N[n] = at.mid_N[n] = lead_m[n] = 0.0;
   }
   if (!options_.windup_compensation) {
-    at.windup_m = {};
+    for (std::size_t n = 0; n < nodes; ++n) at.windup_m[n] = 0.0;
     return;
   }
   const double table_mass = mechanics_.table_mass_kg, stiffness = mechanics_.stiffness_N_m;
@@ -104,13 +105,15 @@ void FlatFeedforward::Plan(const AxisHorizon& reference, const FrictionPreview& 
   }
   Row command;  // of the interval before j in element j
   command[0] = previous_command_m_s2;
-  const double gain =
-      makes_up_lag_ ? d.velocity_from_command : d.velocity_from_command + d.velocity_from_previous;
-  const double made_up = makes_up_lag_ ? d.velocity_from_previous : 0.0;
+  // Each command waits for the one before: as little as possible stands between them.
+  const double per_gain = 1.0 / (d.velocity_from_command + (makes_up_lag_ ? 0.0 : d.velocity_from_previous));
+  const double made_up = makes_up_lag_ ? d.velocity_from_previous * per_gain : 0.0;
+  const double bound = bound_m_s2_;
+  for (std::size_t j = 0; j < horizon; ++j) command[j + 1] = wanted[j] * per_gain;
   for (std::size_t j = 0; j < horizon; ++j) {
     // What the axis cannot do is not planned: it would be made up for in the intervals after without having
     // happened.
-    command[j + 1] = std::clamp((wanted[j] - made_up * command[j]) / gain, -bound_m_s2_, bound_m_s2_);
+    command[j + 1] = std::min(std::max(command[j + 1] - made_up * command[j], -bound), bound);
   }
   for (std::size_t j = 0; j < horizon; ++j) {
     plan.command_m_s2[j] = command[j + 1];

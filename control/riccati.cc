@@ -31,16 +31,6 @@ using SquareOfTwo = std::array<std::array<double, 2>, 2>;
   std::memcpy(&to, &block, sizeof block);
 }
 
-/// offset + on_position p + on_velocity v of two axes, column by column.
-inline Pair FreePairInput(const SquareOfTwo& on_position, const SquareOfTwo& on_velocity,
-                          const AxisVector<2>& offset, const DriftState<2>& s) noexcept {
-  const Pair first = Pair{on_position[0][0], on_position[1][0]} * Both(s.position[0]) +
-                     Pair{on_velocity[0][0], on_velocity[1][0]} * Both(s.velocity[0]);
-  const Pair second = Pair{on_position[0][1], on_position[1][1]} * Both(s.position[1]) +
-                      Pair{on_velocity[0][1], on_velocity[1][1]} * Both(s.velocity[1]);
-  return Load(offset) + first + second;
-}
-
 }  // namespace
 
 template <std::size_t Axes>
@@ -386,6 +376,50 @@ bool Riccati<Axes>::FoldHeld(const HeldInputs<Axes>& held, const StageForm& form
   return true;
 }
 
+// As RollOut from stage j on, while all is free; returns the last such stage, and the state after it in `s`.
+template <std::size_t Axes>
+std::size_t Riccati<Axes>::RollOutFreePairs(const Problem& problem, std::size_t j, DriftState<Axes>& s,
+                                            Inputs& input, Inputs& gradient) const noexcept {
+  if constexpr (Axes == 2) {
+    const AxisDynamics &x = problem.dynamics[0], &y = problem.dynamics[1];
+    const Pair position_from_command{x.position_from_command, y.position_from_command};
+    const Pair velocity_from_command{x.velocity_from_command, y.velocity_from_command};
+    const Pair position_from_velocity{x.position_from_velocity, y.position_from_velocity};
+    const Pair position_from_previous{x.position_from_previous, y.position_from_previous};
+    const Pair velocity_from_previous{x.velocity_from_previous, y.velocity_from_previous};
+    const Pair velocity_kept{x.velocity_kept, y.velocity_kept};
+    Pair p = Load(s.position), v = Load(s.velocity);
+    for (;; ++j) {
+      const Policy& policy = policy_[j];
+      const auto& [p_0, p_1] = policy.on_position;
+      const auto& [v_0, v_1] = policy.on_velocity;
+      const Pair u = Load(policy.offset) +
+                     (Pair{p_0[0], p_1[0]} * Both(p[0]) + Pair{v_0[0], v_1[0]} * Both(v[0])) +
+                     (Pair{p_0[1], p_1[1]} * Both(p[1]) + Pair{v_0[1], v_1[1]} * Both(v[1]));
+      Store(u, input[j]);
+      gradient[j] = {};
+      const bool last = j + 1 >= problem.horizon;
+      const Pair error = p + position_from_command * u;
+      const Pair velocity = v + velocity_from_command * u;
+      p = error + position_from_velocity * velocity + position_from_previous * u;
+      v = velocity_kept * velocity + velocity_from_previous * u;
+      if (!last) {
+        p += Load(problem.stage[j + 1].position_defect);
+        v += Load(problem.stage[j + 1].velocity_defect);
+      }
+      if (last || !policy_[j + 1].all_free) break;
+    }
+    Store(p, s.position);
+    Store(v, s.velocity);
+  } else {
+    static_cast<void>(problem);
+    static_cast<void>(s);
+    static_cast<void>(input);
+    static_cast<void>(gradient);
+  }
+  return j;
+}
+
 template <std::size_t Axes>
 void Riccati<Axes>::RollOut(const Problem& problem, const Holding& holding, Inputs& input,
                             Inputs& gradient) const noexcept {
@@ -394,16 +428,17 @@ void Riccati<Axes>::RollOut(const Problem& problem, const Holding& holding, Inpu
   for (std::size_t j = 0; j < problem.horizon; ++j) {
     const HeldInputs<Axes>& held = holding[j];
     const Policy& policy = policy_[j];
+    if (Axes == 2 && policy.all_free) {
+      j = RollOutFreePairs(problem, j, s, input, gradient);
+      previous = input[j];
+      continue;
+    }
     AxisVector<Axes> u{};
     if (policy.all_free) {
-      if constexpr (Axes == 2) {
-        Store(FreePairInput(policy.on_position, policy.on_velocity, policy.offset, s), u);
-      } else {
-        u = policy.offset;
-        for (std::size_t i = 0; i < Axes; ++i) {
-          for (std::size_t k = 0; k < Axes; ++k) {
-            u[i] += policy.on_position[i][k] * s.position[k] + policy.on_velocity[i][k] * s.velocity[k];
-          }
+      u = policy.offset;
+      for (std::size_t i = 0; i < Axes; ++i) {
+        for (std::size_t k = 0; k < Axes; ++k) {
+          u[i] += policy.on_position[i][k] * s.position[k] + policy.on_velocity[i][k] * s.velocity[k];
         }
       }
       input[j] = u;

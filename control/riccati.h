@@ -92,6 +92,8 @@ class Riccati {
   // one. BuildForm and ChooseAll of two axes in one, on blocks.
   CONTOUR_WIDE_VECTORS std::size_t FactorFreePairs(const Problem& problem, const Holding& holding,
                                                    std::size_t j) noexcept;
+  std::size_t RollOutFreePairs(const Problem& problem, std::size_t j, DriftState<Axes>& s, Inputs& input,
+                               Inputs& gradient) const noexcept;
   static void ChooseAll(const StageForm& form, Value& value, Policy& policy) noexcept;
   static void ChooseFree(const HeldInputs<Axes>& held, StageForm& form, Value& value,
                          Policy& policy) noexcept;

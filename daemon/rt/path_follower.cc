@@ -161,6 +161,19 @@ ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const 
           a.spring_N_m + s * (b.spring_N_m - a.spring_N_m)};
 }
 
+void PathFollower::Copy(std::size_t axis, std::uint64_t first, std::size_t count,
+                        ReferencePoint* to) const noexcept {
+  // Up to the end of the ring, and from its beginning.
+  while (count > 0) {
+    const std::size_t from = first % kCapacity;
+    const std::size_t run = std::min(count, kCapacity - from);
+    for (std::size_t j = 0; j < run; ++j) to[j] = points_[from + j].axes[axis];
+    first += run;
+    to += run;
+    count -= run;
+  }
+}
+
 void PathFollower::Horizon(std::size_t axis, std::size_t points, AxisHorizon& out) const noexcept {
   out.resize(std::min(points, horizon_));
   std::size_t j = 0;
@@ -170,7 +183,10 @@ void PathFollower::Horizon(std::size_t axis, std::size_t points, AxisHorizon& ou
   if (mode_ == Mode::kRunning && clock_ > static_cast<std::int64_t>(first_)) {
     // At the program's own pace elements are the points themselves, see Evaluate.
     const auto now = static_cast<std::uint64_t>(clock_);
-    for (; j < out.size() && now + j + 1 < end_; ++j) out[j] = At(now + j).axes[axis];
+    if (now + 1 < end_) {
+      j = std::min<std::size_t>(out.size(), end_ - 1 - now);
+      Copy(axis, now, j, out.data());
+    }
   }
   for (; j < out.size(); ++j) out[j] = Evaluate(axis, PaceAt(j));
 }
@@ -186,8 +202,8 @@ void PathFollower::Around(std::size_t axis, int reach, AxisHorizon& out) const n
   out.clear();
   const auto first = static_cast<std::int64_t>(first_), end = static_cast<std::int64_t>(end_);
   if (mode_ == Mode::kRunning && clock_ > 0 && clock_ - reach >= first && clock_ + reach + 1 < end) {
-    for (int j = -reach; j <= reach; ++j)
-      out.push_back(At(static_cast<std::uint64_t>(clock_ + j)).axes[axis]);
+    out.resize(static_cast<std::size_t>(2 * reach + 1));
+    Copy(axis, static_cast<std::uint64_t>(clock_ - reach), out.size(), out.data());
     return;
   }
   for (int j = -reach; j <= reach; ++j) out.push_back(Near(axis, j));

@@ -84,6 +84,8 @@ class PathFollower {
 
   [[nodiscard]] const PathPoint& At(std::uint64_t index) const noexcept { return points_[index % kCapacity]; }
   [[nodiscard]] ReferencePoint Evaluate(std::size_t axis, const Pace& pace) const noexcept;
+  /// Points as they are.
+  void Copy(std::size_t axis, std::uint64_t first, std::size_t count, ReferencePoint* to) const noexcept;
   [[nodiscard]] Pace PaceAfter(int periods_from_head) const noexcept;
   [[nodiscard]] Pace PaceAt(std::size_t j) const noexcept;
   void UpdatePaces() noexcept;

@@ -1,4 +1,6 @@
-// instruction_probe WHAT COUNT MACHINE_FILE: does one thing COUNT times, for instructions.py to count.
+// instruction_probe WHAT COUNT MACHINE_FILE: does one thing COUNT times, for instructions.py and
+// cycle_profile.py to count.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -57,6 +59,52 @@ void StepCycles(const std::string& file, int count) {
   for (std::size_t k = 0; k < last && k < inputs.size(); ++k) cycle.Step(inputs[k], *output);
 }
 
+/// For callgrind to begin and end at.
+[[gnu::noinline]] void MeasuredStep(Cycle& cycle, const CycleInput& input, CycleOutput& output) {
+  cycle.Step(input, output);
+  asm volatile("" ::: "memory");  // no tail call
+}
+
+/// Cycles of a run that holds for a while and draws a circle of 100 um, one line each with what it finds:
+/// rest, reversal (of an axis, up to 10 cycles ago) or motion. As many cycles as COUNT, from shortly before
+/// the circle begins.
+void ProfileCycles(const std::string& file, const std::string& mode, int count) {
+  const EmulatedMachineFile machine_file =
+      LoadEmulatedMachine(file, {"axes.x.drive.mode=" + mode, "axes.y.drive.mode=" + mode});
+  VirtualMachine machine(machine_file, ControllerName::kFull);
+  std::vector<CycleInput> inputs;
+  std::vector<CycleRecord> records;
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) {
+    inputs.push_back(entry.input);
+    records.push_back(entry.output.record);
+  });
+  machine.BringUp();
+  machine.Enable();
+  for (int k = 0; k < 100; ++k) machine.Tick();
+  const std::size_t from = inputs.size() - 50;
+  machine.Run(ParseProgram("{shape: circle, radius_mm: 0.1, frequency_hz: 2, turns: 1}", "circle",
+                           ProgramFormat::kYaml));
+  Cycle cycle(MakeCycleConfig(machine_file.machine, ControllerName::kFull));
+  auto output = std::make_unique<CycleOutput>();
+  const std::size_t to = std::min(inputs.size(), from + static_cast<std::size_t>(count));
+  std::size_t reversed = 0;
+  for (std::size_t k = 0; k < to; ++k) {
+    if (k < from) {
+      cycle.Step(inputs[k], *output);
+      continue;
+    }
+    MeasuredStep(cycle, inputs[k], *output);
+    bool moves = false;
+    for (std::size_t i = 0; i < records[k].axes.size(); ++i) {
+      const double now = records[k].axes[i].reference.velocity_m_s;
+      const double before = records[k - 1].axes[i].reference.velocity_m_s;
+      moves = moves || now != 0.0;
+      if (now * before < 0.0) reversed = k;
+    }
+    std::puts(!moves ? "rest" : reversed != 0 && k < reversed + 10 ? "reversal" : "motion");
+  }
+}
+
 int Probe(const std::string& what, int count, const std::string& file) {
   if (what == "srukf4")
     Estimate(EstimatorKind::kSrukf4, count);
@@ -66,6 +114,8 @@ int Probe(const std::string& what, int count, const std::string& file) {
     SolveQps(count);
   else if (what == "cycle")
     StepCycles(file, count);
+  else if (what == "cst" || what == "csp")
+    ProfileCycles(file, what, count);
   else
     return 2;
   return 0;
