@@ -1,6 +1,10 @@
 # One function per kind of target, so that every target gets the same language, warnings and code generation.
 
 set(CONTOUR_SANITIZE "" CACHE STRING "Sanitizers for every target, as -fsanitize= takes them")
+set(CONTOUR_SLOWDOWN 1)  # of the tests' time limits
+if(CONTOUR_SANITIZE)
+  set(CONTOUR_SLOWDOWN 10)
+endif()
 
 function(contour_flags target)
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -53,6 +57,12 @@ function(contour_program name)
   target_link_libraries(${name} PRIVATE ${arg_LINK})
 endfunction()
 
+# contour_time_limit(SECONDS TEST...): after which tests that hang are ended.
+function(contour_time_limit seconds)
+  math(EXPR seconds "${CONTOUR_SLOWDOWN} * ${seconds}")
+  set_tests_properties(${ARGN} PROPERTIES TIMEOUT ${seconds})
+endfunction()
+
 # contour_test(NAME SOURCES ... LINK ... [OWN_HEADERS]): a GoogleTest program, each case a CTest entry. OWN_HEADERS: it has
 # definitions of its own for the libraries that are in the precompiled headers.
 function(contour_test name)
@@ -65,5 +75,6 @@ function(contour_test name)
   endif()
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_link_libraries(${name} PRIVATE ${arg_LINK} GTest::gtest_main)
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+  math(EXPR limit_s "300 * ${CONTOUR_SLOWDOWN}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${limit_s})
 endfunction()

@@ -145,16 +145,17 @@ TEST_F(DaemonCommandsTest, RunJoinsATruthThatCountsSyncsFromItsOwnStart) {
   truth.precision(17);
   truth << "sync_number,time_s,free_running,x_table_position_m,x_friction_N,x_reported_position_rad,"
            "y_table_position_m,y_friction_N,y_reported_position_rad\n";
-  machine_.on_truth = [&](std::uint64_t sync, const PerAxis<ReferencePoint>& axes) {
+  machine_.TellTruth([&](std::uint64_t sync, const PerAxis<ReferencePoint>& axes) {
     truth << sync + 1234 << ",0,0";
     for (const ReferencePoint& axis : axes)
       truth << ',' << axis.position_m + kWindUp_m << ",3.5,"
             << axis.position_m / test::ScriptedMachine::kRadius_m_rad;
     truth << std::endl;
-  };
+  });
   const fs::path out = directory_ / "out";
   const Outcome o = Ask("run " + (directory_ / "circle.yaml").string() + " --out " + out.string() +
                         " --truth " + file.string());
+  machine_.TellTruth({});  // its thread is done with the stream
   ASSERT_EQ(o.status, 0) << o.errors;
   const json metrics = json::parse(ReadAll(out / "metrics.json"));
   EXPECT_LT(metrics["contour"]["encoder"]["peak_um"].get<double>(), 1e-3);

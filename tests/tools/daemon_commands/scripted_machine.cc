@@ -33,6 +33,21 @@ void ScriptedMachine::FailWith(Reason reason, std::string text) {
   fault_text_ = std::move(text);
 }
 
+void ScriptedMachine::TellTruth(OnTruth to) {
+  const std::lock_guard lock(mutex_);
+  on_truth_ = std::move(to);
+}
+
+void ScriptedMachine::Attach(std::shared_ptr<RowFeed> feed) {
+  const std::lock_guard lock(mutex_);
+  feed_ = std::move(feed);
+}
+
+void ScriptedMachine::Detach(const std::shared_ptr<RowFeed>&) {
+  const std::lock_guard lock(mutex_);
+  feed_.reset();
+}
+
 MachineStatus ScriptedMachine::Status() {
   const std::lock_guard lock(mutex_);
   return status_;
@@ -75,7 +90,7 @@ Answer ScriptedMachine::Run(const ProgramUpload& upload) {
       r.axes[a].position_m = point.axes[a].position_m;
       r.axes[a].feedback.position_rad = point.axes[a].position_m / kRadius_m_rad;
     }
-    if (on_truth) on_truth(r.feedback_sync, point.axes);
+    if (on_truth_) on_truth_(r.feedback_sync, point.axes);
     if (feed_) feed_->Push(entry);
   }
   // A cycle after the program, which does not belong to it.

@@ -25,14 +25,16 @@ class ScriptedMachine final : public OperatorDesk {
   Answer Run(const ProgramUpload& upload) override;
   MachineStatus Status() override;
   std::string MachineFile() override { return {}; }
-  void Attach(std::shared_ptr<RowFeed> feed) override { feed_ = std::move(feed); }
-  void Detach(const std::shared_ptr<RowFeed>&) override { feed_.reset(); }
+  void Attach(std::shared_ptr<RowFeed> feed) override;
+  void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
   void Refuse(std::string why);
   /// Requests are accepted and lead to this fault.
   void FailWith(Reason reason, std::string text);
-  /// Takes a line of the truth of every cycle run: sync_number and both axes' angles and positions.
-  std::function<void(std::uint64_t sync, const PerAxis<ReferencePoint>& axes)> on_truth;
+  /// Takes a line of the truth of every cycle run: sync_number and both axes' angles and positions. Called by
+  /// the thread that carries out the request.
+  using OnTruth = std::function<void(std::uint64_t sync, const PerAxis<ReferencePoint>& axes)>;
+  void TellTruth(OnTruth to);
 
   static constexpr double kRadius_m_rad = 5e-3 / 6.283185307179586;
 
@@ -45,6 +47,7 @@ class ScriptedMachine final : public OperatorDesk {
   Reason fault_ = Reason::kNone;
   std::string fault_text_;
   std::shared_ptr<RowFeed> feed_;
+  OnTruth on_truth_;
   std::uint32_t sequence_ = 0;
 };
 
