@@ -50,7 +50,7 @@ contour enable --socket "$socket" || fail "enable was refused"
 wait_for "state Ready" logged "-> Ready"
 if [ -n "$load" ]; then
   # shellcheck disable=SC2086  # words
-  $load >/tmp/load.log 2>&1 &
+  setsid $load >/tmp/load.log 2>&1 &  # a group of its own
   load_process=$!
   sleep 1
 fi
@@ -62,7 +62,8 @@ contour stop --socket "$socket" || fail "stop was refused"
 wait_for "state Ready again" logged "Stopping -> Ready"
 if [ -n "$load" ]; then
   kill -0 "$load_process" || fail "the load ended before its time"
-  kill -INT "$load_process"
+  # Asked to end, stress-ng may take minutes: one of its own loads keeps it from hearing of it.
+  kill -KILL -- "-$load_process"
   wait "$load_process"
 fi
 contour status --json --socket "$socket" >/out/status.json || fail "no status"
