@@ -116,11 +116,14 @@ inline FrictionConfig WrongFriction() {
 
 /// A position loop around the axis: proportional plus derivative feedback on the estimate, friction preview
 /// and mass fed forward. Keeps the timing of the real cycle: feedback of t(k-1), torque over [t(k), t(k+1)).
+/// For kFullInCascade a drive closes the loop itself, eight times per cycle, and reports its torque.
 class Loop {
  public:
   Loop(EstimatorKind kind, const Mechanics& mechanics, const FrictionConfig& friction,
        const EstimatorConfig& config)
-      : mechanics_(mechanics), estimator(kind, mechanics, friction, config, 1e-3, 0.2e-3, 5e-3 / 1048576) {
+      : mechanics_(mechanics),
+        cascade_(kind == EstimatorKind::kFullInCascade),
+        estimator(kind, mechanics, friction, config, 1e-3, 0.2e-3, 5e-3 / 1048576) {
     estimator.Reset(0.0);
   }
 
@@ -153,14 +156,35 @@ class Loop {
 
     measured_m = encoder.Read(axis.s.motor_m);
     sampled_friction_N = axis.friction_N();
-    axis.Step(u, 1e-3);
-    past_N = {u, past_N[0], past_N[1]};
+    if (cascade_) {
+      const double reported_N = std::round(axis.s.force_N / step_N) * step_N;
+      past_N = {reported_N, 0.5 * (reported_N + past_N[0]), past_N[0]};
+      Hold(h, preview[1].mid_N);
+    } else {
+      axis.Step(u, 1e-3);
+      past_N = {u, past_N[0], past_N[1]};
+    }
     ++cycle;
     return estimate;
   }
 
  private:
+  void Hold(const AxisHorizon& h, double offset_N) {
+    constexpr int kTicks = 8;
+    constexpr double kDrive_Hz = 80.0;
+    const double w = 2 * std::numbers::pi * kDrive_Hz, tick_s = 1e-3 / kTicks;
+    for (int i = 0; i < kTicks; ++i) {
+      const double part = static_cast<double>(i) / kTicks;
+      const double position_m = h[1].position_m + part * (h[2].position_m - h[1].position_m);
+      const double velocity_m_s = h[1].velocity_m_s + part * (h[2].velocity_m_s - h[1].velocity_m_s);
+      const double error_m = position_m - axis.s.motor_m, error_m_s = velocity_m_s - axis.s.motor_m_s;
+      const double wanted_m_s2 = h[1].acceleration_m_s2 + w * w * error_m + 2 * w * error_m_s;
+      axis.Step(std::clamp(offset_N + mechanics_.mass_kg * wanted_m_s2, -1500.0, 1500.0), tick_s);
+    }
+  }
+
   Mechanics mechanics_;
+  bool cascade_;
 
  public:
   AxisEstimator estimator;

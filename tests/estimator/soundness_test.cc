@@ -18,7 +18,7 @@ class Soundness : public testing::TestWithParam<EstimatorKind> {
  protected:
   [[nodiscard]] bool SevenStates() const {
     return GetParam() == EstimatorKind::kEkf7 || GetParam() == EstimatorKind::kSrukf7 ||
-           GetParam() == EstimatorKind::kFull;
+           GetParam() == EstimatorKind::kFull || GetParam() == EstimatorKind::kFullInCascade;
   }
   static bool Finite(const AxisEstimate& e) {
     return std::isfinite(e.position_m + e.velocity_m_s + e.predicted_position_m + e.predicted_velocity_m_s +
@@ -315,7 +315,7 @@ TEST_P(Soundness, LostFeedbackIsBridged) {
 INSTANTIATE_TEST_SUITE_P(Kinds, Soundness,
                          testing::Values(EstimatorKind::kKinematic, EstimatorKind::kDisturbanceObserver,
                                          EstimatorKind::kSrukf4, EstimatorKind::kEkf7, EstimatorKind::kSrukf7,
-                                         EstimatorKind::kFull));
+                                         EstimatorKind::kFull, EstimatorKind::kFullInCascade));
 
 }  // namespace
 }  // namespace contour
