@@ -29,6 +29,7 @@ constexpr double kMostLevelError = 2.0;
 constexpr double kLawOfBristle = 0.01;
 constexpr double kLawAtSpeed = 0.03;  // per Stribeck velocity at the end of the window
 constexpr double kLawOfScrew = 0.05;
+constexpr double kMostLaw = 0.3;     // of the commissioned compliance
 constexpr double kMostSpeed = 0.4;   // Stribeck velocities at the end of the window
 constexpr double kMostChange = 2.0;  // of the compliance, and the inverse
 // Standard deviations that an axis moving alone stays short by.
@@ -268,6 +269,8 @@ void WindUpFit::Conclude(double compliance_m_N, double std_m_N, double independe
         compliance_m_N < commissioned_m_N * (1.0 + kMostChange)))
     return;
   const double bristle_m_N = (kLawOfBristle + kLawAtSpeed * end_m_s_ / tuning_.vs_m_s) / sigma0_N_m_;
+  // Of a soft bristle and a stiff screw, the law's errors drown the screw.
+  if (!(bristle_m_N < kMostLaw * commissioned_m_N)) return;
   const double screw_m_N = kLawOfScrew * compliance_m_N;
   const double whole = std::min(1.0, independence / kIndependent);
   const double certainty =

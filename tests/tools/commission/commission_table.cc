@@ -1,7 +1,7 @@
 // The long form of the commissioning test: seeds of the example machine, each with a model that is wrong by
 // 50 % in friction and 30 % in inertia (or the example's own model, with --nominal), commissioned in virtual
 // time. Prints a table of errors, whether the 95 % intervals hold the truth, and with --contour what `full`
-// then makes of three circles.
+// in either mode, csp and mpc_observer then make of three circles.
 //
 //   commission_table [--seeds N] [--first N] [--controller NAME] [--nominal] [--contour] [--twice]
 #include <CLI/CLI.hpp>
@@ -51,18 +51,25 @@ void Compare(const EmulatedMachineFile& file, const std::string& axis, const ide
   }
 }
 
+double Peak_um(EmulatedMachineFile file, const char* program, ControllerName controller, DriveMode mode) {
+  for (auto& [name, axis] : file.machine.axes) axis.drive.mode = mode;
+  SimulationRequest request;
+  request.file = file;
+  request.controller = controller;
+  request.program = LoadProgram(std::string(CONTOUR_CONFIG_DIR) + "/programs/" + program + ".yaml");
+  request.out = std::filesystem::temp_directory_path() / "contour_commission_table";
+  RunSimulation(request);
+  const auto metrics = nlohmann::json::parse(std::ifstream(request.out / "metrics.json"));
+  return metrics.at("contour").at("table").at("peak_um").get<double>();
+}
+
 void Contour(const EmulatedMachineFile& file) {
-  for (const char* program : {"circle_100um_slow", "circle_100um", "circle_10mm"}) {
-    SimulationRequest request;
-    request.file = file;
-    request.controller = ControllerName::kFull;
-    request.program = LoadProgram(std::string(CONTOUR_CONFIG_DIR) + "/programs/" + program + ".yaml");
-    request.out = std::filesystem::temp_directory_path() / "contour_commission_table";
-    RunSimulation(request);
-    const auto metrics = nlohmann::json::parse(std::ifstream(request.out / "metrics.json"));
-    std::printf("  %-20s peak at the table %.3f um\n", program,
-                metrics.at("contour").at("table").at("peak_um").get<double>());
-  }
+  for (const char* program : {"circle_100um_slow", "circle_100um", "circle_10mm"})
+    std::printf("  %-20s peak at the table, um: full %.3f, full in csp %.3f, csp %.3f, mpc_observer %.3f\n",
+                program, Peak_um(file, program, ControllerName::kFull, DriveMode::kCst),
+                Peak_um(file, program, ControllerName::kFull, DriveMode::kCsp),
+                Peak_um(file, program, ControllerName::kCsp, DriveMode::kCsp),
+                Peak_um(file, program, ControllerName::kMpcObserver, DriveMode::kCst));
 }
 
 int Run(unsigned first, unsigned seeds, const std::string& controller, bool nominal, bool contour,
