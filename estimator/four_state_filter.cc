@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/wide_vectors.h"
+
 namespace contour {
 namespace {
 
@@ -87,6 +89,7 @@ double FourStateFilter::Bristle_N(const X& x) const noexcept {
   return bristle + BristleDamping(f, bristle, x[kV], std::max(x[kG], kLeastLevel_N));
 }
 
+CONTOUR_WIDE_VECTORS
 AxisEstimate FourStateFilter::Update(const AxisEstimatorInput& in) noexcept {
   AxisEstimate out;
   const auto& c = setup_.config;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/wide_vectors.h"
 #include "estimator/axis_estimator.h"
 
 // Time of one cycle of each estimator: filter, prediction and, for `full`, the preview over a horizon of 20.
@@ -81,7 +82,22 @@ BENCHMARK_CAPTURE(Estimator, ekf7, EstimatorKind::kEkf7, false);
 BENCHMARK_CAPTURE(Estimator, srukf7, EstimatorKind::kSrukf7, false);
 BENCHMARK_CAPTURE(Estimator, full, EstimatorKind::kFull, true);
 
-// Predict and update alone, on models of one multiplication per state: what the filter itself costs.
+template <std::size_t N>
+CONTOUR_WIDE_VECTORS void PredictAndUpdate(SqrtUkf<N>& filter, const StateVector<N>& noise) {
+  Innovation innovation;
+  filter.Predict(
+      [](SigmaPoints<N>& points) noexcept {
+        for (std::size_t i = 0; i + 1 < N; ++i) {
+          for (std::size_t k = 0; k < SigmaPoints<N>::kStride; ++k)
+            points.row[i][k] += 0.1 * points.row[i + 1][k];
+        }
+      },
+      noise);
+  filter.UpdateState0(0.1, 0.1, {1e9, 1e9}, AllStates<N>(), innovation);
+}
+
+// Predict and update alone, on models of one multiplication per state: what the filter itself costs,
+// translated as the cycle's is.
 template <std::size_t N>
 void BareFilter(benchmark::State& state) {
   SqrtUkf<N> filter;
@@ -90,17 +106,8 @@ void BareFilter(benchmark::State& state) {
     filter.s[i][i] = 1.0;
     noise[i] = 0.01;
   }
-  Innovation innovation;
   for (auto _ : state) {
-    filter.Predict(
-        [](SigmaPoints<N>& points) noexcept {
-          for (std::size_t i = 0; i + 1 < N; ++i) {
-            for (std::size_t k = 0; k < SigmaPoints<N>::kStride; ++k)
-              points.row[i][k] += 0.1 * points.row[i + 1][k];
-          }
-        },
-        noise);
-    filter.UpdateState0(0.1, 0.1, {1e9, 1e9}, AllStates<N>(), innovation);
+    PredictAndUpdate<N>(filter, noise);
     benchmark::DoNotOptimize(filter);
   }
 }
