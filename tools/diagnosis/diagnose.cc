@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "tools/diagnosis/fit.h"
 #include "tools/diagnosis/gate.h"
 #include "tools/diagnosis/jitter.h"
+#include "tools/diagnosis/margins.h"
 #include "tools/diagnosis/parameters.h"
 #include "tools/diagnosis/residual_trace.h"
 #include "tools/diagnosis/rivals.h"
@@ -35,6 +35,8 @@ constexpr double kOffStated = 1e-4;
 constexpr double kConsistent = 1.2;
 // Waves of one kind that are two, by order or Hz.
 constexpr double kOrdersApart = 0.9;
+// No score of a machine.
+constexpr double kFarOut = -1e6;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
 void CheckInput(const AxisLog& log, const StatedAxis& stated) {
@@ -61,14 +63,15 @@ class Engine {
     FitBase();
     Fit current = base_;
     bool jitter_known = false;
-    double explained = 0.0;  // by what is accepted
+    double explained = 0.0, left_over = 0.0;  // by what is accepted; of it
     const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
     bool first = true;
     for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
-      const Gate gate{SignFlipGate(scored, options_.false_alarm_rate, options_.seed) + kOffStated * by_extras,
-                      options_.false_alarm_rate, explained};
+      Gate gate = SignFlips(scored, options_.false_alarm_rate, options_.seed, kOffStated * by_extras);
+      gate.accepted = static_cast<int>(places_.size());
+      gate.left = left_over;
       const Jitter jitter = TestJitter(problem_, current);
       if (first) {
         KeepFirst(scored, out);
@@ -80,8 +83,7 @@ class Engine {
       }
       const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > Threshold(problem_, gate);
       Say("rivals", 0.3 + 0.25 * round);
-      std::vector<Rival> rivals =
-          FitRivals(problem_, current, scored, gate, round == 0 && options_.evidence != nullptr);
+      std::vector<Rival> rivals = FitRivals(problem_, current, scored, gate, options_.evidence != nullptr);
       if (rivals.empty()) {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
@@ -101,7 +103,7 @@ class Engine {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
       }
-      if (options_.evidence && round == 0) TellEvidence(current, scored, rivals, gate.flips);
+      if (options_.evidence) TellEvidence(current, scored, rivals, gate, explained);
       // The best, or the next that holds where the best does not.
       double tested = 0.0;
       bool found = false;
@@ -134,6 +136,7 @@ class Engine {
       if (!found) break;
       Accept(current, rivals, gate, out);
       explained += best.score;
+      left_over += UnlikeShare(best.effect().kind) * best.score;
       current = best.fit;
       if (Outside(best.effect().kind)) break;
     }
@@ -186,16 +189,26 @@ class Engine {
   }
 
   void TellEvidence(const Fit& current, const std::vector<Scored>& scored, const std::vector<Rival>& rivals,
-                    double flips) const {
+                    const Gate& gate, double explained) const {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::string> told;
     for (const Scored& s : scored) {
       const std::string& kind = s.effect->kind;
       if (std::find(told.begin(), told.end(), kind) != told.end()) continue;
       told.push_back(kind);
-      Evidence e{kind, s.drop, Penalty(*s.effect), s.excess, kNone, kNone, kNone, flips};
+      Evidence e;
+      e.accepted = gate.accepted;
+      e.explained = explained;
+      e.in_base = InBase(problem_, kind);
+      e.kind = kind;
+      e.screened = s.drop;
+      e.penalty = Penalty(*s.effect);
+      e.excess = s.excess;
+      e.refitted = e.tested = e.unseen = kNone;
+      e.flips = gate.calibrated;
+      e.asked = Threshold(problem_, gate, *s.effect);
       for (const Rival& r : rivals) {
-        if (r.effect().kind != kind) continue;
+        if (r.effect().kind != kind || r.score < kFarOut) continue;
         e.penalty = Penalty(r.effect());
         e.refitted = r.score + e.penalty;
         e.tested = TestedScore(problem_, current, r);
@@ -214,7 +227,7 @@ class Engine {
     // A further effect that does harm in the half of the log that it was not fitted on is none.
     Cause cause;
     std::vector<BlockGain> blocks;
-    if (gate.accepted > 0.0) {
+    if (gate.accepted > 0) {
       HeldOutGain(problem_, current, r.fit, r.effect().kind == "pitch_error", cause, blocks);
       if (cause.heldout_gain_high < 0.0) return false;
     }

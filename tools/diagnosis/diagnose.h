@@ -11,8 +11,11 @@
 
 namespace contour::diagnosis {
 
-/// What one kind of cause scored in the first round, for calibrations.
+/// What one kind of cause scored in one round, for calibrations.
 struct Evidence {
+  int accepted = 0;        ///< causes before this round
+  double explained = 0.0;  ///< by them
+  bool in_base = false;    ///< a number of the stated model
   std::string kind;
   double screened = 0.0;  ///< score test: drop of chi^2 and prior
   double penalty = 0.0;
@@ -20,7 +23,8 @@ struct Evidence {
   double refitted = 0.0;  ///< drop of the joint fit; NaN: not fitted
   double tested = 0.0;    ///< score that the gate is asked about; NaN: not fitted
   double unseen = 0.0;    ///< held-out statistic; NaN: not fitted
-  double flips = 0.0;     ///< gate of the sign flips
+  double flips = 0.0;     ///< gate of the sign flips, at the rate of the calibration
+  double asked = 0.0;     ///< by the gate
 };
 
 struct DiagnoseOptions {

@@ -4,24 +4,20 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string_view>
+
+#include "tools/diagnosis/margins.h"
 
 namespace contour::diagnosis {
 namespace {
 
-// No effect acts quite as its model does: this share of what it explains may look like others.
-constexpr double kUnlike = 5e-3;
-// What is left of an accepted cause looks like others, the more the longer the log.
-constexpr double kBesidePerRow = 2e-4;
+// Of numbers of the base beside accepted causes, whose left-overs they may take up; per row.
+constexpr double kBesidePerRow = 1e-4;
 // Each kind that is a number of the base has this share of the false alarms.
 constexpr double kShareInBase = 0.2;
 // A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
 // rate (3.1 standard deviations).
 constexpr double kBeyondStated = 2e-3;
-// The model's own errors (integrators, the closed loop, a coupling stiffer than a rigid model can say) look
-// like effects, the more the longer the log; see docs/diagnosis_method.md for how these were measured.
-constexpr double kMargin = 1.0, kMarginPerRow = 5e-5, kMarginPerRowViscous = 2.5e-4,
-                 kMarginPerRowCompliance = 3e-4, kMarginPerRowSaturation = 4e-4;
-
 double NormalTail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
 
 // Exceeded by chi^2 with the given probability.
@@ -37,7 +33,7 @@ double ChiSquare(std::size_t degrees, double probability) {
 
 }  // namespace
 
-double SignFlipGate(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed) {
+Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more) {
   constexpr int kDraws = 1500;
   constexpr int kScans = 6;
   std::mt19937_64 random(seed * 2654435761U + 99);
@@ -56,39 +52,38 @@ double SignFlipGate(std::span<const Scored> scored, double false_alarm_rate, std
     largest.push_back(best);
   }
   std::sort(largest.begin(), largest.end());
-  const auto quantile = [&](double p) {
+  const auto drawn = [&](double p) {
     return largest[std::min<std::size_t>(kDraws - 1, static_cast<std::size_t>(p * kDraws))];
   };
-  if (false_alarm_rate >= 0.02) return quantile(1.0 - false_alarm_rate);
   // Straight through the 80 % and the 98 % quantile on Gumbel's paper.
   const auto paper = [](double p) { return -std::log(-std::log(p)); };
-  const double slope = (quantile(0.98) - quantile(0.80)) / (paper(0.98) - paper(0.80));
-  return quantile(0.98) + slope * (paper(1.0 - false_alarm_rate) - paper(0.98));
+  const double slope = (drawn(0.98) - drawn(0.80)) / (paper(0.98) - paper(0.80));
+  const auto at_rate = [&](double rate) {
+    if (rate >= 0.02) return drawn(1.0 - rate);
+    return drawn(0.98) + slope * (paper(1.0 - rate) - paper(0.98));
+  };
+  return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
 }
 
-double Threshold(const Problem& problem, const Gate& gate) {
-  const auto rows = static_cast<double>(problem.rows());
-  if (gate.accepted > 0.0) return gate.flips + kUnlike * gate.accepted + kBesidePerRow * rows;
-  return gate.flips + kMargin + kMarginPerRow * rows;
+namespace {
+
+double Threshold(const Problem& problem, const Gate& gate, std::string_view kind) {
+  const double errors = MarginPerRow(kind, gate.rate) * static_cast<double>(problem.rows());
+  return std::max(gate.flips, gate.calibrated + errors) + gate.left;
 }
+
+}  // namespace
+
+double Threshold(const Problem& problem, const Gate& gate) { return Threshold(problem, gate, ""); }
 
 double Threshold(const Problem& problem, const Gate& gate, const Effect& effect) {
-  if (!InBase(problem, effect.kind)) {
-    double per_row = kMarginPerRow;
-    if (effect.kind == "viscous_nonlinear") per_row = kMarginPerRowViscous;
-    if (effect.kind == "compliance") per_row = kMarginPerRowCompliance;
-    if (effect.kind == "torque_saturation") per_row = kMarginPerRowSaturation;
-    const double extra =
-        gate.accepted > 0.0 ? 0.0 : (per_row - kMarginPerRow) * static_cast<double>(problem.rows());
-    return Threshold(problem, gate) + extra;
-  }
+  if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind);
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
   const double by_chance =
       ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated)) - Penalty(effect);
-  if (gate.accepted <= 0.0) return by_chance;
-  return std::max(by_chance, gate.flips) + kUnlike * gate.accepted +
-         0.5 * kBesidePerRow * static_cast<double>(problem.rows());
+  if (gate.accepted == 0) return by_chance;
+  return std::max(by_chance, gate.flips) + gate.left + kBesidePerRow * static_cast<double>(problem.rows());
 }
 
 }  // namespace contour::diagnosis

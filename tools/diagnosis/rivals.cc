@@ -20,6 +20,7 @@ constexpr double kMostDamped = 1.0,
                  kLeastShare = 0.1;  // logarithm of the damping ratio over 0.04; of the inertia
 constexpr double kNever = -1e300;
 constexpr double kFineStep = 0.05;
+constexpr double kSmall = 60.0, kNoLuck = 300.0;  // drops
 constexpr std::size_t kMostKinds = 4, kMostTried = 6, kSmallStarts = 4;
 
 /// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
@@ -63,7 +64,12 @@ void Judge(const Problem& problem, const Fit& current, Rival& r) {
 // more about chance.
 constexpr double kMostExcess = 3.0;
 
-bool Promising(const Problem& problem, const Scored& s, const Gate& gate) {
+// Beside a large cause the score test falls short by as much: the noise that it was made under has the other
+// one in it.
+constexpr double kShortBeside = 0.1;
+
+bool Promising(const Problem& problem, const Scored& s, Gate gate) {
+  gate.left *= kShortBeside;
   return s.drop / std::min(s.excess, kMostExcess) - Penalty(*s.effect) > Threshold(problem, gate, *s.effect);
 }
 
@@ -84,6 +90,24 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
   return {std::move(start),
           {.most_steps = 3, .most_refreshes = 1, .close_enough = 1.0, .covariance = false},
           &current};
+}
+
+/// Of a kind, what no fit leads from one to the other: a drag that bends with a power of the speed and one
+/// with a knee differ in how much of it is linear.
+std::string FamilyOf(const Effect& effect) {
+  const bool knee = effect.kind == "viscous_nonlinear" && effect.order < 1.0;
+  return effect.kind + (knee ? " with a knee" : "");
+}
+
+/// Of each kind the best only; sorted before.
+void OneOfEach(std::vector<Rival>& rivals) {
+  std::vector<Rival> out;
+  for (Rival& r : rivals)
+    if (std::none_of(out.begin(), out.end(), [&](const Rival& o) {
+          return o.effect().kind == r.effect().kind && o.no_fault == r.no_fault;
+        }))
+      out.push_back(std::move(r));
+  rivals = std::move(out);
 }
 
 /// A place of a grid at full size, and what the cost would be there, the base following to first order.
@@ -178,8 +202,9 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
       // Evidence in the priors is small beside what lies in the residual, and as good.
       const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, gate);
       if (!by_priors && (fitted >= kMostKinds || done.size() >= kMostTried || s.drop < 0.1 * most)) continue;
-      if (std::find(done.begin(), done.end(), s.effect->kind) != done.end()) continue;
-      done.push_back(s.effect->kind);
+      const std::string family = FamilyOf(*s.effect);
+      if (std::find(done.begin(), done.end(), family) != done.end()) continue;
+      done.push_back(family);
       if (!s.effect->start.empty()) {
         if (!Promising(problem, s, gate)) continue;
         std::vector<Beginning> far = Far(problem, current, s.effect->kind, scored);
@@ -247,18 +272,20 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
     Judge(problem, current, anew);
     if (anew.score > r.score) r = std::move(anew);
   }
-  const std::string first = rivals[0].effect().kind;
+  const Effect* const first = &rivals[0].effect();
   Sort(rivals);
-  if (rivals[0].effect().kind != first)
+  OneOfEach(rivals);
+  if (&rivals[0].effect() != first)
     rivals[0].fit = FitOn(problem, rivals[0].fit, {.most_steps = 3, .most_refreshes = 2});
 }
 
 double TestedScore(const Problem& problem, const Fit& current, const Rival& rival) {
   const SharedEffect& effect = rival.fit.point.effects.back();
   double drop = rival.score + Penalty(*effect);
-  if (effect->signals || !effect->as_term.empty()) {
+  // Luck does not go that far; a base that lies elsewhere without the effect does.
+  if (drop < kNoLuck && (effect->signals || !effect->as_term.empty())) {
     const std::vector<Scored> again = ScoreEffects(problem, current, {effect});
-    if (again[0].drop < 60.0) drop = std::min(drop, again[0].drop);
+    if (again[0].drop < kSmall) drop = std::min(drop, again[0].drop);
   }
   return drop / ExcessOfLast(problem, rival.fit) - Penalty(*effect);
 }

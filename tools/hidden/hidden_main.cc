@@ -16,6 +16,7 @@
 
 #include "core/exit_status.h"
 #include "tools/diagnosis/diagnose.h"
+#include "tools/hidden/calibrate.h"
 #include "tools/hidden/options.h"
 #include "tools/hidden/outcome.h"
 #include "tools/hidden/recorded_case.h"
@@ -85,9 +86,10 @@ Diagnoser Ours(const Options& o, const std::string& name) {
     std::string table;
     if (!o.evidence.empty())
       options.evidence = [&](const diagnosis::Evidence& e) {
-        table += FormatText("%s,%zu,%s,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(), log.size(),
-                            e.kind.c_str(), e.screened, e.penalty, e.excess, e.refitted, e.tested, e.unseen,
-                            e.flips);
+        table +=
+            FormatText("%s,%zu,%g,%d,%.3f,%d,%s,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(),
+                       log.size(), rate, e.accepted, e.explained, e.in_base ? 1 : 0, e.kind.c_str(),
+                       e.screened, e.penalty, e.excess, e.refitted, e.tested, e.unseen, e.flips, e.asked);
       };
     const diagnosis::Diagnosis answer = diagnosis::Diagnose(log, stated, options);
     if (!table.empty()) std::ofstream(o.evidence, std::ios::app) << table;
@@ -216,7 +218,11 @@ int main(int argc, char** argv) {
   using namespace contour::hidden;
   try {
     const Options options = ParseOptions(argc, argv);
-    if (!options.record.empty()) {
+    if (!options.calibrate.empty()) {
+      std::ifstream evidence(options.calibrate);
+      if (!evidence) throw std::runtime_error("cannot read " + options.calibrate);
+      std::fputs(MarginTable(evidence).c_str(), stdout);
+    } else if (!options.record.empty()) {
       RecordAll(options);
     } else if (!options.judge.empty()) {
       JudgeAll(options, argc, argv);

@@ -20,6 +20,7 @@ Hides effects in the emulated machine, records logs over the bus, diagnoses them
   --record DIR         only record: a directory for each case, with the truth beside the log
   --judge DIR          only diagnose what is recorded there; goes on where an earlier run ended
   (neither)            both, and the logs are not kept
+  --calibrate FILE     the gate's margins from what --evidence wrote, on standard output
 
 What to record (cases that are there already are not recorded again):
   --kinds A,B,...      effects to hide (all of the catalogue); "outside": those outside the catalogue
@@ -38,7 +39,7 @@ How to judge:
   --rate R             false-alarm rate (0.05)
   --strict-rate R      clean machines that raise an alarm are asked again at this rate
   --bootstrap N        refits with every stroke at random, for the intervals (0)
-  --evidence FILE      what every kind scored in every log, first round, appended to a table (slower)
+  --evidence FILE      what every kind scored in every log and round, appended to a table (slower)
 
   --threads N          (number of processors)
   --out DIR            results.csv and results.md go there (with --judge: beside the cases)
@@ -123,9 +124,9 @@ bool Take(const std::string& option, const std::string& value, Options& o) {
       plan.*counts[i] = Number(option, value);
       return true;
     }
-  std::string Options::*const texts[] = {&Options::record, &Options::judge, &Options::keep, &Options::out,
-                                         &Options::evidence};
-  const char* const text_names[] = {"--record", "--judge", "--keep", "--out", "--evidence"};
+  std::string Options::*const texts[] = {&Options::record, &Options::judge,    &Options::keep,
+                                         &Options::out,    &Options::evidence, &Options::calibrate};
+  const char* const text_names[] = {"--record", "--judge", "--keep", "--out", "--evidence", "--calibrate"};
   for (std::size_t i = 0; i < std::size(texts); ++i)
     if (option == text_names[i]) {
       o.*texts[i] = value;

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string_view>
+
+namespace contour::diagnosis {
+
+/// The rate at which margins were read off clean logs.
+inline constexpr double kCalibratedRate = 0.05;
+
+/// How a kind's scores exceed the sign flips on machines without any effect: in a share of the logs, by
+/// `scale` per 100 000 rows on the average there, exponentially distributed.
+struct ErrorScore {
+  std::string_view kind;
+  double share = 0.0, scale = 0.0;
+  /// Of a score, once a cause of this kind is accepted: what is left of it may look like others by so much.
+  double unlike = 0.0;
+};
+
+/// What the model's own errors may add to a score above the gate of kCalibratedRate before all kinds together
+/// alarm more often than asked; per row. They look like effects, the more the longer the log.
+double MarginPerRow(std::string_view kind, double false_alarm_rate);
+
+double UnlikeShare(std::string_view kind);
+
+}  // namespace contour::diagnosis

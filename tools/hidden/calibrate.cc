@@ -1,0 +1,108 @@
+#include "tools/hidden/calibrate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "tools/diagnosis/margins.h"
+#include "tools/text/format_text.h"
+
+// A kind's scores exceed the flips in few of the clean logs one has, so that no quantile can be read off: the
+// exceedances are taken as exponential (Pickands, Annals of Statistics 3(1), 1975, without the shape), their
+// scale drawn towards that of all kinds by one log.
+namespace contour::hidden {
+namespace {
+
+constexpr double kHolds = 1.2, kNoChance = 100.0;  // as diagnosis has it
+// What one case says about how much of a cause is left may be a third of what the next one says.
+constexpr double kUnlikeReserve = 3.0;
+constexpr double kLeastUnlike = 2e-4;
+
+struct Line {
+  std::string log, kind;
+  double rows = 0.0, rate = 0.0, explained = 0.0, tested = 0.0, unseen = 0.0, flips = 0.0;
+  int accepted = 0;
+  bool in_base = false;
+};
+
+Line LineFrom(const std::string& text) {
+  std::vector<std::string> f;
+  std::stringstream stream(text);
+  for (std::string field; std::getline(stream, field, ',');) f.push_back(field);
+  if (f.size() != 15) throw std::runtime_error("no line of evidence: " + text);
+  try {
+    return {f[0],
+            f[6],
+            std::stod(f[1]),
+            std::stod(f[2]),
+            std::stod(f[4]),
+            std::stod(f[11]),
+            std::stod(f[12]),
+            std::stod(f[13]),
+            std::stoi(f[3]),
+            f[5] == "1"};
+  } catch (const std::logic_error&) {
+    throw std::runtime_error("not a number in: " + text);
+  }
+}
+
+struct Exceeding {
+  double count = 0.0, sum = 0.0;
+};
+
+bool WouldHold(const Line& l) {
+  return !l.in_base && std::isfinite(l.tested) && l.tested > l.flips &&
+         (l.unseen > kHolds || l.tested > kNoChance);
+}
+
+std::string Entry(const std::string& kind, double share, double scale, double unlike) {
+  return FormatText("{\"%s\", %.4f, %.2f, %.1e},\n", kind.c_str(), share, scale, unlike);
+}
+
+}  // namespace
+
+std::string MarginTable(std::istream& evidence) {
+  std::set<std::string> clean;
+  std::map<std::string, Exceeding> kinds;
+  Exceeding all;
+  std::map<std::string, double> unlike;
+  std::vector<Line> beside;
+  for (std::string text; std::getline(evidence, text);) {
+    const Line l = LineFrom(text);
+    if (l.rate != diagnosis::kCalibratedRate) continue;
+    if (l.log.starts_with("clean_")) {
+      clean.insert(l.log);
+      if (l.accepted != 0 || !WouldHold(l)) continue;
+      const double by = 1e5 * (l.tested - l.flips) / l.rows;
+      for (Exceeding* e : {&kinds[l.kind], &all}) {
+        e->count += 1.0;
+        e->sum += by;
+      }
+    } else if (l.log.starts_with("clear_") && l.accepted == 1 && WouldHold(l)) {
+      beside.push_back(l);
+    }
+  }
+  if (clean.empty()) throw std::runtime_error("no machine without an effect among the evidence");
+  const auto logs = static_cast<double>(clean.size());
+  const double scale = (all.sum + 1.0) / (all.count + 1.0);
+  // The hidden kind is in the case's name: clear_KIND_0001.
+  for (const Line& l : beside) {
+    const std::string kind = l.log.substr(6, l.log.rfind('_') - 6);
+    // A further order of the kind is another cause.
+    const double share = std::max(kLeastUnlike, kUnlikeReserve * (l.tested - l.flips) / l.explained);
+    unlike[kind] = std::max(unlike[kind], share);
+    kinds.try_emplace(kind);
+  }
+  // What no log has shown yet, half a log may have.
+  std::string out = Entry("", 0.5 / logs, scale, kLeastUnlike);
+  for (const auto& [kind, e] : kinds)
+    out +=
+        Entry(kind, e.count / logs, (e.sum + scale) / (e.count + 1.0), std::max(kLeastUnlike, unlike[kind]));
+  return out;
+}
+
+}  // namespace contour::hidden
