@@ -202,7 +202,7 @@ void PathFollower::Around(std::size_t axis, int reach, AxisHorizon& out) const n
   out.clear();
   const auto first = static_cast<std::int64_t>(first_), end = static_cast<std::int64_t>(end_);
   if (mode_ == Mode::kRunning && clock_ > 0 && clock_ - reach >= first && clock_ + reach + 1 < end) {
-    out.resize(static_cast<std::size_t>(2 * reach + 1));
+    out.resize(2 * static_cast<std::size_t>(reach) + 1);
     Copy(axis, static_cast<std::uint64_t>(clock_ - reach), out.size(), out.data());
     return;
   }
