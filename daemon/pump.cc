@@ -44,6 +44,7 @@ void Pump::Supply(std::unique_ptr<PathGenerator> generator) {
   const std::scoped_lock lock(mutex_);
   next_ = std::move(generator);
   abandon_ = false;
+  feeder_.Announce();
 }
 
 void Pump::Abandon() {

@@ -57,7 +57,7 @@ class Pump {
   TelemetryHub& hub_;
   std::vector<std::string> axis_names_;
   std::vector<std::string> bus_names_;
-  PathFeeder feeder_;  ///< pump thread only
+  PathFeeder feeder_;  ///< pump thread only, but for Announce()
   std::mutex mutex_;   ///< guards next_ and abandon_
   std::unique_ptr<PathGenerator> next_;
   bool abandon_ = false;

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <memory>
 #include <thread>
 
 #include "daemon/make_cycle_config.h"
+#include "daemon/path_feeder.h"
+#include "daemon/program/program.h"
+#include "daemon/program_limits.h"
 #include "daemon/rt/loop.h"
 #include "drivers/can/loopback_bus.h"
 #include "tools/machine/load_emulated_machine.h"
@@ -130,6 +134,41 @@ TEST_F(LockstepLoop, AnOpenedEmergencyStopIsSeenWhileTimeStandsStill) {
     return r.state == MachineState::kFaulted;
   });
   EXPECT_EQ(seen.reason, Reason::kEmergencyStop) << Name(seen.reason);
+}
+
+// The thread with the points may be kept waiting for longer than the cycles take that a program is waited
+// for.
+TEST_F(LockstepLoop, PointsThatAreAnnouncedAreWaitedFor) {
+  AwaitState(MachineState::kIdle);
+  mailbox_.Post(RequestKind::kEnable);
+  CycleRecord seen;
+  AwaitRecord([&](const CycleRecord& r) {
+    seen = r;
+    return r.state == MachineState::kReady;
+  });
+  constexpr std::uint32_t kProgram = 7;
+  PathFeeder feeder(mailbox_);
+  feeder.Announce();
+  const std::uint32_t asked = mailbox_.Post(RequestKind::kRun, kProgram);
+  AwaitRecord([&](const CycleRecord& r) { return r.acknowledged == asked; });
+  for (const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(300);
+       std::chrono::steady_clock::now() < until;) {
+    const CycleEntry* entry = queue_.Front();
+    if (entry == nullptr) continue;
+    ASSERT_EQ(entry->output.record.reason, Reason::kNone) << Name(entry->output.record.reason);
+    queue_.Release();
+  }
+  PerAxis<double> start_m;
+  start_m.push_back(seen.axes[0].reference.position_m);
+  feeder.Begin(std::make_unique<PathGenerator>(
+      ParseProgram("shape: hold\nseconds: 0.3\n", "hold", ProgramFormat::kYaml), start_m,
+      ProgramLimits(file_.machine), 1e-6 * file_.machine.machine.cycle_us, kProgram));
+  AwaitRecord([&](const CycleRecord& r) {
+    feeder.Feed();
+    seen = r;
+    return r.reason != Reason::kNone;
+  });
+  EXPECT_EQ(seen.reason, Reason::kProgramEnd) << Name(seen.reason);
 }
 
 TEST_F(LockstepLoop, NoAnswerIsWaitedForBeforeTheFirstSync) {

@@ -201,7 +201,7 @@ class MachineBench:
     # Waiting ---------------------------------------------------------------------------------------------------
 
     @staticmethod
-    def wait_for(what, condition, seconds=30, pause_s=0.02):
+    def wait_for(what, condition, seconds=120, pause_s=0.02):
         """The first true value of condition(). The time is a safety net on a busy host, not a demand."""
         end = time.monotonic() + seconds
         while True:
@@ -212,7 +212,7 @@ class MachineBench:
                 raise BenchError(f"waited {seconds} s in vain for {what}")
             time.sleep(pause_s)
 
-    def wait_for_state(self, *states, seconds=30):
+    def wait_for_state(self, *states, seconds=120):
         last = {}
 
         def reached():

@@ -63,7 +63,7 @@ wait_for "state Ready again" logged "Stopping -> Ready"
 if [ -n "$load" ]; then
   kill -0 "$load_process" || fail "the load ended before its time"
   # Asked to end, stress-ng may take minutes: one of its own loads keeps it from hearing of it.
-  kill -KILL -- "-$load_process"
+  kill -s KILL -- "-$load_process"
   wait "$load_process"
 fi
 contour status --json --socket "$socket" >/out/status.json || fail "no status"
