@@ -113,10 +113,12 @@ class Interpreter {
     line_ = block.line;
     motion_in_block_.reset();
     dwell_ = false;
+    path_control_.reset();
     for (const Word& word : block.words) Modal(word);
-    if (!dwell_ && block.Get('P')) {
-      Fail("P is not supported here: G64 takes no tolerance, corners keep the programmed path");
-    }
+    const bool g64 = path_control_ == GcodeMove::Corner::kContinuous;
+    if (block.Get('P') && !dwell_ && !g64) Fail("P belongs to G4 and G64");
+    if (block.Get('P') && dwell_ && g64) Fail("G4 and G64 in the same block");
+    if (g64) Tolerance(block);
     if (dwell_) {
       Dwell(block);
     } else if (HasAxisWord(block)) {
@@ -181,13 +183,13 @@ class Interpreter {
         unit_m_ = kMillimetre_m;
         return;
       case 610:
-        corner_ = GcodeMove::Corner::kExactPath;
+        PathControl(word, GcodeMove::Corner::kExactPath);
         return;
       case 611:
-        corner_ = GcodeMove::Corner::kExactStop;
+        PathControl(word, GcodeMove::Corner::kExactStop);
         return;
       case 640:
-        corner_ = GcodeMove::Corner::kContinuous;
+        PathControl(word, GcodeMove::Corner::kContinuous);
         return;
       case 900:
         absolute_ = true;
@@ -198,6 +200,21 @@ class Interpreter {
       default:
         Fail(Text(word) + " is not supported");
     }
+  }
+
+  void PathControl(const Word& word, GcodeMove::Corner corner) {
+    if (path_control_) Fail(Text(word) + ": a second path control in the same block");
+    path_control_ = corner;
+    corner_ = corner;
+  }
+
+  /// G64: full feed through corners, or with P: blended within P, in the units in force.
+  void Tolerance(const Block& block) {
+    const std::optional<double> tolerance = block.Get('P');
+    if (!tolerance) return;
+    if (!(*tolerance > 0.0)) Fail("G64: expected P with a tolerance above zero");
+    corner_ = GcodeMove::Corner::kBlended;
+    tolerance_m_ = *tolerance * unit_m_;
   }
 
   void Dwell(const Block& block) {
@@ -215,6 +232,7 @@ class Interpreter {
     move.line = line_;
     move.target_m = target_m;
     move.corner = corner_;
+    if (corner_ == GcodeMove::Corner::kBlended) move.tolerance_m = tolerance_m_;
     return move;
   }
 
@@ -309,10 +327,12 @@ class Interpreter {
   double unit_m_ = kMillimetre_m;
   bool absolute_ = true;
   GcodeMove::Corner corner_ = GcodeMove::Corner::kContinuous;
+  double tolerance_m_ = 0.0;  ///< of G64 P
   // Of the block at work:
   int line_ = 0;
   std::optional<int> motion_in_block_;
   bool dwell_ = false;
+  std::optional<GcodeMove::Corner> path_control_;
 };
 
 bool EndsProgram(const Block& block) {

@@ -5,90 +5,15 @@
 #include <cstdio>
 #include <limits>
 
+#include "daemon/program/blended_runs.h"
+#include "daemon/program/path_runs.h"
 #include "daemon/program/piece_limits.h"
 
 namespace contour {
 namespace {
 
 constexpr double kScoredAfter_s = 1.0;
-// Below this angle the direction counts as unchanged; programs written with a few decimals meet their
-// tangents no better.
-constexpr double kTangentAngle_rad = 0.02;
 constexpr std::size_t kGroupSize = 16;
-
-double CornerSpeed(const PieceRequest& before, const PieceRequest& after) {
-  if (before.dwell_s > 0.0 || before.curve.length_m == 0.0 || after.curve.length_m == 0.0) return 0.0;
-  const double speed = std::min(before.speed_m_s, after.speed_m_s);
-  switch (before.corner) {
-    case GcodeMove::Corner::kContinuous:
-      return speed;
-    case GcodeMove::Corner::kExactStop:
-      return 0.0;
-    case GcodeMove::Corner::kExactPath:
-      break;
-  }
-  const CurvePoint end = PointAt(before.curve, before.curve.length_m);
-  const CurvePoint begin = PointAt(after.curve, 0.0);
-  double squared = 0.0;
-  for (std::size_t i = 0; i < end.tangent.size(); ++i) {
-    squared += std::pow(end.tangent[i] - begin.tangent[i], 2);
-  }
-  return std::sqrt(squared) < kTangentAngle_rad ? speed : 0.0;
-}
-
-/// Pieces first..end of the requests as one, with what the strictest of them allows.
-struct RunRequest {
-  std::size_t first = 0;
-  std::size_t end = 0;
-  double length_m = 0.0;
-  double speed_m_s = 0.0;
-  RampLimits ramp;
-};
-
-RampLimits Strictest(const RampLimits& a, const RampLimits& b) {
-  // No limit of jerk is written as 0.
-  const bool both = a.jerk_m_s3 > 0.0 && b.jerk_m_s3 > 0.0;
-  return {std::min(a.acceleration_m_s2, b.acceleration_m_s2),
-          both ? std::min(a.jerk_m_s3, b.jerk_m_s3) : std::max(a.jerk_m_s3, b.jerk_m_s3),
-          std::max(a.shortest_ramp_s, b.shortest_ramp_s)};
-}
-
-std::vector<RunRequest> Runs(const std::vector<PieceRequest>& requests,
-                             const std::vector<RampLimits>& ramps) {
-  std::vector<RunRequest> runs;
-  for (std::size_t i = 0; i < requests.size(); ++i) {
-    const PieceRequest& r = requests[i];
-    const bool joins = i > 0 && r.speed_m_s == requests[i - 1].speed_m_s && r.speed_m_s > 0.0 &&
-                       CornerSpeed(requests[i - 1], r) == r.speed_m_s;
-    if (joins) {
-      RunRequest& run = runs.back();
-      run.end = i + 1;
-      run.length_m += r.curve.length_m;
-      run.ramp = Strictest(run.ramp, ramps[i]);
-    } else {
-      runs.push_back({i, i + 1, r.curve.length_m, r.speed_m_s, ramps[i]});
-    }
-  }
-  return runs;
-}
-
-/// Speeds between the runs (element i lies before run i), lowered until every run is long enough for its
-/// change of speed.
-std::vector<double> Junctions(const std::vector<RunRequest>& runs,
-                              const std::vector<PieceRequest>& requests) {
-  const std::size_t n = runs.size();
-  std::vector<double> speed(n + 1, 0.0);
-  for (std::size_t i = 1; i < n; ++i)
-    speed[i] = CornerSpeed(requests[runs[i].first - 1], requests[runs[i].first]);
-  for (std::size_t i = 0; i < n; ++i) {
-    speed[i + 1] =
-        std::min(speed[i + 1], ReachableSpeed_m_s(speed[i], runs[i].length_m, speed[i + 1], runs[i].ramp));
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    speed[i] = std::min(speed[i], ReachableSpeed_m_s(speed[i + 1], runs[i].length_m, speed[i], runs[i].ramp));
-  }
-  return speed;
-}
 
 double DistanceToBox_m(const Extent& box, const PerAxis<double>& point) {
   double squared = 0.0;
@@ -111,33 +36,68 @@ void Enlarge(Extent& box, const Extent& by) {
 PiecewisePlan::PiecewisePlan(std::vector<PieceRequest> requests, const PathTraits& traits,
                              const PerAxis<PlanLimits>& limits)
     : traits_(traits), axis_count_(limits.size()) {
+  const bool blended = std::any_of(requests.begin(), requests.end(), [](const PieceRequest& r) {
+    return r.corner == GcodeMove::Corner::kBlended;
+  });
+  const PerAxis<PlanLimits> ramp_limits = blended ? WithJerk(limits) : limits;
   std::vector<RampLimits> ramps;
   double way_m = 0.0;
   for (PieceRequest& r : requests) {
     if (r.speed_m_s == 0.0 && r.curve.length_m > 0.0) r.speed_m_s = LargestSpeed_m_s(r.curve, limits);
     CheckPiece(r, limits);
-    ramps.push_back(RampLimitsOf(r, limits));
+    ramps.push_back(RampLimitsOf(r, ramp_limits));
     pieces_.push_back({r.curve, way_m});
     way_m += r.curve.length_m;
   }
-  const std::vector<RunRequest> runs = Runs(requests, ramps);
-  const std::vector<double> speed = Junctions(runs, requests);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const RunRequest& r = runs[i];
-    Run run{{}, duration_s_, pieces_[r.first].before_m, r.length_m, r.first, r.end};
-    if (r.length_m > 0.0) run.profile = SpeedProfile(r.length_m, speed[i], r.speed_m_s, speed[i + 1], r.ramp);
-    duration_s_ += run.profile.duration_s() + requests[r.end - 1].dwell_s;
-    runs_.push_back(run);
+  if (blended) {
+    AddBlendedRuns(requests, ramps, ramp_limits);
+  } else {
+    AddRuns(requests, ramps);
   }
   if (traits_.speed_in_one_turn) CheckSpeedWithinTurn(requests.front());
   MakeGroups();
 }
 
+void PiecewisePlan::Add(Run run, double dwell_s) {
+  run.begin_s = duration_s_;
+  duration_s_ += std::visit([](const auto& m) { return m.duration_s(); }, run.motion) + dwell_s;
+  runs_.push_back(std::move(run));
+}
+
+void PiecewisePlan::AddRuns(const std::vector<PieceRequest>& requests, const std::vector<RampLimits>& ramps) {
+  const std::vector<RunRequest> runs = Runs(requests, ramps);
+  const std::vector<double> speed = Junctions(runs, requests);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RunRequest& r = runs[i];
+    Run run{{}, 0.0, pieces_[r.first].before_m, r.length_m, r.first, r.end};
+    if (r.length_m > 0.0) run.motion = SpeedProfile(r.length_m, speed[i], r.speed_m_s, speed[i + 1], r.ramp);
+    Add(std::move(run), requests[r.end - 1].dwell_s);
+  }
+}
+
+void PiecewisePlan::AddBlendedRuns(const std::vector<PieceRequest>& requests,
+                                   const std::vector<RampLimits>& ramps, const PerAxis<PlanLimits>& limits) {
+  const std::vector<RunRequest> runs = Runs(requests, ramps);
+  const std::vector<BlendedJunction> junctions = BlendedJunctions(runs, requests, limits);
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const RunRequest& r = runs[i];
+    const BlendedJunction& in = junctions[i];
+    const BlendedJunction& out = junctions[i + 1];
+    const double begin_m = pieces_[r.first].before_m;
+    if (in.blend) Add({*in.blend, 0.0, begin_m - in.cut_m, 2.0 * in.cut_m, r.first, r.first + 1}, 0.0);
+    const double length_m = r.length_m - in.cut_m - out.cut_m;
+    Run run{{}, 0.0, begin_m + in.cut_m, length_m, r.first, r.end};
+    if (length_m > 0.0) run.motion = JerkProfile(length_m, in.state, r.speed_m_s, out.state, r.ramp);
+    Add(std::move(run), requests[r.end - 1].dwell_s);
+  }
+}
+
 void PiecewisePlan::CheckSpeedWithinTurn(const PieceRequest& first) const {
-  const Run& run = runs_.front();  // shapes with turns that do not stop in corners are one run
-  if (run.profile.cruise_m_s() >= first.speed_m_s * (1.0 - 1e-9) &&
-      run.profile.run_up_length_m() <= traits_.turn_length_m &&
-      run.profile.run_down_length_m() <= traits_.turn_length_m) {
+  // Shapes with turns that neither stop in corners nor blend them are one run.
+  const auto& profile = std::get<SpeedProfile>(runs_.front().motion);
+  if (profile.cruise_m_s() >= first.speed_m_s * (1.0 - 1e-9) &&
+      profile.run_up_length_m() <= traits_.turn_length_m &&
+      profile.run_down_length_m() <= traits_.turn_length_m) {
     return;
   }
   char text[160];
@@ -170,9 +130,21 @@ const PiecewisePlan::Piece& PiecewisePlan::PieceAt(const Run& run, double way_m)
   return after == first ? *after : *(after - 1);
 }
 
+AlongCurve PiecewisePlan::Along(const Run& run, double since_begin_s) {
+  if (const auto* profile = std::get_if<SpeedProfile>(&run.motion)) return profile->At(since_begin_s);
+  if (const auto* profile = std::get_if<JerkProfile>(&run.motion)) return profile->At(since_begin_s);
+  // A blend leaves the path; how far it has got is only told for counting turns.
+  const double duration_s = std::get<CornerBlend>(run.motion).duration_s();
+  return {run.length_m * std::clamp(since_begin_s / duration_s, 0.0, 1.0), 0.0, 0.0};
+}
+
 void PiecewisePlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
   const Run& run = RunAt(time_s);
-  const AlongCurve along = run.profile.At(time_s - run.begin_s);
+  if (const auto* blend = std::get_if<CornerBlend>(&run.motion)) {
+    blend->At(time_s - run.begin_s, axes);
+    return;
+  }
+  const AlongCurve along = Along(run, time_s - run.begin_s);
   const double way_m = run.before_m + along.s_m;
   const Piece& piece = PieceAt(run, way_m);
   const CurvePoint p = PointAt(piece.curve, std::clamp(way_m - piece.before_m, 0.0, piece.curve.length_m));
@@ -200,7 +172,7 @@ double PiecewisePlan::Distance_m(const PerAxis<double>& point_m) const {
 double PiecewisePlan::Turns(double time_s) const {
   if (traits_.turn_length_m == 0.0) return 0.0;
   const Run& run = RunAt(time_s);
-  return (run.before_m + run.profile.At(time_s - run.begin_s).s_m) / traits_.turn_length_m;
+  return (run.before_m + Along(run, time_s - run.begin_s).s_m) / traits_.turn_length_m;
 }
 
 bool PiecewisePlan::Scored(double time_s) const {

@@ -2,9 +2,12 @@
 
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "daemon/program/corner_blend.h"
 #include "daemon/program/curve_piece.h"
+#include "daemon/program/jerk_ramp.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/speed_profile.h"
 
@@ -16,6 +19,7 @@ struct PieceRequest {
   double speed_m_s = 0.0;                                    ///< 0: as fast as the axes allow
   double dwell_s = 0.0;                                      ///< at the end of the piece, at rest
   GcodeMove::Corner corner = GcodeMove::Corner::kExactStop;  ///< towards the next piece
+  double tolerance_m = 0.0;                                  ///< of a blended corner
   double shortest_ramp_s = 0.0;
   std::string origin;  ///< "file" or "file:line", begins messages
 };
@@ -28,7 +32,7 @@ struct PathTraits {
 };
 
 /// A path of smooth pieces, each with its own speed; the speed changes along the path within the axes' limits
-/// of acceleration and jerk.
+/// of acceleration and jerk. Where a corner is to be blended, all of the path's ramps are the fastest.
 class PiecewisePlan : public MotionPlan {
  public:
   /// Throws ProgramError when a piece leaves the axes' limits.
@@ -50,9 +54,10 @@ class PiecewisePlan : public MotionPlan {
     CurvePiece curve;
     double before_m = 0.0;  ///< way covered by the pieces before
   };
-  /// Pieces driven through without a stop at one speed: changes of speed reach across them.
+  /// Pieces driven through without a stop at one speed: changes of speed reach across them. Or the blend of a
+  /// corner.
   struct Run {
-    SpeedProfile profile;
+    std::variant<SpeedProfile, JerkProfile, CornerBlend> motion;
     double begin_s = 0.0;
     double before_m = 0.0;
     double length_m = 0.0;
@@ -66,9 +71,14 @@ class PiecewisePlan : public MotionPlan {
     Extent box;
   };
 
+  void AddRuns(const std::vector<PieceRequest>& requests, const std::vector<RampLimits>& ramps);
+  void AddBlendedRuns(const std::vector<PieceRequest>& requests, const std::vector<RampLimits>& ramps,
+                      const PerAxis<PlanLimits>& limits);
+  void Add(Run run, double dwell_s);
   void CheckSpeedWithinTurn(const PieceRequest& first) const;
   void MakeGroups();
   [[nodiscard]] const Run& RunAt(double time_s) const;
+  [[nodiscard]] static AlongCurve Along(const Run& run, double since_begin_s);
   [[nodiscard]] const Piece& PieceAt(const Run& run, double way_m) const;
 
   PathTraits traits_;

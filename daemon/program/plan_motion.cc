@@ -101,10 +101,12 @@ std::shared_ptr<const MotionPlan> PlanSquare(const SquareShape& shape, const Pla
   const Plane plane = FindPlane(place, shape.axes);
   const double side = shape.side_mm * 1e-3;
   const double mirror = shape.direction == Direction::kCcw ? 1.0 : -1.0;
-  const bool stop = shape.corners == Corners::kExactStop;
+  GcodeMove::Corner corner = GcodeMove::Corner::kContinuous;
+  if (shape.corners == Corners::kExactStop) corner = GcodeMove::Corner::kExactStop;
+  if (shape.corner_tolerance_mm) corner = GcodeMove::Corner::kBlended;
   PathTraits traits;
   traits.turn_length_m = 4.0 * side;
-  traits.speed_in_one_turn = !stop;
+  traits.speed_in_one_turn = corner == GcodeMove::Corner::kContinuous;
   std::array<PerAxis<double>, 4> corners;
   corners[0] = place.start_m;
   for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
@@ -116,7 +118,8 @@ std::shared_ptr<const MotionPlan> PlanSquare(const SquareShape& shape, const Pla
     PieceRequest request;
     request.curve = LinePiece(corners[k % 4], corners[(k + 1) % 4]);
     request.speed_m_s = Speed_m_s(shape.feed, traits.turn_length_m);
-    request.corner = stop ? GcodeMove::Corner::kExactStop : GcodeMove::Corner::kContinuous;
+    request.corner = corner;
+    request.tolerance_m = shape.corner_tolerance_mm.value_or(0.0) * 1e-3;
     request.origin = place.program.name;
     requests.push_back(request);
   }
@@ -257,6 +260,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     request.speed_m_s = move.kind == GcodeMove::Kind::kRapid ? 0.0 : move.feed_m_s;
     request.dwell_s = move.dwell_s;
     request.corner = move.corner;
+    request.tolerance_m = move.tolerance_m;
     switch (move.kind) {
       case GcodeMove::Kind::kDwell:
         request.curve = PointPiece(at);

@@ -56,6 +56,16 @@ Shape ReadPlane(const YamlValue& root, const std::string& name) {
   return shape;
 }
 
+template <class Shape>
+Shape ReadPolygon(const YamlValue& root, const std::string& name) {
+  auto shape = ReadPlane<Shape>(root, name);
+  if (shape.corners && shape.corner_tolerance_mm) {
+    throw ProgramError(WhereIs(root, "corner_tolerance_mm") +
+                       ": corner_tolerance_mm: corners is given as well, expected one of the two");
+  }
+  return shape;
+}
+
 LineShape ReadLine(const YamlValue& root, const std::string& name) {
   auto shape = Read<LineShape>(root);
   CheckAxes(shape.axes, root);
@@ -162,8 +172,8 @@ struct NoKeys {
 Program ReadShape(const YamlEntry& entry, const YamlValue& root, const std::string& name) {
   const std::string& shape = entry.value.text;
   if (shape == "circle") return {name, ReadPlane<CircleShape>(root, name)};
-  if (shape == "square") return {name, ReadPlane<SquareShape>(root, name)};
-  if (shape == "diamond") return {name, ReadPlane<DiamondShape>(root, name)};
+  if (shape == "square") return {name, ReadPolygon<SquareShape>(root, name)};
+  if (shape == "diamond") return {name, ReadPolygon<DiamondShape>(root, name)};
   if (shape == "line") return {name, ReadLine(root, name)};
   if (shape == "sine") return {name, ReadSine(root, name)};
   if (shape == "hold") return {name, Read<HoldShape>(root)};

@@ -64,7 +64,8 @@ struct SquareShape {
   double side_mm = 0.0;
   int turns = 1;
   Direction direction = Direction::kCcw;
-  Corners corners = Corners::kContinuous;
+  std::optional<Corners> corners;  ///< as programmed; kContinuous when neither this nor a tolerance is
+  std::optional<double> corner_tolerance_mm;
   Feed feed;
   PlaneAxes axes;
 
@@ -74,6 +75,8 @@ struct SquareShape {
     v.Optional("turns", turns, kPolygonCount, "whole turns");
     v.Optional("direction", direction, "ccw or cw");
     v.Optional("corners", corners, "full feed through the corners, or a stop in each");
+    v.Optional("corner_tolerance_mm", corner_tolerance_mm, kPositive,
+               "instead: corners blended within this distance from the path");
     feed.Visit(v);
     v.Optional("axes", axes, "the two axes of the plane");
   }
@@ -274,6 +277,7 @@ struct GcodeMove {
     kContinuous,  ///< G64: full feed
     kExactPath,   ///< G61: stops where the direction changes
     kExactStop,   ///< G61.1: stops at the end of the move
+    kBlended,     ///< G64 P: the next move begins before this one has ended, within a tolerance
   };
   Kind kind = Kind::kLine;
   int line = 0;                             ///< of the source text
@@ -283,6 +287,7 @@ struct GcodeMove {
   double feed_m_s = 0.0;                    ///< line, arc: speed along the path
   double dwell_s = 0.0;
   Corner corner = Corner::kContinuous;  ///< what happens at the end of the move
+  double tolerance_m = 0.0;             ///< kBlended: largest distance from the programmed path
 };
 
 struct GcodeMoves {

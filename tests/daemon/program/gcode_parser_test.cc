@@ -73,6 +73,18 @@ TEST(GcodeParser, PathControlAndDwell) {
   EXPECT_EQ(p.moves[4].corner, Corner::kContinuous);
 }
 
+TEST(GcodeParser, ToleranceOfG64IsModalInTheUnitsInForce) {
+  const GcodeMoves p =
+      Parse("G64 P0.005 G1 X1 F100\nX2\nG20 G64 P0.001 X3\nG64 X4\nG61 X5\nG64 P1 G21\nX6\n");
+  ASSERT_EQ(p.moves.size(), 6u);
+  for (const std::size_t k : {0u, 1u, 2u, 5u}) EXPECT_EQ(p.moves[k].corner, Corner::kBlended) << k;
+  EXPECT_EQ(p.moves[1].tolerance_m, 5e-6);
+  EXPECT_NEAR(p.moves[2].tolerance_m, 25.4e-6, 1e-18);
+  EXPECT_EQ(p.moves[3].corner, Corner::kContinuous);
+  EXPECT_EQ(p.moves[4].corner, Corner::kExactPath);
+  EXPECT_EQ(p.moves[5].tolerance_m, 1e-3);
+}
+
 TEST(GcodeParser, ErrorsNameTheLine) {
   const struct {
     const char* text;
@@ -94,8 +106,12 @@ TEST(GcodeParser, ErrorsNameTheLine) {
       {"G3 X0 Y20 Z3 J10 F100\n", "part.ngc:1: helical arcs"},
       {"G1 X1 F0\n", "part.ngc:1: F: expected a feed above zero"},
       {"G4\n", "part.ngc:1: G4: expected P"},
-      {"G64 P0.01 X1 F100 G1\n", "part.ngc:1: P is not supported here"},
-      {"G64 P0.01\nG1 X1 F100\n", "part.ngc:1: P is not supported here"},
+      {"G64 P0\nG1 X1 F100\n", "part.ngc:1: G64: expected P with a tolerance above zero"},
+      {"G64 P-0.01\nG1 X1 F100\n", "part.ngc:1: G64: expected P with a tolerance above zero"},
+      {"G1 X1 F100 P0.01\n", "part.ngc:1: P belongs to G4 and G64"},
+      {"G61 P0.01\nG1 X1 F100\n", "part.ngc:1: P belongs to G4 and G64"},
+      {"G64 G4 P0.01\n", "part.ngc:1: G4 and G64 in the same block"},
+      {"G61 G64 P0.01\n", "part.ngc:1: G64: a second path control"},
       {"M3 S100\n", "part.ngc:1: M3 is not supported"},
       {"G1 X1 F100 T1\n", "part.ngc:1: T1 is not supported"},
       {"G1 X1 (open\n", "part.ngc:1: comment is not closed"},

@@ -73,8 +73,8 @@ TEST(MotionPlan, StaysWithinTheLimitsAndOnItsCurve) {
   constexpr double kStep = 1e-4;
   for (const Example& e : Examples()) {
     // Where the direction or the curvature jumps at full feed, the acceleration of the reference jumps.
-    const bool corners = e.name.find("square") != std::string::npos ||
-                         e.name.find("diamond") != std::string::npos || e.name == "slot.ngc";
+    const bool corners =
+        e.name == "square_10mm.yaml" || e.name.find("diamond") != std::string::npos || e.name == "slot.ngc";
     auto previous = At(*e.plan, 0.0);
     for (double t = kStep; t < e.plan->duration_s(); t += kStep) {
       const auto at = At(*e.plan, t);
@@ -87,7 +87,9 @@ TEST(MotionPlan, StaysWithinTheLimitsAndOnItsCurve) {
       previous = at;
     }
     for (double t = 0.0; t < e.plan->duration_s(); t += 0.0173) {
-      EXPECT_LT(e.plan->Distance_m(Position(At(*e.plan, t))), 1e-9) << e.name << " at " << t;
+      // square_blended.ngc has a tolerance of 5 um, of which the reference takes four.
+      const double off_path_m = e.name == "square_blended.ngc" ? 4e-6 : 0.0;
+      EXPECT_LT(e.plan->Distance_m(Position(At(*e.plan, t))), off_path_m + 1e-9) << e.name << " at " << t;
     }
   }
 }

@@ -30,6 +30,13 @@ TEST(ProgramText, DiamondIsNotASquare) {
   EXPECT_EQ(std::get<SquareShape>(Yaml("shape: square" + rest).shape).side_mm, 10.0);
 }
 
+TEST(ProgramText, CornersHaveAModeOrATolerance) {
+  const std::string text = "shape: square\nside_mm: 10\nfeed_mm_min: 3000\n";
+  EXPECT_EQ(std::get<SquareShape>(Yaml(text + "corner_tolerance_mm: 0.005\n").shape).corner_tolerance_mm,
+            0.005);
+  EXPECT_FALSE(std::get<SquareShape>(Yaml(text).shape).corner_tolerance_mm.has_value());
+}
+
 struct Wrong {
   const char* text;
   const char* message;  ///< must be contained
@@ -38,6 +45,12 @@ struct Wrong {
 TEST(ProgramText, ErrorsNamePlaceAndExpectation) {
   const Wrong wrong[] = {
       {"radius_mm: 1\n", "test.yaml: shape: missing"},
+      {"shape: square\nside_mm: 1\nfeed_mm_min: 100\ncorner_tolerance_mm: 0\n",
+       "test.yaml:4: corner_tolerance_mm"},
+      {"shape: square\nside_mm: 1\nfeed_mm_min: 100\ncorners: continuous\ncorner_tolerance_mm: 0.1\n",
+       "test.yaml:5: corner_tolerance_mm: corners is given as well"},
+      {"shape: circle\nradius_mm: 1\nfeed_mm_min: 100\ncorner_tolerance_mm: 0.1\n",
+       "test.yaml:4: corner_tolerance_mm"},
       {"# a comment\nshape: helix\n", "test.yaml:2: shape: found 'helix'"},
       {"shape: circle\nradius_mm: 1\nfeed: 100\n", "test.yaml:3: feed"},
       {"shape: circle\nfeed_mm_min: 100\n", "radius_mm"},
