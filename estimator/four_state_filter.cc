@@ -59,13 +59,13 @@ void FourStateFilter::Propagate(Row& p, Row& v, Row& z, const Row& g, double for
   Row damping;
   for (std::size_t k = 0; k < n; ++k) {
     const double u = v[k] * inverse_decay;
-    damping[k] = f.sigma1_Ns_m * Exp(-u * u);
+    damping[k] = f.sigma1_Ns_m * ExpOfNegative(-u * u);
   }
   for (std::size_t k = 0; k < n; ++k) {
     const double level = std::max(g[k], kLeastLevel_N);
     const double speed = std::abs(v[k]);
     const double target = (v[k] >= 0.0 ? level : -level) / f.sigma0_N_m;
-    z[k] -= (target - z[k]) * Expm1(-f.sigma0_N_m * speed * h / level);
+    z[k] -= (target - z[k]) * Expm1OfNegative(-f.sigma0_N_m * speed * h / level);
     // Eq. 10: F = sigma0 z + sigma1 (v - sigma0 |v| z / g).
     const double friction = f.sigma0_N_m * z[k] + damping[k] * (v[k] - f.sigma0_N_m * speed * z[k] / level);
     const double next = velocity_decay_ * v[k] + velocity_gain_ * (force_N - friction);
@@ -102,7 +102,7 @@ AxisEstimate FourStateFilter::Update(const AxisEstimatorInput& in) noexcept {
       const double moving = std::min(1.0, std::abs(core_.x[kV]) / (c.motion_gate_mm_s * 1e-3));
       noise[kG] *= adapted ? moving : 0.0;
       const double force_N = lag_.Step(in.force_N[1])[0];
-      core_.Predict(
+      core_.Predict<kG>(
           [&](Points& points) noexcept {
             auto& r = points.row;
             Propagate(r[kP], r[kV], r[kZ], r[kG], force_N);

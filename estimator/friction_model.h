@@ -13,10 +13,15 @@ namespace contour {
 /// Friction levels never reach zero: eq. 9 divides by g.
 inline constexpr double kLeastLevel_N = 1e-3;
 
+/// (|v| / vs)^n.
+inline double StribeckPower(double speed_m_s, double vs_m_s, double exponent) noexcept {
+  const double u = speed_m_s / vs_m_s;
+  return exponent == 1.0 ? u : std::pow(u, exponent);
+}
+
 /// exp(-(|v| / vs)^n).
 inline double StribeckDecay(double speed_m_s, double vs_m_s, double exponent) noexcept {
-  const double u = speed_m_s / vs_m_s;
-  return Exp(-(exponent == 1.0 ? u : std::pow(u, exponent)));
+  return ExpOfNegative(-StribeckPower(speed_m_s, vs_m_s, exponent));
 }
 
 /// Stribeck factor of the level: g(v) / Fc = 1 + (Fs / Fc - 1) exp(-(|v| / vs)^n).

@@ -1,6 +1,7 @@
 #include "estimator/friction_preview.h"
 
 #include <array>
+#include <numbers>
 
 #include "core/wide_vectors.h"
 
@@ -14,7 +15,6 @@ constexpr double kSlidingShare = 0.85;
 // only the noise of the reported torque is left of it.
 constexpr double kLead_Hz = 8.0;
 constexpr double kLeadAtRest_Hz = 0.4;
-constexpr double kRadPerTurn = 6.283185307179586;
 
 using Row = std::array<double, kMaxHorizonPoints>;
 using View = ReferenceTerms::View;
@@ -32,7 +32,8 @@ struct Along {
                                          std::size_t count, Along& a) noexcept {
   for (std::size_t j = 0; j < count; ++j) {
     a.per_level_1_N[j] = 1.0 / a.level_N[j];
-    a.relaxation[j] = -Expm1(-sigma0_N_m * std::abs(at.velocity_m_s[j]) * a.per_level_1_N[j] * period_s);
+    a.relaxation[j] =
+        -Expm1OfNegative(-sigma0_N_m * std::abs(at.velocity_m_s[j]) * a.per_level_1_N[j] * period_s);
     a.target_N[j] = std::copysign(a.level_N[j], at.velocity_m_s[j]);
   }
 }
@@ -89,8 +90,8 @@ void AddMap(const AngleForceMap& map, const View& at, FrictionPreview& out) noex
 FrictionRoll::FrictionRoll(double period_s, bool cascade) noexcept
     : period_s_(period_s),
       cascade_(cascade),
-      lead_share_(-Expm1(-kRadPerTurn * kLead_Hz * period_s)),
-      rest_share_(-Expm1(-kRadPerTurn * kLeadAtRest_Hz * period_s)) {}
+      lead_share_(-Expm1(-2.0 * std::numbers::pi * kLead_Hz * period_s)),
+      rest_share_(-Expm1(-2.0 * std::numbers::pi * kLeadAtRest_Hz * period_s)) {}
 
 CONTOUR_WIDE_VECTORS
 void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenStates>& x,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "estimator/exponential.h"
 #include "estimator/share_of_period.h"
@@ -46,7 +47,7 @@ class LevelCorrection {
   [[nodiscard]] Terms Basis(double position_m, double velocity_m_s) const noexcept {
     const CosSin one = Turn(position_m * per_turn_1_m_);
     return {one.cos, one.sin, one.cos * one.cos - one.sin * one.sin, 2.0 * one.sin * one.cos,
-            Exp(-std::abs(velocity_m_s) * per_speed_s_m_)};
+            ExpOfNegative(-std::abs(velocity_m_s) * per_speed_s_m_)};
   }
 
   /// The same for `count` places, row i of `basis` for term i.
@@ -62,7 +63,7 @@ class LevelCorrection {
       const double cos = basis[0][k], sin = basis[1][k];
       basis[2][k] = cos * cos - sin * sin;
       basis[3][k] = 2.0 * sin * cos;
-      basis[4][k] = Exp(-std::abs(velocity_m_s[k]) * per_speed_s_m_);
+      basis[4][k] = ExpOfNegative(-std::abs(velocity_m_s[k]) * per_speed_s_m_);
     }
   }
 
@@ -95,7 +96,8 @@ class LevelCorrection {
   /// as the force is; `sliding` says whether it means anything.
   void Learn(const Terms& basis, bool forward, double kept, double excess, double travel_m,
              bool sliding) noexcept {
-    const double ripple = std::min(tuning_.ripple_rate * std::abs(travel_m) * per_turn_1_m_ * kTwoPi, 0.5);
+    const double ripple =
+        std::min(tuning_.ripple_rate * std::abs(travel_m) * per_turn_1_m_ * 2.0 * std::numbers::pi, 0.5);
     Direction& active = forward ? plus_ : minus_;
     Direction& other = forward ? minus_ : plus_;
     const double along = forward ? excess : -excess;
@@ -130,7 +132,6 @@ class LevelCorrection {
 
  private:
   static constexpr double kLargest = 0.5;
-  static constexpr double kTwoPi = 6.283185307179586;
   static constexpr double kMeanShare = 0.02;  // per millisecond
   static constexpr double kAtSpeed = 0.1;     // exp(-|v| / vs) above 2.3 Stribeck velocities
   static constexpr double kForgotten_s = 1.0;

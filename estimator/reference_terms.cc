@@ -69,8 +69,8 @@ void ReferenceTerms::Lay(const AxisHorizon& reference, std::size_t from, std::si
   const double per_decay = 1.0 / model.friction().sigma1_decay_m_s;
   for (std::size_t j = 0; j < size; ++j) {
     const double at_node = node_velocity[j] * per_decay, in_middle = velocity[j] * per_decay;
-    node_sigma1[j] = sigma1 * Exp(-at_node * at_node);
-    middle_sigma1[j] = sigma1 * Exp(-in_middle * in_middle);
+    node_sigma1[j] = sigma1 * ExpOfNegative(-at_node * at_node);
+    middle_sigma1[j] = sigma1 * ExpOfNegative(-in_middle * in_middle);
   }
   const auto keep = [&](std::size_t term, const Short& row) {
     for (std::size_t j = 0; j < size; ++j) terms_[term][begin + j] = row[j];

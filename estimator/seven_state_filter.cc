@@ -169,8 +169,9 @@ CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::TimeUpdate(const AxisEstimator
 
   const SevenStateInput input = Input(at_, lag_.Step(in.force_N[1]));
   if constexpr (requires { core_.Draw(std::declval<SigmaPoints<kSevenStates>&>()); }) {
-    core_.Predict([&](SigmaPoints<kSevenStates>& points) noexcept { model_.Propagate(points, input); },
-                  noise);
+    core_.template Predict<kMovingStates>(
+        [&](SigmaPoints<kSevenStates>& points) noexcept { model_.Propagate(points, input, at_.low_speed); },
+        noise);
   } else {
     core_.Predict(
         [&](X& mean, SquareMatrix<kSevenStates>& t) noexcept { model_.PropagateTangent(mean, t, input); },
@@ -318,13 +319,13 @@ template <class Core>
 void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
   driving_N_ = driving_ahead_N_;
   predicted_ = core_.x;
-  model_.Propagate(predicted_, Input(at_, lag_.Look(in.force_N[0])));
+  model_.Propagate(predicted_, Input(at_, lag_.Look(in.force_N[0])), at_.low_speed, sigma0_N_m_);
   if (!setup_.looks_ahead) return;
   // On to the end of [t(k), t(k+1)), for the middle of it. The torque that acts there is being computed: the
   // newest stands for it.
   const SpeedTerms begin_at = model_.TermsAt(predicted_[kVelocity]);
   X end = predicted_;
-  model_.Propagate(end, Input(begin_at, {in.force_N[0], in.force_N[0]}));
+  model_.Propagate(end, Input(begin_at, {in.force_N[0], in.force_N[0]}), begin_at.low_speed, sigma0_N_m_);
   const SpeedTerms end_at = model_.TermsAt(end[kVelocity]);
   friction_ahead_N_ = 0.5 * (model_.Friction_N(predicted_, begin_at, Input(begin_at, {})) +
                              model_.Friction_N(end, end_at, Input(end_at, {})));
@@ -384,9 +385,10 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
     last_position_m_ = in.position_m;
     periods_since_position_ = 0.0;
   }
+  const auto& x = core_.x;
+  sigma0_N_m_ = model_.Sigma0_N_m(x);
   LookAhead(in);
 
-  const auto& x = core_.x;
   const double friction_N = Total_N(x, at_);
   const double ahead_N = Total_N(predicted_, model_.TermsAt(predicted_[kVelocity]));
   out.position_m = x[kPosition] + WindUpShare_m(friction_N, x[kDisturbance], lag_.force_N());
@@ -400,7 +402,7 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
   out.g_plus_N = x[kLevelPlus];
   out.g_minus_N = x[kLevelMinus];
-  out.sigma0_N_m = setup_.friction.sigma0_N_m * Exp(x[kLogSigma0]);
+  out.sigma0_N_m = sigma0_N_m_;
   out.diverged = !square_root::Sound(core_.x, core_.s, std_limit_);
   return out;
 }

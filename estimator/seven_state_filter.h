@@ -108,6 +108,7 @@ class SevenStateFilter {
   Core core_;
   SpeedTerms at_;  // at the velocity of core_.x, whenever that has changed
   X predicted_{};
+  double sigma0_N_m_ = 0.0;  // of core_.x, at the end of Update
   double factor_plus_ = 1.0;
   double factor_minus_ = 1.0;
   double inertial_N_ = 0.0;

@@ -16,65 +16,73 @@ SevenStateModel::SevenStateModel(const Friction& friction, double mass_kg, doubl
   ratio_minus_ = friction.Fs_minus_N / friction.Fc_minus_N;
 }
 
-// Whole rows at a time, without branches, so that the loop vectorises.
+// Whole rows at a time, without branches, so that the loops vectorise. `low_speed`: of the Stribeck curve.
 template <class Row>
 inline void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm,
-                                     const Row& s0, double force_N,
+                                     const Row& s0, const Row& low_speed, double force_N,
                                      const SevenStateInput& in) const noexcept {
+  // Copies: for all that the compiler knows, a row might lie where these members do.
   const std::size_t n = std::tuple_size_v<Row>;
-  const double inverse_vs = 1.0 / friction_.vs_m_s;
   const double per_plus = in.ripple_plus;
   const double per_minus = in.ripple_minus;
   const double more_plus = (ratio_plus_ - 1.0) * per_plus;
   const double more_minus = (ratio_minus_ - 1.0) * per_minus;
-  Row shape, level, sign, damping;
-  for (std::size_t k = 0; k < n; ++k) shape[k] = std::abs(v[k]) * inverse_vs;
-  if (friction_.stribeck_exponent == 2.0) {
-    for (std::size_t k = 0; k < n; ++k) shape[k] *= shape[k];
-  } else if (friction_.stribeck_exponent != 1.0) {
-    for (std::size_t k = 0; k < n; ++k) shape[k] = std::pow(shape[k], friction_.stribeck_exponent);
-  }
+  const double compliance_m_N = compliance_m_N_, minus_step_s = -step_s_, half_step_s = 0.5 * step_s_;
+  const double sigma1 = in.sigma1_Ns_m, decay = velocity_decay_, gain = velocity_gain_;
+  const double lasting_N = in.lasting_N, leak = in.at_rest ? 1.0 : leak_;
   for (std::size_t k = 0; k < n; ++k) {
-    const double low_speed = Exp(-shape[k]);
-    const double level_plus = gp[k] * (per_plus + more_plus * low_speed);
-    const double level_minus = gm[k] * (per_minus + more_minus * low_speed);
-    level[k] = std::max(v[k] >= 0.0 ? level_plus : level_minus, kLeastLevel_N);
-    sign[k] = std::copysign(1.0, v[k] + 0.0);  // of -0.0 as well
-  }
-  for (std::size_t k = 0; k < n; ++k) {
+    const double level_plus = gp[k] * (per_plus + more_plus * low_speed[k]);
+    const double level_minus = gm[k] * (per_minus + more_minus * low_speed[k]);
+    const double level = std::max(v[k] >= 0.0 ? level_plus : level_minus, kLeastLevel_N);
+    const double sign = std::copysign(1.0, v[k] + 0.0);  // of -0.0 as well
     const double speed = std::abs(v[k]);
-    const double gap = sign[k] * level[k] - f[k];
+    const double gap = sign * level - f[k];
     // Beyond its level the bristle lets go at once: the unwinding screw only helps.
-    const double missing = std::max(sign[k] * gap, 0.0);
-    const double trailing = level[k] + s0[k] * compliance_m_N_ * missing;
-    f[k] -= gap * Expm1(-s0[k] * speed * step_s_ / trailing);
-    damping[k] = in.sigma1_Ns_m * (v[k] - speed / level[k] * f[k]);
-  }
-  const double leak = in.at_rest ? 1.0 : leak_;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double next = velocity_decay_ * v[k] + velocity_gain_ * (force_N - f[k] - damping[k] - d[k]);
-    p[k] += 0.5 * step_s_ * (v[k] + next);
+    const double missing = std::max(sign * gap, 0.0);
+    const double trailing = level + s0[k] * compliance_m_N * missing;
+    f[k] -= gap * Expm1OfNegative(s0[k] * speed * minus_step_s / trailing);
+    const double damping = sigma1 * (v[k] - speed / level * f[k]);
+    const double next = decay * v[k] + gain * (force_N - f[k] - damping - d[k]);
+    p[k] += half_step_s * (v[k] + next);
     v[k] = next;
-    d[k] = in.lasting_N + (d[k] - in.lasting_N) * leak;
+    d[k] = lasting_N + (d[k] - lasting_N) * leak;
   }
 }
 
+// As they are drawn, only the first two points either way have another velocity than the mean: S is lower
+// triangular. And the stiffness either way is the mean's times a factor and divided by it.
 CONTOUR_WIDE_VECTORS
-void SevenStateModel::Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in) const noexcept {
+void SevenStateModel::Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in,
+                                double low_speed) const noexcept {
+  using Points = SigmaPoints<kSevenStates>;
+  constexpr std::size_t kHalf = Points::kHalf;
+  static_assert(Points::kCentre < kHalf);
   auto& r = points.row;
-  SigmaPoints<kSevenStates>::Row s0;
-  for (std::size_t k = 0; k < s0.size(); ++k) s0[k] = friction_.sigma0_N_m * Exp(r[kLogSigma0][k]);
-  for (const double force_N : in.force_N) {
+  alignas(32) Points::Row s0, low_speeds;
+  for (std::size_t k = 0; k < kHalf; ++k) s0[k] = friction_.sigma0_N_m * Exp(r[kLogSigma0][k]);
+  const double square = s0[Points::kCentre] * s0[Points::kCentre];
+  for (std::size_t k = 0; k < kHalf; ++k) s0[kHalf + k] = square / s0[k];
+  alignas(32) std::array<double, 4> few{r[kVelocity][0], r[kVelocity][1], r[kVelocity][kHalf],
+                                        r[kVelocity][kHalf + 1]};
+  LowSpeeds(few, few.size(), few);
+  low_speeds = {few[0], few[1], low_speed, low_speed, low_speed, low_speed, low_speed, low_speed,
+                few[2], few[3], low_speed, low_speed, low_speed, low_speed, low_speed, low_speed};
+  for (std::size_t i = 0; i < kSubsteps; ++i) {
+    if (i > 0) LowSpeeds(r[kVelocity], low_speeds.size(), low_speeds);
     Substep(r[kPosition], r[kVelocity], r[kBristle], r[kDisturbance], r[kLevelPlus], r[kLevelMinus], s0,
-            force_N, in);
+            low_speeds, in.force_N[i], in);
   }
 }
 
-void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept {
+void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in, double low_speed,
+                                double sigma0_N_m) const noexcept {
   using One = std::array<double, 1>;
-  One p{x[kPosition]}, v{x[kVelocity]}, f{x[kBristle]}, d{x[kDisturbance]};
-  const One gp{x[kLevelPlus]}, gm{x[kLevelMinus]}, s0{friction_.sigma0_N_m * Exp(x[kLogSigma0])};
-  for (const double force_N : in.force_N) Substep(p, v, f, d, gp, gm, s0, force_N, in);
+  One p{x[kPosition]}, v{x[kVelocity]}, f{x[kBristle]}, d{x[kDisturbance]}, low_speeds{low_speed};
+  const One gp{x[kLevelPlus]}, gm{x[kLevelMinus]}, s0{sigma0_N_m};
+  for (std::size_t i = 0; i < kSubsteps; ++i) {
+    if (i > 0) LowSpeeds(v, 1, low_speeds);
+    Substep(p, v, f, d, gp, gm, s0, low_speeds, in.force_N[i], in);
+  }
   x[kPosition] = p[0];
   x[kVelocity] = v[0];
   x[kBristle] = f[0];
@@ -83,8 +91,9 @@ void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateIn
 
 SpeedTerms SevenStateModel::TermsAt(double velocity_m_s) const noexcept {
   const double u = velocity_m_s / friction_.sigma1_decay_m_s;
-  return {StribeckDecay(std::abs(velocity_m_s), friction_.vs_m_s, friction_.stribeck_exponent),
-          friction_.sigma1_Ns_m * Exp(-u * u)};
+  const double power = StribeckPower(std::abs(velocity_m_s), friction_.vs_m_s, friction_.stribeck_exponent);
+  const exponential::Two e = ExpOfNegative(exponential::Two{-power, -u * u});
+  return {e[0], friction_.sigma1_Ns_m * e[1]};
 }
 
 void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& t,

@@ -22,6 +22,7 @@ enum SevenState : std::size_t {
   kLogSigma0,    ///< ln(sigma0 / commissioned sigma0)
 };
 inline constexpr std::size_t kSevenStates = 7;
+inline constexpr std::size_t kMovingStates = 4;  // the others are parameters
 inline constexpr std::size_t kSubsteps = 2;
 
 /// What is known of one period beforehand.
@@ -56,11 +57,20 @@ class SevenStateModel {
   SevenStateModel(const Friction& friction, double mass_kg, double period_s, double disturbance_decay_s,
                   double compliance_m_N = 0.0) noexcept;
 
-  /// All sigma points, in place.
-  void Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in) const noexcept;
+  /// All sigma points, in place, as SqrtUkf::Draw drew them. `low_speed`: SpeedTerms at the mean's velocity.
+  void Propagate(SigmaPoints<kSevenStates>& points, const SevenStateInput& in,
+                 double low_speed) const noexcept;
 
-  /// One state, over `substeps` substeps of the input.
-  void Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept;
+  /// One state, over a period, whose `low_speed` and stiffness are known already.
+  void Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in, double low_speed,
+                 double sigma0_N_m) const noexcept;
+  void Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept {
+    Propagate(x, in, TermsAt(x[kVelocity]).low_speed, Sigma0_N_m(x));
+  }
+
+  [[nodiscard]] double Sigma0_N_m(const StateVector<kSevenStates>& x) const noexcept {
+    return friction_.sigma0_N_m * Exp(x[kLogSigma0]);
+  }
 
   /// One state, and `tangent` (each column a direction) by the chain rule.
   void PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& tangent,
@@ -89,7 +99,7 @@ class SevenStateModel {
       for (std::size_t k = 0; k < count; ++k)
         low_speed[k] = std::pow(low_speed[k], friction_.stribeck_exponent);
     }
-    for (std::size_t k = 0; k < count; ++k) low_speed[k] = Exp(-low_speed[k]);
+    for (std::size_t k = 0; k < count; ++k) low_speed[k] = ExpOfNegative(-low_speed[k]);
   }
 
   /// Levels with the parameters of `x` at `count` other velocities, each with its factor.
@@ -120,7 +130,7 @@ class SevenStateModel {
  private:
   template <class Row>
   [[gnu::always_inline]] void Substep(Row& p, Row& v, Row& f, Row& d, const Row& gp, const Row& gm,
-                                      const Row& s0, double force_N,
+                                      const Row& s0, const Row& low_speed, double force_N,
                                       const SevenStateInput& in) const noexcept;
 
   Friction friction_;

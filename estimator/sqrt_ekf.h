@@ -14,12 +14,11 @@ class SqrtEkf : public Gaussian<N> {
   void Predict(Process&& process, const StateVector<N>& noise_std) noexcept {
     SquareMatrix<N> tangent = this->s;
     process(this->x, tangent);
-    square_root::Triangulariser<N, N> a;
+    square_root::Triangulariser<N, N> a{};
     for (std::size_t i = 0; i < N; ++i) {
       for (std::size_t k = 0; k < N; ++k) a.row[i][k] = tangent[i][k];
     }
-    a.SetNoise(noise_std);
-    a.Run(this->s);
+    a.Run(noise_std, this->s);
   }
 
   UpdateResult UpdateState0(double y, double r, const InnovationGate& gate, const StateMask<N>& mask,

@@ -28,15 +28,27 @@ struct UkfWeights {
   static constexpr double kOther = 0.5 / kScale;
 };
 
-/// 2 N + 1 sigma points, one row per state: point 0 is the centre, 1 + i and 1 + N + i lie along column i of
-/// S. Rows are padded to an even length; the padding repeats the centre, so models may run over whole rows.
+/// 2 N + 1 sigma points, one row per state: element j is the mean moved along column j of S, element
+/// kHalf + j the same the other way, element kCentre the mean. What else there is in a row, for it to be a
+/// whole number of registers, repeats the mean, so models may run over whole rows.
 template <std::size_t N>
 struct SigmaPoints {
-  static constexpr std::size_t kCount = 2 * N + 1;
-  static constexpr std::size_t kStride = kCount + kCount % 2;
+  static constexpr std::size_t kHalf = (N + 3) / 4 * 4;
+  static constexpr std::size_t kCentre = N < kHalf ? N : 2 * kHalf;
+  static constexpr std::size_t kStride = 2 * kHalf + (N < kHalf ? 0 : 4);
   using Row = std::array<double, kStride>;
-  alignas(16) std::array<Row, N> row;
+  alignas(32) std::array<Row, N> row;
 };
+
+/// Square roots of the points' weights, element by element of a row.
+template <std::size_t N, class Weights>
+alignas(32) inline constexpr typename SigmaPoints<N>::Row kRootWeights = [] {
+  typename SigmaPoints<N>::Row w{};
+  for (std::size_t j = 0; j < N; ++j)
+    w[j] = w[SigmaPoints<N>::kHalf + j] = square_root::Sqrt(Weights::kOther);
+  w[SigmaPoints<N>::kCentre] = square_root::Sqrt(Weights::kCovariance0);
+  return w;
+}();
 
 /// Square-root unscented Kalman filter of N states with additive noise (R. van der Merwe, E. A. Wan, "The
 /// square-root unscented Kalman filter for state and parameter-estimation", ICASSP 2001; equation numbers
@@ -48,26 +60,25 @@ template <std::size_t N, class Spread = DefaultSpread>
 class SqrtUkf : public Gaussian<N> {
  public:
   using Weights = UkfWeights<N, Spread>;
+  using Points = SigmaPoints<N>;
   static_assert(Weights::kScale > 0.0, "n + lambda must be positive");
   static_assert(Weights::kCovariance0 >= 0.0, "W0c < 0 has no square root: choose alpha = 1 and beta >= 0");
 
-  /// Time update. `process(points)` moves every sigma point in place (SigmaPoints<N>&, noexcept); noise_std
-  /// is the square root of the diagonal of Q.
-  template <class Process>
+  /// Time update. `process(points)` moves every sigma point in place (SigmaPoints<N>&, noexcept), but for
+  /// states from Moving on, which it leaves as they are; noise_std is the square root of the diagonal of Q.
+  template <std::size_t Moving = N, class Process>
   [[gnu::always_inline]] void Predict(Process&& process, const StateVector<N>& noise_std) noexcept {
-    SigmaPoints<N> points;
+    Points points;
     Draw(points);
     process(points);
     // Eqs. 14, 15: mean. Eq. 16: weighted deviations, the centre point stacked in with sqrt(W0c).
     // Eq. 17: S- = qr([sqrt(W) (X - x), sqrt(Q)]^T)^T; the paper prints the noise itself for sqrt(Q), and the
     // QR gives the upper factor, whose transpose is wanted.
     Triangular a;
-    for (std::size_t i = 0; i < N; ++i) {
-      this->x[i] = Mean(points.row[i].data());
-      Deviations(points.row[i].data(), this->x[i], a.row[i].data());
-    }
-    a.SetNoise(noise_std);
-    a.Run(this->s);
+    for (std::size_t i = 0; i < Moving; ++i)
+      this->x[i] = MeanAndDeviations(points.row[i].data(), a.row[i].data());
+    for (std::size_t i = Moving; i < N; ++i) KeptDeviations(i, a.row[i].data());
+    a.Run(noise_std, this->s);
   }
 
   /// Measurement of state 0; see UpdateFirstState. Redrawing (eqs. 18-22) is not needed since h is linear: S-
@@ -78,18 +89,16 @@ class SqrtUkf : public Gaussian<N> {
   }
 
   /// Scalar measurement y = h(x) + noise of standard deviation r > 0, h any function:
-  /// `measure(points, row)` fills row[0 .. kCount-1]. Sigma points are redrawn from the prior x-, S- (the
-  /// paper prints the posterior, eq. 18, before it is known).
+  /// `measure(points, row)` fills the row, element by element. Sigma points are redrawn from the prior x-, S-
+  /// (the paper prints the posterior, eq. 18, before it is known).
   template <class Measure>
   UpdateResult Update(Measure&& measure, double y, double r, const InnovationGate& gate,
                       Innovation& innovation) noexcept {
-    SigmaPoints<N> points;
+    Points points;
     Draw(points);
-    typename SigmaPoints<N>::Row predicted{};
+    alignas(32) typename Points::Row predicted{}, myy;
     measure(points, predicted);
-    const double mean = Mean(predicted.data());
-    std::array<double, kColumns> myy{};
-    Deviations(predicted.data(), mean, myy.data());
+    const double mean = MeanAndDeviations(predicted.data(), myy.data());
     // Eq. 23: Syy = qr([Myy, sqrt(R)]^T), a number here. Eq. 22 is Myy (printed Mxy).
     const double syy = std::sqrt(square_root::Dot<kColumns>(myy.data(), myy.data()) + r * r);
     innovation.value = y - mean;
@@ -98,60 +107,93 @@ class SqrtUkf : public Gaussian<N> {
     if (!(off <= std::max(gate.sigmas * syy, gate.absolute))) return UpdateResult::kGated;
 
     // Eqs. 24-26 in Joseph form: S = qr([Mxx - K Myy, K sqrt(R)]^T)^T. The one noise column is dense, so it
-    // takes the place of the last deviation column's neighbour: N + 1 columns of which only the first is
-    // used.
-    square_root::Triangulariser<N, kColumns + 1> a;
+    // is one more column of deviations.
+    square_root::Triangulariser<N, kColumns + 1> a{};
     for (std::size_t i = 0; i < N; ++i) {
-      double* row = a.row[i].data();
-      Deviations(points.row[i].data(), this->x[i], row);
-      const double k = square_root::Dot<kColumns>(row, myy.data()) / (syy * syy);
-      for (std::size_t c = 0; c < kColumns; ++c) row[c] -= k * myy[c];
-      row[kColumns] = k * r;
+      alignas(32) typename Points::Row row;
+      MeanAndDeviations(points.row[i].data(), row.data());
+      const double k = square_root::Dot<kColumns>(row.data(), myy.data()) / (syy * syy);
+      for (std::size_t c = 0; c < kColumns; ++c) a.row[i][c] = row[c] - k * myy[c];
+      a.row[i][kColumns] = k * r;
       this->x[i] += k * innovation.value;
     }
-    a.SetNoise(StateVector<N>{});
-    a.Run(this->s);
+    a.Run(StateVector<N>{}, this->s);
     return UpdateResult::kOk;
   }
 
   /// Sigma points of the present mean and covariance (eqs. 11, 12): x, x +- sqrt(n + lambda) S_i, the columns
-  /// of the lower factor.
-  [[gnu::always_inline]] void Draw(SigmaPoints<N>& points) const noexcept {
+  /// of the lower factor. S is zero above its diagonal: there the points are the centre.
+  [[gnu::always_inline]] void Draw(Points& points) const noexcept {
     constexpr double kSpread = square_root::Sqrt(Weights::kScale);
     for (std::size_t i = 0; i < N; ++i) {
       double* row = points.row[i].data();
       const double centre = this->x[i];
-      row[0] = centre;
-      // S is zero above its diagonal: there the points are the centre.
-      for (std::size_t j = 0; j < N; ++j) {
-        const double d = kSpread * this->s[i][j];
-        row[1 + j] = centre + d;
-        row[1 + N + j] = centre - d;
+      const square_root::Quad middle{centre, centre, centre, centre};
+      constexpr square_root::Quad kSpreads{kSpread, kSpread, kSpread, kSpread};
+      for (std::size_t j = 0; j < Points::kHalf; j += 4) {
+        square_root::Quad d;
+        Columns(i, j, d);
+        d *= kSpreads;
+        square_root::Store(row + j, middle + d);
+        square_root::Store(row + Points::kHalf + j, middle - d);
       }
-      if constexpr (SigmaPoints<N>::kStride > SigmaPoints<N>::kCount) row[SigmaPoints<N>::kCount] = centre;
+      if constexpr (Points::kCentre == 2 * Points::kHalf) square_root::Store(row + Points::kCentre, middle);
     }
   }
 
  private:
-  // A centre weight of zero needs no column.
-  static constexpr bool kCentre = Weights::kCovariance0 > 0.0;
-  static constexpr std::size_t kColumns = 2 * N + (kCentre ? 1 : 0);
+  /// Elements of a row of deviations, the centre's among them; what follows is zero.
+  static constexpr std::size_t kColumns =
+      Points::kCentre < Points::kHalf ? Points::kHalf + N : Points::kCentre + 1;
   using Triangular = square_root::Triangulariser<N, kColumns>;
+  static_assert(Triangular::kWidth == Points::kStride);
+
+  /// Row i of S from column j on, with zeros beyond the last. The length of a row is even.
+  [[gnu::always_inline]] void Columns(std::size_t i, std::size_t j, square_root::Quad& q) const noexcept {
+    const auto& row = this->s[i];
+    if (j + 4 <= row.size())
+      square_root::Load(row.data() + j, q);
+    else
+      q = square_root::Quad{row[j], j + 1 < row.size() ? row[j + 1] : 0.0};
+  }
 
   /// The weights sum to one, so the mean is the centre plus the weighted differences from it: W0m drops out
   /// and nothing is lost when a state is large against its spread.
-  [[gnu::always_inline]] static double Mean(const double* row) noexcept {
-    const square_root::Pair centre{row[0], row[0]};
-    square_root::Pair sums{};
-    for (std::size_t k = 1; k < 2 * N; k += 2) sums += square_root::Load(row + k) - centre;
-    return row[0] + Weights::kOther * (sums[0] + sums[1]);
+  [[gnu::always_inline]] static double MeanAndDeviations(const double* row, double* out) noexcept {
+    constexpr auto& kRoots = kRootWeights<N, Weights>;
+    constexpr std::size_t kQuads = Points::kStride / 4;
+    const double centre = row[Points::kCentre];
+    const square_root::Quad middle{centre, centre, centre, centre};
+    std::array<square_root::Quad, kQuads> off;
+    for (std::size_t k = 0; k < kQuads; ++k) {
+      square_root::Load(row + 4 * k, off[k]);
+      off[k] -= middle;
+    }
+    square_root::Quad sums = off[0] + off[1];
+    for (std::size_t k = 2; k < 2 * Points::kHalf / 4; k += 2) sums += off[k] + off[k + 1];
+    const double shift = Weights::kOther * square_root::Fold(sums);
+    const square_root::Quad shifts{shift, shift, shift, shift};
+    for (std::size_t k = 0; k < kQuads; ++k) {
+      square_root::Quad roots;
+      square_root::Load(kRoots.data() + 4 * k, roots);
+      square_root::Store(out + 4 * k, roots * (off[k] - shifts));
+    }
+    return centre + shift;
   }
 
-  [[gnu::always_inline]] static void Deviations(const double* row, double mean, double* out) noexcept {
-    constexpr double kOther = square_root::Sqrt(Weights::kOther);
-    constexpr double kZero = square_root::Sqrt(Weights::kCovariance0);
-    for (std::size_t k = 0; k < 2 * N; ++k) out[k] = kOther * (row[k + 1] - mean);
-    if constexpr (kCentre) out[2 * N] = kZero * (row[0] - mean);
+  /// Of a state that is as it was drawn.
+  [[gnu::always_inline]] void KeptDeviations(std::size_t i, double* out) const noexcept {
+    constexpr double kRoot = square_root::Sqrt(Weights::kScale) * square_root::Sqrt(Weights::kOther);
+    constexpr square_root::Quad kRoots{kRoot, kRoot, kRoot, kRoot};
+    for (std::size_t j = 0; j < Points::kHalf; j += 4) {
+      square_root::Quad d;
+      Columns(i, j, d);
+      d *= kRoots;
+      square_root::Store(out + j, d);
+      square_root::Store(out + Points::kHalf + j, -d);
+    }
+    if constexpr (Points::kCentre == 2 * Points::kHalf)
+      square_root::Store(out + Points::kCentre, square_root::Quad{});
   }
 };
 

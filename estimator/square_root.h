@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 /// Square-root covariances of fixed size: P = S S^T with S lower triangular. No allocation, no exception.
 namespace contour {
@@ -12,9 +13,10 @@ namespace contour {
 template <std::size_t N>
 using StateVector = std::array<double, N>;
 
-/// N x N, row by row. A square root keeps zeros above its diagonal.
+/// N x N, row by row. A square root keeps zeros above its diagonal, and in the element that fills an odd row
+/// up to a whole number of registers.
 template <std::size_t N>
-using SquareMatrix = std::array<std::array<double, N>, N>;
+using SquareMatrix = std::array<std::array<double, N + N % 2>, N>;
 
 /// Which states an update may move; the others keep their value, and their covariance is kept honest.
 template <std::size_t N>
@@ -40,9 +42,26 @@ inline Pair Load(const double* p) noexcept {
 }
 inline void Store(double* p, Pair v) noexcept { std::memcpy(p, &v, sizeof v); }
 
-/// Four neighbours: two registers of the baseline, one where there is AVX2. Only ever a local variable of
-/// something inlined, since how it would be passed depends on the processor.
+/// Four neighbours: two registers of the baseline, one where there is AVX2. Only ever a local variable, or a
+/// reference to one, of something inlined, since how it would be passed depends on the processor.
 using Quad = double __attribute__((vector_size(32)));
+
+/// Four neighbours in memory, wherever they begin. (memcpy becomes two halves where the baseline inlines it,
+/// and a register cannot be loaded at once from two that were just stored.)
+using QuadInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
+
+[[gnu::always_inline]] inline void Load(const double* p, Quad& v) noexcept {
+  v = *reinterpret_cast<const QuadInMemory*>(p);
+}
+[[gnu::always_inline]] inline void Store(double* p, const Quad& v) noexcept {
+  *reinterpret_cast<QuadInMemory*>(p) = v;
+}
+
+/// Sum of the four, halves first.
+[[gnu::always_inline]] inline double Fold(const Quad& q) noexcept {
+  const Pair halves = Pair{q[0], q[1]} + Pair{q[2], q[3]};
+  return halves[0] + halves[1];
+}
 
 /// Scalar product with four partial sums: the order of additions is stated, so the result is the same on
 /// every machine.
@@ -52,8 +71,8 @@ template <std::size_t K>
   std::size_t k = 0;
   for (; k + 4 <= K; k += 4) {
     Quad u, v;
-    std::memcpy(&u, a + k, sizeof u);
-    std::memcpy(&v, b + k, sizeof v);
+    Load(a + k, u);
+    Load(b + k, v);
     sums += u * v;
   }
   Pair s{sums[0], sums[1]};
@@ -68,79 +87,126 @@ template <std::size_t K>
   return sum;
 }
 
-/// a += t v.
-template <std::size_t K>
-[[gnu::always_inline]] inline void AddScaled(double* a, double t, const double* v) noexcept {
-  const Quad four{t, t, t, t};
-  const Pair tt{t, t};
-  std::size_t k = 0;
-  for (; k + 4 <= K; k += 4) {
-    Quad u, w;
-    std::memcpy(&u, a + k, sizeof u);
-    std::memcpy(&w, v + k, sizeof w);
-    u += four * w;
-    std::memcpy(a + k, &u, sizeof u);
-  }
-  for (; k + 2 <= K; k += 2) Store(a + k, Load(a + k) + tt * Load(v + k));
-  if (k < K) a[k] += t * v[k];
-}
-
 /// Lower-triangular S with S S^T = A A^T for A = [D, diag(q)], where D (N rows, M columns) holds weighted
 /// deviations and q the square root of a diagonal noise covariance. Householder reflections from the right
 /// (the paper's QR of A^T; S is the transpose of its upper factor).
 ///
-/// Row i of A is stored with its noise entry at column M + i. The reflection that clears row i to the right
-/// of its diagonal then reaches exactly columns i .. M + i: columns further right are still zero in row i,
-/// and the reach is the same M + 1 for every row, so every loop has a length known at compile time.
+/// The noise column of state i is column M + i. The reflection that clears row i to the right of its diagonal
+/// then reaches exactly columns i .. M + i: columns further right are still zero in row i. Column c stands at
+/// place c modulo kWidth: as reflection i is over, column i is done with, and the noise column that comes in
+/// next takes its place. So every reflection works on the same places, whole registers from the first to the
+/// last, and what one has stored is what the next one loads.
 template <std::size_t N, std::size_t M>
 class Triangulariser {
  public:
-  static constexpr std::size_t kWidth = M + N;
+  static constexpr std::size_t kWidth = (M + 1 + 3) / 4 * 4;
 
-  /// Row i: deviations in 0 .. M-1, noise at M + i; everything else zero. Destroyed by Run.
-  std::array<std::array<double, kWidth>, N> row;
+  /// Row i: deviations in 0 .. M-1, zeros beyond. Destroyed by Run.
+  alignas(32) std::array<std::array<double, kWidth>, N> row;
 
-  [[gnu::always_inline]] void SetNoise(const StateVector<N>& noise) noexcept {
-    for (std::size_t i = 0; i < N; ++i) {
-      for (std::size_t k = M; k < kWidth; ++k) row[i][k] = 0.0;
-      row[i][M + i] = noise[i];
-    }
-  }
-
-  [[gnu::always_inline]] void Run(SquareMatrix<N>& s) noexcept {
-    for (std::size_t i = 0; i < N; ++i) {
-      double* v = row[i].data() + i;
-      const double x0 = v[0];
-      const double rest = Dot<kReach - 1>(v + 1, v + 1);
-      if (rest < kNothing) {
-        // Row i is clear already, but for what would only underflow: at most a change of sign.
-        const double sign = x0 < 0.0 ? -1.0 : 1.0;
-        s[i][i] = sign * x0;
-        for (std::size_t j = i + 1; j < N; ++j) {
-          s[j][i] = sign * row[j][i];
-          s[i][j] = 0.0;
-        }
-        continue;
-      }
-      const double norm = std::sqrt(x0 * x0 + rest);
-      // Diagonals come out positive: the reflected row is +norm e_i. v0 = x0 - norm without cancellation.
-      const double v0 = x0 > 0.0 ? -rest / (x0 + norm) : x0 - norm;
-      s[i][i] = norm;
-      // Reflection I - v v^T / (norm (norm - x0)) = I + v v^T / (norm v0).
-      const double factor = 1.0 / (norm * v0);
-      v[0] = v0;
-      for (std::size_t j = i + 1; j < N; ++j) {
-        double* a = row[j].data() + i;
-        const double t = Dot<kReach>(v, a) * factor;
-        AddScaled<kReach>(a, t, v);
-        s[j][i] = a[0];
-        s[i][j] = 0.0;
-      }
-    }
+  [[gnu::always_inline]] void Run(const StateVector<N>& noise, SquareMatrix<N>& s) noexcept {
+    Run(noise, s, std::make_index_sequence<N>{});
   }
 
  private:
-  static constexpr std::size_t kReach = M + 1;
+  template <std::size_t... I>
+  [[gnu::always_inline]] void Run(const StateVector<N>& noise, SquareMatrix<N>& s,
+                                  std::index_sequence<I...>) noexcept {
+    (Reflect<I>(noise[I], s), ...);
+  }
+
+  template <std::size_t I>
+  [[gnu::always_inline]] void Reflect(double noise, SquareMatrix<N>& s) noexcept {
+    constexpr std::size_t kPivot = I % kWidth;
+    double* v = row[I].data();
+    Set<(M + I) % kWidth>(v, noise);
+    const double x0 = v[kPivot];
+    Clear<kPivot>(v);
+    const double rest = Product(v, v);
+    for (std::size_t k = I + 1; k < s[I].size(); ++k) s[I][k] = 0.0;
+    const double sign = std::copysign(1.0, x0);
+    if (rest < kNothing) {
+      // Row i is clear already, but for what would only underflow: at most a change of sign.
+      s[I][I] = sign * x0;
+      for (std::size_t j = I + 1; j < N; ++j) {
+        s[j][I] = sign * row[j][kPivot];
+        Clear<kPivot>(row[j].data());
+      }
+      return;
+    }
+    // v0 = x0 + sign norm does not cancel, and takes row i to -sign norm e_i; the column's sign is turned
+    // after that: diagonals come out positive. Reflection I - v v^T / (norm (norm + |x0|)).
+    const double square = x0 * x0 + rest;
+    const double norm = std::sqrt(square);
+    Set<kPivot>(v, x0 + sign * norm);
+    const double factor = -1.0 / (square + std::abs(x0) * norm);
+    s[I][I] = norm;
+    for (std::size_t j = I + 1; j < N; ++j) {
+      double* a = row[j].data();
+      const double t = Product(v, a) * factor;
+      AddScaled(a, t, v);
+      s[j][I] = -sign * a[kPivot];
+      Clear<kPivot>(a);
+    }
+  }
+
+  using Lanes = long long __attribute__((vector_size(32)));
+
+  /// One number, as part of the register that it belongs to: a register cannot be loaded at once from where a
+  /// single number was just stored.
+  template <std::size_t Place>
+  [[gnu::always_inline]] static void Set(double* v, double x) noexcept {
+    constexpr std::size_t k = Place % 4;
+    Quad q;
+    Load(v + Place / 4 * 4, q);
+    q = __builtin_shufflevector(q, Quad{x, x, x, x}, k == 0 ? 4 : 0, k == 1 ? 5 : 1, k == 2 ? 6 : 2,
+                                k == 3 ? 7 : 3);
+    Store(v + Place / 4 * 4, q);
+  }
+
+  template <std::size_t Place>
+  [[gnu::always_inline]] static void Clear(double* v) noexcept {
+    constexpr std::size_t k = Place % 4;
+    Quad q;
+    Load(v + Place / 4 * 4, q);
+    q = reinterpret_cast<Quad>(reinterpret_cast<Lanes>(q) &
+                               Lanes{k == 0 ? 0 : -1, k == 1 ? 0 : -1, k == 2 ? 0 : -1, k == 3 ? 0 : -1});
+    Store(v + Place / 4 * 4, q);
+  }
+
+  /// Scalar product; the order of additions is stated, so the result is the same on every machine.
+  [[gnu::always_inline]] static double Product(const double* u, const double* v) noexcept {
+    Quad even{}, odd{};
+    for (std::size_t k = 0; k < kWidth; k += 4) {
+      Quad a, b;
+      Load(u + k, a);
+      Load(v + k, b);
+      a *= b;
+      if (k == 0)
+        even = a;
+      else if (k == 4)
+        odd = a;
+      else if (k % 8 == 0)
+        even += a;
+      else
+        odd += a;
+    }
+    even += odd;
+    return Fold(even);
+  }
+
+  /// a += t v.
+  [[gnu::always_inline]] static void AddScaled(double* a, double t, const double* v) noexcept {
+    const Quad four{t, t, t, t};
+    for (std::size_t k = 0; k < kWidth; k += 4) {
+      Quad u, w;
+      Load(a + k, u);
+      Load(v + k, w);
+      u += four * w;
+      Store(a + k, u);
+    }
+  }
+
   static constexpr double kNothing = 1e-250;  // squared: entries below 1e-125 in any unit
 };
 

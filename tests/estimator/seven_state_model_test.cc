@@ -74,19 +74,31 @@ TEST(SevenStateModel, OnePeriodMatchesAFineIntegration) {
 }
 
 TEST(SevenStateModel, AllSigmaPointsMoveLikeSingleStates) {
-  const SevenStateModel model(Nominal(), 89.0, 1e-3, 0.2);
   std::mt19937 random(8);
-  SigmaPoints<kSevenStates> points;
-  std::array<X, SigmaPoints<kSevenStates>::kStride> single;
-  for (std::size_t c = 0; c < single.size(); ++c) {
-    single[c] = RandomState(random, 1e-3);
-    for (std::size_t i = 0; i < kSevenStates; ++i) points.row[i][c] = single[c][i];
-  }
-  const SevenStateInput in{{50.0, 55.0}, 1.02, 0.97, 2000.0};
-  model.Propagate(points, in);
-  for (std::size_t c = 0; c < single.size(); ++c) {
-    model.Propagate(single[c], in);
-    for (std::size_t i = 0; i < kSevenStates; ++i) EXPECT_EQ(points.row[i][c], single[c][i]) << c << " " << i;
+  using Points = SigmaPoints<kSevenStates>;
+  for (const double exponent : {1.0, 2.0, 1.4}) {
+    const SevenStateModel model(Nominal(exponent), 89.0, 1e-3, 0.2, 25e-9);
+    for (int trial = 0; trial < 50; ++trial) {
+      SqrtUkf<kSevenStates> filter;
+      filter.x = RandomState(random, 1e-3);
+      std::normal_distribution<double> normal;
+      const X std{1e-8, 2e-4, 5.0, 2.0, 1.0, 1.0, 0.1};
+      for (std::size_t i = 0; i < kSevenStates; ++i)
+        for (std::size_t j = 0; j <= i; ++j) filter.s[i][j] = std[i] * normal(random);
+      Points points;
+      filter.Draw(points);
+      std::array<X, Points::kStride> single;
+      for (std::size_t c = 0; c < single.size(); ++c)
+        for (std::size_t i = 0; i < kSevenStates; ++i) single[c][i] = points.row[i][c];
+      const SevenStateInput in{{50.0, 55.0}, 1.02, 0.97, 2000.0};
+      model.Propagate(points, in, model.TermsAt(filter.x[kVelocity]).low_speed);
+      for (std::size_t c = 0; c < single.size(); ++c) {
+        model.Propagate(single[c], in);
+        for (std::size_t i = 0; i < kSevenStates; ++i)
+          EXPECT_NEAR(points.row[i][c], single[c][i], 1e-13 * std::abs(single[c][i]) + 1e-12 * std[i])
+              << c << " " << i;
+      }
+    }
   }
 }
 

@@ -70,7 +70,7 @@ void CompareWithDense(bool nonlinear_measurement, double noise_scale) {
       const double y = Height(truth) + r * normal(random);
       fast.Update(
           [](const SigmaPoints<4>& points, SigmaPoints<4>::Row& row) noexcept {
-            for (std::size_t c = 0; c < SigmaPoints<4>::kCount; ++c) {
+            for (std::size_t c = 0; c < SigmaPoints<4>::kStride; ++c) {
               row[c] =
                   Height<double>({points.row[0][c], points.row[1][c], points.row[2][c], points.row[3][c]});
             }

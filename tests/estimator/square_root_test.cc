@@ -29,7 +29,7 @@ void CheckRandom(double range_decades) {
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> decade(-range_decades, range_decades);
   for (int trial = 0; trial < 200; ++trial) {
-    Triangulariser<N, M> a;
+    Triangulariser<N, M> a{};
     StateVector<N> noise{};
     std::array<std::array<long double, N>, N> expected{};
     std::array<double, N> scale{};
@@ -45,10 +45,9 @@ void CheckRandom(double range_decades) {
       }
       expected[i][i] += static_cast<long double>(noise[i]) * noise[i];
     }
-    a.SetNoise(noise);
     SquareMatrix<N> s;
     for (auto& row : s) row.fill(1e99);
-    a.Run(s);
+    a.Run(noise, s);
     const auto p = Product<N>(s);
     for (std::size_t i = 0; i < N; ++i) {
       EXPECT_GE(s[i][i], 0.0);
@@ -76,9 +75,8 @@ TEST(Triangulariser, KeepsItsDigitsWhenStatesDifferByTenDecades) { CheckRandom<7
 TEST(Triangulariser, TakesRowsOfZeros) {
   Triangulariser<3, 7> a{};
   a.row[1][2] = -2.0;
-  a.SetNoise({});
   SquareMatrix<3> s;
-  a.Run(s);
+  a.Run({}, s);
   const auto p = Product<3>(s);
   EXPECT_EQ(static_cast<double>(p[0][0]), 0.0);
   EXPECT_DOUBLE_EQ(static_cast<double>(p[1][1]), 4.0);
@@ -88,13 +86,12 @@ TEST(Triangulariser, TakesRowsOfZeros) {
 TEST(Triangulariser, EntriesThatUnderflowDoNoHarm) {
   for (const double tiny : {1e-120, 1e-140, 1e-155, 1e-160, 1e-170, 1e-310}) {
     for (const double sign : {-1.0, 1.0}) {
-      Triangulariser<3, 7> a;
+      Triangulariser<3, 7> a{};
       a.row[0] = {sign * 1e-3, tiny, tiny, 0.0, tiny, 0.0, 0.0};
       a.row[1] = {0.5, 1.0, tiny, 0.0, 0.0, 0.0, 0.0};
       a.row[2] = {tiny, tiny, 0.0, tiny, 0.0, 0.0, 0.0};
-      a.SetNoise({});
       SquareMatrix<3> s;
-      a.Run(s);
+      a.Run({}, s);
       const auto p = Product<3>(s);
       EXPECT_DOUBLE_EQ(static_cast<double>(p[0][0]), 1e-6) << tiny;
       EXPECT_NEAR(static_cast<double>(p[1][0]), sign * 5e-4, 1e-18) << tiny;

@@ -15,8 +15,9 @@ namespace contour::bench {
 namespace {
 
 /// The example's table `pairs` times, each pair on a bus of its own.
-EmulatedMachineFile Machine(int pairs) {
-  EmulatedMachineFile file = LoadEmulatedMachine(CONTOUR_MACHINE_FILE);
+EmulatedMachineFile Machine(int pairs, const char* mode) {
+  const std::string set = std::string(".drive.mode=") + mode;
+  EmulatedMachineFile file = LoadEmulatedMachine(CONTOUR_MACHINE_FILE, {"axes.x" + set, "axes.y" + set});
   const EmulatedMachineFile one = file;
   for (auto* map : {&file.machine.axes}) map->clear();
   file.emulator.axes.clear();
@@ -60,11 +61,11 @@ std::vector<CycleInput> Record(const EmulatedMachineFile& file, int pairs, Contr
 }
 
 /// `machines` of them one after the other in every cycle: a machine has 8 axes at most.
-void WholeCycle(benchmark::State& state, ControllerName controller) {
+void WholeCycle(benchmark::State& state, ControllerName controller, const char* mode) {
   const int all = static_cast<int>(state.range(0));
   const int machines = all > 4 ? all / 4 : 1;
   const int pairs = all / machines;
-  const EmulatedMachineFile file = Machine(pairs);
+  const EmulatedMachineFile file = Machine(pairs, mode);
   std::size_t running_from = 0;
   const std::vector<CycleInput> inputs = Record(file, pairs, controller, running_from);
   std::vector<std::unique_ptr<Cycle>> cycles;
@@ -89,7 +90,7 @@ void WholeCycle(benchmark::State& state, ControllerName controller) {
   }
   state.counters["median_us_per_pair"] = state.counters["median_us"] / static_cast<double>(all);
 }
-BENCHMARK_CAPTURE(WholeCycle, full, ControllerName::kFull)
+BENCHMARK_CAPTURE(WholeCycle, full, ControllerName::kFull, "cst")
     ->Name("cycle/full/pairs")
     ->Arg(1)
     ->Arg(2)
@@ -98,7 +99,16 @@ BENCHMARK_CAPTURE(WholeCycle, full, ControllerName::kFull)
     ->Arg(16)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(WholeCycle, mpc, ControllerName::kMpc)
+BENCHMARK_CAPTURE(WholeCycle, full_csp, ControllerName::kFull, "csp")
+    ->Name("cycle/full_csp/pairs")
+    ->Arg(1)
+    ->Arg(2)
+    ->Arg(4)
+    ->Arg(8)
+    ->Arg(16)
+    ->UseManualTime()
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(WholeCycle, mpc, ControllerName::kMpc, "cst")
     ->Name("cycle/mpc/pairs")
     ->Arg(1)
     ->UseManualTime()
