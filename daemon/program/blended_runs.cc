@@ -5,8 +5,10 @@
 namespace contour {
 namespace {
 
-// What `full` leaves between planned and real path in a corner (docs/comparing.md).
-constexpr double kFollowing_m = 1e-6;
+// What may lie between planned and real path in a corner while friction is still being learnt
+// (docs/comparing.md). The time that a blend saves goes with the cube root of its deviation, so that being
+// generous costs little.
+constexpr double kFollowing_m = 2e-6;
 constexpr double kJerkRise_s = 4e-3;
 constexpr int kBisections = 50;
 

@@ -87,8 +87,8 @@ TEST(MotionPlan, StaysWithinTheLimitsAndOnItsCurve) {
       previous = at;
     }
     for (double t = 0.0; t < e.plan->duration_s(); t += 0.0173) {
-      // square_blended.ngc has a tolerance of 5 um, of which the reference takes four.
-      const double off_path_m = e.name == "square_blended.ngc" ? 4e-6 : 0.0;
+      // square_blended.ngc has a tolerance of 5 um, of which the reference takes three.
+      const double off_path_m = e.name == "square_blended.ngc" ? 3e-6 : 0.0;
       EXPECT_LT(e.plan->Distance_m(Position(At(*e.plan, t))), off_path_m + 1e-9) << e.name << " at " << t;
     }
   }
