@@ -29,13 +29,16 @@ constexpr double kMostLevelError = 2.0;
 constexpr double kLawOfBristle = 0.01;
 constexpr double kLawAtSpeed = 0.03;  // per Stribeck velocity at the end of the window
 constexpr double kLawOfScrew = 0.05;
-constexpr double kMostLaw = 0.3;     // of the commissioned compliance
+constexpr double kMostLaw = 0.25;  // of the commissioned compliance
+// Share of that variance which is the same at every reversal: more of them do not make it less.
+constexpr double kSameLaw = 0.3;
 constexpr double kMostSpeed = 0.4;   // Stribeck velocities at the end of the window
 constexpr double kMostChange = 2.0;  // of the compliance, and the inverse
 // Standard deviations that an axis moving alone stays short by.
 constexpr double kDoubts = 5.0;
 // What is stated may be quite wrong: its tails are those of a Student distribution.
 constexpr double kTailDegrees = 4.0;
+constexpr int kTailPasses = 4;
 // Share of a new answer that is put to use per millisecond.
 constexpr double kUseShare = 0.02;
 
@@ -78,7 +81,7 @@ void WindUpFit::Reset() noexcept {
   compliance_m_N_ = 1.0 / tuning_.stiffness_N_m;
   const double std_m_N = tuning_.stiffness_std * compliance_m_N_;
   stated_certainty_ = certainty_ = learns() ? 1.0 / (std_m_N * std_m_N) : 0.0;
-  found_m_N_ = found_certainty_ = 0.0;
+  found_m_N_ = found_certainty_ = same_m2_N2_ = 0.0;
   independence_ = kIndependent;
   judged_ = 1.0;
   used_m_N_ = 0.0;
@@ -129,7 +132,7 @@ double WindUpFit::Believed_m_N(bool alone) const noexcept {
   const double extra_m_N = compliance_m_N_ - 1.0 / tuning_.stiffness_N_m;
   if (!alone || !learns()) return extra_m_N;
   // What the law is wrong by is the same at every reversal.
-  const double law_m_N = kLawOfScrew * compliance_m_N_ * found_certainty_ / certainty_;
+  const double law_m_N = kLawOfScrew * compliance_m_N_ * FoundCertainty() / certainty_;
   return extra_m_N - kDoubts * std::sqrt(1.0 / certainty_ + law_m_N * law_m_N);
 }
 
@@ -257,7 +260,7 @@ bool WindUpFit::Follows(double independence) noexcept {
   judged_ = std::min(judged_ + 1.0, kMostJudged);
   independence_ += (independence - independence_) / judged_;
   if (independence_ > kLeastIndependence) return true;
-  found_m_N_ = found_certainty_ = 0.0;
+  found_m_N_ = found_certainty_ = same_m2_N2_ = 0.0;
   Weigh();
   return false;
 }
@@ -277,22 +280,27 @@ void WindUpFit::Conclude(double compliance_m_N, double std_m_N, double independe
       whole * whole / (std_m_N * std_m_N + bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
   found_certainty_ += certainty;
   found_m_N_ += certainty / found_certainty_ * (compliance_m_N - found_m_N_);
+  same_m2_N2_ = kSameLaw * (bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
   ++reversals_;
   Weigh();
 }
 
-// What was stated counts as long as what is found may well be the same: as a Student distribution with
-// kTailDegrees of freedom, the farther off, in standard deviations of both, the less.
+// What was stated has a Student distribution with kTailDegrees of freedom: the farther from it the answer
+// comes to lie, the less it counts. The answer is the mode that is nearest to what was found.
 void WindUpFit::Weigh() noexcept {
   const double stated_m_N = 1.0 / tuning_.stiffness_N_m;
   compliance_m_N_ = stated_m_N;
   certainty_ = stated_certainty_;
   if (found_certainty_ == 0.0) return;
+  const double found = FoundCertainty();
   const double off_m_N = found_m_N_ - stated_m_N;
-  const double off2 = off_m_N * off_m_N / (1.0 / stated_certainty_ + 1.0 / found_certainty_);
-  const double stated = stated_certainty_ * (kTailDegrees + 1.0) / (kTailDegrees + off2);
-  certainty_ = stated + found_certainty_;
-  compliance_m_N_ += found_certainty_ / certainty_ * off_m_N;
+  double moved_m_N = off_m_N;
+  for (int pass = 0; pass < kTailPasses; ++pass) {
+    const double off2 = moved_m_N * moved_m_N * stated_certainty_;
+    certainty_ = stated_certainty_ * (kTailDegrees + 1.0) / (kTailDegrees + off2) + found;
+    moved_m_N = found / certainty_ * off_m_N;
+  }
+  compliance_m_N_ += moved_m_N;
 }
 
 }  // namespace contour

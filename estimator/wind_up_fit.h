@@ -72,6 +72,10 @@ class WindUpFit {
   enum class Phase { kIdle, kFollowing, kFitting };
 
   [[nodiscard]] double Believed_m_N(bool alone) const noexcept;
+  /// Of all reversals together: what the law is wrong by is partly the same at each.
+  [[nodiscard]] double FoundCertainty() const noexcept {
+    return found_certainty_ / (1.0 + found_certainty_ * same_m2_N2_);
+  }
   void Begin(const Sample& sample, double position_m) noexcept;
   void Follow(double position_m, double force_N, double velocity_m_s, double level_ratio) noexcept;
   void CloseBlock() noexcept;
@@ -89,6 +93,7 @@ class WindUpFit {
   double stated_certainty_ = 0.0;
   double found_m_N_ = 0.0;  // by reversals alone
   double found_certainty_ = 0.0;
+  double same_m2_N2_ = 0.0;    // variance that they share
   double independence_ = 0.0;  // of the residuals, mean over so many reversals
   double judged_ = 0.0;
   double end_m_s_ = 0.0;  // speed where a window ended

@@ -90,7 +90,7 @@ void Drive(WindUpFit& fit, Friction friction, const Run& run) {
 
 TEST(WindUpFit, FindsAScrewThatIsStifferThanCommissioned) {
   for (const double truth_N_m : {50e6, 60e6}) {
-    WindUpFit fit(Tuning());
+    WindUpFit fit(Tuning(0.3));
     Drive(fit, LuGre(kSigma0_N_m, kLevel_N), {.stiffness_N_m = truth_N_m});
     EXPECT_GE(fit.reversals(), 12);
     const double found_N_m = 1.0 / (1.0 / kCommissioned_N_m + fit.extra_compliance_m_N());
@@ -145,11 +145,29 @@ TEST(WindUpFit, AnAxisThatMovesAloneStaysShort) {
 
 TEST(WindUpFit, TheBristlesStiffnessNeedNotBeKnown) {
   for (const double believed : {0.7, 1.4}) {
-    WindUpFit fit(Tuning());
+    WindUpFit fit(Tuning(0.3));
     Drive(fit, LuGre(kSigma0_N_m, kLevel_N), {.stiffness_N_m = 55e6, .sigma0_N_m = believed * kSigma0_N_m});
     EXPECT_GE(fit.reversals(), 12);
     EXPECT_NEAR(1.0 / (1.0 / kCommissioned_N_m + fit.extra_compliance_m_N()), 55e6, 6e6);
   }
+}
+
+// What the law of friction is wrong by is the same at every reversal. However many there are, they do not
+// do away with a stiffness that is stated nearly as well.
+TEST(WindUpFit, ManyReversalsAreNotWorthMoreThanTheLaw) {
+  constexpr double kTruth_N_m = 36e6;
+  WindUpFit fit(Tuning());
+  Drive(fit, LuGre(kSigma0_N_m, kLevel_N), {.stiffness_N_m = kTruth_N_m, .seconds = 60.0});
+  EXPECT_GE(fit.reversals(), 80);
+  const double whole_way_m_N = 1.0 / kTruth_N_m - 1.0 / kCommissioned_N_m;
+  EXPECT_GT(fit.extra_compliance_m_N(), 0.35 * whole_way_m_N);
+  EXPECT_LT(fit.extra_compliance_m_N(), 0.8 * whole_way_m_N);
+}
+
+TEST(WindUpFit, NorDoesASoftBristleTeachOfAStiffScrew) {
+  WindUpFit fit(Tuning());
+  Drive(fit, LuGre(kSigma0_N_m / 3.0, kLevel_N), {.sigma0_N_m = kSigma0_N_m / 3.0});
+  EXPECT_EQ(fit.reversals(), 0);
 }
 
 TEST(WindUpFit, AnotherKindOfFrictionTeachesNothing) {
