@@ -15,6 +15,7 @@ ROOT = Path(sys.argv.pop(1))
 sys.path.insert(0, str(ROOT / "tools" / "plots"))
 import picture_circle  # noqa: E402  the path comes first
 from compare_runs import table_text  # noqa: E402
+from plot_corner import passage  # noqa: E402
 from run_data import Run, RunError, by_program, pair  # noqa: E402
 
 RADIUS_M = 1e-4
@@ -28,17 +29,18 @@ def write_run(directory, controller, error_m, circle=True):
     names = ["state", "path_time_s", "contour_error_m", "wakeup_late_us", "received_us", "stepped_us", "sent_us"]
     for axis in "xy":
         names += [f"{axis}_{name}" for name in ("position_m", "table_position_m", "reference_position_m", "friction_N",
-                                                "friction_std_N", "table_position_truth_m", "friction_truth_N")]
+                                                "friction_std_N", "table_position_truth_m", "friction_truth_N",
+                                                "reference_velocity_m_s")]
     lines = [",".join(names)]
     for k in range(-5, CYCLES_PER_TURN * TURNS + 5):
         on_path = min(max(k, 0), CYCLES_PER_TURN * TURNS)
         angle = 2 * math.pi * on_path / CYCLES_PER_TURN
         state = "Running" if k == on_path else "Ready"
         row = [state, on_path * 1e-2, error_m, 30, 40, 60, 70]
-        for direction, centre in ((math.cos(angle), 2e-3), (math.sin(angle), -1e-3)):
+        for direction, rate, centre in ((math.cos(angle), -math.sin(angle), 2e-3), (math.sin(angle), math.cos(angle), -1e-3)):
             reference = centre + RADIUS_M * direction
             table = centre + (RADIUS_M + error_m) * direction
-            row += [reference, "", reference, 40.0, 0.5, table, 39.0]
+            row += [reference, "", reference, 40.0, 0.5, table, 39.0, RADIUS_M * rate * 2 * math.pi / (CYCLES_PER_TURN * 1e-2)]
         lines.append(",".join(str(field) for field in row))
     (directory / "cycles.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
     place = {"rms_um": error_m * 1e6, "peak_um": error_m * 1e6, "circular_deviation_um": 0.0 if circle else None,
@@ -118,6 +120,18 @@ class CommandTest(FolderTest):
         result = self.command("plot_run.py", run)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("ring_contour_error.png", result.stdout)
+
+    def test_a_corner_is_drawn_at_the_passage_asked_for(self):
+        runs = [write_run(self.path / name, "full", 3e-7) for name in ("stop", "blend")]
+        top = [-0.1, 0.1]  # a quarter of a turn after the start
+        self.assertEqual([int(passage(Run(runs[0]), top, n)) for n in (1, 2, 3)], [50, 250, 450])
+        picture = self.path / "corner.png"
+        result = self.command("plot_corner.py", *runs, "--corner-mm", *map(str, top), "--out", picture)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        result = self.command("plot_corner.py", *runs, "--corner-mm", *map(str, top), "--passage", "4", "--out", picture)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("passed 3 times", result.stderr)
 
     def test_wrong_directories_and_axes_are_named(self):
         result = self.command("plot_run.py", self.path / "nowhere")
