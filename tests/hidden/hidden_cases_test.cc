@@ -65,7 +65,7 @@ TEST(HiddenSettings, NothingOfTheEffectStandsInTheFiles) {
   for (const std::string_view kind : diagnosis::kKinds) {
     const Setting s = DrawSetting(3, {std::string(kind)});
     EXPECT_EQ(MachineText(s).find("effects"), std::string::npos);
-    EXPECT_EQ(ModelText(s).find(kind), std::string::npos) << kind;
+    EXPECT_EQ(ModelText(s).find(std::string(kind) + ":"), std::string::npos) << kind;
   }
 }
 

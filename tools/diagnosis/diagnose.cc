@@ -66,6 +66,7 @@ class Engine {
     double explained = 0.0, left_over = 0.0;  // by what is accepted; of it
     const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
     bool first = true;
+    std::vector<std::string> tried;  // in this round, and refuted
     for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
@@ -83,7 +84,8 @@ class Engine {
       }
       const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > Threshold(problem_, gate);
       Say("rivals", 0.3 + 0.25 * round);
-      std::vector<Rival> rivals = FitRivals(problem_, current, scored, gate, options_.evidence != nullptr);
+      std::vector<Rival> rivals =
+          FitRivals(problem_, current, scored, gate, options_.evidence != nullptr, tried);
       if (rivals.empty()) {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
@@ -95,6 +97,7 @@ class Engine {
       if (rivals[0].no_fault && rivals[0].score > Threshold(problem_, gate, rivals[0].effect())) {
         // No cause of a deviation, but there; unless the model has it, others stand for it.
         current = std::move(rivals[0].fit);
+        tried.clear();
         --round;
         continue;
       }
@@ -129,11 +132,20 @@ class Engine {
         if (left.drop > 0.6 * jitter.drop && (!found || left.drop > tested)) {
           AcceptJitter(left, out);
           jitter_known = true;
+          tried.clear();
           if (!found) break;
           continue;
         }
       }
-      if (!found) break;
+      if (!found) {
+        // What the score test likes best may come to nothing; the others had no turn yet.
+        if (!MorePromised(problem_, scored, gate, tried)) break;
+        problem_.LearnNoise(current.point);
+        Rewhiten(problem_, current);
+        --round;
+        continue;
+      }
+      tried.clear();
       Accept(current, rivals, gate, out);
       explained += best.score;
       left_over += UnlikeShare(best.effect().kind) * best.score;
@@ -158,7 +170,13 @@ class Engine {
                      {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false});
     problem_.LearnNoise(base_.point);
     Rewhiten(problem_, base_);
-    base_ = FitOn(problem_, base_, {.most_steps = 8, .most_refreshes = 2});
+    base_ = FitOn(problem_, base_, {.most_steps = 12, .most_refreshes = 4});
+    if (Implausible(problem_, base_)) {
+      // A resonance may have been taken for another one.
+      Fit other =
+          FitPoint(problem_, BackToStated(problem_, base_.point), {.most_steps = 12, .most_refreshes = 4});
+      if (other.cost < base_.cost) base_ = std::move(other);
+    }
     problem_.LearnSignals(base_.point);
   }
 
@@ -277,6 +295,7 @@ class Engine {
     cause.parameters["rms_us"] = {1e6 * jitter.rms_s,
                                   1e6 * std::max(0.0, jitter.rms_s - 1.96 * jitter.sigma_s),
                                   1e6 * (jitter.rms_s + 1.96 * jitter.sigma_s)};
+    WidenIntervals(problem_, base_.point, cause);
     cause.unit = problem_.log_.linear ? "N" : "Nm";
     cause.deciding_experiment = DecidingExperiment(problem_, cause.kind, {}).text;
     for (Candidate& c : out.candidates)

@@ -14,6 +14,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 // Logarithm of how far a coupling's damping ratio may be from 0.04.
 constexpr double kDampingReach = 2.0;
+constexpr double kLeastWarming_K = 0.1;
 
 SharedSignal Add(const SharedSignal& before, const std::vector<SharedSignal>& basis,
                  const std::vector<double>& a) {
@@ -53,6 +54,13 @@ std::vector<SharedSignal> Legendre(const Signals& s, int last) {
       return std::legendre(static_cast<unsigned>(j), std::clamp(s.table_m[k] / half, -1.0, 1.0));
     }));
   return out;
+}
+
+/// A thermometer that stands still, to its own resolution, tells nothing.
+bool Varies(const Signal& temperature_K) {
+  if (temperature_K.empty()) return false;
+  const auto [low, high] = std::minmax_element(temperature_K.begin(), temperature_K.end());
+  return *high - *low > kLeastWarming_K;
 }
 
 // Hats over the log's time.
@@ -212,7 +220,7 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                        return -y * (1.0 + bend) / (std::fabs(y) + bend);
                      }),
         knee));
-  if (!s.temperature_K.empty()) {
+  if (Varies(s.temperature_K)) {
     const auto T = std::make_shared<const Signal>(s.temperature_K);
     out.push_back(WithShorter(AsSignals(Custom("temperature_viscosity", "and level", 2, {2e-3, 1e-3},
                                                [T](const auto& a, AxisModel& m) {

@@ -13,7 +13,7 @@ namespace {
 Signal Along(const StatedTable& table, const Signals& s) {
   Signal out;
   if (table.position_m.empty()) return out;
-  for (const double x : s.table_m) out.push_back(ValueAt(table, x + s.middle_m));
+  for (const double x : s.table_m) out.push_back(ValueAt(table.position_m, table.value, x + s.middle_m));
   return out;
 }
 

@@ -61,8 +61,8 @@ class Descent {
     stale_ = false;
   }
 
-  /// None: at the end.
-  std::vector<Point> Ask(bool brief) {
+  /// None: at the end. `room`: as many points cost no more than one.
+  std::vector<Point> Ask(std::size_t room) {
     if (fit_.raw.empty()) {
       stage_ = Stage::kBegin;
       return {fit_.point};
@@ -74,13 +74,7 @@ class Descent {
     }
     if (stage_ == Stage::kColumns) return AskColumns(0);
     if (stage_ == Stage::kEnd) return {};
-    // Shorter and longer steps ride along in lanes that would be empty otherwise.
-    tried_.clear();
-    if (brief)
-      for (const double part : {1.0, 0.4}) tried_.push_back(Moved(fit_.point, part * shrink_ * by_));
-    else
-      for (const double part : {1.0, 0.5, 0.15, 1.4})
-        tried_.push_back(Moved(fit_.point, part * shrink_ * by_));
+    Try(room);
     chosen_ = tried_.size();
     before_ = fit_.cost;
     return tried_;
@@ -174,8 +168,40 @@ class Descent {
     return around;
   }
 
+  /// Shorter, longer and damped steps (Marquardt, SIAM Journal 11(2), 1963) ride along in lanes that would be
+  /// empty otherwise. A curved valley lets only small or damped ones pass.
+  void Try(std::size_t room) {
+    tried_.clear();
+    const std::size_t most = std::max<std::size_t>(small_ ? 4 : 2, room);
+    const auto along = [&](double part) {
+      if (tried_.size() < most) tried_.push_back(Moved(fit_.point, part * by_));
+    };
+    const auto damped = [&](double by) {
+      if (tried_.size() < most) tried_.push_back(Moved(fit_.point, DampedStep(by)));
+    };
+    if (small_) {
+      along(0.1);
+      for (const double by : {0.03, 0.003, 0.3}) damped(by);
+      along(0.02);
+      return;
+    }
+    along(1.0);
+    along(0.4);
+    damped(0.03);
+    along(1.4);
+    damped(0.003);
+    along(0.15);
+    damped(0.3);
+  }
+
+  Eigen::VectorXd DampedStep(double by) const {
+    Eigen::MatrixXd normal = Normal();
+    normal.diagonal() += by * fit_.normal.diagonal();
+    return -normal.ldlt().solve(gradient_);
+  }
+
   void Plan() {
-    if (steps_ == effort_.most_steps) return Close(false);
+    if (steps_ >= effort_.most_steps) return Close(false);
     if (stale_ && refreshes_ < effort_.most_refreshes)
       stage_ = Stage::kColumns;
     else
@@ -188,13 +214,14 @@ class Descent {
     Eigen::VectorXd gradient = GradientOf(fit_.jacobian, fit_.residual);
     for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
       gradient(static_cast<Eigen::Index>(i)) += weight_(static_cast<Eigen::Index>(i)) * fit_.point.base[i];
+    gradient_ = gradient;
     by_ = -Normal().ldlt().solve(gradient);
     promised_ = -gradient.dot(by_);
     if (promised_ < effort_.close_enough) {
       fit_.converged = true;
       if (last_chance_ || promised_ < 0.5 * effort_.close_enough) return Close(fresh);
     }
-    if (steps_ == effort_.most_steps) return Close(fresh);
+    if (steps_ >= effort_.most_steps) return Close(fresh);
     if (fit_.cost - promised_ > effort_.hopeless_above) {
       effort_.covariance = false;
       return Close(fresh);
@@ -206,14 +233,13 @@ class Descent {
     ++steps_;
     if (chosen_ < tried_.size()) {
       if (before_ - fit_.cost < 0.6 * promised_ || chosen_ > 0) stale_ = true;
-      shrink_ = 1.0;
+      small_ = false;
       fit_.point = std::move(tried_[chosen_]);
       fit_.raw = std::move(chosen_raw_);
       fit_.residual = std::move(chosen_white_);
     } else {
-      // A curved valley lets only small steps pass.
-      if (last_chance_ && shrink_ == 1.0 && promised_ > kWorthWhile) {
-        shrink_ = 0.1;
+      if (last_chance_ && !small_ && promised_ > kWorthWhile) {
+        small_ = true;
         return;
       }
       if (last_chance_) {
@@ -235,11 +261,12 @@ class Descent {
   Fit fit_;
   std::size_t count_ = 0;
   Eigen::Index known_ = 0, from_ = 0;
-  Eigen::VectorXd weight_, by_;
+  Eigen::VectorXd weight_, by_, gradient_;
   Stage stage_ = Stage::kBegin;
   bool stale_ = true, fresh_ = false, last_chance_ = false, closing_ = false;
   int steps_ = 0, refreshes_ = 0;
-  double promised_ = 0.0, before_ = 0.0, shrink_ = 1.0;
+  double promised_ = 0.0, before_ = 0.0;
+  bool small_ = false;  // steps, since larger ones lead nowhere
   std::vector<Point> tried_;
   std::size_t chosen_ = 0;
   std::vector<double> chosen_raw_, chosen_white_;
@@ -270,12 +297,12 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginn
   for (Beginning& b : beginnings) descents.emplace_back(problem, std::move(b));
   std::vector<bool> going(descents.size(), true);
   for (;;) {
-    const auto left = std::count(going.begin(), going.end(), true);
+    const auto left = static_cast<std::size_t>(std::count(going.begin(), going.end(), true));
     std::vector<Point> points;
     std::vector<std::pair<std::size_t, std::size_t>> owners;
     for (std::size_t d = 0; d < descents.size(); ++d) {
       if (!going[d]) continue;
-      std::vector<Point> asked = descents[d].Ask(left > 2);
+      std::vector<Point> asked = descents[d].Ask(kLanes / std::max<std::size_t>(1, left));
       going[d] = !asked.empty();
       for (std::size_t i = 0; i < asked.size(); ++i) owners.emplace_back(d, i);
       std::move(asked.begin(), asked.end(), std::back_inserter(points));
@@ -305,6 +332,26 @@ Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort) {
 
 Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort) {
   return std::move(FitPoints(problem, {{fit.point, effort, &fit}})[0]);
+}
+
+namespace {
+
+// Of chi^2 in excess of twice its degrees; standard deviations.
+constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
+
+}  // namespace
+
+bool Implausible(const Problem& problem, const Fit& fit) {
+  const auto terms = static_cast<double>(problem.terms_.size());
+  return fit.prior > kHardlyEver * terms;
+}
+
+Point BackToStated(const Problem& problem, Point point) {
+  for (std::size_t i = 0; i < point.base.size(); ++i) {
+    const BaseTerm& t = problem.terms_[i];
+    if (!t.nuisance && std::fabs(point.base[i]) > kFarOff * t.sigma) point.base[i] = 0.0;
+  }
+  return point;
 }
 
 double CostAt(const Problem& problem, const Point& point) {

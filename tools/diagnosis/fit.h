@@ -45,6 +45,12 @@ Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {});
 /// The same from where a fit stands.
 Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort);
 
+/// Whether the stated numbers would have to be off as they hardly ever are.
+bool Implausible(const Problem& problem, const Fit& fit);
+/// The same point with the stated numbers back where they are far off: where to begin again, as a fit may
+/// have ended in a wrong place.
+Point BackToStated(const Problem& problem, Point point);
+
 double CostAt(const Problem& problem, const Point& point);
 
 /// The fit's own runs under the noise that was learnt since.

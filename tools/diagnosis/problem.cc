@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "tools/diagnosis/extras.h"
+#include "tools/diagnosis/scale_noise.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -338,6 +339,8 @@ void Problem::LearnNoise(const Point& point) {
   if (has_scale()) {
     AddScale(noise_.linear().table, model.scale_error_m ? model.scale_error_m->data() : nullptr,
              log_.table_position_m.data(), raw);
+    const std::vector<double> noise = WithoutShape(std::span(raw).subspan(n), counted_, *signals_);
+    std::copy(noise.begin(), noise.end(), raw.begin() + static_cast<std::ptrdiff_t>(n));
     scale_noise_ = Whitener(std::span(raw).subspan(n), counted_);
   }
   root_weight_.assign(data_size(), 1.0);

@@ -22,6 +22,8 @@ constexpr double kNever = -1e300;
 constexpr double kFineStep = 0.05;
 constexpr double kSmall = 60.0, kNoLuck = 300.0;  // drops
 constexpr std::size_t kMostKinds = 4, kMostTried = 6, kSmallStarts = 4;
+constexpr double kFewOfMost = 0.1;
+constexpr int kMostTurns = 3;
 
 /// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
 void Sort(std::vector<Rival>& rivals) {
@@ -97,6 +99,10 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
 std::string FamilyOf(const Effect& effect) {
   const bool knee = effect.kind == "viscous_nonlinear" && effect.order < 1.0;
   return effect.kind + (knee ? " with a knee" : "");
+}
+
+bool Among(const std::vector<std::string>& families, const Scored& s) {
+  return std::find(families.begin(), families.end(), FamilyOf(*s.effect)) != families.end();
 }
 
 /// Of each kind the best only; sorted before.
@@ -185,15 +191,27 @@ std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std
 
 bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
 
-std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                             const Gate& gate, bool anyway) {
+bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const Gate& gate,
+                  const std::vector<std::string>& tried) {
+  return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+    return !Outside(s.effect->kind) && !Among(tried, s) && Promising(problem, s, gate);
+  });
+}
+
+namespace {
+
+/// Where fits of the best candidates begin that have not been tried; none where nothing beyond the gate is
+/// promised. `most`: the drop that the best of them is promised.
+std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current,
+                                      const std::vector<Scored>& scored, const Gate& gate, bool anyway,
+                                      std::vector<std::string>& tried, double& most) {
   std::vector<Beginning> beginnings;
-  std::vector<std::string> done;
-  std::size_t fitted = 0;
-  double most = 0.0;
-  bool outside = false, promising = anyway;
+  const std::vector<std::string> before = tried;
+  std::size_t fitted = 0, looked_at = 0;
+  bool outside = !before.empty(), promising = anyway;
+  most = 0.0;
   for (const Scored& s : scored)
-    if (!Outside(s.effect->kind)) most = std::max(most, s.drop);
+    if (!Outside(s.effect->kind) && !Among(before, s)) most = std::max(most, s.drop);
   for (const Scored& s : scored) {
     if (Outside(s.effect->kind)) {
       if (!outside && s.drop > most) beginnings.push_back(Near(problem, current, s));
@@ -201,10 +219,11 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
     } else {
       // Evidence in the priors is small beside what lies in the residual, and as good.
       const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, gate);
-      if (!by_priors && (fitted >= kMostKinds || done.size() >= kMostTried || s.drop < 0.1 * most)) continue;
-      const std::string family = FamilyOf(*s.effect);
-      if (std::find(done.begin(), done.end(), family) != done.end()) continue;
-      done.push_back(family);
+      if (!by_priors && (fitted >= kMostKinds || looked_at >= kMostTried || s.drop < kFewOfMost * most))
+        continue;
+      if (Among(tried, s)) continue;
+      tried.push_back(FamilyOf(*s.effect));
+      ++looked_at;
       if (!s.effect->start.empty()) {
         if (!Promising(problem, s, gate)) continue;
         std::vector<Beginning> far = Far(problem, current, s.effect->kind, scored);
@@ -220,12 +239,47 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
     }
     promising = promising || Promising(problem, s, gate);
   }
-  std::vector<Rival> out;
-  if (!promising) return out;
-  for (Fit& fit : FitPoints(problem, std::move(beginnings))) {
-    out.push_back({std::move(fit)});
-    Judge(problem, current, out.back());
+  if (!promising) beginnings.clear();
+  return beginnings;
+}
+
+/// Where the stated numbers went too far, the fit may be in a wrong place: once more from where they are
+/// stated.
+void FitFromStated(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
+  std::vector<Beginning> beginnings;
+  std::vector<Rival*> whose;
+  for (Rival& r : rivals) {
+    if (Outside(r.effect().kind) || !Implausible(problem, r.fit)) continue;
+    beginnings.push_back({BackToStated(problem, r.fit.point),
+                          {.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false}});
+    whose.push_back(&r);
   }
+  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (!(fits[i].cost < whose[i]->fit.cost)) continue;
+    whose[i]->fit = std::move(fits[i]);
+    Judge(problem, current, *whose[i]);
+  }
+}
+
+}  // namespace
+
+std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                             const Gate& gate, bool anyway, std::vector<std::string>& tried) {
+  std::vector<Rival> out;
+  double best = kNever;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    double most = 0.0;
+    for (Fit& fit : FitPoints(
+             problem, NextBeginnings(problem, current, scored, gate, anyway && turn == 0, tried, most))) {
+      out.push_back({std::move(fit)});
+      Judge(problem, current, out.back());
+      best = std::max(best, out.back().score);
+    }
+    // Where the best came to nothing, those far behind it have their turn.
+    if (best > kFewOfMost * most || !MorePromised(problem, scored, gate, tried)) break;
+  }
+  FitFromStated(problem, current, out);
   Sort(out);
   return out;
 }
@@ -250,8 +304,8 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
     if (i > 0 && rivals[i].score < 0.4 * rivals[0].score - 30.0) continue;
     again.push_back(i);
     beginnings.push_back({rivals[i].fit.point,
-                          {.most_steps = 5,
-                           .most_refreshes = i == 0 ? 2 : 1,
+                          {.most_steps = i == 0 ? 10 : 5,
+                           .most_refreshes = i == 0 ? 4 : 1,
                            .close_enough = i == 0 ? 0.02 : 0.3,
                            .covariance = i == 0},
                           &rivals[i].fit});

@@ -30,14 +30,13 @@ struct StatedWave {
 struct StatedTable {
   std::vector<double> position_m, value;
 };
-/// The table must not be empty.
-inline double ValueAt(const StatedTable& t, double x) {
-  const auto after = std::upper_bound(t.position_m.begin(), t.position_m.end(), x);
-  if (after == t.position_m.begin()) return t.value.front();
-  if (after == t.position_m.end()) return t.value.back();
-  const auto i = static_cast<std::size_t>(after - t.position_m.begin());
-  return t.value[i - 1] +
-         (t.value[i] - t.value[i - 1]) * (x - t.position_m[i - 1]) / (t.position_m[i] - t.position_m[i - 1]);
+/// Of a table y over x, x rising, which must not be empty: straight lines, constant beyond the ends.
+inline double ValueAt(const std::vector<double>& x, const std::vector<double>& y, double at) {
+  const auto after = std::upper_bound(x.begin(), x.end(), at);
+  if (after == x.begin()) return y.front();
+  if (after == x.end()) return y.back();
+  const auto i = static_cast<std::size_t>(after - x.begin());
+  return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
 }
 
 /// Friction beyond the linear term: at_max_speed y^exponent with y = |w| / max_speed, or with a knee, as

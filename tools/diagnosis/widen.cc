@@ -18,6 +18,8 @@ const std::map<std::pair<std::string, std::string>, double> kModelError = {
     {{"compliance", "stiffness_Nm_rad"}, 0.05},
     {{"cross_coupling", "torque_per_acceleration_Nms2_m"}, 0.015},
     {{"load_friction", "friction_per_torque_rel"}, 0.02},
+    {{"payload_step", "inertia_change_rel"}, 0.005},
+    {{"sample_jitter", "rms_us"}, 0.01},
     {{"stribeck", "Fs_over_Fc"}, 0.005},
     {{"stribeck", "vs_rad_s"}, 0.03},
     {{"temperature_viscosity", "rate_1_K"}, 0.03},

@@ -15,6 +15,7 @@ namespace {
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::uint64_t kSettingStream = 1;
 constexpr std::uint64_t kEffectStream = 2;
+constexpr std::uint64_t kLawStream = 3;
 /// What the stated uncertainties are, relative, and how far beyond one of them a truth may lie.
 constexpr double kInertia = 0.05, kStiffness = 0.1, kFc = 0.1, kFs = 0.1, kVs = 0.2, kS0 = 0.2, kS1 = 0.3,
                  kS2 = 0.15, kLag = 0.1;
@@ -121,6 +122,8 @@ Setting DrawSetting(std::uint64_t seed, const std::vector<std::string>& kinds, M
   m.Fc_N = LogUniform(r, 25.0, 60.0) * 5.0 / m.lead_mm;
   m.Fs_N = m.Fc_N * (needs.no_stribeck ? 1.0 : r.Uniform(1.15, 1.5));
   m.vs_mm_s = LogUniform(r, 1.0, 4.0);
+  // The paper's or Gauss's; of its own stream, so that nothing else of a seed depends on it.
+  m.stribeck_exponent = plant::Random(seed, kLawStream).Uniform() < 0.5 ? 1 : 2;
   m.sigma0_N_m = LogUniform(r, 2e6, 1e7);
   m.sigma1_Ns_m = LogUniform(r, 1000.0, 4000.0);
   m.sigma1_decay_mm_s = 2.0;

@@ -42,6 +42,7 @@ struct TrueAxis {
   double Fc_N = 40.0;
   double Fs_N = 50.0;
   double vs_mm_s = 2.0;
+  int stribeck_exponent = 1;
   double sigma0_N_m = 5e6;
   double sigma1_Ns_m = 3000.0;
   double sigma1_decay_mm_s = 2.0;

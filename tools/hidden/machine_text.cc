@@ -25,9 +25,9 @@ void AddAxis(std::string& text, const char* name, int node, const Setting& s) {
       m.lead_mm, m.motor_inertia_kgm2, m.table_mass_kg);
   text += FormatText("      screw_stiffness_N_um: %.9g\n      screw_damping_Ns_m: %.9g\n", m.stiffness_N_um,
                      m.damping_Ns_m);
-  text +=
-      FormatText("      friction: {acts_on: table, stribeck_exponent: 1, Fs_plus_N: %.9g, Fs_minus_N: %.9g, ",
-                 m.Fs_N, m.Fs_N);
+  text += FormatText(
+      "      friction: {acts_on: table, stribeck_exponent: %d, Fs_plus_N: %.9g, Fs_minus_N: %.9g, ",
+      m.stribeck_exponent, m.Fs_N, m.Fs_N);
   text +=
       FormatText("Fc_plus_N: %.9g, Fc_minus_N: %.9g, vs_mm_s: %.9g, sigma0_N_m: %.9g, sigma1_Ns_m: %.9g, ",
                  m.Fc_N, m.Fc_N, m.vs_mm_s, m.sigma0_N_m, m.sigma1_Ns_m);
@@ -47,8 +47,9 @@ void AddEmulated(std::string& text, const char* name, const Setting& s) {
     text +=
         "      temperature: {start_degC: 20, ambient_degC: 20, reference_degC: 20, rise_K_W: 3, "
         "time_constant_s: 12}\n";
-  text += FormatText("      friction: {law: %s, stribeck_exponent: 1, Fs_plus_N: %.9g, Fs_minus_N: %.9g, ",
-                     s.misfit == Misfit::kMaxwellSlip ? "maxwell_slip" : "lugre", t.Fs_N, t.Fs_N);
+  text += FormatText("      friction: {law: %s, stribeck_exponent: %d, Fs_plus_N: %.9g, Fs_minus_N: %.9g, ",
+                     s.misfit == Misfit::kMaxwellSlip ? "maxwell_slip" : "lugre", t.stribeck_exponent, t.Fs_N,
+                     t.Fs_N);
   text +=
       FormatText("Fc_plus_N: %.9g, Fc_minus_N: %.9g, vs_mm_s: %.9g, sigma0_N_m: %.9g, sigma1_Ns_m: %.9g, ",
                  t.Fc_N, t.Fc_N, t.vs_mm_s, t.sigma0_N_m, t.sigma1_Ns_m);
@@ -90,8 +91,9 @@ std::string ModelText(const Setting& s) {
     // Everything that turns, seen at the motor; friction there as well.
     text +=
         FormatText("  motor_inertia_kgm2: %.9g\n", m.motor_inertia_kgm2 + lever * lever * m.table_mass_kg);
-    text += FormatText("  friction: {acts_on: motor, Fc_plus_Nm: %.9g, Fc_minus_Nm: %.9g, ", m.Fc_N * lever,
-                       m.Fc_N * lever);
+    text += FormatText(
+        "  friction: {acts_on: motor, stribeck_exponent: %d, Fc_plus_Nm: %.9g, Fc_minus_Nm: %.9g, ",
+        m.stribeck_exponent, m.Fc_N * lever, m.Fc_N * lever);
     text += FormatText("Fs_plus_Nm: %.9g, Fs_minus_Nm: %.9g, vs_rad_s: %.9g, ", m.Fs_N * lever,
                        m.Fs_N * lever, m.vs_rad_s());
     text += FormatText("sigma0_Nm_rad: %.9g, sigma1_Nms_rad: %.9g, ", m.sigma0_N_m * lever * lever,
@@ -103,7 +105,9 @@ std::string ModelText(const Setting& s) {
                        m.table_mass_kg);
     text += FormatText("  screw_stiffness_N_um: %.9g\n  screw_damping_Ns_m: %.9g\n", m.stiffness_N_um,
                        m.damping_Ns_m);
-    text += FormatText("  friction: {acts_on: table, Fc_plus_N: %.9g, Fc_minus_N: %.9g, ", m.Fc_N, m.Fc_N);
+    text +=
+        FormatText("  friction: {acts_on: table, stribeck_exponent: %d, Fc_plus_N: %.9g, Fc_minus_N: %.9g, ",
+                   m.stribeck_exponent, m.Fc_N, m.Fc_N);
     text += FormatText("Fs_plus_N: %.9g, Fs_minus_N: %.9g, vs_mm_s: %.9g, ", m.Fs_N, m.Fs_N, m.vs_mm_s);
     text += FormatText("sigma0_N_m: %.9g, sigma1_Ns_m: %.9g, ", m.sigma0_N_m, m.sigma1_Ns_m);
     text += FormatText("sigma1_decay_mm_s: %.9g, sigma2_Ns_m: %.9g}\n", m.sigma1_decay_mm_s, m.sigma2_Ns_m);

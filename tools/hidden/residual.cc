@@ -22,6 +22,7 @@ constexpr std::size_t kEdge = 64;
 /// Base parameters, seen at the motor.
 struct Base {
   double inertia, Fc, Fs, vs, s0, s1, vd, s2, lag_s, wind_rad_Nm, load_share;
+  int exponent;
 };
 
 Base BaseOf(const TrueAxis& t) {
@@ -37,7 +38,8 @@ Base BaseOf(const TrueAxis& t) {
           t.sigma2_Ns_m * r * r,
           t.lag_ms * 1e-3,
           1.0 / (t.stiffness_N_um * 1e6 * r * r),
-          r * r * t.table_mass_kg / inertia};
+          r * r * t.table_mass_kg / inertia,
+          t.stribeck_exponent};
 }
 
 /// Mean torque of each period weighted by a hat over two of them, which is how a second difference of the
@@ -69,7 +71,8 @@ Series HatFriction(const Series& angle, const Base& b) {
   double z = 0.0;
   for (std::size_t k = 0; k + 1 < angle.size(); ++k) {
     const double w = (angle[k + 1] - angle[k]) / kPeriod_s;
-    const double g = b.Fc + (b.Fs - b.Fc) * std::exp(-std::abs(w) / b.vs);
+    const double y = std::abs(w) / b.vs;
+    const double g = b.Fc + (b.Fs - b.Fc) * std::exp(b.exponent == 2 ? -y * y : -y);
     const double x = b.s0 * std::abs(w) * kPeriod_s / g;
     const double left = std::exp(-x);
     const double average = x > 1e-9 ? (1.0 - left) / x : 1.0;

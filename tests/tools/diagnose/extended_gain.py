@@ -49,7 +49,7 @@ CASES = {
     "position_friction": Case("effects.position_friction={amplitude_rel: 0.25, periods_per_stroke: 8, phase_rad: 0.5}"),
     "temperature_viscosity": Case("effects.temperature_viscosity={rate_1_K: -0.03}", temperatures=((20, 40), (40, 20), (20, 40))),
     "compliance": Case("screw_stiffness_N_um=25", SHAKEN, also=["emulator.parameter_variation_rel=0"]),
-    "pitch_error": Case("effects.pitch_error={amplitude_um: 4, periods_per_stroke: 8}",
+    "pitch_error": Case("effects.pitch_error={amplitude_um: 6, periods_per_stroke: 8}",
                         columns=["--columns", "table_position_m=x_table_position_truth_m"]),
 }
 CIRCLE = "{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 4}\n"

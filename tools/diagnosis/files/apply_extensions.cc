@@ -4,6 +4,8 @@
 #include <numbers>
 #include <optional>
 
+#include "config/extended_friction.h"
+
 namespace contour::diagnosis {
 namespace {
 
@@ -42,20 +44,14 @@ void Apply(const ComplianceExtension& e, StatedAxis& axis) {
 
 void ApplyNumbers(const ExtensionsConfig& x, StatedAxis& axis) {
   StatedFriction& f = axis.friction;
-  if (const auto& e = x.asymmetric_coulomb) {
-    for (double* level : {&f.Fc_plus, &f.Fs_plus}) *level *= 1.0 + 0.5 * e->difference_rel;
-    for (double* level : {&f.Fc_minus, &f.Fs_minus}) *level *= 1.0 - 0.5 * e->difference_rel;
-  }
-  if (const auto& e = x.stribeck) {
-    f.Fs_plus = e->Fs_over_Fc * f.Fc_plus;
-    f.Fs_minus = e->Fs_over_Fc * f.Fc_minus;
-    f.vs = e->vs_rad_s;
-  }
+  const FrictionNumbers friction = {&f.Fs_plus, &f.Fs_minus, &f.Fc_plus, &f.Fc_minus, &f.vs,
+                                    &f.s0,      &f.s1,       &f.s2,      1.0};
+  if (x.asymmetric_coulomb) Apply(*x.asymmetric_coulomb, friction);
+  if (x.stribeck) Apply(*x.stribeck, friction);
   if (x.compliance) Apply(*x.compliance, axis);
-  if (const auto& e = x.torque_constant)
-    for (double* value : {&axis.motor_inertia, &axis.load_inertia, &axis.stiffness, &axis.damping, &f.Fc_plus,
-                          &f.Fc_minus, &f.Fs_plus, &f.Fs_minus, &f.s0, &f.s1, &f.s2})
-      *value /= e->ratio;
+  if (x.torque_constant)
+    Apply(*x.torque_constant, friction,
+          {&axis.motor_inertia, &axis.load_inertia, &axis.stiffness, &axis.damping});
   if (x.input_delay) axis.delay_s += 1e-6 * x.input_delay->delay_us;
   if (x.current_lag) axis.lag_s += 1e-6 * x.current_lag->time_constant_us;
 }

@@ -57,17 +57,18 @@ void AddRipple(const Cause& c, std::optional<RippleExtension>& to) {
 /// The shape joined to the table that is there, at the points of both.
 template <class F>
 void AddTable(const ShapeTable& shape, F&& join, std::vector<double>& x, std::vector<double>& y) {
-  const StatedTable old{x, y}, own{Rounded(shape.x), Rounded(shape.y)};  // here in mm
+  const std::vector<double> own_x = Rounded(shape.x), own_y = Rounded(shape.y);
   if (x.empty()) {
-    x = own.position_m;
-    y = own.value;
+    x = own_x;
+    y = own_y;
     return;
   }
-  x.insert(x.end(), own.position_m.begin(), own.position_m.end());
+  const std::vector<double> old_x = x, old_y = y;
+  x.insert(x.end(), own_x.begin(), own_x.end());
   std::sort(x.begin(), x.end());
   x.erase(std::unique(x.begin(), x.end()), x.end());
   y.clear();
-  for (const double at : x) y.push_back(Rounded(join(ValueAt(old, at), ValueAt(own, at))));
+  for (const double at : x) y.push_back(Rounded(join(ValueAt(old_x, old_y, at), ValueAt(own_x, own_y, at))));
 }
 
 double HalfRange(const std::vector<double>& y) {
