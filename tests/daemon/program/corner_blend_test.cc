@@ -172,6 +172,14 @@ TEST(CornerBlend, TangentPiecesArePassedAtFullSpeed) {
   EXPECT_NEAR(seen.slowest_m_s, 0.05, 1e-9);
 }
 
+TEST(CornerBlend, AChangeOfFeedAndADwellOfNothingBesideBlends) {
+  const Seen seen =
+      Sample(*PlanOf(Gcode("G64 P0.01\nG1 F3000 X10\nF900 X12\nF6000 X30\nY10\nG4 P0\nG1 X0 Y5\n")));
+  ExpectWithinLimits(seen, "change of feed");
+  EXPECT_NEAR(seen.fastest_m_s, 0.1, 1e-9);
+  EXPECT_LT(seen.off_path_m, 8e-6 * (1 + 1e-9));
+}
+
 TEST(CornerBlend, WithoutJerkLimitsTooAndInThreeAxes) {
   PerAxis<PlanLimits> limits = TableLimits();
   limits.push_back(limits[0]);
