@@ -24,16 +24,16 @@ FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept
 }  // namespace
 
 BendCorrection::BendCorrection(double period_s) noexcept
-    : rate_(1.0 - std::exp(-kBendRate_1_s * period_s)), most_s2_(period_s * period_s) {}
+    : rate_(1.0 - std::exp(-kBendRate_1_s * period_s)), period_s_(period_s) {}
 
 void BendCorrection::Learn(double error_m, double velocity_m_s, double acceleration_m_s2) noexcept {
   const double v = velocity_m_s / kSlowest_m_s, a = acceleration_m_s2 / kGentlest_m_s2;
   // Normalised least mean squares. Being late by d means d v - d^2 a / 2; what is left belongs to the bend.
   const double left_m = error_m - delay_s_ * (velocity_m_s - 0.5 * delay_s_ * acceleration_m_s2);
   const double step = rate_ * left_m / (1.0 + v * v + a * a);
-  delay_s_ =
-      std::clamp(delay_s_ + step * v / kSlowest_m_s, -3.0 * std::sqrt(most_s2_), 3.0 * std::sqrt(most_s2_));
-  share_s2_ = std::clamp(share_s2_ + step * a / kGentlest_m_s2, -most_s2_, most_s2_);
+  const double most_s = 3.0 * period_s_, most_s2 = period_s_ * period_s_;
+  delay_s_ = std::clamp(delay_s_ + step * v / kSlowest_m_s, -most_s, most_s);
+  share_s2_ = std::clamp(share_s2_ + step * a / kGentlest_m_s2, -most_s2, most_s2);
 }
 
 CascadeLaw::CascadeLaw(const PerAxis<ControlledAxis>& axes, double period_s)
@@ -59,7 +59,7 @@ void CascadeLaw::Keep(StateKeeper& keep) noexcept { keep(states_); }
 // The measured position belongs to t(k-1), the motor then to t(k-3/2): between the targets for t(k-2) and
 // t(k-1), which were sent at t(k-3) and t(k-2). The newest target told is the one for t(k).
 void CascadeLaw::Learn(Axis& axis, double position_m) noexcept {
-  if (axis.known < 3) return;
+  if (axis.known < axis.told.size()) return;
   const Told &later = axis.told[1], &earlier = axis.told[2];
   const double velocity_m_s = 0.5 * (later.velocity_m_s + earlier.velocity_m_s);
   const double acceleration_m_s2 = 0.5 * (later.acceleration_m_s2 + earlier.acceleration_m_s2);
@@ -96,8 +96,8 @@ void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept
     output.limit[i] = output.force_N[i] != wanted ? Reason::kTorqueLimit : Reason::kNone;
     output.target_position_m[i] = next.position_m + w[2] + axis.bend.share_s2() * next.acceleration_m_s2;
     axis.told = {Told{next.position_m + w[2], next.velocity_m_s, next.acceleration_m_s2}, axis.told[0],
-                 axis.told[1], axis.told[2]};
-    axis.known = std::min<std::size_t>(axis.known + 1, 4);
+                 axis.told[1]};
+    axis.known = std::min(axis.known + 1, axis.told.size());
   }
 }
 

@@ -27,7 +27,7 @@ class BendCorrection {
 
  private:
   double rate_ = 0.0;
-  double most_s2_ = 0.0;
+  double period_s_ = 0.0;
   double delay_s_ = 0.0;
   double share_s2_ = 0.0;
 };
@@ -57,7 +57,7 @@ class CascadeLaw final : public ControlLaw {
   };
   struct Axis {
     BendCorrection bend;
-    std::array<Told, 4> told{};  // newest first: for t(k+1), t(k), ...
+    std::array<Told, 3> told{};  // newest first: for t(k+1), t(k), ...
     std::size_t known = 0;
 
     void Keep(StateKeeper& keep) noexcept;

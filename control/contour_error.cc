@@ -78,8 +78,13 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
   const double to = std::min(origin + reach, path.end());
   for (double at = from; at <= to; at += 1.0) {
     if (at == origin) continue;
-    path.At(at, sample);
-    const double distance2 = Distance2(position_m, sample);
+    double distance2 = 0.0;
+    if (at >= 0.0) {
+      distance2 = path.Distance2(position_m, static_cast<std::size_t>(at));
+    } else {
+      path.At(at, sample);
+      distance2 = Distance2(position_m, sample);
+    }
     if (distance2 < best) {
       best = distance2;
       best_at = at;

@@ -25,6 +25,15 @@ class ContourPath {
   /// Time of the last point.
   [[nodiscard]] double end() const noexcept { return static_cast<double>(points_ - 1); }
   void At(double periods, PathSample& sample) const noexcept;
+  /// Square of the distance from the path's point of a whole number of periods.
+  [[nodiscard]] double Distance2(const PerAxis<double>& position_m, std::size_t point) const noexcept {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < position_m.size(); ++i) {
+      const double e = position_m[i] - (*reference_)[i][point].position_m;
+      sum += e * e;
+    }
+    return sum;
+  }
   /// Unit vector of the direction of motion; false, and all zero, where the path stands still.
   static bool Tangent(const PathSample& sample, PerAxis<double>& tangent) noexcept;
   /// Curvature in 1/m; 0 where the path stands still.

@@ -99,7 +99,8 @@ class PlannerGroup final : public PlannerGroupBase {
     for (std::size_t i = 0; i < Axes; ++i) {
       const AxisHorizon& axis = wanted[first_ + i];
       double most_m_s = 0.0, before_m_s = PointAt(axis, 1).velocity_m_s;
-      for (std::size_t n = 2; n < axis.size() && n <= problem_.horizon + 2; ++n) {
+      const std::size_t end = std::min(axis.size(), problem_.horizon + 3);
+      for (std::size_t n = 2; n < end; ++n) {
         const double now_m_s = axis[n].velocity_m_s;
         most_m_s = std::max(most_m_s, std::abs(now_m_s - before_m_s));
         before_m_s = now_m_s;

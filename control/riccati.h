@@ -90,8 +90,10 @@ class Riccati {
   }
   // FactorStage from stage j, of which FreePair is true, down to the last one of which it is; returns that
   // one. BuildForm and ChooseAll of two axes in one, on blocks.
-  CONTOUR_WIDE_VECTORS std::size_t FactorFreePairs(const Problem& problem, const Holding& holding,
-                                                   std::size_t j) noexcept;
+  std::size_t FactorFreePairs(const Problem& problem, const Holding& holding, std::size_t j) noexcept;
+  // The same. (Which translation fits is only known in the file that has them.)
+  CONTOUR_WIDE_VECTORS std::size_t FactorBlocks(const Problem& problem, const Holding& holding,
+                                                std::size_t j) noexcept;
   std::size_t RollOutFreePairs(const Problem& problem, std::size_t j, DriftState<Axes>& s, Inputs& input,
                                Inputs& gradient) const noexcept;
   static void ChooseAll(const StageForm& form, Value& value, Policy& policy) noexcept;

@@ -79,8 +79,7 @@ struct EstimatorConfig {
         "share of the error that the low-speed rise of the friction level learns per millisecond; 0 none");
     v.Optional("mass_rate", mass_rate, Range{0.0, 1.0},
                "share of the error that the correction of the moving mass learns per millisecond at 1 m/s^2, "
-               "once it has "
-               "learnt the most; 0 none");
+               "once it has learnt the most; 0 none");
     v.Optional(
         "delay_rate", delay_rate, Range{0.0, 1.0},
         "the same of the drive's delay, per millisecond in which the torque changes by 100 N / R; 0 none");

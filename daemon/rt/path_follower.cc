@@ -31,7 +31,6 @@ PathFollower::PathFollower(std::size_t axes, double period_s, double stop_period
       stop_periods_(std::max(1.0, stop_periods)),
       horizon_(std::min(horizon, kMaxHorizonPoints)),
       hold_m_(axes) {
-  for (PathPoint& point : points_) point.axes.resize(axes);
   if (0.5 * stop_periods_ + static_cast<double>(horizon_) + 16.0 > static_cast<double>(kCapacity)) {
     throw std::invalid_argument("a stop on the path would need more than " + std::to_string(kCapacity) +
                                 " path points ahead; raise limits.acceleration_mm_s2 or limits.jerk_mm_s3, "
@@ -58,9 +57,18 @@ void PathFollower::Expect(std::uint32_t program_id) noexcept {
 
 void PathFollower::Accept(const PathPoint& point) noexcept {
   if (!expecting_ || point.program_id != program_id_ || have_last_ || Room() == 0) return;
-  points_[end_ % kCapacity] = point;
+  if (end_ == 0) begins_with_axes_ = point.axes.size();
+  for (std::size_t i = 0; i < axes_; ++i) points_[i][end_ % kCapacity] = point.axes[i];
   ++end_;
   have_last_ = point.last;
+}
+
+PathPoint PathFollower::First() const noexcept {
+  PathPoint point;
+  point.program_id = program_id_;
+  point.axes.resize(begins_with_axes_);
+  for (std::size_t i = 0; i < std::min(axes_, begins_with_axes_); ++i) point.axes[i] = At(i, first_);
+  return point;
 }
 
 std::size_t PathFollower::Room() const noexcept {
@@ -123,7 +131,7 @@ void PathFollower::Advance() noexcept {
   const double last_time = static_cast<double>(end_ - 1);
   if (have_last_ && pace_[0].time >= last_time) {
     mode_ = Mode::kEnded;
-    for (std::size_t i = 0; i < axes_; ++i) hold_m_[i] = At(end_ - 1).axes[i].position_m;
+    for (std::size_t i = 0; i < axes_; ++i) hold_m_[i] = At(i, end_ - 1).position_m;
   } else if (mode_ == Mode::kStopping && pace_[0].rate == 0.0 && clock_ > stop_clock_) {
     for (std::size_t i = 0; i < axes_; ++i) hold_m_[i] = Evaluate(i, pace_[0]).position_m;
     mode_ = Mode::kHolding;
@@ -147,10 +155,10 @@ ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const 
   const double bounded = std::max(static_cast<double>(first_), pace.time);
   auto index = static_cast<std::uint64_t>(bounded);
   const double s = bounded - static_cast<double>(index);
-  if (index >= last) return {At(last).axes[axis].position_m, 0.0, 0.0};
-  const ReferencePoint& a = At(index).axes[axis];
+  if (index >= last) return {At(axis, last).position_m, 0.0, 0.0};
+  const ReferencePoint& a = At(axis, index);
   if (s == 0.0 && pace.rate == 1.0 && pace.rate_change == 0.0) return a;
-  const ReferencePoint& b = At(index + 1).axes[axis];
+  const ReferencePoint& b = At(axis, index + 1);
   const double h = period_s_;
   const auto q = Quintic(a.position_m, a.velocity_m_s * h, a.acceleration_m_s2 * h * h, b.position_m,
                          b.velocity_m_s * h, b.acceleration_m_s2 * h * h, s);
@@ -167,7 +175,7 @@ void PathFollower::Copy(std::size_t axis, std::uint64_t first, std::size_t count
   while (count > 0) {
     const std::size_t from = first % kCapacity;
     const std::size_t run = std::min(count, kCapacity - from);
-    for (std::size_t j = 0; j < run; ++j) to[j] = points_[from + j].axes[axis];
+    std::copy_n(points_[axis].data() + from, run, to);
     first += run;
     to += run;
     count -= run;

@@ -32,7 +32,7 @@ class PathFollower {
   /// Enough points are here to start: the whole path, or a full horizon and a stop beyond it.
   [[nodiscard]] bool Prefetched() const noexcept;
   /// Where the expected program begins; valid when Prefetched().
-  [[nodiscard]] const PathPoint& First() const noexcept { return At(first_); }
+  [[nodiscard]] PathPoint First() const noexcept;
   /// Begin: from the next Advance() on, the reference moves along the points.
   void Start() noexcept;
   /// Begin the stop ramp (no effect when not moving, or stopping already).
@@ -62,11 +62,9 @@ class PathFollower {
 
   /// Of the many points only the axes there are: a copy of the rest would hold up the drives' answers.
   void Keep(StateKeeper& keep) noexcept {
-    keep(mode_, hold_m_, program_id_, expecting_, have_last_, first_, end_, clock_, stop_clock_, pace_);
-    for (PathPoint& point : points_) {
-      keep(point.program_id, point.last);
-      for (std::size_t i = 0; i < axes_; ++i) keep(point.axes[i]);
-    }
+    keep(mode_, hold_m_, program_id_, expecting_, have_last_, first_, end_, begins_with_axes_, clock_,
+         stop_clock_, pace_);
+    for (std::size_t i = 0; i < axes_; ++i) keep(points_[i]);
   }
 
  private:
@@ -82,7 +80,9 @@ class PathFollower {
     double rate_change = 0.0;
   };
 
-  [[nodiscard]] const PathPoint& At(std::uint64_t index) const noexcept { return points_[index % kCapacity]; }
+  [[nodiscard]] const ReferencePoint& At(std::size_t axis, std::uint64_t index) const noexcept {
+    return points_[axis][index % kCapacity];
+  }
   [[nodiscard]] ReferencePoint Evaluate(std::size_t axis, const Pace& pace) const noexcept;
   /// Points as they are.
   void Copy(std::size_t axis, std::uint64_t first, std::size_t count, ReferencePoint* to) const noexcept;
@@ -105,7 +105,9 @@ class PathFollower {
   std::int64_t clock_ = 0;                      ///< periods since Start() of horizon element 0
   std::int64_t stop_clock_ = 0;                 ///< clock of the horizon element at which the stop ramp began
   std::array<Pace, kMaxHorizonPoints> pace_{};  ///< at the program's own pace the first one only, see PaceAt
-  std::array<PathPoint, kCapacity> points_{};
+  std::size_t begins_with_axes_ = 0;            ///< of the first point
+  /// One ring for each axis: every cycle takes some tens of points that follow one another.
+  std::array<std::array<ReferencePoint, kCapacity>, kMaxAxes> points_{};
 };
 
 }  // namespace contour

@@ -105,18 +105,26 @@ TEST(FrictionRoll, AtRestTheEstimateHoldsOverTheWholeHorizon) {
   EXPECT_TRUE(preview.empty());
 }
 
+/// An axis of which nothing is learnt, with levels other than commissioned.
+struct Unlearning {
+  Friction f{52, 47, 42, 36, 2e-3, 1, 5e6, 3000, 2e-3, 500};
+  SevenStateModel model{f, 89.0, kPeriod_s, 0.2};
+  LevelCorrection correction{{5e-3, 2e-3, 0.0, 0.0}};
+  ViscousCorrection viscous{{500.0, 0.0}};
+  StateVector<kSevenStates> x{};
+
+  Unlearning() {
+    x[kLevelPlus] = 43;
+    x[kLevelMinus] = 35;
+  }
+};
+
 // Any length of the roll, whole vectors or not, both directions and a reversal, against the law point by
 // point.
 TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
-  const Friction f{52, 47, 42, 36, 2e-3, 1, 5e6, 3000, 2e-3, 500};
-  const SevenStateModel model(f, 89.0, kPeriod_s, 0.2);
-  LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  ViscousCorrection viscous({500.0, 0.0});
-  StateVector<kSevenStates> x{};
-  x[kLevelPlus] = 43;
-  x[kLevelMinus] = 35;
-  x[kBristle] = 20;
-  Friction estimated = f;
+  Unlearning a;
+  a.x[kBristle] = 20;
+  Friction estimated = a.f;
   estimated.Fc_plus_N = 43, estimated.Fs_plus_N = 52.0 / 42.0 * 43;
   estimated.Fc_minus_N = 35, estimated.Fs_minus_N = 47.0 / 36.0 * 35;
   const AxisHorizon h = Horizon(300, 40);  // reverses after 14 points
@@ -124,17 +132,18 @@ TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
     FrictionRoll roll(kPeriod_s);
     roll.Reset(20.0);
     FrictionPreview preview;
-    roll.Run(model, x, correction, viscous, kNothingKnown, false, h, points, preview);
+    roll.Run(a.model, a.x, a.correction, a.viscous, kNothingKnown, false, h, points, preview);
     ASSERT_EQ(preview.size(), points);
     double bristle = 20.0;
     for (std::size_t j = 0; j < points; ++j) {
       const double here = h[j].velocity_m_s;
       const double v = 0.5 * (here + h[std::min<std::size_t>(j + 1, 39)].velocity_m_s);
       const double level = FrictionLevel(estimated, v);
-      const double next = BristleAfter(bristle, v, f.sigma0_N_m, level, kPeriod_s);
+      const double next = BristleAfter(bristle, v, a.f.sigma0_N_m, level, kPeriod_s);
       const double middle = 0.5 * (bristle + next);
-      EXPECT_NEAR(preview[j].node_N, bristle + BristleDamping(f, bristle, here, level) + 500.0 * here, 1e-9);
-      EXPECT_NEAR(preview[j].mid_N, middle + BristleDamping(f, middle, v, level) + 500.0 * v, 1e-9);
+      EXPECT_NEAR(preview[j].node_N, bristle + BristleDamping(a.f, bristle, here, level) + 500.0 * here,
+                  1e-9);
+      EXPECT_NEAR(preview[j].mid_N, middle + BristleDamping(a.f, middle, v, level) + 500.0 * v, 1e-9);
       bristle = next;
     }
   }
@@ -143,27 +152,21 @@ TEST(FrictionRoll, EveryPointIsThatOfTheLaw) {
 // What is kept from cycle to cycle changes nothing: a roll that has followed the reference gives the bits of
 // one that sees it for the first time, through jumps and other lengths too.
 TEST(FrictionRoll, WhatWasSeenBeforeLeavesNoTrace) {
-  const Friction f{52, 47, 42, 36, 2e-3, 1, 5e6, 3000, 2e-3, 500};
-  const SevenStateModel model(f, 89.0, kPeriod_s, 0.2);
-  LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
-  ViscousCorrection viscous({500.0, 0.0});
-  StateVector<kSevenStates> x{};
-  x[kLevelPlus] = 43;
-  x[kLevelMinus] = 35;
+  Unlearning a;
   FrictionRoll following(kPeriod_s);
   for (int k = 0; k < 400; ++k) {
-    x[kBristle] = 40.0 * std::cos(5.0 * kPeriod_s * k);
+    a.x[kBristle] = 40.0 * std::cos(5.0 * kPeriod_s * k);
     const int at = k / 150 * 37 + k % 150 / 50 * 3 + k;  // jumps now and then
     AxisHorizon h = Horizon(at, 24);
     if (k % 100 > 95) h[17].acceleration_m_s2 += 1.0;
     if (k % 100 > 90 && k % 100 < 95) h[23].position_m += 1e-9;
     const std::size_t points = k % 200 < 150 ? 23 : 17;
-    following.Reset(x[kBristle]);
+    following.Reset(a.x[kBristle]);
     FrictionRoll fresh(kPeriod_s);
-    fresh.Reset(x[kBristle]);
+    fresh.Reset(a.x[kBristle]);
     FrictionPreview kept, anew;
-    following.Run(model, x, correction, viscous, kNothingKnown, false, h, points, kept);
-    fresh.Run(model, x, correction, viscous, kNothingKnown, false, h, points, anew);
+    following.Run(a.model, a.x, a.correction, a.viscous, kNothingKnown, false, h, points, kept);
+    fresh.Run(a.model, a.x, a.correction, a.viscous, kNothingKnown, false, h, points, anew);
     ASSERT_EQ(kept.size(), anew.size());
     for (std::size_t j = 0; j < kept.size(); ++j) {
       ASSERT_EQ(kept[j].node_N, anew[j].node_N) << k << " " << j;

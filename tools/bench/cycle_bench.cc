@@ -69,6 +69,7 @@ void WholeCycle(benchmark::State& state, ControllerName controller, const char* 
   std::size_t running_from = 0;
   const std::vector<CycleInput> inputs = Record(file, pairs, controller, running_from);
   std::vector<std::unique_ptr<Cycle>> cycles;
+  auto input = std::make_unique<CycleInput>();
   auto output = std::make_unique<CycleOutput>();
   std::size_t k = inputs.size();
   {
@@ -81,8 +82,10 @@ void WholeCycle(benchmark::State& state, ControllerName controller, const char* 
         for (k = 0; k < running_from; ++k)
           for (auto& cycle : cycles) cycle->Step(inputs[k], *output);
       }
+      // As after a bus was read: thousands of recorded cycles lie outside the cache.
+      *input = inputs[k];
       latencies.Time([&] {
-        for (auto& cycle : cycles) cycle->Step(inputs[k], *output);
+        for (auto& cycle : cycles) cycle->Step(*input, *output);
       });
       benchmark::DoNotOptimize(*output);
       ++k;
