@@ -2,6 +2,9 @@
 // in virtual time, a circle on every pair of axes, stepped again from the recorded frames.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -60,39 +63,91 @@ std::vector<CycleInput> Record(const EmulatedMachineFile& file, int pairs, Contr
   return inputs;
 }
 
-/// `machines` of them one after the other in every cycle: a machine has 8 axes at most.
+/// So many pairs that draw circles. More than 4 are machines of 4 pairs one after the other in every cycle: a
+/// machine has 8 axes at most.
+class Drawing {
+ public:
+  Drawing(int all, ControllerName controller, const char* mode)
+      : machines_(all > 4 ? all / 4 : 1),
+        controller_(controller),
+        file_(Machine(all / machines_, mode)),
+        inputs_(Record(file_, all / machines_, controller, running_from_)),
+        next_(inputs_.size()) {}
+
+  /// Makes the next cycle ready: at the end of the circles from their beginning.
+  void Prepare() {
+    if (next_ == inputs_.size()) {
+      cycles_.clear();
+      for (int m = 0; m < machines_; ++m)
+        cycles_.push_back(std::make_unique<Cycle>(MakeCycleConfig(file_.machine, controller_)));
+      for (next_ = 0; next_ < running_from_; ++next_) {
+        *input_ = inputs_[next_];
+        Step();
+      }
+    }
+    // As after a bus was read: thousands of recorded cycles lie outside the cache.
+    *input_ = inputs_[next_++];
+  }
+
+  void Step() {
+    for (auto& cycle : cycles_) cycle->Step(*input_, *output_);
+    benchmark::DoNotOptimize(*output_);
+  }
+
+ private:
+  int machines_;
+  ControllerName controller_;
+  EmulatedMachineFile file_;
+  std::size_t running_from_ = 0;
+  std::vector<CycleInput> inputs_;
+  std::size_t next_;
+  std::vector<std::unique_ptr<Cycle>> cycles_;
+  std::unique_ptr<CycleInput> input_ = std::make_unique<CycleInput>();
+  std::unique_ptr<CycleOutput> output_ = std::make_unique<CycleOutput>();
+};
+
 void WholeCycle(benchmark::State& state, ControllerName controller, const char* mode) {
   const int all = static_cast<int>(state.range(0));
-  const int machines = all > 4 ? all / 4 : 1;
-  const int pairs = all / machines;
-  const EmulatedMachineFile file = Machine(pairs, mode);
-  std::size_t running_from = 0;
-  const std::vector<CycleInput> inputs = Record(file, pairs, controller, running_from);
-  std::vector<std::unique_ptr<Cycle>> cycles;
-  auto input = std::make_unique<CycleInput>();
-  auto output = std::make_unique<CycleOutput>();
-  std::size_t k = inputs.size();
+  Drawing drawing(all, controller, mode);
   {
     Latencies latencies(state);
     for (auto _ : state) {
-      if (k == inputs.size()) {
-        cycles.clear();
-        for (int m = 0; m < machines; ++m)
-          cycles.push_back(std::make_unique<Cycle>(MakeCycleConfig(file.machine, controller)));
-        for (k = 0; k < running_from; ++k)
-          for (auto& cycle : cycles) cycle->Step(inputs[k], *output);
-      }
-      // As after a bus was read: thousands of recorded cycles lie outside the cache.
-      *input = inputs[k];
-      latencies.Time([&] {
-        for (auto& cycle : cycles) cycle->Step(*input, *output);
-      });
-      benchmark::DoNotOptimize(*output);
-      ++k;
+      drawing.Prepare();
+      latencies.Time([&] { drawing.Step(); });
     }
   }
   state.counters["median_us_per_pair"] = state.counters["median_us"] / static_cast<double>(all);
 }
+
+/// Cost per pair by the number of pairs, side by side: a machine with other work to do is now fast and now
+/// slow, for seconds on end, and rows measured one after the other do not compare. Here they take turns, 50
+/// cycles each (the first of them bring the state back into the cache; the median knows nothing of those).
+void CostPerPair(benchmark::State& state, const char* mode) {
+  constexpr std::array<int, 5> kPairs{1, 2, 4, 8, 16};
+  constexpr int kTurn = 50;
+  std::vector<Drawing> drawings;
+  for (const int pairs : kPairs) drawings.emplace_back(pairs, ControllerName::kFull, mode);
+  std::array<std::vector<double>, kPairs.size()> per_pair_us;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < kPairs.size(); ++i) {
+      for (int turn = 0; turn < kTurn; ++turn) {
+        drawings[i].Prepare();
+        per_pair_us[i].push_back(MicrosecondsOf([&] { drawings[i].Step(); }) / kPairs[i]);
+      }
+    }
+  }
+  double least = std::numeric_limits<double>::max(), most = 0.0;
+  for (std::size_t i = 0; i < kPairs.size(); ++i) {
+    const double median = Median(per_pair_us[i]);
+    state.counters["us_per_pair_of_" + std::to_string(kPairs[i])] = median;
+    least = std::min(least, median);
+    most = std::max(most, median);
+  }
+  state.counters["most_over_least"] = most / least;
+}
+BENCHMARK_CAPTURE(CostPerPair, cst, "cst")->Name("cycle/full/cost_per_pair");
+BENCHMARK_CAPTURE(CostPerPair, csp, "csp")->Name("cycle/full_csp/cost_per_pair");
+
 BENCHMARK_CAPTURE(WholeCycle, full, ControllerName::kFull, "cst")
     ->Name("cycle/full/pairs")
     ->Arg(1)

@@ -4,9 +4,24 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <vector>
 
 namespace contour::bench {
+
+template <class Call>
+double MicrosecondsOf(const Call& call) {
+  const auto begin = std::chrono::steady_clock::now();
+  call();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  return 1e6 * taken.count();
+}
+
+inline double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 /// Times single calls and reports their median and 99.9 % value in microseconds beside the mean. For a
 /// benchmark with UseManualTime. Two readings of the clock (some 40 ns) are in each.
@@ -16,11 +31,9 @@ class Latencies {
 
   template <class Call>
   void Time(const Call& call) {
-    const auto begin = std::chrono::steady_clock::now();
-    call();
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    state_.SetIterationTime(taken.count());
-    times_us_.push_back(1e6 * taken.count());
+    const double taken_us = MicrosecondsOf(call);
+    state_.SetIterationTime(1e-6 * taken_us);
+    times_us_.push_back(taken_us);
   }
 
   ~Latencies() {
