@@ -15,8 +15,10 @@ namespace {
 
 /// A planned motion slower than this has come to its end.
 constexpr double kStill_m_s = 1e-6;
-/// Reported torque is coarser than commanded torque is known, and each reversal tells less of the screw.
+/// Reported torque is coarser than commanded torque is known: each reversal tells less of the screw, and all
+/// of them together are farther off.
 constexpr double kMostStdInCascade = 0.25;
+constexpr double kSameLawInCascade = 0.3;
 
 void Demand(bool ok, const char* what) {
   if (!ok) throw std::invalid_argument(std::string("estimator: ") + what);
@@ -102,10 +104,19 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       std::sqrt(6.0) * setup.measurement_std_m * mechanics.mass_kg / (period_s * period_s);
   map_ = AngleForceMap({2.0 * std::numbers::pi * mechanics.radius_m_rad, difference_N,
                         config.adapt ? config.cogging_rate : 0.0, period_s});
-  wind_up_ =
-      WindUpFit({period_s, mechanics.stiffness_N_m, config.adapt ? config.stiffness_std : 0.0,
-                 setup.friction.vs_m_s, setup.friction.sigma1_Ns_m, setup.friction.sigma1_decay_m_s,
-                 setup.friction.sigma2_Ns_m, cascade ? kMostStdInCascade : WindUpFit::Tuning{}.most_std});
+  WindUpFit::Tuning screw;
+  screw.period_s = period_s;
+  screw.stiffness_N_m = mechanics.stiffness_N_m;
+  screw.stiffness_std = config.adapt ? config.stiffness_std : 0.0;
+  screw.vs_m_s = setup.friction.vs_m_s;
+  screw.sigma1_Ns_m = setup.friction.sigma1_Ns_m;
+  screw.sigma1_decay_m_s = setup.friction.sigma1_decay_m_s;
+  screw.sigma2_Ns_m = setup.friction.sigma2_Ns_m;
+  if (cascade) {
+    screw.most_std = kMostStdInCascade;
+    screw.same_law = kSameLawInCascade;
+  }
+  wind_up_ = WindUpFit(screw);
   mass_kg_ = mechanics.mass_kg;
   table_mass_kg_ = mechanics.table_mass_kg;
   correction_ = LevelCorrection({2.0 * std::numbers::pi * mechanics.radius_m_rad, setup.friction.vs_m_s,

@@ -29,9 +29,7 @@ constexpr double kMostLevelError = 2.0;
 constexpr double kLawOfBristle = 0.01;
 constexpr double kLawAtSpeed = 0.03;  // per Stribeck velocity at the end of the window
 constexpr double kLawOfScrew = 0.05;
-constexpr double kMostLaw = 0.25;  // of the commissioned compliance
-// Share of that variance which is the same at every reversal: more of them do not make it less.
-constexpr double kSameLaw = 0.3;
+constexpr double kMostLaw = 0.25;    // of the commissioned compliance
 constexpr double kMostSpeed = 0.4;   // Stribeck velocities at the end of the window
 constexpr double kMostChange = 2.0;  // of the compliance, and the inverse
 // Standard deviations that an axis moving alone stays short by.
@@ -280,13 +278,14 @@ void WindUpFit::Conclude(double compliance_m_N, double std_m_N, double independe
       whole * whole / (std_m_N * std_m_N + bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
   found_certainty_ += certainty;
   found_m_N_ += certainty / found_certainty_ * (compliance_m_N - found_m_N_);
-  same_m2_N2_ = kSameLaw * (bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
+  same_m2_N2_ = tuning_.same_law * (bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
   ++reversals_;
   Weigh();
 }
 
 // What was stated has a Student distribution with kTailDegrees of freedom: the farther from it the answer
-// comes to lie, the less it counts. The answer is the mode that is nearest to what was found.
+// comes to lie, the less it counts. Of two modes, the one that is nearer to what was stated, unless what was
+// found is far off in standard deviations of both.
 void WindUpFit::Weigh() noexcept {
   const double stated_m_N = 1.0 / tuning_.stiffness_N_m;
   compliance_m_N_ = stated_m_N;
@@ -294,11 +293,12 @@ void WindUpFit::Weigh() noexcept {
   if (found_certainty_ == 0.0) return;
   const double found = FoundCertainty();
   const double off_m_N = found_m_N_ - stated_m_N;
-  double moved_m_N = off_m_N;
+  double off2 = off_m_N * off_m_N / (1.0 / stated_certainty_ + 1.0 / found);
+  double moved_m_N = 0.0;
   for (int pass = 0; pass < kTailPasses; ++pass) {
-    const double off2 = moved_m_N * moved_m_N * stated_certainty_;
     certainty_ = stated_certainty_ * (kTailDegrees + 1.0) / (kTailDegrees + off2) + found;
     moved_m_N = found / certainty_ * off_m_N;
+    off2 = moved_m_N * moved_m_N * stated_certainty_;
   }
   compliance_m_N_ += moved_m_N;
 }

@@ -28,6 +28,8 @@ class WindUpFit {
     double sigma2_Ns_m = 0.0;
     /// What an answer may be uncertain by, as a share of the commissioned compliance.
     double most_std = 0.08;
+    /// Share of the law's variance that is the same at every reversal: more of them do not make it less.
+    double same_law = 0.1;
   };
   struct Sample {
     double position_m = 0.0;

@@ -156,7 +156,9 @@ TEST(WindUpFit, TheBristlesStiffnessNeedNotBeKnown) {
 // do away with a stiffness that is stated nearly as well.
 TEST(WindUpFit, ManyReversalsAreNotWorthMoreThanTheLaw) {
   constexpr double kTruth_N_m = 36e6;
-  WindUpFit fit(Tuning());
+  WindUpFit::Tuning tuning = Tuning();
+  tuning.same_law = 0.3;
+  WindUpFit fit(tuning);
   Drive(fit, LuGre(kSigma0_N_m, kLevel_N), {.stiffness_N_m = kTruth_N_m, .seconds = 60.0});
   EXPECT_GE(fit.reversals(), 80);
   const double whole_way_m_N = 1.0 / kTruth_N_m - 1.0 / kCommissioned_N_m;
