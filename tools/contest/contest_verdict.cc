@@ -88,6 +88,8 @@ Verdict Judge(const std::vector<Heat>& heats, const std::vector<ExpectedPeak>& e
     v.near_best += near ? 1 : 0;
     if (!near) v.losses.push_back(loss);
     if (full->failed() || loss.full_um > std::max(kTwice * loss.best_um, loss.best_um + kSame_um)) ++v.twice;
+    if (!full->failed() && loss.full_um <= kNearBest * loss.best_um) ++v.strictly_near_best;
+    if (full->failed() || loss.full_um > kTwice * loss.best_um) ++v.strictly_twice;
     if (Unstable(heat, ControllerName::kFull)) v.unstable.push_back(&heat);
   }
   std::stable_sort(v.losses.begin(), v.losses.end(),

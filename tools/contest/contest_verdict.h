@@ -49,6 +49,9 @@ struct Verdict {
   std::vector<Loss> losses;   ///< not within 10 %, the largest ratio first
   std::vector<const Heat*> unstable;
   std::size_t twice = 0;  ///< worse than twice the best
+  /// The same two when a difference below one count of the finest encoder is a difference, too.
+  std::size_t strictly_near_best = 0;
+  std::size_t strictly_twice = 0;
   std::vector<RivalCheck> rivals;
 
   [[nodiscard]] double near_best_share() const {

@@ -66,6 +66,16 @@ TEST(Verdict, AStoppedMachineIsUnstableAndLost) {
   EXPECT_EQ(v.twice, 1u);
 }
 
+TEST(Verdict, LessThanACountIsNoDifferenceUnlessCountedStrictly) {
+  const std::vector<Heat> heats{Of(Peak(0.0060), Peak(0.0500), Peak(0.0020)),
+                                Of(Peak(0.0069), Peak(0.0500), Peak(0.0020))};
+  const Verdict v = Judge(heats, {}, "nominal");
+  EXPECT_EQ(v.near_best, 1u);
+  EXPECT_EQ(v.twice, 1u);
+  EXPECT_EQ(v.strictly_near_best, 0u);
+  EXPECT_EQ(v.strictly_twice, 2u);
+}
+
 TEST(Verdict, AllStoppedIsNoWin) {
   const std::vector<Heat> heats{Of(Stopped(), Stopped(), Stopped())};
   EXPECT_EQ(Judge(heats, {}, "nominal").near_best, 0u);
