@@ -40,7 +40,6 @@ inline Pair Load(const double* p) noexcept {
   std::memcpy(&v, p, sizeof v);
   return v;
 }
-inline void Store(double* p, Pair v) noexcept { std::memcpy(p, &v, sizeof v); }
 
 /// Four neighbours: two registers of the baseline, one where there is AVX2. Only ever a local variable, or a
 /// reference to one, of something inlined, since how it would be passed depends on the processor.
