@@ -152,7 +152,7 @@ class Engine {
       current = best.fit;
       if (Outside(best.effect().kind)) break;
     }
-    Finish(current, out);
+    Finish(std::move(current), out);
     return out;
   }
 
@@ -278,7 +278,8 @@ class Engine {
     // The residual's own scatter from block to block widens the intervals where it is more than white
     // noise's.
     Fit scattered = best.fit;
-    scattered.covariance *= ExcessOfLast(problem_, best.fit) * kFewStrokes * kFewStrokes;
+    scatter_.push_back(ExcessOfLast(problem_, best.fit) * kFewStrokes * kFewStrokes);
+    scattered.covariance *= scatter_.back();
     DescribeEffect(problem_, scattered, best.fit.point.effects.size() - 1, cause);
     WidenIntervals(problem_, best.fit.point, cause);
     std::vector<BlockGain> blocks;
@@ -320,7 +321,29 @@ class Engine {
     out.bootstrap_runs = options_.bootstrap_runs;
   }
 
-  void Finish(const Fit& current, Diagnosis& out) {
+  /// What was accepted first was described before the rest was known, and by a fit that only had to be good
+  /// enough to be judged: all sizes once more, from one fit of everything.
+  Fit DescribeAgain(const Fit& accepted, Diagnosis& out) const {
+    const FitEffort effort{.most_steps = 12, .most_refreshes = 4};
+    Fit fit = FitOn(problem_, accepted, effort);
+    if (Implausible(problem_, fit)) {
+      Fit other = FitPoint(problem_, BackToStated(problem_, fit.point), effort);
+      if (other.cost < fit.cost) fit = std::move(other);
+    }
+    std::size_t index = 0;
+    for (Cause& cause : out.causes) {
+      if (cause.kind == "sample_jitter") continue;  // not in the fit
+      Fit scattered = fit;
+      scattered.covariance *= scatter_[index];
+      cause.shapes.clear();
+      DescribeEffect(problem_, scattered, places_[index++], cause);
+      WidenIntervals(problem_, fit.point, cause);
+    }
+    return fit;
+  }
+
+  void Finish(Fit current, Diagnosis& out) {
+    if (!current.point.effects.empty()) current = DescribeAgain(current, out);
     if (options_.bootstrap_runs > 0 && !current.point.effects.empty()) Bootstrap(current, out);
     out.data_quality = problem_.quality_;
     for (std::size_t i = 0; i < problem_.terms_.size(); ++i) {
@@ -354,6 +377,7 @@ class Engine {
   Problem problem_;
   Fit base_;
   std::vector<std::size_t> places_;  ///< of the accepted causes in the fit, jitter left out
+  std::vector<double> scatter_;      ///< of their residuals from block to block, over white noise's
 };
 
 }  // namespace

@@ -109,6 +109,14 @@ SharedEffect WithOrder(const SharedEffect& e, double order) {
   return copy;
 }
 
+SharedEffect WithForce(const SharedEffect& e, std::vector<int> force) {
+  auto copy = std::make_shared<Effect>(*e);
+  copy->force = std::move(force);
+  return copy;
+}
+
+bool IsForce(Input input) { return input == Input::kMotorForce || input == Input::kLoadForce; }
+
 SharedSignal& TargetOf(AxisModel& m, Input input) {
   switch (input) {
     case Input::kMotorForce:
@@ -172,8 +180,9 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                                    },
                                    {}, {-1.8, -1.8}, {1.8, 1.8}),
                             levels));
-  out.push_back(
-      Custom("constant_torque", "", 1, {0.01 * Fc}, [](const auto& a, AxisModel& m) { m.offset += a[0]; }));
+  out.push_back(WithForce(
+      Custom("constant_torque", "", 1, {0.01 * Fc}, [](const auto& a, AxisModel& m) { m.offset += a[0]; }),
+      {1}));
   const StatedFriction& f = p.nominal_.friction;
   if (f.Fs_plus + f.Fs_minus > 1.05 * (f.Fc_plus + f.Fc_minus)) {
     out.push_back(Custom("stribeck", "", 1, {2e-3, 5e-3},
@@ -264,6 +273,7 @@ SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Inpu
   e->high = {1e30, range[1]};
   e->tested = 1;
   e->signals = true;
+  if (IsForce(input)) e->force = {1, 0};
   e->apply = [shape = std::move(shape), input](const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0) return;
     Enter(m, input, {Make(m.rows, [&](std::size_t k) { return shape(k, a[1]); })}, {a[0]});
@@ -275,9 +285,11 @@ void AddDrive(const Problem& p, std::vector<SharedEffect>& out) {
   const double rated = std::max(p.stated_.rated, 1e-12);
   out.push_back(Custom("torque_constant", "", 1, {1e-3},
                        [](const auto& a, AxisModel& m) { m.torque_gain *= 1.0 + a[0]; }, {}, {-0.7}, {2.0}));
-  out.push_back(Custom("torque_saturation", "", 1, {5e-3},
+  out.push_back(
+      WithForce(Custom("torque_saturation", "", 1, {5e-3},
                        [rated](const auto& a, AxisModel& m) { m.saturation += a[0] / (rated * rated); }, {},
-                       {-0.3}, {0.5}));
+                       {-0.3}, {0.5}),
+                {1}));
   out.push_back(Custom("input_delay", "", 1, {2e-6}, [](const auto& a, AxisModel& m) { m.delay_s += a[0]; }));
   out.push_back(Custom("current_lag", "", 1, {2e-6},
                        [](const auto& a, AxisModel& m) { m.lag_s = std::max(0.0, m.lag_s + a[0]); }));
@@ -299,6 +311,7 @@ void AddMechanics(const Problem& p, std::vector<SharedEffect>& out) {
         },
         {}, {-0.8, -reach_s}, {5.0, reach_s}));
     step->tested = 1;
+    step->force = {1, 0};
     step->as_term = p.nominal_.two_inertia ? "load_inertia" : "inertia";
     step->from_row = row;
     step->order = p.log_.period_s * static_cast<double>(row);
@@ -376,8 +389,10 @@ SharedEffect LinearEffect(std::string kind, std::string label, double grid, Inpu
     if (input == Input::kReading || input == Input::kScale || largest <= 1e-12) steps[i] = step;
   }
   auto shared = std::make_shared<const std::vector<SharedSignal>>(std::move(basis));
-  return AsSignals(Custom(std::move(kind), std::move(label), grid, std::move(steps),
-                          [shared, input](const auto& a, AxisModel& m) { Enter(m, input, *shared, a); }));
+  const SharedEffect e =
+      Custom(std::move(kind), std::move(label), grid, std::move(steps),
+             [shared, input](const auto& a, AxisModel& m) { Enter(m, input, *shared, a); });
+  return AsSignals(IsForce(input) ? WithForce(e, std::vector<int>(shared->size(), 1)) : e);
 }
 
 std::vector<SharedEffect> CatalogueEffects(const Problem& problem) {
@@ -452,6 +467,7 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
   e->order = order;
   e->wave = true;
   e->steps = {step, step, 0.05 / span};
+  if (IsForce(input)) e->force = {1, 1, 0};
   e->tested = 2;
   e->signals = true;
   e->low = {-1e30, -1e30, -6.0 / span};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "tools/diagnosis/common_factor.h"
 #include "tools/diagnosis/lanes.h"
 #include "tools/diagnosis/products.h"
 
@@ -116,7 +117,9 @@ class Descent {
   void Proceed() {
     switch (stage_) {
       case Stage::kColumns:
-        AddProducts(fit_.jacobian, from_, fit_.normal);
+        MakeConsistent(problem_, fit_.point, fit_.jacobian);
+        MakeConsistent(problem_, fit_.point, fit_.raw_jacobian);
+        AddProducts(fit_.jacobian, 0, fit_.normal);
         stale_ = false;
         ++refreshes_;
         if (closing_)

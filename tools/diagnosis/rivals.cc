@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "tools/diagnosis/common_factor.h"
 #include "tools/diagnosis/effects.h"
 #include "tools/diagnosis/lanes.h"
 #include "tools/diagnosis/products.h"

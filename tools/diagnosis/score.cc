@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/diagnosis/common_factor.h"
 #include "tools/diagnosis/products.h"
 
 namespace contour::diagnosis {
@@ -46,31 +47,6 @@ std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& k
 
 bool InBase(const Problem& problem, const std::string& kind) {
   return kind == "torque_constant" || !FreedTerms(problem, kind).empty();
-}
-
-namespace {
-
-bool IsForce(const BaseTerm& t) {
-  return !t.nuisance && !t.additive && t.name != "vs" && t.name != "torque_constant";
-}
-
-}  // namespace
-
-CommonFactor FindCommonFactor(const Problem& problem, const Point& point) {
-  double sum = 0.0, weight = 0.0;
-  for (std::size_t i = 0; i < point.base.size(); ++i) {
-    const BaseTerm& t = problem.terms_[i];
-    if (!IsForce(t)) continue;
-    const double w = std::pow(t.sigma, -2);
-    sum += w * point.base[i];
-    weight += w;
-  }
-  return {-sum / weight, sum * sum / weight, std::sqrt(1.0 / weight)};
-}
-
-void ShiftForces(const Problem& problem, double log_ratio, Point& point) {
-  for (std::size_t i = 0; i < point.base.size(); ++i)
-    if (IsForce(problem.terms_[i])) point.base[i] += log_ratio;
 }
 
 double ExcessOfLast(const Problem& problem, const Fit& fit) {

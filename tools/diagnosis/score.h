@@ -37,15 +37,6 @@ std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& k
 /// Tests effects at zero amplitude beside whatever `fit` holds.
 std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects);
 
-/// A torque constant that is off by exp(x) looks like all forces off by exp(-x): only the priors tell. The x
-/// that they like best, and what they gain by it.
-struct CommonFactor {
-  double log_ratio = 0.0, drop = 0.0, sigma = 0.0;
-};
-CommonFactor FindCommonFactor(const Problem& problem, const Point& point);
-/// The same motion with another torque constant.
-void ShiftForces(const Problem& problem, double log_ratio, Point& point);
-
 /// Of the last effect of a fit, from the fit's own residual: free of what the effect explains.
 double ExcessOfLast(const Problem& problem, const Fit& fit);
 

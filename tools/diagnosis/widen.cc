@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "tools/diagnosis/common_factor.h"
 #include "tools/diagnosis/score.h"
 
 namespace contour::diagnosis {
