@@ -29,7 +29,7 @@ class WindUpFit {
     /// What an answer may be uncertain by, as a share of the commissioned compliance.
     double most_std = 0.08;
     /// Share of the law's variance that is the same at every reversal: more of them do not make it less.
-    double same_law = 0.1;
+    double same_law = 0.0;
   };
   struct Sample {
     double position_m = 0.0;
