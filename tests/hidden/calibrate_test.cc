@@ -55,10 +55,21 @@ TEST(MarginTable, AKindWhoseScoresExceedTheFlipsGetsAMarginOfItsOwn) {
     evidence += Line(log, 0, 0.0, true, "stribeck", 90.0);  // its evidence is in the priors
   }
   const std::string table = TableOf(evidence);
-  // Four exceed by 20; the scale of all kinds, drawn towards 1 by one log, is 81 / 5.
-  EXPECT_NEAR(Scale(table, "backlash"), (80.0 + 16.2) / 5.0, 0.01);
+  // Four exceed by 20; the scale of all kinds is 20 / ln 2.
+  EXPECT_NEAR(Scale(table, "backlash"), (80.0 + 28.85) / 5.0, 0.01);
   EXPECT_EQ(table.find("cogging"), std::string::npos);
   EXPECT_EQ(table.find("stribeck"), std::string::npos);
+}
+
+TEST(MarginTable, ALogThatOneKindGoesFarWrongInLeavesTheOthersAlone) {
+  std::string evidence;
+  for (int i = 0; i < 20; ++i)
+    evidence +=
+        Line(FormatText("clean_%04d", i), 0, 0.0, false, i < 5 ? "cogging" : "backlash", i < 5 ? 6.0 : 1.0);
+  const std::string wrong = Line("clean_0020", 0, 0.0, false, "viscous_nonlinear", 104.0);
+  EXPECT_NEAR(Scale(TableOf(evidence), ""), 2.0 / std::log(2.0), 0.01);
+  EXPECT_NEAR(Scale(TableOf(evidence + wrong), ""), 2.0 / std::log(2.0), 0.01);
+  EXPECT_GT(Scale(TableOf(evidence + wrong), "viscous_nonlinear"), 50.0);
 }
 
 TEST(MarginTable, WhatIsLeftOfACauseIsASingleEffectsSecondRound) {

@@ -19,12 +19,14 @@ namespace {
 constexpr double kNoFault_Hz = 700.0;
 constexpr double kMostDamped = 1.0,
                  kLeastShare = 0.1;  // logarithm of the damping ratio over 0.04; of the inertia
+constexpr double kNothingBehind = 0.01, kMostBent = 4.0;  // of the inertia; power of the speed
 constexpr double kNever = -1e300;
 constexpr double kFineStep = 0.05;
 constexpr double kSmall = 60.0, kNoLuck = 300.0;  // drops
 constexpr std::size_t kMostKinds = 4, kMostTried = 6, kSmallStarts = 4;
 constexpr double kFewOfMost = 0.1;
 constexpr int kMostTurns = 3;
+constexpr std::size_t kMostKept = 6;
 
 /// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
 void Sort(std::vector<Rival>& rivals) {
@@ -43,10 +45,16 @@ bool AddsCoupling(const Problem& problem, const Rival& r) {
   return r.effect().kind == "compliance" && !problem.nominal_.two_inertia;
 }
 
-/// Damped as no coupling is: it stands for something else.
+/// Damped as no coupling is, or with next to nothing behind it: it stands for something else.
 bool NoCoupling(const Rival& r) {
   const std::vector<double>& a = r.fit.point.amplitudes.back();
-  return a[2] > kMostDamped && a[0] < kLeastShare;
+  return (a[2] > kMostDamped && a[0] < kLeastShare) || a[0] < kNothingBehind;
+}
+
+/// Bent as no drag is: it stands for what happens at the highest speed.
+bool NoDrag(const Rival& r) {
+  const Effect& e = r.effect();
+  return e.kind == "viscous_nonlinear" && e.order * std::exp(r.fit.point.amplitudes.back()[1]) > kMostBent;
 }
 
 /// A coupling that every screw has.
@@ -58,7 +66,7 @@ bool NoFault(const Problem& problem, const Rival& r) {
 void Judge(const Problem& problem, const Fit& current, Rival& r) {
   // A start may be no machine at all.
   const bool coupling = AddsCoupling(problem, r);
-  const bool out = !std::isfinite(r.fit.cost) || (coupling && NoCoupling(r));
+  const bool out = !std::isfinite(r.fit.cost) || (coupling && NoCoupling(r)) || NoDrag(r);
   r.no_fault = !out && coupling && NoFault(problem, r);
   r.score = out ? kNever : current.cost - r.fit.cost - Penalty(r.effect());
 }
@@ -245,22 +253,24 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
 }
 
 /// Where the stated numbers went too far, the fit may be in a wrong place: once more from where they are
-/// stated.
+/// stated. One after the other, for the memory.
 void FitFromStated(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
-  std::vector<Beginning> beginnings;
-  std::vector<Rival*> whose;
   for (Rival& r : rivals) {
     if (Outside(r.effect().kind) || !Implausible(problem, r.fit)) continue;
-    beginnings.push_back({BackToStated(problem, r.fit.point),
-                          {.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false}});
-    whose.push_back(&r);
+    Fit fit = FitPoint(problem, BackToStated(problem, r.fit.point),
+                       {.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false});
+    if (!(fit.cost < r.fit.cost)) continue;
+    r.fit = std::move(fit);
+    Judge(problem, current, r);
   }
-  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    if (!(fits[i].cost < whose[i]->fit.cost)) continue;
-    whose[i]->fit = std::move(fits[i]);
-    Judge(problem, current, *whose[i]);
-  }
+}
+
+/// The worst of too many go, for the memory; sorted before.
+void KeepBest(const Problem& problem, std::vector<Rival>& rivals) {
+  std::size_t kept = 0;
+  std::erase_if(rivals, [&](const Rival& r) {
+    return !InBase(problem, r.effect().kind) && !Outside(r.effect().kind) && kept++ >= kMostKept;
+  });
 }
 
 }  // namespace
@@ -280,6 +290,8 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
     // Where the best came to nothing, those far behind it have their turn.
     if (best > kFewOfMost * most || !MorePromised(problem, scored, gate, tried)) break;
   }
+  Sort(out);
+  KeepBest(problem, out);
   FitFromStated(problem, current, out);
   Sort(out);
   return out;

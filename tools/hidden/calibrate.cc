@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -13,7 +14,8 @@
 
 // A kind's scores exceed the flips in few of the clean logs one has, so that no quantile can be read off: the
 // exceedances are taken as exponential (Pickands, Annals of Statistics 3(1), 1975, without the shape), their
-// scale drawn towards that of all kinds by one log.
+// scale drawn towards that of all kinds by one log. That one comes from the median, so that a log which one
+// kind goes far wrong in does not raise the margins of the others.
 namespace contour::hidden {
 namespace {
 
@@ -59,6 +61,14 @@ bool WouldHold(const Line& l) {
          (l.unseen > kHolds || l.tested > kNoChance);
 }
 
+/// Of an exponential distribution, from its median; as if a log exceeded by 1 besides.
+double CommonScale(std::vector<double> exceeding) {
+  exceeding.push_back(1.0);
+  std::sort(exceeding.begin(), exceeding.end());
+  const std::size_t n = exceeding.size();
+  return 0.5 * (exceeding[(n - 1) / 2] + exceeding[n / 2]) / std::numbers::ln2;
+}
+
 std::string Entry(const std::string& kind, double share, double scale, double unlike) {
   return FormatText("{\"%s\", %.4f, %.2f, %.1e},\n", kind.c_str(), share, scale, unlike);
 }
@@ -68,7 +78,7 @@ std::string Entry(const std::string& kind, double share, double scale, double un
 std::string MarginTable(std::istream& evidence) {
   std::set<std::string> clean;
   std::map<std::string, Exceeding> kinds;
-  Exceeding all;
+  std::vector<double> all;
   std::map<std::string, double> unlike;
   std::vector<Line> beside;
   for (std::string text; std::getline(evidence, text);) {
@@ -78,17 +88,16 @@ std::string MarginTable(std::istream& evidence) {
       clean.insert(l.log);
       if (l.accepted != 0 || !WouldHold(l)) continue;
       const double by = 1e5 * (l.tested - l.flips) / l.rows;
-      for (Exceeding* e : {&kinds[l.kind], &all}) {
-        e->count += 1.0;
-        e->sum += by;
-      }
+      kinds[l.kind].count += 1.0;
+      kinds[l.kind].sum += by;
+      all.push_back(by);
     } else if (l.log.starts_with("clear_") && l.accepted == 1 && WouldHold(l)) {
       beside.push_back(l);
     }
   }
   if (clean.empty()) throw std::runtime_error("no machine without an effect among the evidence");
   const auto logs = static_cast<double>(clean.size());
-  const double scale = (all.sum + 1.0) / (all.count + 1.0);
+  const double scale = CommonScale(all);
   // The hidden kind is in the case's name: clear_KIND_0001.
   for (const Line& l : beside) {
     const std::string kind = l.log.substr(6, l.log.rfind('_') - 6);
