@@ -22,6 +22,9 @@ constexpr double kTakenBackDoubts = 4.0;
 constexpr double kLargestLevelStd = 0.25;
 // Lowest level, of the commissioned one: an axis may turn out to have hardly any friction.
 constexpr double kLowestLevelShare = 1e-4;
+// Of a level, what one reading leaves: it is a positive number to a filter that knows none, and a jerk's
+// innovation would take it to nothing. Friction that is not there goes by travel (JudgeLevel).
+constexpr double kLeastLeft = 0.25;
 
 // A drive reports rounded torque, of the instant of the sample: its mean over the period is less certain.
 constexpr double kReportedTorqueNoise = 3.0;
@@ -195,10 +198,14 @@ StateMask<kSevenStates> SevenStateFilter<Core>::Adapted(bool at_rest) const noex
 template <class Core>
 UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput& in,
                                                        Innovation& innovation) noexcept {
-  const auto& x = core_.x;
+  auto& x = core_.x;
   const double y = in.position_m - WindUpShare_m(Total_N(x, at_), x[kDisturbance], lag_.force_N());
+  const double least_plus_N = kLeastLeft * x[kLevelPlus];
+  const double least_minus_N = kLeastLeft * x[kLevelMinus];
   const UpdateResult result =
       core_.UpdateState0(y, setup_.measurement_std_m, gate_, Adapted(in.at_rest), innovation);
+  x[kLevelPlus] = std::max(x[kLevelPlus], least_plus_N);
+  x[kLevelMinus] = std::max(x[kLevelMinus], least_minus_N);
   at_ = model_.TermsAt(x[kVelocity]);
   return result;
 }
