@@ -22,8 +22,9 @@ constexpr double kTakenBackDoubts = 4.0;
 constexpr double kLargestLevelStd = 0.25;
 // Lowest level, of the commissioned one: an axis may turn out to have hardly any friction.
 constexpr double kLowestLevelShare = 1e-4;
-// Of a level, what one reading leaves: it is a positive number to a filter that knows none, and a jerk's
-// innovation would take it to nothing. Friction that is not there goes by travel (JudgeLevel).
+// To a filter a level is a number like any other, and a jerk's innovation may take it to nothing at once. One
+// reading takes it to this share of the commissioned one, or to that of what it was.
+constexpr double kLeastByReading = 0.1;
 constexpr double kLeastLeft = 0.25;
 
 // A drive reports rounded torque, of the instant of the sample: its mean over the period is less certain.
@@ -200,8 +201,9 @@ UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput&
                                                        Innovation& innovation) noexcept {
   auto& x = core_.x;
   const double y = in.position_m - WindUpShare_m(Total_N(x, at_), x[kDisturbance], lag_.force_N());
-  const double least_plus_N = kLeastLeft * x[kLevelPlus];
-  const double least_minus_N = kLeastLeft * x[kLevelMinus];
+  const Friction& f = setup_.friction;
+  const double least_plus_N = std::min(kLeastLeft * x[kLevelPlus], kLeastByReading * f.Fc_plus_N);
+  const double least_minus_N = std::min(kLeastLeft * x[kLevelMinus], kLeastByReading * f.Fc_minus_N);
   const UpdateResult result =
       core_.UpdateState0(y, setup_.measurement_std_m, gate_, Adapted(in.at_rest), innovation);
   x[kLevelPlus] = std::max(x[kLevelPlus], least_plus_N);
