@@ -1,37 +1,28 @@
 // The passes of riccati.cc while two axes are free in every stage, which they mostly are, on whole blocks.
 #include "control/riccati.h"
 
-#include <cstring>
-
+#include "core/wide_numbers.h"
 #include "core/wide_vectors.h"
 
 namespace contour {
 namespace {
 
-// Two doubles side by side, one instruction for both on every x86-64, and the rows of a 2 x 2 block, one for
-// all four where there is AVX2. GCC and Clang know this notation on all targets. Blocks are only ever local
-// variables of something inlined, since how they would be passed depends on the processor.
-using Pair = double __attribute__((vector_size(16)));
-using Block = double __attribute__((vector_size(32)));
+using wide::Load;
+using wide::Pair;
+using wide::Store;
+/// The rows of a 2 x 2 block.
+using Block = wide::Quad;
 
-inline Pair Load(const std::array<double, 2>& from) noexcept {
-  Pair pair;
-  std::memcpy(&pair, from.data(), sizeof pair);
-  return pair;
-}
-inline void Store(Pair pair, std::array<double, 2>& to) noexcept {
-  std::memcpy(to.data(), &pair, sizeof pair);
-}
+inline Pair Load(const std::array<double, 2>& from) noexcept { return Load(from.data()); }
+inline void Store(Pair pair, std::array<double, 2>& to) noexcept { Store(to.data(), pair); }
 inline Pair Both(double x) noexcept { return Pair{x, x}; }
 
-// Not by memcpy, which becomes two halves: a block cannot be loaded at once from two that were just stored.
-using BlockInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
 using SquareOfTwo = std::array<std::array<double, 2>, 2>;
 [[gnu::always_inline]] inline void Load(const SquareOfTwo& from, Block& block) noexcept {
-  block = *reinterpret_cast<const BlockInMemory*>(&from);
+  Load(reinterpret_cast<const double*>(&from), block);
 }
 [[gnu::always_inline]] inline void Store(const Block& block, SquareOfTwo& to) noexcept {
-  *reinterpret_cast<BlockInMemory*>(&to) = block;
+  Store(reinterpret_cast<double*>(&to), block);
 }
 
 }  // namespace

@@ -3,14 +3,13 @@
 #include <bit>
 #include <cstdint>
 
+#include "core/wide_numbers.h"
+
 /// exp and expm1 as plain arithmetic: loops over sigma points vectorise, and the result is the same on every
 /// machine (the C library's picks other code where it finds FMA). Relative error below 4e-16.
 namespace contour {
 
 namespace exponential {
-
-/// Two numbers side by side, one register of the baseline.
-using Two = double __attribute__((vector_size(16)));
 
 template <class T>
 struct Reduced {
@@ -26,7 +25,7 @@ struct BitsOf<double> {
   using Type = std::uint64_t;
 };
 template <>
-struct BitsOf<Two> {
+struct BitsOf<wide::Pair> {
   using Type = std::uint64_t __attribute__((vector_size(16)));
 };
 

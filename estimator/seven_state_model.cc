@@ -92,7 +92,7 @@ void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateIn
 SpeedTerms SevenStateModel::TermsAt(double velocity_m_s) const noexcept {
   const double u = velocity_m_s / friction_.sigma1_decay_m_s;
   const double power = StribeckPower(std::abs(velocity_m_s), friction_.vs_m_s, friction_.stribeck_exponent);
-  const exponential::Two e = ExpOfNegative(exponential::Two{-power, -u * u});
+  const wide::Pair e = ExpOfNegative(wide::Pair{-power, -u * u});
   return {e[0], friction_.sigma1_Ns_m * e[1]};
 }
 

@@ -3,9 +3,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <utility>
+
+#include "core/wide_numbers.h"
 
 /// Square-root covariances of fixed size: P = S S^T with S lower triangular. No allocation, no exception.
 namespace contour {
@@ -24,36 +25,17 @@ using StateMask = std::array<bool, N>;
 
 namespace square_root {
 
+using wide::Load;
+using wide::Pair;
+using wide::Quad;
+using wide::Store;
+
 /// Square root at compile time (Newton's iteration).
 constexpr double Sqrt(double x) noexcept {
   if (x <= 0.0) return 0.0;
   double r = x > 1.0 ? x : 1.0;
   for (int i = 0; i < 64; ++i) r = 0.5 * (r + x / r);
   return r;
-}
-
-/// Two neighbours at a time: the baseline has registers of 16 bytes.
-using Pair = double __attribute__((vector_size(16)));
-
-inline Pair Load(const double* p) noexcept {
-  Pair v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
-}
-
-/// Four neighbours: two registers of the baseline, one where there is AVX2. Only ever a local variable, or a
-/// reference to one, of something inlined, since how it would be passed depends on the processor.
-using Quad = double __attribute__((vector_size(32)));
-
-/// Four neighbours in memory, wherever they begin. (memcpy becomes two halves where the baseline inlines it,
-/// and a register cannot be loaded at once from two that were just stored.)
-using QuadInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
-
-[[gnu::always_inline]] inline void Load(const double* p, Quad& v) noexcept {
-  v = *reinterpret_cast<const QuadInMemory*>(p);
-}
-[[gnu::always_inline]] inline void Store(double* p, const Quad& v) noexcept {
-  *reinterpret_cast<QuadInMemory*>(p) = v;
 }
 
 /// Sum of the four, halves first.

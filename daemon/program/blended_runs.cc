@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "daemon/program/bisection.h"
+
 namespace contour {
 namespace {
 
@@ -10,7 +12,6 @@ namespace {
 // generous costs little.
 constexpr double kFollowing_m = 2e-6;
 constexpr double kJerkRise_s = 4e-3;
-constexpr int kBisections = 50;
 
 BlendLeg LegOf(const RunRequest& run, const PieceRequest& next_to_corner) {
   return {next_to_corner.curve.direction, run.speed_m_s, run.ramp,
@@ -48,14 +49,11 @@ void Fit(const RunRequest& run, const BlendedJunction& slower, BlendedJunction& 
     return LowestPeak_m_s(j.state, run.ramp) - LowestPeak_m_s(slower.state, run.ramp);
   };
   if (run.length_m == 0.0 || excess(faster) <= 0.0 || Fits(run, slower, faster)) return;
-  double low = 0.0;
-  double high = 1.0;
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    const BlendedJunction slowed = Slowed(faster, middle);
-    (excess(slowed) <= 0.0 || Fits(run, slower, slowed) ? low : high) = middle;
-  }
-  faster = Slowed(faster, low);
+  const auto fits = [&](double factor) {
+    const BlendedJunction slowed = Slowed(faster, factor);
+    return excess(slowed) <= 0.0 || Fits(run, slower, slowed);
+  };
+  faster = Slowed(faster, LargestThat(fits, 0.0, 1.0));
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/program/bisection.h"
+
 namespace contour {
 namespace {
 
-// Bisections halve the interval; 60 of them exhaust a double.
-constexpr int kBisections = 60;
 // Of a length: what rounding may take when states have been chosen to fit exactly.
 constexpr double kRounding = 1e-9;
 
@@ -65,15 +65,10 @@ bool JerkProfile::Fits(double length_m, const PassingState& in, const PassingSta
 JerkProfile::JerkProfile(double length_m, const PassingState& in, double cruise_m_s, const PassingState& out,
                          const RampLimits& limits)
     : length_m_(length_m), cruise_m_s_(cruise_m_s) {
-  if (RampsLength_m(in, cruise_m_s, out, limits) > length_m) {
-    double low = LowestPeak_m_s(in, out, limits);
-    double high = cruise_m_s;
-    for (int i = 0; i < kBisections; ++i) {
-      const double middle = 0.5 * (low + high);
-      (RampsLength_m(in, middle, out, limits) <= length_m ? low : high) = middle;
-    }
-    cruise_m_s_ = low;
-  }
+  if (RampsLength_m(in, cruise_m_s, out, limits) > length_m)
+    cruise_m_s_ =
+        LargestThat([&](double peak_m_s) { return RampsLength_m(in, peak_m_s, out, limits) <= length_m; },
+                    LowestPeak_m_s(in, out, limits), cruise_m_s);
   up_ = JerkRamp(in, cruise_m_s_, limits);
   down_ = JerkRamp(out, cruise_m_s_, limits);
   cruise_s_ = std::max(0.0, (length_m - up_.length_m() - down_.length_m()) / cruise_m_s_);

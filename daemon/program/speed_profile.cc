@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "daemon/program/bisection.h"
+
 namespace contour {
 namespace {
-
-// Bisections halve the interval; 60 of them exhaust a double.
-constexpr int kBisections = 60;
 
 AlongCurve Ramp(double from, double to, double duration, double time) {
   const double u = duration > 0.0 ? time / duration : 1.0;
@@ -33,13 +32,8 @@ double RampLength_m(double from_m_s, double to_m_s, const RampLimits& limits) {
 
 double ReachableSpeed_m_s(double from_m_s, double length_m, double cap_m_s, const RampLimits& limits) {
   if (cap_m_s <= from_m_s || RampLength_m(from_m_s, cap_m_s, limits) <= length_m) return cap_m_s;
-  double low = from_m_s;
-  double high = cap_m_s;
-  for (int i = 0; i < kBisections; ++i) {
-    const double middle = 0.5 * (low + high);
-    (RampLength_m(from_m_s, middle, limits) <= length_m ? low : high) = middle;
-  }
-  return low;
+  return LargestThat([&](double to_m_s) { return RampLength_m(from_m_s, to_m_s, limits) <= length_m; },
+                     from_m_s, cap_m_s);
 }
 
 SpeedProfile::SpeedProfile(double length_m, double in_m_s, double cruise_m_s, double out_m_s,
@@ -48,15 +42,9 @@ SpeedProfile::SpeedProfile(double length_m, double in_m_s, double cruise_m_s, do
   const auto ramps = [&](double cruise) {
     return RampLength_m(in_m_s, cruise, limits) + RampLength_m(cruise, out_m_s, limits);
   };
-  if (ramps(cruise_m_s_) > length_m_) {
-    double low = std::max(in_m_s, out_m_s);
-    double high = cruise_m_s;
-    for (int i = 0; i < kBisections; ++i) {
-      const double middle = 0.5 * (low + high);
-      (ramps(middle) <= length_m ? low : high) = middle;
-    }
-    cruise_m_s_ = low;
-  }
+  if (ramps(cruise_m_s_) > length_m_)
+    cruise_m_s_ = LargestThat([&](double peak_m_s) { return ramps(peak_m_s) <= length_m; },
+                              std::max(in_m_s, out_m_s), cruise_m_s);
   up_s_ = RampTime_s(in_m_s, cruise_m_s_, limits);
   down_s_ = RampTime_s(cruise_m_s_, out_m_s, limits);
   cruise_s_ = std::max(0.0, (length_m_ - run_up_length_m() - run_down_length_m()) / cruise_m_s_);

@@ -17,6 +17,8 @@
 namespace contour::bench {
 namespace {
 
+constexpr std::array<int, 5> kPairs{1, 2, 4, 8, 16};
+
 /// The example's table `pairs` times, each pair on a bus of its own.
 EmulatedMachineFile Machine(int pairs, const char* mode) {
   const std::string set = std::string(".drive.mode=") + mode;
@@ -123,7 +125,6 @@ void WholeCycle(benchmark::State& state, ControllerName controller, const char* 
 /// slow, for seconds on end, and rows measured one after the other do not compare. Here they take turns, 50
 /// cycles each (the first of them bring the state back into the cache; the median knows nothing of those).
 void CostPerPair(benchmark::State& state, const char* mode) {
-  constexpr std::array<int, 5> kPairs{1, 2, 4, 8, 16};
   constexpr int kTurn = 50;
   std::vector<Drawing> drawings;
   for (const int pairs : kPairs) drawings.emplace_back(pairs, ControllerName::kFull, mode);
@@ -148,29 +149,25 @@ void CostPerPair(benchmark::State& state, const char* mode) {
 BENCHMARK_CAPTURE(CostPerPair, cst, "cst")->Name("cycle/full/cost_per_pair");
 BENCHMARK_CAPTURE(CostPerPair, csp, "csp")->Name("cycle/full_csp/cost_per_pair");
 
+void Timed(benchmark::internal::Benchmark* benchmark) {
+  benchmark->UseManualTime()->Unit(benchmark::kMicrosecond);
+}
+void EveryNumberOfPairs(benchmark::internal::Benchmark* benchmark) {
+  for (const int pairs : kPairs) benchmark->Arg(pairs);
+}
+
 BENCHMARK_CAPTURE(WholeCycle, full, ControllerName::kFull, "cst")
     ->Name("cycle/full/pairs")
-    ->Arg(1)
-    ->Arg(2)
-    ->Arg(4)
-    ->Arg(8)
-    ->Arg(16)
-    ->UseManualTime()
-    ->Unit(benchmark::kMicrosecond);
+    ->Apply(EveryNumberOfPairs)
+    ->Apply(Timed);
 BENCHMARK_CAPTURE(WholeCycle, full_csp, ControllerName::kFull, "csp")
     ->Name("cycle/full_csp/pairs")
-    ->Arg(1)
-    ->Arg(2)
-    ->Arg(4)
-    ->Arg(8)
-    ->Arg(16)
-    ->UseManualTime()
-    ->Unit(benchmark::kMicrosecond);
+    ->Apply(EveryNumberOfPairs)
+    ->Apply(Timed);
 BENCHMARK_CAPTURE(WholeCycle, mpc, ControllerName::kMpc, "cst")
     ->Name("cycle/mpc/pairs")
     ->Arg(1)
-    ->UseManualTime()
-    ->Unit(benchmark::kMicrosecond);
+    ->Apply(Timed);
 
 /// A second of the 10 mm circle in virtual time: the cycle and the emulated machine.
 void SimulatedSecond(benchmark::State& state) {

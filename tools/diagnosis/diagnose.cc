@@ -275,13 +275,7 @@ class Engine {
     const Experiment experiment = DecidingExperiment(problem_, cause.kind, cause.indistinguishable_from);
     cause.deciding_experiment = experiment.text;
     cause.deciding_program = experiment.program;
-    // The residual's own scatter from block to block widens the intervals where it is more than white
-    // noise's.
-    Fit scattered = best.fit;
     scatter_.push_back(ExcessOfLast(problem_, best.fit) * kFewStrokes * kFewStrokes);
-    scattered.covariance *= scatter_.back();
-    DescribeEffect(problem_, scattered, best.fit.point.effects.size() - 1, cause);
-    WidenIntervals(problem_, best.fit.point, cause);
     std::vector<BlockGain> blocks;
     HeldOutGain(problem_, current, best.fit, cause.kind == "pitch_error", cause, blocks);
     if (out.causes.empty()) out.blocks = blocks;
@@ -314,37 +308,44 @@ class Engine {
     std::size_t index = 0;
     for (Cause& cause : out.causes) {
       if (cause.kind == "sample_jitter") continue;  // not in the fit
-      cause.shapes.clear();
       DescribeEffect(problem_, fit, places_[index++], draws, cause);
       WidenIntervals(problem_, fit.point, cause);
     }
     out.bootstrap_runs = options_.bootstrap_runs;
   }
 
-  /// What was accepted first was described before the rest was known, and by a fit that only had to be good
-  /// enough to be judged: all sizes once more, from one fit of everything.
-  Fit DescribeAgain(const Fit& accepted, Diagnosis& out) const {
+  /// What was accepted first was fitted before the rest was known, and only well enough to be judged.
+  Fit Together(const Fit& accepted) const {
     const FitEffort effort{.most_steps = 12, .most_refreshes = 4};
     Fit fit = FitOn(problem_, accepted, effort);
     if (Implausible(problem_, fit)) {
       Fit other = FitPoint(problem_, BackToStated(problem_, fit.point), effort);
       if (other.cost < fit.cost) fit = std::move(other);
     }
+    return fit;
+  }
+
+  /// Sizes of all that was accepted. The residual's own scatter from block to block widens the intervals
+  /// where it is more than white noise's.
+  void Describe(const Fit& fit, Diagnosis& out) const {
     std::size_t index = 0;
     for (Cause& cause : out.causes) {
       if (cause.kind == "sample_jitter") continue;  // not in the fit
       Fit scattered = fit;
       scattered.covariance *= scatter_[index];
-      cause.shapes.clear();
       DescribeEffect(problem_, scattered, places_[index++], cause);
       WidenIntervals(problem_, fit.point, cause);
     }
-    return fit;
   }
 
   void Finish(Fit current, Diagnosis& out) {
-    if (!current.point.effects.empty()) current = DescribeAgain(current, out);
-    if (options_.bootstrap_runs > 0 && !current.point.effects.empty()) Bootstrap(current, out);
+    if (!current.point.effects.empty()) {
+      current = Together(current);
+      if (options_.bootstrap_runs > 0)
+        Bootstrap(current, out);
+      else
+        Describe(current, out);
+    }
     out.data_quality = problem_.quality_;
     for (std::size_t i = 0; i < problem_.terms_.size(); ++i) {
       const BaseTerm& t = problem_.terms_[i];
