@@ -148,6 +148,13 @@ void CheckMode(const MachineConfig& c, const std::string& key, const DriveConfig
                  "found false, but control.csp.torque_offset is true; expected true");
 }
 
+// The encoder does not see the table: what it learns is not what the table needs.
+void CheckLearning(const MachineConfig& c, const std::string& key, const DriveConfig& d, Problems& problems) {
+  if (c.learning.enabled && !d.linear_scale)
+    problems.Add(key + ".linear_scale",
+                 "found none, but learning.enabled is true; expected a scale on every axis");
+}
+
 void CheckDrive(const std::string& key, const DriveConfig& d, double period_ms, Problems& problems) {
   // 0x6085 is an UNSIGNED32 in counts/s^2.
   const double most_rad_s2 =
@@ -318,6 +325,7 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     const std::string key = "axes." + name;
     CheckMode(c, key + ".drive", axis.drive, problems);
     CheckDrive(key + ".drive", axis.drive, c.machine.cycle_us * 1e-3, problems);
+    CheckLearning(c, key + ".drive", axis.drive, problems);
     CheckLimits(key, axis, problems);
     CheckReserve(key, axis, problems);
     CheckStopping(c, key, axis, problems);

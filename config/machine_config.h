@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "config/learning_config.h"
 #include "config/logging_config.h"
 #include "config/memory_config.h"
 #include "config/model_config.h"
@@ -57,6 +58,7 @@ struct MachineConfig {
   TelemetryConfig telemetry;
   LoggingConfig logging;
   MemoryConfig memory;
+  LearningConfig learning;
   ControllerConfig control;
   EstimatorConfig estimator;
   std::map<std::string, AxisConfig> axes;
@@ -70,6 +72,7 @@ struct MachineConfig {
     v.Optional("telemetry", telemetry, "LCM telemetry");
     v.Optional("logging", logging, "messages for people");
     v.Optional("memory", memory, "what is learnt of the machine and kept for the next start");
+    v.Optional("learning", learning, "what a program's next pass learns from the last one");
     v.Optional("control", control, "tuning of the controllers");
     v.Optional("estimator", estimator, "tuning of the estimators, the same for all axes");
     v.Required("axes", axes, "axes by name");

@@ -19,6 +19,7 @@
 #include "daemon/control_socket/control_server.h"
 #include "daemon/control_socket/socket_path.h"
 #include "daemon/io_adapter.h"
+#include "daemon/learning/program_learning.h"
 #include "daemon/logging/logging.h"
 #include "daemon/machine_buses.h"
 #include "daemon/make_cycle_config.h"
@@ -166,6 +167,7 @@ class Daemon {
         hub_(machine_.telemetry, machine_.machine.cycle_us, AxisNames(machine_), LogTarget()),
         pump_(queue_, mailbox_, hub_, machine_.machine.cycle_us * 1e-6, AxisNames(machine_),
               BusNames(machine_)),
+        learning_(machine_),
         cycle_(MakeCycleConfig(machine_, machine_.machine.controller)) {
     if (machine_.io.modbus) {
       io_client_ = std::make_unique<IoClient>(*machine_.io.modbus);
@@ -175,7 +177,10 @@ class Daemon {
     } else {
       io_ = std::make_unique<NoIo>();
     }
-    pump_.ShowCyclesTo([this](const CycleRecord& record) { memory_.Consume(record); });
+    pump_.ShowCyclesTo([this](const CycleRecord& record) {
+      memory_.Consume(record);
+      learning_.Consume(record);
+    });
     pump_.AlsoDrain([this] { buses_.DrainTruth(); });
     hub_.WatchFeedback(FeedbackSources(machine_));
     SetUpFlightRecorder();
@@ -205,7 +210,8 @@ class Daemon {
       warnings.push_back(advice);
     }
     Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, warnings,
-                          {mailbox_, queue_, hub_, pump_, *loop_, io_client_.get(), seed_}, source_);
+                          {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_},
+                          source_);
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);
@@ -293,6 +299,7 @@ class Daemon {
   TelemetryQueue queue_;
   TelemetryHub hub_;
   Pump pump_;
+  ProgramLearning learning_;
   Cycle cycle_;
   std::unique_ptr<IoClient> io_client_;
   std::unique_ptr<IoSource> io_;

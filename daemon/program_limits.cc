@@ -4,11 +4,13 @@ namespace contour {
 
 PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
   PerAxis<PlanLimits> limits;
+  // What is learnt may shift a program by so much.
+  const double margin_m = machine.learning.enabled ? 1e-6 * machine.learning.largest_um : 0.0;
   for (const auto& [name, axis] : machine.axes) {
     const AxisLimits& l = axis.limits;
     const Mechanics mechanics = ToSi(axis.model.mechanics);
-    limits.push_back({name, l.position_mm[0] * 1e-3, l.position_mm[1] * 1e-3, l.velocity_mm_s * 1e-3,
-                      l.acceleration_mm_s2 * 1e-3, l.jerk_mm_s3 * 1e-3, l.torque_Nm,
+    limits.push_back({name, l.position_mm[0] * 1e-3 + margin_m, l.position_mm[1] * 1e-3 - margin_m,
+                      l.velocity_mm_s * 1e-3, l.acceleration_mm_s2 * 1e-3, l.jerk_mm_s3 * 1e-3, l.torque_Nm,
                       l.following_error_mm * 1e-3, mechanics.radius_m_rad, mechanics.mass_kg});
   }
   return limits;

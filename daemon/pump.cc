@@ -78,11 +78,12 @@ std::chrono::steady_clock::time_point Pump::NextRound() const {
 
 void Pump::Drain() {
   while (CycleEntry* entry = queue_.Front()) {
+    // First, so that who learns from a program knows of its end when operators do.
+    if (show_cycle_) show_cycle_(entry->output.record);
     hub_.Consume(*entry);
     last_grid_time_ = std::chrono::nanoseconds(entry->output.record.grid_time_ns);
     Report(entry->output.record);
     MeasureMotion(entry->output.record);
-    if (show_cycle_) show_cycle_(entry->output.record);
     queue_.Release();
   }
   if (snapshots_ != nullptr) {

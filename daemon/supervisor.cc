@@ -1,5 +1,7 @@
 #include "daemon/supervisor.h"
 
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -125,6 +127,7 @@ Answer Supervisor::Reload() {
     if (!answer.accepted) return answer;  // the new controller stays: the cycle may be about to take it
     controllers_.clear();
     machine_ = wanted;
+    parts_.learning.Forget();  // other gains err otherwise
     answer.reason = std::to_string(differences.size()) + " keys changed: " + changes;
     answer.reason.pop_back();
     return answer;
@@ -151,6 +154,7 @@ Answer Supervisor::Run(const ProgramUpload& upload) {
     auto generator =
         std::make_unique<PathGenerator>(program, start_m, limits_, cycle_us_ * 1e-6, ++program_id_);
     const double duration_s = generator->duration_s();
+    Learn(upload, start_m, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
     // The points wait in the queue until the cycle has taken the request and expects them.
     parts_.pump.Supply(std::move(generator));
@@ -168,6 +172,14 @@ Answer Supervisor::Run(const ProgramUpload& upload) {
   } catch (const std::exception& e) {
     return {false, e.what(), 0, 0};
   }
+}
+
+void Supervisor::Learn(const ProgramUpload& upload, const PerAxis<double>& start_m,
+                       PathGenerator& generator) {
+  const auto report = parts_.learning.Prepare(upload.text, start_m, program_id_, generator);
+  if (report && report->passes > 0)
+    spdlog::info("{}: passes learnt from: {}; largest error seen by the scales {:.2f} um, best {:.2f} um",
+                 upload.name, report->passes, report->last_peak_um, report->best_peak_um);
 }
 
 MachineStatus Supervisor::Status() {

@@ -9,6 +9,7 @@
 #include "config/machine_config.h"
 #include "control/contour_controller.h"
 #include "daemon/control_socket/operator_desk.h"
+#include "daemon/learning/program_learning.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/pump.h"
 #include "daemon/rt/command_mailbox.h"
@@ -25,6 +26,7 @@ struct SupervisedParts {
   TelemetryHub& hub;
   Pump& pump;
   Loop& loop;
+  ProgramLearning& learning;
   const IoClient* io = nullptr;                  ///< null without auxiliary I/O
   std::optional<std::uint64_t> emulator_seed{};  ///< of an emulated machine in this process
 };
@@ -51,6 +53,7 @@ class Supervisor final : public OperatorDesk {
  private:
   Answer Ask(RequestKind kind, std::uint32_t program_id = 0);
   Answer Await(RequestKind kind, std::uint32_t sequence);
+  void Learn(const ProgramUpload& upload, const PerAxis<double>& start_m, PathGenerator& generator);
 
   MachineConfig machine_;  ///< as it runs now
   MachineSource source_;   ///< where it came from

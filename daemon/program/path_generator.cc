@@ -24,6 +24,7 @@ bool PathGenerator::Next(PathPoint& point) {
   // The last grid point lies on the end of the path or after it.
   const double time_s = point.last ? plan_->duration_s() : static_cast<double>(next_) * period_s_;
   plan_->At(time_s, point.axes);
+  if (offsets_) offsets_->AddTo(next_, point);
   ++next_;
   return true;
 }

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "core/cycle_input.h"
 #include "daemon/program/motion_plan.h"
+#include "daemon/program/path_offsets.h"
 
 namespace contour {
 
@@ -16,6 +18,9 @@ class PathGenerator {
   /// Throws ProgramError when the program does not fit the machine (see PlanMotion).
   PathGenerator(const Program& program, const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits,
                 double period_s, std::uint32_t program_id);
+
+  /// Hand the points out shifted from now on; null: as they are.
+  void Shift(std::shared_ptr<const PathOffsets> offsets) { offsets_ = std::move(offsets); }
 
   /// The next grid point; false when the last one has been handed out.
   bool Next(PathPoint& point);
@@ -31,6 +36,7 @@ class PathGenerator {
   std::uint32_t program_id_;
   std::uint64_t points_;
   std::uint64_t next_ = 0;
+  std::shared_ptr<const PathOffsets> offsets_;
 };
 
 }  // namespace contour

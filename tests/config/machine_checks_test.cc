@@ -40,6 +40,19 @@ TEST(MachineChecks, Nodes) {
       "axes.y.drive.node_id: found 127, which is the master's own node on bus 'second' (master_node_id)");
 }
 
+TEST(MachineChecks, LearningNeedsAScaleOnEveryAxis) {
+  MachineConfig c = Good();
+  c.learning.enabled = true;
+  for (const char* axis : {"x", "y"}) c.axes.at(axis).drive.linear_scale.emplace().counts_per_mm = 10000;
+  c.buses["second"].interface = "loopback";
+  c.axes.at("y").drive.bus = "second";
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("y").drive.linear_scale.reset();
+  EXPECT_EQ(
+      Only(c),
+      "axes.y.drive.linear_scale: found none, but learning.enabled is true; expected a scale on every axis");
+}
+
 TEST(MachineChecks, Buses) {
   MachineConfig c = Good();
   c.axes.at("x").drive.bus = "mian";

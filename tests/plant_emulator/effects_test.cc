@@ -504,5 +504,17 @@ TEST(Effects, CuttingForceActsForItsTimeOnly) {
   EXPECT_NEAR(momentum, -60.0 * 0.01, 0.01);
 }
 
+TEST(Effects, CuttingForceComesAgain) {
+  EmulatedAxisConfig c = Plain(0.0);
+  c.effects.cutting_force = CuttingForceEffect{-60.0, 0.01, 0.02, 0.03};
+  AxisPlant plant = Make(c);
+  const double mass_kg = 5e-5 / (kRadius_m_rad * kRadius_m_rad) + 10.0;
+  for (int times = 1; times <= 3; ++times) {
+    for (int i = 0; i < 600; ++i) plant.Step(5e-5, 0.0);
+    const double momentum = plant.motor_velocity_m_s() * (mass_kg - 10.0) + plant.table_velocity_m_s() * 10.0;
+    EXPECT_NEAR(momentum, -60.0 * 0.01 * times, 0.01 * times);
+  }
+}
+
 }  // namespace
 }  // namespace contour::plant

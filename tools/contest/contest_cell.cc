@@ -77,6 +77,7 @@ CellResult Run(const ContestCell& cell) {
   VirtualMachine machine(file, cell.controller);
   machine.BringUp();
   machine.Enable();
+  for (int before = 1; before < cell.passes; ++before) machine.Run(cell.program);
   std::optional<CellScore> score;
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
     if (entry.output.record.state != MachineState::kRunning) return;

@@ -19,6 +19,7 @@ struct ContestCell {
   std::string machine_name;
   std::uint64_t seed = 1;
   Program program;
+  int passes = 1;                                      ///< runs of it; the last is scored
   std::shared_ptr<const EmulatedMachineFile> machine;  ///< but for the seed
   std::uint64_t source = 0;                            ///< stands for the texts of program and machine
 };

@@ -11,12 +11,15 @@ namespace contour {
 struct ContestProgram {
   std::string name;
   std::string program;
+  std::int64_t passes = 1;
   std::vector<std::string> set;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Required("name", name, "its name in the tables");
     v.Required("program", program, "a program in YAML, as text");
+    v.Optional("passes", passes, Range{1, 1000},
+               "runs of it, one after the other, of which the last is scored");
     v.Optional("set", set, "assignments that belong to the program");
   }
 };
@@ -136,7 +139,7 @@ struct ContestConfig {
     v.Optional("entries", entries, "how controllers enter, where the machine file leaves a choice");
     v.Optional("expected", expected, "figures of well-tuned controllers on the first machine");
     v.Required("short", shorter, "what --short runs");
-    v.Required("tune", tune, "what tuning runs");
+    v.Optional("tune", tune, "what tuning runs");
   }
 };
 

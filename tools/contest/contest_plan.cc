@@ -58,6 +58,10 @@ std::vector<std::string> EntryOf(const std::string& controller, const std::strin
   return set;
 }
 
+std::string ProgramText(const ContestProgram& program) {
+  return program.passes == 1 ? program.program : program.program + " x" + std::to_string(program.passes);
+}
+
 std::uint64_t Stamp(const std::string& program, const std::string& machine_file,
                     const std::vector<std::string>& set) {
   const MachineSource source = ReadSource(machine_file, set);
@@ -115,8 +119,9 @@ std::vector<ContestCell> PlanCells(const std::vector<ContestProgram>& programs,
                          m.name,
                          0,
                          program,
+                         static_cast<int>(p.passes),
                          std::make_shared<const EmulatedMachineFile>(LoadEmulatedMachine(machine_file, set)),
-                         Stamp(p.program, machine_file, set)};
+                         Stamp(ProgramText(p), machine_file, set)};
         FromName(c, cell.controller);
         contestants.push_back(std::move(cell));
       }

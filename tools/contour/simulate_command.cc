@@ -22,6 +22,7 @@ struct Options {
   std::string controller;
   std::vector<std::string> set;
   std::optional<std::uint64_t> seed;
+  int passes = 1;
   std::string out;
   std::string log;
 };
@@ -42,6 +43,7 @@ int RunSimulate(const Options& options) {
     std::cerr << e.what() << "\n";
     return kExitBadUsage;
   }
+  request.passes = options.passes;
   request.out = options.out;
   if (!options.log.empty()) {
     std::vector<std::string> set = options.set;
@@ -54,7 +56,7 @@ int RunSimulate(const Options& options) {
   }
   RunSimulation(request);
   std::cout << "wrote " << (std::filesystem::path(options.out) / "metrics.json").string()
-            << " and cycles.csv\n";
+            << (options.passes > 1 ? ", cycles.csv and passes.csv\n" : " and cycles.csv\n");
   return kExitDone;
 }
 
@@ -71,6 +73,9 @@ void AddSimulateCommand(CLI::App& app, Action& action) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->add_option("--seed", options->seed, "Seed of the emulated machine");
+  sub->add_option("--passes", options->passes,
+                  "Run the program so many times, one after the other; metrics and cycles are of the last")
+      ->check(CLI::Range(1, 10000));
   sub->add_option("--out", options->out, "Directory for metrics.json and cycles.csv")->required();
   sub->add_option("--log", options->log, "Record every cycle in this log, for `contour replay`");
   sub->callback([options, &action] { action = [options] { return RunSimulate(*options); }; });

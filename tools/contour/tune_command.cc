@@ -49,6 +49,8 @@ void Print(const TunedResult& r) {
 
 int RunTune(const Options& options) {
   const ContestConfig config = LoadContest(options.contest);
+  if (config.tune.controllers.empty())
+    throw ConfigError({options.contest + ": tune: missing, expected what is to be tuned"});
   const int evaluations =
       options.evaluations > 0 ? options.evaluations : static_cast<int>(config.tune.evaluations);
   const unsigned workers =

@@ -152,8 +152,11 @@ double AxisPlant::TableForce_N() const noexcept {
   if (const auto& e = p_.effects.periodic_force)
     force +=
         e->amplitude_Nm / p_.radius_m_rad * portable::Sin(kTwoPi * e->frequency_Hz * time_s_ + e->phase_rad);
-  if (const auto& e = p_.effects.cutting_force)
-    if (time_s_ >= e->start_s && time_s_ < e->end_s) force += e->force_N;
+  if (const auto& e = p_.effects.cutting_force) {
+    double since_s = time_s_ - e->start_s;
+    if (e->every_s > 0.0 && since_s > 0.0) since_s -= e->every_s * std::floor(since_s / e->every_s);
+    if (since_s >= 0.0 && since_s < e->end_s - e->start_s) force += e->force_N;
+  }
   const double beyond_m = std::fabs(table_m_) - p_.half_stroke_m - kBumperClearance_m;
   if (beyond_m > 0.0)
     force -= Sign(table_m_) * kBumperStiffness_N_m * beyond_m + kBumperDamping_Ns_m * table_m_s_;

@@ -92,7 +92,7 @@ class Scoring {
     scorer_->Add(row);
   }
 
-  void Write(const std::filesystem::path& file) const {
+  [[nodiscard]] RunFacts facts() const {
     RunFacts facts;
     facts.controller = Name(request_.controller);
     facts.program = request_.program.name;
@@ -100,8 +100,12 @@ class Scoring {
     facts.cycle_us = request_.file.machine.machine.cycle_us;
     facts.cycles = cycles_;
     facts.stale_cycles = stale_;
+    return facts;
+  }
+
+  [[nodiscard]] RunMetrics Finish() const {
     if (!scorer_) throw std::runtime_error("no cycle in which the program ran");
-    WriteMetrics(file, facts, scorer_->Finish());
+    return scorer_->Finish();
   }
 
  private:
@@ -114,12 +118,34 @@ class Scoring {
   std::uint64_t stale_ = 0;
 };
 
+/// passes.csv: what learning, or a machine that changes, makes of a program from pass to pass.
+class PassesFile {
+ public:
+  void Add(int pass, const RunMetrics& m) {
+    text_ += std::to_string(pass);
+    for (const ContourMetrics* place : {&m.encoder, &m.table})
+      for (const std::optional<double>& value : {place->peak_um, place->rms_um}) {
+        text_ += ',';
+        if (value) AppendNumber(*value, text_);
+      }
+    text_ += '\n';
+  }
+  void Write(const std::filesystem::path& file) const {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text_;
+    stream.close();
+    if (!stream) throw std::runtime_error("cannot write " + file.string());
+  }
+
+ private:
+  std::string text_ = "pass,encoder_peak_um,encoder_rms_um,table_peak_um,table_rms_um\n";
+};
+
 }  // namespace
 
 void RunSimulation(const SimulationRequest& request) {
   std::filesystem::create_directories(request.out);
   VirtualMachine machine(request.file, request.controller);
-  CyclesFile cycles(request.out / "cycles.csv", machine.axis_names(), request.file.machine.machine.cycle_us);
   std::optional<RunLog> log;
   if (!request.log.empty()) {
     log.emplace(request.log, request.log_header);
@@ -127,16 +153,27 @@ void RunSimulation(const SimulationRequest& request) {
   }
   machine.BringUp();
   machine.Enable();
-  Scoring scoring(request, machine);
-  machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
-    if (entry.output.record.state != MachineState::kRunning) return;
-    cycles.Add(entry, truth);
-    scoring.Add(entry.output.record, truth);
-  });
-  machine.Run(request.program);
-  cycles.Close();
+  PassesFile passes;
+  for (int pass = 1; pass <= request.passes; ++pass) {
+    std::optional<CyclesFile> cycles;
+    if (pass == request.passes)
+      cycles.emplace(request.out / "cycles.csv", machine.axis_names(), request.file.machine.machine.cycle_us);
+    Scoring scoring(request, machine);
+    machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
+      if (entry.output.record.state != MachineState::kRunning) return;
+      if (cycles) cycles->Add(entry, truth);
+      scoring.Add(entry.output.record, truth);
+    });
+    machine.Run(request.program);
+    machine.SetObserver(nullptr);
+    const RunMetrics metrics = scoring.Finish();
+    passes.Add(pass, metrics);
+    if (!cycles) continue;
+    cycles->Close();
+    WriteMetrics(request.out / "metrics.json", scoring.facts(), metrics);
+  }
+  if (request.passes > 1) passes.Write(request.out / "passes.csv");
   if (log) log->Close();
-  scoring.Write(request.out / "metrics.json");
 }
 
 }  // namespace contour

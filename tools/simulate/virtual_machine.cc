@@ -46,6 +46,7 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
       mailbox_(kRequests, kPathPoints),
       cycle_(MakeCycleConfig(file.machine, controller)),
       feeder_(mailbox_),
+      learning_(file.machine),
       period_ns_(std::int64_t{1000} * file.machine.machine.cycle_us),
       entry_(std::make_unique<CycleEntry>()) {
   std::size_t b = 0;
@@ -77,6 +78,7 @@ void VirtualMachine::Tick() {
   const GridPoint grid{index_, static_cast<std::int64_t>(index_) * period_ns_, 0};
   runner_->Tick(grid, !settling_, *entry_);
   settling_ = entry_->output.settling;
+  learning_.Consume(record());
   if (record_) record_(*entry_);
   if (observer_) observer_(*entry_, truths_->Find(record().feedback_sync));
 }
@@ -111,6 +113,7 @@ std::uint32_t VirtualMachine::Start(const Program& program) {
   auto generator = std::make_unique<PathGenerator>(program, start_m, limits_,
                                                    static_cast<double>(period_ns_) * 1e-9, ++program_id_);
   plan_ = generator->plan();
+  learning_.Prepare(program.name, start_m, program_id_, *generator);
   feeder_.Begin(std::move(generator));
   return mailbox_.Post(RequestKind::kRun, program_id_);
 }

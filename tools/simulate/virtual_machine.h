@@ -8,6 +8,7 @@
 
 #include "core/controller_name.h"
 #include "core/cycle_record.h"
+#include "daemon/learning/program_learning.h"
 #include "daemon/path_feeder.h"
 #include "daemon/program/program.h"
 #include "daemon/rt/command_mailbox.h"
@@ -42,7 +43,8 @@ class VirtualMachine {
   void Enable();
   /// Asks for a program and supplies its points from now on; the caller ticks. Gives the request's sequence.
   std::uint32_t Start(const Program& program);
-  /// Runs a program to its end. Throws std::runtime_error with the reason when the machine stops otherwise.
+  /// Runs a program to its end, learning as the machine file says: by its name and place a program is known.
+  /// Throws std::runtime_error with the reason when the machine stops otherwise.
   void Run(const Program& program);
   /// One more cycle, whatever the state.
   void Tick();
@@ -78,6 +80,7 @@ class VirtualMachine {
   std::unique_ptr<IoSource> io_;
   std::unique_ptr<CycleRunner> runner_;
   PathFeeder feeder_;
+  ProgramLearning learning_;
   std::int64_t period_ns_;
   std::uint64_t index_ = 0;
   std::uint32_t program_id_ = 0;
