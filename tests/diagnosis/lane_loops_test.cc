@@ -30,8 +30,12 @@ std::vector<double> Noise(std::size_t size, double scale, unsigned seed) {
   return out;
 }
 
-// Runs of a table axis, every lane with parameters of its own, through rest, slides and reversals.
-std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool square) {
+enum class Beside { kNothing, kAfter, kBefore };
+
+// Runs of a table axis, every lane with parameters of its own, through rest, slides and reversals; another
+// bundle may run beside it.
+std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool square,
+                          Beside beside = Beside::kNothing) {
   constexpr int kSubsteps = 4;
   Lanes m{};
   m.rows = kRows;
@@ -58,13 +62,14 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool squa
   std::vector<double> out(4 * kLanes * kRows);
   for (std::size_t i = 0; i < kLanes; ++i) {
     const double x = 1.0 + 0.03 * static_cast<double>(i);
-    m.torque[i] = torque.data();
-    m.late[i] = late.data();
-    for (LaneSignal* s : {&m.motor, &m.load, &m.level, &m.viscous}) {
-      s->from[i] = noise.data();
-      s->to[i] = noise.data() + 1;
+    m.torque.at[i] = torque.data();
+    m.late.at[i] = late.data();
+    for (LaneSignal* s : {&m.motor, &m.load, &m.level}) {
+      s->from.at[i] = noise.data();
+      s->to.at[i] = noise.data() + 1;
     }
-    m.reading[i] = late.data();
+    m.viscous.at[i] = noise.data();
+    m.reading.at[i] = late.data();
     m.inv_motor[i] = 1e4 / x;
     m.inv_load[i] = 2e4;
     m.inv_payload[i] = 9e3;
@@ -91,7 +96,16 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool squa
     m.velocity[i] = &out[(2 * kLanes + i) * kRows];
     m.friction[i] = &out[(3 * kLanes + i) * kRows];
   }
-  loops.run(m);
+  std::vector<double> spare(kRows);
+  Lanes other = m;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    other.Fc_plus[i] = 0.03;
+    other.stiffness[i] = 140.0;
+    other.innovation[i] = other.table[i] = other.velocity[i] = other.friction[i] = spare.data();
+  }
+  if (beside == Beside::kNothing) loops.run(m);
+  if (beside == Beside::kAfter) loops.run_both(m, other);
+  if (beside == Beside::kBefore) loops.run_both(other, m);
   return out;
 }
 
@@ -103,7 +117,9 @@ TEST(LaneLoops, RunsGiveTheSameBitsWithEveryInstructionSet) {
         double largest = 0.0;
         for (const double x : expected) largest = std::max(largest, std::fabs(x));
         EXPECT_TRUE(std::isfinite(largest) && largest > 0.1) << largest;
-        for (const LaneLoops* loops : Available()) EXPECT_EQ(RunOf(*loops, two, soft, square), expected);
+        for (const LaneLoops* loops : Available())
+          for (const Beside beside : {Beside::kNothing, Beside::kAfter, Beside::kBefore})
+            EXPECT_EQ(RunOf(*loops, two, soft, square, beside), expected);
       }
 }
 
@@ -136,8 +152,8 @@ TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryInstructionSet) {
     for (std::size_t i = 0; i < kLanes; ++i) {
       const double* s = &signals[i * (kRows + 1)];
       for (LaneSignal* lane : {&c.motor, &c.load, &c.level}) {
-        lane->from[i] = s;
-        lane->to[i] = s + 1;
+        lane->from.at[i] = s;
+        lane->to.at[i] = s + 1;
       }
       c.reading[i] = s;
       c.innovation[i] = &out[i * kRows];

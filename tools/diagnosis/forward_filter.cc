@@ -35,24 +35,34 @@ bool IsMachine(const AxisModel& m) {
 }
 
 /// What must be alike in one bundle of lanes.
-std::tuple<bool, bool, bool, bool> ShapeOf(const AxisModel& m) {
+using Shape = std::tuple<bool, bool, bool, bool>;
+Shape ShapeOf(const AxisModel& m) {
   return {m.two_inertia, m.two_inertia && m.friction_on_load, m.soft_share > 0.0, m.friction.vd > 0.0};
 }
 
-void RunBundle(const FilterSetup& setup, const MeansCache& means, const std::vector<double>& measured,
-               const std::vector<double>& zeros, std::span<const AxisModel* const> models,
-               std::span<FilterRun* const> out) {
+struct Bundle {
+  std::vector<const AxisModel*> models;
+  std::vector<FilterRun*> out;
+};
+
+/// What a bundle reads beside its models.
+struct Inputs {
+  const FilterSetup& setup;
+  MeansCache means;
+  std::vector<double> measured, zeros;
+};
+
+Lanes Prepare(const Inputs& in, const Bundle& bundle, std::vector<double>& spare) {
   std::vector<const Delivered*> delivered;
-  for (const AxisModel* a : models) delivered.push_back(&means.at(KeyOf(setup, *a)));
-  Lanes m = MakeLanes(setup, models, delivered, measured.data(), zeros.data());
-  std::vector<double> spare;
+  for (const AxisModel* a : bundle.models) delivered.push_back(&in.means.at(KeyOf(in.setup, *a)));
+  Lanes m = MakeLanes(in.setup, bundle.models, delivered, in.measured.data(), in.zeros.data());
   for (std::size_t i = 0; i < kLanes; ++i) {
-    if (i >= models.size()) {
+    if (i >= bundle.models.size()) {
       spare.resize(m.rows);
       m.innovation[i] = m.table[i] = m.velocity[i] = m.friction[i] = spare.data();
       continue;
     }
-    FilterRun& r = *out[i];
+    FilterRun& r = *bundle.out[i];
     r.innovation.resize(m.rows);
     m.innovation[i] = r.innovation.data();
     if (m.full) {
@@ -66,7 +76,16 @@ void RunBundle(const FilterSetup& setup, const MeansCache& means, const std::vec
       m.friction[i] = r.friction.data();
     }
   }
-  BestLoops().run(m);
+  return m;
+}
+
+/// One bundle, or two of the same shape.
+void RunBundles(const Inputs& in, std::span<const Bundle> some) {
+  std::vector<double> spare;
+  const Lanes first = Prepare(in, some[0], spare);
+  if (some.size() == 1) return BestLoops().run(first);
+  const Lanes second = Prepare(in, some[1], spare);
+  BestLoops().run_both(first, second);
 }
 
 }  // namespace
@@ -88,49 +107,39 @@ AxisModel ModelOf(const StatedAxis& s) {
 
 std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisModel> models, int threads) {
   std::vector<FilterRun> runs(models.size());
-  MeansCache means;
-  for (const AxisModel& m : models) {
-    if (!IsMachine(m)) continue;
-    const MeansKey key = KeyOf(setup, m);
-    if (!means.contains(key))
-      means[key] = DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key));
-  }
   const std::size_t rows = setup.log->size();
-  std::vector<double> measured = setup.log->position, zeros(rows, 0.0);
+  Inputs in{setup, {}, setup.log->position, std::vector<double>(rows, 0.0)};
   for (std::size_t k = 0; k < rows; ++k)
-    if (setup.valid[k] == 0) measured[k] = 0.0;
-  struct Bundle {
-    std::vector<const AxisModel*> models;
-    std::vector<FilterRun*> out;
-  };
-  std::vector<Bundle> bundles;
-  std::map<std::tuple<bool, bool, bool, bool>, std::size_t> open;
+    if (setup.valid[k] == 0) in.measured[k] = 0.0;
+  std::map<Shape, std::vector<Bundle>> bundles;
   for (std::size_t i = 0; i < models.size(); ++i) {
-    if (!IsMachine(models[i])) {
+    const AxisModel& m = models[i];
+    if (!IsMachine(m)) {
       const std::vector<double> none(rows, std::numeric_limits<double>::quiet_NaN());
       runs[i].innovation = none;
       if (setup.full) runs[i].table_position = none;
       if (setup.trace) runs[i].velocity = runs[i].friction = none;
       continue;
     }
-    const auto shape = ShapeOf(models[i]);
-    const auto it = open.find(shape);
-    if (it == open.end() || bundles[it->second].models.size() == kLanes) {
-      open[shape] = bundles.size();
-      bundles.emplace_back();
-    }
-    Bundle& b = bundles[open[shape]];
-    b.models.push_back(&models[i]);
-    b.out.push_back(&runs[i]);
+    const MeansKey key = KeyOf(setup, m);
+    if (!in.means.contains(key))
+      in.means[key] = DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key));
+    std::vector<Bundle>& alike = bundles[ShapeOf(m)];
+    if (alike.empty() || alike.back().models.size() == kLanes) alike.emplace_back();
+    alike.back().models.push_back(&m);
+    alike.back().out.push_back(&runs[i]);
   }
+  std::vector<std::span<const Bundle>> work;
+  for (const auto& [shape, alike] : bundles)
+    for (std::size_t i = 0; i < alike.size(); i += 2)
+      work.push_back(std::span(alike).subspan(i, std::min<std::size_t>(2, alike.size() - i)));
   std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < bundles.size(); i = next++)
-      RunBundle(setup, means, measured, zeros, bundles[i].models, bundles[i].out);
+  const auto run = [&] {
+    for (std::size_t i = next++; i < work.size(); i = next++) RunBundles(in, work[i]);
   };
   std::vector<std::thread> pool;
-  for (int t = 1; t < threads && static_cast<std::size_t>(t) < bundles.size(); ++t) pool.emplace_back(work);
-  work();
+  for (int t = 1; t < threads && static_cast<std::size_t>(t) < work.size(); ++t) pool.emplace_back(run);
+  run();
   for (std::thread& t : pool) t.join();
   return runs;
 }

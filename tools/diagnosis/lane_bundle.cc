@@ -8,8 +8,12 @@ namespace {
 
 void SetSignal(LaneSignal& lane, std::size_t i, const SharedSignal& signal, std::size_t rows,
                const double* zeros) {
-  lane.from[i] = signal ? signal->data() : zeros;
-  lane.to[i] = signal ? signal->data() + (signal->size() == 2 * rows ? rows : 1) : zeros;
+  lane.from.at[i] = signal ? signal->data() : zeros;
+  lane.to.at[i] = signal ? signal->data() + (signal->size() == 2 * rows ? rows : 1) : zeros;
+}
+
+void Compare(LaneRow& row) {
+  row.alike = std::all_of(row.at, row.at + kLanes, [&](const double* p) { return p == row.at[0]; });
 }
 
 }  // namespace
@@ -40,13 +44,13 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
     const std::size_t from = std::min(i, models.size() - 1);
     const AxisModel& a = *models[from];
     const StatedFriction& f = a.friction;
-    m.torque[i] = delivered[from]->mean.data();
-    m.late[i] = delivered[from]->late.data();
+    m.torque.at[i] = delivered[from]->mean.data();
+    m.late.at[i] = delivered[from]->late.data();
     SetSignal(m.motor, i, a.motor_force, m.rows, zeros);
     SetSignal(m.load, i, a.load_force, m.rows, zeros);
     SetSignal(m.level, i, a.level, m.rows, zeros);
-    SetSignal(m.viscous, i, a.viscous, m.rows, zeros);
-    m.reading[i] = a.reading_error ? a.reading_error->data() : zeros;
+    m.viscous.at[i] = a.viscous ? a.viscous->data() : zeros;
+    m.reading.at[i] = a.reading_error ? a.reading_error->data() : zeros;
     m.inv_motor[i] = 1.0 / a.motor_inertia;
     m.inv_load[i] = a.two_inertia ? 1.0 / a.load_inertia : 0.0;
     m.inv_payload[i] = 1.0 / ((a.two_inertia ? a.load_inertia : a.motor_inertia) + a.payload);
@@ -90,6 +94,9 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
       m.soft_s0[i] = 0.0;
     }
   }
+  for (LaneRow* row : {&m.torque, &m.late, &m.motor.from, &m.motor.to, &m.load.from, &m.load.to,
+                       &m.level.from, &m.level.to, &m.viscous, &m.reading})
+    Compare(*row);
   return m;
 }
 

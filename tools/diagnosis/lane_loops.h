@@ -10,6 +10,8 @@ struct LaneProducts;
 /// One translation of the loops; all give the same bits.
 struct LaneLoops {
   void (*run)(const Lanes& m);
+  /// Two bundles of one shape over the same rows, faster than one after the other. No linearisation.
+  void (*run_both)(const Lanes& a, const Lanes& b);
   void (*columns)(const LaneColumns& m);
   void (*whiten)(const LaneWhiten& m);
   void (*products)(const LaneProducts& m);

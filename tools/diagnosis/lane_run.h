@@ -7,10 +7,15 @@
 
 namespace contour::diagnosis {
 
+/// A number per row (or sub-step) and lane.
+struct LaneRow {
+  const double* at[kLanes] = {};
+  bool alike = false;  ///< all lanes read the same, which need be read only once
+};
+
 /// What acts over a row, taken as linear inside it: value at its beginning and at its end.
 struct LaneSignal {
-  const double* from[kLanes] = {};
-  const double* to[kLanes] = {};
+  LaneRow from, to;
 };
 
 /// For linearisation: what each lane is moved by, at every row anew. Lane 0 is not moved.
@@ -28,10 +33,10 @@ struct Lanes {
   std::size_t rows = 0;
   int substeps = 0;
   double period_s = 0.0;
-  const double* torque[kLanes] = {};  ///< per sub-step
-  const double* late[kLanes] = {};    ///< per row, see DeliveredMeans
-  LaneSignal motor, load, level, viscous;
-  const double* reading[kLanes] = {};
+  LaneRow torque;  ///< per sub-step
+  LaneRow late;    ///< per row, see DeliveredMeans
+  LaneSignal motor, load, level;
+  LaneRow viscous, reading;
   const double* measured = nullptr;
   const std::uint8_t* valid = nullptr;
   Vec inv_motor, inv_load, inv_payload, stiffness, damping, half_gap;

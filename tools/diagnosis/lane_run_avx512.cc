@@ -7,6 +7,6 @@
 
 namespace contour::diagnosis {
 
-const LaneLoops kAvx512Loops = {RunAll, ColumnsAll, WhitenAll, ProductsAll};
+const LaneLoops kAvx512Loops = {RunAll, RunBoth, ColumnsAll, WhitenAll, ProductsAll};
 
 }  // namespace contour::diagnosis

@@ -7,6 +7,6 @@
 
 namespace contour::diagnosis {
 
-const LaneLoops kBaselineLoops = {RunAll, ColumnsAll, WhitenAll, ProductsAll};
+const LaneLoops kBaselineLoops = {RunAll, RunBoth, ColumnsAll, WhitenAll, ProductsAll};
 
 }  // namespace contour::diagnosis

@@ -26,23 +26,15 @@ CONTOUR_LANES_INLINE Vec ExpNegative(const Vec& x) {
   const Vec shifted = y * 1.44269504088896338700 + kMagic;
   const Vec k = shifted - kMagic;
   const Vec r = y - k * 0.693147180559945309417;
+  // Pairs of terms first (Estrin), so that little of it waits for the rest.
   const Vec r2 = r * r;
+  const Vec r4 = r2 * r2;
   const Vec a = 1.0 + r;
   const Vec b = 0.5 + r * (1.0 / 6);
   const Vec c = 1.0 / 24 + r * (1.0 / 120);
   const Vec d = 1.0 / 720 + r * (1.0 / 5040);
-  const Vec p = a + r2 * (b + r2 * (c + r2 * (d + r2 * (1.0 / 40320))));
+  const Vec p = (a + r2 * b) + r4 * ((c + r2 * d) + r4 * (1.0 / 40320));
   return std::bit_cast<Vec>((std::bit_cast<VecBits>(shifted) << 52) + std::bit_cast<VecBits>(p));
-}
-
-/// What a first-order state keeps over a step of x time constants, and the mean of its decay.
-struct LaneDecay {
-  Vec remaining, mean;
-};
-CONTOUR_LANES_INLINE LaneDecay DecayOver(const Vec& x) {
-  const Vec e = ExpNegative(-x);
-  const Vec safe = x > 1e-3 ? x : Spread(1e-3);
-  return {e, x > 1e-3 ? (1.0 - e) / safe : 1.0 - x * (0.5 - x * (1.0 / 6))};
 }
 
 }  // namespace contour::diagnosis

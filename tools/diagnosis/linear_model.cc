@@ -154,8 +154,8 @@ std::vector<FilterRun> LinearColumns(const LinearModel& model, std::span<const L
       const bool used = first + i < inputs.size();
       const LinearInput none, &in = used ? inputs[first + i] : none;
       const auto set = [&](LaneSignal& lane, const SharedSignal& s, bool& any) {
-        lane.from[i] = s ? s->data() : zeros.data();
-        lane.to[i] = s ? s->data() + (s->size() == 2 * model.rows ? model.rows : 1) : zeros.data();
+        lane.from.at[i] = s ? s->data() : zeros.data();
+        lane.to.at[i] = s ? s->data() + (s->size() == 2 * model.rows ? model.rows : 1) : zeros.data();
         any = any || s;
       };
       set(m.motor, in.motor_force, m.has_motor);
