@@ -97,6 +97,7 @@ std::vector<CellResult> RunOrRecall(const std::vector<ContestCell>& cells, KeptC
 /// The command line that does the same again.
 std::string CommandText(const Options& options) {
   std::string text = "contour contest";
+  if (options.contest != Options().contest) text += " --contest " + options.contest;
   if (options.shorter) text += " --short";
   const auto list = [&](const char* name, const std::vector<std::string>& values) {
     if (!values.empty()) text += std::string(" ") + name;
