@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "tests/diagnosis/hidden_axis.h"
@@ -99,6 +100,17 @@ TEST(Diagnose, FindsASecondOrderOfTheSameKind) {
     if (c.kind == "cogging") orders.push_back(c.parameters.at("order_per_rev").value);
   std::sort(orders.begin(), orders.end());
   EXPECT_EQ(orders, (std::vector{4.0, 12.0}));
+}
+
+TEST(Diagnose, GivesNoNameToWhatNoCauseFits) {
+  // A friction that jumps; a drift comes near and leaves a fifth of it.
+  const test::HiddenAxis axis = test::MakeHiddenAxis(Hidden(9, {{"friction_step", 0.3, 0.0, 0.0, 0.0}}));
+  const Diagnosis d = Diagnose(axis.log, axis.stated);
+  EXPECT_EQ(d.verdict, Verdict::kUnexplained);
+  EXPECT_TRUE(d.causes.empty());
+  ASSERT_FALSE(d.notes.empty());
+  EXPECT_NE(d.notes[0].find("friction of time"), std::string::npos) << d.notes[0];
+  EXPECT_NE(d.notes.back().find("friction_drift"), std::string::npos) << d.notes.back();
 }
 
 TEST(Diagnose, SaysWhatTheLogCannotShow) {

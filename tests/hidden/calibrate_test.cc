@@ -82,6 +82,20 @@ TEST(MarginTable, WhatIsLeftOfACauseIsASingleEffectsSecondRound) {
   EXPECT_EQ(table.find("{\"cogging\""), std::string::npos);
 }
 
+TEST(MarginTable, WhatIsUnexplainedHasAPartOfTheRateForItself) {
+  std::string evidence;
+  for (int i = 0; i < 20; ++i) {
+    const std::string log = FormatText("clean_%04d", i);
+    evidence += Line(log, 0, 0.0, false, "cogging", i < 3 ? 6.0 : 1.0);
+    if (i < 2) evidence += Line(log, 0, 0.0, false, "unexplained", 44.0);
+  }
+  const std::string table = TableOf(evidence);
+  EXPECT_NEAR(Scale(table, ""), 2.0 / std::log(2.0), 0.01);  // as without it
+  EXPECT_NEAR(Scale(table, "unexplained"), (80.0 + 2.0 / std::log(2.0)) / 3.0, 0.01);
+  // Nor is it what is left of a cause.
+  EXPECT_EQ(TableOf(evidence + Line("clear_backlash_0001", 1, 10000.0, false, "unexplained", 54.0)), table);
+}
+
 TEST(MarginTable, RefusesWhatIsNoEvidence) {
   EXPECT_THROW(TableOf(""), std::runtime_error);
   EXPECT_THROW(TableOf("clean_0001,2,3\n"), std::runtime_error);

@@ -15,11 +15,13 @@
 #include "tools/diagnosis/fit.h"
 #include "tools/diagnosis/gate.h"
 #include "tools/diagnosis/jitter.h"
+#include "tools/diagnosis/leftover.h"
 #include "tools/diagnosis/margins.h"
 #include "tools/diagnosis/parameters.h"
 #include "tools/diagnosis/residual_trace.h"
 #include "tools/diagnosis/rivals.h"
 #include "tools/diagnosis/score.h"
+#include "tools/diagnosis/verdict.h"
 #include "tools/diagnosis/widen.h"
 
 namespace contour::diagnosis {
@@ -63,7 +65,7 @@ class Engine {
     FitBase();
     Fit current = base_;
     bool jitter_known = false;
-    double explained = 0.0, left_over = 0.0;  // by what is accepted; of it
+    double left_over = 0.0;  // of what is explained
     const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
     bool first = true;
     std::vector<std::string> tried;  // in this round, and refuted
@@ -106,7 +108,7 @@ class Engine {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
       }
-      if (options_.evidence) TellEvidence(current, scored, rivals, gate, explained);
+      if (options_.evidence) TellEvidence(current, scored, rivals, gate);
       // The best, or the next that holds where the best does not.
       double tested = 0.0;
       bool found = false;
@@ -147,7 +149,7 @@ class Engine {
       }
       tried.clear();
       Accept(current, rivals, gate, out);
-      explained += best.score;
+      explained_ += best.score;
       left_over += UnlikeShare(best.effect().kind) * best.score;
       current = best.fit;
       if (Outside(best.effect().kind)) break;
@@ -207,7 +209,7 @@ class Engine {
   }
 
   void TellEvidence(const Fit& current, const std::vector<Scored>& scored, const std::vector<Rival>& rivals,
-                    const Gate& gate, double explained) const {
+                    const Gate& gate) const {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     std::vector<std::string> told;
     for (const Scored& s : scored) {
@@ -216,7 +218,7 @@ class Engine {
       told.push_back(kind);
       Evidence e;
       e.accepted = gate.accepted;
-      e.explained = explained;
+      e.explained = explained_;
       e.in_base = InBase(problem_, kind);
       e.kind = kind;
       e.screened = s.drop;
@@ -358,26 +360,32 @@ class Engine {
     }
     out.traces = MakeTraces(problem_, base_.point, current.point);
     std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
-    if (out.causes.empty())
-      out.verdict = Verdict::kNothingFound;
-    else if (Outside(out.causes[0].kind) ||
-             (Outside(out.causes.back().kind) &&
-              out.causes.back().log_evidence_gain > 0.4 * out.causes[0].log_evidence_gain))
-      out.verdict = Verdict::kUnexplained;
-    else
-      out.verdict = out.causes[0].indistinguishable_from.empty() ? Verdict::kCauseFound : Verdict::kAmbiguous;
-    for (const Cause& c : out.causes)
-      if (Outside(c.kind))
-        out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
-                            c.kind.substr(std::string_view(kOutside).size()));
-    std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind); });
+    const std::vector<Leftover> left = FindLeftovers(problem_, current);
+    const double threshold = LeftoverThreshold(problem_, options_.false_alarm_rate);
+    if (options_.evidence) TellLeftover(left[0], threshold);
+    Conclude(problem_, left, threshold, out);
     Say("done", 1.0);
+  }
+
+  void TellLeftover(const Leftover& left, double threshold) const {
+    Evidence e;
+    e.accepted = static_cast<int>(places_.size());
+    e.explained = explained_;
+    e.kind = kUnexplained;
+    e.screened = left.drop;
+    e.penalty = left.bins;
+    e.refitted = e.tested = left.score;
+    e.unseen = std::sqrt(left.score);
+    e.flips = -2.0 * std::log(kCalibratedRate);
+    e.asked = threshold;
+    options_.evidence(e);
   }
 
   const DiagnoseOptions& options_;
   Problem problem_;
   Fit base_;
   std::vector<std::size_t> places_;  ///< of the accepted causes in the fit, jitter left out
+  double explained_ = 0.0;           ///< drop by what is accepted
   std::vector<double> scatter_;      ///< of their residuals from block to block, over white noise's
 };
 

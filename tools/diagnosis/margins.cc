@@ -22,13 +22,17 @@ const ErrorScore& Of(std::string_view kind) {
 
 double AllShares() {
   double sum = 0.0;
-  for (const ErrorScore& e : kTable) sum += e.share;
+  for (const ErrorScore& e : kTable)
+    if (e.kind != kUnexplained) sum += e.share;
   return sum;
 }
 
 }  // namespace
 
 double MarginPerRow(std::string_view kind, double false_alarm_rate) {
+  // Has a part of the rate for itself.
+  if (kind == kUnexplained)
+    return 1e-5 * Of(kind).scale * std::max(0.0, std::log(Of(kind).share / false_alarm_rate));
   // Each kind alarms in proportion to how often it exceeds: exp(-margin / scale) is the same for all.
   static const double all = AllShares();
   return 1e-5 * Of(kind).scale * std::max(0.0, std::log(all / false_alarm_rate));

@@ -7,6 +7,9 @@ namespace contour::diagnosis {
 /// The rate at which margins were read off clean logs.
 inline constexpr double kCalibratedRate = 0.05;
 
+/// Beside the kinds of cause: that something is left which none of them fits.
+inline constexpr std::string_view kUnexplained = "unexplained";
+
 /// How a kind's scores exceed the sign flips on machines without any effect: in a share of the logs, by
 /// `scale` per 100 000 rows on the average there, exponentially distributed.
 struct ErrorScore {

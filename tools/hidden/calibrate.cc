@@ -90,8 +90,10 @@ std::string MarginTable(std::istream& evidence) {
       const double by = 1e5 * (l.tested - l.flips) / l.rows;
       kinds[l.kind].count += 1.0;
       kinds[l.kind].sum += by;
-      all.push_back(by);
-    } else if (l.log.starts_with("clear_") && l.accepted == 1 && WouldHold(l)) {
+      // A score of another kind, with a part of the rate for itself.
+      if (l.kind != diagnosis::kUnexplained) all.push_back(by);
+    } else if (l.log.starts_with("clear_") && l.accepted == 1 && WouldHold(l) &&
+               l.kind != diagnosis::kUnexplained) {
       beside.push_back(l);
     }
   }

@@ -78,6 +78,10 @@ bool NamesMisfit(const Cause& cause, const std::vector<Hidden>& hidden, Misfit m
 
 }  // namespace
 
+bool OutsideCatalogue(const std::string& kind) {
+  return std::find(diagnosis::kKinds.begin(), diagnosis::kKinds.end(), kind) == diagnosis::kKinds.end();
+}
+
 std::set<std::string> SetOf(const Cause& cause) {
   std::set<std::string> set(cause.indistinguishable_from.begin(), cause.indistinguishable_from.end());
   set.insert(cause.kind);
@@ -94,6 +98,10 @@ Judged Judge(const Diagnosis& answer, const std::vector<Hidden>& hidden, Misfit 
   if (hidden.empty()) {
     const bool silent = answer.verdict == Verdict::kNothingFound || misfit != Misfit::kNone;
     judged.right = causes.empty() && silent;
+    return judged;
+  }
+  if (OutsideCatalogue(hidden.front().kind)) {
+    judged.right = causes.empty() && answer.verdict == Verdict::kUnexplained;
     return judged;
   }
   if (!causes.empty()) judged.right = Holds(causes.front(), hidden.front().kind);

@@ -12,9 +12,13 @@ namespace contour::hidden {
 
 /// How an answer compares with what was hidden. Causes that only name how the plant differs from what a model
 /// can express (Misfit) are left out before it is judged.
+/// Whether a kind is none of the catalogue: then `unexplained` without a name is right.
+bool OutsideCatalogue(const std::string& kind);
+
 struct Judged {
   bool right = false;   ///< the hidden kind first, or in a set of at most two that is first; clean: no cause,
-                        ///< and `unexplained` only where there is a misfit to be found
+                        ///< and `unexplained` only where there is a misfit to be found; outside the
+                        ///< catalogue: `unexplained`, and no cause
   bool both = false;    ///< of two: each is among the causes, or in a set of two that is
   bool itself = false;  ///< the hidden kind is a cause, not only in another one's set
   bool inside = false;  ///< every true parameter within its stated interval

@@ -25,9 +25,7 @@ std::string Text(const Count& c) {
 double Percent(const Count& c) { return c.all == 0 ? 0.0 : 100.0 * c.right / c.all; }
 
 bool IsOutside(const Outcome& o) {
-  if (o.known.question.kinds.empty()) return false;
-  const auto& all = diagnosis::kKinds;
-  return std::find(all.begin(), all.end(), o.known.question.kinds.front()) == all.end();
+  return !o.known.question.kinds.empty() && OutsideCatalogue(o.known.question.kinds.front());
 }
 
 /// Right answers of one type of question by kind and strength.
@@ -140,7 +138,6 @@ void AddFailures(std::string& text, const std::vector<Outcome>& outcomes) {
     if (!o.known.usable || Undecidable(o)) continue;
     const bool wrong = o.known.question.type == Question::Type::kPair ? !o.judged.both : !o.judged.right;
     if (!wrong && o.judged.extra == 0) continue;
-    if (IsOutside(o) && !o.named) continue;
     list += FormatText("| %s | %s | %s | %llu | %s | %s | %s |\n", Name(o.known.question.type),
                        KindsText(o.known.question).c_str(), Name(o.known.question.strength),
                        static_cast<unsigned long long>(o.known.question.seed), Name(o.known.question.misfit),

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "tools/diagnosis/leftover.h"
+
+namespace contour::diagnosis {
+
+/// What a torque that no cause describes may depend on: position, speed, angle, temperature and the way since
+/// the last reversal, each with the direction, and time. Not the acceleration: there the drive's delay and
+/// the couplings that every machine has show first.
+std::vector<BinnedRows> LeftoverMaps(const Problem& problem);
+
+/// Friction over the speed: what the numbers of every model are for, and where what they cannot describe of
+/// it shows first. Not a thing to call unknown.
+BinnedRows FrictionCurve(const Problem& problem);
+
+}  // namespace contour::diagnosis

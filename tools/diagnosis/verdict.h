@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "tools/diagnosis/finding.h"
+#include "tools/diagnosis/leftover.h"
+
+namespace contour::diagnosis {
+
+/// From the causes that were accepted and from what they leave, the largest first: the verdict, and notes in
+/// plain words. Where what is left exceeds the threshold and is a large part of all there is to explain, no
+/// cause keeps its name.
+void Conclude(const Problem& problem, const std::vector<Leftover>& left, double threshold, Diagnosis& out);
+
+}  // namespace contour::diagnosis
