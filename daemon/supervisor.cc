@@ -154,13 +154,15 @@ Answer Supervisor::Run(const ProgramUpload& upload) {
     auto generator =
         std::make_unique<PathGenerator>(program, start_m, limits_, cycle_us_ * 1e-6, ++program_id_);
     const double duration_s = generator->duration_s();
-    Learn(upload, start_m, *generator);
+    const LearningReport learnt = Learn(upload, start_m, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
     // The points wait in the queue until the cycle has taken the request and expects them.
     parts_.pump.Supply(std::move(generator));
     Answer answer = Ask(RequestKind::kRun, program_id_);
     answer.program_id = program_id_;
     answer.start_m = start_m;
+    answer.learnt_passes = learnt.passes;
+    answer.best_peak_um = learnt.best_peak_um;
     if (!answer.accepted) {
       parts_.pump.Abandon();
       return answer;
@@ -174,12 +176,15 @@ Answer Supervisor::Run(const ProgramUpload& upload) {
   }
 }
 
-void Supervisor::Learn(const ProgramUpload& upload, const PerAxis<double>& start_m,
-                       PathGenerator& generator) {
-  const auto report = parts_.learning.Prepare(upload.text, start_m, program_id_, generator);
-  if (report && report->passes > 0)
+LearningReport Supervisor::Learn(const ProgramUpload& upload, const PerAxis<double>& start_m,
+                                 PathGenerator& generator) {
+  if (upload.forget) parts_.learning.Forget();
+  const LearningReport report =
+      parts_.learning.Prepare(upload.text, start_m, program_id_, generator).value_or(LearningReport());
+  if (report.passes > 0)
     spdlog::info("{}: passes learnt from: {}; largest error seen by the scales {:.2f} um, best {:.2f} um",
-                 upload.name, report->passes, report->last_peak_um, report->best_peak_um);
+                 upload.name, report.passes, report.last_peak_um, report.best_peak_um);
+  return report;
 }
 
 MachineStatus Supervisor::Status() {

@@ -53,7 +53,8 @@ class Supervisor final : public OperatorDesk {
  private:
   Answer Ask(RequestKind kind, std::uint32_t program_id = 0);
   Answer Await(RequestKind kind, std::uint32_t sequence);
-  void Learn(const ProgramUpload& upload, const PerAxis<double>& start_m, PathGenerator& generator);
+  [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const PerAxis<double>& start_m,
+                                     PathGenerator& generator);
 
   MachineConfig machine_;  ///< as it runs now
   MachineSource source_;   ///< where it came from

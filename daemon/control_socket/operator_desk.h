@@ -15,15 +15,18 @@ struct ProgramUpload {
   std::string format;      ///< "yaml" or "ngc"
   std::string text;        ///< the program itself
   std::string controller;  ///< empty: the one in use
+  bool forget = false;     ///< what has been learnt of programs is forgotten first
 };
 
 /// What became of a request.
 struct Answer {
   bool accepted = false;
-  std::string reason;            ///< why it was refused, one sentence; empty when accepted
-  std::uint32_t sequence = 0;    ///< as CycleRecord::acknowledged counts; 0 when it never reached the cycle
-  std::uint32_t program_id = 0;  ///< Run() only: what CycleRecord::program_id will say
-  PerAxis<double> start_m{};     ///< Run() only: where the program was placed
+  std::string reason;             ///< why it was refused, one sentence; empty when accepted
+  std::uint32_t sequence = 0;     ///< as CycleRecord::acknowledged counts; 0 when it never reached the cycle
+  std::uint32_t program_id = 0;   ///< Run() only: what CycleRecord::program_id will say
+  PerAxis<double> start_m{};      ///< Run() only: where the program was placed
+  std::size_t learnt_passes = 0;  ///< Run() only: that this program is shifted by what they taught
+  double best_peak_um = 0.0;      ///< largest error that the scales saw on the best of them
 };
 
 /// What an operator may ask of the machine. The control socket calls it, the supervisor is it.

@@ -44,6 +44,7 @@ json Run(const json& request, OperatorDesk& desk) {
   upload.format = Text(request, "format");
   upload.text = Text(request, "text");
   if (request.contains("controller")) upload.controller = Text(request, "controller");
+  if (request.contains("forget")) upload.forget = Flag(request, "forget");
   if (upload.format != "yaml" && upload.format != "ngc")
     throw BadRequest("\"format\" must be \"yaml\" or \"ngc\"");
   const Answer answer = desk.Run(upload);
@@ -51,6 +52,8 @@ json Run(const json& request, OperatorDesk& desk) {
   if (answer.accepted) {
     reply["program_id"] = answer.program_id;
     reply["start_m"] = std::vector<double>(answer.start_m.begin(), answer.start_m.end());
+    reply["learnt_passes"] = answer.learnt_passes;
+    if (answer.learnt_passes > 0) reply["best_peak_um"] = answer.best_peak_um;
   }
   return reply;
 }

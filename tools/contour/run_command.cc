@@ -32,6 +32,7 @@ struct Options {
   std::optional<std::string> out;
   std::optional<std::string> truth;
   std::string controller;
+  bool forget = false;
 };
 
 constexpr std::chrono::milliseconds kLookEvery{100};
@@ -197,8 +198,11 @@ int RunRun(const Options& options) {
                {"format", gcode ? "ngc" : "yaml"},
                {"text", ReadText(options.program)}};
   if (!options.controller.empty()) request["controller"] = options.controller;
+  if (options.forget) request["forget"] = true;
   const json reply = AskOrThrow(client, request);
   const std::uint32_t id = reply.at("program_id");
+  if (const std::size_t passes = reply.value("learnt_passes", std::size_t{0}); passes > 0)
+    std::cout << "passes learnt from: " << passes << "\n" << std::flush;
   if (rows) rows->SetProgram(id);
   const json after = Follow(client, id);
   if (rows) rows->Await(after.at("cycle"));
@@ -231,6 +235,7 @@ void AddRunCommand(CLI::App& app, Action& action) {
       ->check(CLI::ExistingFile);
   sub->add_option("--controller", options->controller,
                   "Refuse to run unless the daemon runs with this controller");
+  sub->add_flag("--forget", options->forget, "Forget first what has been learnt of programs");
   sub->footer("An interrupt (Ctrl-C) stops the machine on the path and ends this program with status 1.");
   sub->callback([options, &action] { action = [options] { return RunRun(*options); }; });
 }

@@ -48,6 +48,12 @@ TEST_F(RequestHandlerTest, RunUploadsTheProgram) {
   EXPECT_EQ(desk_.upload().name, "a.yaml");
   EXPECT_EQ(desk_.upload().text, "shape: circle\n");
   EXPECT_EQ(desk_.upload().controller, "");
+  EXPECT_FALSE(desk_.upload().forget);
+  EXPECT_EQ(reply["learnt_passes"], 0);
+  EXPECT_EQ(
+      Ask(R"({"request": "run", "name": "a.yaml", "format": "yaml", "text": "", "forget": true})")["ok"],
+      true);
+  EXPECT_TRUE(desk_.upload().forget);
 }
 
 TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesTheDesk) {
@@ -55,9 +61,11 @@ TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesT
        {"", "{", "enable", "[]", "42", "null", "\"status\"", "{}", R"({"request": 5})",
         R"({"request": "fly"})", R"({"request": "run"})",
         R"({"request": "run", "name": "a", "format": "pdf", "text": ""})",
-        R"({"request": "run", "name": 1, "format": "yaml", "text": ""})", R"({"request": "rows"})",
-        R"({"request": "rows", "on": "yes"})", R"({"request": "watch", "period_ms": 1})",
-        R"({"request": "watch", "period_ms": 1e300})", R"({"request": "watch", "period_ms": null})"}) {
+        R"({"request": "run", "name": 1, "format": "yaml", "text": ""})",
+        R"({"request": "run", "name": "a", "format": "yaml", "text": "", "forget": 1})",
+        R"({"request": "rows"})", R"({"request": "rows", "on": "yes"})",
+        R"({"request": "watch", "period_ms": 1})", R"({"request": "watch", "period_ms": 1e300})",
+        R"({"request": "watch", "period_ms": null})"}) {
     const json reply = Ask(line);
     EXPECT_EQ(reply["ok"], false) << line;
     EXPECT_TRUE(reply["error"].is_string()) << line;

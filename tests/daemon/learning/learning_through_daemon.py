@@ -57,8 +57,8 @@ def main():
                 done = subprocess.run([contour, *arguments, "--socket", socket], capture_output=True, text=True)
                 assert done.returncode == 0, (arguments, done.stdout, done.stderr, messages.read_text(encoding="utf-8"))
 
-            def run(name):
-                ask("run", str(program), "--out", str(scratch / name))
+            def run(name, *more):
+                ask("run", str(program), "--out", str(scratch / name), *more)
                 return references(scratch / name)
 
             ask("enable")
@@ -69,6 +69,9 @@ def main():
                 assert 0.005 < shift_um < 5, shift_um
             said = messages.read_text(encoding="utf-8")
             assert LEARNT + "1;" in said and LEARNT + "2;" in said, said
+
+            assert largest_shift_um(first, run("forgotten", "--forget")) < 1e-6
+            assert largest_shift_um(first, run("learnt_again")) > 0.005
 
             text = machine.read_text(encoding="utf-8").replace("full: {contour_bandwidth_Hz: 46", "full: {contour_bandwidth_Hz: 40")
             machine.write_text(text, encoding="utf-8")
