@@ -15,6 +15,9 @@ constexpr double kSlidingShare = 0.85;
 // only the noise of the reported torque is left of it.
 constexpr double kLead_Hz = 8.0;
 constexpr double kLeadAtRest_Hz = 0.4;
+// A torque of up to this share of the friction level need not come through the screw of an axis that has not
+// moved yet: cogging pulls at the motor as well, and as the bristles give way more and more of it is held.
+constexpr double kHeldShare = 0.3;
 
 using Row = std::array<double, kMaxHorizonPoints>;
 using View = ReferenceTerms::View;
@@ -138,7 +141,12 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   correction.Learn(terms, forward, 1.0 - a.relaxation[0], friction_lacks_N * a.per_level_1_N[0],
                    velocity * period_s_, sliding);
 
-  if (cascade_) lead_N_ += (at_rest ? rest_share_ : lead_share_) * (unexplained_N - lead_N_);
+  if (cascade_) {
+    moved_ = moved_ || !at_rest;
+    const double held_N = moved_ ? 0.0 : kHeldShare * a.level_N[0];
+    const double gap_N = unexplained_N - lead_N_;
+    lead_N_ += (at_rest ? rest_share_ : lead_share_) * (gap_N - std::min(std::max(gap_N, -held_N), held_N));
+  }
   const double node_extra_N = cascade_ ? lead_N_ : unexplained_N;
   const double mid_extra_N = cascade_ ? 0.0 : unexplained_N;
   const double half_extra_kg = cascade_ ? 0.0 : 0.5 * known.extra_kg;

@@ -42,10 +42,11 @@ class FrictionRoll {
   void Reset(double bristle_N) noexcept {
     bristle_N_ = bristle_N;
     lead_N_ = 0.0;
+    moved_ = false;
   }
 
   /// The terms along the reference are not part of the state: they are the same however they were come by.
-  void Keep(StateKeeper& keep) noexcept { keep(bristle_N_, rolled_N_, lead_N_); }
+  void Keep(StateKeeper& keep) noexcept { keep(bristle_N_, rolled_N_, lead_N_, moved_); }
 
   /// `x`: filter state at element 0 of the reference, of which `points` are rolled along. Keeps the bristle
   /// at element 1 for the next call and lets the corrections learn from the difference at element 0. mid_N,
@@ -63,6 +64,7 @@ class FrictionRoll {
   double lead_share_ = 1.0;  // of the low-pass, per period
   double rest_share_ = 1.0;
   double lead_N_ = 0.0;  // unforeseen friction as the wind-up has it
+  bool moved_ = false;   // since the start
   ReferenceTerms terms_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <random>
 
 #include "tests/closed_loop/test_machine.h"
@@ -27,8 +29,8 @@ Program Line(double dx_mm, double dy_mm) {
 
 /// A random motion, then the drives are disabled and enabled, which starts the estimators anew with a
 /// friction of zero while the true friction is whatever the motion left behind; a hold; a circle.
-Standstill HoldAfterMotion(std::uint64_t seed) {
-  EmulatedMachineFile file = ExampleMachine();
+Standstill HoldAfterMotion(std::uint64_t seed, const std::vector<std::string>& overrides = {}) {
+  EmulatedMachineFile file = ExampleMachine(overrides);
   file.emulator.seed = seed;
   VirtualMachine machine(file, ControllerName::kFull);
   machine.BringUp();
@@ -66,12 +68,53 @@ Standstill HoldAfterMotion(std::uint64_t seed) {
   return result;
 }
 
+const std::vector<std::string> kInCascade{"axes.x.drive.mode=csp", "axes.y.drive.mode=csp"};
+
 TEST(Standstill, NoHuntingAndNoJumpAtTenPositions) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const Standstill s = HoldAfterMotion(seed);
     EXPECT_LE(s.motor_pp_counts, 1.0) << "seed " << seed;
     EXPECT_LT(s.resuming_peak_m, 0.5e-6) << "seed " << seed;
   }
+}
+
+TEST(Standstill, NeitherWhereTheDrivesCloseTheLoop) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Standstill s = HoldAfterMotion(seed, kInCascade);
+    EXPECT_LE(s.motor_pp_counts, 1.0) << "seed " << seed;
+    EXPECT_LT(s.resuming_peak_m, 0.5e-6) << "seed " << seed;
+  }
+}
+
+/// CONTOUR_LONG_TESTS=1 in the environment: an hour, as the nightly tests have it; half a minute else.
+TEST(Standstill, NothingWearsOutInAnHourAtRestBehindDrivesThatCloseTheLoop) {
+  const int held_s = std::getenv("CONTOUR_LONG_TESTS") != nullptr ? 3600 : 30;
+  VirtualMachine machine(ExampleMachine(kInCascade), ControllerName::kFull);
+  machine.BringUp();
+  machine.Enable();
+  machine.Run(Line(3.0, -2.0));
+  CycleRecord first;
+  double furthest_m = 0.0;
+  std::int64_t cycles = 0;
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
+    const CycleRecord& r = entry.output.record;
+    if (r.state != MachineState::kRunning || truth == nullptr || r.path_time_s < kSettling_s) return;
+    if (cycles++ == 0) first = r;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const AxisRecord& a = r.axes[i];
+      furthest_m = std::max(furthest_m, std::abs(truth->axes[i].table_position_m - a.reference.position_m));
+      ASSERT_FALSE(a.estimate.diverged);
+      ASSERT_NEAR(a.estimate.g_plus_N, first.axes[i].estimate.g_plus_N, 1e-6);
+      ASSERT_NEAR(a.estimate.g_minus_N, first.axes[i].estimate.g_minus_N, 1e-6);
+      ASSERT_LT(a.estimate.friction_std_N, first.axes[i].estimate.friction_std_N + 1.0);
+    }
+  });
+  machine.Run(ParseProgram("{shape: hold, seconds: " + std::to_string(kSettling_s + held_s) + "}", "hold",
+                           ProgramFormat::kYaml));
+  EXPECT_EQ(machine.record().state, MachineState::kReady);
+  EXPECT_GE(cycles, 1000 * held_s - 1);
+  std::printf("table within %.1f nm of the reference\n", 1e9 * furthest_m);
+  EXPECT_LT(furthest_m, 0.25e-6);
 }
 
 }  // namespace

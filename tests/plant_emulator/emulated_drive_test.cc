@@ -399,5 +399,56 @@ TEST(EmulatedCascade, IsWellTuned) {
   EXPECT_LT(CircleAtEncoder_um(1e-2, 0.05 / (6.283185307 * 0.01), 1.6), 4.16);
 }
 
+struct Held {
+  double moved_counts = 0.0;  ///< motor, peak to peak, while nothing pushes
+  double pushed_m = 0.0;      ///< furthest from the target under the force
+  double left_m = 0.0;        ///< from the target, at the end
+};
+
+/// Two seconds at a target that stands, then two with 60 N on the table.
+Held Hold(int rest_window_counts) {
+  EmulatorConfig config = NominalMachine();
+  EmulatedCascadeConfig& stiff = config.axes["x"].cascade;
+  stiff.position_gain_1_s = 892.0;
+  stiff.velocity_gain_1_s = 600.0;
+  stiff.velocity_integral_1_s = 493.0;
+  stiff.velocity_filter_Hz = 1780.0;
+  stiff.rest_window_counts = rest_window_counts;
+  config.axes["x"].effects.cutting_force.emplace();
+  config.axes["x"].effects.cutting_force->force_N = 60.0;
+  config.axes["x"].effects.cutting_force->start_s = 2.0;
+  DriveHarness h(config, {Place("x", 1)});
+  h.BringUp(8);
+  h.Enable(4);
+  const std::int32_t target = h.position(1);
+  const double count_m = 5e-3 / 1048576;
+  const auto& axis = h.machine.truth().axes[0];
+  Held held;
+  double low_m = 1.0, high_m = -1.0;
+  // The force begins at 2 s of the machine's time, some of which bring-up and enabling have used.
+  for (int k = 0; k < 4000; ++k) {
+    h.seen.clear();
+    h.Cycle(0x0F, target, 4);
+    const double off_m = axis.motor_position_m - target * count_m;
+    if (k >= 1000 && k < 1900) {
+      low_m = std::min(low_m, off_m);
+      high_m = std::max(high_m, off_m);
+    }
+    if (k >= 1900) held.pushed_m = std::max(held.pushed_m, std::fabs(off_m));
+    held.left_m = std::fabs(off_m);
+  }
+  held.moved_counts = (high_m - low_m) / count_m;
+  return held;
+}
+
+TEST(EmulatedCascade, GainsOfRestDoNotAnswerToMisreadCountsButToAForce) {
+  const Held without = Hold(0), with = Hold(3);
+  EXPECT_GT(without.moved_counts, 1.0);
+  EXPECT_LT(with.moved_counts, 0.5);
+  EXPECT_GT(with.pushed_m, 1e-6);
+  EXPECT_LT(with.pushed_m, 1.1 * without.pushed_m);
+  EXPECT_LT(with.left_m, 3.5 * 5e-3 / 1048576);
+}
+
 }  // namespace
 }  // namespace contour::test

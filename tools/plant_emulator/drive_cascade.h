@@ -6,6 +6,7 @@
 
 #include "tools/plant_emulator/emulator_config.h"
 #include "tools/plant_emulator/portable_math.h"
+#include "tools/plant_emulator/rest_watch.h"
 
 namespace contour::plant {
 
@@ -43,13 +44,16 @@ class TargetInterpolator {
   double new_ = 0.0;
 };
 
-/// The drive's own cascade at its tick: position P, velocity PI with feed-forward. In travel of the table;
-/// the output is an acceleration, which the drive turns into torque by its inertia.
+/// The drive's own cascade at its tick: position P, velocity PI with feed-forward, and a second set of gains
+/// for an axis that rests, where the first would only answer to the noise of its readings. In travel of the
+/// table; the output is an acceleration, which the drive turns into torque by its inertia.
 class DriveCascade {
  public:
-  DriveCascade(const EmulatedCascadeConfig& gains, double tick_s) noexcept
+  DriveCascade(const EmulatedCascadeConfig& gains, double tick_s, double count_m) noexcept
       : gains_(gains),
         tick_s_(tick_s),
+        rest_(gains, tick_s, count_m),
+        mean_share_(1.0 - portable::Exp(-kSmoothingsPerRest * 1e3 * tick_s / gains.rest_delay_ms)),
         filter_share_(1.0 - portable::Exp(-6.283185307179586 * gains.velocity_filter_Hz * tick_s)) {}
 
   /// Encoder reading of this tick. Velocity is its filtered difference.
@@ -58,21 +62,30 @@ class DriveCascade {
     position_m_ = position_m;
     sensed_ = true;
   }
-  void ResetIntegral() noexcept { integral_m_s_ = 0.0; }
+  /// Also what a loop begins with: the gains are those of motion.
+  void ResetIntegral() noexcept {
+    integral_m_s_ = mean_m_s2_ = 0.0;
+    share_ = 1.0;
+    rest_.Reset();
+  }
 
   double PositionLoop_m_s2(const CascadeTarget& target, double limit_m_s2) noexcept {
+    TakeShare(rest_.Rests(target.position_m, position_m_) ? gains_.rest_gain_rel : 1.0);
     const double wanted = gains_.velocity_feedforward * target.velocity_m_s +
-                          gains_.position_gain_1_s * (target.position_m - position_m_);
-    return VelocityLoop_m_s2(wanted, gains_.acceleration_feedforward * target.acceleration_m_s2, limit_m_s2);
+                          share_ * gains_.position_gain_1_s * (target.position_m - position_m_);
+    const double held =
+        VelocityLoop_m_s2(wanted, gains_.acceleration_feedforward * target.acceleration_m_s2, limit_m_s2);
+    mean_m_s2_ += mean_share_ * (held - mean_m_s2_);
+    return held;
   }
 
   double VelocityLoop_m_s2(double wanted_m_s, double feedforward_m_s2, double limit_m_s2) noexcept {
     const double error = wanted_m_s - velocity_m_s_;
-    const double free = feedforward_m_s2 + gains_.velocity_gain_1_s * (error + integral_m_s_);
+    const double free = feedforward_m_s2 + share_ * gains_.velocity_gain_1_s * (error + integral_m_s_);
     const double held = std::clamp(free, -limit_m_s2, limit_m_s2);
     // The integral stands still while the limit holds the output and the error would push it further.
     if (held == free || (free > held) != (error > 0.0))
-      integral_m_s_ += gains_.velocity_integral_1_s * tick_s_ * error;
+      integral_m_s_ += share_ * gains_.velocity_integral_1_s * tick_s_ * error;
     return held;
   }
 
@@ -80,8 +93,26 @@ class DriveCascade {
   [[nodiscard]] double velocity_m_s() const noexcept { return velocity_m_s_; }
 
  private:
+  /// Without a bump: the integral goes on with the torque that held the axis. What it has at one instant is,
+  /// with the gains of motion, the noise of a reading; on the way into rest it takes the mean.
+  void TakeShare(double share) noexcept {
+    if (share == share_) return;
+    if (share < share_)
+      integral_m_s_ = mean_m_s2_ / (share * gains_.velocity_gain_1_s);
+    else
+      integral_m_s_ *= share_ / share;
+    share_ = share;
+  }
+
+  static constexpr double kSmoothingsPerRest =
+      4.0;  ///< time constants of the mean in the time rest is awaited
+
   EmulatedCascadeConfig gains_;
   double tick_s_;
+  RestWatch rest_;
+  double share_ = 1.0;      ///< of the gains
+  double mean_share_;       ///< of the low-pass on the output
+  double mean_m_s2_ = 0.0;  ///< the output, smoothed
   double filter_share_;
   double position_m_ = 0.0;
   double velocity_m_s_ = 0.0;

@@ -35,7 +35,7 @@ EmulatedAxis::EmulatedAxis(const AxisParameters& parameters, const EmulatedAxisP
       torque_noise_(seed, stream + kTorqueNoiseStream),
       // A mean over a cycle is one over so many ticks.
       tick_noise_Nm_(parameters.torque_noise_Nm * std::sqrt(1e-6 * cycle_us / kTick_s)),
-      cascade_(parameters.cascade, kTick_s),
+      cascade_(parameters.cascade, kTick_s, TravelPerCount_m()),
       slave_((AddObjects(placement), objects_), *this, placement.node_id) {
   FindObjects();
   slave_.DelayAnswers(parameters.answer_delay_ns, parameters.answer_delay_every);

@@ -91,6 +91,9 @@ struct EmulatedCascadeConfig {
   double velocity_feedforward = 1.0;
   double acceleration_feedforward = 1.0;
   double velocity_filter_Hz = 1500.0;
+  int rest_window_counts = 0;
+  double rest_delay_ms = 200.0;
+  double rest_gain_rel = 0.1;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -102,6 +105,13 @@ struct EmulatedCascadeConfig {
     v.Optional("acceleration_feedforward", acceleration_feedforward, Range{0.0, 1.5},
                "of the interpolated target's acceleration");
     v.Optional("velocity_filter_Hz", velocity_filter_Hz, kPositive, "low-pass on the velocity seen");
+    v.Optional(
+        "rest_window_counts", rest_window_counts, Range{0, 1000},
+        "CSP: an axis read within so many counts of a target that stands is at rest, and has the gains "
+        "of rest; 0: it has the others always");
+    v.Optional("rest_delay_ms", rest_delay_ms, kPositive, "for so long it must have been so");
+    v.Optional("rest_gain_rel", rest_gain_rel, Range{0.001, 1.0},
+               "the three gains of rest, as a share of the others");
   }
 };
 
