@@ -181,6 +181,7 @@ LearningReport Supervisor::Learn(const ProgramUpload& upload, const PerAxis<doub
   if (upload.forget) parts_.learning.Forget();
   const LearningReport report =
       parts_.learning.Prepare(upload.text, start_m, program_id_, generator).value_or(LearningReport());
+  if (!report.refused.empty()) spdlog::warn("the last pass taught nothing: {}", report.refused);
   if (report.passes > 0)
     spdlog::info("{}: passes learnt from: {}; largest error seen by the scales {:.2f} um, best {:.2f} um",
                  upload.name, report.passes, report.last_peak_um, report.best_peak_um);

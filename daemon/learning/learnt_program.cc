@@ -11,6 +11,8 @@ namespace {
 constexpr double kTolerance = 1.05;
 constexpr double kSmallestShareOfGain = 0.125;
 constexpr int kLongestRest = 16;
+/// An error this many times as large as a shift may be is another fault, not to be made up for.
+constexpr double kLargestError = 3.0;
 constexpr double kShareOfAcceleration = 0.1;
 /// Into and out of the shift at the ends of a program, which are at rest where the axes stand.
 constexpr double kFade_s = 0.05;
@@ -44,9 +46,15 @@ double LearntProgram::Peak_m(const ErrorAcross& seen) const {
   return std::sqrt(static_cast<double>(*std::max_element(square.begin(), square.end())));
 }
 
-void LearntProgram::Learn(ErrorAcross seen) {
-  ++passes_;
+std::string LearntProgram::Learn(ErrorAcross seen) {
   last_peak_m_ = Peak_m(seen);
+  if (!(last_peak_m_ <= kLargestError * 1e-6 * config_.largest_um)) {
+    best_ = trial_ = nullptr;
+    passes_ = 0;
+    return "the table was off by " + std::to_string(std::lround(1e6 * last_peak_m_)) +
+           " um, more than three times learning.largest_um";
+  }
+  ++passes_;
   if (passes_ == 1 || trial_ == best_) {
     best_error_ = std::move(seen);  // what it is worth by now: machines change
     best_peak_m_ = last_peak_m_;
@@ -64,6 +72,7 @@ void LearntProgram::Learn(ErrorAcross seen) {
   }
   trial_ = left_ > 0 ? best_ : Improved();
   left_ = std::max(0, left_ - 1);
+  return {};
 }
 
 std::shared_ptr<const PathOffsets> LearntProgram::Improved() const {

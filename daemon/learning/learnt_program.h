@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "config/learning_config.h"
@@ -26,8 +27,9 @@ class LearntProgram {
 
   /// What the next pass is to be shifted by; null before anything has been learnt.
   [[nodiscard]] std::shared_ptr<const PathOffsets> next() const { return trial_; }
-  /// The pass that followed next() is over.
-  void Learn(ErrorAcross seen);
+  /// The pass that followed next() is over. Gives why nothing is learnt from it, and all is forgotten; empty:
+  /// it is.
+  std::string Learn(ErrorAcross seen);
 
   [[nodiscard]] std::size_t passes() const { return passes_; }
   /// Largest error across the path, without what is faster than four times the bandwidth.

@@ -8,12 +8,15 @@ namespace {
 
 /// Rows may be missing: late feedback, a telemetry queue that was full.
 constexpr double kLeastSeen = 0.98;
+/// A scale that counts the other way, in another unit or not at all. Below the motion the wind-up matters.
+constexpr double kScaleTolerance = 0.1;
+constexpr double kSmallestMotion_m = 50e-6;
 
 }  // namespace
 
 MeasuredPass::MeasuredPass(std::vector<Mechanics> axes, std::size_t points, double period_s)
     : points_(points), period_s_(period_s), seen_(points, 0) {
-  for (Mechanics& m : axes) axes_.push_back({m, 0.0, 0.0, std::vector<float>(points, 0.0F)});
+  for (Mechanics& m : axes) axes_.push_back({m, 0.0, 0.0, std::vector<float>(points, 0.0F), 0.0, 0.0, 0.0});
 }
 
 double MeasuredPass::Zero_m(const Axis& axis, const AxisRecord& record) {
@@ -42,16 +45,35 @@ void MeasuredPass::Add(const CycleRecord& r) {
     Axis& axis = axes_[i];
     const AxisRecord& a = r.axes[i];
     const double zero_m = Zero_m(axis, a);
-    if (count_ == 0) axis.zero_m = zero_m;
+    if (count_ == 0) {
+      axis.zero_m = zero_m;
+      axis.first_motor_m = a.position_m;
+    }
     axis.zero_change_m += zero_m - axis.zero_m;
     const double table_m = a.feedback.table_position_m - axis.zero_m;
+    const double motor_m = a.position_m - axis.first_motor_m;
+    axis.motor_square_m2 += motor_m * motor_m;
+    axis.motor_scale_m2 += motor_m * (table_m - axis.first_motor_m);
     axis.behind_m[point] = static_cast<float>(a.reference.position_m - table_m);
   }
   ++count_;
 }
 
-bool MeasuredPass::whole() const {
-  return !spoilt_ && count_ > 0 && static_cast<double>(count_) >= kLeastSeen * static_cast<double>(points_);
+bool MeasuredPass::ScaleFollowsMotor(const Axis& axis) const {
+  const double enough_m2 = kSmallestMotion_m * kSmallestMotion_m * static_cast<double>(count_);
+  if (axis.motor_square_m2 < enough_m2) return true;
+  return std::abs(axis.motor_scale_m2 / axis.motor_square_m2 - 1.0) <= kScaleTolerance;
+}
+
+std::string MeasuredPass::Problem() const {
+  if (spoilt_) return "it carried torque of an experiment, or did not keep its pace";
+  if (static_cast<double>(count_) < kLeastSeen * static_cast<double>(points_) || count_ == 0)
+    return "feedback or rows of more than 2 % of it are missing";
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (!ScaleFollowsMotor(axes_[i]))
+      return "the scale of axis number " + std::to_string(i + 1) +
+             " does not move as its motor does; is drive.linear_scale right?";
+  return {};
 }
 
 double MeasuredPass::behind_m(std::size_t axis, std::size_t point) const {

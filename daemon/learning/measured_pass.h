@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/cycle_record.h"
@@ -21,8 +22,8 @@ class MeasuredPass {
   /// A cycle in which the program ran, in order.
   void Add(const CycleRecord& record);
 
-  /// Enough has been seen, and nothing that spoils it: a stop's slower pace, torque that an experiment adds.
-  [[nodiscard]] bool whole() const;
+  /// Why nothing is to be learnt from it; empty: it may be.
+  [[nodiscard]] std::string Problem() const;
   [[nodiscard]] std::size_t points() const { return points_; }
   [[nodiscard]] bool seen(std::size_t point) const { return seen_[point] != 0; }
   /// By how much the table was behind the reference that was followed; of a point that was seen.
@@ -34,7 +35,11 @@ class MeasuredPass {
     double zero_m = 0.0;          ///< scale less table at the first row
     double zero_change_m = 0.0;   ///< of later rows, summed up
     std::vector<float> behind_m;  ///< with the zero of the first row
+    double first_motor_m = 0.0;
+    double motor_square_m2 = 0.0;  ///< of the way from the first row, summed up, and times that of the scale
+    double motor_scale_m2 = 0.0;
   };
+  [[nodiscard]] bool ScaleFollowsMotor(const Axis& axis) const;
   [[nodiscard]] static double Zero_m(const Axis& axis, const AxisRecord& record);
 
   std::vector<Axis> axes_;

@@ -44,7 +44,7 @@ std::optional<LearningReport> ProgramLearning::Prepare(const std::string& text,
     }
   }
   // Whoever hands the cycles over does not wait for this.
-  if (last && last->over && last->measured.whole()) LearnFrom(last->measured);
+  const std::string refused = last && last->over ? LearnFrom(last->measured) : std::string();
   if (generator.duration_s() > config_.longest_s) return std::nullopt;
   Entry& entry = Find(text, start_m, generator);
   generator.Shift(entry.learnt.next());
@@ -55,7 +55,7 @@ std::optional<LearningReport> ProgramLearning::Prepare(const std::string& text,
     pass_ = std::move(next);
   }
   const LearntProgram& l = entry.learnt;
-  return LearningReport{l.passes(), kMicro * l.last_peak_m(), kMicro * l.best_peak_m()};
+  return LearningReport{l.passes(), kMicro * l.last_peak_m(), kMicro * l.best_peak_m(), refused};
 }
 
 void ProgramLearning::Consume(const CycleRecord& record) {
@@ -82,10 +82,11 @@ void ProgramLearning::Forget() {
 }
 
 // The program that ran last is the first of the entries.
-void ProgramLearning::LearnFrom(const MeasuredPass& pass) {
+std::string ProgramLearning::LearnFrom(const MeasuredPass& pass) {
+  if (std::string problem = pass.Problem(); !problem.empty()) return problem;
   Entry& entry = entries_.front();
   const std::shared_ptr<const PathOffsets> followed = entry.learnt.next();
-  entry.learnt.Learn(FindErrorAcross(*entry.plan, pass, followed.get(), period_s_));
+  return entry.learnt.Learn(FindErrorAcross(*entry.plan, pass, followed.get(), period_s_));
 }
 
 ProgramLearning::Entry& ProgramLearning::Find(const std::string& text, const PerAxis<double>& start_m,

@@ -21,6 +21,7 @@ struct LearningReport {
   std::size_t passes = 0;  ///< that taught something
   double last_peak_um = 0.0;
   double best_peak_um = 0.0;
+  std::string refused;  ///< why the program that ran last taught nothing; empty: it did, or was stopped
 };
 
 /// Learns the programs that run again and again, when the machine file says so. Nothing of it is in the
@@ -57,7 +58,7 @@ class ProgramLearning {
     MeasuredPass measured;
     bool over = false;
   };
-  void LearnFrom(const MeasuredPass& pass);
+  [[nodiscard]] std::string LearnFrom(const MeasuredPass& pass);
   Entry& Find(const std::string& text, const PerAxis<double>& start_m, const PathGenerator& generator);
 
   LearningConfig config_;

@@ -28,7 +28,7 @@ Seen Pass(const std::string& program,
     return t;
   };
   for (std::size_t k = 0; k < told.size(); ++k) pass.Add(test::RowAt(told, k, at));
-  EXPECT_TRUE(pass.whole());
+  EXPECT_EQ(pass.Problem(), "");
   return {plan, FindErrorAcross(*plan, pass, nullptr, kPeriod_s)};
 }
 

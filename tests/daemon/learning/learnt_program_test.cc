@@ -67,7 +67,7 @@ TEST(LearntProgram, IsBoundedAndNothingAtTheEnds) {
   LearntProgram program(config, kPeriod_s, {5.0});
   const auto off = [](const PathOffsets*) {
     ErrorAcross seen;
-    seen.error_m.assign(1, std::vector<float>(kPoints, 30e-6F));
+    seen.error_m.assign(1, std::vector<float>(kPoints, 14e-6F));
     return seen;
   };
   for (int pass = 0; pass < 10; ++pass) program.Learn(off(program.next().get()));

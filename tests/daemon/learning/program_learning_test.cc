@@ -36,10 +36,10 @@ class OnALine {
     return test::PointsOf(generator);
   }
   void Run(const std::vector<PathPoint>& told, std::size_t rows, MachineState ends, Reason reason) {
-    const test::Table table = [](const std::vector<PathPoint>& points, std::size_t now) {
+    const test::Table table = [this](const std::vector<PathPoint>& points, std::size_t now) {
       PerAxis<double> t(2);
-      for (std::size_t i = 0; i < 2; ++i) t[i] = points[now].axes[i].position_m;
-      t[1] += now > 200 && now < 260 ? 3e-6 : 0.0;
+      for (std::size_t i = 0; i < 2; ++i) t[i] = scale_factor * points[now].axes[i].position_m;
+      t[1] += now > 200 && now < 260 ? push_m : 0.0;
       return t;
     };
     for (std::size_t k = 0; k < rows; ++k) learning.Consume(test::RowAt(told, k, table));
@@ -60,6 +60,8 @@ class OnALine {
     return largest_m;
   }
 
+  double push_m = 3e-6;
+  double scale_factor = 1.0;  ///< of what the scales count of the way
   ProgramLearning learning;
   std::optional<LearningReport> report;
 
@@ -132,6 +134,28 @@ TEST(ProgramLearning, APassWithManyRowsMissingTeachesNothing) {
   const std::vector<PathPoint> told = line.Points();
   line.Run(told, told.size() * 9 / 10, MachineState::kReady, Reason::kProgramEnd);
   EXPECT_EQ(OnALine::Largest_m(line.Points()), 0.0);
+}
+
+TEST(ProgramLearning, AScaleThatDoesNotFollowTheMotorTeachesNothing) {
+  for (const double factor : {-1.0, 0.0, 0.5, 1.2}) {
+    OnALine line(Machine(true));
+    line.scale_factor = factor;
+    line.Pass();
+    EXPECT_EQ(OnALine::Largest_m(line.Points()), 0.0) << factor;
+    EXPECT_NE(line.report->refused.find("axis number 1 does not move as its motor does"), std::string::npos)
+        << line.report->refused;
+  }
+}
+
+TEST(ProgramLearning, AnErrorThatIsNoneToLearnIsNotLearnt) {
+  OnALine line(Machine(true));
+  line.Pass();
+  ASSERT_GT(OnALine::Largest_m(line.Points()), 1e-6);
+  line.push_m = 100e-6;
+  line.Pass();
+  EXPECT_EQ(OnALine::Largest_m(line.Points()), 0.0) << "and what was learnt before is gone";
+  EXPECT_NE(line.report->refused.find("more than three times learning.largest_um"), std::string::npos)
+      << line.report->refused;
 }
 
 TEST(ProgramLearning, LongProgramsAreNotLearnt) {
