@@ -363,7 +363,11 @@ class Engine {
     const std::vector<Leftover> left = FindLeftovers(problem_, current);
     const double threshold = LeftoverThreshold(problem_, options_.false_alarm_rate);
     if (options_.evidence) TellLeftover(left[0], threshold);
+    const bool stopped = static_cast<int>(out.causes.size()) >= options_.most_effects;
     Conclude(problem_, left, threshold, out);
+    if (stopped && out.verdict == Verdict::kUnexplained)
+      out.notes.push_back("No more than " + std::to_string(options_.most_effects) +
+                          " causes were looked for: several known ones together may be behind it.");
     Say("done", 1.0);
   }
 
