@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <span>
+
 #include "tools/diagnosis/forward_filter.h"
 
 namespace contour::diagnosis {
@@ -21,10 +23,18 @@ Step StepOver(double step_s, double lag_s) {
   return {lost / x, lag_s * (0.5 * step_s * lost - lag_s * (lost - x * (1.0 - lost))), 1.0 - lost};
 }
 
+constexpr double kForgotten = 30.0;  // lags
+
 }  // namespace
 
 Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps) {
-  const std::size_t n = log.size();
+  Delivered out;
+  DeliveredMeans(log, delay_s, lag_s, substeps, {}, out);
+  return out;
+}
+
+void DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps,
+                    std::span<const Stretch> stretches, Delivered& out) {
   const auto count = static_cast<std::size_t>(substeps);
   const double h = log.period_s / substeps;
   const double rows = std::max(0.0, delay_s) / log.period_s;
@@ -32,13 +42,9 @@ Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int s
   const double edge_s = (rows - static_cast<double>(whole)) * log.period_s;
   const auto edge_step = std::min(count - 1, static_cast<std::size_t>(edge_s / h));
   const double before_s = std::clamp(edge_s - static_cast<double>(edge_step) * h, 0.0, h);
-  Delivered out;
-  out.mean.resize(n * count);
-  out.late.resize(n);
   const double lag = std::max(0.0, lag_s), rest_s = h - before_s;
   const Step whole_step = StepOver(h, lag), first_part = StepOver(before_s, lag),
              rest_part = StepOver(rest_s, lag);
-  double value = log.command.empty() ? 0.0 : log.command[0];
   // Away from the edge all steps are alike.
   std::vector<double> mean_after(count), kept_after(count + 1, 1.0);
   for (std::size_t j = 0; j < count; ++j) {
@@ -52,10 +58,10 @@ Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int s
     return sum * whole_step.moment;
   };
   const double moment_before = moments(edge_step), moment_rest = moments(rest);
-  for (std::size_t k = 0; k < n; ++k) {
+  double value = 0.0;
+  const auto over = [&](std::size_t k, double* mean, double* late_out) {
     const double now = log.command[k >= whole ? k - whole : 0];
     const double old = log.command[k >= whole + 1 ? k - whole - 1 : 0];
-    double* mean = &out.mean[k * count];
     double away = value - old;
     for (std::size_t j = 0; j < edge_step; ++j) mean[j] = old + away * mean_after[j];
     double late = away * moment_before;
@@ -71,9 +77,24 @@ Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int s
     for (std::size_t j = 0; j < rest; ++j) after[j] = now + away * mean_after[j];
     late += away * moment_rest;
     value = now + away * kept_after[rest];
-    out.late[k] = late;
+    *late_out = late;
+  };
+  const Stretch all{.rows = log.size()};
+  if (stretches.empty()) stretches = std::span(&all, 1);
+  const std::size_t kept = stretches.back().at + stretches.back().rows;
+  out.mean.resize(kept * count);
+  out.late.resize(kept);
+  // A lag forgets within some of its lengths.
+  const std::size_t before = 1 + static_cast<std::size_t>(kForgotten * lag / log.period_s);
+  std::vector<double> spare(count);
+  for (const Stretch& s : stretches) {
+    const std::size_t begin = s.from > before ? s.from - before : 0;
+    value = log.command[begin >= whole + 1 ? begin - whole - 1 : 0];
+    double spare_late = 0.0;
+    for (std::size_t k = begin; k < s.from; ++k) over(k, spare.data(), &spare_late);
+    for (std::size_t i = 0; i < s.rows; ++i)
+      over(s.from + i, &out.mean[(s.at + i) * count], &out.late[s.at + i]);
   }
-  return out;
 }
 
 }  // namespace contour::diagnosis

@@ -124,7 +124,7 @@ class Engine {
         if (i == 0) continue;
         std::rotate(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(i),
                     rivals.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-        rivals[0].fit = FitOn(problem_, rivals[0].fit, {.most_steps = 4, .most_refreshes = 2});
+        rivals[0].fit = FitOn(problem_, std::move(rivals[0].fit), {.most_steps = 4, .most_refreshes = 2});
         rivals[0].score = current.cost - rivals[0].fit.cost - Penalty(rivals[0].effect());
       }
       const Rival& best = rivals[0];
@@ -168,17 +168,20 @@ class Engine {
     for (const BaseTerm& t : problem_.terms_) start.base.push_back(t.start);
     problem_.LearnOutliers(start);
     problem_.LearnNoise(start);
+    const Extent ahead = problem_.excerpt_.empty() ? Extent::kWhole : Extent::kExcerpt;
     base_ = FitPoint(problem_, start,
-                     {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false});
+                     {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false}, ahead);
     problem_.LearnNoise(base_.point);
-    Rewhiten(problem_, base_);
-    base_ = FitOn(problem_, base_, {.most_steps = 12, .most_refreshes = 4});
-    if (Implausible(problem_, base_)) {
-      // A resonance may have been taken for another one.
-      Fit other =
-          FitPoint(problem_, BackToStated(problem_, base_.point), {.most_steps = 12, .most_refreshes = 4});
-      if (other.cost < base_.cost) base_ = std::move(other);
+    const FitEffort effort{.most_steps = 12, .most_refreshes = 4};
+    if (ahead == Extent::kExcerpt) {
+      const FitEffort rough{.most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
+      base_ = FitPoint(problem_, FitPoint(problem_, base_.point, rough, ahead).point, effort);
+    } else {
+      Rewhiten(problem_, base_);
+      base_ = FitOn(problem_, std::move(base_), effort);
     }
+    // A resonance may have been taken for another one.
+    FitFromStated(problem_, base_, effort);
     problem_.LearnSignals(base_.point);
   }
 
@@ -317,13 +320,10 @@ class Engine {
   }
 
   /// What was accepted first was fitted before the rest was known, and only well enough to be judged.
-  Fit Together(const Fit& accepted) const {
+  Fit Together(Fit accepted) const {
     const FitEffort effort{.most_steps = 12, .most_refreshes = 4};
-    Fit fit = FitOn(problem_, accepted, effort);
-    if (Implausible(problem_, fit)) {
-      Fit other = FitPoint(problem_, BackToStated(problem_, fit.point), effort);
-      if (other.cost < fit.cost) fit = std::move(other);
-    }
+    Fit fit = FitOn(problem_, std::move(accepted), effort);
+    FitFromStated(problem_, fit, effort);
     return fit;
   }
 
@@ -342,7 +342,7 @@ class Engine {
 
   void Finish(Fit current, Diagnosis& out) {
     if (!current.point.effects.empty()) {
-      current = Together(current);
+      current = Together(std::move(current));
       if (options_.bootstrap_runs > 0)
         Bootstrap(current, out);
       else

@@ -37,13 +37,23 @@ constexpr double kWorthWhile = 3.0;
 /// One fit, which says what runs it needs next and goes on when it has them.
 class Descent {
  public:
-  Descent(const Problem& problem, Beginning beginning) : problem_(problem), effort_(beginning.effort) {
+  Descent(const Problem& problem, Beginning beginning, Extent extent)
+      : problem_(problem),
+        effort_(beginning.effort),
+        size_(static_cast<Eigen::Index>(problem.data_size(extent))) {
     fit_.point = std::move(beginning.point);
     count_ = ParameterCount(fit_.point);
     const auto columns = static_cast<Eigen::Index>(count_);
     weight_ = Eigen::VectorXd::Zero(columns);
     for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
       weight_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
+    if (beginning.continued != nullptr) {
+      known_ = columns;
+      fit_ = std::move(*beginning.continued);
+      fit_.converged = false;
+      stale_ = false;
+      return;
+    }
     if (beginning.known == nullptr) return;
     const Fit& known = *beginning.known;
     known_ = known.jacobian.cols();
@@ -51,9 +61,8 @@ class Descent {
       fit_ = known;
       fit_.converged = false;
     } else {
-      const auto size = static_cast<Eigen::Index>(problem.data_size());
-      fit_.jacobian.resize(size, columns);
-      fit_.raw_jacobian.resize(size, columns);
+      fit_.jacobian.resize(size_, columns);
+      fit_.raw_jacobian.resize(size_, columns);
       fit_.jacobian.leftCols(known_) = known.jacobian;
       fit_.raw_jacobian.leftCols(known_) = known.raw_jacobian;
       fit_.normal = Eigen::MatrixXd::Zero(columns, columns);
@@ -157,9 +166,8 @@ class Descent {
     from_ = from;
     const auto columns = static_cast<Eigen::Index>(count_);
     if (from == 0) {
-      const auto size = static_cast<Eigen::Index>(problem_.data_size());
-      fit_.jacobian.resize(size, columns);
-      fit_.raw_jacobian.resize(size, columns);
+      fit_.jacobian.resize(size_, columns);
+      fit_.raw_jacobian.resize(size_, columns);
       fit_.normal.resize(columns, columns);
     }
     std::vector<Point> around;
@@ -261,6 +269,7 @@ class Descent {
 
   const Problem& problem_;
   FitEffort effort_;
+  Eigen::Index size_;
   Fit fit_;
   std::size_t count_ = 0;
   Eigen::Index known_ = 0, from_ = 0;
@@ -295,9 +304,9 @@ std::size_t ParameterCount(const Point& p) {
   return n;
 }
 
-std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings) {
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings, Extent extent) {
   std::vector<Descent> descents;
-  for (Beginning& b : beginnings) descents.emplace_back(problem, std::move(b));
+  for (Beginning& b : beginnings) descents.emplace_back(problem, std::move(b), extent);
   std::vector<bool> going(descents.size(), true);
   for (;;) {
     const auto left = static_cast<std::size_t>(std::count(going.begin(), going.end(), true));
@@ -314,8 +323,8 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginn
     constexpr std::size_t kAtOnce = 3 * kLanes;  // bounds the memory
     for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, points.size() - first);
-      std::vector<std::vector<double>> raw = problem.Raw(std::span(points).subspan(first, count));
-      std::vector<std::vector<double>> white = problem.White(raw);
+      std::vector<std::vector<double>> raw = problem.Raw(std::span(points).subspan(first, count), extent);
+      std::vector<std::vector<double>> white = problem.White(raw, extent);
       for (std::size_t i = 0; i < count; ++i) {
         const auto [owner, place] = owners[first + i];
         descents[owner].Take(place, std::move(raw[i]), std::move(white[i]));
@@ -329,18 +338,21 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginn
   return fits;
 }
 
-Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort) {
-  return std::move(FitPoints(problem, {{std::move(start), effort}})[0]);
+Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort, Extent extent) {
+  return std::move(FitPoints(problem, {{std::move(start), effort}}, extent)[0]);
 }
 
-Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort) {
-  return std::move(FitPoints(problem, {{fit.point, effort, &fit}})[0]);
+Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort) {
+  return std::move(FitPoints(problem, {{fit.point, effort, nullptr, &fit}})[0]);
 }
 
 namespace {
 
 // Of chi^2 in excess of twice its degrees; standard deviations.
 constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
+constexpr double kLower = 2.0;  // of chi^2
+constexpr FitEffort kAhead = {
+    .most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
 
 }  // namespace
 
@@ -349,16 +361,28 @@ bool Implausible(const Problem& problem, const Fit& fit) {
   return fit.prior > kHardlyEver * terms;
 }
 
-Point BackToStated(const Problem& problem, Point point) {
-  for (std::size_t i = 0; i < point.base.size(); ++i) {
+bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort) {
+  if (!Implausible(problem, fit)) return false;
+  Point back = fit.point;
+  for (std::size_t i = 0; i < back.base.size(); ++i) {
     const BaseTerm& t = problem.terms_[i];
-    if (!t.nuisance && std::fabs(point.base[i]) > kFarOff * t.sigma) point.base[i] = 0.0;
+    if (!t.nuisance && std::fabs(back.base[i]) > kFarOff * t.sigma) back.base[i] = 0.0;
   }
-  return point;
+  if (!problem.excerpt_.empty()) {
+    // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
+    const Fit here = FitPoint(problem, fit.point, kAhead, Extent::kExcerpt);
+    Fit there = FitPoint(problem, std::move(back), kAhead, Extent::kExcerpt);
+    if (there.cost > here.cost - kLower) return false;
+    back = std::move(there.point);
+  }
+  Fit other = FitPoint(problem, std::move(back), effort);
+  if (!(other.cost < fit.cost)) return false;
+  fit = std::move(other);
+  return true;
 }
 
-double CostAt(const Problem& problem, const Point& point) {
-  return ColumnOf(problem.Residuals(std::span(&point, 1))[0]).squaredNorm() + PriorOf(problem, point);
+double CostAt(const Problem& problem, const Point& point, Extent extent) {
+  return ColumnOf(problem.Residuals(std::span(&point, 1), extent)[0]).squaredNorm() + PriorOf(problem, point);
 }
 
 void Rewhiten(const Problem& problem, Fit& fit) {

@@ -36,22 +36,27 @@ struct Beginning {
   /// Of the same noise: its sensitivities serve for the parameters that it has; its residual too, where it
   /// has all of them.
   const Fit* known = nullptr;
+  /// The same, of all its parameters, and given up for this fit: two of them at a time would take memory.
+  Fit* continued = nullptr;
 };
 
 /// Gauss-Newton with the sensitivities kept while they serve. Noise is the problem's, held. All fits go step
-/// by step together, so that their runs share the lanes.
-std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings);
-Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {});
+/// by step together, so that their runs share the lanes. On an excerpt of the log: what is known of it is of
+/// the excerpt, too.
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings,
+                           Extent extent = Extent::kWhole);
+Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {},
+             Extent extent = Extent::kWhole);
 /// The same from where a fit stands.
-Fit FitOn(const Problem& problem, const Fit& fit, const FitEffort& effort);
+Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort);
 
 /// Whether the stated numbers would have to be off as they hardly ever are.
 bool Implausible(const Problem& problem, const Fit& fit);
-/// The same point with the stated numbers back where they are far off: where to begin again, as a fit may
-/// have ended in a wrong place.
-Point BackToStated(const Problem& problem, Point point);
+/// Such a fit may have ended in a wrong place: once more from where those numbers are back that are far off.
+/// The lower end counts. Whether it was replaced.
+bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort);
 
-double CostAt(const Problem& problem, const Point& point);
+double CostAt(const Problem& problem, const Point& point, Extent extent = Extent::kWhole);
 
 /// The fit's own runs under the noise that was learnt since.
 void Rewhiten(const Problem& problem, Fit& fit);

@@ -6,14 +6,18 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <tuple>
+#include <utility>
 
 #include "tools/diagnosis/lane_bundle.h"
 #include "tools/diagnosis/lane_loops.h"
 
 namespace contour::diagnosis {
 namespace {
+
+constexpr std::size_t kMostKept = 4;  // the rest would take more memory than it is worth
 
 using MeansKey = std::tuple<double, double, int>;
 using MeansCache = std::map<MeansKey, Delivered>;
@@ -52,26 +56,32 @@ struct Inputs {
   std::vector<double> measured, zeros;
 };
 
+std::size_t RowsOf(const FilterSetup& setup) {
+  if (setup.stretches.empty()) return setup.log->size();
+  return setup.stretches.back().at + setup.stretches.back().rows;
+}
+
 Lanes Prepare(const Inputs& in, const Bundle& bundle, std::vector<double>& spare) {
   std::vector<const Delivered*> delivered;
   for (const AxisModel* a : bundle.models) delivered.push_back(&in.means.at(KeyOf(in.setup, *a)));
+  const std::size_t rows = RowsOf(in.setup);
   Lanes m = MakeLanes(in.setup, bundle.models, delivered, in.measured.data(), in.zeros.data());
   for (std::size_t i = 0; i < kLanes; ++i) {
     if (i >= bundle.models.size()) {
-      spare.resize(m.rows);
+      spare.resize(rows);
       m.innovation[i] = m.table[i] = m.velocity[i] = m.friction[i] = spare.data();
       continue;
     }
     FilterRun& r = *bundle.out[i];
-    r.innovation.resize(m.rows);
+    r.innovation.resize(rows);
     m.innovation[i] = r.innovation.data();
     if (m.full) {
-      r.table_position.resize(m.rows);
+      r.table_position.resize(rows);
       m.table[i] = r.table_position.data();
     }
     if (m.trace) {
-      r.velocity.resize(m.rows);
-      r.friction.resize(m.rows);
+      r.velocity.resize(rows);
+      r.friction.resize(rows);
       m.velocity[i] = r.velocity.data();
       m.friction[i] = r.friction.data();
     }
@@ -83,12 +93,37 @@ Lanes Prepare(const Inputs& in, const Bundle& bundle, std::vector<double>& spare
 void RunBundles(const Inputs& in, std::span<const Bundle> some) {
   std::vector<double> spare;
   const Lanes first = Prepare(in, some[0], spare);
-  if (some.size() == 1) return BestLoops().run(first);
-  const Lanes second = Prepare(in, some[1], spare);
-  BestLoops().run_both(first, second);
+  const auto run = [&](const Lanes& a, const Lanes* b) {
+    b == nullptr ? BestLoops().run(a) : BestLoops().run_both(a, *b);
+  };
+  std::optional<Lanes> second;
+  if (some.size() > 1) second = Prepare(in, some[1], spare);
+  if (in.setup.stretches.empty()) return run(first, second ? &*second : nullptr);
+  for (const Stretch& s : in.setup.stretches) {
+    const Lanes a = Over(first, s);
+    if (!second) {
+      run(a, nullptr);
+      continue;
+    }
+    const Lanes b = Over(*second, s);
+    run(a, &b);
+  }
 }
 
 }  // namespace
+
+Delivered DeliveredStore::Take() {
+  const std::scoped_lock lock(mutex_);
+  if (free_.empty()) return {};
+  Delivered out = std::move(free_.back());
+  free_.pop_back();
+  return out;
+}
+
+void DeliveredStore::Give(Delivered used) {
+  const std::scoped_lock lock(mutex_);
+  if (free_.size() < kMostKept) free_.push_back(std::move(used));
+}
 
 AxisModel ModelOf(const StatedAxis& s) {
   AxisModel m;
@@ -107,9 +142,9 @@ AxisModel ModelOf(const StatedAxis& s) {
 
 std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisModel> models, int threads) {
   std::vector<FilterRun> runs(models.size());
-  const std::size_t rows = setup.log->size();
-  Inputs in{setup, {}, setup.log->position, std::vector<double>(rows, 0.0)};
-  for (std::size_t k = 0; k < rows; ++k)
+  const std::size_t rows = RowsOf(setup);
+  Inputs in{setup, {}, setup.log->position, std::vector<double>(setup.log->size(), 0.0)};
+  for (std::size_t k = 0; k < in.measured.size(); ++k)
     if (setup.valid[k] == 0) in.measured[k] = 0.0;
   std::map<Shape, std::vector<Bundle>> bundles;
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -122,8 +157,12 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
       continue;
     }
     const MeansKey key = KeyOf(setup, m);
-    if (!in.means.contains(key))
-      in.means[key] = DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key));
+    if (!in.means.contains(key)) {
+      Delivered means = setup.store->Take();
+      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), setup.stretches,
+                     means);
+      in.means[key] = std::move(means);
+    }
     std::vector<Bundle>& alike = bundles[ShapeOf(m)];
     if (alike.empty() || alike.back().models.size() == kLanes) alike.emplace_back();
     alike.back().models.push_back(&m);
@@ -141,6 +180,7 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
   for (int t = 1; t < threads && static_cast<std::size_t>(t) < work.size(); ++t) pool.emplace_back(run);
   run();
   for (std::thread& t : pool) t.join();
+  for (auto& [key, means] : in.means) setup.store->Give(std::move(means));
   return runs;
 }
 

@@ -3,11 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
 #include "tools/diagnosis/axis_log.h"
 #include "tools/diagnosis/axis_model.h"
+#include "tools/diagnosis/excerpt.h"
 
 namespace contour::diagnosis {
 
@@ -25,6 +28,26 @@ struct FilterRun {
   std::vector<double> friction;        ///< LuGre force without its viscous part, at the row
 };
 
+/// What the drive delivers of the logged command: the hold, the pure delay, the first-order lag, all exact.
+struct Delivered {
+  std::vector<double> mean;  ///< over every sub-step of every row
+  /// Per row: what the delivered torque moves a unit inertia beyond what its means do, because it is not
+  /// constant inside the sub-steps: sum of the integrals of (h/2 - t) u(t) dt. Without it the model shifts
+  /// some 30 us from lag to delay.
+  std::vector<double> late;
+};
+
+/// Arrays that runs need and leave again: fresh memory costs as much as filling it does.
+class DeliveredStore {
+ public:
+  Delivered Take();
+  void Give(Delivered used);
+
+ private:
+  std::mutex mutex_;
+  std::vector<Delivered> free_;
+};
+
 /// Everything that the runs of one diagnosis share.
 struct FilterSetup {
   const AxisLog* log = nullptr;
@@ -34,6 +57,9 @@ struct FilterSetup {
   int substeps_rigid = 4, substeps_two = 8;
   bool full = false;  ///< fill table_position; velocity and friction too when `trace`
   bool trace = false;
+  /// Only these are run, back to back in what comes out; none: the whole log.
+  std::span<const Stretch> stretches;
+  std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
 };
 
 /// The model driven by the logged command and held to the measured position by a fixed gain: DIAGNOSIS eqs.
@@ -41,15 +67,10 @@ struct FilterSetup {
 /// on the others, nor on the number of threads.
 std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisModel> models, int threads);
 
-/// What the drive delivers of the logged command: the hold, the pure delay, the first-order lag, all exact.
-struct Delivered {
-  std::vector<double> mean;  ///< over every sub-step of every row
-  /// Per row: what the delivered torque moves a unit inertia beyond what its means do, because it is not
-  /// constant inside the sub-steps: sum of the integrals of (h/2 - t) u(t) dt. Without it the model shifts
-  /// some 30 us from lag to delay.
-  std::vector<double> late;
-};
 /// A delay below 0 counts as 0.
 Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps);
+/// The same into what is there already; over some stretches only, back to back, where there are any.
+void DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps,
+                    std::span<const Stretch> stretches, Delivered& out);
 
 }  // namespace contour::diagnosis

@@ -92,7 +92,9 @@ void Pass(const LinearModel& m, const std::vector<std::uint8_t>& counted, const 
   }
 }
 
-void ApplyAll(LaneWhiten& m, std::span<const double* const> in, std::span<double* const> out) {
+void ApplyAll(const LaneWhiten& whole, std::span<const double* const> in, std::span<double* const> out,
+              std::span<const Stretch> stretches) {
+  LaneWhiten m = whole;
   std::vector<double> spare(m.rows);
   for (std::size_t first = 0; first < in.size(); first += kLanes) {
     for (std::size_t i = 0; i < kLanes; ++i) {
@@ -100,7 +102,22 @@ void ApplyAll(LaneWhiten& m, std::span<const double* const> in, std::span<double
       m.in[i] = in[used ? first + i : first];
       m.out[i] = used ? out[first + i] : spare.data();
     }
-    BestLoops().whiten(m);
+    if (stretches.empty()) BestLoops().whiten(m);
+    for (const Stretch& s : stretches) {
+      LaneWhiten part = m;
+      part.rows = s.rows;
+      part.counted += s.from;
+      part.weight += s.at;
+      if (m.states > 0) {
+        part.step += s.from * m.stride;
+        part.gain += s.from * static_cast<std::size_t>(m.states + 1);
+      }
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        part.in[i] += s.at;
+        part.out[i] += s.at;
+      }
+      BestLoops().whiten(part);
+    }
   }
 }
 
@@ -157,7 +174,8 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
 }
 
 void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* const> out,
-                        const std::vector<std::uint8_t>& counted, const double* weight) const {
+                        const std::vector<std::uint8_t>& counted, const double* weight,
+                        std::span<const Stretch> stretches) const {
   LaneWhiten m;
   m.rows = linear_->rows;
   m.stride = linear_->stride;
@@ -167,7 +185,7 @@ void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* con
   m.taps = taps_.data();
   m.counted = counted.data();
   m.weight = weight;
-  ApplyAll(m, in, out);
+  ApplyAll(m, in, out, stretches);
 }
 
 std::vector<double> NoiseFilter::Pulse(std::size_t row, bool reading, std::size_t length,
@@ -244,7 +262,7 @@ NoiseFilter::Gradient NoiseFilter::Back(const std::vector<double>& white,
 
 void ApplyColourFilter(const Whitener& whitener, std::span<const double* const> in,
                        std::span<double* const> out, const std::vector<std::uint8_t>& counted,
-                       const double* weight) {
+                       const double* weight, std::span<const Stretch> stretches) {
   std::vector<double> taps = whitener.taps();
   taps.resize(kWhitenTaps, 0.0);
   LaneWhiten m;
@@ -252,7 +270,7 @@ void ApplyColourFilter(const Whitener& whitener, std::span<const double* const> 
   m.taps = taps.data();
   m.counted = counted.data();
   m.weight = weight;
-  ApplyAll(m, in, out);
+  ApplyAll(m, in, out, stretches);
 }
 
 }  // namespace contour::diagnosis

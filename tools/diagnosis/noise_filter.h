@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "tools/diagnosis/excerpt.h"
 #include "tools/diagnosis/linear_model.h"
 #include "tools/diagnosis/whitener.h"
 
@@ -23,8 +24,10 @@ class NoiseFilter {
               double inertia, double period_s, double reading_step);
 
   /// Whitens each, in place of size rows; rows that do not count come out 0 before the colour filter.
+  /// Of an excerpt's stretches where there are any: in, out and weight are theirs then, back to back.
   void Apply(std::span<const double* const> in, std::span<double* const> out,
-             const std::vector<std::uint8_t>& counted, const double* weight) const;
+             const std::vector<std::uint8_t>& counted, const double* weight,
+             std::span<const Stretch> stretches = {}) const;
 
   /// What the filters make of a pulse of motor torque over one row (or of the reading at one), at row k.
   std::vector<double> Pulse(std::size_t row, bool reading, std::size_t length,
@@ -51,6 +54,6 @@ class NoiseFilter {
 /// A colour filter alone.
 void ApplyColourFilter(const Whitener& whitener, std::span<const double* const> in,
                        std::span<double* const> out, const std::vector<std::uint8_t>& counted,
-                       const double* weight);
+                       const double* weight, std::span<const Stretch> stretches = {});
 
 }  // namespace contour::diagnosis

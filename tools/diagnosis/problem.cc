@@ -191,21 +191,23 @@ AxisModel Problem::Build(const Point& point) const {
   return m;
 }
 
-std::vector<std::vector<double>> Problem::Raw(std::span<const Point> points) const {
+std::vector<std::vector<double>> Problem::Raw(std::span<const Point> points, Extent extent) const {
   std::vector<AxisModel> models;
   models.reserve(points.size());
   for (const Point& p : points) models.push_back(Build(p));
-  return Raw(std::span<const AxisModel>(models));
+  return Raw(std::span<const AxisModel>(models), extent);
 }
 
-std::vector<std::vector<double>> Problem::Raw(std::span<const AxisModel> models) const {
-  std::vector<FilterRun> runs = RunFilter(setup_, models, threads_);
+std::vector<std::vector<double>> Problem::Raw(std::span<const AxisModel> models, Extent extent) const {
+  FilterSetup setup = setup_;
+  if (extent == Extent::kExcerpt) setup.stretches = excerpt_.stretches;
+  std::vector<FilterRun> runs = RunFilter(setup, models, threads_);
   std::vector<std::vector<double>> raw(models.size());
   for (std::size_t i = 0; i < models.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
     if (!has_scale()) continue;
     AddScale(runs[i].table_position, models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr,
-             log_.table_position_m.data(), raw[i]);
+             log_.table_position_m.data(), raw[i], extent);
   }
   return raw;
 }
@@ -217,7 +219,7 @@ double Problem::ExplainedByExtras(const Point& point) const {
       nullptr;
   if (with == without) return 0.0;
   const AxisModel both[] = {with, without};
-  const std::vector<std::vector<double>> white = White(Raw(std::span<const AxisModel>(both)));
+  const std::vector<std::vector<double>> white = White(Raw(std::span<const AxisModel>(both), Extent::kWhole));
   const auto squares = [](const std::vector<double>& r) {
     return std::inner_product(r.begin(), r.end(), r.begin(), 0.0);
   };
@@ -225,24 +227,27 @@ double Problem::ExplainedByExtras(const Point& point) const {
 }
 
 void Problem::AddScale(const std::vector<double>& table, const double* error, const double* measured,
-                       std::vector<double>& raw) const {
-  const std::size_t n = rows();
+                       std::vector<double>& raw, Extent extent) const {
+  const std::size_t n = table.size();
   raw.resize(2 * n);
+  const auto row = [&](std::size_t i) { return extent == Extent::kWhole ? i : excerpt_.row[i]; };
   double sum = 0.0, count = 0.0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double e = (measured != nullptr ? measured[k] : 0.0) - stated_.table_per_q * table[k] -
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = row(i);
+    const double e = (measured != nullptr ? measured[k] : 0.0) - stated_.table_per_q * table[i] -
                      (error != nullptr ? error[k] : 0.0);
-    raw[n + k] = e;
+    raw[n + i] = e;
     if (ScaleCounts(k)) {
       sum += e;
       count += 1.0;
     }
   }
   const double mean = sum / std::max(1.0, count);
-  for (std::size_t k = 0; k < n; ++k) raw[n + k] = ScaleCounts(k) ? raw[n + k] - mean : 0.0;
+  for (std::size_t i = 0; i < n; ++i) raw[n + i] = ScaleCounts(row(i)) ? raw[n + i] - mean : 0.0;
 }
 
-std::vector<std::vector<double>> Problem::White(std::span<const std::vector<double>> raw) const {
+std::vector<std::vector<double>> Problem::White(std::span<const std::vector<double>> raw,
+                                                Extent extent) const {
   std::vector<std::vector<double>> white(raw.size());
   std::vector<std::span<const double>> in;
   std::vector<std::span<double>> out;
@@ -251,28 +256,32 @@ std::vector<std::vector<double>> Problem::White(std::span<const std::vector<doub
     in.emplace_back(raw[i]);
     out.emplace_back(white[i]);
   }
-  WhitenInto(in, out);
+  WhitenInto(in, out, extent);
   return white;
 }
 
 void Problem::WhitenInto(std::span<const std::span<const double>> raw,
-                         std::span<const std::span<double>> white) const {
-  const std::size_t n = rows();
+                         std::span<const std::span<double>> white, Extent extent) const {
+  const bool whole = extent == Extent::kWhole;
+  const std::size_t n = whole ? rows() : excerpt_.row.size();
+  const std::vector<double>& weight = whole ? root_weight_ : excerpt_weight_;
+  const std::span<const Stretch> stretches =
+      whole ? std::span<const Stretch>() : std::span<const Stretch>(excerpt_.stretches);
   std::vector<const double*> in;
   std::vector<double*> out;
   for (std::size_t i = 0; i < raw.size(); ++i) {
     in.push_back(raw[i].data());
     out.push_back(white[i].data());
   }
-  noise_.Apply(in, out, counted_, root_weight_.data());
+  noise_.Apply(in, out, counted_, weight.data(), stretches);
   if (!has_scale()) return;
   for (const double*& p : in) p += n;
   for (double*& p : out) p += n;
-  ApplyColourFilter(scale_noise_, in, out, counted_, root_weight_.data() + n);
+  ApplyColourFilter(scale_noise_, in, out, counted_, weight.data() + n, stretches);
 }
 
-std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points) const {
-  return White(Raw(points));
+std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points, Extent extent) const {
+  return White(Raw(points, extent), extent);
 }
 
 std::vector<std::vector<double>> Problem::LinearResponses(const Point& point,
@@ -364,6 +373,16 @@ void Problem::LearnNoise(const Point& point) {
   if (has_scale()) LowerWhereScaleRests(&root_weight_[n]);
   for (std::size_t k = 0; k < data_size(); ++k)
     if (counted_[k % n] == 0) root_weight_[k] = 0.0;
+  WeighExcerpt();
+}
+
+void Problem::WeighExcerpt() {
+  const std::size_t m = excerpt_.row.size(), n = rows();
+  excerpt_weight_.assign(data_size(Extent::kExcerpt), 0.0);
+  const double root = std::sqrt(excerpt_.per_row);
+  for (std::size_t i = 0; i < excerpt_weight_.size(); ++i)
+    if (excerpt_.counts[i % m] != 0)
+      excerpt_weight_[i] = root * root_weight_[i / m * n + excerpt_.row[i % m]];
 }
 
 void Problem::LowerWhereScaleRests(double* w) const {
@@ -398,6 +417,8 @@ void Problem::LearnOutliers(const Point& point) {
   const FilterRun run = std::move(RunFilter(setup_, std::span(&m, 1), 1)[0]);
   MarkOutliers(run.innovation, stated_.position_step, setup_.valid, quality_);
   CountRows();
+  excerpt_ = ChooseExcerpt(signals_->position, signals_->velocity, setup_.valid, counted_, log_.period_s,
+                           nominal_.friction.Fc_plus / nominal_.friction.s0);
 }
 
 }  // namespace contour::diagnosis

@@ -9,6 +9,7 @@
 
 #include "tools/diagnosis/axis_log.h"
 #include "tools/diagnosis/axis_model.h"
+#include "tools/diagnosis/excerpt.h"
 #include "tools/diagnosis/finding.h"
 #include "tools/diagnosis/forward_filter.h"
 #include "tools/diagnosis/linear_model.h"
@@ -67,12 +68,16 @@ class Problem {
 
   [[nodiscard]] AxisModel Build(const Point& point) const;
   /// Innovations, then scale residuals (0 where they do not count), of every point.
-  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const Point> points) const;
-  [[nodiscard]] std::vector<std::vector<double>> White(std::span<const std::vector<double>> raw) const;
+  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const Point> points,
+                                                     Extent extent = Extent::kWhole) const;
+  /// An excerpt's rows count for those that are left out.
+  [[nodiscard]] std::vector<std::vector<double>> White(std::span<const std::vector<double>> raw,
+                                                       Extent extent = Extent::kWhole) const;
   /// The same into what is there already.
-  void WhitenInto(std::span<const std::span<const double>> raw,
-                  std::span<const std::span<double>> white) const;
-  [[nodiscard]] std::vector<std::vector<double>> Residuals(std::span<const Point> points) const;
+  void WhitenInto(std::span<const std::span<const double>> raw, std::span<const std::span<double>> white,
+                  Extent extent = Extent::kWhole) const;
+  [[nodiscard]] std::vector<std::vector<double>> Residuals(std::span<const Point> points,
+                                                           Extent extent = Extent::kWhole) const;
   /// By how much |r|^2 would be larger without what the stated model has beyond its numbers.
   [[nodiscard]] double ExplainedByExtras(const Point& point) const;
   [[nodiscard]] FilterRun Trace(const Point& point) const;
@@ -88,7 +93,9 @@ class Problem {
 
   [[nodiscard]] std::size_t rows() const { return log_.size(); }
   [[nodiscard]] bool has_scale() const { return !log_.table_position_m.empty(); }
-  [[nodiscard]] std::size_t data_size() const { return rows() * (has_scale() ? 2 : 1); }
+  [[nodiscard]] std::size_t data_size(Extent extent = Extent::kWhole) const {
+    return (extent == Extent::kWhole ? rows() : excerpt_.row.size()) * (has_scale() ? 2 : 1);
+  }
 
   const AxisLog& log_;
   const StatedAxis& stated_;
@@ -102,23 +109,28 @@ class Problem {
   /// stiction makes noise of torque into larger noise of position; a noise level may change).
   std::vector<double> root_weight_;
   DataQuality quality_;
+  Excerpt excerpt_;
   NoiseFilter noise_;
   Whitener scale_noise_;
 
  private:
-  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const AxisModel> models) const;
+  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const AxisModel> models, Extent extent) const;
   bool ScaleCounts(std::size_t k) const {
     return counted_[k] != 0 && std::isfinite(log_.table_position_m[k]);
   }
   /// Appends what the scale reads beyond the table's position and the error, less its mean.
   void AddScale(const std::vector<double>& table, const double* error, const double* measured,
-                std::vector<double>& raw) const;
+                std::vector<double>& raw, Extent extent = Extent::kWhole) const;
+  /// The weights of the excerpt from those of the log.
+  void WeighExcerpt();
   void MakeTerms();
   void ChooseSubsteps();
   void CountRows();
   void LowerWhereScaleRests(double* w) const;
   /// Lowers the weights w where the mean square of r over 2 half + 1 rows exceeds the limit.
   void Lower(const double* r, std::size_t half, double largest_by_chance, double* w) const;
+
+  std::vector<double> excerpt_weight_;
 };
 
 double StatedSigma(const StatedAxis& stated, const std::string& name);

@@ -254,15 +254,10 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
 
 /// Where the stated numbers went too far, the fit may be in a wrong place: once more from where they are
 /// stated. One after the other, for the memory.
-void FitFromStated(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
-  for (Rival& r : rivals) {
-    if (Outside(r.effect().kind) || !Implausible(problem, r.fit)) continue;
-    Fit fit = FitPoint(problem, BackToStated(problem, r.fit.point),
-                       {.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false});
-    if (!(fit.cost < r.fit.cost)) continue;
-    r.fit = std::move(fit);
-    Judge(problem, current, r);
-  }
+void FitAllFromStated(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
+  const FitEffort effort{.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false};
+  for (Rival& r : rivals)
+    if (!Outside(r.effect().kind) && FitFromStated(problem, r.fit, effort)) Judge(problem, current, r);
 }
 
 /// The worst of too many go, for the memory; sorted before.
@@ -292,7 +287,7 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
   }
   Sort(out);
   KeepBest(problem, out);
-  FitFromStated(problem, current, out);
+  FitAllFromStated(problem, current, out);
   Sort(out);
   return out;
 }
@@ -311,6 +306,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   const bool there = CostAt(problem, other) < current.cost;
   std::vector<Beginning> beginnings = {{there ? std::move(other) : current.point,
                                         {.most_steps = 10, .most_refreshes = 3, .close_enough = 0.1},
+                                        nullptr,
                                         there ? nullptr : &current}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
@@ -321,6 +317,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
                            .most_refreshes = i == 0 ? 4 : 1,
                            .close_enough = i == 0 ? 0.02 : 0.3,
                            .covariance = i == 0},
+                          nullptr,
                           &rivals[i].fit});
   }
   std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
@@ -335,7 +332,8 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
     const double promised = s.drop - Penalty(*s.effect);
     if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;
     Rival anew{std::move(FitPoints(problem, {Near(problem, current, s)})[0])};
-    anew.fit = FitOn(problem, anew.fit, {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3});
+    anew.fit =
+        FitOn(problem, std::move(anew.fit), {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3});
     Judge(problem, current, anew);
     if (anew.score > r.score) r = std::move(anew);
   }
@@ -343,7 +341,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   Sort(rivals);
   OneOfEach(rivals);
   if (&rivals[0].effect() != first)
-    rivals[0].fit = FitOn(problem, rivals[0].fit, {.most_steps = 3, .most_refreshes = 2});
+    rivals[0].fit = FitOn(problem, std::move(rivals[0].fit), {.most_steps = 3, .most_refreshes = 2});
 }
 
 double TestedScore(const Problem& problem, const Fit& current, const Rival& rival) {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace contour::diagnosis {
+
+/// Rows of a log that are run on their own, from a state of their own.
+struct Stretch {
+  std::size_t from = 0, rows = 0;
+  std::size_t at = 0;  ///< where its rows begin in what is kept of all stretches, back to back
+  double start_q = 0.0, start_w = 0.0;
+};
+
+enum class Extent { kWhole, kExcerpt };
+
+/// Short stretches from all over the log that stand for the whole of it. The observer forgets in some 30 ms
+/// and a sliding bristle in its own length, so runs of a stretch that begins in a slide are those of the
+/// whole log after a little while; their rows count from there.
+struct Excerpt {
+  std::vector<Stretch> stretches;    ///< none: the log is too short to leave anything out
+  std::vector<std::size_t> row;      ///< of the log, of every row that is kept
+  std::vector<std::uint8_t> counts;  ///< whether the stretch has settled there
+  double per_row = 1.0;              ///< counted rows of the log for every one here
+
+  [[nodiscard]] bool empty() const { return stretches.empty(); }
+};
+
+/// `counted`: rows of the log whose residual counts; `bristle`: travel in which a bristle goes to its end.
+Excerpt ChooseExcerpt(const std::vector<double>& position, const std::vector<double>& velocity,
+                      const std::vector<std::uint8_t>& valid, const std::vector<std::uint8_t>& counted,
+                      double period_s, double bristle);
+
+}  // namespace contour::diagnosis
