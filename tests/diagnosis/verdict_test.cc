@@ -83,6 +83,15 @@ TEST_F(VerdictTest, ACauseThatLeavesATenthLosesIt) {
   EXPECT_NE(d.notes.back().find("presliding_hysteresis, cable_spring"), std::string::npos);
 }
 
+TEST_F(VerdictTest, ATorqueMakesAnErrorOfTheLeadNoLessTrueUnlessItIsLarge) {
+  const Diagnosis beside = Concluded(Named({{"pitch_error", 9000.0}}), {Of("time", 900.0)});
+  EXPECT_EQ(beside.verdict, Verdict::kCauseFound);
+  EXPECT_EQ(beside.causes.size(), 1u);
+  const Diagnosis large =
+      Concluded(Named({{"pitch_error", 3400.0}, {"outside:force of time", 7000.0}}), {Of("time", 180.0)});
+  EXPECT_EQ(large.verdict, Verdict::kUnexplained);
+}
+
 TEST_F(VerdictTest, FurtherOrdersOfATurnMakeNoNameWrong) {
   Leftover angle = Of("the angle of the motor and the direction", 1200.0);
   angle.series = true;

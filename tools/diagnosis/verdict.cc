@@ -15,6 +15,8 @@ namespace {
 // Of what there is to explain, causes by their right names leave less than a hundredth, others a tenth and
 // more.
 constexpr double kLargeShare = 0.04;
+// A torque that is left says little about an error of the lead, which shows on the scale alone.
+constexpr double kLargeBesideScale = 0.3;
 
 std::string LeftoverText(const Problem& problem, const Leftover& left) {
   const bool linear = problem.log_.linear;
@@ -42,7 +44,8 @@ void Conclude(const Problem& problem, const std::vector<Leftover>& left, double 
       beyond = std::max(beyond, one.drop - one.bins);
   // A shape that was fitted, but is none of the catalogue, is no explanation either.
   for (const Cause& c : out.causes) (Outside(c.kind) ? beyond : named) += 2.0 * c.log_evidence_gain;
-  const bool unexplained = beyond > kLargeShare * (named + beyond);
+  const bool scale = !out.causes.empty() && out.causes[0].kind == "pitch_error";
+  const bool unexplained = beyond > (scale ? kLargeBesideScale : kLargeShare) * (named + beyond);
   for (const Cause& c : out.causes)
     if (Outside(c.kind))
       out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
