@@ -14,13 +14,16 @@ namespace {
 // Relative error of the model, one standard deviation: how far sizes lay off beyond their scatter on recorded
 // machines of known size (docs/diagnosis_results.md).
 const std::map<std::pair<std::string, std::string>, double> kModelError = {
+    {{"asymmetric_coulomb", "difference_rel"}, 0.02},
     {{"backlash", "gap_um"}, 0.05},
-    {{"compliance", "antiresonance_Hz"}, 0.005},
+    {{"compliance", "antiresonance_Hz"}, 0.015},
     {{"compliance", "stiffness_Nm_rad"}, 0.05},
-    {{"cross_coupling", "torque_per_acceleration_Nms2_m"}, 0.015},
-    {{"friction_drift", "change_rel"}, 0.02},
+    {{"cross_coupling", "torque_per_acceleration_Nms2_m"}, 0.02},
+    {{"encoder_subdivision", "amplitude_rad"}, 0.001},
+    {{"friction_drift", "change_rel"}, 0.03},
+    {{"friction_ripple", "amplitude_rel"}, 0.01},
     {{"load_friction", "friction_per_torque_rel"}, 0.02},
-    {{"payload_step", "inertia_change_rel"}, 0.005},
+    {{"payload_step", "inertia_change_rel"}, 0.01},
     {{"position_friction", "amplitude_rel"}, 0.04},
     {{"sample_jitter", "rms_us"}, 0.01},
     {{"stribeck", "Fs_over_Fc"}, 0.005},
