@@ -8,33 +8,22 @@
 #include <vector>
 
 #include "tests/diagnosis/hidden_axis.h"
+#include "tests/diagnosis/learnt_problem.h"
 #include "tools/diagnosis/effects.h"
 #include "tools/diagnosis/fit.h"
 
 namespace contour::diagnosis {
 namespace {
 
-struct Learnt {
-  explicit Learnt(bool two_inertia)
-      : axis([&] {
-          test::HiddenOptions o;
-          o.seed = 11;
-          o.duration_s = 10.0;
-          o.two_inertia = two_inertia;
-          test::HiddenAxis a = test::MakeHiddenAxis(o);
-          a.stated.sigma["torque_constant"] = 0.02;
-          return a;
-        }()),
-        problem(axis.log, axis.stated, 1) {
-    for (const BaseTerm& t : problem.terms_) point.base.push_back(t.start);
-    problem.LearnNoise(point);
-    problem.LearnSignals(point);
-  }
-
-  test::HiddenAxis axis;
-  Problem problem;
-  Point point;
-};
+test::HiddenAxis Made(bool two_inertia) {
+  test::HiddenOptions o;
+  o.seed = 11;
+  o.duration_s = 10.0;
+  o.two_inertia = two_inertia;
+  test::HiddenAxis a = test::MakeHiddenAxis(o);
+  a.stated.sigma["torque_constant"] = 0.02;
+  return a;
+}
 
 bool IsForce(const BaseTerm& t) { return !t.additive && t.name != "vs" && t.name != "torque_constant"; }
 
@@ -57,7 +46,7 @@ double Distance(const std::vector<double>& a, const std::vector<double>& b) {
 class EveryEffect : public testing::TestWithParam<bool> {};
 
 TEST_P(EveryEffect, TellsWhichOfItsAmplitudesAreForces) {
-  const Learnt l(GetParam());
+  const test::LearntProblem l(Made(GetParam()));
   for (const SharedEffect& e : CatalogueEffects(l.problem)) {
     if (e->kind == "torque_constant") continue;  // is the factor itself
     // Impacts in the gap make much of a last bit.
@@ -78,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Axes, EveryEffect, testing::Bool(),
 
 // Differences of runs alone leave some 1e-3 in that direction, which the priors do not stand up to.
 TEST(CommonFactor, OfAllForcesAndTheTorqueConstantMovesNoResidual) {
-  const Learnt l(true);
+  const test::LearntProblem l(Made(true));
   const Fit fit = FitPoint(l.problem, l.point, {.most_steps = 2, .most_refreshes = 1});
   Eigen::VectorXd all = Eigen::VectorXd::Zero(fit.jacobian.rows());
   double size = 0.0;

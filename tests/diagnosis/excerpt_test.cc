@@ -6,34 +6,23 @@
 #include <vector>
 
 #include "tests/diagnosis/hidden_axis.h"
+#include "tests/diagnosis/learnt_problem.h"
 #include "tools/diagnosis/fit.h"
 
 namespace contour::diagnosis {
 namespace {
 
-struct Learnt {
-  explicit Learnt(bool two_inertia)
-      : axis([&] {
-          test::HiddenOptions o;
-          o.seed = 21;
-          o.duration_s = 60.0;
-          o.two_inertia = two_inertia;
-          return test::MakeHiddenAxis(o);
-        }()),
-        problem(axis.log, axis.stated, 1) {
-    for (const BaseTerm& t : problem.terms_) point.base.push_back(t.start);
-    problem.LearnOutliers(point);
-    problem.LearnNoise(point);
-  }
-
-  test::HiddenAxis axis;
-  Problem problem;
-  Point point;
-};
+test::HiddenAxis Made(bool two_inertia) {
+  test::HiddenOptions o;
+  o.seed = 21;
+  o.duration_s = 60.0;
+  o.two_inertia = two_inertia;
+  return test::MakeHiddenAxis(o);
+}
 
 // Rows of an excerpt, where they count, are those of a run of the whole log.
 void ExpectRowsOfTheWhole(bool two_inertia) {
-  const Learnt l(two_inertia);
+  const test::LearntProblem l(Made(two_inertia));
   const Excerpt& e = l.problem.excerpt_;
   ASSERT_FALSE(e.empty());
   const std::size_t n = l.problem.rows(), m = e.row.size();
@@ -59,7 +48,7 @@ TEST(Excerpt, RowsOfARigidAxisAreThoseOfTheWhole) { ExpectRowsOfTheWhole(false);
 TEST(Excerpt, RowsOfTwoInertiasAreThoseOfTheWhole) { ExpectRowsOfTheWhole(true); }
 
 TEST(Excerpt, AFitOfItEndsNearThatOfTheWhole) {
-  const Learnt l(false);
+  const test::LearntProblem l(Made(false));
   const Fit ahead = FitPoint(l.problem, l.point, {.covariance = false}, Extent::kExcerpt);
   const Fit whole = FitPoint(l.problem, l.point);
   const double start = CostAt(l.problem, l.point), there = CostAt(l.problem, ahead.point);

@@ -9,10 +9,9 @@
 
 namespace contour::diagnosis {
 
-/// Fills smallest_detectable and not_excited from the candidates' standard errors: the stated size
-/// exceeds the gate in 90 % of cases; one of 1.5 times that passes the other tests as well. A kind whose
-/// smallest detectable size is beyond what such an axis can have, or whose signal the log lacks, is not
-/// excited.
+/// Fills smallest_detectable and not_excited from the candidates' standard errors: what exceeds the
+/// gate in 90 % of cases, times what it takes to pass the other tests as well. A kind for which the gate
+/// alone asks for more than such an axis can have, or whose signal the log lacks, is not excited.
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
                     const Jitter& jitter, const Gate& gate, Diagnosis& out);
 

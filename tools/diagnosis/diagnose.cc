@@ -174,8 +174,7 @@ class Engine {
     problem_.LearnNoise(base_.point);
     const FitEffort effort{.most_steps = 12, .most_refreshes = 4};
     if (ahead == Extent::kExcerpt) {
-      const FitEffort rough{.most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
-      base_ = FitPoint(problem_, FitPoint(problem_, base_.point, rough, ahead).point, effort);
+      base_ = FitPoint(problem_, FitPoint(problem_, base_.point, kToTheValley, ahead).point, effort);
     } else {
       Rewhiten(problem_, base_);
       base_ = FitOn(problem_, std::move(base_), effort);

@@ -351,15 +351,13 @@ namespace {
 // Of chi^2 in excess of twice its degrees; standard deviations.
 constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
 constexpr double kLower = 2.0;  // of chi^2
-constexpr FitEffort kAhead = {
-    .most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
-
-}  // namespace
 
 bool Implausible(const Problem& problem, const Fit& fit) {
   const auto terms = static_cast<double>(problem.terms_.size());
   return fit.prior > kHardlyEver * terms;
 }
+
+}  // namespace
 
 bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort) {
   if (!Implausible(problem, fit)) return false;
@@ -370,8 +368,8 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort) {
   }
   if (!problem.excerpt_.empty()) {
     // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
-    const Fit here = FitPoint(problem, fit.point, kAhead, Extent::kExcerpt);
-    Fit there = FitPoint(problem, std::move(back), kAhead, Extent::kExcerpt);
+    const Fit here = FitPoint(problem, fit.point, kToTheValley, Extent::kExcerpt);
+    Fit there = FitPoint(problem, std::move(back), kToTheValley, Extent::kExcerpt);
     if (there.cost > here.cost - kLower) return false;
     back = std::move(there.point);
   }

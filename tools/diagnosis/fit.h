@@ -29,6 +29,10 @@ struct FitEffort {
   double hopeless_above = std::numeric_limits<double>::infinity();
 };
 
+/// To see in which valley a point lies.
+inline constexpr FitEffort kToTheValley = {
+    .most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
+
 /// Where a fit begins.
 struct Beginning {
   Point point;
@@ -50,10 +54,9 @@ Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {},
 /// The same from where a fit stands.
 Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort);
 
-/// Whether the stated numbers would have to be off as they hardly ever are.
-bool Implausible(const Problem& problem, const Fit& fit);
-/// Such a fit may have ended in a wrong place: once more from where those numbers are back that are far off.
-/// The lower end counts. Whether it was replaced.
+/// A fit for which the stated numbers would have to be off as they hardly ever are may have ended in a wrong
+/// place: once more from where those numbers are back that are far off. The lower end counts. Whether it was
+/// replaced.
 bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort);
 
 double CostAt(const Problem& problem, const Point& point, Extent extent = Extent::kWhole);

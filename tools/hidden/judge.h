@@ -10,11 +10,11 @@
 
 namespace contour::hidden {
 
-/// How an answer compares with what was hidden. Causes that only name how the plant differs from what a model
-/// can express (Misfit) are left out before it is judged.
 /// Whether a kind is none of the catalogue: then `unexplained` without a name is right.
 bool OutsideCatalogue(const std::string& kind);
 
+/// How an answer compares with what was hidden. Causes that only name how the plant differs from what a model
+/// can express (Misfit) are left out before it is judged.
 struct Judged {
   bool right = false;   ///< the hidden kind first, or in a set of at most two that is first; clean: no cause,
                         ///< and `unexplained` only where there is a misfit to be found; outside the
