@@ -82,6 +82,14 @@ TEST(MarginTable, WhatIsLeftOfACauseIsASingleEffectsSecondRound) {
   EXPECT_EQ(table.find("{\"cogging\""), std::string::npos);
 }
 
+TEST(MarginTable, WhatIsLeftAsAnotherOfTheKindIsNotLeftAsOthers) {
+  const std::string table = TableOf(Line("clean_0001", 0, 0.0, false, "cogging", 1.0) +
+                                    Line("clear_cogging_0001", 1, 10000.0, false, "cogging", 54.0) +
+                                    Line("clear_cogging_0001", 1, 10000.0, false, "backlash", 14.0));
+  // Three times 10 / 10000, and of the kind three times 50 / 10000.
+  EXPECT_NE(table.find("3.0e-03, 1.2e-02}"), std::string::npos) << table;
+}
+
 TEST(MarginTable, WhatIsUnexplainedHasAPartOfTheRateForItself) {
   std::string evidence;
   for (int i = 0; i < 20; ++i) {

@@ -9,9 +9,10 @@
 
 namespace contour::diagnosis {
 
-/// Fills smallest_detectable and not_excited from the candidates' standard errors: what exceeds the
-/// gate in 90 % of cases, times what it takes to pass the other tests as well. A kind for which the gate
-/// alone asks for more than such an axis can have, or whose signal the log lacks, is not excited.
+/// Fills smallest_detectable and not_excited: what exceeds the gate in 90 % of cases, by the candidates'
+/// standard errors, by the stated uncertainties where these decide, or by runs where a kind is far from
+/// linear, times what it takes to pass the other tests as well. A kind for which the gate alone asks for more
+/// than such an axis can have, or whose signal the log lacks, is not excited.
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
                     const Jitter& jitter, const Gate& gate, Diagnosis& out);
 

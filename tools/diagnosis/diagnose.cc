@@ -39,6 +39,8 @@ constexpr double kConsistent = 1.2;
 constexpr double kOrdersApart = 0.9;
 // No score of a machine.
 constexpr double kFarOut = -1e6;
+// Of the drop.
+constexpr double kStillThere = 0.6;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
 void CheckInput(const AxisLog& log, const StatedAxis& stated) {
@@ -65,7 +67,7 @@ class Engine {
     FitBase();
     Fit current = base_;
     bool jitter_known = false;
-    double left_over = 0.0;  // of what is explained
+    Gate beside;  // what may be left of the accepted
     const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
     bool first = true;
     std::vector<std::string> tried;  // in this round, and refuted
@@ -74,7 +76,8 @@ class Engine {
       const std::vector<Scored> scored = Screen(current);
       Gate gate = SignFlips(scored, options_.false_alarm_rate, options_.seed, kOffStated * by_extras);
       gate.accepted = static_cast<int>(places_.size());
-      gate.left = left_over;
+      gate.left = beside.left;
+      gate.left_of_kind = beside.left_of_kind;
       const Jitter jitter = TestJitter(problem_, current);
       if (first) {
         KeepFirst(scored, out);
@@ -96,7 +99,7 @@ class Engine {
       problem_.LearnNoise(rivals[0].fit.point);
       Say("rivals under the noise that is left", 0.35 + 0.25 * round);
       FitAgain(problem_, current, rivals);
-      if (rivals[0].no_fault && rivals[0].score > Threshold(problem_, gate, rivals[0].effect())) {
+      if (rivals[0].no_fault && rivals[0].score > Asked(rivals[0], gate)) {
         // No cause of a deviation, but there; unless the model has it, others stand for it.
         current = std::move(rivals[0].fit);
         tried.clear();
@@ -121,9 +124,10 @@ class Engine {
         if (rivals[i].refused) continue;
         found = true;
         tested = score;
-        if (i == 0) continue;
-        std::rotate(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(i),
-                    rivals.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        const std::size_t chosen = SurerNumber(current, rivals, i, gate, tested);
+        if (chosen == 0) continue;
+        std::rotate(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(chosen),
+                    rivals.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
         rivals[0].fit = FitOn(problem_, std::move(rivals[0].fit), {.most_steps = 4, .most_refreshes = 2});
         rivals[0].score = current.cost - rivals[0].fit.cost - Penalty(rivals[0].effect());
       }
@@ -150,7 +154,8 @@ class Engine {
       tried.clear();
       Accept(current, rivals, gate, out);
       explained_ += best.score;
-      left_over += UnlikeShare(best.effect().kind) * best.score;
+      beside.left += UnlikeShare(best.effect().kind) * best.score;
+      beside.left_of_kind[best.effect().kind] += LikeShare(best.effect().kind) * best.score;
       current = best.fit;
       if (Outside(best.effect().kind)) break;
     }
@@ -228,11 +233,12 @@ class Engine {
       e.excess = s.excess;
       e.refitted = e.tested = e.unseen = kNone;
       e.flips = gate.calibrated;
-      e.asked = Threshold(problem_, gate, *s.effect);
+      e.asked = Threshold(problem_, gate, *s.effect, ShowingOf(problem_, s));
       for (const Rival& r : rivals) {
         if (r.effect().kind != kind || r.score < kFarOut) continue;
         e.penalty = Penalty(r.effect());
         e.refitted = r.score + e.penalty;
+        e.asked = Asked(r, gate);
         e.tested = TestedScore(problem_, current, r);
         e.unseen = Consistency(problem_, current, r.fit, true);
       }
@@ -240,9 +246,23 @@ class Engine {
     }
   }
 
+  double Asked(const Rival& r, const Gate& gate) const {
+    // Nothing is left of what nobody has found yet.
+    const Showing showing = gate.accepted > 0 ? ShowingOf(problem_, r.fit) : Showing{};
+    return Threshold(problem_, gate, r.effect(), showing);
+  }
+
+  /// Whether what speaks for an effect goes on doing so when another one is in the model: these two do not
+  /// explain the same. Of what a test for small sizes says something about.
+  bool StandsBeside(const Fit& other, const Rival& r) const {
+    const SharedEffect& effect = r.fit.point.effects.back();
+    if (!effect->signals && !InBase(problem_, effect->kind)) return false;
+    return ScoreEffects(problem_, other, {effect})[0].drop > kStillThere * (r.score + Penalty(*effect));
+  }
+
   bool Holds(const Fit& current, const Rival& r, double tested, const Gate& gate) const {
     // From outside the catalogue only what is beyond doubt.
-    const double least = Threshold(problem_, gate, r.effect());
+    const double least = Asked(r, gate);
     if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
     // What a base parameter does already shows in the priors.
     if (InBase(problem_, r.effect().kind)) return true;
@@ -259,6 +279,23 @@ class Engine {
     return tested > kNoChance && Consistency(problem_, current, r.fit, false) > kNotOneEvent;
   }
 
+  /// The rival itself, or a number of the base behind it that the log says more about, where that is not for
+  /// the same reason: a score is worth what its scatter from block to block leaves of it.
+  std::size_t SurerNumber(const Fit& current, const std::vector<Rival>& rivals, std::size_t holds,
+                          const Gate& gate, double& tested) const {
+    std::size_t surest = holds;
+    for (std::size_t i = holds + 1; i < rivals.size(); ++i) {
+      if (!InBase(problem_, rivals[i].effect().kind)) continue;
+      const double score = TestedScore(problem_, current, rivals[i]);
+      if (score <= tested || !Holds(current, rivals[i], score, gate) ||
+          !StandsBeside(rivals[holds].fit, rivals[i]))
+        continue;
+      surest = i;
+      tested = score;
+    }
+    return surest;
+  }
+
   void Accept(const Fit& current, const std::vector<Rival>& rivals, const Gate& gate, Diagnosis& out) {
     const Rival& best = rivals[0];
     Cause cause;
@@ -272,8 +309,9 @@ class Engine {
           c.accepted = &r == &best;
         }
       // What would not have been accepted alone explains too little to be the cause.
-      if (&r != &best && !r.refused && !Outside(kind) && r.score > Threshold(problem_, gate, r.effect()) &&
-          r.score > best.score - std::max(12.0, 0.03 * best.score))
+      if (&r != &best && !r.refused && !Outside(kind) && r.score > Asked(r, gate) &&
+          r.score > best.score - std::max(12.0, 0.03 * best.score) && !StandsBeside(best.fit, r) &&
+          !StandsBeside(r.fit, best))
         cause.indistinguishable_from.push_back(kind);
     }
     const Experiment experiment = DecidingExperiment(problem_, cause.kind, cause.indistinguishable_from);

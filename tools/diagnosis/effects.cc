@@ -15,6 +15,8 @@ constexpr double kPi = std::numbers::pi;
 // Logarithm of how far a coupling's damping ratio may be from 0.04.
 constexpr double kDampingReach = 2.0;
 constexpr double kLeastWarming_K = 0.1;
+// As if so many places had been looked at.
+constexpr double kKneeShows = 300.0;
 
 SharedSignal Add(const SharedSignal& before, const std::vector<SharedSignal>& basis,
                  const std::vector<double>& a) {
@@ -221,14 +223,19 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                        return -std::copysign(std::pow(std::fabs(y), power * std::exp(x)), y);
                      }),
         power));
-  for (const double knee : {0.1, 0.3})
-    out.push_back(WithOrder(
-        ShapedEffect("viscous_nonlinear", "knee " + std::to_string(knee), 3, drag, 0.02 * Fc, {-1.0, 1.0},
-                     [speed, top, knee](std::size_t k, double x) {
-                       const double y = (*speed)[k] / top, bend = knee * std::exp(x);
-                       return -y * (1.0 + bend) / (std::fabs(y) + bend);
-                     }),
-        knee));
+  // Drag that gives way beyond a knee; what grows faster than the speed bends with a power, and so does what
+  // the log cannot tell from it: a knee must show for itself, since its torque is told beside another linear
+  // term.
+  for (const double knee : {0.1, 0.3}) {
+    auto shape = std::make_shared<Effect>(
+        *ShapedEffect("viscous_nonlinear", "knee " + std::to_string(knee), kKneeShows, drag, 0.02 * Fc,
+                      {-1.0, 1.0}, [speed, top, knee](std::size_t k, double x) {
+                        const double y = (*speed)[k] / top, bend = knee * std::exp(x);
+                        return -y * (1.0 + bend) / (std::fabs(y) + bend);
+                      }));
+    shape->low[0] = 0.0;
+    out.push_back(WithOrder(std::move(shape), knee));
+  }
   if (Varies(s.temperature_K)) {
     const auto T = std::make_shared<const Signal>(s.temperature_K);
     out.push_back(WithShorter(AsSignals(Custom("temperature_viscosity", "and level", 2, {2e-3, 1e-3},

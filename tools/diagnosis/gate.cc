@@ -65,25 +65,70 @@ Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uin
   return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
 }
 
+double Gate::LeftAs(const std::string& kind) const {
+  const auto same = left_of_kind.find(kind);
+  return left + (same == left_of_kind.end() ? 0.0 : same->second);
+}
+
 namespace {
+
+/// `covariance`: of what the log says about the numbers that the kind frees.
+double VagueBy(const Problem& problem, const std::string& kind, const Eigen::MatrixXd& covariance) {
+  // All forces at once: what the log leaves of each of them counts.
+  if (kind == "torque_constant" || !InBase(problem, kind)) return 1.0;
+  const std::vector<std::size_t> terms = FreedTerms(problem, kind);
+  double most = 0.0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (at < covariance.rows())
+      most = std::max(most, covariance(at, at) * std::pow(problem.terms_[terms[i]].sigma, -2));
+  }
+  return most;
+}
 
 double Threshold(const Problem& problem, const Gate& gate, std::string_view kind) {
   const double errors = MarginPerRow(kind, gate.rate) * static_cast<double>(problem.rows());
-  return std::max(gate.flips, gate.calibrated + errors) + gate.left;
+  return std::max(gate.flips, gate.calibrated + errors);
 }
 
 }  // namespace
 
-double Threshold(const Problem& problem, const Gate& gate) { return Threshold(problem, gate, ""); }
+Showing ShowingOf(const Problem& problem, const Scored& scored) {
+  return {scored.excess, VagueBy(problem, scored.effect->kind, scored.covariance)};
+}
 
-double Threshold(const Problem& problem, const Gate& gate, const Effect& effect) {
-  if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind);
+Showing ShowingOf(const Problem& problem, const Fit& fit) {
+  Showing showing;
+  const std::string& kind = fit.point.effects.back()->kind;
+  if (!InBase(problem, kind)) {
+    showing.excess = ExcessOfLast(problem, fit);
+    return showing;
+  }
+  const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
+  // The base's term goes on having its prior; what is free scatters by as much more.
+  showing.vague = kind == "torque_constant"
+                      ? 1.0
+                      : std::max(0.0, VagueBy(problem, kind, fit.covariance.bottomRightCorner(n, n)) - 1.0);
+  return showing;
+}
+
+double Threshold(const Problem& problem, const Gate& gate) {
+  return Threshold(problem, gate, "") + gate.left;
+}
+
+double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const Showing& showing) {
+  double left = gate.LeftAs(effect.kind);
+  if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind) + left / showing.excess;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
-  const double by_chance =
-      ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated)) - Penalty(effect);
-  if (gate.accepted == 0) return by_chance;
-  return std::max(by_chance, gate.flips) + gate.left + kBesidePerRow * static_cast<double>(problem.rows());
+  if (gate.accepted == 0)
+    return ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated)) - Penalty(effect);
+  const double by_chance = ChiSquare(degrees, kBeyondStated);
+  left += kBesidePerRow * static_cast<double>(problem.rows());
+  // At its worst a left-over of chi^2 moves the number by its root, in standard errors of the log.
+  const double moved = showing.vague * left;
+  left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));
+  return std::max(by_chance - Penalty(effect), gate.flips) + left;
 }
 
 }  // namespace contour::diagnosis

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "tools/diagnosis/score.h"
@@ -15,14 +17,30 @@ struct Gate {
   double rate = 0.05;       ///< of false alarms
   int accepted = 0;         ///< causes that are accepted already
   double left = 0.0;        ///< what of their scores may look like other causes
+  /// The same, as another cause of a kind that is among them: harmonics, neighbouring orders.
+  std::map<std::string, double> left_of_kind = {};
+
+  [[nodiscard]] double LeftAs(const std::string& kind) const;
 };
+
+/// How a left-over shows in a kind's score.
+struct Showing {
+  double excess = 1.0;  ///< of chance, which scores are divided by
+  /// Of a number of the base: the variance that the log leaves it, over its stated variance. A left-over
+  /// moves the number by so much, and only there lies the evidence.
+  double vague = 1.0;
+};
+
+Showing ShowingOf(const Problem& problem, const Scored& scored);
+/// Of the last effect of a fit.
+Showing ShowingOf(const Problem& problem, const Fit& fit);
 
 /// The score that the best of all candidates exceeds by chance with a given probability: residual blocks
 /// with random signs against the fixed columns, waves found by a scan as the largest of their grid; beyond
 /// the 2 % quantile along a Gumbel fit. `more` is added to it.
 Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more);
 
-double Threshold(const Problem& problem, const Gate& gate, const Effect& effect);
+double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const Showing& showing);
 /// The same of a kind without a number in the base.
 double Threshold(const Problem& problem, const Gate& gate);
 

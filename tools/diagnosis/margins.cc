@@ -40,4 +40,6 @@ double MarginPerRow(std::string_view kind, double false_alarm_rate) {
 
 double UnlikeShare(std::string_view kind) { return Of(kind).unlike; }
 
+double LikeShare(std::string_view kind) { return Of(kind).of_its_kind; }
+
 }  // namespace contour::diagnosis

@@ -15,8 +15,9 @@ inline constexpr std::string_view kUnexplained = "unexplained";
 struct ErrorScore {
   std::string_view kind;
   double share = 0.0, scale = 0.0;
-  /// Of a score, once a cause of this kind is accepted: what is left of it may look like others by so much.
-  double unlike = 0.0;
+  /// Of a score, once a cause of this kind is accepted: what is left of it may look like others by so much,
+  /// and like another one of its kind by so much more.
+  double unlike = 0.0, of_its_kind = 0.0;
 };
 
 /// What the model's own errors may add to a score above the gate of kCalibratedRate before all kinds together
@@ -24,5 +25,6 @@ struct ErrorScore {
 double MarginPerRow(std::string_view kind, double false_alarm_rate);
 
 double UnlikeShare(std::string_view kind);
+double LikeShare(std::string_view kind);
 
 }  // namespace contour::diagnosis

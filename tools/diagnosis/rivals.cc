@@ -71,17 +71,16 @@ void Judge(const Problem& problem, const Fit& current, Rival& r) {
   r.score = out ? kNever : current.cost - r.fit.cost - Penalty(r.effect());
 }
 
-// An effect that is there makes its own score scatter from block to block, too: beyond this, scatter says no
-// more about chance.
-constexpr double kMostExcess = 3.0;
-
 // Beside a large cause the score test falls short by as much: the noise that it was made under has the other
 // one in it.
 constexpr double kShortBeside = 0.1;
 
 bool Promising(const Problem& problem, const Scored& s, Gate gate) {
   gate.left *= kShortBeside;
-  return s.drop / std::min(s.excess, kMostExcess) - Penalty(*s.effect) > Threshold(problem, gate, *s.effect);
+  for (auto& [kind, left] : gate.left_of_kind) left *= kShortBeside;
+  Showing showing = ShowingOf(problem, s);
+  showing.excess = std::min(s.excess, kMostExcess);
+  return s.drop / showing.excess - Penalty(*s.effect) > Threshold(problem, gate, *s.effect, showing);
 }
 
 /// From the linear estimate.

@@ -26,6 +26,10 @@ struct Scored {
   double excess = 1.0;
 };
 
+/// An effect that is there makes its own score scatter from block to block, too: beyond this, scatter says no
+/// more about chance.
+inline constexpr double kMostExcess = 3.0;
+
 double Penalty(const Effect& effect);
 
 /// Whether the kind is a number of the base model: its evidence is in the priors.

@@ -69,8 +69,8 @@ double CommonScale(std::vector<double> exceeding) {
   return 0.5 * (exceeding[(n - 1) / 2] + exceeding[n / 2]) / std::numbers::ln2;
 }
 
-std::string Entry(const std::string& kind, double share, double scale, double unlike) {
-  return FormatText("{\"%s\", %.4f, %.2f, %.1e},\n", kind.c_str(), share, scale, unlike);
+std::string Entry(const std::string& kind, double share, double scale, double unlike, double like) {
+  return FormatText("{\"%s\", %.4f, %.2f, %.1e, %.1e},\n", kind.c_str(), share, scale, unlike, like);
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ std::string MarginTable(std::istream& evidence) {
   std::set<std::string> clean;
   std::map<std::string, Exceeding> kinds;
   std::vector<double> all;
-  std::map<std::string, double> unlike;
+  std::map<std::string, double> unlike, of_its_kind;
   std::vector<Line> beside;
   for (std::string text; std::getline(evidence, text);) {
     const Line l = LineFrom(text);
@@ -103,16 +103,19 @@ std::string MarginTable(std::istream& evidence) {
   // The hidden kind is in the case's name: clear_KIND_0001.
   for (const Line& l : beside) {
     const std::string kind = l.log.substr(6, l.log.rfind('_') - 6);
-    // A further order of the kind is another cause.
-    const double share = std::max(kLeastUnlike, kUnlikeReserve * (l.tested - l.flips) / l.explained);
-    unlike[kind] = std::max(unlike[kind], share);
+    // A further order of the kind is another cause, and takes more of what is left than others do.
+    const double share = kUnlikeReserve * (l.tested - l.flips) / l.explained;
+    double& most = l.kind == kind ? of_its_kind[kind] : unlike[kind];
+    most = std::max(most, share);
     kinds.try_emplace(kind);
   }
   // What no log has shown yet, half a log may have.
-  std::string out = Entry("", 0.5 / logs, scale, kLeastUnlike);
-  for (const auto& [kind, e] : kinds)
-    out +=
-        Entry(kind, e.count / logs, (e.sum + scale) / (e.count + 1.0), std::max(kLeastUnlike, unlike[kind]));
+  std::string out = Entry("", 0.5 / logs, scale, kLeastUnlike, 0.0);
+  for (const auto& [kind, e] : kinds) {
+    const double others = std::max(kLeastUnlike, unlike[kind]);
+    out += Entry(kind, e.count / logs, (e.sum + scale) / (e.count + 1.0), others,
+                 std::max(0.0, of_its_kind[kind] - others));
+  }
   return out;
 }
 

@@ -156,6 +156,7 @@ class Judgement {
     const std::lock_guard lock(mutex_);
     outcomes_.push_back(outcome);
     AppendCsv(csv_, outcome);
+    if (!options_.sizes.empty()) AppendSizes(options_.sizes, outcome);
     if (options_.verbose) PrintJudged(outcome);
     return FalseAlarm(outcome);
   }

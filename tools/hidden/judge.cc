@@ -41,6 +41,7 @@ void CheckIntervals(const Cause& cause, const Hidden& hidden, Judged& judged) {
   for (const auto& [name, truth] : hidden.truth) {
     const auto at = cause.parameters.find(name);
     char text[200];
+    if (at != cause.parameters.end()) judged.sizes.push_back({name, truth, at->second});
     if (at == cause.parameters.end()) {
       std::snprintf(text, sizeof text, "%s missing; ", name.c_str());
     } else if (truth >= at->second.low && truth <= at->second.high) {
@@ -113,6 +114,7 @@ Judged Judge(const Diagnosis& answer, const std::vector<Hidden>& hidden, Misfit 
     if (cause.kind != hidden.front().kind) continue;
     judged.itself = true;
     judged.gain = cause.heldout_gain;
+    judged.evidence = cause.log_evidence_gain;
     CheckIntervals(cause, hidden.front(), judged);
     break;
   }

@@ -13,6 +13,13 @@ namespace contour::hidden {
 /// Whether a kind is none of the catalogue: then `unexplained` without a name is right.
 bool OutsideCatalogue(const std::string& kind);
 
+/// A true parameter of a hidden effect, and what is told of it.
+struct ToldSize {
+  std::string name;
+  double truth = 0.0;
+  diagnosis::Interval told;
+};
+
 /// How an answer compares with what was hidden. Causes that only name how the plant differs from what a model
 /// can express (Misfit) are left out before it is judged.
 struct Judged {
@@ -25,6 +32,8 @@ struct Judged {
   double gain = 0.0;    ///< held-out, of the cause that is right
   int extra = 0;        ///< accepted causes beyond what was hidden
   std::string answer;   ///< "cogging", "cogging|periodic_force", "nothing_found", ...
+  double evidence = 0.0;  ///< that the cause which is right was accepted with; nats
+  std::vector<ToldSize> sizes;
   std::string outside;  ///< parameters whose truth lies outside: "amplitude_Nm 0.01 not in [..]"
 };
 

@@ -40,6 +40,7 @@ How to judge:
   --strict-rate R      clean machines that raise an alarm are asked again at this rate
   --bootstrap N        refits with every stroke at random, for the intervals (0)
   --evidence FILE      what every kind scored in every log and round, appended to a table (slower)
+  --sizes FILE         true sizes and what is told of them, appended to a table
 
   --threads N          (number of processors)
   --out DIR            results.csv and results.md go there (with --judge: beside the cases)
@@ -125,8 +126,10 @@ bool Take(const std::string& option, const std::string& value, Options& o) {
       return true;
     }
   std::string Options::*const texts[] = {&Options::record, &Options::judge,    &Options::keep,
-                                         &Options::out,    &Options::evidence, &Options::calibrate};
-  const char* const text_names[] = {"--record", "--judge", "--keep", "--out", "--evidence", "--calibrate"};
+                                         &Options::out,    &Options::evidence, &Options::calibrate,
+                                         &Options::sizes};
+  const char* const text_names[] = {"--record",   "--judge",     "--keep", "--out",
+                                    "--evidence", "--calibrate", "--sizes"};
   for (std::size_t i = 0; i < std::size(texts); ++i)
     if (option == text_names[i]) {
       o.*texts[i] = value;

@@ -34,6 +34,9 @@ void AppendCsv(const std::filesystem::path& file, const Outcome& outcome);
 
 /// All lines of results.csv; none when there is no file. Throws std::runtime_error when it is of another
 /// form.
+/// A line for each true parameter that something is told of.
+void AppendSizes(const std::filesystem::path& file, const Outcome& outcome);
+
 std::vector<Outcome> ReadCsv(const std::filesystem::path& file);
 
 }  // namespace contour::hidden
