@@ -93,6 +93,49 @@ TEST(ForwardFilter, WhatIsNoMachineHasNoResidualAndDisturbsNone) {
   }
 }
 
+double Distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(sum);
+}
+
+// Below zero, `rough` is a speed below which the bristle does not wear. A fit goes there step by step, so a
+// little more of it must change little.
+TEST(ForwardFilter, ABristleThatCreepingDoesNotWearChangesSmoothly) {
+  test::HiddenOptions o;
+  o.duration_s = 10.0;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Problem problem(axis.log, axis.stated, 1);
+  const AxisModel wears = problem.Build(Stated(problem));
+  std::vector<AxisModel> models(3, wears);
+  const double vs = problem.nominal_.friction.vs;
+  models[0].rough = 0.0;
+  models[1].rough = -0.01 * vs * vs;
+  models[2].rough = 1.01 * models[1].rough;
+  const auto runs = RunFilter(problem.setup_, models, 1);
+  const double all = Distance(runs[0].innovation, runs[1].innovation);
+  EXPECT_GT(all, 0.0);
+  EXPECT_LT(Distance(runs[1].innovation, runs[2].innovation), 0.1 * all);
+}
+
+// What the scale reads beyond the encoder is no matter of the forces, which move the model's own position.
+TEST(ForwardFilter, ErrorsOfTheForcesLeaveTheScaleOfARigidAxisAlone) {
+  test::HiddenOptions o;
+  o.duration_s = 10.0;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Problem problem(axis.log, axis.stated, 1);
+  std::vector<Point> points(2, Stated(problem));
+  for (std::size_t t = 0; t < problem.terms_.size(); ++t)
+    if (problem.terms_[t].name == "Fc") points[1].base[t] = 0.3;
+  const auto raw = problem.Raw(points);
+  const auto rows = static_cast<std::ptrdiff_t>(problem.rows());
+  const double moved =
+      Distance({raw[0].begin(), raw[0].begin() + rows}, {raw[1].begin(), raw[1].begin() + rows});
+  ASSERT_GT(moved * axis.stated.table_per_q, 1e-5);
+  for (std::ptrdiff_t k = rows; k < 2 * rows; ++k)
+    EXPECT_NEAR(raw[0][static_cast<std::size_t>(k)], raw[1][static_cast<std::size_t>(k)], 1e-9);
+}
+
 TEST(DeliveredMeans, HoldDelayAndLagAreExact) {
   AxisLog log;
   log.period_s = 1e-3;

@@ -206,7 +206,8 @@ std::vector<std::vector<double>> Problem::Raw(std::span<const AxisModel> models,
   for (std::size_t i = 0; i < models.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
     if (!has_scale()) continue;
-    AddScale(runs[i].table_position, models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr,
+    AddScale(runs[i].table_position, models[i].two_inertia,
+             models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr,
              log_.table_position_m.data(), raw[i], extent);
   }
   return raw;
@@ -226,16 +227,18 @@ double Problem::ExplainedByExtras(const Point& point) const {
   return squares(white[1]) - squares(white[0]);
 }
 
-void Problem::AddScale(const std::vector<double>& table, const double* error, const double* measured,
-                       std::vector<double>& raw, Extent extent) const {
+void Problem::AddScale(const std::vector<double>& table, bool two, const double* error,
+                       const double* measured, std::vector<double>& raw, Extent extent) const {
   const std::size_t n = table.size();
+  // The correction goes only part of the way to the encoder's reading.
+  const double rest = 1.0 - (two ? setup_.gain_two : setup_.gain)[0];
   raw.resize(2 * n);
   const auto row = [&](std::size_t i) { return extent == Extent::kWhole ? i : excerpt_.row[i]; };
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t k = row(i);
-    const double e = (measured != nullptr ? measured[k] : 0.0) - stated_.table_per_q * table[i] -
-                     (error != nullptr ? error[k] : 0.0);
+    const double e = (measured != nullptr ? measured[k] : 0.0) -
+                     stated_.table_per_q * (table[i] + rest * raw[i]) - (error != nullptr ? error[k] : 0.0);
     raw[n + i] = e;
     if (ScaleCounts(k)) {
       sum += e;
@@ -308,7 +311,8 @@ std::vector<std::vector<double>> Problem::LinearResponses(const Point& point,
   for (std::size_t i = 0; i < runs.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
     if (has_scale())
-      AddScale(runs[i].table_position, errors[i] ? errors[i]->data() : nullptr, nullptr, raw[i]);
+      AddScale(runs[i].table_position, without.two_inertia, errors[i] ? errors[i]->data() : nullptr, nullptr,
+               raw[i]);
   }
   return White(raw);
 }
@@ -346,8 +350,8 @@ void Problem::LearnNoise(const Point& point) {
                        stated_.position_step);
   std::vector<double> raw = noise_.linear().innovation;
   if (has_scale()) {
-    AddScale(noise_.linear().table, model.scale_error_m ? model.scale_error_m->data() : nullptr,
-             log_.table_position_m.data(), raw);
+    AddScale(noise_.linear().table, model.two_inertia,
+             model.scale_error_m ? model.scale_error_m->data() : nullptr, log_.table_position_m.data(), raw);
     const std::vector<double> noise = WithoutShape(std::span(raw).subspan(n), counted_, *signals_);
     std::copy(noise.begin(), noise.end(), raw.begin() + static_cast<std::ptrdiff_t>(n));
     scale_noise_ = Whitener(std::span(raw).subspan(n), counted_);

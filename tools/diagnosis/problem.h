@@ -118,8 +118,10 @@ class Problem {
   bool ScaleCounts(std::size_t k) const {
     return counted_[k] != 0 && std::isfinite(log_.table_position_m[k]);
   }
-  /// Appends what the scale reads beyond the table's position and the error, less its mean.
-  void AddScale(const std::vector<double>& table, const double* error, const double* measured,
+  /// Appends what the scale reads beyond the encoder less the wind-up that the model has, and beyond the
+  /// error, less its mean. `raw` holds the innovations: an error of the forces moves the model's own
+  /// position, which is no matter of the scale.
+  void AddScale(const std::vector<double>& table, bool two, const double* error, const double* measured,
                 std::vector<double>& raw, Extent extent = Extent::kWhole) const;
   /// The weights of the excerpt from those of the log.
   void WeighExcerpt();
