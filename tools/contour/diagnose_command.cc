@@ -23,6 +23,7 @@
 #include "tools/diagnosis/files/extensions_of.h"
 #include "tools/diagnosis/files/read_log.h"
 #include "tools/diagnosis/files/read_stated_axis.h"
+#include "tools/diagnosis/keep_memory.h"
 #include "tools/diagnosis/predict/contour_gain.h"
 #include "tools/diagnosis/report/report.h"
 
@@ -94,6 +95,7 @@ std::string PredictionText(const ContourGain& gain) {
 }
 
 int RunDiagnose(const Options& options) {
+  KeepMemory();
   const StatedAxis stated = ReadStatedAxis(options.model, options.axis, options.set);
   const AxisLog log = ReadLogs(options, stated);
   DiagnoseOptions how;

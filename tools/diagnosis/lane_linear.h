@@ -49,6 +49,7 @@ struct LaneProducts {
   const double* const* a = nullptr;
   const double* const* b = nullptr;
   double* out = nullptr;  ///< a_count x b_count, by rows
+  bool alike = false;     ///< b is a: only what lies on and right of the diagonal is made
 };
 
 }  // namespace contour::diagnosis

@@ -7,7 +7,8 @@ struct LaneColumns;
 struct LaneWhiten;
 struct LaneProducts;
 
-/// One translation of the loops; all give the same bits.
+/// One translation of the loops. Those for AVX2 and AVX-512 multiply and add in one rounding and give the
+/// same bits; the baseline differs from them by rounding.
 struct LaneLoops {
   void (*run)(const Lanes& m);
   /// Two bundles of one shape over the same rows, faster than one after the other. No linearisation.

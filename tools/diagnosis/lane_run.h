@@ -28,7 +28,7 @@ struct LanePush {
 inline constexpr std::size_t kTangentStates = 9;
 
 /// One bundle of runs, as the loops take it: plain arrays, nothing that the translations of the loops
-/// (by instruction set; the same operations in the same order, so the same bits) could share by accident.
+/// (by instruction set) could share by accident.
 struct Lanes {
   std::size_t rows = 0;
   int substeps = 0;

@@ -22,10 +22,32 @@ Eigen::MatrixXd ProductsOf(std::span<const double* const> a, std::span<const dou
       m.a = a.data() + i;
       m.b = b.data() + j;
       m.out = part.data();
+      m.alike = rows == columns && std::equal(m.a, m.a + rows, m.b);
       BestLoops().products(m);
       for (std::size_t r = 0; r < rows; ++r)
         for (std::size_t c = 0; c < columns; ++c)
-          out(static_cast<Eigen::Index>(i + r), static_cast<Eigen::Index>(j + c)) = part[r * columns + c];
+          out(static_cast<Eigen::Index>(i + r), static_cast<Eigen::Index>(j + c)) =
+              part[m.alike && c < r ? c * columns + r : r * columns + c];
+    }
+  return out;
+}
+
+ProductsInBlocks MakeProductsInBlocks(std::span<const double* const> a, std::span<const double* const> b,
+                                      const double* r, std::size_t rows, std::size_t size,
+                                      std::size_t blocks) {
+  const auto count = static_cast<Eigen::Index>(a.size()), columns = static_cast<Eigen::Index>(b.size());
+  ProductsInBlocks out{Eigen::MatrixXd::Zero(count, columns),
+                       Eigen::MatrixXd::Zero(columns, static_cast<Eigen::Index>(blocks))};
+  std::vector<const double*> left(a.begin(), a.end()), right(b.begin(), b.end());
+  left.push_back(r);
+  for (std::size_t base = 0; base < size; base += rows)
+    for (std::size_t i = 0; i < blocks; ++i) {
+      const std::size_t from = base + rows * i / blocks, to = base + rows * (i + 1) / blocks;
+      for (std::size_t c = 0; c < left.size(); ++c) left[c] = (c < a.size() ? a[c] : r) + from;
+      for (std::size_t c = 0; c < right.size(); ++c) right[c] = b[c] + from;
+      const Eigen::MatrixXd part = ProductsOf(left, right, to - from);
+      out.products += part.topRows(count);
+      out.with_r.col(static_cast<Eigen::Index>(i)) += part.row(count).transpose();
     }
   return out;
 }

@@ -10,19 +10,11 @@
 namespace contour::diagnosis {
 namespace {
 
-using Column = Eigen::Map<const Eigen::VectorXd>;
-
-// Inner products of columns with the residual, per block of time.
-void AddBlocks(const double* column, const double* residual, std::size_t rows, std::size_t size,
-               Eigen::Ref<Eigen::RowVectorXd> out) {
-  for (Eigen::Index b = 0; b < kBlocks; ++b) {
-    const std::size_t from = rows * static_cast<std::size_t>(b) / kBlocks;
-    const std::size_t to = rows * static_cast<std::size_t>(b + 1) / kBlocks;
-    double sum = 0.0;
-    for (std::size_t base = 0; base < size; base += rows)
-      for (std::size_t k = base + from; k < base + to; ++k) sum += column[k] * residual[k];
-    out(b) = sum;
-  }
+// Products of columns with each other and, in blocks of time, with the residual.
+ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<const double* const> a,
+                          std::span<const double* const> b) {
+  return MakeProductsInBlocks(a, b, fit.residual.data(), problem.rows(), problem.data_size(),
+                              static_cast<std::size_t>(kBlocks));
 }
 
 double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
@@ -53,12 +45,7 @@ double ExcessOfLast(const Problem& problem, const Fit& fit) {
   if (InBase(problem, fit.point.effects.back()->kind)) return 1.0;
   const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
   const Eigen::Index others = fit.jacobian.cols() - n;
-  Eigen::MatrixXd blocks(fit.jacobian.cols(), kBlocks);
-  for (Eigen::Index i = 0; i < fit.jacobian.cols(); ++i) {
-    Eigen::RowVectorXd row(kBlocks);
-    AddBlocks(fit.jacobian.col(i).data(), fit.residual.data(), problem.rows(), problem.data_size(), row);
-    blocks.row(i) = row;
-  }
+  const Eigen::MatrixXd blocks = InBlocks(problem, fit, {}, ColumnsOf(fit.jacobian)).with_r;
   Eigen::MatrixXd normal = fit.normal;
   for (std::size_t i = 0; i < fit.point.base.size(); ++i)
     normal(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) +=
@@ -130,29 +117,28 @@ std::vector<std::vector<double>> TermColumns(const Problem& problem, const Fit& 
 class Scorer {
  public:
   Scorer(const Problem& problem, const Fit& fit)
-      : problem_(problem), fit_(fit), base_columns_(ColumnsOf(fit.jacobian)) {
-    base_blocks_.resize(fit.jacobian.cols(), kBlocks);
-    for (Eigen::Index i = 0; i < fit.jacobian.cols(); ++i)
-      base_blocks_.row(i) = BlocksOf(fit.jacobian.col(i).data());
-  }
+      : problem_(problem),
+        fit_(fit),
+        base_columns_(ColumnsOf(fit.jacobian)),
+        base_blocks_(InBlocks(problem, fit, {}, base_columns_).with_r) {}
 
-  /// The effect with all its columns, then as much shorter as it may be.
-  void Score(const SharedEffect& effect, std::span<const std::vector<double>> columns,
+  /// Every effect with all its columns, then as much shorter as it may be.
+  void Score(std::span<const SharedEffect> effects, std::span<const std::vector<double>> columns,
              std::vector<Scored>& out) const {
-    const Eigen::Index base = fit_.jacobian.cols(), n = static_cast<Eigen::Index>(columns.size());
-    std::vector<const double*> g;
-    for (const std::vector<double>& c : columns) g.push_back(c.data());
-    std::vector<const double*> with = base_columns_;
-    with.insert(with.end(), g.begin(), g.end());
-    with.push_back(fit_.residual.data());
-    const Eigen::MatrixXd products = ProductsOf(with, g, problem_.data_size());
-    Eigen::MatrixXd blocks(n, kBlocks);
-    for (Eigen::Index i = 0; i < n; ++i) blocks.row(i) = BlocksOf(g[static_cast<std::size_t>(i)]);
-    for (SharedEffect e = effect; e; e = e->shorter) {
-      const auto m = static_cast<Eigen::Index>(e->tested);
-      const Eigen::MatrixXd own = products.block(base, 0, m, m);
-      out.push_back(ScoreOne(e, products.topLeftCorner(base, m), own,
-                             products.row(base + n).head(m).transpose(), blocks.topRows(m)));
+    std::vector<const double*> all;
+    for (const std::vector<double>& c : columns) all.push_back(c.data());
+    const ProductsInBlocks with_base = InBlocks(problem_, fit_, base_columns_, all);
+    std::size_t first = 0;
+    for (const SharedEffect& effect : effects) {
+      const std::span<const double* const> own = std::span(all).subspan(first, effect->tested);
+      const Eigen::MatrixXd square = ProductsOf(own, own, problem_.data_size());
+      const auto at = static_cast<Eigen::Index>(first);
+      for (SharedEffect e = effect; e; e = e->shorter) {
+        const auto m = static_cast<Eigen::Index>(e->tested);
+        out.push_back(ScoreOne(e, with_base.products.middleCols(at, m), square.topLeftCorner(m, m),
+                               with_base.with_r.middleRows(at, m)));
+      }
+      first += effect->tested;
     }
   }
 
@@ -197,15 +183,10 @@ class Scorer {
     s.covariance.topLeftCorner(n, n) = back * spread.asDiagonal() * back.transpose();
   }
 
-  Eigen::RowVectorXd BlocksOf(const double* column) const {
-    Eigen::RowVectorXd row(kBlocks);
-    AddBlocks(column, fit_.residual.data(), problem_.rows(), problem_.data_size(), row);
-    return row;
-  }
-
   Scored ScoreOne(const SharedEffect& effect, const Eigen::MatrixXd& cross, const Eigen::MatrixXd& square,
-                  const Eigen::VectorXd& gradient, const Eigen::MatrixXd& blocks) const {
+                  const Eigen::MatrixXd& blocks) const {
     Scored s;
+    const Eigen::VectorXd gradient = blocks.rowwise().sum();
     s.effect = effect;
     const Eigen::Index n = square.rows();
     const Eigen::MatrixXd onto = fit_.covariance * cross;
@@ -262,11 +243,8 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::ve
       columns = problem.LinearResponses(fit.point, some);
     else
       columns = means == Means::kRuns ? RunColumns(problem, fit, some) : TermColumns(problem, fit, some);
-    std::size_t first = 0;
-    for (; at < end; ++at) {
-      scorer.Score(effects[at], std::span(columns).subspan(first, effects[at]->tested), out);
-      first += effects[at]->tested;
-    }
+    scorer.Score(some, columns, out);
+    at = end;
   }
   return out;
 }

@@ -76,6 +76,34 @@ Signal Derivative(const Signal& x, double sigma_rows, double period_s) {
   return Convolve(x, g);
 }
 
+namespace {
+
+/// What changes in many rows only: smoothed means of a tenth of the width each, straight lines between.
+Signal SmoothSlow(const Signal& x, double sigma_rows) {
+  constexpr double kPerSigma = 10.0;
+  const std::size_t n = x.size(),
+                    each = std::max<std::size_t>(1, static_cast<std::size_t>(sigma_rows / kPerSigma));
+  Signal means;
+  for (std::size_t from = 0; from < n; from += each) {
+    const std::size_t to = std::min(n, from + each);
+    double sum = 0.0;
+    for (std::size_t k = from; k < to; ++k) sum += x[k];
+    means.push_back(sum / static_cast<double>(to - from));
+  }
+  const Signal smooth = Smooth(means, sigma_rows / static_cast<double>(each));
+  Signal out(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double at = std::clamp((static_cast<double>(k) + 0.5) / static_cast<double>(each) - 0.5, 0.0,
+                                 static_cast<double>(smooth.size() - 1));
+    const auto i = std::min(static_cast<std::size_t>(at), smooth.size() - 1);
+    const double next = smooth[std::min(i + 1, smooth.size() - 1)];
+    out[k] = smooth[i] + (at - static_cast<double>(i)) * (next - smooth[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
 Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   Signals s;
   const double sigma = kKinematicSigma_s / log.period_s;
@@ -96,7 +124,7 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   for (const double w : s.velocity) s.max_speed = std::max(s.max_speed, std::fabs(w));
   s.coulomb = 0.5 * (stated.friction.Fc_plus + stated.friction.Fc_minus);
   if (!log.temperature_degC.empty()) {
-    s.temperature_K = Smooth(Filled(log.temperature_degC), 0.25 / log.period_s);
+    s.temperature_K = SmoothSlow(Filled(log.temperature_degC), 0.25 / log.period_s);
     double mean = 0.0;
     for (const double t : s.temperature_K) mean += t / static_cast<double>(log.size());
     for (double& t : s.temperature_K) t -= mean;

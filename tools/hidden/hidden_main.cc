@@ -16,6 +16,7 @@
 
 #include "core/exit_status.h"
 #include "tools/diagnosis/diagnose.h"
+#include "tools/diagnosis/keep_memory.h"
 #include "tools/hidden/calibrate.h"
 #include "tools/hidden/options.h"
 #include "tools/hidden/outcome.h"
@@ -216,6 +217,7 @@ void DoBoth(const Options& o, int argc, char** argv) {
 }  // namespace contour::hidden
 
 int main(int argc, char** argv) {
+  contour::diagnosis::KeepMemory();
   using namespace contour::hidden;
   try {
     const Options options = ParseOptions(argc, argv);
