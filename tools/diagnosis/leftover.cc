@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/diagnosis/firm_slides.h"
 #include "tools/diagnosis/leftover_maps.h"
 #include "tools/diagnosis/margins.h"
 #include "tools/diagnosis/score.h"
@@ -104,8 +105,9 @@ std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit) {
   const std::vector<double> weight(problem.root_weight_.begin(), problem.root_weight_.begin() + n);
   const NoiseFilter::Gradient back = problem.noise_.Back(innovation, problem.counted_, weight.data());
   const std::vector<double> response = PulseResponse(problem, false);
-  const BinnedRows known = FrictionCurve(problem);
-  const std::vector<BinnedRows> maps = LeftoverMaps(problem);
+  const std::vector<bool> slides = OfAnotherLaw(problem, fit) ? FirmSlides(problem) : Slides(problem);
+  const BinnedRows known = FrictionCurve(problem, slides);
+  const std::vector<BinnedRows> maps = LeftoverMaps(problem, slides);
   std::vector<Leftover> out;
   for (const BinnedRows& rows : maps) {
     out.push_back(TestBins(rows, known, back.motor, response, weight));

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "tools/diagnosis/firm_slides.h"
+
 namespace contour::diagnosis {
 namespace {
 
@@ -35,39 +37,15 @@ std::string Text(double x, const char* unit) {
   return text;
 }
 
-std::vector<bool> Slides(const Problem& p) {
-  std::vector<bool> out(p.rows());
-  for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = p.counted_[k] != 0 && std::fabs(p.signals_->sign[k]) > kSlides;
-  return out;
-}
-
 /// Slow speeds in finer steps.
 int SpeedBin(const Signals& s, std::size_t k) {
   return Range{}.Bin(std::sqrt(std::fabs(s.velocity[k]) / std::max(s.max_speed, 1e-12)), kSpeeds);
 }
 
-std::vector<double> WaySinceReversal(const Signals& s) {
-  const Signal& x = s.table_m;
-  std::vector<double> way(x.size(), 0.0);
-  double turned_at = x[0], furthest = x[0];
-  bool up = true;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    if (up ? x[k] > furthest : x[k] < furthest) furthest = x[k];
-    // Friction says when the axis has turned; noise of the reading does not.
-    if (std::fabs(s.sign[k]) > kSlides && (s.sign[k] > 0.0) != up) {
-      up = !up;
-      turned_at = furthest;
-      furthest = x[k];
-    }
-    way[k] = std::fabs(x[k] - turned_at);
-  }
-  return way;
-}
-
 class Maps {
  public:
-  explicit Maps(const Problem& p) : p_(p), s_(*p.signals_), n_(p.rows()), slides_(Slides(p)) {}
+  Maps(const Problem& p, const std::vector<bool>& slides)
+      : p_(p), s_(*p.signals_), n_(p.rows()), slides_(slides) {}
 
   std::vector<BinnedRows> All() {
     const Range x = RangeOf(s_.table_m);
@@ -142,17 +120,25 @@ class Maps {
   const Problem& p_;
   const Signals& s_;
   std::size_t n_;
-  std::vector<bool> slides_;
+  const std::vector<bool>& slides_;
   std::vector<BinnedRows> out_;
 };
 
 }  // namespace
 
-std::vector<BinnedRows> LeftoverMaps(const Problem& problem) { return Maps(problem).All(); }
+std::vector<bool> Slides(const Problem& p) {
+  std::vector<bool> out(p.rows());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = p.counted_[k] != 0 && std::fabs(p.signals_->sign[k]) > kSlides;
+  return out;
+}
 
-BinnedRows FrictionCurve(const Problem& problem) {
+std::vector<BinnedRows> LeftoverMaps(const Problem& problem, const std::vector<bool>& slides) {
+  return Maps(problem, slides).All();
+}
+
+BinnedRows FrictionCurve(const Problem& problem, const std::vector<bool>& slides) {
   const Signals& s = *problem.signals_;
-  const std::vector<bool> slides = Slides(problem);
   BinnedRows rows;
   rows.bin.assign(slides.size(), -1);
   rows.size = s.sign;

@@ -10,6 +10,7 @@
 
 #include "tools/diagnosis/common_factor.h"
 #include "tools/diagnosis/effects.h"
+#include "tools/diagnosis/firm_slides.h"
 #include "tools/diagnosis/lanes.h"
 #include "tools/diagnosis/products.h"
 
@@ -68,7 +69,7 @@ void Judge(const Problem& problem, const Fit& current, Rival& r) {
   const bool coupling = AddsCoupling(problem, r);
   const bool out = !std::isfinite(r.fit.cost) || (coupling && NoCoupling(r)) || NoDrag(r);
   r.no_fault = !out && coupling && NoFault(problem, r);
-  r.score = out ? kNever : current.cost - r.fit.cost - Penalty(r.effect());
+  r.score = out ? kNever : DropOf(problem, current, r.fit) - Penalty(r.effect());
 }
 
 // Beside a large cause the score test falls short by as much: the noise that it was made under has the other
@@ -325,7 +326,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   for (Rival& r : rivals) {
     Judge(problem, current, r);
     const bool by_priors = InBase(problem, r.effect().kind);
-    if (!by_priors && !r.effect().signals) continue;
+    if (!by_priors && (!r.effect().signals || OfAnotherLaw(problem, current))) continue;
     // The base may lie in another valley since: from there anew, where the score test promises far more.
     const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
     const double promised = s.drop - Penalty(*s.effect);
