@@ -42,7 +42,7 @@ constexpr double kStiffest_Hz = 700.0;
 
 // A cause must also hold in several blocks, in unseen halves and against its rivals, and the rest of the fit
 // takes a part of it over: by recorded machines (docs/diagnosis_results.md).
-constexpr double kBeyondTheGate = 2.5;
+constexpr double kBeyondTheGate = 1.6;
 // The same where the size comes from runs at that size.
 constexpr double kBeyondRuns = 1.5;
 
@@ -59,6 +59,9 @@ double Needed(const Problem& problem, const Gate& gate, const Scored& s) {
   return Needed(Threshold(problem, gate, *s.effect, ShowingOf(problem, s)) + Penalty(*s.effect));
 }
 
+/// An effect that is there makes every score scatter.
+double ByChance(const Scored& s) { return std::min(s.excess, kMostExcess); }
+
 /// By the first amplitude: the linear estimate of what exceeds the gate in 90 % of cases.
 double LinearSize(const Problem& problem, const Gate& gate, const Scored& s) {
   const std::string& kind = s.effect->kind;
@@ -72,7 +75,7 @@ double LinearSize(const Problem& problem, const Gate& gate, const Scored& s) {
   }
   // The mean standard error over the amplitudes; a shape may lie along any of them.
   const double n = static_cast<double>(s.covariance.rows());
-  return Needed(problem, gate, s) * std::sqrt(std::max(0.0, s.covariance.trace() / n) * s.excess);
+  return Needed(problem, gate, s) * std::sqrt(std::max(0.0, s.covariance.trace() / n) * ByChance(s));
 }
 
 /// An effect and the first amplitude that is found in 90 % of cases.
@@ -145,7 +148,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
   double enough = 0.0;
   std::vector<double> promising;
   for (const Scored& s : scored) {
-    if (s.effect == linear.effect) enough = std::pow(Needed(problem, gate, s), 2) * s.excess;
+    if (s.effect == linear.effect) enough = std::pow(Needed(problem, gate, s), 2) * ByChance(s);
     if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
     points.push_back(Beside(base, s.effect, s.effect->steps[0]));
     promising.push_back(kMostExcess * std::pow(Needed(problem, gate, s) - kNinety, 2));
@@ -185,7 +188,7 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   const Eigen::VectorXd promised = LeftOf(problem, base, points).diagonal();
   const Scored* best = nullptr;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double enough = std::pow(kBeyondRuns * Needed(problem, gate, *places[i]), 2) * places[i]->excess;
+    const double enough = std::pow(kBeyondRuns * Needed(problem, gate, *places[i]), 2) * ByChance(*places[i]);
     if (promised(static_cast<Eigen::Index>(i)) > enough &&
         (best == nullptr || places[i]->effect->order > best->effect->order))
       best = places[i];
@@ -222,7 +225,7 @@ void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Sco
     at.covariance = Eigen::MatrixXd::Zero(count, count);
     Cause described;
     described.kind = kind;
-    DescribeEffect(problem, at, 0, described);
+    DescribeEffect(problem, at, at.point.effects.size() - 1, described);
     const std::string name = MainParameter(kind);
     out.smallest_detectable[kind][name] = std::fabs(described.parameters[name].value);
   }
@@ -230,6 +233,7 @@ void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Sco
     out.smallest_detectable["sample_jitter"]["rms_us"] =
         1e6 * std::sqrt(kBeyondTheGate * Needed(Threshold(problem, gate) + 3.0) * jitter.sigma_s2);
   }
+  out.not_excited.clear();
   for (const std::string_view kind : kKinds)
     if (!out.smallest_detectable.contains(std::string(kind))) out.not_excited.emplace_back(kind);
 }

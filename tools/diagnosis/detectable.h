@@ -13,6 +13,7 @@ namespace contour::diagnosis {
 /// standard errors, by the stated uncertainties where these decide, or by runs where a kind is far from
 /// linear, times what it takes to pass the other tests as well. A kind for which the gate alone asks for more
 /// than such an axis can have, or whose signal the log lacks, is not excited.
+/// Beside causes that are accepted: once more, for the others.
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
                     const Jitter& jitter, const Gate& gate, Diagnosis& out);
 

@@ -76,6 +76,7 @@ class Engine {
     Gate beside;  // what may be left of the accepted
     const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
     bool first = true;
+    std::size_t stated_beside = std::numeric_limits<std::size_t>::max();
     std::vector<std::string> tried;  // in this round, and refuted
     for (int round = 0; round < options_.most_effects; ++round) {
       Say("candidates", 0.2 + 0.25 * round);
@@ -89,9 +90,13 @@ class Engine {
         KeepFirst(scored, out);
         out.candidates.push_back(
             {"sample_jitter", jitter.drop - kJitterPenalty, std::numeric_limits<double>::quiet_NaN(), false});
-        KeepDetectable(problem_, current, scored, jitter, gate, out);
         out.gate = Threshold(problem_, gate);
         first = false;
+      }
+      // A cause that is there hides the others; once it is in the model they would be seen by less.
+      if (stated_beside != places_.size()) {
+        stated_beside = places_.size();
+        KeepDetectable(problem_, current, scored, jitter, gate, out);
       }
       const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > Threshold(problem_, gate);
       Say("rivals", 0.3 + 0.25 * round);

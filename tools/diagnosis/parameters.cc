@@ -211,8 +211,10 @@ void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, c
     std::sort(d.begin(), d.end());
     const auto tail = static_cast<std::size_t>(count * kTail);
     const double low = d[tail], high = d[d.size() - 1 - tail];
-    // A peak of noisy amplitudes is drawn too large on the average: turned over about the value.
-    cause.parameters[name] = {v, 2.0 * v - high, 2.0 * v - low};
+    // A peak of noisy amplitudes is drawn too large on the average: turned over about the value. What is a
+    // logarithm in the fit (a Stribeck speed, a stiffness) has its longer side upwards as drawn.
+    const bool peak = name.starts_with("amplitude");
+    cause.parameters[name] = peak ? Interval{v, 2.0 * v - high, 2.0 * v - low} : Interval{v, low, high};
   }
   AddShape(problem, fit, index, first, cause);
 }

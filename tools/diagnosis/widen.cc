@@ -15,7 +15,7 @@ namespace {
 // machines of known size (docs/diagnosis_results.md).
 const std::map<std::pair<std::string, std::string>, double> kModelError = {
     {{"asymmetric_coulomb", "difference_rel"}, 0.02},
-    {{"backlash", "gap_um"}, 0.05},
+    {{"backlash", "gap_um"}, 0.08},
     {{"compliance", "antiresonance_Hz"}, 0.015},
     {{"compliance", "stiffness_Nm_rad"}, 0.05},
     {{"cross_coupling", "torque_per_acceleration_Nms2_m"}, 0.02},
@@ -26,8 +26,8 @@ const std::map<std::pair<std::string, std::string>, double> kModelError = {
     {{"payload_step", "inertia_change_rel"}, 0.01},
     {{"position_friction", "amplitude_rel"}, 0.04},
     {{"sample_jitter", "rms_us"}, 0.01},
-    {{"stribeck", "Fs_over_Fc"}, 0.005},
-    {{"stribeck", "vs_rad_s"}, 0.03},
+    {{"stribeck", "Fs_over_Fc"}, 0.01},
+    {{"stribeck", "vs_rad_s"}, 0.1},
     {{"temperature_viscosity", "rate_1_K"}, 0.03},
     {{"torque_saturation", "loss_at_rated_rel"}, 0.01},
     {{"viscous_nonlinear", "torque_at_max_speed_Nm"}, 0.07},

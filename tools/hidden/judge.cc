@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace contour::hidden {
 namespace {
@@ -41,7 +42,6 @@ void CheckIntervals(const Cause& cause, const Hidden& hidden, Judged& judged) {
   for (const auto& [name, truth] : hidden.truth) {
     const auto at = cause.parameters.find(name);
     char text[200];
-    if (at != cause.parameters.end()) judged.sizes.push_back({name, truth, at->second});
     if (at == cause.parameters.end()) {
       std::snprintf(text, sizeof text, "%s missing; ", name.c_str());
     } else if (truth >= at->second.low && truth <= at->second.high) {
@@ -53,6 +53,23 @@ void CheckIntervals(const Cause& cause, const Hidden& hidden, Judged& judged) {
     judged.inside = false;
     judged.outside += text;
   }
+}
+
+std::vector<ToldSize> SizesOf(const Diagnosis& answer, const Hidden& hidden) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<ToldSize> sizes;
+  for (const auto& [name, truth] : hidden.truth) {
+    ToldSize size{name, truth, {kNone, kNone, kNone}, kNone};
+    for (const Cause& cause : answer.causes) {
+      const auto told = cause.parameters.find(name);
+      if (cause.kind == hidden.kind && told != cause.parameters.end()) size.told = told->second;
+    }
+    const auto smallest = answer.smallest_detectable.find(hidden.kind);
+    if (smallest != answer.smallest_detectable.end() && smallest->second.count(name) > 0)
+      size.smallest = smallest->second.at(name);
+    sizes.push_back(size);
+  }
+  return sizes;
 }
 
 bool Holds(const Cause& cause, const std::string& kind) {
@@ -106,6 +123,7 @@ Judged Judge(const Diagnosis& answer, const std::vector<Hidden>& hidden, Misfit 
     return judged;
   }
   if (!causes.empty()) judged.right = Holds(causes.front(), hidden.front().kind);
+  judged.sizes = SizesOf(answer, hidden.front());
   judged.both = hidden.size() == 2 && std::all_of(hidden.begin(), hidden.end(), [&](const Hidden& h) {
                   return std::any_of(causes.begin(), causes.end(),
                                      [&](const Cause& cause) { return Holds(cause, h.kind); });

@@ -13,11 +13,12 @@ namespace contour::hidden {
 /// Whether a kind is none of the catalogue: then `unexplained` without a name is right.
 bool OutsideCatalogue(const std::string& kind);
 
-/// A true parameter of a hidden effect, and what is told of it.
+/// A true parameter of a hidden effect, and what is told of it; NaN where nothing is.
 struct ToldSize {
   std::string name;
   double truth = 0.0;
   diagnosis::Interval told;
+  double smallest = 0.0;  ///< that would have been found, as the same answer has it
 };
 
 /// How an answer compares with what was hidden. Causes that only name how the plant differs from what a model

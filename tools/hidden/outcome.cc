@@ -128,11 +128,12 @@ void AppendCsv(const std::filesystem::path& file, const Outcome& o) {
 void AppendSizes(const std::filesystem::path& file, const Outcome& o) {
   const bool fresh = !std::filesystem::exists(file);
   std::ofstream out(file, std::ios::app);
-  if (fresh) out << "case,kind,evidence,parameter,truth,value,low,high\n";
+  if (fresh) out << "case,kind,evidence,parameter,truth,value,low,high,smallest_detectable\n";
   out.precision(9);
   for (const ToldSize& s : o.judged.sizes)
     out << CaseName(o.known.question) << ',' << o.known.hidden.front().kind << ',' << o.judged.evidence << ','
-        << s.name << ',' << s.truth << ',' << s.told.value << ',' << s.told.low << ',' << s.told.high << '\n';
+        << s.name << ',' << s.truth << ',' << s.told.value << ',' << s.told.low << ',' << s.told.high << ','
+        << s.smallest << '\n';
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 

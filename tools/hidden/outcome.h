@@ -34,7 +34,7 @@ void AppendCsv(const std::filesystem::path& file, const Outcome& outcome);
 
 /// All lines of results.csv; none when there is no file. Throws std::runtime_error when it is of another
 /// form.
-/// A line for each true parameter that something is told of.
+/// A line for each true parameter, with what is told of it.
 void AppendSizes(const std::filesystem::path& file, const Outcome& outcome);
 
 std::vector<Outcome> ReadCsv(const std::filesystem::path& file);
