@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tools/diagnosis/effects.h"
+#include "tools/diagnosis/full_size.h"
 #include "tools/diagnosis/lanes.h"
 #include "tools/diagnosis/parameters.h"
 #include "tools/diagnosis/products.h"
@@ -36,9 +37,6 @@ double Largest(const Problem& p, const std::string& kind) {
   if (kind == "stribeck" || kind == "compliance") return 1.5;
   return 0.7;
 }
-
-// Beyond it every screw is.
-constexpr double kStiffest_Hz = 700.0;
 
 // A cause must also hold in several blocks, in unseen halves and against its rivals, and the rest of the fit
 // takes a part of it over: by recorded machines (docs/diagnosis_results.md).
@@ -180,7 +178,7 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   std::vector<Point> points;
   std::vector<const Scored*> places;
   for (const Scored& s : scored) {
-    if (s.effect->kind != "compliance" || s.effect->start.empty() || s.effect->order > kStiffest_Hz) continue;
+    if (s.effect->kind != "compliance" || s.effect->start.empty() || s.effect->order > kNoFault_Hz) continue;
     places.push_back(&s);
     points.push_back(Beside(base, s.effect, s.effect->start[0]));
   }

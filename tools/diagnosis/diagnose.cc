@@ -100,8 +100,7 @@ class Engine {
       }
       const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > Threshold(problem_, gate);
       Say("rivals", 0.3 + 0.25 * round);
-      std::vector<Rival> rivals =
-          FitRivals(problem_, current, scored, gate, options_.evidence != nullptr, tried);
+      std::vector<Rival> rivals = RivalsThatMayHold(current, scored, gate, tried);
       if (rivals.empty()) {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
@@ -118,7 +117,7 @@ class Engine {
         continue;
       }
       std::erase_if(rivals, [](const Rival& r) { return r.no_fault; });
-      if (rivals.empty()) {
+      if (rivals.empty() || rivals[0].given_up) {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
       }
@@ -127,6 +126,7 @@ class Engine {
       double tested = 0.0;
       bool found = false;
       for (std::size_t i = 0; i < rivals.size() && !found; ++i) {
+        if (rivals[i].given_up) continue;
         if (i > 0 && rivals[i].score < 0.3 * rivals[0].score && !InBase(problem_, rivals[i].effect().kind))
           continue;
         const double score = TestedScore(problem_, current, rivals[i]);
@@ -189,7 +189,7 @@ class Engine {
     base_ = FitPoint(problem_, start,
                      {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false}, ahead);
     problem_.LearnNoise(base_.point);
-    const FitEffort effort{.most_steps = 12, .most_refreshes = 4};
+    const FitEffort effort{.most_steps = 12, .most_refreshes = 4, .close_enough = 0.1};
     if (ahead == Extent::kExcerpt) {
       base_ = FitPoint(problem_, FitPoint(problem_, base_.point, kToTheValley, ahead).point, effort);
     } else {
@@ -221,6 +221,17 @@ class Engine {
     return scored;
   }
 
+  /// Those that are promised most; where all of them come to nothing in the fit, the next ones.
+  std::vector<Rival> RivalsThatMayHold(const Fit& current, const std::vector<Scored>& scored,
+                                       const Gate& gate, std::vector<std::string>& tried) const {
+    for (;;) {
+      std::vector<Rival> rivals =
+          FitRivals(problem_, current, scored, gate, options_.evidence != nullptr, tried);
+      if (rivals.empty() || options_.evidence || MayHold(problem_, rivals, gate)) return rivals;
+      if (!MorePromised(problem_, scored, gate, tried)) return {};
+    }
+  }
+
   void KeepFirst(const std::vector<Scored>& scored, Diagnosis& out) const {
     for (const Scored& s : scored) {
       const bool known = std::any_of(out.candidates.begin(), out.candidates.end(),
@@ -250,7 +261,7 @@ class Engine {
       e.flips = gate.calibrated;
       e.asked = Threshold(problem_, gate, *s.effect, ShowingOf(problem_, s));
       for (const Rival& r : rivals) {
-        if (r.effect().kind != kind || r.score < kFarOut) continue;
+        if (r.effect().kind != kind || r.score < kFarOut || r.given_up) continue;
         e.penalty = Penalty(r.effect());
         e.refitted = r.score + e.penalty;
         e.asked = Asked(r, gate);
@@ -325,7 +336,7 @@ class Engine {
           c.accepted = &r == &best;
         }
       // What would not have been accepted alone explains too little to be the cause.
-      if (&r != &best && !r.refused && !Outside(kind) && r.score > Asked(r, gate) &&
+      if (&r != &best && !r.refused && !r.given_up && !Outside(kind) && r.score > Asked(r, gate) &&
           r.score > best.score - std::max(12.0, alike * best.score) && !StandsBeside(best.fit, r) &&
           !StandsBeside(r.fit, best))
         cause.indistinguishable_from.push_back(kind);

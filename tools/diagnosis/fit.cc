@@ -32,7 +32,7 @@ double PriorOf(const Problem& problem, const Point& p) {
   return sum;
 }
 
-constexpr double kWorthWhile = 3.0;
+constexpr double kWorthWhile = 3.0, kKept = 0.1;
 
 /// One fit, which says what runs it needs next and goes on when it has them.
 class Descent {
@@ -71,6 +71,9 @@ class Descent {
     stale_ = false;
   }
 
+  /// Whether what was asked for serves for differences only.
+  [[nodiscard]] bool AsksColumns() const { return stage_ == Stage::kColumns; }
+
   /// None: at the end. `room`: as many points cost no more than one.
   std::vector<Point> Ask(std::size_t room) {
     if (fit_.raw.empty()) {
@@ -99,11 +102,16 @@ class Descent {
         fit_.residual = std::move(white);
         break;
       case Stage::kColumns: {
-        const std::size_t at = static_cast<std::size_t>(from_) + i;
+        if (i == 0) {
+          middle_raw_ = std::move(raw);
+          middle_white_ = std::move(white);
+          break;
+        }
+        const std::size_t at = static_cast<std::size_t>(from_) + i - 1;
         const double step = StepOf(problem_, fit_.point, at);
         const auto column = static_cast<Eigen::Index>(at);
-        fit_.raw_jacobian.col(column) = (ColumnOf(raw) - ColumnOf(fit_.raw)) / step;
-        fit_.jacobian.col(column) = (ColumnOf(white) - ColumnOf(fit_.residual)) / step;
+        fit_.raw_jacobian.col(column) = (ColumnOf(raw) - ColumnOf(middle_raw_)) / step;
+        fit_.jacobian.col(column) = (ColumnOf(white) - ColumnOf(middle_white_)) / step;
         break;
       }
       case Stage::kStep: {
@@ -126,6 +134,7 @@ class Descent {
   void Proceed() {
     switch (stage_) {
       case Stage::kColumns:
+        middle_raw_ = middle_white_ = {};
         MakeConsistent(problem_, fit_.point, fit_.jacobian);
         MakeConsistent(problem_, fit_.point, fit_.raw_jacobian);
         AddProducts(fit_.jacobian, 0, fit_.normal);
@@ -170,7 +179,7 @@ class Descent {
       fit_.raw_jacobian.resize(size_, columns);
       fit_.normal.resize(columns, columns);
     }
-    std::vector<Point> around;
+    std::vector<Point> around = {fit_.point};
     for (Eigen::Index i = from; i < columns; ++i) {
       Eigen::VectorXd by = Eigen::VectorXd::Zero(columns);
       by(i) = StepOf(problem_, fit_.point, static_cast<std::size_t>(i));
@@ -228,9 +237,11 @@ class Descent {
     gradient_ = gradient;
     by_ = -Normal().ldlt().solve(gradient);
     promised_ = -gradient.dot(by_);
-    if (promised_ < effort_.close_enough) {
+    fit_.promised = kept_ * promised_;
+    const double enough = std::max(effort_.close_enough, effort_.share_enough * (effort_.from - fit_.cost));
+    if (promised_ < enough) {
       fit_.converged = true;
-      if (last_chance_ || promised_ < 0.5 * effort_.close_enough) return Close(fresh);
+      if (last_chance_ || promised_ < 0.5 * enough) return Close(fresh);
     }
     if (steps_ >= effort_.most_steps) return Close(fresh);
     if (fit_.cost - promised_ > effort_.hopeless_above) {
@@ -242,12 +253,20 @@ class Descent {
 
   void Choose() {
     ++steps_;
+    const double gained = before_ - fit_.cost;
+    kept_ = std::clamp(gained / promised_, 0.0, 1.0);
+    fit_.promised = kept_ * promised_;
     if (chosen_ < tried_.size()) {
-      if (before_ - fit_.cost < 0.6 * promised_ || chosen_ > 0) stale_ = true;
-      small_ = false;
+      if (gained < 0.6 * promised_ || chosen_ > 0) stale_ = true;
       fit_.point = std::move(tried_[chosen_]);
       fit_.raw = std::move(chosen_raw_);
       fit_.residual = std::move(chosen_white_);
+      // A cost that is rough, or sensitivities that serve no more: small steps lead nowhere either.
+      if (small_ && last_chance_ && gained < kKept * promised_) {
+        fit_.converged = true;
+        return Close(false);
+      }
+      small_ = false;
     } else {
       if (last_chance_ && !small_ && promised_ > kWorthWhile) {
         small_ = true;
@@ -278,10 +297,12 @@ class Descent {
   bool stale_ = true, fresh_ = false, last_chance_ = false, closing_ = false;
   int steps_ = 0, refreshes_ = 0;
   double promised_ = 0.0, before_ = 0.0;
+  double kept_ = 1.0;   // of what the last step promised
   bool small_ = false;  // steps, since larger ones lead nowhere
   std::vector<Point> tried_;
   std::size_t chosen_ = 0;
   std::vector<double> chosen_raw_, chosen_white_;
+  std::vector<double> middle_raw_, middle_white_;  // of the point itself, in the columns' sub-steps
 };
 
 }  // namespace
@@ -323,7 +344,13 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginn
     constexpr std::size_t kAtOnce = 3 * kLanes;  // bounds the memory
     for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, points.size() - first);
-      std::vector<std::vector<double>> raw = problem.Raw(std::span(points).subspan(first, count), extent);
+      std::vector<AxisModel> models;
+      for (std::size_t i = first; i < first + count; ++i) {
+        models.push_back(problem.Build(points[i]));
+        // A coupling that is fitted to an axis that is stated as rigid may be too stiff for that.
+        models.back().coarse = problem.nominal_.two_inertia && descents[owners[i].first].AsksColumns();
+      }
+      std::vector<std::vector<double>> raw = problem.Raw(models, extent);
       std::vector<std::vector<double>> white = problem.White(raw, extent);
       for (std::size_t i = 0; i < count; ++i) {
         const auto [owner, place] = owners[first + i];
@@ -359,7 +386,7 @@ bool Implausible(const Problem& problem, const Fit& fit) {
 
 }  // namespace
 
-bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort) {
+bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, double worth) {
   if (!Implausible(problem, fit)) return false;
   Point back = fit.point;
   for (std::size_t i = 0; i < back.base.size(); ++i) {
@@ -370,7 +397,7 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort) {
     // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
     const Fit here = FitPoint(problem, fit.point, kToTheValley, Extent::kExcerpt);
     Fit there = FitPoint(problem, std::move(back), kToTheValley, Extent::kExcerpt);
-    if (there.cost > here.cost - kLower) return false;
+    if (there.cost > here.cost - kLower || fit.cost + there.cost - here.cost > worth) return false;
     back = std::move(there.point);
   }
   Fit other = FitPoint(problem, std::move(back), effort);

@@ -17,6 +17,7 @@ struct Fit {
   Eigen::MatrixXd raw_jacobian, jacobian;  ///< of the same; base terms, then amplitudes
   Eigen::MatrixXd normal;                  ///< J' J of the white one, priors not included
   Eigen::MatrixXd covariance;              ///< of the parameters, noise of unit variance
+  double promised = 0.0;  ///< what one more step would take off, as far as the last one kept it
   bool converged = false;
 };
 
@@ -25,6 +26,8 @@ struct FitEffort {
   int most_refreshes = 8;      ///< of the sensitivities
   double close_enough = 0.02;  ///< what one more step would promise at an end, of |r|^2
   bool covariance = true;      ///< of the end point; else sensitivities may be old
+  /// So much of what the cost has fallen below `from` is close enough, too.
+  double share_enough = 0.0, from = 0.0;
   /// Given up where not even the first step's promise leads below.
   double hopeless_above = std::numeric_limits<double>::infinity();
 };
@@ -56,8 +59,9 @@ Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort);
 
 /// A fit for which the stated numbers would have to be off as they hardly ever are may have ended in a wrong
 /// place: once more from where those numbers are back that are far off. The lower end counts. Whether it was
-/// replaced.
-bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort);
+/// replaced. Where the excerpt ends above the cost that would be `worth` it, the whole log is spared.
+bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort,
+                   double worth = std::numeric_limits<double>::infinity());
 
 double CostAt(const Problem& problem, const Point& point, Extent extent = Extent::kWhole);
 

@@ -23,8 +23,7 @@ using MeansKey = std::tuple<double, double, int>;
 using MeansCache = std::map<MeansKey, Delivered>;
 
 MeansKey KeyOf(const FilterSetup& setup, const AxisModel& m) {
-  return {m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s,
-          m.two_inertia ? setup.substeps_two : setup.substeps_rigid};
+  return {m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, SubstepsOf(setup, m)};
 }
 
 /// A step of a fit may end anywhere; what is no number has no place in the cache of means either.
@@ -39,9 +38,10 @@ bool IsMachine(const AxisModel& m) {
 }
 
 /// What must be alike in one bundle of lanes.
-using Shape = std::tuple<bool, bool, bool, bool>;
+using Shape = std::tuple<bool, bool, bool, bool, bool>;
 Shape ShapeOf(const AxisModel& m) {
-  return {m.two_inertia, m.two_inertia && m.friction_on_load, m.soft_share > 0.0, m.friction.vd > 0.0};
+  return {m.two_inertia, m.two_inertia && m.friction_on_load, m.soft_share > 0.0, m.friction.vd > 0.0,
+          m.coarse};
 }
 
 struct Bundle {
@@ -123,6 +123,12 @@ Delivered DeliveredStore::Take() {
 void DeliveredStore::Give(Delivered used) {
   const std::scoped_lock lock(mutex_);
   if (free_.size() < kMostKept) free_.push_back(std::move(used));
+}
+
+int SubstepsOf(const FilterSetup& setup, const AxisModel& m) {
+  constexpr int kManyEnough = 8;
+  const int fine = m.two_inertia ? setup.substeps_two : setup.substeps_rigid;
+  return m.coarse && fine >= kManyEnough ? fine / 2 : fine;
 }
 
 AxisModel ModelOf(const StatedAxis& s) {

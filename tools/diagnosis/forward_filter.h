@@ -62,6 +62,8 @@ struct FilterSetup {
   std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
 };
 
+int SubstepsOf(const FilterSetup& setup, const AxisModel& m);
+
 /// The model driven by the logged command and held to the measured position by a fixed gain: DIAGNOSIS eqs.
 /// of the forward model in innovation form. Lanes of eight run together; the result of each does not depend
 /// on the others, nor on the number of threads.

@@ -23,7 +23,7 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
   const AxisModel& first = *models[0];
   Lanes m;
   m.rows = setup.log->size();
-  m.substeps = first.two_inertia ? setup.substeps_two : setup.substeps_rigid;
+  m.substeps = SubstepsOf(setup, first);
   m.period_s = setup.log->period_s;
   m.measured = measured;
   m.valid = setup.valid.data();

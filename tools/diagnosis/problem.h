@@ -70,6 +70,7 @@ class Problem {
   /// Innovations, then scale residuals (0 where they do not count), of every point.
   [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const Point> points,
                                                      Extent extent = Extent::kWhole) const;
+  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const AxisModel> models, Extent extent) const;
   /// An excerpt's rows count for those that are left out.
   [[nodiscard]] std::vector<std::vector<double>> White(std::span<const std::vector<double>> raw,
                                                        Extent extent = Extent::kWhole) const;
@@ -114,7 +115,6 @@ class Problem {
   Whitener scale_noise_;
 
  private:
-  [[nodiscard]] std::vector<std::vector<double>> Raw(std::span<const AxisModel> models, Extent extent) const;
   bool ScaleCounts(std::size_t k) const {
     return counted_[k] != 0 && std::isfinite(log_.table_position_m[k]);
   }

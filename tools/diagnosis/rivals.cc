@@ -11,32 +11,37 @@
 #include "tools/diagnosis/common_factor.h"
 #include "tools/diagnosis/effects.h"
 #include "tools/diagnosis/firm_slides.h"
-#include "tools/diagnosis/lanes.h"
-#include "tools/diagnosis/products.h"
+#include "tools/diagnosis/full_size.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kNoFault_Hz = 700.0;
 constexpr double kMostDamped = 1.0,
                  kLeastShare = 0.1;  // logarithm of the damping ratio over 0.04; of the inertia
 constexpr double kNothingBehind = 0.01, kMostBent = 4.0;  // of the inertia; power of the speed
 constexpr double kNever = -1e300;
-constexpr double kFineStep = 0.05;
 constexpr double kSmall = 60.0, kNoLuck = 300.0;  // drops
-constexpr std::size_t kMostKinds = 4, kMostTried = 6, kSmallStarts = 4;
+constexpr std::size_t kMostKinds = 4, kMostTried = 6;
 constexpr double kFewOfMost = 0.1;
 constexpr int kMostTurns = 3;
 constexpr std::size_t kMostKept = 6;
+// Of the best score: rivals below are given up, and what is no more than this is no reason to go on.
+constexpr double kGivenUp = 0.02, kAllTheSame = 1e-3;
+constexpr double kMayMatter = 0.3;    // the least share of the best one's score that is tested at all
+constexpr double kMayWin = 0.4;       // the same before the last steps
+constexpr double kSmallStill = 30.0;  // of a score, which new noise may bring
+constexpr double kNearGate = 0.5;
 
-/// Catalogue first, the best first; what lies outside it comes first only where it explains far more.
+/// Catalogue first, the best first, those given up at the end; what lies outside it comes first only where it
+/// explains far more.
 void Sort(std::vector<Rival>& rivals) {
   std::stable_sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) {
+    if (a.given_up != b.given_up) return b.given_up;
     const bool x = Outside(a.effect().kind), y = Outside(b.effect().kind);
     return x != y ? y : a.score > b.score;
   });
-  const auto outside =
-      std::find_if(rivals.begin(), rivals.end(), [](const Rival& r) { return Outside(r.effect().kind); });
+  const auto outside = std::find_if(rivals.begin(), rivals.end(),
+                                    [](const Rival& r) { return !r.given_up && Outside(r.effect().kind); });
   if (outside == rivals.end() || outside == rivals.begin()) return;
   if (outside->score > 1.3 * std::max(0.0, rivals[0].score) + 25.0)
     std::rotate(rivals.begin(), outside, outside + 1);
@@ -99,7 +104,12 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
   if (s.effect->kind == "torque_constant")
     ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
   return {std::move(start),
-          {.most_steps = 3, .most_refreshes = 1, .close_enough = 1.0, .covariance = false},
+          {.most_steps = 3,
+           .most_refreshes = 1,
+           .close_enough = 1.0,
+           .covariance = false,
+           .share_enough = kAllTheSame,
+           .from = current.cost},
           &current};
 }
 
@@ -125,53 +135,6 @@ void OneOfEach(std::vector<Rival>& rivals) {
   rivals = std::move(out);
 }
 
-/// A place of a grid at full size, and what the cost would be there, the base following to first order.
-struct Place {
-  Point point;
-  double cost = std::numeric_limits<double>::infinity();
-};
-
-std::vector<Place> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
-                            const std::vector<Scored>& scored) {
-  std::vector<Point> points;
-  const auto add = [&](const SharedEffect& e, double first) {
-    std::vector<double> a = e->start;
-    a[0] = std::clamp(first, e->low[0], e->high[0]);
-    // The test's step is as large as what it looks for; a derivative needs a small one.
-    auto fine = std::make_shared<Effect>(*e);
-    fine->steps[0] = std::min(fine->steps[0], kFineStep * std::fabs(a[0]));
-    Point p = current.point;
-    p.effects.push_back(std::move(fine));
-    p.amplitudes.push_back(std::move(a));
-    points.push_back(std::move(p));
-  };
-  std::size_t small = 0;
-  for (const Scored& s : scored) {
-    if (s.effect->kind != kind) continue;
-    for (const double size : {0.15, 0.5, 1.5}) add(s.effect, size * s.effect->start[0]);
-    // Small ones from where the score test would have them.
-    if (small >= kSmallStarts || InBase(problem, kind) || s.amplitude(0) <= 0.0) continue;
-    ++small;
-    for (const double size : {1.0, 3.0}) add(s.effect, size * s.amplitude(0));
-  }
-  std::vector<Place> out;
-  for (std::size_t first = 0; first < points.size(); first += kLanes) {
-    const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
-    const auto residuals = problem.Residuals(std::span(points).subspan(first, count));
-    for (std::size_t i = 0; i < count; ++i) {
-      Eigen::VectorXd gradient = GradientOf(current.jacobian, residuals[i]);
-      for (std::size_t t = 0; t < current.point.base.size(); ++t)
-        gradient(static_cast<Eigen::Index>(t)) +=
-            current.point.base[t] / std::pow(problem.terms_[t].sigma, 2);
-      const Eigen::Map<const Eigen::VectorXd> r(residuals[i].data(),
-                                                static_cast<Eigen::Index>(residuals[i].size()));
-      const double cost = r.squaredNorm() + current.prior - gradient.dot(current.covariance * gradient);
-      if (std::isfinite(cost) && cost < current.cost) out.push_back({std::move(points[first + i]), cost});
-    }
-  }
-  return out;
-}
-
 /// Far from linear: the kind's whole grid at full size shows where to begin. A coupling that every screw has
 /// begins beside the best, which may be a softer one that stands for it.
 std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
@@ -191,6 +154,8 @@ std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std
                       .most_refreshes = 3,
                       .close_enough = 1.0,
                       .covariance = false,
+                      .share_enough = kAllTheSame,
+                      .from = current.cost,
                       .hopeless_above = current.cost},
                      &current});
   return out;
@@ -256,8 +221,29 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
 /// stated. One after the other, for the memory.
 void FitAllFromStated(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
   const FitEffort effort{.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false};
-  for (Rival& r : rivals)
-    if (!Outside(r.effect().kind) && FitFromStated(problem, r.fit, effort)) Judge(problem, current, r);
+  double best = 0.0;
+  for (Rival& r : rivals) {
+    if (Outside(r.effect().kind)) continue;
+    double worth = std::numeric_limits<double>::infinity();
+    if (!InBase(problem, r.effect().kind)) worth = current.cost - Penalty(r.effect()) - kMayMatter * best;
+    if (FitFromStated(problem, r.fit, effort, worth)) Judge(problem, current, r);
+    best = std::max(best, r.score);
+  }
+}
+
+/// Never the first; sorted before and after.
+void GiveUpFarBehind(const Problem& problem, std::vector<Rival>& rivals) {
+  for (Rival& r : rivals) {
+    if (&r == rivals.data() || InBase(problem, r.effect().kind)) continue;
+    r.given_up = r.score < kGivenUp * std::max(0.0, rivals[0].score) - kSmallStill;
+    if (!r.given_up) continue;
+    Fit left;
+    left.point = std::move(r.fit.point);
+    left.cost = r.fit.cost;
+    left.promised = r.fit.promised;
+    r.fit = std::move(left);
+  }
+  Sort(rivals);
 }
 
 /// The worst of too many go, for the memory; sorted before.
@@ -289,12 +275,68 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
   KeepBest(problem, out);
   FitAllFromStated(problem, current, out);
   Sort(out);
+  GiveUpFarBehind(problem, out);
   return out;
 }
+
+bool MayHold(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate) {
+  return std::any_of(rivals.begin(), rivals.end(), [&](const Rival& r) {
+    if (r.given_up) return false;
+    const Showing showing = gate.accepted > 0 ? ShowingOf(problem, r.fit) : Showing{};
+    return r.score + r.fit.promised > kNearGate * Threshold(problem, gate, r.effect(), showing);
+  });
+}
+
+namespace {
+
+/// The base may lie in another valley since: from there anew, where the score test promises far more than a
+/// rival has, and enough to matter.
+void FitAnew(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
+  const double matters = kMayMatter * rivals[0].score;
+  std::vector<std::size_t> again;
+  std::vector<Beginning> beginnings;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    Rival& r = rivals[i];
+    const bool by_priors = InBase(problem, r.effect().kind);
+    if (!by_priors && (!r.effect().signals || OfAnotherLaw(problem, current))) continue;
+    const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
+    const double promised = s.drop - Penalty(*s.effect);
+    if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;
+    if (!by_priors && promised < matters) continue;
+    again.push_back(i);
+    beginnings.push_back(Near(problem, current, s));
+  }
+  if (again.empty()) return;
+  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
+  std::vector<std::size_t> on;
+  beginnings.clear();
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    Rival& r = rivals[again[i]];
+    Rival anew{std::move(fits[i])};
+    Judge(problem, current, anew);
+    // Where three steps have not led below the base, more of them do not win.
+    const double least = InBase(problem, r.effect().kind) ? r.score : std::max(r.score, matters);
+    if (anew.score < 0.0 || anew.score + anew.fit.promised < least) continue;
+    on.push_back(again[i]);
+    fits[on.size() - 1] = std::move(anew.fit);
+  }
+  for (std::size_t i = 0; i < on.size(); ++i)
+    beginnings.push_back(
+        {fits[i].point, {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3}, nullptr, &fits[i]});
+  fits = FitPoints(problem, std::move(beginnings));
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    Rival anew{std::move(fits[i])};
+    Judge(problem, current, anew);
+    if (anew.score > rivals[on[i]].score) rivals[on[i]] = std::move(anew);
+  }
+}
+
+}  // namespace
 
 void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) {
   Rewhiten(problem, current);
   for (Rival& r : rivals) {
+    if (r.given_up) continue;
     Rewhiten(problem, r.fit);
     Judge(problem, current, r);
   }
@@ -304,40 +346,36 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   other.effects.pop_back();
   other.amplitudes.pop_back();
   const bool there = CostAt(problem, other) < current.cost;
-  std::vector<Beginning> beginnings = {{there ? std::move(other) : current.point,
-                                        {.most_steps = 10, .most_refreshes = 3, .close_enough = 0.1},
-                                        nullptr,
-                                        there ? nullptr : &current}};
+  const double best = rivals[0].score;
+  // A base is as well known as the scores need it.
+  std::vector<Beginning> beginnings = {
+      {there ? std::move(other) : current.point,
+       {.most_steps = 10, .most_refreshes = 3, .close_enough = std::max(0.1, kAllTheSame * best)},
+       nullptr,
+       there ? nullptr : &current}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < rivals.size(); ++i) {
-    if (i > 0 && rivals[i].score < 0.4 * rivals[0].score - 30.0) continue;
+    const Rival& r = rivals[i];
+    if (r.given_up) continue;
+    if (i > 0 && r.score < kMayWin * best - kSmallStill) continue;
     again.push_back(i);
-    beginnings.push_back({rivals[i].fit.point,
+    beginnings.push_back({r.fit.point,
                           {.most_steps = i == 0 ? 10 : 5,
                            .most_refreshes = i == 0 ? 4 : 1,
-                           .close_enough = i == 0 ? 0.02 : 0.3,
-                           .covariance = i == 0},
+                           .close_enough = i == 0 ? 0.1 : 0.3,
+                           .covariance = i == 0,
+                           .share_enough = i == 0 ? 0.02 * kAllTheSame : kAllTheSame,
+                           .from = current.cost},
                           nullptr,
                           &rivals[i].fit});
   }
   std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
   current = std::move(fits[0]);
   for (std::size_t i = 0; i < again.size(); ++i) rivals[again[i]].fit = std::move(fits[i + 1]);
-  for (Rival& r : rivals) {
-    Judge(problem, current, r);
-    const bool by_priors = InBase(problem, r.effect().kind);
-    if (!by_priors && (!r.effect().signals || OfAnotherLaw(problem, current))) continue;
-    // The base may lie in another valley since: from there anew, where the score test promises far more.
-    const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
-    const double promised = s.drop - Penalty(*s.effect);
-    if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;
-    Rival anew{std::move(FitPoints(problem, {Near(problem, current, s)})[0])};
-    anew.fit =
-        FitOn(problem, std::move(anew.fit), {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3});
-    Judge(problem, current, anew);
-    if (anew.score > r.score) r = std::move(anew);
-  }
+  for (Rival& r : rivals)
+    if (!r.given_up) Judge(problem, current, r);
   const Effect* const first = &rivals[0].effect();
+  if (!rivals[0].no_fault) FitAnew(problem, current, rivals);
   Sort(rivals);
   OneOfEach(rivals);
   if (&rivals[0].effect() != first)

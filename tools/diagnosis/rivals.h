@@ -14,6 +14,8 @@ struct Rival {
   Fit fit;
   double score = 0.0;    ///< what it lowers chi^2 and prior by, less its penalty
   bool refused = false;  ///< did not hold
+  /// So far behind that nothing but its place and its score is kept: the rest of a fit is large.
+  bool given_up = false;
   /// A coupling that every screw has, no cause of a deviation: it belongs to the base.
   bool no_fault = false;
 
@@ -31,6 +33,9 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
 /// Whether the score test promises something beyond the gate that has not been tried.
 bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const Gate& gate,
                   const std::vector<std::string>& tried);
+
+/// Whether one of them comes near its gate, or might after a few steps more.
+bool MayHold(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate);
 
 /// Under noise learnt since: the base, and the rivals, those that may still win fitted anew.
 void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals);
