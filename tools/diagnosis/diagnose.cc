@@ -78,7 +78,12 @@ class Engine {
     bool first = true;
     std::size_t stated_beside = std::numeric_limits<std::size_t>::max();
     std::vector<std::string> tried;  // in this round, and refuted
-    for (int round = 0; round < options_.most_effects; ++round) {
+    int further_orders = 0;
+    for (int round = 0;; ++round) {
+      if (round >= options_.most_effects) {
+        stopped_ = true;
+        break;
+      }
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
       Gate gate = SignFlips(scored, options_.false_alarm_rate, options_.seed, kOffStated * by_extras);
@@ -163,6 +168,8 @@ class Engine {
         continue;
       }
       tried.clear();
+      // A further order of what is known takes no other cause's place.
+      if (Known(best.effect().kind, out) && further_orders++ < options_.most_effects) --round;
       Accept(current, rivals, gate, out);
       explained_ += best.score;
       if (best.effect().kind == "presliding_hysteresis") in_presliding_ = best.score;
@@ -176,6 +183,10 @@ class Engine {
   }
 
  private:
+  static bool Known(const std::string& kind, const Diagnosis& out) {
+    return std::any_of(out.causes.begin(), out.causes.end(), [&](const Cause& c) { return c.kind == kind; });
+  }
+
   void Say(std::string_view what, double done) const {
     if (options_.progress) options_.progress(what, done);
   }
@@ -427,9 +438,8 @@ class Engine {
     const std::vector<Leftover> left = FindLeftovers(problem_, current);
     const double threshold = LeftoverThreshold(problem_, options_.false_alarm_rate);
     if (options_.evidence) TellLeftover(left[0], threshold);
-    const bool stopped = static_cast<int>(out.causes.size()) >= options_.most_effects;
     Conclude(problem_, left, threshold, out);
-    if (stopped && out.verdict == Verdict::kUnexplained)
+    if (stopped_ && out.verdict == Verdict::kUnexplained)
       out.notes.push_back("No more than " + std::to_string(options_.most_effects) +
                           " causes were looked for: several known ones together may be behind it.");
     Say("done", 1.0);
@@ -454,6 +464,7 @@ class Engine {
   Fit base_;
   std::vector<std::size_t> places_;  ///< of the accepted causes in the fit, jitter left out
   double explained_ = 0.0;           ///< drop by what is accepted
+  bool stopped_ = false;             ///< no further cause was looked for
   double in_presliding_ = 0.0;       ///< by an element in presliding
   std::vector<double> scatter_;      ///< of their residuals from block to block, over white noise's
 };

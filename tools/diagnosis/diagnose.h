@@ -32,7 +32,7 @@ struct DiagnoseOptions {
   std::uint64_t seed =
       1;  ///< of everything drawn; the same seed gives the same answer on any number of threads
   int threads = 1;
-  int most_effects = 3;  ///< causes named at most
+  int most_effects = 3;  ///< causes named at most; as many further orders of theirs do not count
   /// Refits with the residual of every stroke at random, from which the intervals come; 0: from the fit's
   /// covariance.
   int bootstrap_runs = 0;
