@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/diagnosis/distance.h"
 #include "tests/diagnosis/hidden_axis.h"
 #include "tests/diagnosis/learnt_problem.h"
 #include "tools/diagnosis/effects.h"
@@ -37,12 +38,6 @@ Point TimesAllForces(const Problem& problem, Point p, double factor) {
   return p;
 }
 
-double Distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return std::sqrt(sum);
-}
-
 class EveryEffect : public testing::TestWithParam<bool> {};
 
 TEST_P(EveryEffect, TellsWhichOfItsAmplitudesAreForces) {
@@ -58,7 +53,8 @@ TEST_P(EveryEffect, TellsWhichOfItsAmplitudesAreForces) {
       for (double& a : with.amplitudes[0]) a *= 3.0;
     const std::vector<Point> points = {l.point, with, TimesAllForces(l.problem, with, 1.1)};
     const std::vector<std::vector<double>> raw = l.problem.Raw(points);
-    EXPECT_LT(Distance(raw[1], raw[2]), 1e-5 * Distance(raw[0], raw[1])) << e->kind << " " << e->label;
+    EXPECT_LT(test::Distance(raw[1], raw[2]), 1e-5 * test::Distance(raw[0], raw[1]))
+        << e->kind << " " << e->label;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/diagnosis/distance.h"
 #include "tests/diagnosis/hidden_axis.h"
 #include "tools/diagnosis/problem.h"
 
@@ -93,12 +94,6 @@ TEST(ForwardFilter, WhatIsNoMachineHasNoResidualAndDisturbsNone) {
   }
 }
 
-double Distance(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0.0;
-  for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);
-  return std::sqrt(sum);
-}
-
 // Below zero, `rough` is a speed below which the bristle does not wear. A fit goes there step by step, so a
 // little more of it must change little.
 TEST(ForwardFilter, ABristleThatCreepingDoesNotWearChangesSmoothly) {
@@ -113,9 +108,9 @@ TEST(ForwardFilter, ABristleThatCreepingDoesNotWearChangesSmoothly) {
   models[1].rough = -0.01 * vs * vs;
   models[2].rough = 1.01 * models[1].rough;
   const auto runs = RunFilter(problem.setup_, models, 1);
-  const double all = Distance(runs[0].innovation, runs[1].innovation);
+  const double all = test::Distance(runs[0].innovation, runs[1].innovation);
   EXPECT_GT(all, 0.0);
-  EXPECT_LT(Distance(runs[1].innovation, runs[2].innovation), 0.1 * all);
+  EXPECT_LT(test::Distance(runs[1].innovation, runs[2].innovation), 0.1 * all);
 }
 
 // What the scale reads beyond the encoder is no matter of the forces, which move the model's own position.
@@ -130,10 +125,40 @@ TEST(ForwardFilter, ErrorsOfTheForcesLeaveTheScaleOfARigidAxisAlone) {
   const auto raw = problem.Raw(points);
   const auto rows = static_cast<std::ptrdiff_t>(problem.rows());
   const double moved =
-      Distance({raw[0].begin(), raw[0].begin() + rows}, {raw[1].begin(), raw[1].begin() + rows});
+      test::Distance({raw[0].begin(), raw[0].begin() + rows}, {raw[1].begin(), raw[1].begin() + rows});
   ASSERT_GT(moved * axis.stated.table_per_q, 1e-5);
   for (std::ptrdiff_t k = rows; k < 2 * rows; ++k)
     EXPECT_NEAR(raw[0][static_cast<std::size_t>(k)], raw[1][static_cast<std::size_t>(k)], 1e-9);
+}
+
+// What a fit takes as sensitivities is the difference between runs of half the sub-steps.
+TEST(ForwardFilter, DifferencesOfCoarseRunsAreThoseOfFineOnes) {
+  test::HiddenOptions o;
+  o.duration_s = 10.0;
+  o.two_inertia = true;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Problem problem(axis.log, axis.stated, 1);
+  AxisModel coarse;
+  coarse.two_inertia = coarse.coarse = true;
+  ASSERT_EQ(2 * SubstepsOf(problem.setup_, coarse), problem.setup_.substeps_two);
+  const auto difference = [&](std::size_t term, bool is_coarse) {
+    std::vector<AxisModel> models;
+    Point p = Stated(problem);
+    models.push_back(problem.Build(p));
+    p.base[term] += problem.terms_[term].step;
+    models.push_back(problem.Build(p));
+    for (AxisModel& m : models) m.coarse = is_coarse;
+    auto runs = RunFilter(problem.setup_, models, 1);
+    for (std::size_t k = 0; k < problem.rows(); ++k) runs[1].innovation[k] -= runs[0].innovation[k];
+    return runs[1].innovation;
+  };
+  for (std::size_t t = 0; t < problem.terms_.size(); ++t) {
+    const std::string& name = problem.terms_[t].name;
+    if (name == "start_bristle") continue;  // forgotten at once
+    const std::vector<double> fine = difference(t, false), none(fine.size(), 0.0);
+    EXPECT_GT(test::Distance(fine, none), 0.0) << name;
+    EXPECT_LT(test::Distance(difference(t, true), fine), 0.1 * test::Distance(fine, none)) << name;
+  }
 }
 
 TEST(DeliveredMeans, HoldDelayAndLagAreExact) {

@@ -8,7 +8,6 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kTurned = 0.8;  // of the Coulomb level: friction there follows the motion
 // Maxwell-slip elements of real axes break away within some ten lengths of the bristle that fits best.
 constexpr double kLengths = 20.0;
 constexpr double kFarBelow = 3.0;  // standard deviations
@@ -26,7 +25,7 @@ std::vector<double> WaySinceReversal(const Signals& s) {
   bool up = true;
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (up ? x[k] > furthest : x[k] < furthest) furthest = x[k];
-    if (std::fabs(s.sign[k]) > kTurned && (s.sign[k] > 0.0) != up) {
+    if (std::fabs(s.sign[k]) > kFollowsMotion && (s.sign[k] > 0.0) != up) {
       up = !up;
       turned_at = furthest;
       furthest = x[k];

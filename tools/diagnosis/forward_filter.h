@@ -62,6 +62,7 @@ struct FilterSetup {
   std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
 };
 
+/// Per row, as the model's shape and its use ask for.
 int SubstepsOf(const FilterSetup& setup, const AxisModel& m);
 
 /// The model driven by the logged command and held to the measured position by a fixed gain: DIAGNOSIS eqs.

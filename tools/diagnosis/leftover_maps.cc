@@ -11,7 +11,6 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kSlides = 0.8;  // of the Coulomb level: friction there follows the motion
 constexpr int kPlaces = 48, kSpeeds = 16, kWays = 14, kAngles = 48, kTemperatures = 12;
 constexpr double kTorqueEach_s = 0.25, kFrictionEach_s = 1.0;
 constexpr double kShortestWay_m = 1e-6;
@@ -129,7 +128,7 @@ class Maps {
 std::vector<bool> Slides(const Problem& p) {
   std::vector<bool> out(p.rows());
   for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = p.counted_[k] != 0 && std::fabs(p.signals_->sign[k]) > kSlides;
+    out[k] = p.counted_[k] != 0 && std::fabs(p.signals_->sign[k]) > kFollowsMotion;
   return out;
 }
 

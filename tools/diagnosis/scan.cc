@@ -159,7 +159,7 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   double torque_scale = 1e-300;
   for (std::size_t k = 0; k < n; ++k) torque_scale = std::max(torque_scale, std::fabs(s.model_torque[k]));
   for (std::size_t k = 0; k < n; ++k) {
-    sliding[k] = std::fabs(s.sign[k]) > 0.8 ? 1.0 : 0.0;
+    sliding[k] = std::fabs(s.sign[k]) > kFollowsMotion ? 1.0 : 0.0;
     loaded[k] = sliding[k] * s.model_torque[k] / torque_scale;
   }
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());

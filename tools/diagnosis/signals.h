@@ -32,6 +32,9 @@ struct Signals {
   double coulomb = 0.0;          ///< mean level
 };
 
+/// Of `sign`: friction beyond it follows the motion.
+inline constexpr double kFollowsMotion = 0.8;
+
 /// Gaussian smoothing and its derivatives, without phase; ends are held.
 Signal Smooth(const Signal& x, double sigma_rows);
 Signal Derivative(const Signal& x, double sigma_rows, double period_s);

@@ -32,11 +32,11 @@ Outcome AskCase(const std::filesystem::path& directory, const Diagnoser& diagnos
 /// One line of results.csv, with a header when the file is new. Throws std::runtime_error.
 void AppendCsv(const std::filesystem::path& file, const Outcome& outcome);
 
-/// All lines of results.csv; none when there is no file. Throws std::runtime_error when it is of another
-/// form.
 /// A line for each true parameter, with what is told of it.
 void AppendSizes(const std::filesystem::path& file, const Outcome& outcome);
 
+/// All lines of results.csv; none when there is no file. Throws std::runtime_error when it is of another
+/// form.
 std::vector<Outcome> ReadCsv(const std::filesystem::path& file);
 
 }  // namespace contour::hidden
