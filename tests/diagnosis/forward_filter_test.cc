@@ -28,7 +28,7 @@ std::vector<double> RmsPerSegment(const std::vector<double>& x, std::size_t rows
 }
 
 // With the true parameters and a fine encoder, what is left is the difference of two integrators: it must be
-// under a fifth of what ordinary noise leaves, in every second of the log.
+// under a tenth of what ordinary noise leaves, in every second of the log.
 void ExpectSmallerThanNoise(bool two_inertia, bool on_load) {
   test::HiddenOptions o;
   o.seed = 5;
@@ -44,12 +44,12 @@ void ExpectSmallerThanNoise(bool two_inertia, bool on_load) {
   const Point a = Stated(with), b = Stated(without);
   const auto noise = RmsPerSegment(with.Raw(std::span(&a, 1))[0], with.rows());
   const auto left = RmsPerSegment(without.Raw(std::span(&b, 1))[0], without.rows());
-  for (std::size_t i = 0; i < noise.size(); ++i) EXPECT_LT(left[i], 0.2 * noise[i]) << "second " << i;
+  for (std::size_t i = 0; i < noise.size(); ++i) EXPECT_LT(left[i], 0.1 * noise[i]) << "second " << i;
 }
 
-TEST(ForwardFilter, RigidAxisLeavesLessThanAFifthOfTheNoise) { ExpectSmallerThanNoise(false, false); }
-TEST(ForwardFilter, TwoInertiasLeaveLessThanAFifthOfTheNoise) { ExpectSmallerThanNoise(true, false); }
-TEST(ForwardFilter, FrictionOnTheTableLeavesLessThanAFifthOfTheNoise) { ExpectSmallerThanNoise(true, true); }
+TEST(ForwardFilter, RigidAxisLeavesLessThanATenthOfTheNoise) { ExpectSmallerThanNoise(false, false); }
+TEST(ForwardFilter, TwoInertiasLeaveLessThanATenthOfTheNoise) { ExpectSmallerThanNoise(true, false); }
+TEST(ForwardFilter, FrictionOnTheTableLeavesLessThanATenthOfTheNoise) { ExpectSmallerThanNoise(true, true); }
 
 TEST(ForwardFilter, LanesAndThreadsDoNotChangeARun) {
   test::HiddenOptions o;
@@ -131,33 +131,53 @@ TEST(ForwardFilter, ErrorsOfTheForcesLeaveTheScaleOfARigidAxisAlone) {
     EXPECT_NEAR(raw[0][static_cast<std::size_t>(k)], raw[1][static_cast<std::size_t>(k)], 1e-9);
 }
 
-// What a fit takes as sensitivities is the difference between runs of half the sub-steps.
-TEST(ForwardFilter, DifferencesOfCoarseRunsAreThoseOfFineOnes) {
+/// One model's innovation with so many sub-steps.
+std::vector<double> InnovationWith(const Problem& problem, const AxisModel& model, int substeps) {
+  FilterSetup setup = problem.setup_;
+  setup.substeps_rigid = setup.substeps_two = substeps;
+  return RunFilter(setup, std::span(&model, 1), 1)[0].innovation;
+}
+
+// Two bodies and what couples them, without friction, under a torque that is constant over every row.
+TEST(ForwardFilter, ACouplingMovesExactlyWithAnySubsteps) {
   test::HiddenOptions o;
-  o.duration_s = 10.0;
+  o.duration_s = 5.0;
   o.two_inertia = true;
   const test::HiddenAxis axis = test::MakeHiddenAxis(o);
   const Problem problem(axis.log, axis.stated, 1);
-  AxisModel coarse;
-  coarse.two_inertia = coarse.coarse = true;
-  ASSERT_EQ(2 * SubstepsOf(problem.setup_, coarse), problem.setup_.substeps_two);
-  const auto difference = [&](std::size_t term, bool is_coarse) {
-    std::vector<AxisModel> models;
-    Point p = Stated(problem);
-    models.push_back(problem.Build(p));
-    p.base[term] += problem.terms_[term].step;
-    models.push_back(problem.Build(p));
-    for (AxisModel& m : models) m.coarse = is_coarse;
-    auto runs = RunFilter(problem.setup_, models, 1);
-    for (std::size_t k = 0; k < problem.rows(); ++k) runs[1].innovation[k] -= runs[0].innovation[k];
-    return runs[1].innovation;
-  };
-  for (std::size_t t = 0; t < problem.terms_.size(); ++t) {
-    const std::string& name = problem.terms_[t].name;
-    if (name == "start_bristle") continue;  // forgotten at once
-    const std::vector<double> fine = difference(t, false), none(fine.size(), 0.0);
-    EXPECT_GT(test::Distance(fine, none), 0.0) << name;
-    EXPECT_LT(test::Distance(difference(t, true), fine), 0.1 * test::Distance(fine, none)) << name;
+  AxisModel m = problem.Build(Stated(problem));
+  m.delay_s = 2e-3;
+  m.lag_s = 0.0;
+  StatedFriction& f = m.friction;
+  for (double* level : {&f.Fc_plus, &f.Fc_minus, &f.Fs_plus, &f.Fs_minus, &f.s0, &f.s1, &f.s2})
+    *level *= 1e-9;
+  // Swings, is damped to death, hardly is a coupling.
+  for (const auto& [stiffness, damping] : {std::pair(1.0, 1.0), std::pair(1.0, 40.0), std::pair(1e-6, 0.0)}) {
+    AxisModel with = m;
+    with.stiffness *= stiffness;
+    with.damping *= damping;
+    const std::vector<double> one = InnovationWith(problem, with, 1),
+                              many = InnovationWith(problem, with, 16), none(one.size(), 0.0);
+    EXPECT_LT(test::Distance(one, many), 1e-6 * test::Distance(many, none)) << stiffness << " " << damping;
+  }
+}
+
+// Contacts that begin and end inside a sub-step: four of them serve as eight times as many do.
+TEST(ForwardFilter, AGapIsCrossedWithoutWaitingForTheSubstepsEnd) {
+  test::HiddenOptions o;
+  o.duration_s = 10.0;
+  o.two_inertia = o.friction_on_load = true;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Problem problem(axis.log, axis.stated, 1);
+  const AxisModel without = problem.Build(Stated(problem));
+  // Small gaps are crossed all the time, and chaotic.
+  for (const auto& [gap, share] : {std::pair(2e-3, 0.04), std::pair(5e-5, 0.5)}) {
+    AxisModel with = without;
+    with.gap = gap;
+    const std::vector<double> few = InnovationWith(problem, with, 4),
+                              many = InnovationWith(problem, with, 32);
+    const double effect = test::Distance(many, InnovationWith(problem, without, 32));
+    EXPECT_LT(test::Distance(few, many), share * effect) << gap;
   }
 }
 

@@ -61,7 +61,7 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool squa
   m.two = two;
   m.on_load = two;
   m.soft = soft;
-  m.fading = true;
+  m.fading = m.gap = m.payload = true;
   m.linear = square ? 0.0 : 1.0;
   m.square = square ? 1.0 : 0.0;
   m.full = m.trace = true;
@@ -69,7 +69,7 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool squa
   for (std::size_t i = 0; i < torque.size(); ++i)
     torque[i] = 0.05 * std::sin(0.004 * static_cast<double>(i)) + 1e-3;
   for (std::size_t k = 0; k < kRows; ++k) measured[k] = 2.0 - 2.0 * std::cos(0.016 * static_cast<double>(k));
-  const std::vector<double> noise = Noise(kRows + 1, 1e-3, 5), late = Noise(kRows, 1e-12, 6);
+  const std::vector<double> noise = Noise(kRows + 1, 1e-3, 5), late = Noise(kRows * kSubsteps, 1e-12, 6);
   std::vector<std::uint8_t> valid(kRows, 1);
   valid[300] = 0;
   m.measured = measured.data();
@@ -93,6 +93,20 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool squa
     m.payload_row[i] = static_cast<std::int64_t>(400 + i);
     m.stiffness[i] = 100.0 * x;
     m.damping[i] = 0.01;
+    for (LaneFlow* flow : {&m.flow, &m.flow_payload}) {
+      flow->dd[i] = 0.91 + 0.001 * x;
+      flow->dr[i] = flow->ra[i] = 2.4e-4;
+      flow->da[i] = 3e-8;
+      flow->rd[i] = -700.0 * x;
+      flow->rr[i] = 0.85;
+      flow->half_rd[i] = -370.0 * x;
+      flow->half_rr[i] = 0.93;
+      flow->half_ra[i] = 1.2e-4;
+      flow->stiff[i] = 3e6 * x;
+      flow->damp[i] = 300.0;
+      flow->motor_share[i] = flow == &m.flow ? 0.7 : 0.5;
+      flow->load_share[i] = 1.0 - flow->motor_share[i];
+    }
     m.half_gap[i] = 1e-5 * static_cast<double>(i);
     m.Fc_plus[i] = 0.02;
     m.Fc_minus[i] = 0.021;
@@ -118,6 +132,7 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool squa
   for (std::size_t i = 0; i < kLanes; ++i) {
     other.Fc_plus[i] = 0.03;
     other.stiffness[i] = 140.0;
+    other.flow.rd[i] = -900.0;
     other.innovation[i] = other.table[i] = other.velocity[i] = other.friction[i] = spare.data();
   }
   if (beside == Beside::kNothing) loops.run(m);
@@ -152,7 +167,7 @@ TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryFusedInstructionSet) 
   const std::vector<std::uint8_t> valid(kRows, 1);
   const std::vector<double> taps = Noise(kWhitenTaps, 0.3, 9);
   const auto work = [&](const LaneLoops& loops) {
-    std::vector<double> out(2 * kLanes * kRows);
+    std::vector<double> out(3 * kLanes * kRows);
     LaneColumns c;
     c.rows = kRows;
     c.stride = kStride;
@@ -177,11 +192,19 @@ TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryFusedInstructionSet) 
       }
       c.reading[i] = s;
       c.innovation[i] = &out[i * kRows];
-      w.in[i] = s;
-      w.out[i] = &out[(kLanes + i) * kRows];
+      w.in[0][i] = w.in[1][kLanes - 1 - i] = s;
+      for (std::size_t g = 0; g < kMostGroups; ++g) w.out[g][i] = &out[((1 + g) * kLanes + i) * kRows];
     }
     loops.columns(c);
+    w.groups = kMostGroups;
     loops.whiten(w);
+    // One group alone gives what it gives beside another.
+    const std::vector<double> both = out;
+    w.groups = 1;
+    loops.whiten(w);
+    EXPECT_EQ(both, out);
+    for (std::size_t i = 0; i < kLanes; ++i)
+      EXPECT_EQ(out[(kLanes + i) * kRows + kRows / 2], out[(3 * kLanes - 1 - i) * kRows + kRows / 2]);
     return out;
   };
   const std::vector<double> baseline = work(kBaselineLoops);

@@ -42,10 +42,6 @@ struct AxisModel {
   SharedSignal reading_error;            ///< the encoder reads that much more than there is
   SharedSignal scale_error_m;            ///< the linear scale reads that much more
 
-  /// Half the sub-steps where there are many: sensitivities, which are differences between such runs, need no
-  /// more.
-  bool coarse = false;
-
   bool operator==(const AxisModel&) const = default;
 };
 

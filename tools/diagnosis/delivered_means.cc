@@ -51,49 +51,46 @@ void DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int subste
     mean_after[j] = whole_step.mean * kept_after[j];
     kept_after[j + 1] = whole_step.kept * kept_after[j];
   }
+  std::vector<double> late_after(count);
+  for (std::size_t j = 0; j < count; ++j) late_after[j] = whole_step.moment * kept_after[j];
   const std::size_t rest = count - 1 - edge_step;
-  const auto moments = [&](std::size_t steps) {
-    double sum = 0.0;
-    for (std::size_t j = 0; j < steps; ++j) sum += kept_after[j];
-    return sum * whole_step.moment;
-  };
-  const double moment_before = moments(edge_step), moment_rest = moments(rest);
   double value = 0.0;
-  const auto over = [&](std::size_t k, double* mean, double* late_out) {
+  const auto over = [&](std::size_t k, double* mean, double* late) {
     const double now = log.command[k >= whole ? k - whole : 0];
     const double old = log.command[k >= whole + 1 ? k - whole - 1 : 0];
     double away = value - old;
-    for (std::size_t j = 0; j < edge_step; ++j) mean[j] = old + away * mean_after[j];
-    double late = away * moment_before;
+    for (std::size_t j = 0; j < edge_step; ++j) {
+      mean[j] = old + away * mean_after[j];
+      late[j] = away * late_after[j];
+    }
     away *= kept_after[edge_step];
     const double first = (old + away * first_part.mean) * before_s;
-    late += away * first_part.moment + first * 0.5 * rest_s;
+    late[edge_step] = away * first_part.moment + first * 0.5 * rest_s;
     away = old + away * first_part.kept - now;
     const double second = (now + away * rest_part.mean) * rest_s;
-    late += away * rest_part.moment - second * 0.5 * before_s;
+    late[edge_step] += away * rest_part.moment - second * 0.5 * before_s;
     mean[edge_step] = (first + second) / h;
     away *= rest_part.kept;
-    double* after = mean + edge_step + 1;
-    for (std::size_t j = 0; j < rest; ++j) after[j] = now + away * mean_after[j];
-    late += away * moment_rest;
+    for (std::size_t j = 0; j < rest; ++j) {
+      mean[edge_step + 1 + j] = now + away * mean_after[j];
+      late[edge_step + 1 + j] = away * late_after[j];
+    }
     value = now + away * kept_after[rest];
-    *late_out = late;
   };
   const Stretch all{.rows = log.size()};
   if (stretches.empty()) stretches = std::span(&all, 1);
   const std::size_t kept = stretches.back().at + stretches.back().rows;
   out.mean.resize(kept * count);
-  out.late.resize(kept);
+  out.late.resize(kept * count);
   // A lag forgets within some of its lengths.
   const std::size_t before = 1 + static_cast<std::size_t>(kForgotten * lag / log.period_s);
-  std::vector<double> spare(count);
+  std::vector<double> spare(2 * count);
   for (const Stretch& s : stretches) {
     const std::size_t begin = s.from > before ? s.from - before : 0;
     value = log.command[begin >= whole + 1 ? begin - whole - 1 : 0];
-    double spare_late = 0.0;
-    for (std::size_t k = begin; k < s.from; ++k) over(k, spare.data(), &spare_late);
+    for (std::size_t k = begin; k < s.from; ++k) over(k, spare.data(), &spare[count]);
     for (std::size_t i = 0; i < s.rows; ++i)
-      over(s.from + i, &out.mean[(s.at + i) * count], &out.late[s.at + i]);
+      over(s.from + i, &out.mean[(s.at + i) * count], &out.late[(s.at + i) * count]);
   }
 }
 

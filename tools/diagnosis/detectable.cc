@@ -207,9 +207,11 @@ std::optional<Detectable> Smallest(const Problem& problem, const Fit& base, cons
 }  // namespace
 
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
-                    const Jitter& jitter, const Gate& gate, Diagnosis& out) {
+                    const Jitter& jitter, const Gate& gate, std::span<const std::string> only,
+                    Diagnosis& out) {
   for (const std::string_view kind_view : kKinds) {
     const std::string kind(kind_view);
+    if (!only.empty() && std::find(only.begin(), only.end(), kind) == only.end()) continue;
     const std::optional<Detectable> d = Smallest(problem, base, gate, scored, kind);
     if (!d || d->gate > kHopeless * Largest(problem, kind)) continue;
     Fit at;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "tools/diagnosis/finding.h"
 #include "tools/diagnosis/gate.h"
@@ -14,7 +15,9 @@ namespace contour::diagnosis {
 /// linear, times what it takes to pass the other tests as well. A kind for which the gate alone asks for more
 /// than such an axis can have, or whose signal the log lacks, is not excited.
 /// Beside causes that are accepted: once more, for the others.
+/// `only`: of these kinds; empty: of all.
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
-                    const Jitter& jitter, const Gate& gate, Diagnosis& out);
+                    const Jitter& jitter, const Gate& gate, std::span<const std::string> only,
+                    Diagnosis& out);
 
 }  // namespace contour::diagnosis

@@ -48,6 +48,7 @@ constexpr double kAlike = 0.03, kAlikeByAnotherLaw = 0.1;
 // An element in presliding is a neighbour's name for another law, and leaves more than a right name does.
 constexpr double kLeftByAnotherLaw = 0.01;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
+constexpr double kNoDoubt = 1000.0;  // of a score
 
 void CheckInput(const AxisLog& log, const StatedAxis& stated) {
   const std::size_t n = log.size();
@@ -76,6 +77,7 @@ class Engine {
     Gate beside;  // what may be left of the accepted
     const double by_extras = std::max(0.0, problem_.ExplainedByExtras(base_.point));
     bool first = true;
+    // What could be found was stated for all kinds, with so many causes in the model.
     std::size_t stated_beside = std::numeric_limits<std::size_t>::max();
     std::vector<std::string> tried;  // in this round, and refuted
     int further_orders = 0;
@@ -86,10 +88,8 @@ class Engine {
       }
       Say("candidates", 0.2 + 0.25 * round);
       const std::vector<Scored> scored = Screen(current);
-      Gate gate = SignFlips(scored, options_.false_alarm_rate, options_.seed, kOffStated * by_extras);
-      gate.accepted = static_cast<int>(places_.size());
-      gate.left = beside.left + (OfAnotherLaw(problem_, current) ? kLeftByAnotherLaw * in_presliding_ : 0.0);
-      gate.left_of_kind = beside.left_of_kind;
+      const Gate gate = GateOf(current, scored, beside, by_extras);
+      const Gate sought = options_.evidence ? WithoutMargins(gate) : gate;
       const Jitter jitter = TestJitter(problem_, current);
       if (first) {
         KeepFirst(scored, out);
@@ -98,14 +98,15 @@ class Engine {
         out.gate = Threshold(problem_, gate);
         first = false;
       }
-      // A cause that is there hides the others; once it is in the model they would be seen by less.
-      if (stated_beside != places_.size()) {
-        stated_beside = places_.size();
-        KeepDetectable(problem_, current, scored, jitter, gate, out);
-      }
       const bool jitter_there = !jitter_known && jitter.drop - kJitterPenalty > Threshold(problem_, gate);
       Say("rivals", 0.3 + 0.25 * round);
-      std::vector<Rival> rivals = RivalsThatMayHold(current, scored, gate, tried);
+      std::vector<Rival> rivals = RivalsThatMayHold(current, scored, sought, tried);
+      // A cause that is there hides the others; once it is in the model they would be seen by less.
+      if (stated_beside != places_.size()) {
+        const std::vector<std::string> only = ThoseWithoutDoubt(rivals);
+        if (only.empty()) stated_beside = places_.size();
+        KeepDetectable(problem_, current, scored, jitter, gate, only, out);
+      }
       if (rivals.empty()) {
         if (jitter_there) AcceptJitter(jitter, out);
         break;
@@ -161,7 +162,7 @@ class Engine {
       }
       if (!found) {
         // What the score test likes best may come to nothing; the others had no turn yet.
-        if (!MorePromised(problem_, scored, gate, tried)) break;
+        if (!MorePromised(problem_, scored, sought, tried)) break;
         problem_.LearnNoise(current.point);
         Rewhiten(problem_, current);
         --round;
@@ -177,6 +178,11 @@ class Engine {
       beside.left_of_kind[best.effect().kind] += LikeShare(best.effect().kind) * best.score;
       current = best.fit;
       if (Outside(best.effect().kind)) break;
+    }
+    if (stated_beside != places_.size()) {
+      const std::vector<Scored> scored = Screen(current);
+      KeepDetectable(problem_, current, scored, TestJitter(problem_, current),
+                     GateOf(current, scored, beside, by_extras), {}, out);
     }
     Finish(std::move(current), out);
     return out;
@@ -212,6 +218,25 @@ class Engine {
     problem_.LearnSignals(base_.point);
   }
 
+  /// `beside`: what may be left of the accepted causes.
+  Gate GateOf(const Fit& current, std::span<const Scored> scored, const Gate& beside,
+              double by_extras) const {
+    Gate gate = SignFlips(scored, options_.false_alarm_rate, options_.seed, kOffStated * by_extras);
+    gate.accepted = static_cast<int>(places_.size());
+    gate.left = beside.left + (OfAnotherLaw(problem_, current) ? kLeftByAnotherLaw * in_presliding_ : 0.0);
+    gate.left_of_kind = beside.left_of_kind;
+    return gate;
+  }
+
+  /// Where one of them will be in the model next time around: their kinds; what could be found of the others
+  /// is not asked before. Else none.
+  static std::vector<std::string> ThoseWithoutDoubt(const std::vector<Rival>& rivals) {
+    std::vector<std::string> out;
+    if (rivals.empty() || rivals[0].no_fault || rivals[0].score < kNoDoubt) return out;
+    for (const Rival& r : rivals) out.push_back(r.effect().kind);
+    return out;
+  }
+
   std::vector<Scored> Screen(const Fit& fit) const {
     std::vector<SharedEffect> effects = CatalogueEffects(problem_);
     for (SharedEffect& e : ScanWaves(problem_, fit)) effects.push_back(std::move(e));
@@ -236,9 +261,8 @@ class Engine {
   std::vector<Rival> RivalsThatMayHold(const Fit& current, const std::vector<Scored>& scored,
                                        const Gate& gate, std::vector<std::string>& tried) const {
     for (;;) {
-      std::vector<Rival> rivals =
-          FitRivals(problem_, current, scored, gate, options_.evidence != nullptr, tried);
-      if (rivals.empty() || options_.evidence || MayHold(problem_, rivals, gate)) return rivals;
+      std::vector<Rival> rivals = FitRivals(problem_, current, scored, gate, tried);
+      if (rivals.empty() || MayHold(problem_, rivals, gate)) return rivals;
       if (!MorePromised(problem_, scored, gate, tried)) return {};
     }
   }

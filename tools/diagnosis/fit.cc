@@ -71,9 +71,6 @@ class Descent {
     stale_ = false;
   }
 
-  /// Whether what was asked for serves for differences only.
-  [[nodiscard]] bool AsksColumns() const { return stage_ == Stage::kColumns; }
-
   /// None: at the end. `room`: as many points cost no more than one.
   std::vector<Point> Ask(std::size_t room) {
     if (fit_.raw.empty()) {
@@ -345,11 +342,7 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginn
     for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, points.size() - first);
       std::vector<AxisModel> models;
-      for (std::size_t i = first; i < first + count; ++i) {
-        models.push_back(problem.Build(points[i]));
-        // A coupling that is fitted to an axis that is stated as rigid may be too stiff for that.
-        models.back().coarse = problem.nominal_.two_inertia && descents[owners[i].first].AsksColumns();
-      }
+      for (std::size_t i = first; i < first + count; ++i) models.push_back(problem.Build(points[i]));
       std::vector<std::vector<double>> raw = problem.Raw(models, extent);
       std::vector<std::vector<double>> white = problem.White(raw, extent);
       for (std::size_t i = 0; i < count; ++i) {
@@ -410,19 +403,24 @@ double CostAt(const Problem& problem, const Point& point, Extent extent) {
   return ColumnOf(problem.Residuals(std::span(&point, 1), extent)[0]).squaredNorm() + PriorOf(problem, point);
 }
 
+void RewhitenResidual(const Problem& problem, Fit& fit) {
+  const std::span<const double> in(fit.raw);
+  const std::span<double> out(fit.residual);
+  problem.WhitenInto(std::span(&in, 1), std::span(&out, 1));
+  fit.prior = PriorOf(problem, fit.point);
+  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
+}
+
 void Rewhiten(const Problem& problem, Fit& fit) {
+  RewhitenResidual(problem, fit);
   const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
   std::vector<std::span<const double>> in;
   std::vector<std::span<double>> out;
-  in.emplace_back(fit.raw);
-  out.emplace_back(fit.residual);
   for (Eigen::Index i = 0; i < fit.raw_jacobian.cols(); ++i) {
     in.emplace_back(fit.raw_jacobian.col(i).data(), size);
     out.emplace_back(fit.jacobian.col(i).data(), size);
   }
   problem.WhitenInto(in, out);
-  fit.prior = PriorOf(problem, fit.point);
-  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
   AddProducts(fit.jacobian, 0, fit.normal);
 }
 

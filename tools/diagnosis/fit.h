@@ -65,8 +65,9 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort,
 
 double CostAt(const Problem& problem, const Point& point, Extent extent = Extent::kWhole);
 
-/// The fit's own runs under the noise that was learnt since.
+/// The fit's own runs under the noise that was learnt since. The residual alone leaves sensitivities behind.
 void Rewhiten(const Problem& problem, Fit& fit);
+void RewhitenResidual(const Problem& problem, Fit& fit);
 
 std::size_t ParameterCount(const Point& point);
 

@@ -37,11 +37,13 @@ bool IsMachine(const AxisModel& m) {
   return std::isfinite(all) && m.motor_inertia > 0.0 && carried > 0.0 && carried + m.payload > 0.0;
 }
 
+bool HasGap(const AxisModel& m) { return m.two_inertia && m.gap > 0.0; }
+
 /// What must be alike in one bundle of lanes.
 using Shape = std::tuple<bool, bool, bool, bool, bool>;
 Shape ShapeOf(const AxisModel& m) {
   return {m.two_inertia, m.two_inertia && m.friction_on_load, m.soft_share > 0.0, m.friction.vd > 0.0,
-          m.coarse};
+          HasGap(m)};
 }
 
 struct Bundle {
@@ -126,9 +128,7 @@ void DeliveredStore::Give(Delivered used) {
 }
 
 int SubstepsOf(const FilterSetup& setup, const AxisModel& m) {
-  constexpr int kManyEnough = 8;
-  const int fine = m.two_inertia ? setup.substeps_two : setup.substeps_rigid;
-  return m.coarse && fine >= kManyEnough ? fine / 2 : fine;
+  return m.two_inertia ? setup.substeps_two : setup.substeps_rigid;
 }
 
 AxisModel ModelOf(const StatedAxis& s) {

@@ -31,9 +31,9 @@ struct FilterRun {
 /// What the drive delivers of the logged command: the hold, the pure delay, the first-order lag, all exact.
 struct Delivered {
   std::vector<double> mean;  ///< over every sub-step of every row
-  /// Per row: what the delivered torque moves a unit inertia beyond what its means do, because it is not
-  /// constant inside the sub-steps: sum of the integrals of (h/2 - t) u(t) dt. Without it the model shifts
-  /// some 30 us from lag to delay.
+  /// The same: what the delivered torque moves a unit inertia beyond what its mean does, because it is not
+  /// constant inside the sub-step: the integral of (h/2 - t) u(t) dt. Without it the model shifts some 30 us
+  /// from lag to delay.
   std::vector<double> late;
 };
 
@@ -62,7 +62,7 @@ struct FilterSetup {
   std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
 };
 
-/// Per row, as the model's shape and its use ask for.
+/// Per row, as the model's shape asks for.
 int SubstepsOf(const FilterSetup& setup, const AxisModel& m);
 
 /// The model driven by the logged command and held to the measured position by a fixed gain: DIAGNOSIS eqs.

@@ -65,6 +65,13 @@ Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uin
   return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
 }
 
+Gate WithoutMargins(Gate gate) {
+  gate.margins = false;
+  gate.left = 0.0;
+  gate.left_of_kind.clear();
+  return gate;
+}
+
 double Gate::LeftAs(const std::string& kind) const {
   const auto same = left_of_kind.find(kind);
   return left + (same == left_of_kind.end() ? 0.0 : same->second);
@@ -87,6 +94,7 @@ double VagueBy(const Problem& problem, const std::string& kind, const Eigen::Mat
 }
 
 double Threshold(const Problem& problem, const Gate& gate, std::string_view kind) {
+  if (!gate.margins) return gate.flips;
   const double errors = MarginPerRow(kind, gate.rate) * static_cast<double>(problem.rows());
   return std::max(gate.flips, gate.calibrated + errors);
 }

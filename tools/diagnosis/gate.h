@@ -20,8 +20,13 @@ struct Gate {
   /// The same, as another cause of a kind that is among them: harmonics, neighbouring orders.
   std::map<std::string, double> left_of_kind = {};
 
+  bool margins = true;  ///< for the model's own errors
+
   [[nodiscard]] double LeftAs(const std::string& kind) const;
 };
+
+/// By chance alone: what the margins are read off is measured against it.
+Gate WithoutMargins(Gate gate);
 
 /// How a left-over shows in a kind's score.
 struct Showing {

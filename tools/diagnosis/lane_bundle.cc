@@ -12,6 +12,37 @@ void SetSignal(LaneSignal& lane, std::size_t i, const SharedSignal& signal, std:
   lane.to.at[i] = signal ? signal->data() + (signal->size() == 2 * rows ? rows : 1) : zeros;
 }
 
+/// How the coupling of two inertias, damped by any amount, goes on over a time h.
+struct Decay {
+  double dd, dr, rd, rr;
+};
+Decay DecayOver(double square, double decay, double h) {
+  // cos and sin / w of what is left of the mode beside its damping, or cosh and sinh.
+  const double left = square - decay * decay, w = std::sqrt(std::fabs(left)), x = w * h;
+  const double c = left > 0.0 ? std::cos(x) : std::cosh(x);
+  const double s = x < 1e-6 ? h : (left > 0.0 ? std::sin(x) : std::sinh(x)) / w;
+  const double e = std::exp(-decay * h);
+  return {e * (c + decay * s), e * s, -square * e * s, e * (c - decay * s)};
+}
+
+void SetFlow(LaneFlow& flow, std::size_t i, const AxisModel& a, double load_inertia, double h) {
+  const double per_inertia = 1.0 / a.motor_inertia + 1.0 / load_inertia;
+  const double square = a.stiffness * per_inertia, decay = 0.5 * a.damping * per_inertia;
+  const Decay whole = DecayOver(square, decay, h), half = DecayOver(square, decay, 0.5 * h);
+  flow.dd[i] = whole.dd;
+  flow.dr[i] = flow.ra[i] = whole.dr;
+  flow.rd[i] = whole.rd;
+  flow.rr[i] = whole.rr;
+  flow.da[i] = square * h * h < 1e-8 ? 0.5 * h * h : (1.0 - whole.dd) / square;
+  flow.half_rd[i] = half.rd;
+  flow.half_rr[i] = half.rr;
+  flow.half_ra[i] = half.dr;
+  flow.stiff[i] = square;
+  flow.damp[i] = 2.0 * decay;
+  flow.motor_share[i] = a.motor_inertia / (a.motor_inertia + load_inertia);
+  flow.load_share[i] = load_inertia / (a.motor_inertia + load_inertia);
+}
+
 void Compare(LaneRow& row) {
   row.alike = std::all_of(row.at, row.at + kLanes, [&](const double* p) { return p == row.at[0]; });
 }
@@ -40,6 +71,7 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
   m.on_load = first.two_inertia && first.friction_on_load;
   m.soft = first.soft_share > 0.0;
   m.fading = first.friction.vd > 0.0;
+  m.gap = first.two_inertia && first.gap > 0.0;
   for (std::size_t i = 0; i < kLanes; ++i) {
     const std::size_t from = std::min(i, models.size() - 1);
     const AxisModel& a = *models[from];
@@ -55,14 +87,13 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
     m.inv_load[i] = a.two_inertia ? 1.0 / a.load_inertia : 0.0;
     m.inv_payload[i] = 1.0 / ((a.two_inertia ? a.load_inertia : a.motor_inertia) + a.payload);
     m.payload_row[i] = static_cast<std::int64_t>(a.payload != 0.0 ? a.payload_row : setup.log->size() + 1);
-    // The leapfrog's mode is too fast by (w h)^2 / 24: taken off the stiffness.
+    m.stiffness[i] = a.two_inertia ? a.stiffness : 0.0;
     if (a.two_inertia) {
-      const double w = std::sqrt(a.stiffness * (1.0 / a.motor_inertia + 1.0 / a.load_inertia));
-      const double x = std::min(1.2, 0.5 * w * m.period_s / m.substeps);
-      m.stiffness[i] = a.stiffness * (x > 1e-6 ? std::pow(std::sin(x) / x, 2) : 1.0);
-    } else {
-      m.stiffness[i] = 0.0;
+      const double h = m.period_s / m.substeps;
+      SetFlow(m.flow, i, a, a.load_inertia, h);
+      SetFlow(m.flow_payload, i, a, a.load_inertia + a.payload, h);
     }
+    m.payload = m.payload || a.payload != 0.0;
     m.damping[i] = a.damping;
     m.half_gap[i] = 0.5 * a.gap;
     const double stiff = 1.0 - a.soft_share;
@@ -108,8 +139,8 @@ Lanes Over(const Lanes& lanes, const Stretch& stretch) {
                        &m.viscous, &m.reading})
     for (const double*& p : row->at) p += from;
   // Delivered for the stretches only.
-  for (const double*& p : m.late.at) p += stretch.at;
-  for (const double*& p : m.torque.at) p += stretch.at * static_cast<std::size_t>(m.substeps);
+  for (LaneRow* row : {&m.torque, &m.late})
+    for (const double*& p : row->at) p += stretch.at * static_cast<std::size_t>(m.substeps);
   m.measured += from;
   m.valid += from;
   m.payload_row = m.payload_row - static_cast<std::int64_t>(from);

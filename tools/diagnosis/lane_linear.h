@@ -10,7 +10,7 @@
 // columns.
 namespace contour::diagnosis {
 
-inline constexpr int kMostStates = 8;
+inline constexpr int kMostStates = 7;
 /// Motor force from, to; load force from, to; level from, to.
 inline constexpr int kLinearInputs = 6;
 
@@ -29,6 +29,8 @@ struct LaneColumns {
   double* table[kLanes] = {};  ///< all null: not asked for
 };
 
+inline constexpr std::size_t kMostGroups = 2;
+
 struct LaneWhiten {
   std::size_t rows = 0, stride = 0;
   int states = 0;  ///< 0: no Kalman filter before the autoregressive one
@@ -37,8 +39,9 @@ struct LaneWhiten {
   const double* taps = nullptr;  ///< kWhitenTaps of them
   const std::uint8_t* counted = nullptr;
   const double* weight = nullptr;
-  const double* in[kLanes] = {};
-  double* out[kLanes] = {};
+  std::size_t groups = 1;  ///< of lanes that have columns
+  const double* in[kMostGroups][kLanes] = {};
+  double* out[kMostGroups][kLanes] = {};
 };
 inline constexpr std::size_t kWhitenTaps = 49;
 

@@ -10,7 +10,7 @@ namespace contour::diagnosis {
 namespace {
 
 // Places in an entry of Lanes::tangent.
-enum Slot { kInnovation, kTh, kW, kAcc, kZ, kSoft, kThl, kWl, kAccl };
+enum Slot { kInnovation, kTh, kW, kDrag, kZ, kSoft, kThl, kWl };
 
 struct Direction {
   Vec LanePush::*push;
@@ -22,17 +22,16 @@ struct Directions {
   std::vector<Direction> columns;  // of the states after th, then the reading, then the inputs
 };
 
-Directions DirectionsOf(const AxisModel& m, double period_s, int substeps) {
+Directions DirectionsOf(const AxisModel& m) {
   const double z = m.friction.Fc_plus / m.friction.s0;
-  const double w = 1e-5 * m.friction.vs, acc = w * substeps / period_s;
+  const double w = 1e-5 * m.friction.vs;
   const double u = 1e-4 * m.friction.Fc_plus;
   Directions d;
-  d.states = {kTh, kW, kAcc, kZ};
-  d.columns = {{&LanePush::w, w}, {&LanePush::acc, acc}, {&LanePush::z, 1e-4 * z}};
+  d.states = {kTh, kW, kDrag, kZ};
+  d.columns = {{&LanePush::w, w}, {&LanePush::drag, u}, {&LanePush::z, 1e-4 * z}};
   if (m.two_inertia) {
-    d.states.insert(d.states.end(), {kThl, kWl, kAccl});
-    d.columns.insert(d.columns.end(),
-                     {{&LanePush::thl, 1e-4 * z}, {&LanePush::wl, w}, {&LanePush::accl, acc}});
+    d.states.insert(d.states.end(), {kThl, kWl});
+    d.columns.insert(d.columns.end(), {{&LanePush::thl, 1e-4 * z}, {&LanePush::wl, w}});
   }
   if (m.soft_share > 0.0) {
     d.states.push_back(kSoft);
@@ -60,8 +59,8 @@ struct Place {
 LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
   LinearModel out;
   const std::size_t rows = setup.log->size();
-  const int substeps = model.two_inertia ? setup.substeps_two : setup.substeps_rigid;
-  const Directions d = DirectionsOf(model, setup.log->period_s, substeps);
+  const int substeps = SubstepsOf(setup, model);
+  const Directions d = DirectionsOf(model);
   const std::size_t n = d.states.size();
   out.rows = rows;
   out.states = static_cast<int>(n);

@@ -14,7 +14,7 @@ namespace contour::diagnosis {
 /// multiplications per row instead of a run.
 struct LinearModel {
   std::size_t rows = 0, stride = 0;
-  int states = 0;                   ///< 4 or 5 rigid, 7 or 8 with two inertias; the last if friction is soft
+  int states = 0;                   ///< 4 or 5 rigid, 6 or 7 with two inertias; the last if friction is soft
   int table_state = 0;              ///< the one that the table's position follows
   std::vector<float> step;          ///< per transition, as LaneColumns has it
   std::vector<std::uint8_t> valid;  ///< rows whose innovation corrects

@@ -32,7 +32,7 @@ void Likelihood(const LinearModel& m, const std::vector<std::uint8_t>& counted, 
   Matrix p = Matrix::Zero();
   p(0, 0) = noise.reading;
   p(1, 1) = noise.reading / (period_s * period_s);
-  if (n >= 7) {
+  if (n >= 6) {
     p(4, 4) = p(0, 0);
     p(5, 5) = p(1, 1);
   }
@@ -84,23 +84,25 @@ void Pass(const LinearModel& m, const std::vector<std::uint8_t>& counted, const 
     case 5:
       Likelihood<5>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
       break;
-    case 7:
-      Likelihood<7>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
+    case 6:
+      Likelihood<6>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
       break;
     default:
-      Likelihood<8>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
+      Likelihood<7>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
   }
 }
 
 void ApplyAll(const LaneWhiten& whole, std::span<const double* const> in, std::span<double* const> out,
               std::span<const Stretch> stretches) {
+  constexpr std::size_t kAtOnce = kMostGroups * kLanes;
   LaneWhiten m = whole;
   std::vector<double> spare(m.rows);
-  for (std::size_t first = 0; first < in.size(); first += kLanes) {
-    for (std::size_t i = 0; i < kLanes; ++i) {
+  for (std::size_t first = 0; first < in.size(); first += kAtOnce) {
+    m.groups = in.size() - first > kLanes ? kMostGroups : 1;
+    for (std::size_t i = 0; i < kAtOnce; ++i) {
       const bool used = first + i < in.size();
-      m.in[i] = in[used ? first + i : first];
-      m.out[i] = used ? out[first + i] : spare.data();
+      m.in[i / kLanes][i % kLanes] = in[used ? first + i : first];
+      m.out[i / kLanes][i % kLanes] = used ? out[first + i] : spare.data();
     }
     if (stretches.empty()) BestLoops().whiten(m);
     for (const Stretch& s : stretches) {
@@ -112,9 +114,9 @@ void ApplyAll(const LaneWhiten& whole, std::span<const double* const> in, std::s
         part.step += s.from * m.stride;
         part.gain += s.from * static_cast<std::size_t>(m.states + 1);
       }
-      for (std::size_t i = 0; i < kLanes; ++i) {
-        part.in[i] += s.at;
-        part.out[i] += s.at;
+      for (std::size_t i = 0; i < kAtOnce; ++i) {
+        part.in[i / kLanes][i % kLanes] += s.at;
+        part.out[i / kLanes][i % kLanes] += s.at;
       }
       BestLoops().whiten(part);
     }
@@ -124,7 +126,7 @@ void ApplyAll(const LaneWhiten& whole, std::span<const double* const> in, std::s
 }  // namespace
 
 NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::vector<std::uint8_t>& counted,
-                         double inertia, double period_s, double reading_step)
+                         double inertia, double period_s, double reading_step, const NoiseFilter* before)
     : linear_(std::move(linear)) {
   const LinearModel& m = *linear_;
   const std::size_t n = m.rows;
@@ -144,21 +146,19 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
     return count > 0.0 ? count * std::log(squares / count + 1e-300) + logs : 0.0;
   };
   double best = 0.0, lowest = std::numeric_limits<double>::infinity();
-  for (double x = -4.5; x <= 4.6; x += 1.5) {
+  const auto look = [&](double x) {
     const double b = badness(x);
-    if (b < lowest) {
-      lowest = b;
-      best = x;
-    }
-  }
-  for (double step : {0.75, 0.375, 0.19, 0.09})
-    for (const double x : {best - step, best + step}) {
-      const double b = badness(x);
-      if (b < lowest) {
-        lowest = b;
-        best = x;
-      }
-    }
+    if (!(b < lowest)) return;
+    lowest = b;
+    best = x;
+  };
+  if (before != nullptr)
+    look(before->ratio_);
+  else
+    for (double x = -4.5; x <= 4.6; x += 1.5) look(x);
+  for (const double step : {0.75, 0.375, 0.19, 0.09})
+    for (const double x : {best - step, best + step}) look(x);
+  ratio_ = best;
   gain_.resize((n - 1) * static_cast<std::size_t>(m.states + 1));
   double squares = 0.0, logs = 0.0, count = 0.0;
   Pass(m, counted, noise_at(best), period_s, 0, n, squares, logs, count, gain_.data());

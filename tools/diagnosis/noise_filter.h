@@ -19,9 +19,10 @@ class NoiseFilter {
  public:
   NoiseFilter() = default;
   /// The ratio of the two noises by maximum likelihood from the innovations of the linearised run.
-  /// `counted`: rows whose innovation counts.
+  /// `counted`: rows whose innovation counts. `before`: the log's filter of an earlier run, whose ratio lies
+  /// near; null: none.
   NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::vector<std::uint8_t>& counted,
-              double inertia, double period_s, double reading_step);
+              double inertia, double period_s, double reading_step, const NoiseFilter* before);
 
   /// Whitens each, in place of size rows; rows that do not count come out 0 before the colour filter.
   /// Of an excerpt's stretches where there are any: in, out and weight are theirs then, back to back.
@@ -41,6 +42,7 @@ class NoiseFilter {
   Gradient Back(const std::vector<double>& white, const std::vector<std::uint8_t>& counted,
                 const double* weight) const;
 
+  bool learnt() const { return linear_ != nullptr; }
   const LinearModel& linear() const { return *linear_; }
   double torque_noise() const { return torque_noise_; }
 
@@ -49,6 +51,7 @@ class NoiseFilter {
   std::vector<float> gain_;  ///< per transition: kappa, 1 / sqrt(S)
   std::vector<double> taps_;
   double torque_noise_ = 0.0;
+  double ratio_ = 0.0;  ///< of the variances, torque's over the reading's: its decimal logarithm
 };
 
 /// A colour filter alone.

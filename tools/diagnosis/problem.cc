@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "tools/diagnosis/extras.h"
+#include "tools/diagnosis/lane_run.h"
 #include "tools/diagnosis/scale_noise.h"
 
 namespace contour::diagnosis {
@@ -67,23 +68,25 @@ Problem::Problem(const AxisLog& log, const StatedAxis& stated, int threads)
 }
 
 void Problem::ChooseSubsteps() {
-  // The leapfrog is off by (w h)^2 / 24 in a mode's frequency, which MakeLanes takes off the stiffness again.
+  // The leapfrog is off by (w h)^2 / 24 in the frequency of what moves on the bristles alone. A coupling
+  // moves exactly, under forces that are held.
   const StatedFriction& f = nominal_.friction;
   const double carried =
       nominal_.two_inertia && nominal_.friction_on_load ? nominal_.load_inertia : nominal_.motor_inertia;
   const double presliding = std::sqrt(2.0 * f.s0 / carried);
-  double mode = presliding;
-  if (nominal_.two_inertia)
-    mode = std::max(
-        mode, std::sqrt(nominal_.stiffness * (1.0 / nominal_.motor_inertia + 1.0 / nominal_.load_inertia)));
   const double damped = 2.0 * f.s1 / carried;
-  const auto steps = [&](int least, double w, double finest) {
-    int s = least;
-    while (s < 32 && (w * log_.period_s / s > finest || damped * log_.period_s / s > 0.3)) s *= 2;
+  double coupling = 0.0;
+  if (nominal_.two_inertia)
+    coupling = std::sqrt(nominal_.stiffness * (1.0 / nominal_.motor_inertia + 1.0 / nominal_.load_inertia));
+  const auto steps = [&](double mode) {
+    int s = 4;
+    while (s < kMostSubsteps && (presliding * log_.period_s / s > 0.36 || damped * log_.period_s / s > 0.3 ||
+                                 mode * log_.period_s / s > 0.65))
+      s *= 2;
     return s;
   };
-  setup_.substeps_rigid = steps(4, presliding, 0.36);
-  setup_.substeps_two = steps(8, mode, 0.35);
+  setup_.substeps_rigid = steps(0.0);
+  setup_.substeps_two = steps(coupling);
 }
 
 void Problem::MakeTerms() {
@@ -347,7 +350,7 @@ void Problem::LearnNoise(const Point& point) {
   const AxisModel model = Build(point);
   noise_ = NoiseFilter(std::make_shared<const LinearModel>(Linearise(setup_, model)), counted_,
                        model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0), log_.period_s,
-                       stated_.position_step);
+                       stated_.position_step, noise_.learnt() ? &noise_ : nullptr);
   std::vector<double> raw = noise_.linear().innovation;
   if (has_scale()) {
     AddScale(noise_.linear().table, model.two_inertia,

@@ -25,7 +25,7 @@ constexpr std::size_t kMostKinds = 4, kMostTried = 6;
 constexpr double kFewOfMost = 0.1;
 constexpr int kMostTurns = 3;
 constexpr std::size_t kMostKept = 6;
-// Of the best score: rivals below are given up, and what is no more than this is no reason to go on.
+// Of the best score: rivals below are given up at first, and what is no more than this is no reason to go on.
 constexpr double kGivenUp = 0.02, kAllTheSame = 1e-3;
 constexpr double kMayMatter = 0.3;    // the least share of the best one's score that is tested at all
 constexpr double kMayWin = 0.4;       // the same before the last steps
@@ -177,12 +177,12 @@ namespace {
 /// Where fits of the best candidates begin that have not been tried; none where nothing beyond the gate is
 /// promised. `most`: the drop that the best of them is promised.
 std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current,
-                                      const std::vector<Scored>& scored, const Gate& gate, bool anyway,
+                                      const std::vector<Scored>& scored, const Gate& gate,
                                       std::vector<std::string>& tried, double& most) {
   std::vector<Beginning> beginnings;
   const std::vector<std::string> before = tried;
   std::size_t fitted = 0, looked_at = 0;
-  bool outside = !before.empty(), promising = anyway;
+  bool outside = !before.empty(), promising = false;
   most = 0.0;
   for (const Scored& s : scored)
     if (!Outside(s.effect->kind) && !Among(before, s)) most = std::max(most, s.drop);
@@ -217,13 +217,24 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
   return beginnings;
 }
 
+/// Whether the score test promises enough to be tested beside the best; it says nothing about what is far
+/// from linear.
+bool MayMatter(const std::vector<Scored>& scored, const Rival& r, double best) {
+  if (!r.effect().start.empty()) return true;
+  return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+    return s.effect->kind == r.effect().kind && s.drop > kMayMatter * best - kSmallStill;
+  });
+}
+
 /// Where the stated numbers went too far, the fit may be in a wrong place: once more from where they are
 /// stated. One after the other, for the memory.
-void FitAllFromStated(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
+void FitAllFromStated(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                      std::vector<Rival>& rivals) {
   const FitEffort effort{.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false};
   double best = 0.0;
   for (Rival& r : rivals) {
     if (Outside(r.effect().kind)) continue;
+    if (!InBase(problem, r.effect().kind) && !MayMatter(scored, r, best)) continue;
     double worth = std::numeric_limits<double>::infinity();
     if (!InBase(problem, r.effect().kind)) worth = current.cost - Penalty(r.effect()) - kMayMatter * best;
     if (FitFromStated(problem, r.fit, effort, worth)) Judge(problem, current, r);
@@ -231,11 +242,11 @@ void FitAllFromStated(const Problem& problem, const Fit& current, std::vector<Ri
   }
 }
 
-/// Never the first; sorted before and after.
-void GiveUpFarBehind(const Problem& problem, std::vector<Rival>& rivals) {
+/// Those below a share of the best one's score, never the first; sorted before and after.
+void GiveUpFarBehind(const Problem& problem, double share, std::vector<Rival>& rivals) {
   for (Rival& r : rivals) {
-    if (&r == rivals.data() || InBase(problem, r.effect().kind)) continue;
-    r.given_up = r.score < kGivenUp * std::max(0.0, rivals[0].score) - kSmallStill;
+    if (&r == rivals.data() || r.given_up || InBase(problem, r.effect().kind)) continue;
+    r.given_up = r.score < share * std::max(0.0, rivals[0].score) - kSmallStill;
     if (!r.given_up) continue;
     Fit left;
     left.point = std::move(r.fit.point);
@@ -257,13 +268,12 @@ void KeepBest(const Problem& problem, std::vector<Rival>& rivals) {
 }  // namespace
 
 std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                             const Gate& gate, bool anyway, std::vector<std::string>& tried) {
+                             const Gate& gate, std::vector<std::string>& tried) {
   std::vector<Rival> out;
   double best = kNever;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     double most = 0.0;
-    for (Fit& fit : FitPoints(
-             problem, NextBeginnings(problem, current, scored, gate, anyway && turn == 0, tried, most))) {
+    for (Fit& fit : FitPoints(problem, NextBeginnings(problem, current, scored, gate, tried, most))) {
       out.push_back({std::move(fit)});
       Judge(problem, current, out.back());
       best = std::max(best, out.back().score);
@@ -273,9 +283,9 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
   }
   Sort(out);
   KeepBest(problem, out);
-  FitAllFromStated(problem, current, out);
+  FitAllFromStated(problem, current, scored, out);
   Sort(out);
-  GiveUpFarBehind(problem, out);
+  GiveUpFarBehind(problem, kGivenUp, out);
   return out;
 }
 
@@ -337,10 +347,14 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   Rewhiten(problem, current);
   for (Rival& r : rivals) {
     if (r.given_up) continue;
-    Rewhiten(problem, r.fit);
+    RewhitenResidual(problem, r.fit);
     Judge(problem, current, r);
   }
   Sort(rivals);
+  // What will not be tested needs no sensitivities.
+  GiveUpFarBehind(problem, kMayMatter, rivals);
+  for (Rival& r : rivals)
+    if (!r.given_up) Rewhiten(problem, r.fit);
   // A valley may end in two places: the base goes on from where the best rival's lies, where that is lower.
   Point other = rivals[0].fit.point;
   other.effects.pop_back();
@@ -385,12 +399,15 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
 double TestedScore(const Problem& problem, const Fit& current, const Rival& rival) {
   const SharedEffect& effect = rival.fit.point.effects.back();
   double drop = rival.score + Penalty(*effect);
+  double most = std::numeric_limits<double>::infinity();
   // Luck does not go that far; a base that lies elsewhere without the effect does.
-  if (drop < kNoLuck && (effect->signals || !effect->as_term.empty())) {
-    const std::vector<Scored> again = ScoreEffects(problem, current, {effect});
-    if (again[0].drop < kSmall) drop = std::min(drop, again[0].drop);
+  if (drop < kNoLuck && effect->start.empty() && !InBase(problem, effect->kind)) {
+    const Scored again = ScoreEffects(problem, current, {effect})[0];
+    if (again.drop < kSmall) drop = std::min(drop, again.drop);
+    // An effect that is there makes its score scatter from block to block, but not as a single event does.
+    most = kMostExcess * again.drop / again.excess;
   }
-  return drop / ExcessOfLast(problem, rival.fit) - Penalty(*effect);
+  return std::min(drop / ExcessOfLast(problem, rival.fit), most) - Penalty(*effect);
 }
 
 }  // namespace contour::diagnosis

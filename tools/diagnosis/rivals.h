@@ -25,10 +25,10 @@ struct Rival {
 bool Outside(const std::string& kind);
 
 /// The best of each kind: some of the catalogue, and the best from outside it. The best of them first. None
-/// where the score test promises nothing beyond the gate, unless they are wanted anyway. What was fitted is
+/// where the score test promises nothing beyond the gate. What was fitted is
 /// added to `tried`; what stands there is not fitted again.
 std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                             const Gate& gate, bool anyway, std::vector<std::string>& tried);
+                             const Gate& gate, std::vector<std::string>& tried);
 
 /// Whether the score test promises something beyond the gate that has not been tried.
 bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const Gate& gate,
