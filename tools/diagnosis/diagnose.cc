@@ -216,6 +216,7 @@ class Engine {
     // A resonance may have been taken for another one.
     FitFromStated(problem_, base_, effort);
     problem_.LearnSignals(base_.point);
+    catalogue_ = CatalogueEffects(problem_);
   }
 
   /// `beside`: what may be left of the accepted causes.
@@ -238,7 +239,7 @@ class Engine {
   }
 
   std::vector<Scored> Screen(const Fit& fit) const {
-    std::vector<SharedEffect> effects = CatalogueEffects(problem_);
+    std::vector<SharedEffect> effects = catalogue_;
     for (SharedEffect& e : ScanWaves(problem_, fit)) effects.push_back(std::move(e));
     // Numbers of a law of friction that does not hold are no cause when they are not as stated.
     const bool another_law = OfAnotherLaw(problem_, fit);
@@ -486,6 +487,7 @@ class Engine {
   const DiagnoseOptions& options_;
   Problem problem_;
   Fit base_;
+  std::vector<SharedEffect> catalogue_;
   std::vector<std::size_t> places_;  ///< of the accepted causes in the fit, jitter left out
   double explained_ = 0.0;           ///< drop by what is accepted
   bool stopped_ = false;             ///< no further cause was looked for

@@ -153,8 +153,9 @@ void Enter(AxisModel& m, Input input, const std::vector<SharedSignal>& basis, co
 
 // A signal times an amplitude, its shape by a second number that is 0 at the grid's place and fitted with the
 // rest.
-SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Input input, double step,
-                          std::array<double, 2> range, std::function<double(std::size_t, double)> shape);
+SharedEffect ShapedEffect(const Problem& p, std::string kind, std::string label, double grid, Input input,
+                          double step, std::array<double, 2> range,
+                          std::function<double(std::size_t, double)> shape);
 
 void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
   const Signals& s = *p.signals_;
@@ -216,19 +217,20 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
   const auto speed = std::make_shared<const Signal>(s.velocity);
   const Input drag = p.nominal_.friction_on_load ? Input::kLoadForce : Input::kMotorForce;
   for (const double power : {1.5, 2.0, 3.0})
-    out.push_back(WithOrder(
-        ShapedEffect("viscous_nonlinear", "power " + std::to_string(power), 3, drag, 0.02 * Fc, {-0.45, 0.4},
-                     [speed, top, power](std::size_t k, double x) {
-                       const double y = (*speed)[k] / top;
-                       return -std::copysign(std::pow(std::fabs(y), power * std::exp(x)), y);
-                     }),
-        power));
+    out.push_back(WithOrder(ShapedEffect(p, "viscous_nonlinear", "power " + std::to_string(power), 3, drag,
+                                         0.02 * Fc, {-0.45, 0.4},
+                                         [speed, top, power](std::size_t k, double x) {
+                                           const double y = (*speed)[k] / top;
+                                           return -std::copysign(std::pow(std::fabs(y), power * std::exp(x)),
+                                                                 y);
+                                         }),
+                            power));
   // Drag that gives way beyond a knee; what grows faster than the speed bends with a power, and so does what
   // the log cannot tell from it: a knee must show for itself, since its torque is told beside another linear
   // term.
   for (const double knee : {0.1, 0.3}) {
     auto shape = std::make_shared<Effect>(
-        *ShapedEffect("viscous_nonlinear", "knee " + std::to_string(knee), kKneeShows, drag, 0.02 * Fc,
+        *ShapedEffect(p, "viscous_nonlinear", "knee " + std::to_string(knee), kKneeShows, drag, 0.02 * Fc,
                       {-1.0, 1.0}, [speed, top, knee](std::size_t k, double x) {
                         const double y = (*speed)[k] / top, bend = knee * std::exp(x);
                         return -y * (1.0 + bend) / (std::fabs(y) + bend);
@@ -251,7 +253,7 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
   for (const double tau : {0.08, 0.25})
     out.push_back(WithOrder(
         ShapedEffect(
-            "friction_drift", "exponential " + std::to_string(tau), 3, Input::kLevel, 5e-3, {-1.2, 1.0},
+            p, "friction_drift", "exponential " + std::to_string(tau), 3, Input::kLevel, 5e-3, {-1.2, 1.0},
             [n, tau](std::size_t k, double x) {
               return 0.5 - std::exp(-static_cast<double>(k) / static_cast<double>(n) / (tau * std::exp(x)));
             }),
@@ -269,8 +271,9 @@ void AddFriction(const Problem& p, std::vector<SharedEffect>& out) {
                          {0.1, 0.0}, {0.0, -2.0}, {0.9, 2.0}));
 }
 
-SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Input input, double step,
-                          std::array<double, 2> range, std::function<double(std::size_t, double)> shape) {
+SharedEffect ShapedEffect(const Problem& p, std::string kind, std::string label, double grid, Input input,
+                          double step, std::array<double, 2> range,
+                          std::function<double(std::size_t, double)> shape) {
   auto e = std::make_shared<Effect>();
   e->kind = std::move(kind);
   e->label = std::move(label);
@@ -281,9 +284,13 @@ SharedEffect ShapedEffect(std::string kind, std::string label, double grid, Inpu
   e->tested = 1;
   e->signals = true;
   if (IsForce(input)) e->force = {1, 0};
-  e->apply = [shape = std::move(shape), input](const std::vector<double>& a, AxisModel& m) {
+  e->apply = [shape = std::move(shape), input, made = p.made_, owner = p.made_->NewOwner()](
+                 const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0) return;
-    Enter(m, input, {Make(m.rows, [&](std::size_t k) { return shape(k, a[1]); })}, {a[0]});
+    const auto make = [&]() -> std::vector<SharedSignal> {
+      return {Make(m.rows, [&](std::size_t k) { return shape(k, a[1]); })};
+    };
+    Enter(m, input, made->For(owner, a[1], make), {a[0]});
   };
   return e;
 }
@@ -480,11 +487,15 @@ SharedEffect WaveEffect(const Problem& p, Wave wave, double order, double grid) 
   e->low = {-1e30, -1e30, -6.0 / span};
   e->high = {1e30, 1e30, 6.0 / span};
   // About the middle, so that order and phase are not the same direction; the phase is reported at zero.
-  e->apply = [x, order, middle, input, n](const std::vector<double>& a, AxisModel& m) {
+  e->apply = [x, order, middle, input, n, made = p.made_, owner = p.made_->NewOwner()](
+                 const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0 && a[1] == 0.0) return;
-    std::vector<double> at(n);
-    for (std::size_t k = 0; k < n; ++k) at[k] = order * (*x)[k] + a[2] * ((*x)[k] - middle);
-    Enter(m, input, WaveSignals(at, {}), {a[0], a[1]});
+    const auto make = [&] {
+      std::vector<double> at(n);
+      for (std::size_t k = 0; k < n; ++k) at[k] = order * (*x)[k] + a[2] * ((*x)[k] - middle);
+      return WaveSignals(at, {});
+    };
+    Enter(m, input, made->For(owner, a[2], make), {a[0], a[1]});
   };
   e->middle = middle;
   return e;

@@ -14,6 +14,7 @@
 #include "tools/diagnosis/forward_filter.h"
 #include "tools/diagnosis/linear_model.h"
 #include "tools/diagnosis/noise_filter.h"
+#include "tools/diagnosis/signal_cache.h"
 #include "tools/diagnosis/signals.h"
 #include "tools/diagnosis/stated_axis.h"
 #include "tools/diagnosis/whitener.h"
@@ -104,6 +105,7 @@ class Problem {
   AxisModel nominal_;
   std::vector<BaseTerm> terms_;
   std::shared_ptr<Signals> signals_;
+  std::shared_ptr<SignalCache> made_ = std::make_shared<SignalCache>();
   FilterSetup setup_;
   std::vector<std::uint8_t> counted_;  ///< rows whose residual counts
   /// Per datum: 1 where the noise is as its spectrum says, less where it is locally larger (slip out of
