@@ -64,7 +64,7 @@ TEST_F(FirmSlidesTest, AreFarFromReversalsAndFast) {
 TEST_F(FirmSlidesTest, AnotherLawIsAnElementInPreslidingAndABristleThatDoesNotWear) {
   EXPECT_TRUE(OfAnotherLaw(problem_, With({"presliding_hysteresis"}, -6.0)));
   EXPECT_TRUE(OfAnotherLaw(problem_, With({"presliding_hysteresis", "cable_spring"}, -6.0)));
-  EXPECT_FALSE(OfAnotherLaw(problem_, With({"presliding_hysteresis"}, -1.0)));
+  EXPECT_FALSE(OfAnotherLaw(problem_, With({"presliding_hysteresis"}, -0.2)));
   EXPECT_FALSE(OfAnotherLaw(problem_, With({"presliding_hysteresis"}, 6.0)));
   EXPECT_FALSE(OfAnotherLaw(problem_, With({"cable_spring"}, -6.0)));
 }

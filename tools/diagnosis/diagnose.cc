@@ -46,7 +46,7 @@ constexpr double kStillThere = 0.6;
 // part in the difference, and constant torque and asymmetry differ at reversals only, which do not count.
 constexpr double kAlike = 0.03, kAlikeByAnotherLaw = 0.1;
 // An element in presliding is a neighbour's name for another law, and leaves more than a right name does.
-constexpr double kLeftByAnotherLaw = 0.01;
+constexpr double kLeftByAnotherLaw = 0.05;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 constexpr double kNoDoubt = 1000.0;  // of a score
 
@@ -241,10 +241,11 @@ class Engine {
   std::vector<Scored> Screen(const Fit& fit) const {
     std::vector<SharedEffect> effects = catalogue_;
     for (SharedEffect& e : ScanWaves(problem_, fit)) effects.push_back(std::move(e));
-    // Numbers of a law of friction that does not hold are no cause when they are not as stated.
+    // Numbers of a law of friction that does not hold are no cause when they are not as stated, and where
+    // friction is not what the law says is no matter of time.
     const bool another_law = OfAnotherLaw(problem_, fit);
     std::erase_if(effects, [&](const SharedEffect& e) {
-      if (another_law && e->kind == "stribeck") return true;
+      if (another_law && (e->kind == "stribeck" || e->kind == kFrictionOfTime)) return true;
       return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
         // A wave may have further orders.
         const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kOrdersApart;

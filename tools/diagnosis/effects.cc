@@ -387,8 +387,7 @@ void AddMechanics(const Problem& p, std::vector<SharedEffect>& out) {
   if (p.has_scale()) out.push_back(LinearEffect("pitch_error", "", 1, Input::kScale, Cosines(s, 1, 8), 1e-7));
   out.push_back(LinearEffect(std::string(kOutside) + "force of time", "", 1, Input::kLoadForce, Hats(n, 16),
                              0.01 * s.coulomb));
-  out.push_back(
-      LinearEffect(std::string(kOutside) + "friction of time", "", 1, Input::kLevel, Hats(n, 16), 5e-3));
+  out.push_back(LinearEffect(kFrictionOfTime, "", 1, Input::kLevel, Hats(n, 16), 5e-3));
 }
 
 }  // namespace

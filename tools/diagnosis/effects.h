@@ -9,6 +9,7 @@ namespace contour::diagnosis {
 
 /// Kinds outside the catalogue, tried so that what they explain does not get a wrong name.
 inline constexpr const char* kOutside = "outside:";
+inline constexpr const char* kFrictionOfTime = "outside:friction of time";
 
 /// A signal scaled by an amplitude, into one of the model's inputs.
 enum class Input { kMotorForce, kLoadForce, kLevel, kViscous, kReading, kScale };

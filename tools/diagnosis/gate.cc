@@ -12,7 +12,7 @@ namespace contour::diagnosis {
 namespace {
 
 // Of numbers of the base beside accepted causes, whose left-overs they may take up; per row.
-constexpr double kBesidePerRow = 1e-4;
+constexpr double kBesidePerRow = 3e-5;
 // Each kind that is a number of the base has this share of the false alarms.
 constexpr double kShareInBase = 0.2;
 // A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
@@ -129,9 +129,8 @@ double Threshold(const Problem& problem, const Gate& gate, const Effect& effect,
   if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind) + left / showing.excess;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
-  if (gate.accepted == 0)
-    return ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated)) - Penalty(effect);
-  const double by_chance = ChiSquare(degrees, kBeyondStated);
+  const double by_chance = ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated));
+  if (gate.accepted == 0) return by_chance - Penalty(effect);
   left += kBesidePerRow * static_cast<double>(problem.rows());
   // At its worst a left-over of chi^2 moves the number by its root, in standard errors of the log.
   const double moved = showing.vague * left;

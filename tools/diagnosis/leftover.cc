@@ -105,11 +105,14 @@ std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit) {
   const std::vector<double> weight(problem.root_weight_.begin(), problem.root_weight_.begin() + n);
   const NoiseFilter::Gradient back = problem.noise_.Back(innovation, problem.counted_, weight.data());
   const std::vector<double> response = PulseResponse(problem, false);
-  const std::vector<bool> slides = OfAnotherLaw(problem, fit) ? FirmSlides(problem) : Slides(problem);
+  const bool another_law = OfAnotherLaw(problem, fit);
+  const std::vector<bool> slides = another_law ? FirmSlides(problem) : Slides(problem);
   const BinnedRows known = FrictionCurve(problem, slides);
   const std::vector<BinnedRows> maps = LeftoverMaps(problem, slides);
   std::vector<Leftover> out;
   for (const BinnedRows& rows : maps) {
+    // Motions take turns over the time, and a law that does not hold is wrong in some of them.
+    if (another_law && !rows.size.empty()) continue;
     out.push_back(TestBins(rows, known, back.motor, response, weight));
     // The best of so many.
     out.back().score = std::max(0.0, out.back().score - 2.0 * std::log(static_cast<double>(maps.size())));

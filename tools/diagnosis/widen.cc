@@ -25,6 +25,7 @@ const std::map<std::pair<std::string, std::string>, double> kModelError = {
     {{"load_friction", "friction_per_torque_rel"}, 0.02},
     {{"payload_step", "inertia_change_rel"}, 0.01},
     {{"position_friction", "amplitude_rel"}, 0.04},
+    {{"presliding_hysteresis", "share_rel"}, 0.02},
     {{"sample_jitter", "rms_us"}, 0.01},
     {{"stribeck", "Fs_over_Fc"}, 0.01},
     {{"stribeck", "vs_rad_s"}, 0.1},
