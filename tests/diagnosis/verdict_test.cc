@@ -27,6 +27,7 @@ class VerdictTest : public testing::Test {
     one.bins = 90.0;
     one.drop = 90.0 + beyond;
     one.score = beyond;
+    one.asked = kThreshold;
     one.at = "12 mm, moving up";
     return one;
   }
@@ -44,7 +45,7 @@ class VerdictTest : public testing::Test {
   }
 
   Diagnosis Concluded(Diagnosis d, const std::vector<Leftover>& left) const {
-    Conclude(problem_, left, kThreshold, d);
+    Conclude(problem_, left, d);
     return d;
   }
 

@@ -461,28 +461,33 @@ class Engine {
     }
     out.traces = MakeTraces(problem_, base_.point, current.point);
     std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
-    const std::vector<Leftover> left = FindLeftovers(problem_, current);
-    const double threshold = LeftoverThreshold(problem_, options_.false_alarm_rate);
-    if (options_.evidence) TellLeftover(left[0], threshold);
-    Conclude(problem_, left, threshold, out);
+    const std::vector<Leftover> left = FindLeftovers(problem_, current, options_.false_alarm_rate);
+    if (options_.evidence) TellLeftovers(left);
+    Conclude(problem_, left, out);
     if (stopped_ && out.verdict == Verdict::kUnexplained)
       out.notes.push_back("No more than " + std::to_string(options_.most_effects) +
                           " causes were looked for: several known ones together may be behind it.");
     Say("done", 1.0);
   }
 
-  void TellLeftover(const Leftover& left, double threshold) const {
-    Evidence e;
-    e.accepted = static_cast<int>(places_.size());
-    e.explained = explained_;
-    e.kind = kUnexplained;
-    e.screened = left.drop;
-    e.penalty = left.bins;
-    e.refitted = e.tested = left.score;
-    e.unseen = std::sqrt(left.score);
-    e.flips = -2.0 * std::log(kCalibratedRate);
-    e.asked = threshold;
-    options_.evidence(e);
+  /// The best of each margin.
+  void TellLeftovers(const std::vector<Leftover>& left) const {
+    for (const std::string_view margin : kLeftovers) {
+      const auto best =
+          std::find_if(left.begin(), left.end(), [&](const Leftover& l) { return l.margin == margin; });
+      if (best == left.end()) continue;
+      Evidence e;
+      e.accepted = static_cast<int>(places_.size());
+      e.explained = explained_;
+      e.kind = margin;
+      e.screened = best->drop;
+      e.penalty = best->bins;
+      e.refitted = e.tested = best->score;
+      e.unseen = std::sqrt(best->score);
+      e.flips = -2.0 * std::log(kCalibratedRate);
+      e.asked = best->asked;
+      options_.evidence(e);
+    }
   }
 
   const DiagnoseOptions& options_;

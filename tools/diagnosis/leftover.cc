@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kReach = 64;  // rows that a pulse is followed for
 constexpr double kFewestRows = 20.0, kLeastFree = 0.05;
-// Of the asked false alarms, this share may be `unexplained`.
+// Of the asked false alarms, this share may be `unexplained`, in equal parts by each of its margins.
 constexpr double kShare = 0.1;
 
 double SizeAt(const BinnedRows& rows, std::size_t k) { return rows.size.empty() ? 1.0 : rows.size[k]; }
@@ -45,6 +45,13 @@ double ChiSquareScore(double x, double degrees) {
   const double z = (std::cbrt(std::max(0.0, x) / degrees) - 1.0 + variance) / std::sqrt(variance);
   if (z < 30.0) return -2.0 * std::log(0.5 * std::erfc(z / std::numbers::sqrt2));
   return z * z + 2.0 * std::log(z * std::sqrt(2.0 * std::numbers::pi));
+}
+
+/// The score that something unknown must exceed.
+double Threshold(const Problem& problem, std::string_view margin, double false_alarm_rate) {
+  const double own = kShare / static_cast<double>(kLeftovers.size()) * false_alarm_rate;
+  const double errors = MarginPerRow(margin, own) * static_cast<double>(problem.rows());
+  return std::max(-2.0 * std::log(own), -2.0 * std::log(kCalibratedRate) + errors);
 }
 
 std::vector<double> Autocorrelation(const std::vector<double>& response) {
@@ -80,6 +87,7 @@ Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<d
   out.over = rows.over;
   out.like = rows.like;
   out.series = rows.series;
+  out.margin = rows.margin;
   double most = 0.0;
   for (std::size_t b = 0; b < count; ++b) {
     if (seen[b] < kFewestRows || !(information[b] > 0.0)) continue;
@@ -99,7 +107,7 @@ Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<d
   return out;
 }
 
-std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit) {
+std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, double false_alarm_rate) {
   const auto n = static_cast<std::ptrdiff_t>(problem.rows());
   const std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + n);
   const std::vector<double> weight(problem.root_weight_.begin(), problem.root_weight_.begin() + n);
@@ -116,16 +124,12 @@ std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit) {
     out.push_back(TestBins(rows, known, back.motor, response, weight));
     // The best of so many.
     out.back().score = std::max(0.0, out.back().score - 2.0 * std::log(static_cast<double>(maps.size())));
+    out.back().asked = Threshold(problem, rows.margin, false_alarm_rate);
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const Leftover& a, const Leftover& b) { return a.score > b.score; });
+  std::stable_sort(out.begin(), out.end(), [](const Leftover& a, const Leftover& b) {
+    return a.score - a.asked > b.score - b.asked;
+  });
   return out;
-}
-
-double LeftoverThreshold(const Problem& problem, double false_alarm_rate) {
-  const double own = kShare * false_alarm_rate;
-  const double errors = MarginPerRow(kUnexplained, own) * static_cast<double>(problem.rows());
-  return std::max(-2.0 * std::log(own), -2.0 * std::log(kCalibratedRate) + errors);
 }
 
 }  // namespace contour::diagnosis

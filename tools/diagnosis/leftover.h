@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tools/diagnosis/fit.h"
+#include "tools/diagnosis/margins.h"
 
 namespace contour::diagnosis {
 
@@ -19,6 +21,7 @@ struct BinnedRows {
   /// Causes of it come as a series, order by order: what is left are further orders, which make no name
   /// wrong.
   bool series = false;
+  std::string_view margin = kUnexplained;  ///< whose margins it has
 };
 
 /// What a residual still has of one quantity, whatever its shape: the drop of chi^2 by a torque (or a level
@@ -26,6 +29,8 @@ struct BinnedRows {
 struct Leftover {
   std::string over, like;
   bool series = false;
+  std::string_view margin = kUnexplained;
+  double asked = 0.0;  ///< the score that something unknown must exceed
   double drop = 0.0;
   double bins = 0.0;    ///< that the drop is of by chance: those that what was taken out left free
   double score = 0.0;   ///< -2 ln of how probable that drop is by chance
@@ -38,12 +43,9 @@ struct Leftover {
 Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<double> gradient,
                   const std::vector<double>& response, const std::vector<double>& weight);
 
-/// Of the residual of a fit, for every quantity, the one that shows most first. To first order and of slides
-/// only; base and effects are not fitted again beside the bins, which makes the drop a little less than it
-/// could be.
-std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit);
-
-/// The score that something unknown must exceed.
-double LeftoverThreshold(const Problem& problem, double false_alarm_rate);
+/// Of the residual of a fit, for every quantity, the one that is furthest beyond what is asked of it first.
+/// To first order and of slides only; base and effects are not fitted again beside the bins, which makes the
+/// drop a little less than it could be.
+std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, double false_alarm_rate);
 
 }  // namespace contour::diagnosis

@@ -80,8 +80,8 @@ class Maps {
             return Text(t.Middle(b, kTemperatures) + mean_degC, "degC");
           });
     }
-    OfTime("time, as a torque", kTorqueEach_s, {});
-    OfTime("time, as friction", kFrictionEach_s, s_.sign);
+    OfTime("time, as a torque", kTorqueEach_s, {}, kUnexplainedTorque);
+    OfTime("time, as friction", kFrictionEach_s, s_.sign, kUnexplainedFriction);
     return std::move(out_);
   }
 
@@ -101,7 +101,7 @@ class Maps {
     out_.push_back(std::move(rows));
   }
 
-  void OfTime(const char* over, double each_s, const std::vector<double>& size) {
+  void OfTime(const char* over, double each_s, const std::vector<double>& size, std::string_view margin) {
     const Range time{0.0, static_cast<double>(n_) * p_.log_.period_s};
     const int count = std::max(1, static_cast<int>(time.high / each_s));
     BinnedRows rows;
@@ -109,6 +109,7 @@ class Maps {
     rows.like = "friction_drift";
     rows.bin.assign(n_, -1);
     rows.size = size;
+    rows.margin = margin;
     rows.count = count;
     for (std::size_t k = 0; k < n_; ++k)
       if (slides_[k]) rows.bin[k] = time.Bin(static_cast<double>(k) * p_.log_.period_s, count);

@@ -23,15 +23,15 @@ const ErrorScore& Of(std::string_view kind) {
 double AllShares() {
   double sum = 0.0;
   for (const ErrorScore& e : kTable)
-    if (e.kind != kUnexplained) sum += e.share;
+    if (!IsLeftover(e.kind)) sum += e.share;
   return sum;
 }
 
 }  // namespace
 
 double MarginPerRow(std::string_view kind, double false_alarm_rate) {
-  // Has a part of the rate for itself.
-  if (kind == kUnexplained)
+  // Have parts of the rate for themselves.
+  if (IsLeftover(kind))
     return 1e-5 * Of(kind).scale * std::max(0.0, std::log(Of(kind).share / false_alarm_rate));
   // Each kind alarms in proportion to how often it exceeds: exp(-margin / scale) is the same for all.
   static const double all = AllShares();

@@ -36,11 +36,11 @@ std::string NearestText(const std::vector<Cause>& causes) {
 
 }  // namespace
 
-void Conclude(const Problem& problem, const std::vector<Leftover>& left, double threshold, Diagnosis& out) {
-  const bool something = left[0].score > threshold;
+void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnosis& out) {
+  const bool something = left[0].score > left[0].asked;
   double beyond = 0.0, named = 0.0;
   for (const Leftover& one : left)
-    if (one.score > threshold && !(one.series && !out.causes.empty()))
+    if (one.score > one.asked && !(one.series && !out.causes.empty()))
       beyond = std::max(beyond, one.drop - one.bins);
   // A shape that was fitted, but is none of the catalogue, is no explanation either.
   for (const Cause& c : out.causes) (Outside(c.kind) ? beyond : named) += 2.0 * c.log_evidence_gain;
