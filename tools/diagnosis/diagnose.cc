@@ -179,6 +179,7 @@ class Engine {
       current = best.fit;
       if (Outside(best.effect().kind)) break;
     }
+    // Beside all that is in the model now, a shape from outside the catalogue among it.
     if (stated_beside != places_.size()) {
       const std::vector<Scored> scored = Screen(current);
       KeepDetectable(problem_, current, scored, TestJitter(problem_, current),

@@ -31,9 +31,9 @@ struct FilterRun {
 /// What the drive delivers of the logged command: the hold, the pure delay, the first-order lag, all exact.
 struct Delivered {
   std::vector<double> mean;  ///< over every sub-step of every row
-  /// The same: what the delivered torque moves a unit inertia beyond what its mean does, because it is not
-  /// constant inside the sub-step: the integral of (h/2 - t) u(t) dt. Without it the model shifts some 30 us
-  /// from lag to delay.
+  /// Per sub-step of every row, too: what the delivered torque moves a unit inertia beyond what its mean
+  /// does, because it is not constant inside the sub-step: the integral of (h/2 - t) u(t) dt. Without it the
+  /// model shifts some 30 us from lag to delay.
   std::vector<double> late;
 };
 

@@ -25,7 +25,8 @@ struct Gate {
   [[nodiscard]] double LeftAs(const std::string& kind) const;
 };
 
-/// By chance alone: what the margins are read off is measured against it.
+/// By chance alone, but for numbers of the base: no margins, and nothing left of accepted causes. What the
+/// margins are read off is measured against it.
 Gate WithoutMargins(Gate gate);
 
 /// How a left-over shows in a kind's score.

@@ -12,7 +12,7 @@ void SetSignal(LaneSignal& lane, std::size_t i, const SharedSignal& signal, std:
   lane.to.at[i] = signal ? signal->data() + (signal->size() == 2 * rows ? rows : 1) : zeros;
 }
 
-/// How the coupling of two inertias, damped by any amount, goes on over a time h.
+/// How the coupling of two inertias goes on over a time h, whether it swings or is damped to death.
 struct Decay {
   double dd, dr, rd, rr;
 };
@@ -87,14 +87,12 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
     m.inv_load[i] = a.two_inertia ? 1.0 / a.load_inertia : 0.0;
     m.inv_payload[i] = 1.0 / ((a.two_inertia ? a.load_inertia : a.motor_inertia) + a.payload);
     m.payload_row[i] = static_cast<std::int64_t>(a.payload != 0.0 ? a.payload_row : setup.log->size() + 1);
-    m.stiffness[i] = a.two_inertia ? a.stiffness : 0.0;
     if (a.two_inertia) {
       const double h = m.period_s / m.substeps;
       SetFlow(m.flow, i, a, a.load_inertia, h);
       SetFlow(m.flow_payload, i, a, a.load_inertia + a.payload, h);
     }
     m.payload = m.payload || a.payload != 0.0;
-    m.damping[i] = a.damping;
     m.half_gap[i] = 0.5 * a.gap;
     const double stiff = 1.0 - a.soft_share;
     m.Fc_plus[i] = f.Fc_plus;

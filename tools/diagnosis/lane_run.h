@@ -44,13 +44,13 @@ struct Lanes {
   int substeps = 0;
   double period_s = 0.0;
   LaneRow torque;  ///< per sub-step
-  LaneRow late;    ///< the same; see Delivered
+  LaneRow late;    ///< per sub-step, see Delivered
   LaneSignal motor, load, level;
   LaneRow viscous, reading;
   const double* measured = nullptr;
   const std::uint8_t* valid = nullptr;
-  Vec inv_motor, inv_load, inv_payload, stiffness, damping, half_gap;
-  LaneFlow flow, flow_payload;
+  Vec inv_motor, inv_load, inv_payload, half_gap;
+  LaneFlow flow{}, flow_payload{};
   VecBits payload_row;
   Vec Fc_plus, Fc_minus, dF_plus, dF_minus, inv_vs, s0, s1, inv_vd, s2, smallest, offset, gain, saturation,
       start_z;

@@ -119,8 +119,8 @@ std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, doub
   const std::vector<BinnedRows> maps = LeftoverMaps(problem, slides);
   std::vector<Leftover> out;
   for (const BinnedRows& rows : maps) {
-    // Motions take turns over the time, and a law that does not hold is wrong in some of them.
-    if (another_law && !rows.size.empty()) continue;
+    // Motions take turns over the time, and a law of friction that does not hold is wrong in some of them.
+    if (another_law && rows.margin == kUnexplainedFriction) continue;
     out.push_back(TestBins(rows, known, back.motor, response, weight));
     // The best of so many.
     out.back().score = std::max(0.0, out.back().score - 2.0 * std::log(static_cast<double>(maps.size())));

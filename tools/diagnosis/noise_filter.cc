@@ -145,7 +145,7 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
     }
     return count > 0.0 ? count * std::log(squares / count + 1e-300) + logs : 0.0;
   };
-  double best = 0.0, lowest = std::numeric_limits<double>::infinity();
+  double best = before != nullptr ? before->ratio_ : 0.0, lowest = std::numeric_limits<double>::infinity();
   const auto look = [&](double x) {
     const double b = badness(x);
     if (!(b < lowest)) return;
@@ -153,7 +153,7 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
     best = x;
   };
   if (before != nullptr)
-    look(before->ratio_);
+    look(best);
   else
     for (double x = -4.5; x <= 4.6; x += 1.5) look(x);
   for (const double step : {0.75, 0.375, 0.19, 0.09})

@@ -75,6 +75,7 @@ void Problem::ChooseSubsteps() {
       nominal_.two_inertia && nominal_.friction_on_load ? nominal_.load_inertia : nominal_.motor_inertia;
   const double presliding = std::sqrt(2.0 * f.s0 / carried);
   const double damped = 2.0 * f.s1 / carried;
+  // What is fitted to a rigid axis is compared with runs of the rigid one's sub-steps.
   double coupling = 0.0;
   if (nominal_.two_inertia)
     coupling = std::sqrt(nominal_.stiffness * (1.0 / nominal_.motor_inertia + 1.0 / nominal_.load_inertia));

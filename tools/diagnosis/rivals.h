@@ -25,8 +25,8 @@ struct Rival {
 bool Outside(const std::string& kind);
 
 /// The best of each kind: some of the catalogue, and the best from outside it. The best of them first. None
-/// where the score test promises nothing beyond the gate. What was fitted is
-/// added to `tried`; what stands there is not fitted again.
+/// where the score test promises nothing beyond the gate. What was fitted is added to `tried`; what stands
+/// there is not fitted again.
 std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
                              const Gate& gate, std::vector<std::string>& tried);
 

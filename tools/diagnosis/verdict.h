@@ -8,8 +8,8 @@
 namespace contour::diagnosis {
 
 /// From the causes that were accepted and from what they leave, the largest first: the verdict, and notes in
-/// plain words. Where what is left exceeds the threshold and is a large part of all there is to explain, no
-/// cause keeps its name.
+/// plain words. Where what is left exceeds what is asked of it and is a large part of all there is to
+/// explain, no cause keeps its name.
 void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnosis& out);
 
 }  // namespace contour::diagnosis
