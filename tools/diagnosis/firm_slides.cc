@@ -11,7 +11,7 @@ namespace {
 // Maxwell-slip elements of real axes break away within some ten lengths of the bristle that fits best.
 constexpr double kLengths = 20.0;
 // Of a mean square, in stated deviations: with friction of the law and a soft element it ends above zero, on
-// Maxwell-slip friction between -1 and -4.
+// Maxwell-slip friction well below.
 constexpr double kBelowZero = 0.5;
 
 bool ShowsAtReversals(const std::string& kind) {

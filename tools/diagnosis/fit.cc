@@ -411,8 +411,7 @@ void RewhitenResidual(const Problem& problem, Fit& fit) {
   fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
 }
 
-void Rewhiten(const Problem& problem, Fit& fit) {
-  RewhitenResidual(problem, fit);
+void RewhitenSensitivities(const Problem& problem, Fit& fit) {
   const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
   std::vector<std::span<const double>> in;
   std::vector<std::span<double>> out;
@@ -422,6 +421,11 @@ void Rewhiten(const Problem& problem, Fit& fit) {
   }
   problem.WhitenInto(in, out);
   AddProducts(fit.jacobian, 0, fit.normal);
+}
+
+void Rewhiten(const Problem& problem, Fit& fit) {
+  RewhitenResidual(problem, fit);
+  RewhitenSensitivities(problem, fit);
 }
 
 }  // namespace contour::diagnosis

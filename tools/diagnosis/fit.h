@@ -65,9 +65,11 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort,
 
 double CostAt(const Problem& problem, const Point& point, Extent extent = Extent::kWhole);
 
-/// The fit's own runs under the noise that was learnt since. The residual alone leaves sensitivities behind.
+/// The fit's own runs under the noise that was learnt since: both of the two below it, of which the residual
+/// alone tells the cost.
 void Rewhiten(const Problem& problem, Fit& fit);
 void RewhitenResidual(const Problem& problem, Fit& fit);
+void RewhitenSensitivities(const Problem& problem, Fit& fit);
 
 std::size_t ParameterCount(const Point& point);
 

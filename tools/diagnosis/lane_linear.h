@@ -5,9 +5,9 @@
 
 #include "tools/diagnosis/lane_run.h"
 
-// The linearised model's loops, eight columns at a time: what signals do to the innovation, and the
-// time-varying Kalman filter with the autoregressive filter that make a residual white; inner products of
-// columns.
+// The linearised model's loops, eight columns at a time (twice eight where they are made white): what signals
+// do to the innovation, and the time-varying Kalman filter with the autoregressive filter that make a
+// residual white; inner products of columns.
 namespace contour::diagnosis {
 
 inline constexpr int kMostStates = 7;

@@ -354,7 +354,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
   // What will not be tested needs no sensitivities.
   GiveUpFarBehind(problem, kMayMatter, rivals);
   for (Rival& r : rivals)
-    if (!r.given_up) Rewhiten(problem, r.fit);
+    if (!r.given_up) RewhitenSensitivities(problem, r.fit);
   // A valley may end in two places: the base goes on from where the best rival's lies, where that is lower.
   Point other = rivals[0].fit.point;
   other.effects.pop_back();
