@@ -37,12 +37,35 @@ enum class Reason : std::uint16_t {
   kEstimatorDiverged = 51,
   kDriveNotFollowing = 52,
   kGridPointsSkipped = 53,
+  kFeedbackFrozen = 54,       ///< the position stands still although torque or path must move it
+  kFeedbackJump = 55,         ///< the position went further in a cycle than any force can take it
+  kFeedbackReversed = 56,     ///< the position moves against the torque
+  kTorqueWithoutMotion = 57,  ///< torque beyond friction and outside forces moves nothing
+  kTorqueNotDelivered = 58,   ///< the torque that the drive reports is not the one it was sent
+  kScaleDisagrees = 59,       ///< linear scale and motor differ by more than wind-up
+  kModeChanged = 60,          ///< 0x6061 is no longer the mode that was set
+  kDriveRestarted = 61,
+  kDriveLeftOperational = 62,
+  kDriveLostMaster = 63,  ///< the drive missed the master's heartbeat, SYNC or RPDO
+  kDriveEmergency = 64,   ///< an emergency message that asks for a stop
+  kSecondMaster = 65,     ///< frames on the bus that only a master sends, and not ours
+  kOscillation = 66,
+  kEstimatorInconsistent = 67,  ///< innovations are no longer what the filter says of them
+  kSolverCapLasting = 68,
+  kCyclesLate = 69,
+  kNotReferenced = 70,  ///< the axis does not know where it is: a program is refused
   // Limits: the output is held back, the machine goes on.
   kTorqueLimit = 96,
   kTorqueRateLimit = 97,
   kSolverCap = 98,
   kInnovationGated = 99,
   kParameterBound = 100,
+  kTorqueConstantChanged = 101,
+  kOscillationNoticed = 102,
+  kSoftened = 103,
+  kFallenBack = 104,
+  kEmergencyNoticed = 105,
+  kForeignSdo = 106,
 };
 
 constexpr bool IsFault(Reason r) noexcept {
@@ -118,6 +141,52 @@ constexpr std::string_view Name(Reason r) noexcept {
       return "innovation_gated";
     case Reason::kParameterBound:
       return "parameter_bound";
+    case Reason::kFeedbackFrozen:
+      return "feedback_frozen";
+    case Reason::kFeedbackJump:
+      return "feedback_jump";
+    case Reason::kFeedbackReversed:
+      return "feedback_reversed";
+    case Reason::kTorqueWithoutMotion:
+      return "torque_without_motion";
+    case Reason::kTorqueNotDelivered:
+      return "torque_not_delivered";
+    case Reason::kScaleDisagrees:
+      return "scale_disagrees";
+    case Reason::kModeChanged:
+      return "mode_changed";
+    case Reason::kDriveRestarted:
+      return "drive_restarted";
+    case Reason::kDriveLeftOperational:
+      return "drive_left_operational";
+    case Reason::kDriveLostMaster:
+      return "drive_lost_master";
+    case Reason::kDriveEmergency:
+      return "drive_emergency";
+    case Reason::kSecondMaster:
+      return "second_master";
+    case Reason::kOscillation:
+      return "oscillation";
+    case Reason::kEstimatorInconsistent:
+      return "estimator_inconsistent";
+    case Reason::kSolverCapLasting:
+      return "solver_cap_lasting";
+    case Reason::kCyclesLate:
+      return "cycles_late";
+    case Reason::kNotReferenced:
+      return "not_referenced";
+    case Reason::kTorqueConstantChanged:
+      return "torque_constant_changed";
+    case Reason::kOscillationNoticed:
+      return "oscillation_noticed";
+    case Reason::kSoftened:
+      return "softened";
+    case Reason::kFallenBack:
+      return "fallen_back";
+    case Reason::kEmergencyNoticed:
+      return "emergency_noticed";
+    case Reason::kForeignSdo:
+      return "foreign_sdo";
   }
   return "unknown";
 }

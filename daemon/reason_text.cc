@@ -106,11 +106,79 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
              "or gives no real time; then reset";
     case Reason::kDriveNotFollowing:
       return axis + ": the drive does not follow its target" + DriveText(record, at);
+    case Reason::kFeedbackFrozen:
+      return axis +
+             ": the position stands still although the axis must move; voltage off, since the encoder cannot "
+             "be believed. Check encoder, its cable and the coupling, and that no brake holds";
+    case Reason::kFeedbackJump:
+      return axis +
+             ": the position jumped further than any force can take it; voltage off, since the encoder "
+             "cannot be believed. Check encoder and cable, then reset and reference the axis anew";
+    case Reason::kFeedbackReversed:
+      return axis +
+             ": the position moves against the torque; voltage off. Check the signs of encoder and torque "
+             "(0x607E) and the motor's phases";
+    case Reason::kTorqueWithoutMotion:
+      return axis +
+             ": more torque than friction and outside forces explain moves nothing; voltage off. Look for a "
+             "collision, a closed brake, a torn coupling, or a drive without power" +
+             DriveText(record, at);
+    case Reason::kTorqueNotDelivered:
+      return axis +
+             ": the drive reports another torque than it was sent; quick stop. Look for a limit in the "
+             "drive, its supply, or a lost phase" +
+             DriveText(record, at);
+    case Reason::kScaleDisagrees:
+      return axis +
+             ": linear scale and motor differ by more than the screw can wind up; voltage off. Check scale, "
+             "read head and coupling";
+    case Reason::kModeChanged:
+      return axis +
+             ": the drive left the mode of operation that was set (0x6061); quick stop. Look for another "
+             "program that writes to the drive";
+    case Reason::kDriveRestarted:
+      return axis + ": the drive restarted (boot-up message). Check its supply, then reset" +
+             DriveText(record, at);
+    case Reason::kDriveLeftOperational:
+      return axis +
+             ": the drive left Operational, so it takes no set-points any more. Look for another master, "
+             "then reset" +
+             DriveText(record, at);
+    case Reason::kDriveLostMaster:
+      return axis +
+             ": the drive says that it lost the master (heartbeat, SYNC or set-points). Check the bus and "
+             "the host's load, then reset" +
+             DriveText(record, at);
+    case Reason::kDriveEmergency:
+      return axis + ": the drive sent an emergency message that asks for a stop" + DriveText(record, at);
+    case Reason::kSecondMaster:
+      return bus + ": another master sends on this bus; the machine stopped. End it, then reset";
+    case Reason::kOscillation:
+      return axis + ": the loop oscillates, also with softer gains; stopped. Check model and tuning";
+    case Reason::kEstimatorInconsistent:
+      return axis +
+             ": the estimator's innovations have long been larger than it says; stopped on the path. The "
+             "model does not fit this axis: identify it again";
+    case Reason::kSolverCapLasting:
+      return "the controller's solver has long not come to its end within a cycle; stopped on the path";
+    case Reason::kCyclesLate:
+      return "too many cycles in a row were late; stopped on the path. The host is overloaded or gives no "
+             "real time";
+    case Reason::kNotReferenced:
+      return axis +
+             " does not know where it is since its drive restarted; tell it (contour reference), then run "
+             "the program";
     case Reason::kTorqueLimit:
     case Reason::kTorqueRateLimit:
     case Reason::kSolverCap:
     case Reason::kInnovationGated:
     case Reason::kParameterBound:
+    case Reason::kTorqueConstantChanged:
+    case Reason::kOscillationNoticed:
+    case Reason::kSoftened:
+    case Reason::kFallenBack:
+    case Reason::kEmergencyNoticed:
+    case Reason::kForeignSdo:
       return std::string(Name(record.reason));
   }
   return {};
