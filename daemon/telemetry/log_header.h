@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "daemon/telemetry/log_format.h"
+
 namespace contour {
 
 /// A further file that the configuration names, such as a model.
@@ -27,6 +29,7 @@ struct LogHeader {
   std::string config_text;             ///< the file itself
   std::vector<std::string> overrides;  ///< KEY=VALUE, in order
   std::vector<LogFile> files;
+  std::int32_t format_version = kLogFormatVersion;
 
   friend bool operator==(const LogHeader&, const LogHeader&) = default;
 };

@@ -39,14 +39,15 @@ void LogReader::ReadHeader() {
     Fail("is not a log of contourd");
   contour_lcm::log_header m{};
   if (!DecodeChecked(event.bytes, m)) Fail("has a damaged header, or one of another format");
-  if (m.format_version != kLogFormatVersion) {
+  if (m.format_version < kOldestReadFormat || m.format_version > kLogFormatVersion) {
     Fail("has format " + std::to_string(m.format_version) + "; this program reads format " +
-         std::to_string(kLogFormatVersion));
+         std::to_string(kOldestReadFormat) + " to " + std::to_string(kLogFormatVersion));
   }
   header_ = {m.build,       m.machine,     m.controller, m.clock, m.start_unix_us, m.cycle_us, m.axis_names,
              m.config_name, m.config_text, m.overrides,  {}};
   for (std::size_t i = 0; i < m.file_names.size(); ++i)
     header_.files.push_back({m.file_names[i], m.file_texts[i]});
+  header_.format_version = m.format_version;
 }
 
 bool LogReader::Next(CycleEntry& entry) {

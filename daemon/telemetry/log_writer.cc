@@ -30,7 +30,7 @@ void AppendBigEndian(std::string& out, Integer value) {
 
 contour_lcm::log_header ToMessage(const LogHeader& header) {
   contour_lcm::log_header m{};
-  m.format_version = kLogFormatVersion;
+  m.format_version = header.format_version;
   m.build = header.build;
   m.machine = header.machine;
   m.controller = header.controller;

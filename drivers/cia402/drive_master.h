@@ -26,10 +26,18 @@ struct AxisDriveConfig {
   double torque_limit_Nm = 0.0;  ///< written to the drive (0x6072); the axis's limit, at most its peak torque
 };
 
+/// How the drives are found, configured and asked while they run. A log replays as it was recorded: what is
+/// sent and waited for must then be what it was.
+enum class StartUp : std::uint8_t {
+  kOfLogFormat4,
+  kNow,
+};
+
 struct MasterConfig {
   std::vector<AxisDriveConfig> axes;
   std::vector<BusConfig> buses;
   std::uint32_t cycle_us = 1000;
+  StartUp start_up = StartUp::kNow;
 };
 
 /// What the master knows of a drive beside its feedback.

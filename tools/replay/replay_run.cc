@@ -11,6 +11,7 @@
 #include "daemon/make_log_header.h"
 #include "daemon/rt/cycle.h"
 #include "daemon/rt/cycle_parts.h"
+#include "daemon/telemetry/log_format.h"
 #include "daemon/telemetry/tuning_note.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/replay/output_quantities.h"
@@ -156,7 +157,9 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
   MachineSource source = SourceOf(log.header());
   source.overrides.insert(source.overrides.end(), options.set.begin(), options.set.end());
   const MachineConfig machine = LoadMachine(source);
-  Cycle cycle(MakeCycleConfig(machine, machine.machine.controller));
+  CycleConfig config = MakeCycleConfig(machine, machine.machine.controller);
+  if (log.header().format_version < kLogFormatVersion) config.master.start_up = StartUp::kOfLogFormat4;
+  Cycle cycle(config);
   ReplayReport report;
   report.recorded_build = log.header().build;
   report.replayed_build = BuildIdentity();

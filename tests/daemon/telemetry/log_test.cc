@@ -89,6 +89,19 @@ class LogTest : public ::testing::Test {
   fs::path file_;
 };
 
+TEST_F(LogTest, FormatsOfTheSameMessagesAreReadAndSayWhichTheyAre) {
+  const auto written_as = [&](std::int32_t format) {
+    LogHeader header = Header();
+    header.format_version = format;
+    LogWriter(file_, header).Close();
+    return LogReader(file_).header().format_version;
+  };
+  for (std::int32_t format = kOldestReadFormat; format <= kLogFormatVersion; ++format)
+    EXPECT_EQ(written_as(format), format);
+  EXPECT_THROW(written_as(kOldestReadFormat - 1), LogError);
+  EXPECT_THROW(written_as(kLogFormatVersion + 1), LogError);
+}
+
 TEST_F(LogTest, GivesBackEveryCycleBitForBit) {
   const auto written = Write(137);
   LogReader reader(file_);
