@@ -129,10 +129,12 @@ std::string VerdictText(const ReplayReport& r) {
       return range + ": the log holds inputs only; there was nothing to compare with\n";
     case ReplayVerdict::kDamaged:
     case ReplayVerdict::kIncomplete:
+    case ReplayVerdict::kCutShort:
       break;
   }
+  const char* before = r.verdict == ReplayVerdict::kCutShort ? "within the tolerance\n" : "differs\n";
   return r.message + "\n" + "before that, " + range + ": " +
-         (r.differences.empty() ? "the same, every output bit for bit\n" : "differs\n");
+         (r.differences.empty() ? "the same, every output bit for bit\n" : before);
 }
 
 std::string ReportText(const ReplayReport& r) {
@@ -140,14 +142,9 @@ std::string ReportText(const ReplayReport& r) {
   if (r.recorded_build != r.replayed_build)
     text += "recorded by another build: " + r.recorded_build +
             "\n             this build is: " + r.replayed_build + "\n";
-  if (!r.closed && r.verdict != ReplayVerdict::kDamaged && r.verdict != ReplayVerdict::kIncomplete)
+  if (!r.closed && r.verdict == ReplayVerdict::kDiffers)
     text += "the log was not closed: its writer was killed, or the file cut short\n";
   return text;
-}
-
-bool Passed(ReplayVerdict verdict) {
-  return verdict == ReplayVerdict::kSame || verdict == ReplayVerdict::kWithinTolerance ||
-         verdict == ReplayVerdict::kNoOutputs;
 }
 
 int RunReplay(const Options& options) {
@@ -193,7 +190,8 @@ void AddReplayCommand(CLI::App& app, Action& action) {
   sub->add_option("--every", options->every, "Rows of the table: every so many cycles")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  sub->footer("Exit status: 0 the same (or within the tolerance), 1 differs, is damaged or incomplete.");
+  sub->footer(
+      "Exit status: 0 the same (or within the tolerance), 1 differs, is damaged, incomplete or cut short.");
   sub->callback([options, &action] { action = [options] { return RunReplay(*options); }; });
 }
 

@@ -149,8 +149,15 @@ std::string_view Name(ReplayVerdict verdict) {
       return "incomplete";
     case ReplayVerdict::kNoOutputs:
       return "no_outputs";
+    case ReplayVerdict::kCutShort:
+      return "cut_short";
   }
   return "unknown";
+}
+
+bool Passed(ReplayVerdict verdict) {
+  return verdict == ReplayVerdict::kSame || verdict == ReplayVerdict::kWithinTolerance ||
+         verdict == ReplayVerdict::kNoOutputs;
 }
 
 ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
@@ -203,6 +210,12 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
   report.differences = differences.Found(options.tolerance);
   if (report.verdict == ReplayVerdict::kSame)
     report.verdict = outputs ? Judge(report.differences) : ReplayVerdict::kNoOutputs;
+  // What is missing at the end may be the very thing that the log was written for.
+  if (!report.closed && Passed(report.verdict)) {
+    report.verdict = ReplayVerdict::kCutShort;
+    report.message = "the log was not closed: its writer was killed, or the file cut short after cycle " +
+                     std::to_string(report.last_cycle);
+  }
   return report;
 }
 

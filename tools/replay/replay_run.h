@@ -31,8 +31,11 @@ enum class ReplayVerdict {
   kDamaged,     ///< the file is damaged; what comes before is judged by first_difference
   kIncomplete,  ///< cycles are missing, so that what comes behind cannot be computed
   kNoOutputs,   ///< the log holds inputs only: there is nothing to compare with
+  kCutShort,    ///< nothing differs as far as it goes, but the log has no end
 };
 std::string_view Name(ReplayVerdict verdict);
+/// Nothing differs that may not, and nothing is missing.
+bool Passed(ReplayVerdict verdict);
 
 struct ReplayReport {
   ReplayVerdict verdict = ReplayVerdict::kSame;
@@ -44,7 +47,7 @@ struct ReplayReport {
   std::string replayed_build;
   double tolerance = 0.0;
   std::optional<std::uint64_t> damaged_cycle;
-  std::string message;  ///< on damage or missing cycles
+  std::string message;  ///< on damage, missing cycles or a missing end
   /// By the first cycle at which each differs; all of one cycle in the order of OutputQuantities.
   std::vector<QuantityDifference> differences;
 };
