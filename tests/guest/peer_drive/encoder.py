@@ -1,0 +1,49 @@
+"""The motor's encoder: counts of the angle with noise below a count, from where it was switched on if it is incremental; and its
+faults."""
+import math
+import random
+
+
+class Encoder:
+    def __init__(self, counts_per_turn, absolute, noise_counts, seed, offset_turns=0.0):
+        self.counts_per_turn = counts_per_turn
+        self.absolute = absolute
+        self.noise_counts = noise_counts
+        self._random = random.Random(seed)
+        self._offset_counts = offset_turns * counts_per_turn
+        self._zero_counts = 0.0
+        self._jump_counts = 0.0
+        self._frozen = None
+        self._reversed_about = None
+
+    def read(self, angle_rad):
+        """The count that the drive sees."""
+        exact = angle_rad / (2.0 * math.pi) * self.counts_per_turn + self._offset_counts - self._zero_counts
+        if self._reversed_about is not None:
+            exact = 2.0 * self._reversed_about - exact
+        count = math.floor(exact + self._jump_counts + self._random.gauss(0.0, self.noise_counts))
+        if self._frozen is not None:
+            if self._frozen == "now":
+                self._frozen = count
+            return self._frozen
+        return count
+
+    def power_up(self, angle_rad):
+        """An incremental encoder counts anew from here."""
+        if not self.absolute:
+            self._zero_counts = angle_rad / (2.0 * math.pi) * self.counts_per_turn + self._offset_counts
+
+    def freeze(self):
+        self._frozen = "now"
+
+    def jump(self, counts):
+        self._jump_counts += counts
+
+    def reverse(self, angle_rad):
+        """From here on it counts the wrong way round."""
+        self._reversed_about = (angle_rad / (2.0 * math.pi) * self.counts_per_turn + self._offset_counts - self._zero_counts)
+
+    def mend(self):
+        """Freezing and reversing end; a jump stays, as a slipped disc does."""
+        self._frozen = None
+        self._reversed_about = None
