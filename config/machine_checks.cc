@@ -13,6 +13,7 @@
 #include "config/bus_timing.h"
 #include "config/key_table.h"
 #include "config/number_text.h"
+#include "config/plausible_limits.h"
 #include "config/stopping.h"
 #include "core/cycle_input.h"
 #include "core/mechanics.h"
@@ -329,8 +330,10 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     CheckLimits(key, axis, problems);
     CheckReserve(key, axis, problems);
     CheckStopping(c, key, axis, problems);
+    Append(ImplausibleLimits(c, name), problems);
     Append(Check(axis.model, key + ".model"), problems);
   }
+  Append(ImplausibleTelemetry(c.telemetry), problems);
   if (c.io.modbus) {
     if (std::string text = Problem(*c.io.modbus); !text.empty()) problems.Add("io.modbus.timeout_ms", text);
     const auto& temperature = c.io.modbus->inputs.screw_temperature;

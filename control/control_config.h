@@ -144,7 +144,7 @@ struct GuardConfig {
   void Visit(Visitor& v) {
     v.Optional("stale_cycles", stale_cycles, Range{1.0, 3.0},
                "fault after this many cycles without feedback");
-    v.Optional("overspeed_factor", overspeed_factor, Range{1.0, 10.0},
+    v.Optional("overspeed_factor", overspeed_factor, Range{1.0, 2.0},
                "fault above this multiple of velocity_mm_s");
   }
 };

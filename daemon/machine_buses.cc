@@ -19,6 +19,13 @@ std::size_t LoopbackCount(const MachineConfig& machine) {
   return count;
 }
 
+std::vector<int> NodesOn(const MachineConfig& machine, const std::string& bus) {
+  std::vector<int> nodes;
+  for (const auto& [name, axis] : machine.axes)
+    if (axis.drive.bus == bus) nodes.push_back(axis.drive.node_id);
+  return nodes;
+}
+
 }  // namespace
 
 MachineBuses::MachineBuses(const MachineConfig& machine, const std::optional<EmulatorConfig>& emulator,
@@ -36,7 +43,7 @@ MachineBuses::MachineBuses(const MachineConfig& machine, const std::optional<Emu
     RequireInterfaces(machine);
     for (const auto& [name, bus] : machine.buses) {
       all_virtual_ = all_virtual_ && IsVirtualCan(bus.interface);
-      buses_.push_back(std::make_unique<SocketCanBus>(bus.interface));
+      buses_.push_back(std::make_unique<SocketCanBus>(bus.interface, NodesOn(machine, name)));
       pointers_.push_back(buses_.back().get());
     }
     return;

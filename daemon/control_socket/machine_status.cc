@@ -59,7 +59,8 @@ json Buses(const MachineStatus& s) {
                      {"frames_sent", b.state.frames_sent},
                      {"send_failures", b.state.send_failures},
                      {"error_frames", b.state.error_frames},
-                     {"receive_overflows", b.state.receive_overflows}});
+                     {"receive_overflows", b.state.receive_overflows},
+                     {"frames_dropped", b.state.frames_dropped}});
   }
   return buses;
 }

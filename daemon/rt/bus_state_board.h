@@ -23,6 +23,7 @@ class BusStateBoard {
     e.send_failures.store(state.send_failures, kRelaxed);
     e.error_frames.store(state.error_frames, kRelaxed);
     e.receive_overflows.store(state.receive_overflows, kRelaxed);
+    e.frames_dropped.store(state.frames_dropped, kRelaxed);
   }
   [[nodiscard]] BusState Read(std::size_t bus) const noexcept {
     const Entry& e = entries_[bus];
@@ -35,6 +36,7 @@ class BusStateBoard {
     out.send_failures = e.send_failures.load(kRelaxed);
     out.error_frames = e.error_frames.load(kRelaxed);
     out.receive_overflows = e.receive_overflows.load(kRelaxed);
+    out.frames_dropped = e.frames_dropped.load(kRelaxed);
     return out;
   }
 
@@ -47,6 +49,7 @@ class BusStateBoard {
     std::atomic<std::uint64_t> send_failures{0};
     std::atomic<std::uint64_t> error_frames{0};
     std::atomic<std::uint64_t> receive_overflows{0};
+    std::atomic<std::uint64_t> frames_dropped{0};
   };
   std::array<Entry, kMaxBuses> entries_;
 };

@@ -64,6 +64,8 @@ Cycle::Cycle(const CycleConfig& config)
     heartbeats_.push_back(
         {HeartbeatFrame(static_cast<std::uint8_t>(b.master_node_id), NmtState::kOperational), bus, 0});
   }
+  bus_nodes_.resize(config.master.buses.size());
+  for (const AxisDriveConfig& a : config.master.axes) bus_nodes_[a.bus].Add(a.drive.node_id);
   const std::size_t n = axes_.size();
   control_in_.reference.resize(n);
   control_in_.friction.resize(n);

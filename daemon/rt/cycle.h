@@ -15,6 +15,7 @@
 #include "daemon/rt/cycle_config.h"
 #include "daemon/rt/path_follower.h"
 #include "daemon/rt/transitions.h"
+#include "drivers/cia301/bus_traffic.h"
 #include "drivers/cia402/drive_master.h"
 #include "estimator/axis_estimator.h"
 
@@ -44,6 +45,8 @@ class Cycle {
   [[nodiscard]] bool ExpectsFeedback() const noexcept { return master_.sync_sent(); }
   /// All drives' answers to the last SYNC are among these frames.
   [[nodiscard]] bool FeedbackComplete(const CycleInput& in) const noexcept;
+  /// Nodes of the drives, bus by bus.
+  [[nodiscard]] const FixedVector<BusNodes, kMaxBuses>& bus_nodes() const noexcept { return bus_nodes_; }
   /// The master's heartbeats alone, for a loop whose time stands still.
   void EncodeHeartbeat(CycleOutput& out) const noexcept;
 
@@ -115,6 +118,7 @@ class Cycle {
   std::uint64_t stale_cycles_ = 0;
   FixedVector<StampedFrame, kMaxAxes> answers_;  ///< bus and identifier of each drive's answer to SYNC
   FixedVector<StampedFrame, kMaxBuses> heartbeats_;
+  FixedVector<BusNodes, kMaxBuses> bus_nodes_;
   std::vector<std::byte> handover_;  ///< room for a controller's memory
 };
 

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 
+#include "daemon/rt/bus_share.h"
+
 namespace contour {
 
 void CycleRunner::Receive(std::int64_t bus_time_ns, ReceivedFrames& frames) noexcept {
   for (std::size_t b = 0; b < buses_.size(); ++b) {
-    const std::size_t have = frames.size();
-    const std::span<StampedFrame> room(frames.data() + have, frames.capacity() - have);
-    const std::size_t got = buses_[b]->Receive(bus_time_ns, room);
-    for (std::size_t i = 0; i < got; ++i) room[i].bus = static_cast<std::uint8_t>(b);
-    frames.resize(have + got);
+    const std::size_t share = ShareOfBus(buses_.size());
+    frames_dropped_[b] += TakeShare(*buses_[b], static_cast<std::uint8_t>(b), share, cycle_.bus_nodes()[b],
+                                    bus_time_ns, frames);
   }
 }
 
@@ -21,7 +21,8 @@ void CycleRunner::Collect(const GridPoint& grid, std::int64_t now_ns, bool take_
   in.grid_time_ns = grid.time_ns;
   in.buses.resize(buses_.size());
   for (std::size_t b = 0; b < buses_.size(); ++b) {
-    const BusState state = buses_[b]->State();
+    BusState state = buses_[b]->State();
+    state.frames_dropped = frames_dropped_[b];
     bus_states_.Publish(b, state);
     in.buses[b] = {state.up, state.bus_off,
                    static_cast<std::uint32_t>(state.send_failures - failures_seen_[b])};

@@ -18,8 +18,8 @@ class CycleRunner {
   CycleRunner(Cycle& cycle, std::span<FrameBus* const> buses, CommandMailbox& mailbox, IoSource& io)
       : cycle_(cycle), buses_(buses), mailbox_(mailbox), io_(io) {}
 
-  /// Frames of all buses, appended to what is there already. bus_time_ns is the grid point: virtual buses
-  /// move there.
+  /// Frames of all buses, appended to what is there already; every bus has a share of its own. bus_time_ns is
+  /// the grid point: virtual buses move there.
   void Receive(std::int64_t bus_time_ns, ReceivedFrames& frames) noexcept;
   /// All the rest of the input, for this grid point. Virtual and lock-step time take requests only when the
   /// last cycle had settled, so that the number of cycles between two requests does not depend on when they
@@ -42,6 +42,7 @@ class CycleRunner {
   CommandMailbox& mailbox_;
   IoSource& io_;
   std::array<std::uint64_t, kMaxBuses> failures_seen_{};
+  std::array<std::uint64_t, kMaxBuses> frames_dropped_{};
   BusStateBoard bus_states_;
 };
 

@@ -17,6 +17,8 @@ struct BusState {
   std::uint64_t send_failures = 0;  ///< frames not accepted (ENOBUFS, ENETDOWN, ...)
   std::uint64_t error_frames = 0;
   std::uint64_t receive_overflows = 0;  ///< frames lost before we saw them
+  std::uint64_t frames_dropped =
+      0;  ///< seen, but beyond the bus's share of a cycle; counted by the cycle's runner
 };
 
 /// The master's end of one CAN bus. Never blocks, never throws, never allocates after construction.

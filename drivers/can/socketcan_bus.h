@@ -35,9 +35,10 @@ class BusUnavailable : public std::runtime_error {
 /// - Only data frames with 11-bit identifiers are passed on.
 class SocketCanBus : public FrameBus {
  public:
-  /// Opens and binds. Throws BusUnavailable when there is no CAN in the kernel, no such interface, no
-  /// permission.
-  explicit SocketCanBus(const std::string& interface);
+  /// Opens and binds. With `nodes`, the kernel passes on only what concerns them: every frame of theirs or to
+  /// them in the predefined connection set, NMT, SYNC and all heartbeats; without, everything. Throws
+  /// BusUnavailable when there is no CAN in the kernel, no such interface, no permission.
+  explicit SocketCanBus(const std::string& interface, std::span<const int> nodes = {});
   ~SocketCanBus() override;
   SocketCanBus(const SocketCanBus&) = delete;
   SocketCanBus& operator=(const SocketCanBus&) = delete;
@@ -54,7 +55,8 @@ class SocketCanBus : public FrameBus {
  private:
   struct Batch;  ///< buffers of the system calls
 
-  void Open();
+  void Open(std::span<const int> nodes);
+  void SetFilters(std::span<const int> nodes);
   [[nodiscard]] bool Bind() noexcept;
   std::size_t TakeBatch(std::size_t count, std::int64_t to_monotonic_ns,
                         std::span<StampedFrame> frames) noexcept;

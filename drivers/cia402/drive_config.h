@@ -104,11 +104,11 @@ struct DriveConfig {
                "periods from latching a position to the torque computed from it");
     v.Optional("lag_ms", lag_ms, Range{0, 20}, "time constant of the drive's current loop");
 
-    v.Optional("notice_ms", notice_ms, Range{2, 1000},
+    v.Optional("notice_ms", notice_ms, Range{2, 100},
                "within this time the drive notices that the master is silent and stops by itself");
     v.Optional("rpdo_timeout", rpdo_timeout, "also watch RPDO1 in the drive (0x1400:05) where the drive can");
-    v.Optional("heartbeat_ms", heartbeat_ms, Range{2, 10000}, "period of the drive's heartbeat (0x1017)");
-    v.Optional("heartbeat_timeout_ms", heartbeat_timeout_ms, Range{3, 60000},
+    v.Optional("heartbeat_ms", heartbeat_ms, Range{2, 1000}, "period of the drive's heartbeat (0x1017)");
+    v.Optional("heartbeat_timeout_ms", heartbeat_timeout_ms, Range{3, 10000},
                "without a heartbeat for this long the drive counts as lost");
     v.Optional("emergency_inhibit_ms", emergency_inhibit_ms, Range{0, 6000},
                "shortest time between two emergency messages of the drive (0x1015)");
@@ -128,9 +128,9 @@ struct DriveConfig {
                "deadline for the drive to show the mode of operation (0x6061)");
     v.Optional("operational_ms", operational_ms, kDeadline_ms,
                "deadline for the heartbeat to say Operational");
-    v.Optional("transition_ms", transition_ms, kDeadline_ms,
+    v.Optional("transition_ms", transition_ms, Range{1, 10000},
                "deadline for one transition of the CiA 402 state machine");
-    v.Optional("quick_stop_ms", quick_stop_ms, kDeadline_ms,
+    v.Optional("quick_stop_ms", quick_stop_ms, Range{1, 10000},
                "deadline for a quick stop; then the voltage is disabled");
   }
 };

@@ -73,6 +73,7 @@ struct ModbusConfig {
   int unit_id = 1;
   int poll_ms = 20;
   int timeout_ms = 100;
+  bool accept_blind_travel = false;
   IoInputsConfig inputs;
   IoOutputsConfig outputs;
 
@@ -81,9 +82,12 @@ struct ModbusConfig {
     v.Required("host", host, "name or address of the Modbus TCP server");
     v.Optional("port", port, Range{1, 65535}, "TCP port of the Modbus server");
     v.Optional("unit_id", unit_id, Range{0, 255}, "Modbus unit identifier");
-    v.Optional("poll_ms", poll_ms, Range{1, 10000}, "time between two polls");
-    v.Optional("timeout_ms", timeout_ms, Range{2, 60000},
+    v.Optional("poll_ms", poll_ms, Range{1, 500}, "time between two polls");
+    v.Optional("timeout_ms", timeout_ms, Range{2, 5000},
                "age at which inputs count as open circuits, and longest wait for a reply");
+    v.Optional(
+        "accept_blind_travel", accept_blind_travel,
+        "true: an axis may go further than half its stroke until an emergency stop is seen and obeyed");
     v.Optional("inputs", inputs, "what is read");
     v.Optional("outputs", outputs, "what is written");
   }

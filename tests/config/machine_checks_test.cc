@@ -122,10 +122,10 @@ TEST(MachineChecks, JerkAgainstTorqueRate) {
 
 TEST(MachineChecks, TravelBeforeADeadMasterIsNoticed) {
   MachineConfig c = Good();
-  c.axes.at("x").drive.notice_ms = 100;
+  c.axes.at("x").drive.notice_ms = 40;
   const std::string problem = Only(c);
   EXPECT_EQ(problem.substr(0, 51), "axes.x.limits.safe_travel_mm: found 2, but from res");
-  EXPECT_NE(problem.find("notice_ms 100"), std::string::npos) << problem;
+  EXPECT_NE(problem.find("notice_ms 40"), std::string::npos) << problem;
   c.axes.at("x").limits.safe_travel_mm = SilentMaster(ToStoppingAxis(c, c.axes.at("x")), 0.0).travel_mm;
   EXPECT_TRUE(Check(c).empty());
 }

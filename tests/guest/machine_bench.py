@@ -106,7 +106,8 @@ class MachineBench:
         self._log_number += 1
         return self.start("contourd", self.programs / "contourd", "--config", self.config, "--bus", self.bus, "--clock",
                           self.clock, "--socket", self.socket, "--log", self.work / f"cycles{self._log_number}.lcm",
-                          "--set", f"io.modbus.timeout_ms={self.patience_ms}", *arguments)
+                          "--set", f"io.modbus.timeout_ms={self.patience_ms}",
+                          "--set", "io.modbus.accept_blind_travel=true", *arguments)
 
     def wait_for_end(self, name, seconds=20):
         """Exit status of a process that should end by itself."""

@@ -102,7 +102,7 @@ std::string Buses(const json& s) {
                                   : "down") +
             ", received " + Text(b["frames_received"]) + ", sent " + Text(b["frames_sent"]) + ", not sent " +
             Text(b["send_failures"]) + ", error frames " + Text(b["error_frames"]) + ", overflows " +
-            Text(b["receive_overflows"]) + "\n";
+            Text(b["receive_overflows"]) + ", dropped " + Text(b["frames_dropped"]) + "\n";
   }
   return text;
 }
