@@ -67,6 +67,12 @@ class CanopenSlave {
   /// All errors are gone: EMCY 0x0000 if any was reported.
   void ClearErrors() noexcept;
 
+  // What drives do unasked:
+  /// To Pre-operational, as after an error of its own; the next heartbeat says so.
+  void LeaveOperational() noexcept { Enter(SlaveNmt::kPreOperational); }
+  /// As if switched off and on; the device has its power cycle beside this.
+  void Restart(std::int64_t bus_ns) noexcept { Boot(bus_ns); }
+
   [[nodiscard]] SlaveNmt nmt() const noexcept { return nmt_; }
   /// The value of an object of ours was written over SDO or RPDO.
   void OnWritten(const ObjectEntry& entry) noexcept;

@@ -195,7 +195,7 @@ void EmulatedAxis::UpdateActualValues() noexcept {
   const auto per_mille = [&](double torque_Nm) {
     return std::clamp<std::int64_t>(std::llround(1000.0 * torque_Nm / p_.rated_torque_Nm), -32768, 32767);
   };
-  torque_->value = per_mille(current_.torque_Nm());
+  torque_->value = per_mille(tampering_.reported_share() * current_.torque_Nm());
   torque_demand_->value = per_mille(current_.command_Nm());
   if (scale_ != nullptr)
     scale_->value = wrap(static_cast<std::int64_t>(
@@ -254,6 +254,16 @@ void EmulatedAxis::OnPowerCycle() noexcept {
   UpdateActualValues();
 }
 
+void EmulatedAxis::DropOut() noexcept {
+  power_.Disable();
+  TorqueOff();
+}
+
+void EmulatedAxis::Restart(std::int64_t bus_ns) noexcept {
+  OnPowerCycle();
+  slave_.Restart(bus_ns);
+}
+
 // --- Time
 // ----------------------------------------------------------------------------------------------------------
 
@@ -280,13 +290,14 @@ void EmulatedAxis::Integrate(std::int64_t duration_ns) noexcept {
   const double steps = std::ceil(duration_s / plant_.MaxStep_s());
   const double step_s = duration_s / steps;
   for (int i = 0; i < static_cast<int>(steps); ++i)
-    plant_.Step(step_s, current_.StepMean_Nm(step_s) + torque_noise_now_Nm_);
+    plant_.Step(step_s, tampering_.torque_share() * current_.StepMean_Nm(step_s) + torque_noise_now_Nm_);
 }
 
 void EmulatedAxis::Sense() noexcept {
   if (sensed_ns_ == now_ns_) return;
   sensed_ns_ = now_ns_;
-  counts_ = encoder_.Read(plant_.motor_angle_rad(), plant_.motor_velocity_m_s() / p_.radius_m_rad);
+  counts_ = tampering_.Read(
+      encoder_.Read(plant_.motor_angle_rad(), plant_.motor_velocity_m_s() / p_.radius_m_rad));
   cascade_.Sense(static_cast<double>(counts_) * TravelPerCount_m());
   past_ = (past_ + 1) % past_counts_.size();
   past_counts_[past_] = counts_;
@@ -522,7 +533,7 @@ void EmulatedAxis::FillTruth(AxisTruth& truth) const noexcept {
   truth.table_velocity_m_s = plant_.table_velocity_m_s();
   truth.friction_N = plant_.friction_N();
   truth.bristle_N = plant_.elastic_N();
-  truth.torque_Nm = plant_.DeliveredTorque_Nm(current_.torque_Nm());
+  truth.torque_Nm = plant_.DeliveredTorque_Nm(tampering_.torque_share() * current_.torque_Nm());
   truth.command_Nm = current_.command_Nm();
   truth.reported_position_rad = encoder_.ToRad(latched_counts_);
   truth.temperature_degC = plant_.temperature_degC();

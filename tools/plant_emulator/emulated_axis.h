@@ -10,6 +10,7 @@
 #include "tools/plant_emulator/drive_cascade.h"
 #include "tools/plant_emulator/drive_power_state.h"
 #include "tools/plant_emulator/encoder.h"
+#include "tools/plant_emulator/tampering.h"
 #include "tools/plant_emulator/truth.h"
 
 namespace contour::plant {
@@ -42,6 +43,21 @@ class EmulatedAxis final : private SlaveDevice {
   void FillTruth(AxisTruth& truth) const noexcept;
   /// Fails as broken hardware would: EMCY with this code, fault reaction, Fault.
   void InjectFault(std::uint16_t error_code) noexcept { Fault(error_code, 0x20); }
+
+  // Other things that drives do unasked:
+  /// Encoder and motor lie.
+  [[nodiscard]] Tampering& tampering() noexcept { return tampering_; }
+  /// EMCY and nothing else: the drive goes on.
+  void SendEmergency(std::uint16_t code, std::uint8_t register_bits) noexcept {
+    slave_.Emergency(code, register_bits);
+  }
+  /// 0x6061 and what the drive does change; 0x6060 does not.
+  void ChangeMode(std::int8_t mode) noexcept { mode_display_->value = mode; }
+  /// Operation Enabled is left for Switch On Disabled, the motor coasts.
+  void DropOut() noexcept;
+  void LeaveOperational() noexcept { slave_.LeaveOperational(); }
+  /// Switched off and on: boot-up, parameters and modes as at power-on.
+  void Restart(std::int64_t bus_ns) noexcept;
 
   [[nodiscard]] std::uint8_t node_id() const noexcept { return node_id_; }
   [[nodiscard]] AxisPlant& plant() noexcept { return plant_; }
@@ -91,6 +107,7 @@ class EmulatedAxis final : private SlaveDevice {
   AxisPlant plant_;
   CurrentLoop current_;
   Encoder encoder_;
+  Tampering tampering_;
   Random scale_noise_;
   Random torque_noise_;
   double tick_noise_Nm_;

@@ -67,7 +67,9 @@ class EmulatedMachine {
 
  private:
   class Impl;
-  friend class DriveFaults;  // of the tests: what breaks drives is not part of any program
+  // What breaks drives is part of no program that anybody runs a machine with:
+  friend class DriveFaults;     // of the tests
+  friend class MachineTamper;  // of contour_faults
   [[nodiscard]] plant::EmulatedAxis& axis(std::size_t axis) noexcept;
 
   std::unique_ptr<Impl> impl_;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+
+#include "core/reason.h"
+#include "tools/faults/fault.h"
+#include "tools/faults/phase.h"
+
+namespace contour::faults {
+
+enum class Outcome : std::uint8_t {
+  kGoesOn,   ///< nothing may stop because of it
+  kMayStop,  ///< a stop is as good as going on, when the departure is within its bound
+  kStops,
+};
+
+/// One row: what has to come of a fault while the axes are held.
+struct Expectation {
+  Fault fault;
+  Outcome at_rest;
+  Outcome moving;
+  std::array<Reason, 2> reasons{};  ///< of the stop; at most two
+  Reason warning = Reason::kNone;   ///< must be seen in motion
+};
+
+/// The row of a fault. Fixed before the runs: a run that gives another reason has failed, the row is not
+/// made to fit.
+const Expectation& ExpectationOf(Fault fault) noexcept;
+
+/// What has to come of it in a phase. Without torque nothing has to stop, and enabling or bring-up may fail
+/// by their own reason, in the place of the row's second.
+struct ExpectedHere {
+  Outcome outcome = Outcome::kMayStop;
+  std::array<Reason, 2> reasons{};
+  [[nodiscard]] bool Allows(Reason reason) const noexcept {
+    return reason != Reason::kNone && (reason == reasons[0] || reason == reasons[1]);
+  }
+};
+ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept;
+
+}  // namespace contour::faults
