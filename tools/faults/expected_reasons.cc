@@ -3,57 +3,57 @@
 namespace contour::faults {
 namespace {
 
-using enum Fault;
+using F = Fault;
+using R = Reason;
 using enum Outcome;
-using enum Reason;
 
 // clang-format off
 constexpr std::array kRows{
-    //           fault                    at rest   moving    reasons                                          warning
-    Expectation{kFeedbackFrameLost,      kGoesOn,  kGoesOn,  {}},
-    Expectation{kFeedbackFramesLost,     kStops,   kStops,   {kStaleFeedback}},
-    Expectation{kFeedbackFrameLate,      kGoesOn,  kGoesOn,  {}},
-    Expectation{kFeedbackFramesLate,     kStops,   kStops,   {kStaleFeedback}},
-    Expectation{kFeedbackFrameTwice,     kGoesOn,  kGoesOn,  {}},
-    Expectation{kPositionBitLow,         kGoesOn,  kGoesOn,  {}},
-    Expectation{kPositionBitHigh,        kMayStop, kMayStop, {kFeedbackJump, kVelocityLimit}},
-    Expectation{kStatusBitEnabled,       kMayStop, kMayStop, {kDriveLeftEnabled, kDriveNotFollowing}},
-    Expectation{kStatusBitFault,         kMayStop, kMayStop, {Reason::kDriveFault, kDriveLeftEnabled}},
-    Expectation{kSetpointLost,           kGoesOn,  kGoesOn,  {}},
-    Expectation{kSetpointsLost,          kStops,   kStops,   {kDriveLostMaster, kDriveLeftEnabled}},
-    Expectation{kHeartbeatsLost,         kStops,   kStops,   {kHeartbeatLost}},
-    Expectation{Fault::kBusDown,         kStops,   kStops,   {Reason::kBusDown, kSendFailed}},
-    Expectation{kFloodBurst,             kMayStop, kMayStop, {kStaleFeedback, kFeedbackJump}},
-    Expectation{kFlood,                  kStops,   kStops,   {kStaleFeedback, kSendFailed}},
-    Expectation{kForeignReset,           kStops,   kStops,   {kSecondMaster, kDriveRestarted}},
-    Expectation{kForeignSync,            kStops,   kStops,   {kSecondMaster}},
-    Expectation{kForeignNmt,             kStops,   kStops,   {kSecondMaster}},
-    Expectation{kForeignSetpoint,        kStops,   kStops,   {kSecondMaster}},
-    Expectation{kForeignHeartbeat,       kStops,   kStops,   {kSecondMaster}},
-    Expectation{Fault::kForeignSdo,      kGoesOn,  kGoesOn,  {},                                              Reason::kForeignSdo},
-    Expectation{kDriveRestarts,          kStops,   kStops,   {kDriveRestarted, kStaleFeedback}},
-    Expectation{kDriveLeavesOperational, kStops,   kStops,   {kDriveLeftOperational, kStaleFeedback}},
-    Expectation{kDriveDropsOut,          kStops,   kStops,   {kDriveLeftEnabled, kDriveNotFollowing}},
-    Expectation{kDriveWrongMode,         kStops,   kStops,   {kModeChanged, kDriveNotFollowing}},
-    Expectation{Fault::kDriveFault,      kStops,   kStops,   {Reason::kDriveFault, kDriveEmergency}},
-    Expectation{kEmergencyTemperature,   kStops,   kStops,   {kDriveEmergency}},
-    Expectation{kEmergencyCurrent,       kStops,   kStops,   {kDriveEmergency}},
-    Expectation{kEmergencyVoltage,       kStops,   kStops,   {kDriveEmergency}},
-    Expectation{kEmergencyEncoder,       kStops,   kStops,   {kDriveEmergency}},
-    Expectation{kEmergencyLostMaster,    kStops,   kStops,   {kDriveLostMaster, kDriveEmergency}},
-    Expectation{kEmergencyExternal,      kMayStop, kMayStop, {kDriveEmergency}},
-    Expectation{kEmergencyMaker,         kMayStop, kMayStop, {kDriveEmergency}},
-    Expectation{kEmergencyCleared,       kGoesOn,  kGoesOn,  {}},
-    Expectation{kEncoderReversed,        kMayStop, kStops,   {kFeedbackReversed, kFeedbackJump}},
-    Expectation{kEncoderJumpTiny,        kGoesOn,  kGoesOn,  {}},
-    Expectation{kEncoderJump,            kStops,   kStops,   {kFeedbackJump, kFollowingError}},
-    Expectation{kEncoderJumpLarge,       kStops,   kStops,   {kFeedbackJump, kFollowingError}},
-    Expectation{kEncoderFrozen,          kMayStop, kStops,   {kFeedbackFrozen, kTorqueWithoutMotion}},
-    Expectation{kEncoderFlickers,        kMayStop, kStops,   {kFeedbackFrozen, kTorqueWithoutMotion}},
-    Expectation{kTorqueLost,             kMayStop, kStops,   {kTorqueNotDelivered, kTorqueWithoutMotion}},
-    Expectation{kTorqueLostSilently,     kMayStop, kStops,   {kTorqueWithoutMotion, kFollowingError}},
-    Expectation{kTorqueHalved,           kGoesOn,  kGoesOn,  {},                                              kTorqueConstantChanged},
-    Expectation{kLogBlocked,             kGoesOn,  kGoesOn,  {}},
+    //          fault                        at rest   moving    reasons, warning
+    Expectation{F::kFeedbackFrameLost,       kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kFeedbackFramesLost,      kStops,   kStops,   {R::kStaleFeedback}},
+    Expectation{F::kFeedbackFrameLate,       kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kFeedbackFramesLate,      kStops,   kStops,   {R::kStaleFeedback}},
+    Expectation{F::kFeedbackFrameTwice,      kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kPositionBitLow,          kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kPositionBitHigh,         kMayStop, kMayStop, {R::kFeedbackJump, R::kVelocityLimit}},
+    Expectation{F::kStatusBitEnabled,        kMayStop, kMayStop, {R::kDriveLeftEnabled, R::kDriveNotFollowing}},
+    Expectation{F::kStatusBitFault,          kMayStop, kMayStop, {R::kDriveFault, R::kDriveLeftEnabled}},
+    Expectation{F::kSetpointLost,            kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kSetpointsLost,           kStops,   kStops,   {R::kDriveLostMaster, R::kDriveLeftEnabled}},
+    Expectation{F::kHeartbeatsLost,          kStops,   kStops,   {R::kHeartbeatLost}},
+    Expectation{F::kBusDown,                 kStops,   kStops,   {R::kBusDown, R::kSendFailed}},
+    Expectation{F::kFloodBurst,              kMayStop, kMayStop, {R::kStaleFeedback, R::kFeedbackJump}},
+    Expectation{F::kFlood,                   kStops,   kStops,   {R::kStaleFeedback, R::kSendFailed}},
+    Expectation{F::kForeignReset,            kStops,   kStops,   {R::kSecondMaster, R::kDriveRestarted}},
+    Expectation{F::kForeignSync,             kStops,   kStops,   {R::kSecondMaster}},
+    Expectation{F::kForeignNmt,              kStops,   kStops,   {R::kSecondMaster}},
+    Expectation{F::kForeignSetpoint,         kStops,   kStops,   {R::kSecondMaster}},
+    Expectation{F::kForeignHeartbeat,        kStops,   kStops,   {R::kSecondMaster}},
+    Expectation{F::kForeignSdo,              kGoesOn,  kGoesOn,  {}, R::kForeignSdo},
+    Expectation{F::kDriveRestarts,           kStops,   kStops,   {R::kDriveRestarted, R::kStaleFeedback}},
+    Expectation{F::kDriveLeavesOperational,  kStops,   kStops,   {R::kDriveLeftOperational, R::kStaleFeedback}},
+    Expectation{F::kDriveDropsOut,           kStops,   kStops,   {R::kDriveLeftEnabled, R::kDriveNotFollowing}},
+    Expectation{F::kDriveWrongMode,          kStops,   kStops,   {R::kModeChanged, R::kDriveNotFollowing}},
+    Expectation{F::kDriveFault,              kStops,   kStops,   {R::kDriveFault, R::kDriveEmergency}},
+    Expectation{F::kEmergencyTemperature,    kStops,   kStops,   {R::kDriveEmergency}},
+    Expectation{F::kEmergencyCurrent,        kStops,   kStops,   {R::kDriveEmergency}},
+    Expectation{F::kEmergencyVoltage,        kStops,   kStops,   {R::kDriveEmergency}},
+    Expectation{F::kEmergencyEncoder,        kStops,   kStops,   {R::kDriveEmergency}},
+    Expectation{F::kEmergencyLostMaster,     kStops,   kStops,   {R::kDriveLostMaster, R::kDriveEmergency}},
+    Expectation{F::kEmergencyExternal,       kMayStop, kMayStop, {R::kDriveEmergency}},
+    Expectation{F::kEmergencyMaker,          kMayStop, kMayStop, {R::kDriveEmergency}},
+    Expectation{F::kEmergencyCleared,        kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kEncoderReversed,         kMayStop, kStops,   {R::kFeedbackReversed, R::kFeedbackJump}},
+    Expectation{F::kEncoderJumpTiny,         kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kEncoderJump,             kStops,   kStops,   {R::kFeedbackJump, R::kFollowingError}},
+    Expectation{F::kEncoderJumpLarge,        kStops,   kStops,   {R::kFeedbackJump, R::kFollowingError}},
+    Expectation{F::kEncoderFrozen,           kMayStop, kStops,   {R::kFeedbackFrozen, R::kTorqueWithoutMotion}},
+    Expectation{F::kEncoderFlickers,         kMayStop, kStops,   {R::kFeedbackFrozen, R::kTorqueWithoutMotion}},
+    Expectation{F::kTorqueLost,              kMayStop, kStops,   {R::kTorqueNotDelivered, R::kTorqueWithoutMotion}},
+    Expectation{F::kTorqueLostSilently,      kMayStop, kStops,   {R::kTorqueWithoutMotion, R::kFollowingError}},
+    Expectation{F::kTorqueHalved,            kGoesOn,  kGoesOn,  {}, R::kTorqueConstantChanged},
+    Expectation{F::kLogBlocked,              kGoesOn,  kGoesOn,  {}},
 };
 // clang-format on
 
@@ -72,13 +72,13 @@ ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept {
   const Expectation& row = ExpectationOf(fault);
   if (Holds(phase)) return {Moves(phase) ? row.moving : row.at_rest, row.reasons};
   // What nothing may stop for in motion stops nothing here either.
-  if (row.moving == kGoesOn) return {kGoesOn, {}};
+  if (row.moving == Outcome::kGoesOn) return {kGoesOn, {}};
   switch (phase) {
     case Phase::kBringUp:
     case Phase::kReset:
-      return {kMayStop, {row.reasons[0], kBringUpFailed}};
+      return {kMayStop, {row.reasons[0], R::kBringUpFailed}};
     case Phase::kEnabling:
-      return {kMayStop, {row.reasons[0], kEnableTimeout}};
+      return {kMayStop, {row.reasons[0], R::kEnableTimeout}};
     default:
       return {kMayStop, row.reasons};
   }

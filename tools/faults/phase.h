@@ -18,9 +18,9 @@ enum class Phase : std::uint8_t {
   kStopping,
   kReset,
 };
-inline constexpr std::array kPhases{Phase::kBringUp,      Phase::kIdle,     Phase::kEnabling,
-                                    Phase::kReady,        Phase::kAcceleration, Phase::kConstant,
-                                    Phase::kReversal,     Phase::kStopping, Phase::kReset};
+inline constexpr std::array kPhases{Phase::kBringUp,  Phase::kIdle,         Phase::kEnabling,
+                                    Phase::kReady,    Phase::kAcceleration, Phase::kConstant,
+                                    Phase::kReversal, Phase::kStopping,     Phase::kReset};
 
 constexpr std::string_view Name(Phase phase) noexcept {
   switch (phase) {

@@ -296,8 +296,8 @@ void EmulatedAxis::Integrate(std::int64_t duration_ns) noexcept {
 void EmulatedAxis::Sense() noexcept {
   if (sensed_ns_ == now_ns_) return;
   sensed_ns_ = now_ns_;
-  counts_ = tampering_.Read(
-      encoder_.Read(plant_.motor_angle_rad(), plant_.motor_velocity_m_s() / p_.radius_m_rad));
+  counts_ =
+      tampering_.Read(encoder_.Read(plant_.motor_angle_rad(), plant_.motor_velocity_m_s() / p_.radius_m_rad));
   cascade_.Sense(static_cast<double>(counts_) * TravelPerCount_m());
   past_ = (past_ + 1) % past_counts_.size();
   past_counts_[past_] = counts_;

@@ -68,7 +68,7 @@ class EmulatedMachine {
  private:
   class Impl;
   // What breaks drives is part of no program that anybody runs a machine with:
-  friend class DriveFaults;     // of the tests
+  friend class DriveFaults;    // of the tests
   friend class MachineTamper;  // of contour_faults
   [[nodiscard]] plant::EmulatedAxis& axis(std::size_t axis) noexcept;
 

@@ -7,7 +7,8 @@
 namespace contour::plant {
 
 /// What is broken in an emulated axis besides its mechanics: an encoder that lies, a motor that gives another
-/// torque than its current asks for. All faults may be had together; without any, nothing is changed by a bit.
+/// torque than its current asks for. All faults may be had together; without any, nothing is changed by a
+/// bit.
 class Tampering {
  public:
   // The encoder. What it tells goes to the drive's own loops too.
@@ -31,7 +32,8 @@ class Tampering {
   }
 
   // The motor.
-  /// It gives this share of what the current loop makes. `reported`: the drive's torque actual value shows it.
+  /// It gives this share of what the current loop makes. `reported`: the drive's torque actual value shows
+  /// it.
   void WeakenTorque(double share, bool reported) noexcept {
     torque_share_ = share;
     reported_share_ = reported ? share : 1.0;
@@ -42,8 +44,7 @@ class Tampering {
   std::int64_t Read(std::int64_t counts) noexcept {
     true_ = counts;
     told_ = counts + offset_;
-    if (scale_ != 1.0)
-      told_ = pivot_ + offset_ + std::llround(scale_ * static_cast<double>(counts - pivot_));
+    if (scale_ != 1.0) told_ = pivot_ + offset_ + std::llround(scale_ * static_cast<double>(counts - pivot_));
     if (frozen_) {
       flicks_ = !flicks_;
       told_ = *frozen_ + (flicks_ ? flicker_ : 0);

@@ -18,6 +18,13 @@ constexpr std::size_t kPathPoints = 256;
 /// Bring-up, enabling and settling take a fraction of a second; a machine that takes longer hangs.
 constexpr int kPatience_cycles = 60'000;
 
+CycleConfig Configured(const EmulatedMachineFile& file, ControllerName controller,
+                       const Surroundings& surroundings) {
+  CycleConfig config = MakeCycleConfig(file.machine, controller);
+  if (surroundings.configure) surroundings.configure(config);
+  return config;
+}
+
 }  // namespace
 
 /// The last truth rows by SYNC number: feedback is one SYNC older than the newest row.
@@ -36,7 +43,7 @@ class VirtualMachine::TruthMemory final : public TruthSink {
 };
 
 VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName controller,
-                               EmulatedClock clock)
+                               EmulatedClock clock, const Surroundings& surroundings)
     : axis_names_(AxisNames(file.machine)),
       bus_names_(BusNames(file.machine)),
       limits_(ProgramLimits(file.machine)),
@@ -44,17 +51,20 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
                 static_cast<std::uint32_t>(file.machine.machine.cycle_us), clock),
       truths_(std::make_unique<TruthMemory>()),
       mailbox_(kRequests, kPathPoints),
-      cycle_(MakeCycleConfig(file.machine, controller)),
+      cycle_(Configured(file, controller, surroundings)),
       feeder_(mailbox_),
       learning_(file.machine),
       period_ns_(std::int64_t{1000} * file.machine.machine.cycle_us),
+      prompt_(surroundings.prompt),
       entry_(std::make_unique<CycleEntry>()) {
   std::size_t b = 0;
   for (const auto& [name, bus] : file.machine.buses) {
     std::vector<BusNode*> nodes;
     if (b < emulated_.bus_count()) nodes.push_back(&emulated_.node(b));
+    if (b < surroundings.nodes.size())
+      nodes.insert(nodes.end(), surroundings.nodes[b].begin(), surroundings.nodes[b].end());
     buses_.push_back(std::make_unique<LoopbackBus>(bus.bitrate_bit_s, std::move(nodes)));
-    bus_pointers_.push_back(buses_.back().get());
+    bus_pointers_.push_back(surroundings.wrap ? surroundings.wrap(b, *buses_.back()) : buses_.back().get());
     ++b;
   }
   emulated_.SetTruthSink(truths_.get());
@@ -76,7 +86,7 @@ void VirtualMachine::Tick() {
   feeder_.Feed();
   ++index_;
   const GridPoint grid{index_, static_cast<std::int64_t>(index_) * period_ns_, 0};
-  runner_->Tick(grid, !settling_, *entry_);
+  runner_->Tick(grid, prompt_ || !settling_, *entry_);
   settling_ = entry_->output.settling;
   learning_.Consume(record());
   if (record_) record_(*entry_);

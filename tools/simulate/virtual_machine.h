@@ -13,12 +13,26 @@
 #include "daemon/program/program.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/cycle.h"
+#include "daemon/rt/cycle_config.h"
 #include "daemon/rt/cycle_runner.h"
+#include "drivers/can/bus_node.h"
 #include "drivers/can/loopback_bus.h"
 #include "tools/machine/load_emulated_machine.h"
 #include "tools/plant_emulator/emulated_machine.h"
 
 namespace contour {
+
+/// What stands around the cycle besides the emulated machine, for experiments with faults.
+struct Surroundings {
+  /// More participants of each bus, by the bus's number. They must outlive the machine.
+  std::vector<std::vector<BusNode*>> nodes{};
+  /// What the cycle is given for the master's end of a bus; it must outlive the machine.
+  std::function<FrameBus*(std::size_t bus, LoopbackBus& inner)> wrap{};
+  /// Changes what the cycle is made of, besides the machine file.
+  std::function<void(CycleConfig&)> configure{};
+  /// Requests are taken at once, as in real time, instead of when the machine has settled.
+  bool prompt = false;
+};
 
 /// The daemon's own cycle on an emulated machine in virtual time: loopback buses, no threads, no waiting. The
 /// same machine file, program and seed give the same cycles every time, on every host. A temperature sensor
@@ -29,7 +43,7 @@ class VirtualMachine {
   using Observer = std::function<void(const CycleEntry& entry, const TruthRow* truth)>;
 
   VirtualMachine(const EmulatedMachineFile& file, ControllerName controller,
-                 EmulatedClock clock = EmulatedClock::kSync);
+                 EmulatedClock clock = EmulatedClock::kSync, const Surroundings& surroundings = {});
   ~VirtualMachine();
 
   void SetObserver(Observer observer) { observer_ = std::move(observer); }
@@ -85,6 +99,7 @@ class VirtualMachine {
   std::uint64_t index_ = 0;
   std::uint32_t program_id_ = 0;
   bool settling_ = false;
+  bool prompt_;
   std::unique_ptr<CycleEntry> entry_;
   std::shared_ptr<const MotionPlan> plan_;
   Observer observer_;

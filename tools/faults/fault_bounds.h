@@ -1,0 +1,19 @@
+#pragma once
+
+#include "config/machine_config.h"
+#include "tools/faults/fault_case.h"
+
+namespace contour::faults {
+
+/// What the machine file promises of an axis when something breaks.
+struct RunBound {
+  double departure_m = 0.0;  ///< from the commanded path, until the torque is off
+  double time_s = 0.0;       ///< from the fault to no torque, or rest
+};
+
+/// For the axis that is broken, at the feed of the run.
+RunBound BoundOf(const MachineConfig& machine, const FaultCase& c);
+/// For an axis that stops because another one is broken.
+RunBound BoundOfOthers(const MachineConfig& machine, const FaultCase& c, std::size_t axis);
+
+}  // namespace contour::faults
