@@ -25,6 +25,8 @@ constexpr double kBeyondBound_s = 0.1;
 constexpr double kLongest_s = 8.0;
 /// Truth is seen once a cycle.
 constexpr double kResolution_cycles = 2.0;
+/// From a set-point to what it makes of the drive.
+constexpr int kUnderWay_cycles = 3;
 
 class Run {
  public:
@@ -105,17 +107,19 @@ class Run {
     NothingEnablesItself(truth);
   }
 
-  // Asked for: from the request to enable until the machine has fallen back to Idle or Faulted.
+  // Asked for: from the request to enable until the machine has fallen back to Idle or Faulted. A set-point
+  // that was under way then still acts.
   void NothingEnablesItself(const TruthRow& truth) {
     if (state() == MachineState::kEnabling || Holding()) asked_taken_ = true;
     if (asked_taken_ && (state() == MachineState::kFaulted || state() == MachineState::kIdle))
       asked_ = asked_taken_ = false;
+    under_way_ = asked_ ? kUnderWay_cycles : std::max(0, under_way_ - 1);
     if (!asked_ && (state() == MachineState::kEnabling || Holding()))
       Violated("the machine enabled itself: " + Now());
     was_enabled_.resize(truth.axes.size());
     for (std::size_t i = 0; i < truth.axes.size(); ++i) {
       const bool enabled = truth.axes[i].drive_state == DriveState::kOperationEnabled;
-      if (enabled && was_enabled_[i] == 0 && !asked_ && !injection_.foreign_setpoints())
+      if (enabled && was_enabled_[i] == 0 && under_way_ == 0 && !injection_.foreign_setpoints())
         Violated("drive " + machine_.axis_names()[i] + " was enabled without an operator: " + Now());
       was_enabled_[i] = enabled ? 1 : 0;
     }
@@ -365,6 +369,7 @@ class Run {
   bool broken_ = false;
   bool asked_ = false;
   bool asked_taken_ = false;
+  int under_way_ = 0;
   std::vector<char> was_enabled_;
   double faulted_s_ = 0.0;
 };

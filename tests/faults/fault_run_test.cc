@@ -1,0 +1,75 @@
+#include "tools/faults/fault_run.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tools/faults/campaign.h"
+#include "tools/faults/report.h"
+
+namespace contour::faults {
+namespace {
+
+EmulatedMachineFile Example() {
+  return LoadEmulatedMachine(std::string(CONTOUR_CONFIG_DIR) + "/xy_emulated.yaml");
+}
+
+FaultCase Case(Fault fault, Phase phase, double feed_mm_s, DriveMode mode = DriveMode::kCst) {
+  FaultCase c;
+  c.fault = fault;
+  c.phase = phase;
+  c.mode = mode;
+  c.axis_name = "x";
+  c.feed_mm_s = feed_mm_s;
+  return c;
+}
+
+std::string All(const RunResult& r) {
+  std::string text;
+  for (const std::string& v : r.violations) text += v + "; ";
+  return text;
+}
+
+TEST(FaultRun, TheSameRunGivesTheSameResult) {
+  const EmulatedMachineFile file = Example();
+  const FaultCase c = Case(Fault::kDriveFault, Phase::kConstant, 100.0);
+  const RunResult a = RunFault(c, {&file, 3, ""});
+  const RunResult b = RunFault(c, {&file, 3, ""});
+  EXPECT_TRUE(a.stopped);
+  EXPECT_EQ(a.reason, Reason::kDriveFault);
+  EXPECT_GT(a.departure_m, 1e-5) << "a quick stop from 100 mm/s leaves the path's end behind";
+  EXPECT_EQ(a.departure_m, b.departure_m);
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(All(a), "");
+}
+
+TEST(FaultRun, ALostFrameStopsNothingInEitherMode) {
+  const EmulatedMachineFile file = Example();
+  for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
+    const RunResult r =
+        RunFault(Case(Fault::kFeedbackFrameLost, Phase::kConstant, 50.0, mode), {&file, 1, ""});
+    EXPECT_FALSE(r.stopped);
+    EXPECT_EQ(All(r), "");
+  }
+}
+
+TEST(FaultRun, WhatNobodySupervisesIsFound) {
+  const EmulatedMachineFile file = Example();
+  const RunResult r =
+      RunFault(Case(Fault::kFeedbackFramesLost, Phase::kConstant, 250.0), {&file, 1, "stale_feedback"});
+  EXPECT_FALSE(r.violations.empty());
+}
+
+TEST(FaultRun, ThreadsChangeNothing) {
+  const EmulatedMachineFile file = Example();
+  PlanRequest plan;
+  plan.runs = 12;
+  plan.only = {"feedback_frame_late", "drive_fault", "bus_down"};
+  const std::vector<FaultCase> cases = Plan(plan, {{"x", 250.0}, {"y", 250.0}});
+  const std::string one = RunsCsv(RunCampaign(cases, {&file, 1, ""}, 1));
+  EXPECT_EQ(one, RunsCsv(RunCampaign(cases, {&file, 1, ""}, 3)));
+  EXPECT_GT(std::count(one.begin(), one.end(), '\n'), 12);
+}
+
+}  // namespace
+}  // namespace contour::faults
