@@ -32,11 +32,11 @@ std::string All(const RunResult& r) {
 
 TEST(FaultRun, TheSameRunGivesTheSameResult) {
   const EmulatedMachineFile file = Example();
-  const FaultCase c = Case(Fault::kDriveFault, Phase::kConstant, 100.0);
+  const FaultCase c = Case(Fault::kBusDown, Phase::kConstant, 100.0);
   const RunResult a = RunFault(c, {&file, 3, ""});
   const RunResult b = RunFault(c, {&file, 3, ""});
   EXPECT_TRUE(a.stopped);
-  EXPECT_EQ(a.reason, Reason::kDriveFault);
+  EXPECT_EQ(a.reason, Reason::kBusDown);
   EXPECT_GT(a.departure_m, 1e-5) << "a quick stop from 100 mm/s leaves the path's end behind";
   EXPECT_EQ(a.departure_m, b.departure_m);
   EXPECT_EQ(a.time_s, b.time_s);

@@ -72,13 +72,13 @@ ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept {
   const Expectation& row = ExpectationOf(fault);
   if (Holds(phase)) return {Moves(phase) ? row.moving : row.at_rest, row.reasons};
   // What nothing may stop for in motion stops nothing here either.
-  if (row.moving == Outcome::kGoesOn) return {kGoesOn, {}};
+  if (row.moving == kGoesOn) return {kGoesOn, {}};
   switch (phase) {
     case Phase::kBringUp:
     case Phase::kReset:
-      return {kMayStop, {row.reasons[0], R::kBringUpFailed}};
+      return {kMayStop, row.reasons, R::kBringUpFailed};
     case Phase::kEnabling:
-      return {kMayStop, {row.reasons[0], R::kEnableTimeout}};
+      return {kMayStop, row.reasons, R::kEnableTimeout};
     default:
       return {kMayStop, row.reasons};
   }

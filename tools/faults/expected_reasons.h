@@ -27,13 +27,14 @@ struct Expectation {
 /// made to fit.
 const Expectation& ExpectationOf(Fault fault) noexcept;
 
-/// What has to come of it in a phase. Without torque nothing has to stop, and enabling or bring-up may fail
-/// by their own reason, in the place of the row's second.
+/// What has to come of it in a phase. Without torque nothing has to stop, and bring-up or enabling may also
+/// fail by the reason that is their own.
 struct ExpectedHere {
   Outcome outcome = Outcome::kMayStop;
   std::array<Reason, 2> reasons{};
+  Reason of_phase = Reason::kNone;
   [[nodiscard]] bool Allows(Reason reason) const noexcept {
-    return reason != Reason::kNone && (reason == reasons[0] || reason == reasons[1]);
+    return reason != Reason::kNone && (reason == reasons[0] || reason == reasons[1] || reason == of_phase);
   }
 };
 ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept;

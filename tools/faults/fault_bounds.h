@@ -12,7 +12,7 @@ struct RunBound {
 };
 
 /// For the axis that is broken, at the feed of the run.
-RunBound BoundOf(const MachineConfig& machine, const FaultCase& c);
+RunBound RunBoundOf(const MachineConfig& machine, const FaultCase& c);
 /// For an axis that stops because another one is broken.
 RunBound BoundOfOthers(const MachineConfig& machine, const FaultCase& c, std::size_t axis);
 

@@ -45,10 +45,9 @@ class Run {
       if (!broken_ && truth != nullptr) watch_.Pair(e.output.record, *truth);
     });
     result_.c = c;
-    const RunBound bound = BoundOf(file_.machine, c);
+    const RunBound bound = RunBoundOf(file_.machine, c);
     result_.departure_bound_m = bound.departure_m;
     result_.time_bound_s = bound.time_s;
-    if (expected_.outcome == Outcome::kGoesOn) result_.departure_bound_m = FollowingError_m();
   }
 
   RunResult Do() {
@@ -80,10 +79,6 @@ class Run {
     return state() == MachineState::kReady || state() == MachineState::kRunning ||
            state() == MachineState::kStopping;
   }
-  [[nodiscard]] double FollowingError_m() const {
-    return 1e-3 * std::next(file_.machine.axes.begin(), static_cast<std::ptrdiff_t>(c_.axis))
-                      ->second.limits.following_error_mm;
-  }
   [[nodiscard]] int Cycles(double seconds) const { return static_cast<int>(std::ceil(seconds / period_s_)); }
   int Draw(int from, int to) {
     return std::min(to, from + static_cast<int>(random_.Uniform() * (to - from + 1)));
@@ -103,7 +98,7 @@ class Run {
     }
     machine_.Tick();
     const TruthRow& truth = machine_.emulated().truth();
-    if (broken_) watch_.Follow(record(), truth, Holding());
+    if (!mended_) watch_.Follow(record(), truth, Holding());
     NothingEnablesItself(truth);
   }
 
@@ -331,7 +326,7 @@ class Run {
   void Recover() {
     if (Holding() || state() == MachineState::kEnabling) return;
     injection_.Mend();
-    broken_ = false;
+    mended_ = true;
     path_.reset();
     TickFor(kSettle_s);
     // Whatever the phase, bring-up comes to its end first.
@@ -367,6 +362,7 @@ class Run {
   PathPoint point_;
   bool held_ = false;
   bool broken_ = false;
+  bool mended_ = false;
   bool asked_ = false;
   bool asked_taken_ = false;
   int under_way_ = 0;

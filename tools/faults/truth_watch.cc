@@ -25,7 +25,10 @@ bool TruthWatch::AtRest(const AxisTruth& truth) noexcept {
   return std::abs(truth.motor_velocity_m_s) < kRest_m_s && std::abs(truth.table_velocity_m_s) < kRest_m_s;
 }
 
-void TruthWatch::Begin(const TruthRow& newest) noexcept { begin_s_ = now_s_ = newest.time_s; }
+void TruthWatch::Begin(const TruthRow& newest) noexcept {
+  begun_ = true;
+  begin_s_ = now_s_ = newest.time_s;
+}
 
 // The record's reference belongs to an instant that lies a whole number of periods after the last pair, and
 // the truth is up to two periods younger: the reference is carried on to it.
@@ -40,7 +43,7 @@ void TruthWatch::Follow(const CycleRecord& record, const TruthRow& newest, bool 
       a.commanded_m = r.position_m + r.velocity_m_s * (newest.time_s - reference_s);
       a.has_command = true;
     }
-    if (!UnderTorque(truth)) continue;
+    if (!begun_ || !UnderTorque(truth)) continue;
     if (a.has_command)
       a.departure_m = std::max(a.departure_m, std::abs(truth.motor_position_m - a.commanded_m));
     if (!AtRest(truth)) a.moving_until_s = since_fault_s();

@@ -14,15 +14,15 @@ class TruthWatch {
  public:
   TruthWatch(std::size_t axes, double period_s) : period_s_(period_s), axes_(axes) {}
 
-  /// Every cycle before the fault, with the truth of the instant that the record is about.
+  /// Cycles before the fault, with the truth of the instant that the record is about.
   void Pair(const CycleRecord& record, const TruthRow& truth) noexcept {
     paired_cycle_ = record.cycle;
     paired_s_ = truth.time_s;
   }
   /// The fault is there from now on.
   void Begin(const TruthRow& newest) noexcept;
-  /// Every cycle from then on. `holds`: the machine follows a commanded path; after that the path ends where
-  /// it had come to.
+  /// Every cycle. `holds`: the machine follows a commanded path; after that the path ends where it had come
+  /// to.
   void Follow(const CycleRecord& record, const TruthRow& newest, bool holds) noexcept;
 
   /// Largest departure of an axis that was under torque.
@@ -45,6 +45,7 @@ class TruthWatch {
   double period_s_;
   std::uint64_t paired_cycle_ = 0;
   double paired_s_ = 0.0;
+  bool begun_ = false;
   double begin_s_ = 0.0;
   double now_s_ = 0.0;
   std::vector<Axis> axes_;
