@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "config/bus_timing.h"
+#include "config/emergency_checks.h"
 #include "config/key_table.h"
 #include "config/number_text.h"
 #include "config/plausible_limits.h"
@@ -327,6 +328,7 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     CheckMode(c, key + ".drive", axis.drive, problems);
     CheckDrive(key + ".drive", axis.drive, c.machine.cycle_us * 1e-3, problems);
     CheckLearning(c, key + ".drive", axis.drive, problems);
+    Append(CheckEmergencyReactions(axis.drive, key + ".drive"), problems);
     CheckLimits(key, axis, problems);
     CheckReserve(key, axis, problems);
     CheckStopping(c, key, axis, problems);

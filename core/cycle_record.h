@@ -41,6 +41,16 @@ struct AxisRecord {
   std::uint16_t emergency_code = 0;  ///< last EMCY error code of this node, 0 none
 };
 
+/// What a drive said in the cycle in which the reason arose, for the reason's text; later cycles do not
+/// change it. It is not in the log: a replay finds it again.
+struct ReasonDetail {
+  DriveState drive_state = DriveState::kUnknown;
+  std::uint16_t emergency_code = 0;     ///< the one that led to it, or the first soon after
+  std::uint64_t waited_us = 0;          ///< how long was waited in vain; 0 where nothing was waited for
+  std::uint8_t slow_quick_stop = 0xFF;  ///< axis whose quick stop did not end in time afterwards; 0xFF none
+  std::uint64_t slow_quick_stop_us = 0;
+};
+
 /// All that is known of one cycle; telemetry, logs, status and replay share it.
 struct CycleRecord {
   std::uint64_t cycle = 0;
@@ -50,12 +60,13 @@ struct CycleRecord {
   MachineState state = MachineState::kOff;
   Reason reason = Reason::kNone;    ///< of the last stop or fault
   std::uint8_t reason_axis = 0xFF;  ///< axis (or bus, for bus reasons) concerned; 0xFF none
-  std::uint32_t acknowledged = 0;   ///< sequence of the last request acted on or refused
-  bool acknowledged_ok = false;     ///< false: refused in this state
-  std::uint32_t program_id = 0;     ///< of the program that runs or ran last
-  double path_time_s = 0.0;         ///< position on the program's time axis, of the feedback's instant
-  double contour_error_m = 0.0;     ///< seen at the encoder; shortest distance to the path nearby
-  double lag_error_m = 0.0;         ///< along the path, positive behind
+  ReasonDetail reason_detail;
+  std::uint32_t acknowledged = 0;  ///< sequence of the last request acted on or refused
+  bool acknowledged_ok = false;    ///< false: refused in this state
+  std::uint32_t program_id = 0;    ///< of the program that runs or ran last
+  double path_time_s = 0.0;        ///< position on the program's time axis, of the feedback's instant
+  double contour_error_m = 0.0;    ///< seen at the encoder; shortest distance to the path nearby
+  double lag_error_m = 0.0;        ///< along the path, positive behind
   std::uint16_t path_points_waiting = 0;
   std::uint16_t solver_iterations = 0;
   std::uint64_t stale_cycles = 0;  ///< since start

@@ -72,6 +72,11 @@ constexpr bool IsFault(Reason r) noexcept {
   const auto v = static_cast<std::uint16_t>(r);
   return v >= 32 && v < 96;
 }
+/// The reason is of a bus, not of an axis.
+constexpr bool IsOfBus(Reason r) noexcept {
+  return r == Reason::kBusDown || r == Reason::kBusOff || r == Reason::kSendFailed ||
+         r == Reason::kSecondMaster;
+}
 constexpr bool IsLimit(Reason r) noexcept { return static_cast<std::uint16_t>(r) >= 96; }
 
 /// Short name as it appears in status, logs and cycles.csv.

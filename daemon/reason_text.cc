@@ -1,13 +1,10 @@
 #include "daemon/reason_text.h"
 
 #include "daemon/rt/transitions.h"
+#include "drivers/cia301/emergency_table.h"
 
 namespace contour {
 namespace {
-
-std::string Where(std::span<const std::string> names, std::uint8_t index) {
-  return index < names.size() ? names[index] : "?";
-}
 
 std::string Hex(unsigned value) {
   constexpr char kDigits[] = "0123456789ABCDEF";
@@ -16,21 +13,25 @@ std::string Hex(unsigned value) {
   return text;
 }
 
-std::string DriveText(const CycleRecord& record, std::uint8_t axis) {
-  if (axis >= record.axes.size()) return {};
-  const AxisRecord& a = record.axes[axis];
-  std::string text = ", drive in state " + std::string(Name(a.feedback.drive_state));
-  if (a.emergency_code != 0) text += ", emergency code " + Hex(a.emergency_code);
+std::string EmergencyOf(std::uint16_t code) {
+  return "emergency code " + Hex(code) + " (" + std::string(EmergencyText(code)) + ")";
+}
+
+/// What the drive said when the reason arose.
+std::string DriveText(const ReasonDetail& detail) {
+  std::string text = ", drive in state " + std::string(Name(detail.drive_state));
+  if (detail.emergency_code != 0) text += ", " + EmergencyOf(detail.emergency_code);
   return text;
 }
 
-}  // namespace
+std::string Milliseconds(std::uint64_t time_us) { return std::to_string((time_us + 500) / 1000) + " ms"; }
 
-std::string ReasonText(const CycleRecord& record, std::span<const std::string> axis_names,
-                       std::span<const std::string> bus_names) {
+std::string WhyText(const CycleRecord& record, std::span<const std::string> axis_names,
+                    std::span<const std::string> bus_names) {
   const std::uint8_t at = record.reason_axis;
-  const std::string axis = "axis " + Where(axis_names, at);
-  const std::string bus = "bus " + Where(bus_names, at);
+  const ReasonDetail& detail = record.reason_detail;
+  const std::string axis = at < axis_names.size() ? "axis " + axis_names[at] : "a drive";
+  const std::string bus = at < bus_names.size() ? "bus " + bus_names[at] : "a bus";
   switch (record.reason) {
     case Reason::kNone:
       return {};
@@ -44,7 +45,7 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
       return "switched off as asked";
     case Reason::kStaleFeedback:
       return axis + " sent no position for several cycles; quick stop. Check the drive's supply and the bus" +
-             DriveText(record, at);
+             DriveText(detail);
     case Reason::kFollowingError:
       return axis +
              " left the reference by more than limits.following_error_mm; quick stop. Look for a collision, "
@@ -70,15 +71,15 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
              "check the "
              "bus, then reset";
     case Reason::kHeartbeatLost:
-      return axis +
-             ": the drive's heartbeat is missing, or it restarted or left Operational; check its supply and "
-             "the bus, then reset" +
-             DriveText(record, at);
+      return axis + ": neither heartbeat nor position of the drive" +
+             (detail.waited_us == 0 ? std::string() : " for " + Milliseconds(detail.waited_us)) +
+             " (drive.heartbeat_timeout_ms); quick stop. Check its supply and the bus, then reset" +
+             DriveText(detail);
     case Reason::kDriveFault:
-      return axis + ": the drive reports a fault" + DriveText(record, at) +
+      return axis + ": the drive reports a fault" + DriveText(detail) +
              "; see its manual for the code, then reset";
     case Reason::kDriveLeftEnabled:
-      return axis + ": the drive left Operation Enabled by itself" + DriveText(record, at) + "; then reset";
+      return axis + ": the drive left Operation Enabled by itself" + DriveText(detail) + "; then reset";
     case Reason::kEmergencyStop:
       return "the emergency-stop input is open; quick stop. Release it, then reset";
     case Reason::kEnableChainOpen:
@@ -94,10 +95,16 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
     case Reason::kPathDiscontinuous:
       return "the program does not begin where the axes stand; nothing was moved. Run it again";
     case Reason::kEnableTimeout:
-      return "the drives did not reach Operation Enabled in time" +
-             (record.axes.empty() ? std::string() : DriveText(record, 0));
+      return axis + ": the drive did not reach Operation Enabled, it stayed in " +
+             std::string(Name(detail.drive_state)) +
+             (detail.waited_us == 0 ? std::string() : " for " + Milliseconds(detail.waited_us)) +
+             " (drive.transition_ms)" +
+             (detail.emergency_code == 0 ? std::string() : ", " + EmergencyOf(detail.emergency_code)) +
+             ". Look for a missing power stage, an open enable or safe-torque-off input";
     case Reason::kStopTimeout:
-      return "a stop on the path did not come to rest in time; quick stop";
+      return "a stop on the path did not come to rest within " + Milliseconds(detail.waited_us) +
+             " (the ramp by limits.acceleration_mm_s2 and limits.jerk_mm_s3, and drive.quick_stop_ms); quick "
+             "stop";
     case Reason::kEstimatorDiverged:
       return axis + ": the friction estimate diverged; quick stop. Please report this with the log";
     case Reason::kGridPointsSkipped:
@@ -105,7 +112,11 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
              "overloaded "
              "or gives no real time; then reset";
     case Reason::kDriveNotFollowing:
-      return axis + ": the drive does not follow its target" + DriveText(record, at);
+      return axis +
+             ": the enabled drive does not say that it follows its target (bit 12 of the statusword); quick "
+             "stop. Look for a limit, a halt or another mode in the drive; for a drive that has no such bit "
+             "set drive.follows_target_bit: false" +
+             DriveText(detail);
     case Reason::kFeedbackFrozen:
       return axis +
              ": the position stands still although the axis must move; voltage off, since the encoder cannot "
@@ -122,12 +133,12 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
       return axis +
              ": more torque than friction and outside forces explain moves nothing; voltage off. Look for a "
              "collision, a closed brake, a torn coupling, or a drive without power" +
-             DriveText(record, at);
+             DriveText(detail);
     case Reason::kTorqueNotDelivered:
       return axis +
              ": the drive reports another torque than it was sent; quick stop. Look for a limit in the "
              "drive, its supply, or a lost phase" +
-             DriveText(record, at);
+             DriveText(detail);
     case Reason::kScaleDisagrees:
       return axis +
              ": linear scale and motor differ by more than the screw can wind up; voltage off. Check scale, "
@@ -138,19 +149,20 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
              "program that writes to the drive";
     case Reason::kDriveRestarted:
       return axis + ": the drive restarted (boot-up message). Check its supply, then reset" +
-             DriveText(record, at);
+             DriveText(detail);
     case Reason::kDriveLeftOperational:
       return axis +
              ": the drive left Operational, so it takes no set-points any more. Look for another master, "
              "then reset" +
-             DriveText(record, at);
+             DriveText(detail);
     case Reason::kDriveLostMaster:
       return axis +
              ": the drive says that it lost the master (heartbeat, SYNC or set-points). Check the bus and "
              "the host's load, then reset" +
-             DriveText(record, at);
+             DriveText(detail);
     case Reason::kDriveEmergency:
-      return axis + ": the drive sent an emergency message that asks for a stop" + DriveText(record, at);
+      return axis + ": the drive sent " + EmergencyOf(detail.emergency_code) +
+             "; the machine stopped. Mend what it names, then reset";
     case Reason::kSecondMaster:
       return bus + ": another master sends on this bus; the machine stopped. End it, then reset";
     case Reason::kOscillation:
@@ -182,6 +194,17 @@ std::string ReasonText(const CycleRecord& record, std::span<const std::string> a
       return std::string(Name(record.reason));
   }
   return {};
+}
+
+}  // namespace
+
+std::string ReasonText(const CycleRecord& record, std::span<const std::string> axis_names,
+                       std::span<const std::string> bus_names) {
+  const std::string text = WhyText(record, axis_names, bus_names);
+  const ReasonDetail& detail = record.reason_detail;
+  if (text.empty() || detail.slow_quick_stop >= axis_names.size()) return text;
+  return text + ". Axis " + axis_names[detail.slow_quick_stop] + " did not end its quick stop within " +
+         Milliseconds(detail.slow_quick_stop_us) + " (drive.quick_stop_ms): its voltage was taken away";
 }
 
 std::string RefusalText(const CycleRecord& record, RequestKind request,

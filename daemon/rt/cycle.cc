@@ -45,6 +45,7 @@ Cycle::Cycle(const CycleConfig& config)
     : period_s_(config.cycle_us * 1e-6),
       master_(config.master),
       transitions_(TransitionTimes(config)),
+      reasons_(config.cycle_us),
       follower_(config.axes.size(), period_s_, StopOnPathTime_s(config) / period_s_, kMaxHorizonPoints),
       controller_(MakeController(config)),
       guard_(config.control.guard, GuardedAxes(config), period_s_),
@@ -110,6 +111,7 @@ void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexc
     CarryOut(orders);
     Guard(orders);
   }
+  reasons_.Update(transitions_, master_);
   guard_.Skip(skipped_);
   Command(orders, out);
   out.finished = orders.finished;
@@ -130,8 +132,8 @@ void Cycle::EncodeHeartbeat(CycleOutput& out) const noexcept {
 }
 
 void Cycle::Keep(StateKeeper& keep) noexcept {
-  keep(master_, axes_, transitions_, follower_, controller_, guard_, estimates_, control_in_, control_out_,
-       guarded_, setpoints_, near_position_m_, near_path_, stale_cycles_);
+  keep(master_, axes_, transitions_, reasons_, follower_, controller_, guard_, estimates_, control_in_,
+       control_out_, guarded_, setpoints_, near_position_m_, near_path_, stale_cycles_);
 }
 
 std::size_t Cycle::StateSize() noexcept {
@@ -234,6 +236,8 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
   for (const AxisFeedback& f : master_.feedback()) now.drives.push_back(f.drive_state);
   now.fault = FindFault();
   now.lost = FindLost(in);
+  now.stop = FindStop();
+  now.stuck = FindStuck();
   now.path_prefetched = follower_.Prefetched();
   now.path_begins_here = now.path_prefetched && PathBeginsHere();
   now.path_running_dry = follower_.running_dry();
@@ -248,8 +252,13 @@ FaultSeen Cycle::FindFault() const noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& status = master_.status()[i];
+    // Why it stopped says more than that it did.
+    if (status.lost_master) return {Reason::kDriveLostMaster, where};
     if (status.fault) return {Reason::kDriveFault, where};
+    if (status.emergency >= EmergencyReaction::kQuickStop)
+      return {Reason::kDriveEmergency, where, status.emergency == EmergencyReaction::kVoltageOff};
     if (state != MachineState::kEnabling && status.left_enabled) return {Reason::kDriveLeftEnabled, where};
+    if (status.not_following) return {Reason::kDriveNotFollowing, where};
     if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
   }
   return {};
@@ -266,9 +275,25 @@ FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& s = master_.status()[i];
     const bool left_operational = s.configured && s.nmt != NmtState::kOperational;
-    if (s.heartbeat_lost || s.restarted || left_operational) return {Reason::kHeartbeatLost, where};
+    if (s.restarted) return {Reason::kDriveRestarted, where};
+    if (s.lost_master && left_operational) return {Reason::kDriveLostMaster, where};
+    if (s.heartbeat_lost) return {Reason::kHeartbeatLost, where};
+    if (left_operational) return {Reason::kDriveLeftOperational, where};
   }
   return {};
+}
+
+FaultSeen Cycle::FindStop() const noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath)
+      return {Reason::kDriveEmergency, static_cast<std::uint8_t>(i)};
+  return {};
+}
+
+std::uint8_t Cycle::FindStuck() const noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (master_.status()[i].transition_late) return static_cast<std::uint8_t>(i);
+  return 0xFF;
 }
 
 bool Cycle::PathBeginsHere() const noexcept {
@@ -368,7 +393,7 @@ FaultSeen Cycle::Guard(const Orders& orders) noexcept {
 void Cycle::Command(const Orders& orders, CycleOutput& out) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     AxisSetpoint& s = setpoints_[i];
-    s.goal = orders.goal;
+    s.goal = i == orders.voltage_off ? DriveGoal::kDisabled : orders.goal;
     s.torque_Nm = guarded_[i].torque_Nm;
     s.in_motion = control_in_.reference[i][0].velocity_m_s != 0.0;
     // Until the axis is held, the target follows the axis, so that a drive in CSP does not jump when enabled.
@@ -392,6 +417,7 @@ void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONB
   r.state = transitions_.state();
   r.reason = transitions_.reason();
   r.reason_axis = transitions_.reason_where();
+  r.reason_detail = reasons_.detail();
   r.acknowledged = transitions_.acknowledged();
   r.acknowledged_ok = transitions_.acknowledged_ok();
   r.program_id = transitions_.program_id();

@@ -14,6 +14,7 @@
 #include "core/state_keeper.h"
 #include "daemon/rt/cycle_config.h"
 #include "daemon/rt/path_follower.h"
+#include "daemon/rt/reason_watch.h"
 #include "daemon/rt/transitions.h"
 #include "drivers/cia301/bus_traffic.h"
 #include "drivers/cia402/drive_master.h"
@@ -83,6 +84,8 @@ class Cycle {
   [[nodiscard]] Situation Assess(const CycleInput& in) const noexcept;
   [[nodiscard]] FaultSeen FindFault() const noexcept;
   [[nodiscard]] FaultSeen FindLost(const CycleInput& in) const noexcept;
+  [[nodiscard]] FaultSeen FindStop() const noexcept;
+  [[nodiscard]] std::uint8_t FindStuck() const noexcept;
   [[nodiscard]] bool PathBeginsHere() const noexcept;
   void CarryOut(const Orders& orders) noexcept;
   [[nodiscard]] ReferencePoint AtSample(std::size_t axis) const noexcept;
@@ -100,6 +103,7 @@ class Cycle {
   DriveMaster master_;
   std::vector<Axis> axes_;
   Transitions transitions_;
+  ReasonWatch reasons_;
   PathFollower follower_;
   ContourController controller_;
   TorqueGuard guard_;

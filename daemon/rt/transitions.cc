@@ -30,6 +30,14 @@ std::uint8_t FaultedDrive(const Situation& now) noexcept {
   return kNone;
 }
 
+/// The drive that holds up enabling: one that missed its deadline, or else the first that is not there yet.
+std::uint8_t StuckDrive(const Situation& now) noexcept {
+  if (now.stuck < now.drives.size()) return now.stuck;
+  for (std::size_t i = 0; i < now.drives.size(); ++i)
+    if (now.drives[i] != DriveState::kOperationEnabled) return static_cast<std::uint8_t>(i);
+  return kNone;
+}
+
 bool HoldsTorque(MachineState s) noexcept {
   return s == MachineState::kReady || s == MachineState::kRunning || s == MachineState::kStopping;
 }
@@ -39,6 +47,7 @@ bool HoldsTorque(MachineState s) noexcept {
 void Transitions::Enter(MachineState next) noexcept {
   if (next == state_) return;
   state_ = next;
+  stayed_ = since_;
   since_ = 0;
   run_pending_ = false;
   reset_pending_ = false;
@@ -47,6 +56,7 @@ void Transitions::Enter(MachineState next) noexcept {
 void Transitions::Fault(FaultSeen fault) noexcept {
   reason_ = fault.reason;
   where_ = fault.where;
+  voltage_off_ = fault.voltage_off;
   Enter(MachineState::kFaulted);
 }
 
@@ -71,11 +81,12 @@ Orders Transitions::Step(const Situation& now) noexcept {
     Fault(now.lost);
   } else if (may_move) {
     WatchIo(now, orders);
+    if (now.stop.reason != Reason::kNone) StopFor(now.stop, orders);
   }
   if (now.request.kind != RequestKind::kNone) HandleRequest(now, orders);
   Progress(now, orders);
   orders.torque_allowed = HoldsTorque(state_);
-  orders.goal = Goal();
+  SetGoals(orders);
   return orders;
 }
 
@@ -83,8 +94,13 @@ Orders Transitions::RaiseLate(FaultSeen fault) noexcept {
   Fault(fault);
   Orders orders;
   orders.forget_path = true;
-  orders.goal = Goal();
+  SetGoals(orders);
   return orders;
+}
+
+void Transitions::SetGoals(Orders& orders) const noexcept {
+  orders.goal = Goal();
+  if (voltage_off_ && state_ == MachineState::kFaulted) orders.voltage_off = where_;
 }
 
 void Transitions::WatchIo(const Situation& now, Orders& orders) noexcept {
@@ -93,14 +109,24 @@ void Transitions::WatchIo(const Situation& now, Orders& orders) noexcept {
   // The emergency stop asks for the quickest stop there is, and so does anything before the axes are held.
   if (verdict == Reason::kEmergencyStop || state_ == MachineState::kEnabling) {
     Fault({verdict, 0xFF});
-  } else if (state_ != MachineState::kStopping || after_stop_ != MachineState::kFaulted) {
-    BeginStop(orders, verdict, MachineState::kFaulted);
+  } else {
+    StopFor({verdict, 0xFF}, orders);
   }
 }
 
-void Transitions::BeginStop(Orders& orders, Reason reason, MachineState after) noexcept {
-  reason_ = reason;
-  where_ = 0xFF;
+void Transitions::StopFor(FaultSeen why, Orders& orders) noexcept {
+  if (state_ == MachineState::kEnabling) {
+    Fault(why);
+  } else if (HoldsTorque(state_) &&
+             (state_ != MachineState::kStopping || after_stop_ != MachineState::kFaulted)) {
+    BeginStop(orders, why, MachineState::kFaulted);
+  }
+}
+
+void Transitions::BeginStop(Orders& orders, FaultSeen why, MachineState after) noexcept {
+  reason_ = why.reason;
+  where_ = why.where;
+  voltage_off_ = false;
   after_stop_ = after;
   orders.stop_path = true;
   Enter(MachineState::kStopping);
@@ -132,7 +158,7 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
     case RequestKind::kStop:
       Acknowledge(request, true);
       if (state_ == MachineState::kRunning) {
-        BeginStop(orders, Reason::kOperatorStop, MachineState::kReady);
+        BeginStop(orders, {Reason::kOperatorStop}, MachineState::kReady);
       } else if (state_ == MachineState::kReady && run_pending_) {
         run_pending_ = false;
         reason_ = Reason::kOperatorStop;
@@ -149,7 +175,7 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
       terminating_ = terminating_ || terminate;
       Acknowledge(request, true);
       if (state_ == MachineState::kRunning || state_ == MachineState::kReady) {
-        BeginStop(orders, why, MachineState::kIdle);
+        BeginStop(orders, {why}, MachineState::kIdle);
       } else if (state_ == MachineState::kStopping && after_stop_ == MachineState::kReady) {
         after_stop_ = MachineState::kIdle;
         reason_ = why;
@@ -226,8 +252,8 @@ void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
       orders.hold_here = true;
       if (AllEnabled(now)) {
         Enter(MachineState::kReady);
-      } else if (since_ > config_.enable_timeout_cycles) {
-        Fault({Reason::kEnableTimeout, 0xFF});
+      } else if (now.stuck != kNone || since_ > config_.enable_timeout_cycles) {
+        Fault({Reason::kEnableTimeout, StuckDrive(now)});
       }
       break;
     case MachineState::kReady:
@@ -269,7 +295,7 @@ void Transitions::ProgressRunning(const Situation& now, Orders& orders) noexcept
     reason_ = Reason::kProgramEnd;
     Enter(MachineState::kReady);
   } else if (now.path_running_dry) {
-    BeginStop(orders, Reason::kPathUnderrun, MachineState::kFaulted);
+    BeginStop(orders, {Reason::kPathUnderrun}, MachineState::kFaulted);
   }
 }
 

@@ -13,6 +13,8 @@ namespace contour {
 struct FaultSeen {
   Reason reason = Reason::kNone;
   std::uint8_t where = 0xFF;  ///< axis, or bus for bus reasons; 0xFF the whole machine
+  /// The drive's own ramp cannot be relied upon: its voltage goes off at once, the other axes stop by theirs.
+  bool voltage_off = false;
 };
 
 /// What the machine's state depends on in one cycle.
@@ -23,8 +25,10 @@ struct Situation {
   bool bring_up_failed = false;
   bool operational = false;  ///< all drives configured and Operational
   PerAxis<DriveState> drives;
-  FaultSeen fault;  ///< acts whenever drives are or may be enabled
-  FaultSeen lost;   ///< bus or drive lost: acts in every state but Off and Starting
+  FaultSeen fault;            ///< acts whenever drives are or may be enabled
+  FaultSeen lost;             ///< bus or drive lost: acts in every state but Off and Starting
+  FaultSeen stop;             ///< leaves time for a stop on the path, which then ends in Faulted
+  std::uint8_t stuck = 0xFF;  ///< first drive whose transition has missed its deadline; 0xFF none
   bool path_prefetched = false;
   bool path_begins_here = false;  ///< first point lies where the axes stand
   bool path_running_dry = false;
@@ -43,6 +47,7 @@ struct Orders {
   bool torque_allowed = false;
   bool finished = false;  ///< terminate is carried out
   DriveGoal goal = DriveGoal::kDisabled;
+  std::uint8_t voltage_off = 0xFF;  ///< the axis whose goal is kDisabled whatever that of the others
 };
 
 /// Which machine state may follow which. A fault acts in the cycle that sees it; nothing but an enable
@@ -70,6 +75,8 @@ class Transitions {
   [[nodiscard]] std::uint32_t program_id() const noexcept { return program_id_; }
   /// Cycles spent in the present state.
   [[nodiscard]] std::uint32_t since() const noexcept { return since_; }
+  /// Cycles that were spent in the state before.
+  [[nodiscard]] std::uint32_t stayed() const noexcept { return stayed_; }
   [[nodiscard]] bool run_pending() const noexcept { return run_pending_; }
   [[nodiscard]] bool holds_torque() const noexcept {
     return state_ == MachineState::kReady || state_ == MachineState::kRunning ||
@@ -84,7 +91,9 @@ class Transitions {
   void HandleRequest(const Situation& now, Orders& orders) noexcept;
   void Enable(const Situation& now, Orders& orders, const Request& request) noexcept;
   void Run(Orders& orders, const Request& request) noexcept;
-  void BeginStop(Orders& orders, Reason reason, MachineState after) noexcept;
+  void BeginStop(Orders& orders, FaultSeen why, MachineState after) noexcept;
+  void StopFor(FaultSeen why, Orders& orders) noexcept;
+  void SetGoals(Orders& orders) const noexcept;
   void BeginReset(Orders& orders) noexcept;
   void Progress(const Situation& now, Orders& orders) noexcept;
   void ProgressReady(const Situation& now, Orders& orders) noexcept;
@@ -99,6 +108,7 @@ class Transitions {
   std::uint8_t where_ = 0xFF;
   MachineState after_stop_ = MachineState::kReady;
   std::uint32_t since_ = 0;
+  std::uint32_t stayed_ = 0;
   std::uint32_t acknowledged_ = 0;
   bool acknowledged_ok_ = false;
   std::uint32_t program_id_ = 0;
@@ -109,6 +119,7 @@ class Transitions {
   Request reset_;
   bool resetting_ = false;  ///< Starting was asked for by an operator
   bool drives_off_ = true;
+  bool voltage_off_ = false;  ///< of the last fault, at where_
 };
 
 /// Permission as the I/O gives it: kNone, or why not.

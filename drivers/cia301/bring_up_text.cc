@@ -43,40 +43,6 @@ constexpr std::array kObjects{
     Named{0x6502, "supported drive modes"},
 };
 
-// Error codes of CiA 301 and CiA 402; a code not listed falls back to its class (the same with the low byte
-// zero, then with the low twelve bits zero).
-constexpr std::array kEmergencies{
-    Named{0x0000, "no error"},
-    Named{0x1000, "generic error"},
-    Named{0x2000, "current"},
-    Named{0x2310, "continuous over-current"},
-    Named{0x2320, "short circuit"},
-    Named{0x3000, "voltage"},
-    Named{0x3210, "DC link over-voltage"},
-    Named{0x3220, "DC link under-voltage"},
-    Named{0x4000, "temperature"},
-    Named{0x4210, "excess temperature of the device"},
-    Named{0x4310, "excess temperature of the drive"},
-    Named{0x5000, "device hardware"},
-    Named{0x6000, "device software"},
-    Named{0x7000, "additional modules"},
-    Named{0x7300, "sensor"},
-    Named{0x7305, "incremental sensor"},
-    Named{0x7500, "communication"},
-    Named{0x8000, "monitoring"},
-    Named{0x8100, "communication"},
-    Named{0x8110, "CAN overrun"},
-    Named{0x8120, "CAN in error passive mode"},
-    Named{0x8130, "heartbeat of the master missing"},
-    Named{0x8140, "recovered from bus-off"},
-    Named{0x8200, "protocol error"},
-    Named{0x8210, "PDO not processed, its length is wrong"},
-    Named{0x8250, "RPDO timeout"},
-    Named{0x8611, "following error"},
-    Named{0xF000, "additional functions"},
-    Named{0xFF00, "specific to the device"},
-};
-
 template <std::size_t N>
 std::string_view Find(const std::array<Named, N>& table, std::uint32_t code) noexcept {
   for (const Named& n : table) {
@@ -191,15 +157,6 @@ std::string BringUpText(const BringUpStatus& s, std::span<const std::string> axi
       "axis " + name + " (node " + std::to_string(s.node_id) + "), " + std::string(Name(phase)) + ": ";
   if (s.error != 0) return who + Failure(s);
   return who + (s.index != 0 ? Object(s) + ", " : std::string()) + "waiting for " + Waited(s);
-}
-
-std::string_view EmergencyText(std::uint16_t error_code) noexcept {
-  for (const std::uint32_t mask : {0xFFFFu, 0xFFF0u, 0xFF00u, 0xF000u}) {
-    if (error_code != 0 && (error_code & mask) == 0) continue;
-    const std::string_view text = Find(kEmergencies, error_code & mask);
-    if (!text.empty()) return text;
-  }
-  return "unknown";
 }
 
 }  // namespace contour

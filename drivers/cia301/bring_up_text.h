@@ -15,8 +15,4 @@ namespace contour {
 /// file.
 [[nodiscard]] std::string BringUpText(const BringUpStatus& status, std::span<const std::string> axis_names);
 
-/// What an emergency error code (CiA 301 and CiA 402) stands for; its class when the code itself is a
-/// manufacturer's.
-[[nodiscard]] std::string_view EmergencyText(std::uint16_t error_code) noexcept;
-
 }  // namespace contour

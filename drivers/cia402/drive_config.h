@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "core/visit.h"
+#include "drivers/cia301/emergency_table.h"
 
 namespace contour {
 
@@ -69,6 +71,8 @@ struct DriveConfig {
   double heartbeat_ms = 50.0;
   double heartbeat_timeout_ms = 150.0;
   double emergency_inhibit_ms = 100.0;
+  std::map<std::string, EmergencyReaction> emergency_reaction;
+  bool follows_target_bit = true;
 
   double quick_stop_deceleration_rad_s2 = 0.0;
   int quick_stop_option = 2;
@@ -112,6 +116,12 @@ struct DriveConfig {
                "without a heartbeat for this long the drive counts as lost");
     v.Optional("emergency_inhibit_ms", emergency_inhibit_ms, Range{0, 6000},
                "shortest time between two emergency messages of the drive (0x1015)");
+    v.Optional("emergency_reaction", emergency_reaction,
+               "by error code (0x4210) or class of codes (0x42xx, 0x4xxx): what an emergency message of the "
+               "enabled drive leads to; only stronger than docs/canopen.md has it");
+    v.Optional("follows_target_bit", follows_target_bit,
+               "the enabled drive sets bit 12 of the statusword while it follows its target; false where the "
+               "drive has no such bit, which is then not watched");
 
     v.Optional("quick_stop_deceleration_rad_s2", quick_stop_deceleration_rad_s2, kNotNegative,
                "deceleration of the drive's quick stop (0x6085); 0 leaves the drive's own");

@@ -98,6 +98,12 @@ DriveMaster::DriveMaster(const MasterConfig& config)
     axis.torque_limit_Nm = a.torque_limit_Nm;
     axis.walk =
         DriveWalk(CyclesOf(d.transition_ms, config.cycle_us), CyclesOf(d.quick_stop_ms, config.cycle_us));
+    for (const auto& [codes, reaction] : d.emergency_reaction) {
+      const std::optional<EmergencyClass> parsed = ParseEmergencyClass(codes);
+      if (!parsed) Refuse(a, "emergency_reaction: '" + codes + "' is no error code such as 0x4210 or 0x42xx");
+      axis.stronger.push_back({*parsed, reaction});
+    }
+    if (d.follows_target_bit) axis.follow_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
     axis.heartbeat_timeout_cycles = CyclesOf(d.heartbeat_timeout_ms, config.cycle_us);
     axes_.push_back(axis);
   }
@@ -134,7 +140,7 @@ void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
   if (axis == kNoAxis) return;
   switch (frame.id & 0x780) {
     case cob::kEmergency:
-      if (frame.length >= 3) status_[axis].emergency_code = DecodeEmergency(frame).error_code;
+      if (frame.length >= 3) OnEmergency(axis, frame);
       return;
     case cob::kTpdo1:
       if (frame.length >= kFeedbackLength) OnFeedback(axis, stamped);
@@ -162,7 +168,34 @@ void DriveMaster::OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept 
   if (s.nmt == NmtState::kBootUp) {
     s.restarted = s.restarted || s.configured;
     s.emergency_code = 0;
+    ForgetEmergency(axis);
   }
+}
+
+void DriveMaster::OnEmergency(std::size_t axis, const CanFrame& frame) noexcept {
+  AxisDriveStatus& s = status_[axis];
+  Axis& a = axes_[axis];
+  const Emergency e = DecodeEmergency(frame);
+  s.emergency_code = e.error_code;
+  if (e.error_code == 0) {
+    // With bits left in the register only one of several errors is gone.
+    if (e.error_register == 0) ForgetEmergency(axis);
+    return;
+  }
+  EmergencyReaction reaction = ReactionTo(e);
+  for (const StrongerReaction& r : a.stronger)
+    if (r.codes.Holds(e.error_code)) reaction = std::max(reaction, r.reaction);
+  s.lost_master = s.lost_master || SaysMasterLost(e.error_code);
+  if (reaction <= a.reported) return;
+  a.reported = reaction;
+  a.reported_cycle = cycle_;
+  s.emergency_cause = e.error_code;
+}
+
+void DriveMaster::ForgetEmergency(std::size_t axis) noexcept {
+  axes_[axis].reported = EmergencyReaction::kNone;
+  status_[axis].emergency = EmergencyReaction::kNone;
+  status_[axis].emergency_cause = 0;
 }
 
 // A drive answers each SYNC, in their order, and an answer that misses its grid point has the look of one to
@@ -213,10 +246,27 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
   AxisDriveStatus& s = status_[axis];
   if (!f.fresh) f.age_cycles += static_cast<std::uint32_t>(elapsed_);
   s.fault = f.valid && IsFaultState(f.drive_state);
+  if (cycle_ != axes_[axis].reported_cycle) s.emergency = axes_[axis].reported;
+  s.silent_cycles = cycle_ - axes_[axis].alive_cycle;
+  WatchFollowing(axis);
   if (s.configured && cycle_ - axes_[axis].alive_cycle >= axes_[axis].heartbeat_timeout_cycles) {
     s.heartbeat_lost = true;
     s.nmt = NmtState::kUnknown;
   }
+}
+
+// A statusword that shows Operation Enabled for the first time was latched before any set-point was sent, and
+// so was the next one; the drive may take `delay_cycles` to act upon a set-point.
+void DriveMaster::WatchFollowing(std::size_t axis) noexcept {
+  Axis& a = axes_[axis];
+  const AxisFeedback& f = feedback_[axis];
+  const bool told = goal_[axis] == DriveGoal::kEnabled && f.drive_state == DriveState::kOperationEnabled;
+  if (!told || FollowsTarget(f.statusword)) {
+    a.not_following_cycles = 0;
+  } else if (f.fresh) {
+    a.not_following_cycles += elapsed_;
+  }
+  status_[axis].not_following = a.follow_cycles != 0 && a.not_following_cycles > a.follow_cycles;
 }
 
 bool DriveMaster::Healthy(std::size_t axis) const noexcept {
@@ -234,6 +284,11 @@ bool DriveMaster::operational() const noexcept {
 void DriveMaster::StartBringUp() noexcept {
   bool needed = !operational();
   for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
+  // Whoever asks for it has seen what the drives reported.
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    ForgetEmergency(i);
+    status_[i].lost_master = false;
+  }
   if (!needed || (BringingUp() && !bring_up_failed())) return;
   pdos_run_ = false;
   sync_sent_ = false;
@@ -285,6 +340,9 @@ void DriveMaster::StartPdos() noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     status_[i].configured = true;
     status_[i].nmt = NmtState::kOperational;
+    // While it was brought up there was no SYNC and no set-point, and it may have said so.
+    status_[i].lost_master = false;
+    if ((status_[i].emergency_cause & 0xF000) == 0x8000) ForgetEmergency(i);
     axes_[i].alive_cycle = cycle_;
   }
 }
@@ -299,6 +357,8 @@ CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoi
   s.at_goal = a.walk.at_goal();
   s.transition_late = a.walk.late();
   s.stuck_in = a.walk.stuck_in();
+  s.in_state_cycles = a.walk.in_state_cycles();
+  s.goal = setpoint.goal;
   s.left_enabled = a.walk.left_enabled();
 
   const bool follows = setpoint.goal == DriveGoal::kEnabled && f.drive_state == DriveState::kOperationEnabled;

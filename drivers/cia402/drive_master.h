@@ -50,8 +50,17 @@ struct AxisDriveStatus {
   bool left_enabled = false;     ///< left Operation Enabled without being told to; until the goal changes
   bool transition_late = false;  ///< a transition missed its deadline; until the goal changes
   DriveState stuck_in = DriveState::kUnknown;  ///< the state it stayed in, with transition_late
+  std::uint64_t in_state_cycles = 0;           ///< in this state with this goal, at the last Send
+  DriveGoal goal = DriveGoal::kDisabled;       ///< of the last Send
   bool at_goal = false;                        ///< the drive's state is what the last goal asked for
   std::uint16_t emergency_code = 0;            ///< last EMCY error code; 0 none, or taken back by the drive
+  /// Strongest reaction that an emergency message asks for, until the drive takes it back or StartBringUp. It
+  /// acts a cycle after the message: by then the statusword says whether the drive has stopped by itself.
+  EmergencyReaction emergency = EmergencyReaction::kNone;
+  std::uint16_t emergency_cause = 0;  ///< the code that asks for it
+  bool lost_master = false;           ///< said so by an emergency message; until it is brought up or reset
+  bool not_following = false;         ///< enabled, but bit 12 of the statusword is missing for too long
+  std::uint64_t silent_cycles = 0;    ///< since its last sign of life
 };
 
 /// The real-time side of CANopen for all axes on all buses: one Receive at the start of a cycle, one Send at
@@ -108,7 +117,16 @@ class DriveMaster {
 
  private:
   static constexpr std::int64_t kNeverAnswered = INT64_MAX;
+  struct StrongerReaction {
+    EmergencyClass codes;
+    EmergencyReaction reaction;
+  };
   struct Axis {
+    /// What is configured stays as constructed.
+    void Keep(StateKeeper& keep) noexcept {
+      keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, reported, reported_cycle, alive_cycle,
+           answer_cycle, behind, earliest_answer_ns);
+    }
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;
     DriveMode mode = DriveMode::kCst;
@@ -122,6 +140,11 @@ class DriveMaster {
     Unwrap unwrap;
     Unwrap scale_unwrap;
     DriveWalk walk;
+    std::vector<StrongerReaction> stronger;  ///< as configured
+    std::uint64_t follow_cycles = 0;         ///< bit 12 may be missing that long; 0: not watched
+    std::uint64_t not_following_cycles = 0;
+    EmergencyReaction reported = EmergencyReaction::kNone;
+    std::uint64_t reported_cycle = 0;  ///< when `reported` last grew
     std::uint64_t heartbeat_timeout_cycles = 0;
     std::uint64_t alive_cycle = 0;                     ///< cycle of the last heartbeat or feedback
     std::uint64_t answer_cycle = 0;                    ///< cycle of the last feedback
@@ -138,6 +161,9 @@ class DriveMaster {
 
   void OnFrame(const StampedFrame& frame) noexcept;
   void OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept;
+  void OnEmergency(std::size_t axis, const CanFrame& frame) noexcept;
+  void ForgetEmergency(std::size_t axis) noexcept;
+  void WatchFollowing(std::size_t axis) noexcept;
   void OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept;
   bool AnswersNewestSync(Axis& axis, const AxisFeedback& feedback, std::int64_t stamp_ns) const noexcept;
   void Supervise(std::size_t axis) noexcept;

@@ -24,6 +24,8 @@ class DriveWalk {
   /// The drive stayed in `stuck_in()` for longer than a transition may take; until state or goal change.
   [[nodiscard]] bool late() const noexcept { return late_; }
   [[nodiscard]] DriveState stuck_in() const noexcept { return late_ ? state_ : DriveState::kUnknown; }
+  /// Cycles in this state with this goal.
+  [[nodiscard]] std::uint64_t in_state_cycles() const noexcept { return in_state_; }
   /// The drive was enabled, was to stay so, and is not any more; until the goal changes.
   [[nodiscard]] bool left_enabled() const noexcept { return left_enabled_; }
 

@@ -190,6 +190,59 @@ TEST_F(TransitionsTest, DrivesThatDoNotEnableAreAFault) {
   for (int i = 0; i < 30; ++i) machine_.Step(now_);
   EXPECT_EQ(machine_.state(), MachineState::kFaulted);
   EXPECT_EQ(machine_.reason(), Reason::kEnableTimeout);
+  EXPECT_EQ(machine_.reason_where(), 0);
+}
+
+TEST_F(TransitionsTest, TheDriveThatDoesNotEnableIsNamedAtItsOwnDeadline) {
+  ToIdle();
+  now_.request = {RequestKind::kEnable, ++sequence_, 0};
+  machine_.Step(now_);
+  now_.request = {};
+  now_.drives[0] = DriveState::kOperationEnabled;
+  now_.drives[1] = DriveState::kReadyToSwitchOn;
+  machine_.Step(now_);
+  EXPECT_EQ(machine_.state(), MachineState::kEnabling);
+  now_.stuck = 1;
+  machine_.Step(now_);
+  EXPECT_EQ(machine_.reason(), Reason::kEnableTimeout);
+  EXPECT_EQ(machine_.reason_where(), 1);
+}
+
+TEST_F(TransitionsTest, WhatLeavesTimeStopsOnThePathThenFaults) {
+  ToRunning();
+  now_.stop = {Reason::kDriveEmergency, 1};
+  EXPECT_TRUE(Step().stop_path);
+  EXPECT_EQ(machine_.state(), MachineState::kStopping);
+  EXPECT_EQ(machine_.reason(), Reason::kDriveEmergency);
+  EXPECT_EQ(machine_.reason_where(), 1);
+  for (int i = 0; i < 5; ++i) EXPECT_FALSE(Step().stop_path);
+  now_.path_at_rest = true;
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kDriveEmergency);
+}
+
+TEST_F(TransitionsTest, WhatLeavesTimeForAStopKeepsAMachineFromBeingEnabled) {
+  ToIdle();
+  now_.stop = {Reason::kDriveEmergency, 0};
+  for (int i = 0; i < 5; ++i) Step();
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+  Step(RequestKind::kEnable);
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+}
+
+TEST_F(TransitionsTest, AnEncoderThatCannotBeBelievedTakesTheVoltageOfItsAxisAlone) {
+  ToRunning();
+  now_.fault = {Reason::kDriveEmergency, 1, true};
+  Orders orders = machine_.Step(now_);
+  EXPECT_EQ(orders.goal, DriveGoal::kQuickStop);
+  EXPECT_EQ(orders.voltage_off, 1);
+  now_.fault = {};
+  orders = machine_.Step(now_);
+  EXPECT_EQ(orders.voltage_off, 1) << "as long as the others brake";
+  EXPECT_EQ(machine_.RaiseLate({Reason::kFollowingError, 0}).voltage_off, 0xFF);
+  EXPECT_EQ(machine_.RaiseLate({Reason::kFeedbackFrozen, 0, true}).voltage_off, 0);
 }
 
 TEST_F(TransitionsTest, ResetBringsUpAgainAndDoesNotEnable) {

@@ -64,14 +64,5 @@ TEST(BringUpText, HasASentenceForEveryError) {
   }
 }
 
-TEST(EmergencyText, FallsBackToTheClass) {
-  EXPECT_EQ(EmergencyText(0x8130), "heartbeat of the master missing");
-  EXPECT_EQ(EmergencyText(0x3211), "DC link over-voltage");
-  EXPECT_EQ(EmergencyText(0x2399), "current");
-  EXPECT_EQ(EmergencyText(0xFF05), "specific to the device");
-  EXPECT_EQ(EmergencyText(0), "no error");
-  EXPECT_EQ(EmergencyText(0x0042), "unknown");
-}
-
 }  // namespace
 }  // namespace contour

@@ -32,6 +32,7 @@ class FakeSlave : public BusNode {
     std::int64_t reply_ns = 100'000;
     std::int64_t tpdo_ns = 20'000;  ///< from SYNC to its TPDO
     bool unanswered = false;        ///< no TPDO
+    bool follows = true;            ///< bit 12 while enabled
   };
 
   explicit FakeSlave(std::uint8_t node_id) : node_id_(node_id) {
@@ -74,8 +75,10 @@ class FakeSlave : public BusNode {
   /// Faults now; the emergency message goes out with the next frame or timer.
   void Fault(std::uint16_t code) {
     state_ = DriveState::kFault;
-    emergency_ = code;
+    emergency_ = Emergency{code, 1};
   }
+  /// An emergency message and nothing else; goes out with the next frame or timer.
+  void Report(Emergency e) { emergency_ = e; }
   void LeaveEnabled() { state_ = DriveState::kSwitchedOn; }
   void EnterPreOperational() { nmt_ = NmtState::kPreOperational; }
   void StopHeartbeat() { next_heartbeat_ns_ = kNever; }
@@ -128,7 +131,7 @@ class FakeSlave : public BusNode {
 
   void FlushEmergency(std::int64_t time_ns, PendingFrames& out) {
     if (!emergency_) return;
-    out.push_back({EmergencyFrame(node_id_, {*emergency_, 1}), time_ns});
+    out.push_back({EmergencyFrame(node_id_, *emergency_), time_ns});
     emergency_.reset();
   }
 
@@ -255,7 +258,7 @@ class FakeSlave : public BusNode {
       case DriveState::kSwitchedOn:
         return 0x0233;
       case DriveState::kOperationEnabled:
-        return 0x1237;
+        return behaviour.follows ? 0x1237 : 0x0237;
       case DriveState::kQuickStopActive:
         return 0x0217;
       case DriveState::kFault:
@@ -274,7 +277,7 @@ class FakeSlave : public BusNode {
   DriveState state_ = DriveState::kSwitchOnDisabled;
   std::int64_t next_heartbeat_ns_ = kNever;
   std::int64_t restart_ns_ = kNever;
-  std::optional<std::uint16_t> emergency_;
+  std::optional<Emergency> emergency_;
   CanFrame rpdo_;
   bool rpdo_waiting_ = false;
   std::uint16_t last_word_ = 0;
