@@ -465,7 +465,10 @@ void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
   r.goal = setpoints_[i].goal;
   const bool held = transitions_.holds_torque();
   r.limit = guarded_[i].limit != Reason::kNone || !held ? guarded_[i].limit : control_out_.limit[i];
-  r.emergency_code = master_.status()[i].emergency_code;
+  const AxisDriveStatus& status = master_.status()[i];
+  if (held && r.limit == Reason::kNone && status.emergency == EmergencyReaction::kWarn)
+    r.limit = Reason::kEmergencyNoticed;
+  r.emergency_code = status.emergency_code;
 }
 
 }  // namespace contour

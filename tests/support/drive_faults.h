@@ -15,6 +15,11 @@ class DriveFaults {
   static void Inject(EmulatedMachine& machine, std::size_t axis, std::uint16_t error_code) noexcept {
     machine.axis(axis).InjectFault(error_code);
   }
+  /// EMCY and nothing else: the drive goes on.
+  static void Report(EmulatedMachine& machine, std::size_t axis, std::uint16_t error_code,
+                     std::uint8_t error_register) noexcept {
+    machine.axis(axis).SendEmergency(error_code, error_register);
+  }
 };
 
 }  // namespace contour
