@@ -43,10 +43,6 @@ class EmulatedAxis final : private SlaveDevice {
   void FillTruth(AxisTruth& truth) const noexcept;
   /// Fails as broken hardware would: EMCY with this code, fault reaction, Fault.
   void InjectFault(std::uint16_t error_code) noexcept { Fault(error_code, 0x20); }
-  /// EMCY and nothing else: the drive goes on.
-  void SendEmergency(std::uint16_t code, std::uint8_t register_bits) noexcept {
-    slave_.Emergency(code, register_bits);
-  }
 
   // Other things that drives do unasked:
   /// Encoder and motor lie.
