@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -19,6 +20,8 @@
 #include "daemon/control_socket/control_server.h"
 #include "daemon/control_socket/socket_path.h"
 #include "daemon/io_adapter.h"
+#include "daemon/lanes/slow_lane.h"
+#include "daemon/last_resort.h"
 #include "daemon/learning/program_learning.h"
 #include "daemon/logging/logging.h"
 #include "daemon/machine_buses.h"
@@ -43,6 +46,14 @@ constexpr std::size_t kPathPoints = 4096;
 constexpr std::chrono::milliseconds kWatchPeriod{50};
 /// How often the cycle's state is copied: a flight record is longer than asked for by this at most.
 constexpr double kSnapshotPeriod_s = 2.0;
+/// In lock-step time waits for a disk that has fallen behind, but not for one that is dead.
+constexpr std::chrono::milliseconds kLockstepPatience{1000};
+
+// How long the end may take once the axes have stopped; systemd/contourd.service allows for all of it.
+constexpr std::chrono::seconds kClosingTime{3};  ///< for the disk to take the rest of the log
+constexpr std::chrono::seconds kEndingTime{8};   ///< for everything
+constexpr std::chrono::seconds kLastLines{1};    ///< for the last messages
+constexpr std::chrono::seconds kLoopHangs{5};    ///< after which a loop without cycles is not waited for
 
 /// The command line as assignments on top of the machine file.
 std::vector<std::string> Overrides(const DaemonOptions& options) {
@@ -164,7 +175,8 @@ class Daemon {
         buses_(machine_, file.has_emulator ? std::optional(file.emulator) : std::nullopt, options.truth),
         mailbox_(kRequests, kPathPoints),
         queue_(kTelemetryEntries),
-        hub_(machine_.telemetry, machine_.machine.cycle_us, AxisNames(machine_), LogTarget()),
+        hub_(machine_.telemetry, machine_.machine.cycle_us, AxisNames(machine_), LogTarget(),
+             options.clock == "lockstep" ? kLockstepPatience : std::chrono::milliseconds(0)),
         pump_(queue_, mailbox_, hub_, machine_.machine.cycle_us * 1e-6, AxisNames(machine_),
               BusNames(machine_)),
         learning_(machine_),
@@ -225,12 +237,8 @@ class Daemon {
     server.Start();
     const int status = Watch(signals, thread, supervisor);
     thread.Join();
-    server.Stop();
-    pump_.Finish();
-    memory_.Finish();
-    if (io_client_) io_client_->Stop();
-    hub_.Close();
-    spdlog::info("ended");
+    supervisor.LoopEnded();
+    End(server, status);
     return status;
   }
 
@@ -256,22 +264,74 @@ class Daemon {
         std::move(config), MakeLogHeader(source_, machine_, options_.clock, UnixTime_us())));
   }
 
+  /// Takes everything down, the log first: it is what somebody will want. The axes stand still.
+  void End(ControlServer& server, int status) {
+    LastResort last_resort(kEndingTime, status);
+    const auto closed_by = std::chrono::steady_clock::now() + kClosingTime;
+    last_resort.Now("emptying the telemetry queue");
+    pump_.Finish();
+    last_resort.Now("closing the log");
+    const bool all = hub_.Close(closed_by);
+    const bool truth = buses_.FinishTruth(closed_by);
+    ReportLosses(all && truth);
+    last_resort.Now("a request of an operator");
+    server.Stop();
+    last_resort.Now("a reload of the machine file");
+    if (!reloading_.Finish(closed_by + kClosingTime)) LastResort::End("a reload of the machine file", status);
+    last_resort.Now("keeping what has been learnt");
+    memory_.Finish();
+    last_resort.Now("the auxiliary I/O");
+    if (io_client_) io_client_->Stop();
+    spdlog::info("ended");
+    const bool said = FinishLogging(std::chrono::steady_clock::now() + kLastLines);
+    // A thread that is stuck in a write may hold what the ordinary end of a process waits for.
+    if (!all || !truth || !said) ::_exit(status);
+  }
+
+  void ReportLosses(bool all) const {
+    const LogStats log = hub_.log();
+    if (const std::uint64_t lost = log.lost_cycles + log.waiting_cycles; lost != 0 || log.lost_notes != 0)
+      spdlog::error("{} cycles and {} notes are not in the log {}: {}", lost, log.lost_notes, log.file,
+                    log.last_error.empty() ? "the file does not take them" : log.last_error);
+    if (const std::uint64_t dropped = queue_.dropped(); dropped != 0)
+      spdlog::warn("{} cycles never reached telemetry and log", dropped);
+    if (!all) spdlog::error("log, flight record, truth or LCM: not everything was taken in time; it is lost");
+  }
+
+  /// On a signal. Reading the file may take for ever, and the main thread has other things to do.
+  void Reload(Supervisor& supervisor) {
+    const bool taken = reloading_.Post(1, [&supervisor] {
+      const Answer answer = supervisor.Reload();
+      spdlog::log(answer.accepted ? spdlog::level::info : spdlog::level::err, "reload: {}", answer.reason);
+    });
+    if (!taken) spdlog::error("reload: the one before has not ended");
+  }
+
   /// The main thread's work while the loop runs. A first bring-up that fails ends the daemon with status 1.
   int Watch(const sigset_t& signals, const RealtimeThread& thread, Supervisor& supervisor) {
     int status = kExitDone;
     bool up = false;
+    bool ending = false;
+    std::uint64_t cycles = 0;
+    auto advanced = std::chrono::steady_clock::now();
     ServiceNotifier notifier;
     while (!thread.ended()) {
       const int signal = SignalCame(signals);
       if (signal == SIGHUP) {
-        const Answer answer = supervisor.Reload();
-        spdlog::log(answer.accepted ? spdlog::level::info : spdlog::level::err, "reload: {}", answer.reason);
+        Reload(supervisor);
       } else if (signal > 0) {
+        mailbox_.PostTerminate();  // before anything that writes
+        ending = true;
         spdlog::info("asked to end by a signal");
         notifier.Stopping();
-        mailbox_.PostTerminate();
       }
-      const CycleRecord record = hub_.record();
+      const auto now = std::chrono::steady_clock::now();
+      if (const std::uint64_t n = loop_->counters().cycles.load(); n != cycles || !ending) {
+        cycles = n;
+        advanced = now;
+      }
+      if (now - advanced > kLoopHangs) LastResort::End("the cycle, which hangs", kExitFailed);
+      const CycleRecord record = supervisor.record();
       notifier.Status(std::string(Name(record.state)) + (record.reason == Reason::kNone
                                                              ? std::string()
                                                              : ": " + std::string(Name(record.reason))));
@@ -283,6 +343,7 @@ class Daemon {
       }
       if (!up && failed && status == kExitDone && record.state == MachineState::kFaulted) {
         status = kExitFailed;
+        ending = true;
         mailbox_.PostTerminate();
       }
     }
@@ -305,6 +366,7 @@ class Daemon {
   std::unique_ptr<IoSource> io_;
   std::unique_ptr<StateSnapshots> snapshots_;
   std::unique_ptr<Loop> loop_;
+  SlowLane reloading_{"contour-reload", {1, {}}};
 };
 
 spdlog::level::level_enum ToSpdlog(LogLevel level) {
@@ -330,14 +392,23 @@ int RunDaemon(const DaemonOptions& options) {
   for (const std::string& learnt : memory.Overrides()) overrides.push_back(learnt);
   const MaybeEmulatedMachineFile file = LoadFile(options, overrides);
   const MachineSource source = ReadSource(options.config, overrides);
+  // Before any thread starts, so that all inherit it.
+  const sigset_t signals = BlockSignals();
   LoggingOptions logging;
   logging.level = ToSpdlog(file.machine.logging.level);
   if (!file.machine.logging.file.empty()) logging.file = file.machine.logging.file;
   SetUpLogging(logging);
   for (const std::string& text : memory.used()) spdlog::info("{}", text);
   for (const std::string& text : memory.refused()) spdlog::warn("{}", text);
-  // Before any thread starts, so that all inherit it.
-  const sigset_t signals = BlockSignals();
+  // What is thrown from here on is for main to print: the signals end the process again, should that be
+  // stuck.
+  const struct GiveSignalsBack {
+    ~GiveSignalsBack() {
+      FinishLogging(std::chrono::steady_clock::now() + kLastLines);
+      pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    }
+    const sigset_t& set;
+  } give_back{signals};
   Daemon daemon(options, file, source, memory);
   return daemon.Run(signals);
 }

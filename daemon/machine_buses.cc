@@ -12,6 +12,8 @@ namespace contour {
 namespace {
 
 constexpr const char* kLoopback = "loopback";
+/// One under way, and one behind it for what has come since.
+constexpr std::size_t kDrainsWaiting = 2;
 
 std::size_t LoopbackCount(const MachineConfig& machine) {
   std::size_t count = 0;
@@ -54,7 +56,8 @@ MachineBuses::MachineBuses(const MachineConfig& machine, const std::optional<Emu
                                                 static_cast<std::uint32_t>(machine.machine.cycle_us));
   if (emulator->io) io_server_ = std::make_unique<ModbusIoServer>(*emulator->io);
   if (!truth_file.empty()) {
-    relay_ = std::make_unique<TruthRelay>(truth_file, AxisNames(machine));
+    relay_ = std::make_shared<TruthRelay>(truth_file, AxisNames(machine));
+    truth_lane_ = std::make_unique<SlowLane>("contour-truth", SlowLane::Limits{kDrainsWaiting, {}});
     emulated_->SetTruthSink(relay_.get());
   }
   std::size_t index = 0;
@@ -71,8 +74,14 @@ MachineBuses::~MachineBuses() {
   if (emulated_) emulated_->SetTruthSink(nullptr);
 }
 
+bool MachineBuses::FinishTruth(std::chrono::steady_clock::time_point deadline) {
+  DrainTruth();
+  return !truth_lane_ || truth_lane_->Finish(deadline);
+}
+
 void MachineBuses::DrainTruth() {
-  if (relay_) relay_->Drain();
+  // While the file takes nothing, rows wait with the relay; one look at it is enough then.
+  if (relay_) truth_lane_->Post(1, [relay = relay_] { relay->Drain(); });
   if (relay_ && relay_->lost() != reported_lost_) {
     reported_lost_ = relay_->lost();
     spdlog::warn("{} rows of truth were lost, in all", reported_lost_);

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/machine_config.h"
+#include "daemon/lanes/slow_lane.h"
 #include "daemon/truth_relay.h"
 #include "drivers/can/frame_bus.h"
 #include "tools/plant_emulator/emulated_machine.h"
@@ -27,13 +29,16 @@ class MachineBuses {
   [[nodiscard]] bool loopback() const { return emulated_ != nullptr; }
   /// Every bus is in-process or virtual CAN.
   [[nodiscard]] bool all_virtual() const { return all_virtual_; }
-  /// Writes what the emulated machine has told; not for the real-time thread.
+  /// Has what the emulated machine has told written; not for the real-time thread.
   void DrainTruth();
+  /// The last of it. False when the file did not take it by then.
+  bool FinishTruth(std::chrono::steady_clock::time_point deadline);
 
  private:
   std::unique_ptr<EmulatedMachine> emulated_;
   std::unique_ptr<ModbusIoServer> io_server_;
-  std::unique_ptr<TruthRelay> relay_;
+  std::shared_ptr<TruthRelay> relay_;
+  std::unique_ptr<SlowLane> truth_lane_;
   std::uint64_t reported_lost_ = 0;
   std::vector<std::unique_ptr<FrameBus>> buses_;
   std::vector<FrameBus*> pointers_;

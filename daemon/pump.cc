@@ -53,6 +53,15 @@ void Pump::Abandon() {
   abandon_ = true;
 }
 
+bool Pump::AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time) const {
+  const auto deadline = std::chrono::steady_clock::now() + time;
+  while (shown_cycle_.load(std::memory_order_acquire) < cycle) {
+    if (std::chrono::steady_clock::now() >= deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
 void Pump::Work() {
   while (!finish_) {
     Drain();
@@ -80,6 +89,7 @@ void Pump::Drain() {
   while (CycleEntry* entry = queue_.Front()) {
     // First, so that who learns from a program knows of its end when operators do.
     if (show_cycle_) show_cycle_(entry->output.record);
+    shown_cycle_.store(entry->output.record.cycle, std::memory_order_release);
     hub_.Consume(*entry);
     last_grid_time_ = std::chrono::nanoseconds(entry->output.record.grid_time_ns);
     Report(entry->output.record);
@@ -95,6 +105,7 @@ void Pump::Drain() {
   }
   if (const auto message = hub_.TakeHealthMessage()) spdlog::warn("{}", *message);
   ReportFlight();
+  ReportLog();
   if (report_motion_) report_motion_(travel_m_, static_cast<double>(moving_cycles_) * period_s_);
   if (also_drain_) also_drain_();
   if (const std::uint64_t dropped = queue_.dropped(); dropped != reported_drops_) {
@@ -116,6 +127,15 @@ void Pump::ReportFlight() {
     reported_flight_error_ = flight.last_error;
     if (!flight.last_error.empty()) spdlog::warn("no flight record: {}", flight.last_error);
   }
+}
+
+void Pump::ReportLog() {
+  const LogStats log = hub_.log();
+  if (log.lost_cycles == reported_log_losses_) return;
+  if (reported_log_losses_ == 0)
+    spdlog::warn("the log {} loses cycles: {}. The machine runs on; status counts them", log.file,
+                 log.last_error);
+  reported_log_losses_ = log.lost_cycles;
 }
 
 void Pump::MeasureMotion(const CycleRecord& record) {

@@ -40,6 +40,9 @@ class Pump {
   /// Empties what is left and ends the thread.
   void Finish();
 
+  /// Waits until this cycle, or a later one, has been shown; false when it took longer.
+  bool AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time) const;
+
   /// Supply this program's points until they are all handed over or the program is abandoned.
   void Supply(std::unique_ptr<PathGenerator> generator);
   void Abandon();
@@ -51,6 +54,7 @@ class Pump {
   void Feed();
   void Report(const CycleRecord& record);
   void ReportFlight();
+  void ReportLog();
   void MeasureMotion(const CycleRecord& record);
 
   TelemetryQueue& queue_;
@@ -64,6 +68,8 @@ class Pump {
   MachineState last_state_ = MachineState::kOff;
   Reason last_reason_ = Reason::kNone;
   std::uint64_t reported_drops_ = 0;
+  std::uint64_t reported_log_losses_ = 0;
+  std::atomic<std::uint64_t> shown_cycle_{0};
   StateSnapshots* snapshots_ = nullptr;
   std::string reported_flight_;
   std::string reported_flight_error_;

@@ -28,6 +28,13 @@ constexpr std::chrono::seconds kAnswerTimeout{2};
 /// In lock-step a request waits until the machine has settled, for as many cycles as that takes on this host.
 constexpr std::chrono::seconds kLockstepAnswerTimeout{25};
 constexpr std::chrono::milliseconds kAnswerPoll{1};
+/// What the cycle has taken it answers in that cycle, a reset at the end of the drives' quick stops.
+constexpr std::chrono::seconds kTakenTimeout{10};
+/// A pass that has just ended is with those who learn from it in some milliseconds.
+constexpr std::chrono::seconds kPumpTimeout{1};
+constexpr const char* kUnwanted =
+    "the cycle has not been handed it: whoever asked is gone, or a stop came first";
+constexpr const char* kEnding = "contourd is ending";
 
 }  // namespace
 
@@ -43,7 +50,8 @@ Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, 
       axis_names_(AxisNames(machine)),
       bus_names_(BusNames(machine)),
       limits_(ProgramLimits(machine)),
-      parts_(parts) {
+      parts_(parts),
+      answers_(parts.queue.board()) {
   for (const auto& [name, axis] : machine.axes)
     encoder_counts_m_.push_back(axis.model.mechanics.lead_mm * 1e-3 / axis.drive.encoder_counts_per_rev);
   for (const auto& [name, bus] : machine.buses) interfaces_.push_back(bus.interface);
@@ -54,45 +62,76 @@ std::string Supervisor::MachineFile() {
   return WriteYaml(machine_);
 }
 
-Answer Supervisor::Ask(RequestKind kind, std::uint32_t program_id) {
-  const auto post = [&] {
-    if (kind == RequestKind::kStop) return parts_.mailbox.PostStop();
-    const std::lock_guard lock(posting_);
-    return parts_.mailbox.Post(kind, program_id);
-  };
-  const std::uint32_t sequence = post();
-  if (sequence == 0)
-    return {false, "the cycle takes no requests: the mailbox is full; is the loop running?", 0, 0};
-  return Await(kind, sequence);
+std::uint32_t Supervisor::Post(RequestKind kind, std::uint32_t program_id) {
+  if (kind == RequestKind::kStop) return parts_.mailbox.PostStop();
+  const std::lock_guard lock(posting_);
+  return parts_.mailbox.Post(kind, program_id);
 }
 
-Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence) {
+Answer Supervisor::Ask(RequestKind kind, const std::stop_token& unwanted, std::uint32_t program_id) {
+  if (unwanted.stop_requested()) return {false, kUnwanted};
+  const std::uint32_t sequence = Post(kind, program_id);
+  if (sequence == 0)
+    return {false, "the cycle takes no requests: the mailbox is full; is the loop running?", 0, 0};
+  return Await(kind, sequence, unwanted);
+}
+
+/// The answer, if there is one.
+std::optional<Answer> Supervisor::Look(RequestKind kind, std::uint32_t sequence) {
+  if (const std::optional<CycleRecord> answer = answers_.answer(sequence)) {
+    const bool ok = answer->acknowledged_ok;
+    return Answer{ok, ok ? std::string() : RefusalText(*answer, kind, axis_names_, bus_names_), sequence};
+  }
+  // A stop before the cycle has taken the one before it stands for both.
+  if (kind == RequestKind::kStop && answers_.record().acknowledged > sequence)
+    return Answer{true, std::string(), sequence};
+  if (kind != RequestKind::kStop && parts_.mailbox.Fate(sequence) == RequestFate::kVoid)
+    return Answer{false, "it has not been carried out: a stop came first", sequence};
+  return std::nullopt;
+}
+
+Answer Supervisor::Await(RequestKind kind, std::uint32_t sequence, const std::stop_token& unwanted) {
+  const bool stays = kind == RequestKind::kStop || kind == RequestKind::kDisable;
   const auto timeout = clock_ == "lockstep" ? kLockstepAnswerTimeout : kAnswerTimeout;
   const auto deadline = Clock::now() + timeout;
+  const auto last = deadline + kTakenTimeout;
   for (;;) {
-    if (const std::optional<CycleRecord> answer = parts_.hub.answer(sequence)) {
-      const bool ok = answer->acknowledged_ok;
-      return {ok, ok ? std::string() : RefusalText(*answer, kind, axis_names_, bus_names_), sequence, 0};
-    }
-    // A stop before the cycle has taken the one before it stands for both.
-    if (kind == RequestKind::kStop && parts_.hub.record().acknowledged > sequence)
-      return {true, std::string(), sequence, 0};
-    if (Clock::now() >= deadline) {
-      // Whoever asked has been told that it failed: it must not happen later either.
-      if (kind != RequestKind::kStop) parts_.mailbox.Withdraw(sequence);
-      return {
-          false,
-          "the cycle did not answer within " + std::to_string(timeout.count()) + " s; is the loop running?",
-          sequence, 0};
+    const bool ended = loop_ended_;  // before the look: the last cycle's answers are on the board then
+    if (std::optional<Answer> answer = Look(kind, sequence)) return *std::move(answer);
+    if (ended) return {false, kEnding, sequence};
+    const auto now = Clock::now();
+    if (stays && now >= deadline)
+      return {false,
+              "the cycle did not answer within " + std::to_string(timeout.count()) +
+                  " s; is the loop running? It is carried out as soon as that runs again",
+              sequence};
+    // Either the cycle carries it out and answers, or neither: one exchange decides. So nobody is told that
+    // something failed which happens later.
+    if (!stays && unwanted.stop_requested() && parts_.mailbox.Withdraw(sequence))
+      return {false, kUnwanted, sequence};
+    if (!stays && now >= deadline && parts_.mailbox.Withdraw(sequence))
+      return {false,
+              "the cycle did not answer within " + std::to_string(timeout.count()) +
+                  " s; is the loop running? The request is withdrawn",
+              sequence};
+    if (now >= last) {
+      TakeBack(kind);
+      return {false, "the cycle took the request and did not answer; look at the status", sequence};
     }
     std::this_thread::sleep_for(kAnswerPoll);
   }
 }
 
-Answer Supervisor::Enable() { return Ask(RequestKind::kEnable); }
-Answer Supervisor::Disable() { return Ask(RequestKind::kDisable); }
-Answer Supervisor::Stop() { return Ask(RequestKind::kStop); }
-Answer Supervisor::Reset() { return Ask(RequestKind::kReset); }
+// The loop died over it. Should it come to life again, the answer that was given becomes true.
+void Supervisor::TakeBack(RequestKind kind) {
+  if (kind == RequestKind::kEnable) Post(RequestKind::kDisable);
+  if (kind == RequestKind::kRun) Post(RequestKind::kStop);
+}
+
+Answer Supervisor::Enable(const std::stop_token& unwanted) { return Ask(RequestKind::kEnable, unwanted); }
+Answer Supervisor::Disable() { return Ask(RequestKind::kDisable, {}); }
+Answer Supervisor::Stop() { return Ask(RequestKind::kStop, {}); }
+Answer Supervisor::Reset(const std::stop_token& unwanted) { return Ask(RequestKind::kReset, unwanted); }
 
 Answer Supervisor::Reload() {
   const std::lock_guard lock(reload_);
@@ -123,7 +162,7 @@ Answer Supervisor::Reload() {
     const std::uint32_t sequence = post();
     if (sequence == 0)
       return {false, "the cycle takes no requests: the mailbox is full; is the loop running?"};
-    Answer answer = Await(RequestKind::kTune, sequence);
+    Answer answer = Await(RequestKind::kTune, sequence, {});
     if (!answer.accepted) return answer;  // the new controller stays: the cycle may be about to take it
     controllers_.clear();
     machine_ = wanted;
@@ -136,14 +175,14 @@ Answer Supervisor::Reload() {
   }
 }
 
-Answer Supervisor::Run(const ProgramUpload& upload) {
+Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwanted) {
   if (!upload.controller.empty() && upload.controller != Name(controller_)) {
     return {false,
             "this daemon runs controller " + std::string(Name(controller_)) +
                 "; start it with --controller " + upload.controller + " to run that one",
             0, 0};
   }
-  const CycleRecord now = parts_.hub.record();
+  const CycleRecord now = answers_.record();
   if (now.state != MachineState::kReady)
     return {false, RefusalText(now, RequestKind::kRun, axis_names_, bus_names_), 0, 0};
   try {
@@ -154,11 +193,14 @@ Answer Supervisor::Run(const ProgramUpload& upload) {
     auto generator =
         std::make_unique<PathGenerator>(program, start_m, limits_, cycle_us_ * 1e-6, ++program_id_);
     const double duration_s = generator->duration_s();
+    // Planning takes its time; nothing is learnt, noted or supplied for nobody.
+    if (unwanted.stop_requested()) return {false, kUnwanted};
+    parts_.pump.AwaitShown(now.cycle, kPumpTimeout);
     const LearningReport learnt = Learn(upload, start_m, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
     // The points wait in the queue until the cycle has taken the request and expects them.
     parts_.pump.Supply(std::move(generator));
-    Answer answer = Ask(RequestKind::kRun, program_id_);
+    Answer answer = Ask(RequestKind::kRun, unwanted, program_id_);
     answer.program_id = program_id_;
     answer.start_m = start_m;
     answer.learnt_passes = learnt.passes;
@@ -201,10 +243,11 @@ MachineStatus Supervisor::Status() {
   for (std::size_t a = 0; a < axis_names_.size(); ++a)
     out.axis_facts.push_back({limits_[a], encoder_counts_m_[a]});
   out.warnings = warnings_;
-  out.record = s.record;
-  out.bring_up = BringUpText(s.record.bring_up, axis_names_);
-  out.reason_text = s.record.reason == Reason::kBringUpFailed ? out.bring_up
-                                                              : ReasonText(s.record, axis_names_, bus_names_);
+  out.record = answers_.record();
+  out.bring_up = BringUpText(out.record.bring_up, axis_names_);
+  out.reason_text = out.record.reason == Reason::kBringUpFailed
+                        ? out.bring_up
+                        : ReasonText(out.record, axis_names_, bus_names_);
   {
     const std::lock_guard lock(program_);
     out.program_name = program_name_;

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -14,6 +17,7 @@
 #include "daemon/pump.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/loop.h"
+#include "daemon/telemetry/cycle_answers.h"
 #include "daemon/telemetry/telemetry_hub.h"
 #include "drivers/modbus/io_client.h"
 
@@ -32,27 +36,36 @@ struct SupervisedParts {
 };
 
 /// Carries an operator's requests to the cycle and its answers back. It asks through the mailbox and decides
-/// nothing: whether a request is right in the present state is for the cycle to say. Stop(), Status() and the
-/// feeds may be called while another call waits.
+/// nothing: whether a request is right in the present state is for the cycle to say. Stop(), Disable(),
+/// Status() and the feeds may be called while another call waits. Answers and the newest record come from the
+/// cycle's board, past the pump: no disk and no network is on that way.
 class Supervisor final : public OperatorDesk {
  public:
   Supervisor(const MachineConfig& machine, ControllerName controller, std::string clock,
              std::vector<std::string> warnings, const SupervisedParts& parts, MachineSource source);
 
-  Answer Enable() override;
+  Answer Enable(const std::stop_token& unwanted) override;
   Answer Disable() override;
   Answer Stop() override;
-  Answer Reset() override;
+  Answer Reset(const std::stop_token& unwanted) override;
   Answer Reload() override;
-  Answer Run(const ProgramUpload& program) override;
+  Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   MachineStatus Status() override;
   std::string MachineFile() override;
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
+  /// The newest record.
+  [[nodiscard]] CycleRecord record() { return answers_.record(); }
+  /// The loop has ended: whoever waits for its answer is told so.
+  void LoopEnded() { loop_ended_ = true; }
+
  private:
-  Answer Ask(RequestKind kind, std::uint32_t program_id = 0);
-  Answer Await(RequestKind kind, std::uint32_t sequence);
+  Answer Ask(RequestKind kind, const std::stop_token& unwanted, std::uint32_t program_id = 0);
+  Answer Await(RequestKind kind, std::uint32_t sequence, const std::stop_token& unwanted);
+  [[nodiscard]] std::optional<Answer> Look(RequestKind kind, std::uint32_t sequence);
+  std::uint32_t Post(RequestKind kind, std::uint32_t program_id = 0);
+  void TakeBack(RequestKind kind);
   [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const PerAxis<double>& start_m,
                                      PathGenerator& generator);
 
@@ -72,7 +85,10 @@ class Supervisor final : public OperatorDesk {
   PerAxis<PlanLimits> limits_;
   PerAxis<double> encoder_counts_m_;  ///< way of the table per encoder count
   SupervisedParts parts_;
-  std::mutex posting_;  ///< requests come from the socket's worker and from SIGHUP, a stop from anywhere
+  CycleAnswers answers_;
+  std::atomic<bool> loop_ended_{false};
+  std::mutex
+      posting_;  ///< requests come from two threads of the socket's and from SIGHUP, a stop from anywhere
   std::uint32_t program_id_ = 0;
   std::mutex program_;  ///< guards the two below
   std::string program_name_;

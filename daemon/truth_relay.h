@@ -10,8 +10,8 @@
 
 namespace contour {
 
-/// Carries truth rows of an in-process emulated machine out of the real-time thread to a file. Rows that find
-/// no room are counted.
+/// Carries truth rows of an in-process emulated machine out of the real-time thread to a file, which a thread
+/// of its own writes. Rows that find no room are counted.
 class TruthRelay final : public TruthSink {
  public:
   TruthRelay(const std::string& file, std::vector<std::string> axis_names)

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <list>
 #include <memory>
@@ -14,10 +13,10 @@
 #include <string>
 #include <string_view>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "daemon/control_socket/operator_desk.h"
+#include "daemon/control_socket/program_upload.h"
 #include "daemon/control_socket/request_handler.h"
 #include "daemon/control_socket/request_worker.h"
 #include "daemon/control_socket/unix_listener.h"
@@ -26,18 +25,27 @@ namespace contour {
 
 /// Serves the operator's desk on a local Unix stream socket, lines of JSON both ways, in a thread of its own.
 /// Who may open the socket may move the machine: its permissions are the access control, and nothing listens
-/// on a network. Requests that wait for the cycle are carried out by a worker, in the order of their arrival,
-/// and stops by another: a stop never waits behind an unanswered request, whoever made it. Sizes are bounded:
-/// a client that sends an endless line or does not read its answers is dropped; rows wait in their feed,
-/// which counts what it loses.
+/// on a network.
+///
+/// Each turn of the thread takes at most one request of each client, stops of all of them first. Requests
+/// that wait for the cycle are carried out by a worker, in the order of their arrival, disables by another
+/// and stops by a third: a stop never waits behind an unanswered request, whoever made it, and makes void
+/// what was to lead to motion and has not been handed to the cycle. So does the end of its client; a stop or
+/// disable is carried out whatever becomes of the client. Everything is bounded, for each client and for all
+/// together: who does not read is not listened to, and dropped when that does not end; beyond the last place
+/// there are some where only the status, a stop and a disable are to be had.
 class ControlServer {
  public:
   struct Options {
     std::filesystem::path socket;
     mode_t mode = 0660;
     std::size_t max_clients = 16;
-    std::size_t max_line_bytes = 8u << 20;
-    std::size_t max_unread_bytes = 16u << 20;
+    std::size_t reserved_clients = 4;  ///< beyond those, for who wants a stop
+    std::size_t max_row_clients = 4;   ///< of the clients, those that collect rows
+    std::size_t max_line_bytes = 64u << 10;
+    std::size_t max_unread_bytes = 256u << 10;  ///< a client with more than this unread gets no more answers
+    std::size_t max_upload_bytes = 64u << 20;   ///< of programs in pieces, all clients together
+    std::chrono::milliseconds deaf_after{30'000};  ///< who reads nothing for so long is dropped
   };
 
   /// Makes the socket; throws EnvironmentError. Clients are served from Start() on.
@@ -53,12 +61,16 @@ class ControlServer {
   struct Client {
     std::uint64_t number = 0;
     Descriptor socket;
-    std::string received;            ///< the line under way
-    bool waits = false;              ///< a worker has a request of this client
-    std::deque<std::string> behind;  ///< its requests after that one
-    std::size_t behind_bytes = 0;
-    std::size_t stops = 0;  ///< under way
+    bool reserved = false;   ///< in a place for who wants a stop
+    std::string received;    ///< requests that have not had their turn, and the one under way
+    std::size_t looked = 0;  ///< whole lines up to here hold no stop that could be carried out at once
+    bool no_more = false;    ///< it sends nothing more, but may read
+    bool waits = false;      ///< a worker has a request of this client
+    std::size_t stops = 0;   ///< under way, disables as well
+    std::shared_ptr<UploadedText> program;
     std::string unsent;
+    std::chrono::steady_clock::time_point heard{};  ///< when it last sent something
+    std::chrono::steady_clock::time_point read{};   ///< when it last read, or had nothing to read
     Subscriptions subscriptions;
     std::shared_ptr<RowFeed> feed;
     std::chrono::steady_clock::time_point next_watch{};
@@ -68,17 +80,25 @@ class ControlServer {
 
   void Serve();
   [[nodiscard]] int PollTimeout_ms() const;
+  [[nodiscard]] bool MayHaveTurn(const Client& client) const;
+  [[nodiscard]] bool HasRoom(const Client& client) const;
   void AcceptClients();
+  bool MakeRoom();
+  void GivePlaces();
   void Receive(Client& client);
-  void TakeLines(Client& client);
-  void OnLine(Client& client, std::string_view line);
-  void CarryOut(Client& client, std::string_view line);
+  void HangUp(Client& client);
+  void LookForStops(Client& client);
+  void OnStop(Client& client, RequestClass kind, std::string line);
+  void RefuseMotionBefore(Client& client, std::size_t end);
+  void TakeTurn(Client& client);
+  void CarryOut(Client& client, const RequestHead& head, std::string line);
+  void OnPiece(Client& client, std::string_view line);
+  void AnswerAtOnce(Client& client, std::string_view line);
   void TakeReplies();
   void OnReply(std::uint64_t client, RequestClass kind, const nlohmann::json& reply);
   void Wake();
   void SendSubscribed(Client& client);
   void Send(Client& client, const nlohmann::json& message);
-  void SendLine(Client& client, std::string_view line);
   void Flush(Client& client);
   void DropGoneClients();
 
@@ -96,7 +116,9 @@ class ControlServer {
   std::mutex replies_mutex_;
   std::vector<Reply> replies_;  ///< of the workers, not yet with their clients
   std::atomic<bool> ending_{false};
+  std::shared_ptr<UploadBudget> uploads_;
   RequestWorker requests_;
+  RequestWorker disables_;
   RequestWorker stops_;
   std::thread thread_;
 };

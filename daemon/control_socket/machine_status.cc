@@ -121,6 +121,8 @@ json Log(const LogStats& log) {
   return {{"file", log.file},
           {"cycles", log.cycles},
           {"lost_cycles", log.lost_cycles},
+          {"lost_notes", log.lost_notes},
+          {"waiting_cycles", log.waiting_cycles},
           {"bytes", log.bytes},
           {"last_error", log.last_error}};
 }

@@ -41,7 +41,7 @@ struct MachineStatus {
   std::vector<AxisFacts> axis_facts;  ///< one per axis
   std::vector<std::string> warnings;  ///< what the start complained of, such as refused real time
 
-  CycleRecord record;               ///< newest cycle that reached the pump
+  CycleRecord record;               ///< of the newest cycle
   std::string bring_up;             ///< sentence on where bring-up stands or why it failed; may be empty
   std::string reason_text;          ///< sentence on record.reason; empty when there is none
   std::string program_name;         ///< of record.program_id; may be empty

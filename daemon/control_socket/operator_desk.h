@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "daemon/control_socket/machine_status.h"
@@ -31,23 +32,27 @@ struct Answer {
 
 /// What an operator may ask of the machine. The control socket calls it, the supervisor is it.
 ///
-/// Stop() comes from one thread, Status(), Attach() and Detach() from another, and all others, one at a time,
-/// from a third: a stop and the status do not wait for a request that waits. A request returns once the cycle
-/// has accepted or refused it (not when the machine has got there: a client watches the status for that), and
-/// within two seconds in any case, with a refusal when the cycle does not answer. Implementations do not
-/// throw; a program that cannot be read or does not fit the machine is a refusal with the full message.
+/// Stop() comes from one thread, Disable() from another, Status(), Attach() and Detach() from a third, and
+/// all others, one at a time, from a fourth: a stop and the status do not wait for a request that waits. A
+/// request returns once the cycle has accepted or refused it (not when the machine has got there: a client
+/// watches the status for that), and with a refusal when the cycle does not take it within two seconds. What
+/// was refused will not happen later either. Implementations do not throw; a program that cannot be read or
+/// does not fit the machine is a refusal with the full message.
+///
+/// `unwanted`: nobody wants it any more, because whoever asked is gone or a stop came. What the cycle has not
+/// been handed by then, it will not be.
 class OperatorDesk {
  public:
   virtual ~OperatorDesk() = default;
 
-  virtual Answer Enable() = 0;
+  virtual Answer Enable(const std::stop_token& unwanted) = 0;
   virtual Answer Disable() = 0;
   virtual Answer Stop() = 0;
-  virtual Answer Reset() = 0;
+  virtual Answer Reset(const std::stop_token& unwanted) = 0;
   /// Reads the machine file again and takes what may change while running; refused as a whole if anything
   /// else has changed. Answer::reason says in any case what came of it.
   virtual Answer Reload() = 0;
-  virtual Answer Run(const ProgramUpload& program) = 0;
+  virtual Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) = 0;
   virtual MachineStatus Status() = 0;
   /// The machine file as it was read, overrides and defaults in it: YAML that reads back as the same.
   virtual std::string MachineFile() = 0;

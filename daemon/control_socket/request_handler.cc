@@ -12,6 +12,8 @@ using nlohmann::json;
 
 constexpr int kShortestWatch_ms = 20;
 constexpr int kLongestWatch_ms = 60'000;
+/// A request is an object of plain values. The parser would follow a line of brackets to its end.
+constexpr int kDeepest = 8;
 
 /// A request that makes no sense; the text goes to the client.
 class BadRequest : public std::runtime_error {
@@ -38,16 +40,22 @@ json Reply(const Answer& answer) {
   return {{"ok", true}, {"sequence", answer.sequence}};
 }
 
-json Run(const json& request, OperatorDesk& desk) {
+json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwanted,
+         const std::string* uploaded) {
   ProgramUpload upload;
   upload.name = Text(request, "name");
   upload.format = Text(request, "format");
-  upload.text = Text(request, "text");
+  if (request.contains("uploaded") && Flag(request, "uploaded")) {
+    if (uploaded == nullptr) throw BadRequest("\"uploaded\" is true and nothing has been uploaded");
+    upload.text = *uploaded;
+  } else {
+    upload.text = Text(request, "text");
+  }
   if (request.contains("controller")) upload.controller = Text(request, "controller");
   if (request.contains("forget")) upload.forget = Flag(request, "forget");
   if (upload.format != "yaml" && upload.format != "ngc")
     throw BadRequest("\"format\" must be \"yaml\" or \"ngc\"");
-  const Answer answer = desk.Run(upload);
+  const Answer answer = desk.Run(upload, unwanted);
   json reply = Reply(answer);
   if (answer.accepted) {
     reply["program_id"] = answer.program_id;
@@ -71,21 +79,22 @@ json Watch(const json& request, Subscriptions& subscriptions) {
   return {{"ok", true}};
 }
 
-json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions) {
+json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions,
+              const std::stop_token& unwanted, const std::string* uploaded) {
   const std::string kind = Text(request, "request");
   if (kind == "status") return {{"ok", true}, {"status", ToJson(desk.Status())}};
   if (kind == "machine_file") return {{"ok", true}, {"yaml", desk.MachineFile()}};
-  if (kind == "enable") return Reply(desk.Enable());
+  if (kind == "enable") return Reply(desk.Enable(unwanted));
   if (kind == "disable") return Reply(desk.Disable());
   if (kind == "stop") return Reply(desk.Stop());
-  if (kind == "reset") return Reply(desk.Reset());
+  if (kind == "reset") return Reply(desk.Reset(unwanted));
   if (kind == "reload") {
     const Answer answer = desk.Reload();
     json reply = Reply(answer);
     if (answer.accepted) reply["text"] = answer.reason;
     return reply;
   }
-  if (kind == "run") return Run(request, desk);
+  if (kind == "run") return Run(request, desk, unwanted, uploaded);
   if (kind == "watch") return Watch(request, subscriptions);
   if (kind == "rows") {
     subscriptions.rows = Flag(request, "on");
@@ -93,46 +102,107 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   }
   throw BadRequest(
       "unknown request \"" + kind +
-      "\"; there are status, machine_file, enable, disable, stop, reset, reload, run, watch, rows");
+      "\"; there are status, machine_file, enable, disable, stop, reset, reload, upload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }
 
-json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions) {
-  const json request = json::parse(line, nullptr, false);
-  if (request.is_discarded()) return Refusal("this line is not JSON");
-  if (!request.is_object()) return Refusal("a request is a JSON object");
-  json reply;
-  try {
-    reply = Dispatch(request, desk, subscriptions);
-  } catch (const BadRequest& e) {
-    reply = Refusal(e.what());
+bool TooDeep(std::string_view line) noexcept {
+  int depth = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (in_text) {
+      if (c == '\\') ++i;
+      if (c == '"') in_text = false;
+    } else if (c == '"') {
+      in_text = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kDeepest) return true;
+    } else if (c == ']' || c == '}') {
+      --depth;
+    }
   }
+  return false;
+}
+
+/// Discarded when it is none.
+json Parse(std::string_view line) {
+  return TooDeep(line) ? json(json::value_t::discarded) : json::parse(line, nullptr, false);
+}
+
+json WithId(json reply, const json& request) {
+  if (!request.is_object()) return reply;
   if (const auto id = request.find("id"); id != request.end() && id->is_number_integer()) reply["id"] = *id;
   return reply;
 }
 
-}  // namespace
-
-RequestClass ClassOf(std::string_view line) noexcept {
+json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions,
+                   const std::stop_token& unwanted, const std::string* uploaded) {
+  if (TooDeep(line)) return Refusal("a request has " + std::to_string(kDeepest) + " levels at most");
+  const json request = json::parse(line, nullptr, false);
+  if (request.is_discarded()) return Refusal("this line is not JSON");
+  if (!request.is_object()) return Refusal("a request is a JSON object");
   try {
-    const json request = json::parse(line, nullptr, false);
-    if (!request.is_object()) return RequestClass::kAtOnce;
-    const std::string kind = request.value("request", std::string());
-    if (kind == "stop") return RequestClass::kStop;
-    const bool at_once = kind == "status" || kind == "watch" || kind == "rows";
-    return at_once ? RequestClass::kAtOnce : RequestClass::kWaits;
-  } catch (const std::exception&) {
-    return RequestClass::kAtOnce;  // "request" is no string: refused
+    return WithId(Dispatch(request, desk, subscriptions, unwanted, uploaded), request);
+  } catch (const BadRequest& e) {
+    return WithId(Refusal(e.what()), request);
   }
 }
 
-nlohmann::json Handle(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions) noexcept {
+}  // namespace
+
+RequestHead HeadOf(std::string_view line) noexcept {
+  RequestHead head;
   try {
-    return HandleOrThrow(line, desk, subscriptions);
+    const json request = Parse(line);
+    if (!request.is_object()) return head;
+    const std::string kind = request.value("request", std::string());
+    head.status = kind == "status";
+    head.leads_to_motion = kind == "enable" || kind == "run";
+    if (kind == "stop") {
+      head.kind = RequestClass::kStop;
+    } else if (kind == "disable") {
+      head.kind = RequestClass::kDisable;
+    } else if (kind == "upload") {
+      head.kind = RequestClass::kUpload;
+    } else if (!head.status && kind != "watch" && kind != "rows") {
+      head.kind = RequestClass::kWaits;
+    }
+    head.uploaded = kind == "run" && request.value("uploaded", false);
+  } catch (const std::exception&) {
+    // A key is not what it should be: refused when its turn comes.
+  }
+  return head;
+}
+
+std::optional<UploadPiece> PieceIn(std::string_view line) noexcept {
+  try {
+    json request = Parse(line);
+    UploadPiece piece;
+    if (request.contains("first")) piece.first = Flag(request, "first");
+    piece.text = Text(request, "text");
+    return piece;
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+}
+
+nlohmann::json Handle(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions,
+                      const std::stop_token& unwanted, const std::string* uploaded) noexcept {
+  try {
+    return HandleOrThrow(line, desk, subscriptions, unwanted, uploaded);
   } catch (const std::exception& e) {
     return Refusal(std::string("internal error: ") + e.what());
   }
+}
+
+nlohmann::json Refuse(std::string_view line, const std::string& why) noexcept {
+  return WithId(Refusal(why), Parse(line));
+}
+
+nlohmann::json AcceptPiece(std::string_view line, std::size_t bytes) noexcept {
+  return WithId({{"ok", true}, {"bytes", bytes}}, Parse(line));
 }
 
 }  // namespace contour

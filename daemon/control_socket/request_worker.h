@@ -4,13 +4,15 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json_fwd.hpp>
+#include <stop_token>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "daemon/control_socket/operator_desk.h"
+#include "daemon/control_socket/program_upload.h"
 
 namespace contour {
 
@@ -18,7 +20,13 @@ namespace contour {
 /// thread that serves the socket never waits.
 class RequestWorker {
  public:
-  /// Called in the worker's thread, with the number that the request came with.
+  struct Request {
+    std::uint64_t client = 0;
+    std::string line;
+    bool leads_to_motion = false;                   ///< a stop makes it void
+    std::shared_ptr<const UploadedText> program{};  ///< of a run whose program came in pieces
+  };
+  /// Called with the number that the request came with, in the worker's thread or that of StopCame().
   using Done = std::function<void(std::uint64_t client, const nlohmann::json& reply)>;
 
   RequestWorker(OperatorDesk& desk, Done done);
@@ -29,7 +37,11 @@ class RequestWorker {
   void Start();
   /// Ends when the request under way has its answer; those behind it get none.
   void Stop();
-  void Take(std::uint64_t client, std::string line);
+  void Take(Request request);
+  /// The client has gone: what the cycle has not been handed yet is dropped.
+  void Drop(std::uint64_t client);
+  /// What was to lead to motion and the cycle has not been handed yet is refused.
+  void StopCame();
 
  private:
   void Work();
@@ -38,7 +50,10 @@ class RequestWorker {
   const Done done_;
   std::mutex mutex_;  // guards all below
   std::condition_variable wake_;
-  std::deque<std::pair<std::uint64_t, std::string>> requests_;
+  std::deque<Request> requests_;
+  std::uint64_t client_ = 0;  ///< of the request under way; 0 none
+  bool motion_ = false;       ///< it leads there
+  std::stop_source unwanted_;
   bool ending_ = false;
   std::thread thread_;
 };

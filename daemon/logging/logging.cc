@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/exit_status.h"
+#include "daemon/logging/background_sink.h"
 
 namespace contour {
 namespace {
@@ -47,6 +48,9 @@ class JournalPriority final : public spdlog::custom_flag_formatter {
   }
 };
 
+/// Some thousand lines.
+constexpr std::size_t kWaiting_bytes = 1u << 20;
+
 constexpr const char* kPattern = "%Y-%m-%d %H:%M:%S.%e %^%-7l%$ %v";
 
 spdlog::sink_ptr JournalSink() {
@@ -74,6 +78,11 @@ spdlog::sink_ptr FileSink(const LoggingOptions& options) {
   }
 }
 
+std::shared_ptr<BackgroundSink>& DefaultSink() {
+  static std::shared_ptr<BackgroundSink> sink;
+  return sink;
+}
+
 }  // namespace
 
 std::shared_ptr<spdlog::logger> MakeLogger(const LoggingOptions& options, bool to_journal) {
@@ -81,14 +90,21 @@ std::shared_ptr<spdlog::logger> MakeLogger(const LoggingOptions& options, bool t
   if (options.file) sinks.push_back(FileSink(options));
   auto logger = std::make_shared<spdlog::logger>("contourd", sinks.begin(), sinks.end());
   logger->set_level(options.level);
-  // What goes wrong is on disk before what comes next can take the program with it.
+  // What goes wrong is to be on disk before what comes next can take the program with it.
   logger->flush_on(spdlog::level::warn);
   return logger;
 }
 
 void SetUpLogging(const LoggingOptions& options) {
-  spdlog::set_default_logger(MakeLogger(options, StderrIsJournal()));
-  spdlog::flush_every(std::chrono::seconds(1));
+  DefaultSink() = std::make_shared<BackgroundSink>(MakeLogger(options, StderrIsJournal()), kWaiting_bytes);
+  auto logger = std::make_shared<spdlog::logger>("contourd", DefaultSink());
+  logger->set_level(options.level);
+  logger->flush_on(spdlog::level::warn);
+  spdlog::set_default_logger(std::move(logger));
+}
+
+bool FinishLogging(std::chrono::steady_clock::time_point deadline) {
+  return DefaultSink() == nullptr || DefaultSink()->Finish(deadline);
 }
 
 bool StderrIsJournal() {

@@ -2,6 +2,7 @@
 
 #include <spdlog/common.h>
 
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -25,8 +26,12 @@ struct LoggingOptions {
 /// terminal. Throws EnvironmentError when the file cannot be written.
 std::shared_ptr<spdlog::logger> MakeLogger(const LoggingOptions& options, bool to_journal);
 
-/// Makes that the default logger of spdlog. Everything may log except the cycle and what it calls.
+/// Makes that the default logger of spdlog. Everything may log except the cycle and what it calls. Lines are
+/// written by a thread of their own: a stderr or a disk that takes nothing holds nobody up. Lines that find
+/// no room are lost, and the next one that does says how many.
 void SetUpLogging(const LoggingOptions& options);
+/// Before the process ends: whether all lines were written by then. Later lines are lost.
+bool FinishLogging(std::chrono::steady_clock::time_point deadline);
 
 /// Whether stderr goes to the systemd journal.
 bool StderrIsJournal();

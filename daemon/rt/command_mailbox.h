@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "core/cycle_input.h"
 #include "daemon/rt/spsc_ring.h"
@@ -10,18 +13,35 @@ namespace contour {
 
 class ContourController;
 
+/// What became of a request.
+enum class RequestFate : std::uint8_t {
+  kWaiting = 0,    ///< the cycle has not taken it
+  kTaken = 1,      ///< it has, and will answer
+  kWithdrawn = 2,  ///< it will not, because nobody wants it any more
+  kVoid = 3,       ///< it will not, because a stop came
+};
+
 /// The door into the real-time side. Requests come one per cycle, in sequence, and are acknowledged in the
-/// cycle record; a stop overtakes them, is latched and is never overwritten; path points come through a
-/// bounded queue of their own. One writer thread for requests, one for path points; any thread may ask for a
-/// stop.
+/// cycle record; a stop overtakes them, is latched and is never overwritten, and what was to set the axes in
+/// motion before it is void; path points come through a bounded queue of their own. One writer thread for
+/// requests, one for path points; any thread may ask for a stop or withdraw.
 class CommandMailbox {
  public:
-  CommandMailbox(std::size_t requests, std::size_t path_points) : requests_(requests), path_(path_points) {}
+  CommandMailbox(std::size_t requests, std::size_t path_points)
+      : requests_(requests),
+        path_(path_points),
+        claims_(new std::atomic<std::uint64_t>[requests_.capacity()]()) {}
 
   /// Writer's side. The sequence number to wait for in CycleRecord::acknowledged; 0 when the mailbox is full.
+  /// Some places are kept for those who want the torque off.
   std::uint32_t Post(RequestKind kind, std::uint32_t program_id = 0) noexcept {
+    const std::size_t kept = kind == RequestKind::kDisable ? 0 : requests_.capacity() / 4;
+    if (requests_.size() + kept >= requests_.capacity()) return 0;
     const std::uint32_t sequence = NextSequence();
-    return requests_.Push({kind, sequence, program_id}) ? sequence : 0;
+    claims_[posted_++ % requests_.capacity()].store(Claim(sequence, RequestFate::kWaiting),
+                                                    std::memory_order_release);
+    requests_.Push({kind, sequence, program_id});
+    return sequence;
   }
   /// Any thread, also a signal handler: only atomics. Stop and terminate stay until the cycle has taken them.
   std::uint32_t PostStop() noexcept {
@@ -34,8 +54,24 @@ class CommandMailbox {
     terminate_.store(sequence, std::memory_order_release);
     return sequence;
   }
-  /// A request that nobody waits for any more is not carried out, if the cycle has not taken it yet.
-  void Withdraw(std::uint32_t sequence) noexcept { withdrawn_.store(sequence, std::memory_order_release); }
+  /// A request that nobody waits for any more: true when the cycle will not take it, false when it has.
+  bool Withdraw(std::uint32_t sequence) noexcept {
+    for (std::size_t i = 0; i < requests_.capacity(); ++i) {
+      std::uint64_t waiting = Claim(sequence, RequestFate::kWaiting);
+      if (claims_[i].compare_exchange_strong(waiting, Claim(sequence, RequestFate::kWithdrawn),
+                                             std::memory_order_acq_rel))
+        return true;
+    }
+    return false;
+  }
+  /// Of one of the latest requests (not of a stop); kTaken of those that are long gone.
+  [[nodiscard]] RequestFate Fate(std::uint32_t sequence) const noexcept {
+    for (std::size_t i = 0; i < requests_.capacity(); ++i) {
+      const std::uint64_t claim = claims_[i].load(std::memory_order_acquire);
+      if (claim >> kFateBits == sequence) return static_cast<RequestFate>(claim & kFateMask);
+    }
+    return RequestFate::kTaken;
+  }
   /// Other gains: the controller to take, until the request is acknowledged; the one in use comes back in it.
   std::uint32_t PostTune(ContourController& next, std::uint32_t change) noexcept {
     next_controller_.store(&next, std::memory_order_release);
@@ -56,15 +92,21 @@ class CommandMailbox {
   /// for later).
   Request TakeRequest(bool all = true) noexcept {
     if (const std::uint32_t s = terminate_.exchange(0, std::memory_order_acq_rel); s != 0)
-      return {RequestKind::kTerminate, s, 0};
+      return Stopping({RequestKind::kTerminate, s, 0});
     if (const std::uint32_t s = stop_.exchange(0, std::memory_order_acq_rel); s != 0)
-      return {RequestKind::kStop, s, 0};
-    Request request;
-    while (all && requests_.Pop(request)) {
-      if (request.sequence > withdrawn_.load(std::memory_order_acquire)) return request;
-      request = {};
+      return Stopping({RequestKind::kStop, s, 0});
+    while (const Request* front = all ? requests_.Front() : nullptr) {
+      const Request request = *front;
+      std::uint64_t waiting = Claim(request.sequence, RequestFate::kWaiting);
+      const bool is_void = LeadsToMotion(request.kind) && request.sequence < stopped_;
+      const RequestFate fate = is_void ? RequestFate::kVoid : RequestFate::kTaken;
+      // Before the place is given back, and with it the claim.
+      const bool ours = claims_[taken_++ % requests_.capacity()].compare_exchange_strong(
+          waiting, Claim(request.sequence, fate), std::memory_order_acq_rel);
+      requests_.Release();
+      if (ours && !is_void) return request;
     }
-    return request;
+    return {};
   }
   /// True when TakeRequest would give something.
   [[nodiscard]] bool request_waiting() const noexcept {
@@ -78,14 +120,31 @@ class CommandMailbox {
   bool TakePathPoint(PathPoint& point) noexcept { return path_.Pop(point); }
 
  private:
+  static constexpr unsigned kFateBits = 2;
+  static constexpr std::uint64_t kFateMask = 3;
+  static constexpr std::uint64_t Claim(std::uint32_t sequence, RequestFate fate) noexcept {
+    return std::uint64_t{sequence} << kFateBits | static_cast<std::uint64_t>(fate);
+  }
+  static constexpr bool LeadsToMotion(RequestKind kind) noexcept {
+    return kind == RequestKind::kEnable || kind == RequestKind::kRun;
+  }
+  Request Stopping(Request request) noexcept {
+    stopped_ = std::max(stopped_, request.sequence);
+    return request;
+  }
   std::uint32_t NextSequence() noexcept { return 1 + sequence_.fetch_add(1, std::memory_order_relaxed); }
 
   SpscRing<Request> requests_;
   SpscRing<PathPoint> path_;
+  /// Who has each place of requests_: decided by one exchange, so that a request is either carried out and
+  /// answered, or neither.
+  std::unique_ptr<std::atomic<std::uint64_t>[]> claims_;
+  std::size_t posted_ = 0;     ///< the writer's
+  std::size_t taken_ = 0;      ///< the real-time side's, as is the next
+  std::uint32_t stopped_ = 0;  ///< sequence of the newest stop taken
   std::atomic<std::uint32_t> sequence_{0};
   std::atomic<std::uint32_t> stop_{0};
   std::atomic<std::uint32_t> terminate_{0};
-  std::atomic<std::uint32_t> withdrawn_{0};
   std::atomic<ContourController*> next_controller_{nullptr};
   std::atomic<bool> more_to_come_{false};
 };

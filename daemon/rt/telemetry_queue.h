@@ -4,12 +4,14 @@
 #include <cstdint>
 
 #include "core/cycle_record.h"
+#include "daemon/rt/answer_board.h"
 #include "daemon/rt/spsc_ring.h"
 
 namespace contour {
 
 /// The door out of the real-time side: one entry per cycle. When the reader falls behind, entries are dropped
-/// and counted, the cycle never waits.
+/// and counted, the cycle never waits. The newest record and the answers to requests pass it beside the
+/// queue, on a board: operators get them whatever becomes of the entries.
 class TelemetryQueue {
  public:
   explicit TelemetryQueue(std::size_t capacity) : ring_(capacity) {}
@@ -19,9 +21,11 @@ class TelemetryQueue {
   [[nodiscard]] CycleEntry* Reserve() noexcept {
     CycleEntry* slot = ring_.Reserve();
     reserved_ = slot != nullptr;
-    return reserved_ ? slot : &spare_;
+    entry_ = reserved_ ? slot : &spare_;
+    return entry_;
   }
   void Publish() noexcept {
+    board_.Post(entry_->output.record);
     if (reserved_) {
       ring_.Publish();
     } else {
@@ -34,11 +38,14 @@ class TelemetryQueue {
   void Release() noexcept { ring_.Release(); }
   [[nodiscard]] std::size_t capacity() const noexcept { return ring_.capacity(); }
   [[nodiscard]] std::size_t size() const noexcept { return ring_.size(); }
+  [[nodiscard]] AnswerBoard& board() noexcept { return board_; }
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
   SpscRing<CycleEntry> ring_;
   CycleEntry spare_;
+  CycleEntry* entry_ = &spare_;
+  AnswerBoard board_;
   bool reserved_ = false;
   std::atomic<std::uint64_t> dropped_{0};
 };

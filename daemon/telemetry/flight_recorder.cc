@@ -5,6 +5,9 @@
 #include <contour_lcm/cycle_batch.hpp>
 #include <cstdlib>
 #include <ctime>
+#include <memory>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -20,6 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPrefix = "fault-";
 constexpr const char* kSuffix = ".lcmlog";
+/// Each holds the window in memory until it is on the disk. The lane counts them as bytes.
+constexpr std::size_t kRecordsUnderWay = 2;
 
 std::int64_t UnixTime_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -46,10 +51,23 @@ fs::path Variable(const char* name) {
 
 }  // namespace
 
+struct FlightRecorder::Job {
+  Config config;
+  fs::path file;
+  LogHeader header;
+  std::optional<LogState> state;
+  std::vector<Tuning> tunings;
+  std::string fault;
+  Reason reason = Reason::kNone;
+  std::deque<Batch> batches;
+};
+
 FlightRecorder::FlightRecorder(Config config, LogHeader header)
-    : config_(std::move(config)), header_(std::move(header)) {
-  stats_.enabled = true;
-  stats_.directory = config_.directory.string();
+    : config_(std::move(config)),
+      header_(std::move(header)),
+      lane_("contour-flight", {kRecordsUnderWay, {}}) {
+  written_->stats.enabled = true;
+  written_->stats.directory = config_.directory.string();
 }
 
 void FlightRecorder::OnEvent(const TelemetryEvent& event) noexcept {
@@ -61,12 +79,12 @@ void FlightRecorder::OnEvent(const TelemetryEvent& event) noexcept {
     batch.last = newest_cycle_;
     batch.grid_time_ns = event.grid_time_ns;
     batch.cycles = event.cycles;
-    batch.bytes = event.bytes;
+    batch.bytes = std::make_shared<const std::string>(event.bytes);
     batches_.push_back(std::move(batch));
     Forget();
   } catch (const std::exception& e) {
-    const std::lock_guard lock(mutex_);
-    stats_.last_error = e.what();
+    const std::lock_guard lock(written_->mutex);
+    written_->stats.last_error = e.what();
   }
 }
 
@@ -106,59 +124,81 @@ void FlightRecorder::OnCycle(const CycleEntry& entry) {
     fault_reason_ = record.reason;
   }
   const bool enough = !batches_.empty() && batches_.back().last >= fault_cycle_ + config_.after_cycles;
-  if (fault_cycle_ != 0 && enough) Write();
+  if (fault_cycle_ != 0 && enough) HandOver();
 }
 
-void FlightRecorder::Finish() {
-  if (fault_cycle_ != 0) Write();
+bool FlightRecorder::Finish(std::chrono::steady_clock::time_point deadline) {
+  if (fault_cycle_ != 0) HandOver();
+  return lane_.Finish(deadline);
 }
 
-void FlightRecorder::Write() {
-  FlightRecordStats stats = this->stats();
-  const fs::path file = FileName();
+void FlightRecorder::HandOver() {
   try {
-    fs::create_directories(config_.directory);
-    LogHeader header = header_;
+    auto job = std::make_shared<Job>();
+    job->config = config_;
+    job->file = FileName();
+    job->header = header_;
+    job->batches = batches_;
+    job->reason = fault_reason_;
+    job->fault = std::string(Name(fault_reason_)) + " at cycle " + std::to_string(fault_cycle_);
     const std::int64_t length_ns =
         batches_.empty() ? 0 : batches_.back().grid_time_ns - batches_.front().grid_time_ns;
-    header.start_unix_us = UnixTime_us() - length_ns / 1000;
-    const std::uint64_t after = from_start_ || states_.empty() ? 0 : states_.front().cycle;
-    std::vector<Tuning> later;
+    job->header.start_unix_us = UnixTime_us() - length_ns / 1000;
+    if (!from_start_ && !states_.empty()) job->state = states_.front();
+    const std::uint64_t after = job->state ? job->state->cycle : 0;
     {
       const std::lock_guard lock(mutex_);
       for (const Tuning& t : tunings_) {
         if (t.cycle == 0 || t.cycle > after) {
-          later.push_back(t);
+          job->tunings.push_back(t);
         } else {
           // The state at the beginning was reached with these.
-          for (std::string& change : Lines(t.text)) header.overrides.push_back(std::move(change));
+          for (std::string& change : Lines(t.text)) job->header.overrides.push_back(std::move(change));
         }
       }
     }
-    LogWriter writer(file, header);
-    if (after != 0) writer.State(states_.front());
-    for (const Tuning& t : later) writer.Note(t.key, t.text);
-    writer.Note("fault", std::string(Name(fault_reason_)) + " at cycle " + std::to_string(fault_cycle_));
-    for (const Batch& batch : batches_) {
-      int cycles = batch.cycles;
-      const std::string bytes = batch.first <= after ? After(batch.bytes, after, cycles) : batch.bytes;
-      if (cycles > 0) writer.OnEvent({kCyclesChannel, bytes, batch.grid_time_ns, cycles});
-    }
-    writer.Close();
-    stats.file = file.string();
-    stats.first_cycle = after + 1;
-    stats.last_cycle = batches_.empty() ? after : batches_.back().last;
-    stats.reason = Name(fault_reason_);
-    stats.last_error = writer.stats().last_error;
-    ++stats.written;
-    RemoveOldest();
+    if (!lane_.Post(1, [job, written = written_] { Write(*job, *written); }))
+      throw std::runtime_error("the disk has not taken the records before this one");
   } catch (const std::exception& e) {
-    stats.last_error = e.what();
+    const std::lock_guard lock(written_->mutex);
+    written_->stats.last_error = e.what();
   }
   fault_cycle_ = 0;
   Forget();
-  const std::lock_guard lock(mutex_);
-  stats_ = stats;
+}
+
+// In the lane's thread.
+void FlightRecorder::Write(const Job& job, Written& written) {
+  FlightRecordStats stats;
+  {
+    const std::lock_guard lock(written.mutex);
+    stats = written.stats;
+  }
+  const std::uint64_t after = job.state ? job.state->cycle : 0;
+  try {
+    fs::create_directories(job.config.directory);
+    LogWriter writer(job.file, job.header);
+    if (job.state) writer.State(*job.state);
+    for (const Tuning& t : job.tunings) writer.Note(t.key, t.text);
+    writer.Note("fault", job.fault);
+    for (const Batch& batch : job.batches) {
+      int cycles = batch.cycles;
+      const std::string bytes = batch.first <= after ? After(*batch.bytes, after, cycles) : *batch.bytes;
+      if (cycles > 0) writer.OnEvent({kCyclesChannel, bytes, batch.grid_time_ns, cycles});
+    }
+    writer.Close();
+    stats.file = job.file.string();
+    stats.first_cycle = after + 1;
+    stats.last_cycle = job.batches.empty() ? after : job.batches.back().last;
+    stats.reason = Name(job.reason);
+    stats.last_error = writer.stats().last_error;
+    ++stats.written;
+    RemoveOldest(job.config);
+  } catch (const std::exception& e) {
+    stats.last_error = e.what();
+  }
+  const std::lock_guard lock(written.mutex);
+  written.stats = stats;
 }
 
 fs::path FlightRecorder::FileName() const {
@@ -172,22 +212,22 @@ fs::path FlightRecorder::FileName() const {
                               std::string(Name(fault_reason_)) + kSuffix);
 }
 
-void FlightRecorder::RemoveOldest() {
+void FlightRecorder::RemoveOldest(const Config& config) {
   std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(config_.directory)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(config.directory)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with(kPrefix) && name.ends_with(kSuffix)) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
-  while (files.size() > config_.keep_files) {
+  while (files.size() > config.keep_files) {
     fs::remove(files.front());
     files.erase(files.begin());
   }
 }
 
 FlightRecordStats FlightRecorder::stats() const {
-  const std::lock_guard lock(mutex_);
-  return stats_;
+  const std::lock_guard lock(written_->mutex);
+  return written_->stats;
 }
 
 fs::path DefaultFlightDirectory() {

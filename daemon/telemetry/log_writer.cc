@@ -129,8 +129,16 @@ void LogWriter::Close() noexcept {
   fd_ = -1;
 }
 
-LogStats LogWriter::stats() const {
+void LogWriter::Lose(std::uint64_t cycles, std::uint64_t notes, const char* why) noexcept {
   const std::lock_guard lock(mutex_);
+  const std::lock_guard stats_lock(stats_mutex_);
+  SetError(why);
+  stats_.lost_cycles += cycles;
+  stats_.lost_notes += notes;
+}
+
+LogStats LogWriter::stats() const {
+  const std::lock_guard lock(stats_mutex_);
   return stats_;
 }
 
@@ -169,6 +177,7 @@ bool LogWriter::WritePending() noexcept {
   good_size_ += static_cast<std::int64_t>(done);
   good_events_ = events_;
   checksum_ = Crc32c(pending_, checksum_);
+  const std::lock_guard stats_lock(stats_mutex_);
   stats_.bytes = static_cast<std::uint64_t>(good_size_);
   stats_.cycles += pending_cycles_;
   pending_.clear();
@@ -176,13 +185,20 @@ bool LogWriter::WritePending() noexcept {
   return true;
 }
 
-void LogWriter::LosePending(const char* why) noexcept {
+void LogWriter::SetError(const char* why) noexcept {
   try {
     stats_.last_error = why;
   } catch (const std::exception&) {
     stats_.last_error.clear();
   }
-  stats_.lost_cycles += pending_cycles_;
+}
+
+void LogWriter::LosePending(const char* why) noexcept {
+  {
+    const std::lock_guard stats_lock(stats_mutex_);
+    SetError(why);
+    stats_.lost_cycles += pending_cycles_;
+  }
   pending_.clear();
   pending_cycles_ = 0;
   events_ = good_events_;

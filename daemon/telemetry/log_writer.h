@@ -16,8 +16,9 @@ namespace contour {
 ///
 /// Events are gathered and handed to the file system batch by batch. What does not fit, because the disk is
 /// full for one, is cut off again, so that the file stays readable, and counted; writing goes on when there
-/// is room. Events and notes may come from different threads; stats() may be called from any. Never call this
-/// from the cycle.
+/// is room. Events and notes may come from different threads; stats() may be called from any, and waits for
+/// no write. Everything else may take as long as the file system does: the daemon has a BackgroundLog around
+/// it.
 class LogWriter final : public TelemetrySink {
  public:
   /// Throws std::runtime_error with file and cause when the file cannot be made.
@@ -31,6 +32,8 @@ class LogWriter final : public TelemetrySink {
   void Note(const std::string& key, const std::string& text) noexcept;
   /// Where a log begins that does not begin at the start; before its first cycle.
   void State(const LogState& state) noexcept;
+  /// These cycles, or notes, will not come: they were lost on the way here.
+  void Lose(std::uint64_t cycles, std::uint64_t notes, const char* why) noexcept;
   /// Writes what is pending and the footer. Nothing is written afterwards.
   void Close() noexcept;
 
@@ -41,8 +44,9 @@ class LogWriter final : public TelemetrySink {
   [[nodiscard]] std::int64_t UnixTime_us(std::int64_t grid_time_ns) noexcept;
   bool WritePending() noexcept;
   void LosePending(const char* why) noexcept;
+  void SetError(const char* why) noexcept;
 
-  mutable std::mutex mutex_;
+  std::mutex mutex_;  // guards all but stats_, and is held while writing
   int fd_ = -1;
   std::string pending_;
   std::uint64_t pending_cycles_ = 0;
@@ -55,7 +59,8 @@ class LogWriter final : public TelemetrySink {
   std::int64_t last_unix_us_;
   std::int64_t first_grid_time_ns_ = 0;
   bool any_event_ = false;
-  LogStats stats_;
+  mutable std::mutex stats_mutex_;  // is never held for long
+  LogStats stats_;                  // changed with both locks only
 };
 
 }  // namespace contour

@@ -5,14 +5,16 @@
 namespace contour {
 
 TelemetryHub::TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
-                           const std::optional<LogTarget>& log)
+                           const std::optional<LogTarget>& log, std::chrono::milliseconds patience)
     : encoder_(config, cycle_us, axis_names), health_(axis_names) {
   if (config.publish) {
-    publisher_ = std::make_unique<LcmPublisher>(config.lcm_url);
+    publisher_ = std::make_unique<BackgroundPublisher>(config.lcm_url, patience);
     sinks_.push_back(publisher_.get());
   }
   if (log) {
-    log_ = std::make_unique<LogWriter>(log->file, log->header);
+    BackgroundLog::Limits limits;
+    limits.patience = patience;
+    log_ = std::make_unique<BackgroundLog>(log->file, log->header, limits);
     sinks_.push_back(log_.get());
   }
 }
@@ -25,10 +27,12 @@ void TelemetryHub::Consume(const CycleEntry& entry) {
 
 void TelemetryHub::Flush() { encoder_.Flush(sinks_); }
 
-void TelemetryHub::Close() {
+bool TelemetryHub::Close(std::chrono::steady_clock::time_point deadline) {
   Flush();
-  if (flight_ != nullptr) flight_->Finish();
-  if (log_ != nullptr) log_->Close();
+  bool all = log_ == nullptr || log_->Close(deadline);
+  if (flight_ != nullptr) all = flight_->Finish(deadline) && all;
+  if (publisher_ != nullptr) all = publisher_->Finish(deadline) && all;
+  return all;
 }
 
 void TelemetryHub::Observe(const CycleEntry& entry) {
@@ -37,7 +41,6 @@ void TelemetryHub::Observe(const CycleEntry& entry) {
     const std::lock_guard lock(mutex_);
     ++cycles_;
     record_ = entry.output.record;
-    answers_.Add(record_);
     timing_ = entry.timing;
     skipped_grid_points_ += entry.timing.skipped_grid_points;
     health_.Add(entry);
@@ -99,11 +102,6 @@ TelemetryHub::Snapshot TelemetryHub::snapshot() const {
 CycleRecord TelemetryHub::record() const {
   const std::lock_guard lock(mutex_);
   return record_;
-}
-
-std::optional<CycleRecord> TelemetryHub::answer(std::uint32_t sequence) const {
-  const std::lock_guard lock(mutex_);
-  return answers_.Find(sequence);
 }
 
 }  // namespace contour

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -9,12 +10,11 @@
 #include <vector>
 
 #include "core/cycle_record.h"
-#include "daemon/telemetry/answer_book.h"
+#include "daemon/telemetry/background_log.h"
+#include "daemon/telemetry/background_publisher.h"
 #include "daemon/telemetry/cycle_health.h"
 #include "daemon/telemetry/flight_recorder.h"
-#include "daemon/telemetry/log_writer.h"
 #include "daemon/telemetry/row_feed.h"
-#include "drivers/lcm/lcm_publisher.h"
 #include "drivers/lcm/telemetry_config.h"
 #include "drivers/lcm/telemetry_encoder.h"
 
@@ -30,14 +30,19 @@ class TelemetryHub {
   };
 
   /// Throws std::runtime_error when the log cannot be made. Whether LCM works shows later, in stats.
+  /// `patience`: how long Consume() waits for a disk or a network that has fallen behind (see SlowLane); 0
+  /// where time does not wait.
   TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
-               const std::optional<LogTarget>& log);
+               const std::optional<LogTarget>& log,
+               std::chrono::milliseconds patience = std::chrono::milliseconds(0));
 
   void Consume(const CycleEntry& entry);
   /// Sends what is not a full batch yet; for when no cycles come.
   void Flush();
-  /// Flush, and the end of the log. Consume() may not be called afterwards.
-  void Close();
+  /// Flush, and the end of the log. Consume() may not be called afterwards. False when disk or network did
+  /// not take everything by then; snapshot() has how much of the log is missing.
+  bool Close(std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::now() +
+                                                              std::chrono::seconds(60));
 
   void Attach(std::shared_ptr<RowFeed> feed);
   void Detach(const std::shared_ptr<RowFeed>& feed);
@@ -64,18 +69,17 @@ class TelemetryHub {
     FlightRecordStats flight;
   };
   [[nodiscard]] Snapshot snapshot() const;
+  [[nodiscard]] LogStats log() const { return log_ ? log_->stats() : LogStats{}; }
   [[nodiscard]] FlightRecordStats flight() const { return flight_ ? flight_->stats() : FlightRecordStats{}; }
   /// Newest record alone.
   [[nodiscard]] CycleRecord record() const;
-  /// The record that acknowledged a request. Cheap enough to poll while waiting for it.
-  [[nodiscard]] std::optional<CycleRecord> answer(std::uint32_t sequence) const;
 
  private:
   void Observe(const CycleEntry& entry);
 
   TelemetryEncoder encoder_;
-  std::unique_ptr<LcmPublisher> publisher_;
-  std::unique_ptr<LogWriter> log_;
+  std::unique_ptr<BackgroundPublisher> publisher_;
+  std::unique_ptr<BackgroundLog> log_;
   std::unique_ptr<FlightRecorder> flight_;
   std::vector<TelemetrySink*> sinks_;
 
@@ -84,7 +88,6 @@ class TelemetryHub {
   std::uint64_t cycles_ = 0;
   std::uint64_t skipped_grid_points_ = 0;
   CycleRecord record_;
-  AnswerBook answers_;
   CycleTiming timing_;
   CycleHealth health_;
 };

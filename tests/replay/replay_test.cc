@@ -309,7 +309,7 @@ class FlightRecordTest : public ReplayTest {
     });
     script(run);
     encoder.Flush(sinks);
-    recorder.Finish();
+    EXPECT_TRUE(recorder.Finish(std::chrono::steady_clock::now() + std::chrono::minutes(1)));
     stats_ = recorder.stats();
     std::vector<fs::path> files;
     if (fs::exists(config.directory))

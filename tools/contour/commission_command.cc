@@ -109,7 +109,7 @@ class Watchman {
 /// Runs one motion to its end; stops the machine and throws when something is not as it should be.
 void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion& motion,
                const std::string& progress) {
-  const json reply = AskOrThrow(client, {{"request", "run"},
+  const json reply = RunProgram(client, {{"request", "run"},
                                          {"name", "commissioning: " + motion.what},
                                          {"format", "yaml"},
                                          {"text", motion.yaml}});

@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <stdexcept>
+#include <string_view>
 #include <thread>
+#include <utility>
 
 #include "daemon/control_socket/socket_path.h"
 
@@ -10,6 +12,17 @@ namespace contour {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAgain{20};
+/// A line has 64 KiB at most, and a character up to six bytes in it.
+constexpr std::size_t kPiece_bytes = 8000;
+
+/// The length of a piece that begins at `begin` and does not end within a UTF-8 sequence.
+std::size_t PieceLength(std::string_view text, std::size_t begin) {
+  if (text.size() - begin <= kPiece_bytes) return text.size() - begin;
+  std::size_t length = kPiece_bytes;
+  for (int back = 0; back < 3 && (static_cast<unsigned char>(text[begin + length]) & 0xC0u) == 0x80u; ++back)
+    --length;
+  return length;
+}
 
 }  // namespace
 
@@ -27,6 +40,19 @@ nlohmann::json AskOrThrow(ControlClient& client, const nlohmann::json& request) 
     throw std::runtime_error(request.at("request").get<std::string>() +
                              " refused: " + reply.value("error", ""));
   return reply;
+}
+
+nlohmann::json RunProgram(ControlClient& client, nlohmann::json request) {
+  const std::string text = request.at("text");
+  if (text.size() <= kPiece_bytes) return AskOrThrow(client, request);
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = PieceLength(text, at);
+    AskOrThrow(client, {{"request", "upload"}, {"first", at == 0}, {"text", text.substr(at, length)}});
+    at += length;
+  }
+  request.erase("text");
+  request["uploaded"] = true;
+  return AskOrThrow(client, request);
 }
 
 nlohmann::json Status(ControlClient& client) {

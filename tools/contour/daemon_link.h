@@ -22,6 +22,10 @@ ControlClient ConnectToDaemon(const std::string& path);
 /// Asks, and throws std::runtime_error with the daemon's reason when it refuses.
 nlohmann::json AskOrThrow(ControlClient& client, const nlohmann::json& request);
 
+/// Has a program run: `request` is a "run" with its text, of any size. A long one is sent in pieces. Throws
+/// as AskOrThrow().
+nlohmann::json RunProgram(ControlClient& client, nlohmann::json request);
+
 /// The status, as docs/operating.md describes it.
 nlohmann::json Status(ControlClient& client);
 

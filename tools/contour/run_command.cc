@@ -14,6 +14,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "daemon/control_socket/base64.h"
@@ -199,7 +200,7 @@ int RunRun(const Options& options) {
                {"text", ReadText(options.program)}};
   if (!options.controller.empty()) request["controller"] = options.controller;
   if (options.forget) request["forget"] = true;
-  const json reply = AskOrThrow(client, request);
+  const json reply = RunProgram(client, std::move(request));
   const std::uint32_t id = reply.at("program_id");
   if (const std::size_t passes = reply.value("learnt_passes", std::size_t{0}); passes > 0)
     std::cout << "passes learnt from: " << passes << "\n" << std::flush;

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <contour_lcm/cycle_entry.hpp>
 #include <filesystem>
@@ -73,6 +74,7 @@ class RawClient {
       text.remove_prefix(static_cast<std::size_t>(n));
     }
   }
+  void EndOfInput() { ::shutdown(socket_.get(), SHUT_WR); }
   /// One line; empty at the end of the connection.
   std::string Line() {
     std::string line;
@@ -212,30 +214,205 @@ TEST_F(ControlServerTest, AnEndlessLineIsRefusedAndItsClientDropped) {
   EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "status"}})["ok"], true);
 }
 
-TEST_F(ControlServerTest, AClientThatNeverReadsIsDroppedAndHoldsNobodyUp) {
-  options_.max_unread_bytes = 200'000;
+TEST_F(ControlServerTest, AClientThatNeverReadsIsNotListenedToAndHoldsNobodyUp) {
   Serve();
   RawClient deaf(options_.socket);
+  constexpr int kAsked = 100'000;
   std::thread sender([&] {
     std::string requests;
-    for (int i = 0; i < 20'000; ++i) requests += "{\"request\": \"status\"}\n";
-    deaf.Send(requests);
+    for (int i = 0; i < kAsked; ++i) requests += "{\"request\": \"status\"}\n";
+    deaf.Send(requests);  // ends when the server is gone: it is not listened to, and not waited for
   });
-  sender.join();  // it ends: the server reads on or hangs up
+  // Under its flood.
+  ASSERT_TRUE(Eventually([this] { return desk_.statuses() > 10; }));
+  EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "stop"}})["ok"], true);
+  // As many answers as may wait for it here and in the kernel; each is more than 500 bytes long.
+  const int most = static_cast<int>((options_.max_unread_bytes + (4u << 20)) / 500);
+  ASSERT_LT(most, kAsked);
+  EXPECT_LT(desk_.statuses(), most);
+  server_.reset();
+  sender.join();
+  EXPECT_LT(desk_.statuses(), most);
+}
+
+TEST_F(ControlServerTest, AClientThatReadsNothingForLongIsDropped) {
+  options_.deaf_after = std::chrono::milliseconds(1);
+  options_.max_unread_bytes = 100'000;
+  Serve();
+  RawClient deaf(options_.socket);
+  std::string requests;
+  for (int i = 0; i < 20'000; ++i) requests += "{\"request\": \"status\"}\n";
+  deaf.Send(requests);  // returns when the server has hung up
   EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "stop"}})["ok"], true);
 }
 
-TEST_F(ControlServerTest, TooManyClientsAreTurnedAway) {
+TEST_F(ControlServerTest, WhenAllPlacesAreTakenAStopADisableAndTheStatusAreStillToBeHad) {
   options_.max_clients = 2;
+  options_.reserved_clients = 1;
   Serve();
   ControlClient a(options_.socket);
   ControlClient b(options_.socket);
   EXPECT_EQ(a.Ask({{"request", "status"}})["ok"], true);
   EXPECT_EQ(b.Ask({{"request", "status"}})["ok"], true);
-  RawClient c(options_.socket);
-  EXPECT_EQ(json::parse(c.Line())["ok"], false);
-  EXPECT_EQ(c.Line(), "");
-  EXPECT_EQ(a.Ask({{"request", "status"}})["ok"], true);
+  {
+    ControlClient c(options_.socket);
+    const json refused = c.Ask({{"request", "enable"}});
+    EXPECT_EQ(refused["ok"], false);
+    EXPECT_NE(refused["error"].get<std::string>().find("2 clients already"), std::string::npos);
+    for (const char* request : {"status", "stop", "disable"})
+      EXPECT_EQ(c.Ask({{"request", request}})["ok"], true) << request;
+  }
+  // Idle clients in the reserved places do not keep others out of them.
+  RawClient idle(options_.socket);
+  RawClient idle_too(options_.socket);
+  EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "stop"}})["ok"], true);
+  EXPECT_EQ(a.Ask({{"request", "status"}})["ok"], true) << "nobody lost a place";
+  EXPECT_EQ(desk_.asked(), (std::vector<std::string>{"stop", "disable", "stop"}));
+}
+
+TEST_F(ControlServerTest, APlaceThatHasBecomeFreeGoesToWhoeverWaitsForIt) {
+  options_.max_clients = 1;
+  Serve();
+  auto a = std::make_unique<ControlClient>(options_.socket);
+  EXPECT_EQ(a->Ask({{"request", "status"}})["ok"], true);
+  ControlClient b(options_.socket);
+  EXPECT_EQ(b.Ask({{"request", "enable"}})["ok"], false);
+  a.reset();
+  EXPECT_TRUE(Eventually([&] { return b.Ask({{"request", "enable"}})["ok"] == true; }));
+}
+
+// What follows holds an enabling until the test lets it go, and has a client collect rows so that the test
+// sees when the server has noticed its end.
+
+TEST_F(ControlServerTest, WhatTheCycleHasNotBeenHandedIsDroppedWithItsClient) {
+  Serve();
+  desk_.Hold(true);
+  RawClient first(options_.socket);
+  first.Send("{\"request\": \"enable\", \"id\": 1}\n");
+  ASSERT_TRUE(Eventually([this] { return !desk_.asked().empty(); }));
+  {
+    RawClient second(options_.socket);
+    second.Send(
+        "{\"request\": \"rows\", \"on\": true}\n{\"request\": \"enable\"}\n{\"request\": \"reset\"}\n");
+    ASSERT_TRUE(Eventually([this] { return desk_.feeds() == 1; }));
+  }
+  ASSERT_TRUE(Eventually([this] { return desk_.feeds() == 0; }));
+  desk_.Hold(false);
+  EXPECT_EQ(json::parse(first.Line())["id"], 1);
+  EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "reload"}})["ok"], true) << "behind all others";
+  EXPECT_EQ(desk_.asked(), (std::vector<std::string>{"enable", "reload"}));
+}
+
+TEST_F(ControlServerTest, TheDeskIsToldThatWhoeverAskedIsGone) {
+  Serve();
+  desk_.Hold(true);
+  {
+    RawClient client(options_.socket);
+    client.Send("{\"request\": \"rows\", \"on\": true}\n{\"request\": \"enable\"}\n");
+    ASSERT_TRUE(Eventually([this] { return !desk_.asked().empty(); }));
+  }
+  ASSERT_TRUE(Eventually([this] { return desk_.feeds() == 0; }));
+  desk_.Hold(false);
+  EXPECT_TRUE(Eventually([this] { return desk_.asked().back() == "enable was unwanted"; }));
+}
+
+TEST_F(ControlServerTest, AStopOrDisableIsCarriedOutAlthoughItsClientIsGone) {
+  Serve();
+  desk_.Hold(true);
+  for (const char* request : {"stop", "disable"}) {
+    // Behind an enabling that has no answer and never gets one.
+    RawClient client(options_.socket);
+    client.Send("{\"request\": \"enable\"}\n{\"request\": \"" + std::string(request) + "\"}\n");
+  }
+  const auto asked = [this](const char* what) {
+    const std::vector<std::string> all = desk_.asked();
+    return std::find(all.begin(), all.end(), what) != all.end();
+  };
+  EXPECT_TRUE(Eventually([&] { return asked("stop") && asked("disable"); }));
+  desk_.Hold(false);
+}
+
+TEST_F(ControlServerTest, AStopMakesVoidWhatWouldLeadToMotionAndHasNotBeenHandedOver) {
+  Serve();
+  desk_.Hold(true);
+  RawClient first(options_.socket);
+  RawClient second(options_.socket);
+  first.Send("{\"request\": \"enable\", \"id\": 1}\n{\"request\": \"enable\", \"id\": 2}\n");
+  ASSERT_TRUE(Eventually([this] { return !desk_.asked().empty(); }));
+  second.Send("{\"request\": \"enable\", \"id\": 3}\n");
+  // The socket's thread takes one request of each in a turn: with this answer the one before has had its
+  // turn.
+  EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "status"}})["ok"], true);
+  EXPECT_EQ(ControlClient(options_.socket).Ask({{"request", "stop"}})["ok"], true);
+  const json refused = json::parse(second.Line());
+  EXPECT_EQ(refused["id"], 3);
+  EXPECT_EQ(refused["ok"], false);
+  EXPECT_NE(refused["error"].get<std::string>().find("a stop came first"), std::string::npos);
+  first.Send("{\"request\": \"stop\", \"id\": 4}\n");
+  EXPECT_EQ(json::parse(first.Line())["id"], 2) << "behind the one under way, before the stop";
+  EXPECT_EQ(json::parse(first.Line())["id"], 4);
+  desk_.Hold(false);
+  EXPECT_EQ(json::parse(first.Line())["id"], 1);
+  EXPECT_EQ(desk_.asked(), (std::vector<std::string>{"enable", "stop", "stop", "enable was unwanted"}));
+}
+
+TEST_F(ControlServerTest, AClientThatSendsNothingMoreStillGetsItsAnswers) {
+  Serve();
+  RawClient client(options_.socket);
+  client.Send("{\"request\": \"status\"}\n{\"request\": \"enable\"}\n");
+  client.EndOfInput();
+  EXPECT_TRUE(json::parse(client.Line()).contains("status"));
+  EXPECT_EQ(json::parse(client.Line())["sequence"], 1);
+  EXPECT_EQ(client.Line(), "") << "and is then dropped";
+}
+
+TEST_F(ControlServerTest, AProgramOfAnySizeComesInPieces) {
+  Serve();
+  ControlClient client(options_.socket);
+  std::string program;
+  for (int line = 0; program.size() < 3'000'000; ++line) program += "G1 X" + std::to_string(line) + "\n";
+  const auto upload = [&](const std::string& text) {
+    bool first = true;
+    json reply;
+    for (std::size_t at = 0; at < text.size(); at += 8000, first = false)
+      reply = client.Ask({{"request", "upload"}, {"text", text.substr(at, 8000)}, {"first", first}});
+    return reply;
+  };
+  const json run{{"request", "run"}, {"name", "long.ngc"}, {"format", "ngc"}, {"uploaded", true}};
+  EXPECT_EQ(client.Ask(run)["ok"], false) << "nothing has been uploaded";
+  upload("something else");
+  EXPECT_EQ(upload(program)["bytes"], program.size());
+  EXPECT_EQ(client.Ask(run)["ok"], true);
+  EXPECT_EQ(desk_.upload().text, program);
+  EXPECT_EQ(desk_.upload().name, "long.ngc");
+  EXPECT_EQ(client.Ask(run)["ok"], false) << "it has been used";
+}
+
+TEST_F(ControlServerTest, ProgramsInPiecesAreBoundedForAllClientsTogether) {
+  options_.max_upload_bytes = 100'000;
+  Serve();
+  ControlClient a(options_.socket);
+  auto b = std::make_unique<ControlClient>(options_.socket);
+  const json piece{{"request", "upload"}, {"text", std::string(40'000, 'x')}};
+  EXPECT_EQ(a.Ask(piece)["ok"], true);
+  EXPECT_EQ(b->Ask(piece)["ok"], true);
+  const json refused = a.Ask(piece);
+  EXPECT_EQ(refused["ok"], false);
+  EXPECT_NE(refused["error"].get<std::string>().find("100000 bytes"), std::string::npos) << refused;
+  EXPECT_EQ(a.Ask(piece)["bytes"], 40'000) << "what had come before is given up";
+  b.reset();
+  EXPECT_TRUE(Eventually([&] { return a.Ask(piece)["bytes"] == 80'000; }));
+}
+
+TEST_F(ControlServerTest, SomeClientsMayCollectRowsAndNotAll) {
+  options_.max_row_clients = 1;
+  Serve();
+  ControlClient a(options_.socket);
+  ControlClient b(options_.socket);
+  EXPECT_EQ(a.Ask({{"request", "rows"}, {"on", true}})["ok"], true);
+  EXPECT_EQ(b.Ask({{"request", "rows"}, {"on", true}})["ok"], false);
+  EXPECT_EQ(a.Ask({{"request", "rows"}, {"on", false}})["ok"], true);
+  EXPECT_EQ(b.Ask({{"request", "rows"}, {"on", true}})["ok"], true);
 }
 
 TEST_F(ControlServerTest, StreamsRowsBitForBitToThoseWhoAsk) {

@@ -14,17 +14,18 @@ namespace contour::test {
 /// A desk that accepts or refuses as told and keeps what it was asked.
 class FakeDesk final : public OperatorDesk {
  public:
-  Answer Enable() override {
+  Answer Enable(const std::stop_token& unwanted) override {
     Answer answer = Do("enable");
     std::unique_lock lock(mutex_);
     answering_.wait(lock, [this] { return !held_; });
+    if (unwanted.stop_requested()) asked_.emplace_back("enable was unwanted");
     return answer;
   }
   Answer Disable() override { return Do("disable"); }
   Answer Stop() override { return Do("stop"); }
-  Answer Reset() override { return Do("reset"); }
+  Answer Reset(const std::stop_token& /*unwanted*/) override { return Do("reset"); }
   Answer Reload() override { return Do("reload"); }
-  Answer Run(const ProgramUpload& program) override {
+  Answer Run(const ProgramUpload& program, const std::stop_token& /*unwanted*/) override {
     Answer answer = Do("run");
     const std::lock_guard lock(mutex_);
     upload_ = program;
@@ -35,6 +36,7 @@ class FakeDesk final : public OperatorDesk {
   }
   MachineStatus Status() override {
     const std::lock_guard lock(mutex_);
+    ++statuses_;
     return status_;
   }
   std::string MachineFile() override { return "machine: {name: fake}\n"; }
@@ -69,6 +71,10 @@ class FakeDesk final : public OperatorDesk {
     const std::lock_guard lock(mutex_);
     return upload_;
   }
+  int statuses() const {
+    const std::lock_guard lock(mutex_);
+    return statuses_;
+  }
   std::size_t feeds() const {
     const std::lock_guard lock(mutex_);
     return feeds_.size();
@@ -92,6 +98,7 @@ class FakeDesk final : public OperatorDesk {
   mutable std::mutex mutex_;
   std::condition_variable answering_;
   bool held_ = false;
+  int statuses_ = 0;
   std::vector<std::string> asked_;
   std::vector<std::shared_ptr<RowFeed>> feeds_;
   std::string refusal_;

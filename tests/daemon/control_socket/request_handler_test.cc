@@ -86,6 +86,34 @@ TEST_F(RequestHandlerTest, SurvivesNoise) {
   EXPECT_EQ(Ask(std::string(100000, '['))["ok"], false);
 }
 
+TEST_F(RequestHandlerTest, ALineOfManyLevelsIsRefusedBeforeItIsParsed) {
+  // Within a text brackets are letters.
+  EXPECT_EQ(Ask(R"({"request": "status", "x": "[[[[[[[[[[\\\"[[[[[[[[[["})")["ok"], true);
+  EXPECT_EQ(Ask(R"({"request": "status", "x": [[[[[[[]]]]]]]})")["ok"], true);
+  for (const std::string& line : {std::string(R"({"request": "status", "x": [[[[[[[[]]]]]]]]})"),
+                                  std::string(60'000, '['), "{\"a\":" + std::string(60'000, '{')}) {
+    const json reply = Ask(line);
+    EXPECT_EQ(reply["ok"], false);
+    EXPECT_EQ(reply["error"], "a request has 8 levels at most");
+    EXPECT_EQ(HeadOf(line).kind, RequestClass::kAtOnce);
+  }
+}
+
+TEST_F(RequestHandlerTest, ALineSaysWhoAnswersIt) {
+  const auto kind = [](const char* request) { return HeadOf(json{{"request", request}}.dump()).kind; };
+  for (const char* at_once : {"status", "watch", "rows", "fly"})
+    EXPECT_EQ(kind(at_once), std::string(at_once) == "fly" ? RequestClass::kWaits : RequestClass::kAtOnce);
+  for (const char* waits : {"enable", "reset", "reload", "run", "machine_file"})
+    EXPECT_EQ(kind(waits), RequestClass::kWaits) << waits;
+  EXPECT_EQ(kind("stop"), RequestClass::kStop);
+  EXPECT_EQ(kind("disable"), RequestClass::kDisable);
+  EXPECT_EQ(kind("upload"), RequestClass::kUpload);
+  EXPECT_TRUE(HeadOf(R"({"request": "enable"})").leads_to_motion);
+  EXPECT_TRUE(HeadOf(R"({"request": "run"})").leads_to_motion);
+  EXPECT_FALSE(HeadOf(R"({"request": "reset"})").leads_to_motion);
+  EXPECT_EQ(HeadOf(R"({"request": 5})").kind, RequestClass::kAtOnce);
+}
+
 TEST_F(RequestHandlerTest, SubscriptionsCanBeTakenAndGivenBack) {
   Ask(R"({"request": "rows", "on": true})");
   Ask(R"({"request": "watch", "period_ms": 100})");

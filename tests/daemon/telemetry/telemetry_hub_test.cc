@@ -25,25 +25,6 @@ TelemetryConfig Silent() {
   return config;
 }
 
-TEST(TelemetryHubTest, AnAnswerIsFoundAlthoughTheNextCycleBroughtAnother) {
-  TelemetryHub hub(Silent(), 1000, kAxes, std::nullopt);
-  test::RandomCycleEntry random(2);
-  // A stop, sequence 6, overtook the request before it; both were answered before anybody looked.
-  std::uint64_t cycle = 0;
-  for (const std::uint32_t acknowledged : {0u, 4u, 4u, 6u, 5u, 5u}) {
-    CycleEntry entry = random.Next(++cycle, 2);
-    entry.output.record.acknowledged = acknowledged;
-    entry.output.record.acknowledged_ok = acknowledged != 5;
-    hub.Consume(entry);
-  }
-  ASSERT_TRUE(hub.answer(6));
-  EXPECT_TRUE(hub.answer(6)->acknowledged_ok);
-  ASSERT_TRUE(hub.answer(5));
-  EXPECT_FALSE(hub.answer(5)->acknowledged_ok);
-  EXPECT_EQ(hub.answer(4)->cycle, 2u) << "the record that answered, not the newest";
-  EXPECT_FALSE(hub.answer(7));
-}
-
 TEST(TelemetryHubTest, StatusSeesTheNewestCycleAndTheCounts) {
   TelemetryHub hub(Silent(), 1000, kAxes, std::nullopt);
   test::RandomCycleEntry random(1);

@@ -73,6 +73,19 @@ class DaemonCommandsTest : public ::testing::Test {
   std::unique_ptr<ControlServer> server_;
 };
 
+TEST_F(DaemonCommandsTest, RunSendsAProgramOfAnySize) {
+  std::string program = "# \xC3\xA4\xE2\x82\xAC \xF0\x9F\x94\xA7\nsequence:\n";
+  // Letters of two, three and four bytes come to lie on the ends of pieces.
+  for (int i = 0; program.size() < 200'000; ++i)
+    program +=
+        "  # " + std::string(static_cast<std::size_t>(i % 7), 'x') + "\xC3\xA4\xE2\x82\xAC\xF0\x9F\x94\xA7\n";
+  program += "  - {shape: hold, seconds: 0.01}\n";
+  std::ofstream(directory_ / "long.yaml", std::ios::binary) << program;
+  const Outcome run = Ask("run " + (directory_ / "long.yaml").string());
+  EXPECT_EQ(run.status, 0) << run.errors;
+  EXPECT_EQ(machine_.program(), program);
+}
+
 TEST_F(DaemonCommandsTest, StatusForPeopleAndForPrograms) {
   const Outcome text = Ask("status");
   EXPECT_EQ(text.status, 0) << text.errors;

@@ -63,10 +63,11 @@ Answer ScriptedMachine::Go(MachineState state, Reason reason) {
   return {true, "", ++sequence_, 0, {}};
 }
 
-Answer ScriptedMachine::Run(const ProgramUpload& upload) {
+Answer ScriptedMachine::Run(const ProgramUpload& upload, const std::stop_token& /*unwanted*/) {
   Answer answer = Go(MachineState::kReady, Reason::kProgramEnd);
   if (!answer.accepted) return answer;
   const std::lock_guard lock(mutex_);
+  program_ = upload.text;
   const auto format = upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml;
   PerAxis<PlanLimits> limits;
   for (const AxisFacts& facts : status_.axis_facts) limits.push_back(facts.limits);

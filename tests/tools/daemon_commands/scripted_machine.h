@@ -17,18 +17,23 @@ class ScriptedMachine final : public OperatorDesk {
  public:
   ScriptedMachine();
 
-  Answer Enable() override { return Go(MachineState::kReady, Reason::kNone); }
+  Answer Enable(const std::stop_token&) override { return Go(MachineState::kReady, Reason::kNone); }
   Answer Disable() override { return Go(MachineState::kIdle, Reason::kDisableRequest); }
   Answer Stop() override { return Go(MachineState::kReady, Reason::kOperatorStop); }
   Answer Reload() override { return {true, "nothing has changed"}; }
-  Answer Reset() override { return Go(MachineState::kIdle, Reason::kNone); }
-  Answer Run(const ProgramUpload& upload) override;
+  Answer Reset(const std::stop_token&) override { return Go(MachineState::kIdle, Reason::kNone); }
+  Answer Run(const ProgramUpload& upload, const std::stop_token&) override;
   MachineStatus Status() override;
   std::string MachineFile() override { return {}; }
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
   void Refuse(std::string why);
+  /// Text of the program that ran last.
+  [[nodiscard]] std::string program() {
+    const std::lock_guard lock(mutex_);
+    return program_;
+  }
   /// Requests are accepted and lead to this fault.
   void FailWith(Reason reason, std::string text);
   /// Takes a line of the truth of every cycle run: sync_number and both axes' angles and positions. Called by
@@ -44,6 +49,7 @@ class ScriptedMachine final : public OperatorDesk {
   std::mutex mutex_;
   MachineStatus status_;
   std::string refusal_;
+  std::string program_;
   Reason fault_ = Reason::kNone;
   std::string fault_text_;
   std::shared_ptr<RowFeed> feed_;

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+"""An operator's controls while the log goes into a pipe that nobody reads, and what is said to stderr into another.
+
+    with_a_blocked_log.py CONTOURD CONTOUR MACHINE_FILE CLOCK
+
+Enable, run, stop, disable, status and SIGTERM must work as if nothing were the matter, and what could not be written is counted.
+No time is measured: each step ends, or the test is ended.
+"""
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+PROGRAM = "{shape: circle, radius_mm: 20, feed_mm_min: 600, turns: 50}"
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+def full_pipe():
+    """A pipe that takes not one byte more, and that nobody reads."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    try:
+        while True:
+            os.write(writer, b"." * 4096)
+    except BlockingIOError:
+        pass
+    os.set_blocking(writer, True)
+    return reader, writer
+
+
+class Machine:
+    def __init__(self, contourd, contour, machine_file, clock, scratch, stderr):
+        self.contour, self.socket = contour, str(scratch / "control.sock")
+        fifo = scratch / "log.fifo"
+        os.mkfifo(fifo)
+        self.reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)  # is there, and never reads
+        port = free_port()
+        command = [contourd, "--config", machine_file, "--clock", clock, "--socket", self.socket, "--log", str(fifo)]
+        for override in ["telemetry.publish=false", "realtime.required=false", "telemetry.flight_recorder_s=0",
+                         f"io.modbus.port={port}", f"emulator.io.port={port}"]:
+            command += ["--set", override]
+        self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=stderr)
+
+    def ask(self, *words, expected=0):
+        done = subprocess.run([self.contour, *words, "--socket", self.socket], capture_output=True, text=True, check=False)
+        assert done.returncode == expected, (words, done.returncode, done.stdout, done.stderr)
+        return done.stdout
+
+    def status(self):
+        return json.loads(self.ask("status", "--json"))
+
+    def wait_for(self, state):
+        while True:
+            assert self.process.poll() is None, f"contourd ended with {self.process.returncode}"
+            done = subprocess.run([self.contour, "status", "--json", "--socket", self.socket], capture_output=True, text=True, check=False)
+            if done.returncode == 0:
+                status = json.loads(done.stdout)
+                if status["state"] == state:
+                    return status
+                assert status["state"] != "Faulted", status["reason_text"]
+            time.sleep(0.05)
+
+
+def operate(machine, program):
+    machine.wait_for("Idle")
+    machine.ask("enable")
+    machine.wait_for("Ready")
+    run = subprocess.Popen([machine.contour, "run", str(program), "--socket", machine.socket], stdout=subprocess.DEVNULL,
+                           stderr=subprocess.DEVNULL)
+    machine.wait_for("Running")
+    before = machine.status()["cycle"]
+    while machine.status()["cycle"] == before:  # the status goes with the cycle, not with what is written
+        pass
+    # A stop is obeyed while everything behind the cycle is blocked, and the machine then holds.
+    machine.ask("stop")
+    stopped = machine.wait_for("Ready")
+    assert stopped["reason"] == "operator_stop", stopped["reason"]
+    assert run.wait() == 1, run.returncode
+    machine.ask("enable")
+    machine.ask("disable")
+    log = machine.wait_for("Idle")["log"]
+    assert log["waiting_cycles"] + log["lost_cycles"] > 0, f"the pipe was to be blocked: {log}"
+    return log
+
+
+def main():
+    contourd, contour, machine_file, clock = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as scratch:
+        for blocked_stderr in (False, True):
+            folder = Path(scratch, str(blocked_stderr))
+            folder.mkdir()
+            program, messages = folder / "circle.yaml", folder / "messages.txt"
+            program.write_text(PROGRAM, encoding="utf-8")
+            pipe = full_pipe()
+            with open(messages, "w", encoding="utf-8") as file:
+                machine = Machine(contourd, contour, machine_file, clock, folder, pipe[1] if blocked_stderr else file)
+            try:
+                log = operate(machine, program)
+                machine.process.send_signal(signal.SIGTERM)
+                assert machine.process.wait() == 0, machine.process.returncode
+            finally:
+                machine.process.kill()
+                machine.process.wait()
+            said = messages.read_text(encoding="utf-8")
+            print(f"{clock}, stderr {'blocked' if blocked_stderr else 'free'}: {log}")
+            assert blocked_stderr or "notes are not in the log" in said, said
+            for end in (*pipe, machine.reader):
+                os.close(end)
+
+
+if __name__ == "__main__":
+    main()
