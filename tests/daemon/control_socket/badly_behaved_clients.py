@@ -18,6 +18,12 @@ from pathlib import Path
 FLOODED_MB = 64  # what the daemon may take more: rows, programs and lines of all clients together
 
 
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
 class Client:
     def __init__(self, path):
         self.socket = socket.socket(socket.AF_UNIX)
@@ -111,11 +117,13 @@ def main():
     contourd, contour, machine_file, *chosen = sys.argv[1:]
     cases = {"flood": lambda: flood(path, daemon.pid), "nonsense": lambda: nonsense(path), "silence": lambda: silence(path)}
     with tempfile.TemporaryDirectory() as scratch:
-        path = str(Path(scratch, "control.sock"))
+        path, port = str(Path(scratch, "control.sock")), free_port()
         with open(Path(scratch, "messages.txt"), "w", encoding="utf-8") as messages:
-            daemon = subprocess.Popen([contourd, "--config", machine_file, "--clock", "lockstep", "--socket", path, "--set", "io={}",
-                                       "--set", "telemetry.publish=false", "--set", "telemetry.flight_recorder_s=0"],
-                                      stdout=messages, stderr=messages)
+            command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", path]
+            for override in ["telemetry.publish=false", "telemetry.flight_recorder_s=0", f"io.modbus.port={port}",
+                             f"emulator.io.port={port}"]:
+                command += ["--set", override]
+            daemon = subprocess.Popen(command, stdout=messages, stderr=messages)
         try:
             while subprocess.run([contour, "status", "--socket", path], capture_output=True, check=False).returncode != 0:
                 assert daemon.poll() is None, Path(scratch, "messages.txt").read_text(encoding="utf-8")
