@@ -24,6 +24,7 @@ except ImportError:
     sys.exit(77)
 
 from peer_drive.bench import PeerBench  # noqa: E402
+from peer_drive.printed_bounds import PrintedBounds  # noqa: E402
 
 FIT_SYNCS = 100  # of the path before the fault
 PATIENCE_SYNCS = 6000
@@ -44,16 +45,20 @@ def cases():
     slow = 0.2
     for mode in ("cst", "csp"):
         tail = "" if mode == "cst" else "_csp"
-        yield Case(f"frozen_at_0.2{tail}", "freeze {}", "frozen", ("feedback_frozen", "torque_without_motion"), slow, mode=mode)
-        yield Case(f"jump_of_0.2mm{tail}", "jump {} 0.2", "jump", ("feedback_jump",), slow, mode=mode)
-        yield Case(f"jump_back_of_0.2mm{tail}", "jump {} -0.2", "jump", ("feedback_jump",), slow, mode=mode)
-        yield Case(f"lost_torque_unseen{tail}", "lose_torque {} demand", "lost torque", ("torque_without_motion", "feedback_frozen"),
+        yield Case(f"frozen_at_0.2{tail}", "freeze {}", "encoder frozen", ("feedback_frozen", "torque_without_motion"), slow, mode=mode)
+        yield Case(f"jump_of_0.2mm{tail}", "jump {} 0.2", "encoder jumps", ("feedback_jump",), slow, mode=mode)
+        yield Case(f"jump_back_of_0.2mm{tail}", "jump {} -0.2", "encoder jumps", ("feedback_jump",), slow, mode=mode)
+        yield Case(f"lost_torque_unseen{tail}", "lose_torque {} demand", "torque lost", ("torque_without_motion", "feedback_frozen"),
                    slow, mode=mode)
-        yield Case(f"lost_torque_reported{tail}", "lose_torque {} true", "lost torque",
+        yield Case(f"lost_torque_reported{tail}", "lose_torque {} true", "torque lost",
                    ("torque_not_delivered", "torque_without_motion"), slow, mode=mode)
-        yield Case(f"reversed{tail}", "reverse {}", "reversed", ("feedback_reversed", "feedback_jump"), 10.0, mode=mode)
-        yield Case(f"frozen_at_10{tail}", "freeze {}", "frozen", ("feedback_frozen", "torque_without_motion"), 10.0, mode=mode)
-        yield Case(f"frozen_at_rest{tail}", "freeze {}", "frozen", None, 0.0, mode=mode)
+        yield Case(f"reversed{tail}", "reverse {}", "encoder reversed", ("feedback_reversed", "feedback_jump"), 10.0, mode=mode)
+        yield Case(f"frozen_at_10{tail}", "freeze {}", "encoder frozen", ("feedback_frozen", "torque_without_motion"), 10.0, mode=mode)
+        yield Case(f"frozen_at_rest{tail}", "freeze {}", "encoder frozen", None, 0.0, mode=mode)
+        yield Case(f"ignores_target{tail}", "ignore {}", "drive tells of it", ("drive_not_following", "torque_not_delivered"), 10.0,
+                   mode=mode)
+        yield Case(f"mode_changed{tail}", f"mode {{}} {8 if mode == 'cst' else 10}", "drive tells of it",
+                   ("mode_changed", "torque_not_delivered"), 10.0, mode=mode)
         yield Case(f"emcy_4210{tail}", "emcy {} 0x4210", "", ("drive_emergency",), 10.0, mode=mode)
         yield Case(f"restart_in_motion{tail}", "restart {} 0", "", ("drive_restarted", "stale_feedback"), 50.0, axis="y", mode=mode,
                    loses_reference=True)
@@ -68,28 +73,22 @@ class Outcome:
         begin = next(i for i, row in enumerate(rows) if row["sync"] >= fault_sync)
         own = [row[axis] for row in rows]
         before = own[max(0, begin - FIT_SYNCS):begin]
-        self.feed_m_s = (before[-1].motor_m - before[0].motor_m) / (1e-3 * (len(before) - 1))
-        origin_m = own[begin].motor_m
+        self.feed_m_s = (before[-1].table_m - before[0].table_m) / (1e-3 * (len(before) - 1))
+        origin_m = own[begin].table_m
         off = next((i for i in range(begin, len(own)) if not own[i].torque_is_on), None)
         end = off if off is not None else len(own) - 1
 
         def departure(i):
-            return abs(own[i].motor_m - origin_m - self.feed_m_s * 1e-3 * (i - begin))
+            return abs(own[i].table_m - origin_m - self.feed_m_s * 1e-3 * (i - begin))
 
         self.departure_mm = 1e3 * max(departure(i) for i in range(begin, end + 1))
         self.off_after_ms = None if off is None else off - begin
         rest = next((i for i in range(end, len(own)) if all(abs(a.velocity_m_s) < 1e-4 for a in own[i:i + 50])), len(own) - 1)
-        self.travel_mm = 1e3 * abs(own[rest].motor_m - origin_m)
+        self.travel_mm = 1e3 * abs(own[rest].table_m - origin_m)
         self.speed_mm_s = 1e3 * max(abs(a.velocity_m_s) for a in own[begin:rest + 1])
         self.torque_Nm = max(abs(a.torque_Nm) for a in own[begin:end + 1])
         self.rest_after_ms = rest - begin
         self.stays_off = off is None or not any(a.torque_is_on for a in own[off:])
-
-
-def bound_of(check, row, axis, feed_mm_s):
-    """Departure [mm] that `contour check` prints for a fault at a feed; None when it prints none."""
-    del check, row, axis, feed_mm_s
-    return None
 
 
 def program_of(case):
@@ -115,15 +114,24 @@ def inject(bench, case):
 
 
 def wait_for_end(bench, case, sync):
-    """Until the axis is off and at rest, or far too late."""
+    """Until the axis is off and at rest, or time stands still in another state, or far too late."""
+    seen = {"sync": None, "times": 0}
+
     def ended():
         status = bench.peer("status")
-        axis = status["axes"][case.axis]
-        return axis["off_and_at_rest"] or status["sync_number"] > sync + PATIENCE_SYNCS or (
-            bench.processes["run"].poll() is not None)
+        stands = status["sync_number"] == seen["sync"] and bench.processes["run"].poll() is not None
+        seen.update(sync=status["sync_number"], times=seen["times"] + 1 if stands else 0)
+        return (status["axes"][case.axis]["off_and_at_rest"] or status["sync_number"] > sync + PATIENCE_SYNCS
+                or seen["times"] >= 10)
 
     bench.wait_for(f"{case.name}: the axis to rest", ended, pause_s=0.1)
     bench.wait_for("run to say how it ended", lambda: bench.processes["run"].poll() is not None, pause_s=0.1)
+
+
+def displacement_mm(bench, case):
+    """What the daemon believes less what is, of an axis whose count began where the truth does."""
+    believed_m = next(axis["position_m"] for axis in bench.status()["axes"] if axis["name"] == case.axis)
+    return 1e3 * (believed_m - bench.truth()[-1][case.axis].motor_m)
 
 
 def recovers(bench, case):
@@ -139,31 +147,33 @@ def recovers(bench, case):
     bench.enable()
     short = bench.write_program("short", {"shape": "line", "dx_mm": -0.5, "dy_mm": -0.5, "feed_mm_min": 600})
     if case.loses_reference:
+        print(f"    {bench.status()['state']} again, {displacement_mm(bench, case):.3f} mm displaced", flush=True)
         expect(not bench.try_ask("run", short), f"{case.name}: the axis lost its reference, and a program was accepted")
         return
     bench.ask("run", short)
 
 
-def say(case, outcome, status, bound_mm):
+def say(case, outcome, status, bound):
     off = "torque never off" if outcome.off_after_ms is None else f"torque off after {outcome.off_after_ms} ms"
-    bound = "no bound printed" if bound_mm is None else f"bound {bound_mm:g} mm"
-    print(f"{case.name}: {off}, departure {outcome.departure_mm:.3f} mm ({bound}), at rest after {outcome.rest_after_ms} ms and "
-          f"{outcome.travel_mm:.3f} mm, at most {outcome.speed_mm_s:.1f} mm/s and {outcome.torque_Nm:.2f} Nm; {status['state']}, "
+    printed = "none printed" if bound is None else f"{bound[0]:g} mm, {bound[1] or 0:g} ms"
+    print(f"{case.name}: {off}, departure {outcome.departure_mm:.4f} mm (bounds: {printed}), at rest after {outcome.rest_after_ms} ms "
+          f"and {outcome.travel_mm:.3f} mm, at most {outcome.speed_mm_s:.1f} mm/s and {outcome.torque_Nm:.2f} Nm; {status['state']}, "
           f"{status.get('reason')}", flush=True)
 
 
-def run_case(bench, case, check, before):
+def run_case(bench, case, bounds, before):
     bench.enable()
     sync = inject(bench, case)
     wait_for_end(bench, case, sync)
     status = bench.status()
     outcome = Outcome(bench.truth(sync - FIT_SYNCS - 1), sync, case.axis)
-    bound_mm = bound_of(check, case.row, case.axis, case.feed_mm_s) if case.row else None
-    say(case, outcome, status, bound_mm)
-    problems = judge(case, outcome, status, bound_mm)
+    bound = bounds.of(case.axis, case.row, case.feed_mm_s) if case.row else None
+    say(case, outcome, status, bound)
+    problems = judge(case, outcome, status, bound)
     if before:
         try:
-            recovers(bench, case)
+            if status["state"] == "Faulted":
+                recovers(bench, case)
         except (BenchError, AssertionError) as error:
             print(f"    afterwards: {error}", flush=True)
         return []
@@ -172,22 +182,24 @@ def run_case(bench, case, check, before):
     return problems
 
 
-def judge(case, outcome, status, bound_mm):
+def judge(case, outcome, status, bound):
     problems = []
     if case.reasons is None:
-        # A still position at rest is what it should be: nothing may happen, or it is found when the torque says so.
-        if outcome.departure_mm > (bound_mm or 0.0):
-            problems.append(f"departure {outcome.departure_mm:.3f} mm at rest")
-        return problems
-    if status["state"] != "Faulted" or status["reason"] not in case.reasons:
-        problems.append(f"{status['state']} with reason {status['reason']!r}, not Faulted with one of {case.reasons}")
-    if outcome.off_after_ms is None or not outcome.stays_off:
-        problems.append("the torque did not go off and stay off")
-    if case.row:
-        if bound_mm is None:
-            problems.append(f"contour check prints no bound for {case.row!r} at {case.feed_mm_s} mm/s")
-        elif outcome.departure_mm > bound_mm:
-            problems.append(f"departure {outcome.departure_mm:.3f} mm is beyond the bound of {bound_mm:g} mm")
+        # Where nothing asks for motion a standing position is what it should be.
+        if status["state"] != "Ready":
+            problems.append(f"{status['state']} with reason {status['reason']!r}")
+    else:
+        if status["state"] != "Faulted" or status["reason"] not in case.reasons:
+            problems.append(f"{status['state']} with reason {status['reason']!r}, not Faulted with one of {case.reasons}")
+        if outcome.off_after_ms is None or not outcome.stays_off:
+            problems.append("the torque did not go off and stay off")
+    if case.row and bound is None:
+        problems.append(f"contour check prints no bound for {case.row!r} at {case.feed_mm_s} mm/s")
+    elif case.row:
+        if outcome.departure_mm > bound[0]:
+            problems.append(f"departure {outcome.departure_mm:.4f} mm is beyond the bound of {bound[0]:g} mm")
+        if case.reasons and bound[1] and outcome.off_after_ms is not None and outcome.off_after_ms > bound[1]:
+            problems.append(f"torque off after {outcome.off_after_ms} ms is beyond the bound of {bound[1]:g} ms")
     return problems
 
 
@@ -205,7 +217,7 @@ def main():
         if not of_mode:
             continue
         with PeerBench(arguments.programs, os.environ["OUT"], mode=mode) as bench:
-            check = bench.contour("check", bench.config, "--set", f"axes.x.drive.mode={mode}", "--set", f"axes.y.drive.mode={mode}")
+            bounds = PrintedBounds(bench.contour("check", bench.config, "--set", f"axes.x.drive.mode={mode}", "--set", f"axes.y.drive.mode={mode}"))
             up = False
             for case in of_mode:
                 try:
@@ -213,7 +225,7 @@ def main():
                         bench.stop_all()
                         bench.bring_up()
                         up = not arguments.before
-                    problems = run_case(bench, case, check, arguments.before)
+                    problems = run_case(bench, case, bounds, arguments.before)
                 except (BenchError, AssertionError) as error:
                     problems = [str(error)]
                 for problem in problems:

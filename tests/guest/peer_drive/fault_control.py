@@ -2,12 +2,13 @@
 
     [at SYNC | in SYNCS | past AXIS MM] FAULT
     freeze AXIS | jump AXIS MM | reverse AXIS | lose_torque AXIS true|demand | weaken AXIS SHARE
-    restart AXIS BOOT_MS | emcy AXIS CODE | fail AXIS CODE | mend AXIS
+    ignore AXIS | mode AXIS NUMBER | restart AXIS BOOT_MS | emcy AXIS CODE | fail AXIS CODE | mend AXIS
     status | end
 
 `in` counts SYNCs from now; `past` waits until the table is that far from where it stood when the line came, in the direction of the
 sign. "lose_torque demand": 0x6077 goes on showing what was asked for; "true": it shows what is. The answer to a fault that waits
-comes at once; status says at which SYNC each was done.
+comes at once; status says at which SYNC each was done. "ignore": the drive stands or coasts and takes bit 12 of its statusword back;
+"mode": it falls into another mode of operation and shows it in 0x6061 only.
 """
 import json
 import socket
@@ -106,6 +107,15 @@ def _weaken(drive, share):
     drive.servo.parameters.torque_constant_rel = float(share)
 
 
+def _ignore(drive):
+    drive.servo.ignores_target = True
+
+
+def _mode(drive, number):
+    drive.servo.mode = int(number)
+    drive.servo.target_position_counts = drive.servo.position_counts
+
+
 def _fail(drive, code):
     drive.emergency(int(code, 0))
     drive.servo.fail()
@@ -114,6 +124,7 @@ def _fail(drive, code):
 def _mend(drive):
     drive.servo.gives_torque = True
     drive.servo.reports_demand = False
+    drive.servo.ignores_target = False
     drive.servo.encoder.mend()
 
 
@@ -123,6 +134,8 @@ ACTIONS = {
     "reverse": lambda drive: drive.servo.encoder.reverse(drive.servo.plant.angle_rad),
     "lose_torque": _lose_torque,
     "weaken": _weaken,
+    "ignore": _ignore,
+    "mode": _mode,
     "restart": lambda drive, boot_ms: drive.boot(float(boot_ms)),
     "emcy": lambda drive, code: drive.emergency(int(code, 0)),
     "fail": _fail,

@@ -62,6 +62,7 @@ class Servo:
         # What breaks
         self.gives_torque = True
         self.reports_demand = False
+        self.ignores_target = False
         self.power_up()
 
     def power_up(self):
@@ -93,7 +94,7 @@ class Servo:
     @property
     def statusword(self):
         word = STATE_BITS[self.state] | VOLTAGE_ENABLED | REMOTE
-        if self.state == ENABLED and self.enabled_ms >= self.parameters.follow_ms:
+        if self.state == ENABLED and self.enabled_ms >= self.parameters.follow_ms and not self.ignores_target:
             word |= FOLLOWS_TARGET
         return word
 
@@ -175,7 +176,7 @@ class Servo:
             if self.target_position_counts is None:
                 self.target_position_counts = self.position_counts
             start = self._interpolated if self._interpolated is not None else self.position_counts
-            goal = self.target_position_counts
+            goal = start if self.ignores_target else self.target_position_counts
         else:
             self._interpolated = None
             start = goal = None
@@ -243,6 +244,8 @@ class Servo:
         self._filter_counts = counts
         self._filter_rad_s += (1.0 - math.exp(-control_s * 1000.0 / p.velocity_filter_ms)) * (raw_rad_s - self._filter_rad_s)
         if self.state == ENABLED and self.mode == CST:
+            if self.ignores_target:
+                return 0.0
             return self.target_torque_per_mille / 1000.0 * p.rated_torque_Nm
         if self.state == ENABLED and self.mode == CSP:
             error_rad = (reference_counts - counts) * self.rad_per_count
