@@ -14,7 +14,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from machine_bench import BenchError, expect  # noqa: E402
 
 try:
-    import can  # noqa: F401
     import canopen  # noqa: F401
 except ImportError:
     print("SKIPPED: no python-canopen; tools/setup --all puts it into build/venv")

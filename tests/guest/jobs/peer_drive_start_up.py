@@ -12,7 +12,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from machine_bench import BenchError, expect  # noqa: E402
 
 try:
-    import can  # noqa: F401
     import canopen  # noqa: F401
 except ImportError:
     print("SKIPPED: no python-canopen; tools/setup --all puts it into build/venv")
@@ -45,7 +44,7 @@ CASES = (
 
 def start_up(bench, case):
     bench.machine_settings = list(case.machine)
-    bench.settings = list(case.settings)
+    bench.settings += case.settings
     bench.start_emulator()
     bench.start_daemon()
     state, said = bench.start_outcome()

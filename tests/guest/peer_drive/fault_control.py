@@ -125,6 +125,8 @@ def _mend(drive):
     drive.servo.gives_torque = True
     drive.servo.reports_demand = False
     drive.servo.ignores_target = False
+    if drive.servo.mode:
+        drive.servo.mode = drive.node.sdo[0x6060].raw
     drive.servo.encoder.mend()
 
 
