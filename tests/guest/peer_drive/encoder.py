@@ -14,6 +14,7 @@ class Encoder:
         self._zero_counts = 0.0
         self._jump_counts = 0.0
         self._frozen = None
+        self._flickers = False
         self._reversed_about = None
 
     def read(self, angle_rad):
@@ -22,19 +23,20 @@ class Encoder:
         if self._reversed_about is not None:
             exact = 2.0 * self._reversed_about - exact
         count = math.floor(exact + self._jump_counts + self._random.gauss(0.0, self.noise_counts))
-        if self._frozen is not None:
-            if self._frozen == "now":
-                self._frozen = count
-            return self._frozen
-        return count
+        if self._frozen == "now":
+            self._frozen = count
+        if self._frozen is None:
+            return count
+        return self._frozen + (self._random.random() < 0.3 if self._flickers else 0)
 
     def power_up(self, angle_rad):
         """An incremental encoder counts anew from here."""
         if not self.absolute:
             self._zero_counts = angle_rad / (2.0 * math.pi) * self.counts_per_turn + self._offset_counts
 
-    def freeze(self):
-        self._frozen = "now"
+    def freeze(self, flickers=False):
+        """Stands still, or goes to and fro by a count."""
+        self._frozen, self._flickers = "now", flickers
 
     def jump(self, counts):
         self._jump_counts += counts

@@ -1,7 +1,7 @@
 """Faults on command: lines over a local socket, one answer each.
 
     [at SYNC | in SYNCS | past AXIS MM] FAULT
-    freeze AXIS | jump AXIS MM | reverse AXIS | lose_torque AXIS true|demand | weaken AXIS SHARE
+    freeze AXIS [flickering] | jump AXIS MM | reverse AXIS | lose_torque AXIS true|demand | weaken AXIS SHARE
     ignore AXIS | mode AXIS NUMBER | restart AXIS BOOT_MS | emcy AXIS CODE | fail AXIS CODE | mend AXIS
     status | end
 
@@ -131,7 +131,7 @@ def _mend(drive):
 
 
 ACTIONS = {
-    "freeze": lambda drive: drive.servo.encoder.freeze(),
+    "freeze": lambda drive, how="": drive.servo.encoder.freeze(how == "flickering"),
     "jump": _jump,
     "reverse": lambda drive: drive.servo.encoder.reverse(drive.servo.plant.angle_rad),
     "lose_torque": _lose_torque,

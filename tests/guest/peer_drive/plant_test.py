@@ -126,6 +126,9 @@ class EncoderTest(unittest.TestCase):
         self.assertEqual([encoder.read(0.5), encoder.read(1.0)], [86, 86])
         encoder.mend()
         self.assertEqual(encoder.read(1.0), 166)
+        encoder.freeze(flickers=True)
+        self.assertEqual({encoder.read(2.0) for _ in range(50)}, {325, 326})
+        encoder.mend()
         encoder.reverse(1.0)
         self.assertEqual(encoder.read(2.0), 7)
 
