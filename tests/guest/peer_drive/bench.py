@@ -113,6 +113,13 @@ class PeerBench(MachineBench):
         self.start_daemon()
         self.wait_for_state("Idle")
 
+    def enable(self):
+        self.ask("enable")
+        status = self.wait_for_state("Ready", "Faulted")
+        if status["state"] != "Ready":
+            raise BenchError(f"Faulted after enable: {status['reason']}: {status['reason_text']}")
+        return status
+
     def start_outcome(self):
         """How a start came out: the state, or "ended" where the daemon gave up; and all that it said."""
         log = self.work / "contourd.log"
