@@ -4,6 +4,7 @@ import json
 import os
 import select
 import socket
+import subprocess
 import sys
 from pathlib import Path
 
@@ -42,9 +43,16 @@ class PeerBench(MachineBench):
         modes = [f"axes.{name}.drive.mode={mode}" for name in ("x", "y")]
         # LCM has no listener here, and costs the guest more than the cycle does.
         self.settings = ["telemetry.publish=false", *modes, *settings]
+        # y's encoder is incremental: how far it may go before anybody told it where it is. A build of old does not ask.
+        if "unreferenced_travel_mm" in self.describe_keys():
+            self.settings.append("axes.y.limits.unreferenced_travel_mm=150")
         self.machine_settings = list(machine)
         self.peer_control = self.work / "peer.sock"
         self.python = sys.executable
+
+    def describe_keys(self):
+        return subprocess.run([str(self.programs / "contour"), "check", "--describe"], stdin=subprocess.DEVNULL, capture_output=True,
+                              text=True, check=True).stdout
 
     def start_emulator(self):
         """The python machine."""
