@@ -93,7 +93,9 @@ bool BackgroundLog::Close(std::chrono::steady_clock::time_point deadline) noexce
   } catch (const std::exception&) {
     // The log stays without its end, and says so to whoever reads it.
   }
-  return lane_.Finish(deadline) && asked;
+  if (lane_.Finish(deadline)) return asked;
+  writer_->Abandon();
+  return false;
 }
 
 LogStats BackgroundLog::stats() const {

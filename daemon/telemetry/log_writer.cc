@@ -164,6 +164,7 @@ std::int64_t LogWriter::UnixTime_us(std::int64_t grid_time_ns) noexcept {
 }
 
 bool LogWriter::WritePending() noexcept {
+  if (abandoned_) return false;
   std::size_t done = 0;
   while (done < pending_.size()) {
     const ssize_t n = ::write(fd_, pending_.data() + done, pending_.size() - done);

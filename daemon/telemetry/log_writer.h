@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -36,6 +37,8 @@ class LogWriter final : public TelemetrySink {
   void Lose(std::uint64_t cycles, std::uint64_t notes, const char* why) noexcept;
   /// Writes what is pending and the footer. Nothing is written afterwards.
   void Close() noexcept;
+  /// Nothing more is written, not even the end. Does not wait for a write that is stuck.
+  void Abandon() noexcept { abandoned_ = true; }
 
   [[nodiscard]] LogStats stats() const;
 
@@ -48,6 +51,7 @@ class LogWriter final : public TelemetrySink {
 
   std::mutex mutex_;  // guards all but stats_, and is held while writing
   int fd_ = -1;
+  std::atomic<bool> abandoned_{false};
   std::string pending_;
   std::uint64_t pending_cycles_ = 0;
   std::int64_t events_ = 0;

@@ -1,0 +1,133 @@
+// What an operator is told and what the cycle is handed must be the same story, however slow or dead the rest
+// is. The test plays the cycle: it takes requests and publishes records. Nobody empties the telemetry queue.
+#include "daemon/supervisor.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "daemon/make_cycle_config.h"
+
+namespace contour {
+namespace {
+
+class SupervisorTest : public ::testing::Test {
+ protected:
+  static TelemetryConfig Silent() {
+    TelemetryConfig config;
+    config.publish = false;
+    return config;
+  }
+  /// The next cycle: what it takes of the mailbox.
+  Request Take() { return mailbox_.TakeRequest(); }
+  Request TakeWhenItComes() {
+    for (;;) {
+      if (const Request request = Take(); request.kind != RequestKind::kNone) return request;
+      std::this_thread::yield();
+    }
+  }
+  void Publish(std::uint32_t acknowledged, bool ok, MachineState state) {
+    CycleRecord& record = queue_.Reserve()->output.record;
+    record = {};
+    record.cycle = ++cycles_;
+    record.state = state;
+    record.acknowledged = acknowledged;
+    record.acknowledged_ok = ok;
+    record.axes.resize(1);
+    queue_.Publish();
+  }
+  std::future<Answer> Enable() {
+    return std::async(std::launch::async, [this] { return supervisor_.Enable(unwanted_.get_token()); });
+  }
+
+  const MachineConfig machine_ = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml");
+  CommandMailbox mailbox_{16, 16};
+  TelemetryQueue queue_{4};
+  TelemetryHub hub_{Silent(), 1000, {"x"}, std::nullopt};
+  Pump pump_{queue_, mailbox_, hub_, 1e-3, {"x"}, {"main"}};
+  ProgramLearning learning_{machine_};
+  Cycle cycle_{MakeCycleConfig(machine_, ControllerName::kPid)};
+  NoIo io_;
+  Loop loop_{{}, cycle_, {}, mailbox_, io_, queue_};
+  Supervisor supervisor_{
+      machine_, ControllerName::kPid, "wall", {}, {mailbox_, queue_, hub_, pump_, loop_, learning_}, {}};
+  std::stop_source unwanted_;
+  std::uint64_t cycles_ = 0;
+};
+
+TEST_F(SupervisorTest, AnswersAndStatusComeThoughNobodyEmptiesTheTelemetryQueue) {
+  for (int i = 0; i < 20; ++i) Publish(0, false, MachineState::kIdle);
+  ASSERT_GT(queue_.dropped(), 0u);
+  auto enabling = Enable();
+  const Request request = TakeWhenItComes();
+  EXPECT_EQ(request.kind, RequestKind::kEnable);
+  Publish(request.sequence, true, MachineState::kEnabling);
+  EXPECT_TRUE(enabling.get().accepted);
+  EXPECT_EQ(supervisor_.Status().record.state, MachineState::kEnabling);
+  EXPECT_EQ(supervisor_.Status().record.cycle, 21u);
+  auto stopping = std::async(std::launch::async, [this] { return supervisor_.Stop(); });
+  const Request stop = TakeWhenItComes();
+  EXPECT_EQ(stop.kind, RequestKind::kStop);
+  Publish(stop.sequence, true, MachineState::kIdle);
+  EXPECT_TRUE(stopping.get().accepted);
+}
+
+TEST_F(SupervisorTest, WhatTheCycleDoesNotTakeInTimeItNeverGets) {
+  const Answer answer = Enable().get();
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_NE(answer.reason.find("withdrawn"), std::string::npos) << answer.reason;
+  EXPECT_EQ(Take().kind, RequestKind::kNone) << "the loop lives again, and nothing happens";
+}
+
+TEST_F(SupervisorTest, WhatNobodyWantsAnyMoreIsNotHandedToTheCycle) {
+  unwanted_.request_stop();
+  EXPECT_FALSE(Enable().get().accepted) << "before it was asked of the cycle";
+  unwanted_ = std::stop_source();
+  auto enabling = Enable();
+  while (!mailbox_.request_waiting()) std::this_thread::yield();
+  unwanted_.request_stop();
+  EXPECT_FALSE(enabling.get().accepted) << "while it waited for the cycle";
+  EXPECT_EQ(Take().kind, RequestKind::kNone);
+}
+
+TEST_F(SupervisorTest, WhatTheCycleHasTakenIsAnsweredByItWhoeverIsGone) {
+  auto enabling = Enable();
+  const Request request = TakeWhenItComes();
+  unwanted_.request_stop();
+  EXPECT_EQ(enabling.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
+  Publish(request.sequence, true, MachineState::kEnabling);
+  EXPECT_TRUE(enabling.get().accepted);
+}
+
+TEST_F(SupervisorTest, AStopMakesVoidWhatTheCycleHasNotTaken) {
+  auto enabling = Enable();
+  while (!mailbox_.request_waiting()) std::this_thread::yield();
+  const std::uint32_t stop = mailbox_.PostStop();
+  EXPECT_EQ(Take().sequence, stop);
+  Publish(stop, true, MachineState::kIdle);
+  EXPECT_EQ(Take().kind, RequestKind::kNone);
+  const Answer answer = enabling.get();
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_NE(answer.reason.find("a stop came first"), std::string::npos) << answer.reason;
+}
+
+TEST_F(SupervisorTest, WhoeverWaitsWhenTheLoopEndsIsToldSo) {
+  auto enabling = Enable();
+  while (!mailbox_.request_waiting()) std::this_thread::yield();
+  supervisor_.LoopEnded();
+  EXPECT_EQ(enabling.get().reason, "contourd is ending");
+}
+
+TEST_F(SupervisorTest, AStopStaysAskedForWhileTheCycleDoesNotTakeIt) {
+  const Answer answer = supervisor_.Stop();
+  EXPECT_FALSE(answer.accepted) << "nobody has obeyed it";
+  EXPECT_EQ(Take().kind, RequestKind::kStop) << "the loop lives again";
+}
+
+}  // namespace
+}  // namespace contour
