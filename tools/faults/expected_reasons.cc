@@ -21,7 +21,7 @@ constexpr std::array kRows{
     Expectation{F::kStatusBitFault,          kMayStop, kMayStop, {R::kDriveFault, R::kDriveLeftEnabled}},
     Expectation{F::kSetpointLost,            kGoesOn,  kGoesOn,  {}},
     Expectation{F::kSetpointsLost,           kStops,   kStops,   {R::kDriveLostMaster, R::kDriveLeftEnabled}},
-    Expectation{F::kHeartbeatsLost,          kStops,   kStops,   {R::kHeartbeatLost}},
+    Expectation{F::kHeartbeatsLost,          kMayStop, kMayStop,  {R::kHeartbeatLost}},
     Expectation{F::kBusDown,                 kStops,   kStops,   {R::kBusDown, R::kSendFailed}},
     Expectation{F::kFloodBurst,              kMayStop, kMayStop, {R::kStaleFeedback, R::kFeedbackJump}},
     Expectation{F::kFlood,                   kStops,   kStops,   {R::kStaleFeedback, R::kSendFailed}},

@@ -40,7 +40,11 @@ void TruthWatch::Follow(const CycleRecord& record, const TruthRow& newest, bool 
     const AxisTruth& truth = newest.axes[i];
     if (holds) {
       const ReferencePoint& r = record.axes[i].reference;
-      a.commanded_m = r.position_m + r.velocity_m_s * (newest.time_s - reference_s);
+      const double commanded_m = r.position_m + r.velocity_m_s * (newest.time_s - reference_s);
+      // Broken before anything was commanded: what is held is where the axis stands, whatever its encoder
+      // calls that.
+      if (begun_ && !a.has_command) a.stands_m = truth.motor_position_m - commanded_m;
+      a.commanded_m = commanded_m + a.stands_m;
       a.has_command = true;
     }
     if (!begun_ || !UnderTorque(truth)) continue;

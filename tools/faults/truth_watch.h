@@ -39,6 +39,7 @@ class TruthWatch {
   struct Axis {
     double commanded_m = 0.0;
     bool has_command = false;
+    double stands_m = 0.0;  ///< true position less commanded, of a fault that came first
     double departure_m = 0.0;
     double moving_until_s = 0.0;
   };
