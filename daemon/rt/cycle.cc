@@ -67,6 +67,7 @@ Cycle::Cycle(const CycleConfig& config)
   }
   bus_nodes_.resize(config.master.buses.size());
   for (const AxisDriveConfig& a : config.master.axes) bus_nodes_[a.bus].Add(a.drive.node_id);
+  for (const Reason r : config.unsupervised) unsupervised_[static_cast<std::size_t>(r)] = true;
   const std::size_t n = axes_.size();
   control_in_.reference.resize(n);
   control_in_.friction.resize(n);
@@ -253,12 +254,13 @@ FaultSeen Cycle::FindFault() const noexcept {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& status = master_.status()[i];
     // Why it stopped says more than that it did.
-    if (status.lost_master) return {Reason::kDriveLostMaster, where};
-    if (status.fault) return {Reason::kDriveFault, where};
-    if (status.emergency >= EmergencyReaction::kQuickStop)
+    if (status.lost_master && Acts(Reason::kDriveLostMaster)) return {Reason::kDriveLostMaster, where};
+    if (status.fault && Acts(Reason::kDriveFault)) return {Reason::kDriveFault, where};
+    if (status.emergency >= EmergencyReaction::kQuickStop && Acts(Reason::kDriveEmergency))
       return {Reason::kDriveEmergency, where, status.emergency == EmergencyReaction::kVoltageOff};
-    if (state != MachineState::kEnabling && status.left_enabled) return {Reason::kDriveLeftEnabled, where};
-    if (status.not_following) return {Reason::kDriveNotFollowing, where};
+    if (state != MachineState::kEnabling && status.left_enabled && Acts(Reason::kDriveLeftEnabled))
+      return {Reason::kDriveLeftEnabled, where};
+    if (status.not_following && Acts(Reason::kDriveNotFollowing)) return {Reason::kDriveNotFollowing, where};
     if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
   }
   return {};
@@ -268,24 +270,26 @@ FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
   for (std::size_t b = 0; b < in.buses.size(); ++b) {
     const auto where = static_cast<std::uint8_t>(b);
     if (in.buses[b].bus_off) return {Reason::kBusOff, where};
-    if (!in.buses[b].up) return {Reason::kBusDown, where};
-    if (in.buses[b].send_failures != 0) return {Reason::kSendFailed, where};
+    if (!in.buses[b].up && Acts(Reason::kBusDown)) return {Reason::kBusDown, where};
+    if (in.buses[b].send_failures != 0 && Acts(Reason::kSendFailed)) return {Reason::kSendFailed, where};
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& s = master_.status()[i];
     const bool left_operational = s.configured && s.nmt != NmtState::kOperational;
-    if (s.restarted) return {Reason::kDriveRestarted, where};
-    if (s.lost_master && left_operational) return {Reason::kDriveLostMaster, where};
-    if (s.heartbeat_lost) return {Reason::kHeartbeatLost, where};
-    if (left_operational) return {Reason::kDriveLeftOperational, where};
+    if (s.restarted && Acts(Reason::kDriveRestarted)) return {Reason::kDriveRestarted, where};
+    if (s.lost_master && left_operational && Acts(Reason::kDriveLostMaster))
+      return {Reason::kDriveLostMaster, where};
+    if (s.heartbeat_lost && Acts(Reason::kHeartbeatLost)) return {Reason::kHeartbeatLost, where};
+    if (left_operational && Acts(Reason::kDriveLeftOperational))
+      return {Reason::kDriveLeftOperational, where};
   }
   return {};
 }
 
 FaultSeen Cycle::FindStop() const noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i)
-    if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath)
+    if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath && Acts(Reason::kDriveEmergency))
       return {Reason::kDriveEmergency, static_cast<std::uint8_t>(i)};
   return {};
 }

@@ -86,6 +86,9 @@ class Cycle {
   [[nodiscard]] FaultSeen FindLost(const CycleInput& in) const noexcept;
   [[nodiscard]] FaultSeen FindStop() const noexcept;
   [[nodiscard]] std::uint8_t FindStuck() const noexcept;
+  [[nodiscard]] bool Acts(Reason fault) const noexcept {
+    return !unsupervised_[static_cast<std::size_t>(fault)];
+  }
   [[nodiscard]] bool PathBeginsHere() const noexcept;
   void CarryOut(const Orders& orders) noexcept;
   [[nodiscard]] ReferencePoint AtSample(std::size_t axis) const noexcept;
@@ -109,6 +112,7 @@ class Cycle {
   TorqueGuard guard_;
   bool csp_;
   bool by_reported_torque_;  // the estimators are told what the drives report instead of what they were sent
+  std::array<bool, 128> unsupervised_{};  ///< by reason; all false but in tests
   std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 

@@ -8,6 +8,7 @@
 #include "core/axis.h"
 #include "core/controller_name.h"
 #include "core/mechanics.h"
+#include "core/reason.h"
 #include "drivers/cia402/drive_master.h"
 #include "estimator/estimator_config.h"
 #include "estimator/friction_config.h"
@@ -34,6 +35,9 @@ struct CycleConfig {
   ControllerConfig control;
   MasterConfig master;
   std::vector<CycleAxisConfig> axes;
+  /// Faults that drives and buses tell of and that are not acted upon: for tests that show what each
+  /// supervisor is good for. No key of a machine file sets it.
+  std::vector<Reason> unsupervised;
 };
 
 }  // namespace contour

@@ -6,6 +6,7 @@
 
 #include "tools/faults/campaign.h"
 #include "tools/faults/report.h"
+#include "tools/faults/supervisor.h"
 
 namespace contour::faults {
 namespace {
@@ -53,12 +54,28 @@ TEST(FaultRun, ALostFrameStopsNothingInEitherMode) {
   }
 }
 
-TEST(FaultRun, WhatNobodySupervisesIsFound) {
+class WithoutSupervisor : public ::testing::TestWithParam<Supervisor> {};
+
+/// The campaign on the fault that the supervisor is there for: holds with it, fails without it.
+TEST_P(WithoutSupervisor, TheCampaignFails) {
   const EmulatedMachineFile file = Example();
-  const RunResult r =
-      RunFault(Case(Fault::kFeedbackFramesLost, Phase::kConstant, 250.0), {&file, 1, "stale_feedback"});
-  EXPECT_FALSE(r.violations.empty());
+  PlanRequest plan;
+  plan.runs = 8;
+  plan.feed_mm_s = 50.0;
+  plan.only = {std::string(Name(GetParam().missed)), std::string(Name(GetParam().where))};
+  const std::vector<FaultCase> cases = Plan(plan, {{"x", 250.0}, {"y", 250.0}});
+  const auto failed = [&](const std::string& without) {
+    std::size_t count = 0;
+    for (const RunResult& r : RunCampaign(cases, {&file, 1, without}, 2))
+      if (!r.violations.empty()) ++count;
+    return count;
+  };
+  EXPECT_EQ(failed(""), 0U);
+  EXPECT_GT(failed(std::string(GetParam().name)), 0U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Each, WithoutSupervisor, ::testing::ValuesIn(Supervisors()),
+                         [](const auto& one) { return std::string(one.param.name); });
 
 TEST(FaultRun, ThreadsChangeNothing) {
   const EmulatedMachineFile file = Example();

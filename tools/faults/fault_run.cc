@@ -45,6 +45,8 @@ class Run {
       if (!broken_ && truth != nullptr) watch_.Pair(e.output.record, *truth);
     });
     result_.c = c;
+    powerless_ = c.fault == Fault::kTorqueLost || c.fault == Fault::kTorqueLostSilently;
+    if (powerless_) watch_.SetPowerless(c.axis);
     const RunBound bound = RunBoundOf(file_.machine, c);
     result_.departure_bound_m = bound.departure_m;
     result_.time_bound_s = bound.time_s;
@@ -239,9 +241,12 @@ class Run {
 
   [[nodiscard]] bool Quiet() {
     const TruthRow& truth = machine_.emulated().truth();
-    return std::all_of(truth.axes.begin(), truth.axes.end(), [](const AxisTruth& a) {
-      return !TruthWatch::UnderTorque(a) || TruthWatch::AtRest(a);
-    });
+    for (std::size_t i = 0; i < truth.axes.size(); ++i) {
+      const AxisTruth& a = truth.axes[i];
+      if (powerless_ && i == c_.axis) continue;
+      if (TruthWatch::UnderTorque(a) && !TruthWatch::AtRest(a)) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] bool Still() {
@@ -363,6 +368,7 @@ class Run {
   bool held_ = false;
   bool broken_ = false;
   bool mended_ = false;
+  bool powerless_ = false;
   bool asked_ = false;
   bool asked_taken_ = false;
   int under_way_ = 0;

@@ -13,12 +13,29 @@ void NoFollowingError(CycleConfig& c) {
 
 void NoStaleness(CycleConfig& c) { c.control.guard.stale_cycles = std::numeric_limits<std::int32_t>::max(); }
 
+template <Reason... kReasons>
+void Unsupervised(CycleConfig& c) {
+  c.unsupervised.insert(c.unsupervised.end(), {kReasons...});
+}
+
 }  // namespace
 
 const std::vector<Supervisor>& Supervisors() {
+  using R = Reason;
   static const std::vector<Supervisor> all{
-      {"following_error", "the guard's distance to the path", NoFollowingError},
-      {"stale_feedback", "the guard's count of cycles without feedback", NoStaleness},
+      {"following_error", "the guard's distance to the path", NoFollowingError, Fault::kTorqueLostSilently},
+      {"stale_feedback", "the guard's count of cycles without feedback", NoStaleness,
+       Fault::kFeedbackFramesLost},
+      {"emergencies", "emergency messages of drives that go on", Unsupervised<R::kDriveEmergency>,
+       Fault::kEmergencyTemperature},
+      {"drive_states", "drives in Fault or not enabled any more",
+       Unsupervised<R::kDriveFault, R::kDriveLeftEnabled>, Fault::kDriveDropsOut},
+      {"not_following", "statusword bit 12", Unsupervised<R::kDriveNotFollowing>, Fault::kDriveWrongMode},
+      {"lost_drives", "boot-up, NMT state, heartbeat, and drives that lost their master",
+       Unsupervised<R::kDriveRestarted, R::kDriveLeftOperational, R::kHeartbeatLost, R::kDriveLostMaster>,
+       Fault::kDriveRestarts, Phase::kIdle},
+      {"bus", "interfaces that are down or take no frames", Unsupervised<R::kBusDown, R::kSendFailed>,
+       Fault::kBusDown},
   };
   return all;
 }

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "daemon/rt/cycle_config.h"
+#include "tools/faults/fault.h"
+#include "tools/faults/phase.h"
 
 namespace contour::faults {
 
@@ -13,6 +15,8 @@ struct Supervisor {
   std::string_view name;
   std::string_view what;
   void (*off)(CycleConfig&);
+  Fault missed;  ///< one that nobody else notices, or only under another name
+  Phase where = Phase::kConstant;
 };
 const std::vector<Supervisor>& Supervisors();
 /// Null when there is none of that name.

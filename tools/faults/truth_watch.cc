@@ -47,7 +47,9 @@ void TruthWatch::Follow(const CycleRecord& record, const TruthRow& newest, bool 
       a.commanded_m = commanded_m + a.stands_m;
       a.has_command = true;
     }
-    if (!begun_ || !UnderTorque(truth)) continue;
+    // Without torque it is off at once, but its departure counts as long as it is commanded.
+    const bool torque = UnderTorque(truth) && (holds || !a.powerless);
+    if (!begun_ || !torque) continue;
     if (a.has_command)
       a.departure_m = std::max(a.departure_m, std::abs(truth.motor_position_m - a.commanded_m));
     if (!AtRest(truth)) a.moving_until_s = since_fault_s();

@@ -21,6 +21,8 @@ class TruthWatch {
   }
   /// The fault is there from now on.
   void Begin(const TruthRow& newest) noexcept;
+  /// From the fault on this axis has no torque, whatever its drive's state.
+  void SetPowerless(std::size_t axis) { axes_[axis].powerless = true; }
   /// Every cycle. `holds`: the machine follows a commanded path; after that the path ends where it had come
   /// to.
   void Follow(const CycleRecord& record, const TruthRow& newest, bool holds) noexcept;
@@ -39,6 +41,7 @@ class TruthWatch {
   struct Axis {
     double commanded_m = 0.0;
     bool has_command = false;
+    bool powerless = false;
     double stands_m = 0.0;  ///< true position less commanded, of a fault that came first
     double departure_m = 0.0;
     double moving_until_s = 0.0;
