@@ -6,6 +6,7 @@
 
 #include "drivers/can/response_time.h"
 #include "drivers/cia301/messages.h"
+#include "drivers/cia402/drive_patrol.h"
 #include "drivers/cia402/drive_script.h"
 #include "drivers/cia402/mode_for.h"
 #include "drivers/cia402/pdo_layout.h"
@@ -13,8 +14,9 @@
 namespace contour {
 namespace {
 
-// One expedited transfer in this time is more than tools beside the master ask for while drives run.
-constexpr std::int64_t kSdoPeriod_ns = 2'000'000;
+// One expedited transfer in this time: what the master asks of running drives, which is no more often, and
+// tools beside it while it is silent.
+constexpr std::int64_t kSdoPeriod_ns = 1000 * std::int64_t{kPatrolGap_us};
 
 enum class Kind { kCyclic, kBackground, kEmergency };
 

@@ -260,6 +260,7 @@ FaultSeen Cycle::FindFault() const noexcept {
       return {Reason::kDriveEmergency, where, status.emergency == EmergencyReaction::kVoltageOff};
     if (state != MachineState::kEnabling && status.left_enabled && Acts(Reason::kDriveLeftEnabled))
       return {Reason::kDriveLeftEnabled, where};
+    if (status.mode_changed && Acts(Reason::kModeChanged)) return {Reason::kModeChanged, where};
     if (status.not_following && Acts(Reason::kDriveNotFollowing)) return {Reason::kDriveNotFollowing, where};
     if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
   }

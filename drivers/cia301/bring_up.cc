@@ -6,9 +6,17 @@
 namespace contour {
 namespace {
 
+bool Absent(std::uint32_t abort_code) noexcept {
+  return abort_code == sdo_abort::kNoObject || abort_code == sdo_abort::kNoSubIndex;
+}
+
+bool CannotBeWritten(std::uint32_t abort_code) noexcept {
+  return abort_code == sdo_abort::kReadOnly || abort_code == sdo_abort::kUnsupportedAccess;
+}
+
 bool Tolerated(Tolerate tolerate, std::uint32_t abort_code) noexcept {
-  const bool absent = abort_code == sdo_abort::kNoObject || abort_code == sdo_abort::kNoSubIndex;
-  const bool read_only = abort_code == sdo_abort::kReadOnly || abort_code == sdo_abort::kUnsupportedAccess;
+  const bool absent = Absent(abort_code);
+  const bool read_only = CannotBeWritten(abort_code);
   switch (tolerate) {
     case Tolerate::kNothing:
       return false;
@@ -22,7 +30,7 @@ bool Tolerated(Tolerate tolerate, std::uint32_t abort_code) noexcept {
   return false;
 }
 
-std::uint32_t Difference(std::uint32_t a, std::uint32_t b) noexcept { return a > b ? a - b : b - a; }
+std::uint32_t Distance(std::uint32_t a, std::uint32_t b) noexcept { return a > b ? a - b : b - a; }
 
 }  // namespace
 
@@ -67,6 +75,8 @@ void BringUp::OnHeartbeat(std::size_t node, NmtState state) noexcept {
       ShowNode(node);
       Fail(BringUpError::kRestarted, 0, 0);
     }
+    // It was given up waiting for, and has not heard what it is being asked. Once: it may boot for ever.
+    ask_again_ = ask_again_ || (configuring() && node == node_ && !states_[node].booted);
     states_[node].booted = phase_ != BringUpPhase::kReset;
   } else if (state == NmtState::kOperational) {
     states_[node].operational = phase_ == BringUpPhase::kStart;
@@ -118,10 +128,14 @@ void BringUp::WaitForBootUp(Frames& out) noexcept {
   step_ = 0;
   ShowNode(0);
   watchdog_ = false;
+  unwatched_ = {};
+  ask_again_ = false;
   BeginStep(out);
 }
 
 void BringUp::Configure(Frames& out) noexcept {
+  if (ask_again_ && transfer_.state() == SdoTransfer::State::kWaiting) BeginTransfer(out);
+  ask_again_ = false;
   switch (transfer_.state()) {
     case SdoTransfer::State::kIdle:
     case SdoTransfer::State::kWaiting:
@@ -130,6 +144,13 @@ void BringUp::Configure(Frames& out) noexcept {
       out.push_back(SdoAbortFrame(nodes_[node_].node_id, step().index, step().sub, sdo_abort::kTimeout));
       const bool silent = phase_ == BringUpPhase::kFind && !states_[node_].booted;
       Fail(silent ? BringUpError::kNoAnswer : BringUpError::kSdoTimeout, 0, 0);
+      return;
+    }
+    case SdoTransfer::State::kSegmented:
+    case SdoTransfer::State::kUnexpected: {
+      out.push_back(SdoAbortFrame(nodes_[node_].node_id, step().index, step().sub, transfer_.abort_code()));
+      const bool segmented = transfer_.state() == SdoTransfer::State::kSegmented;
+      Fail(segmented ? BringUpError::kSegmentedReply : BringUpError::kUnexpectedReply, 0, transfer_.value());
       return;
     }
     case SdoTransfer::State::kDone:
@@ -143,11 +164,11 @@ void BringUp::Configure(Frames& out) noexcept {
 void BringUp::FinishTransfer() noexcept {
   const SdoStep& s = step();
   const bool ok = transfer_.state() == SdoTransfer::State::kDone;
-  if (!ok && !Tolerated(s.tolerate, transfer_.abort_code())) {
-    status_.abort_code = transfer_.abort_code();
-    Fail(BringUpError::kSdoAbort, 0, 0);
-    return;
-  }
+  if (s.action == SdoAction::kCompare) return Compare(s, ok);
+  const bool right_as_it_is =
+      s.or_zero && differs_.known && differs_.found == 0 && CannotBeWritten(transfer_.abort_code());
+  if (!ok && !right_as_it_is && !Tolerated(s.tolerate, transfer_.abort_code())) return Refused(s);
+  if (!ok && s.watchdog) unwatched_ = differs_;
   if (s.action == SdoAction::kWrite) {
     written_ = ok;
     watchdog_ = watchdog_ || (s.watchdog && ok);
@@ -159,6 +180,39 @@ void BringUp::FinishTransfer() noexcept {
   }
 }
 
+// An object that cannot even be read (write-only, say) is written; one that is not there is no concern of the
+// steps behind, where that is tolerated.
+void BringUp::Compare(const SdoStep& s, bool ok) noexcept {
+  const std::uint32_t code = transfer_.abort_code();
+  if (!ok && Absent(code)) {
+    if (!Tolerated(s.tolerate, code)) Refused(s);
+    return;
+  }
+  const std::uint32_t found = transfer_.value() & s.mask;
+  if (ok && found == s.value) {
+    watchdog_ = watchdog_ || s.watchdog;
+    return;
+  }
+  marks_ |= s.mark;
+  if (ok && !differs_.known) differs_ = {true, s.index, s.sub, s.value, found};
+}
+
+void BringUp::Refused(const SdoStep& s) noexcept {
+  status_.abort_code = transfer_.abort_code();
+  const bool read_only = s.action == SdoAction::kWrite && CannotBeWritten(transfer_.abort_code());
+  if (!read_only || !differs_.known) return Fail(BringUpError::kSdoAbort, 0, 0);
+  // Of a mapping, the first entry that differs is what to look at, not the count that was to be cleared.
+  status_.index = differs_.index;
+  status_.sub_index = differs_.sub;
+  Fail(BringUpError::kReadOnlyDiffers, differs_.expected, differs_.found);
+}
+
+bool BringUp::Skipped(const SdoStep& s) const noexcept {
+  if (s.only_if != 0 && (marks_ & s.only_if) == 0) return true;
+  if ((marks_ & s.skip_if) != 0) return true;
+  return (s.after_write && !written_) || (s.action == SdoAction::kRatio && !kept_valid_);
+}
+
 void BringUp::Judge(const SdoStep& s, std::uint32_t found) noexcept {
   switch (s.action) {
     case SdoAction::kEqual:
@@ -167,7 +221,7 @@ void BringUp::Judge(const SdoStep& s, std::uint32_t found) noexcept {
     case SdoAction::kNear:
       if (found == 0) {
         Fail(BringUpError::kRatedTorqueZero, s.value, found);
-      } else if (Difference(found, s.value) > s.tolerance) {
+      } else if (Distance(found, s.value) > s.tolerance) {
         Fail(s.error, s.value, found);
       }
       return;
@@ -187,6 +241,7 @@ void BringUp::Judge(const SdoStep& s, std::uint32_t found) noexcept {
       return;
     case SdoAction::kWrite:
     case SdoAction::kKeep:
+    case SdoAction::kCompare:
     case SdoAction::kRequireWatchdog:
       return;
   }
@@ -196,8 +251,7 @@ void BringUp::NextStep(Frames& out) noexcept {
   const bool again = step().action == SdoAction::kPoll && transfer_.state() == SdoTransfer::State::kDone &&
                      transfer_.value() != step().value;
   if (again) {
-    transfer_.StartRead(nodes_[node_].node_id, step().index, step().sub, nodes_[node_].sdo_cycles);
-    out.push_back(transfer_.request());
+    BeginTransfer(out);
     return;
   }
   ++step_;
@@ -213,19 +267,24 @@ void BringUp::BeginStep(Frames& out) noexcept {
       ++node_;
       step_ = 0;
       watchdog_ = false;
+      unwatched_ = {};
       continue;
     }
     const SdoStep& s = step();
+    if (s.first) {
+      marks_ = 0;
+      differs_ = {};
+    }
     phase_ = s.phase;
     ShowNode(node_);
     status_.index = s.index;
     status_.sub_index = s.sub;
     if (s.action == SdoAction::kRequireWatchdog) {
       if (!watchdog_) {
-        Fail(s.error, 0, 0);
+        Fail(s.error, unwatched_.expected, unwatched_.found);
         return;
       }
-    } else if (!(s.after_write && !written_) && !(s.action == SdoAction::kRatio && !kept_valid_)) {
+    } else if (!Skipped(s)) {
       break;
     }
     ++step_;
@@ -237,6 +296,10 @@ void BringUp::BeginStep(Frames& out) noexcept {
     status_.sub_index = 0;
     return;
   }
+  BeginTransfer(out);
+}
+
+void BringUp::BeginTransfer(Frames& out) noexcept {
   const BringUpNode& n = nodes_[node_];
   const SdoStep& s = step();
   if (s.action == SdoAction::kWrite) {
@@ -267,9 +330,18 @@ void BringUp::Fail(BringUpError error, std::uint32_t expected, std::uint32_t fou
   status_.expected = expected;
   status_.found = found;
   std::uint64_t waited = over_sdo ? transfer_.waited_cycles() : waited_;
-  if (error == BringUpError::kNoAnswer) waited += nodes_[node_].boot_up_cycles;
+  if (error == BringUpError::kNoAnswer) {
+    waited += nodes_[node_].boot_up_cycles;
+    // Each deadline has its key: in milliseconds, for the text.
+    status_.expected = Milliseconds(nodes_[node_].boot_up_cycles);
+    status_.found = Milliseconds(nodes_[node_].sdo_cycles);
+  }
   status_.waited_us = static_cast<std::uint32_t>(waited * cycle_us_);
   transfer_.Cancel();
+}
+
+std::uint32_t BringUp::Milliseconds(std::uint64_t cycles) const noexcept {
+  return static_cast<std::uint32_t>((cycles * cycle_us_ + 500) / 1000);
 }
 
 void BringUp::ShowNode(std::size_t node) noexcept {

@@ -53,7 +53,8 @@ class BringUp {
 
   /// The nodes and their scripts stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
-    keep(states_, phase_, status_, transfer_, node_, step_, waited_, kept_, kept_valid_, written_, watchdog_);
+    keep(states_, phase_, status_, transfer_, node_, step_, waited_, kept_, kept_valid_, written_, watchdog_,
+         marks_, differs_, unwatched_, ask_again_);
   }
 
  private:
@@ -64,7 +65,20 @@ class BringUp {
     NmtState nmt = NmtState::kUnknown;
   };
 
+  /// What a comparison found where it had expected something else.
+  struct Difference {
+    bool known = false;
+    std::uint16_t index = 0;
+    std::uint8_t sub = 0;
+    std::uint32_t expected = 0;
+    std::uint32_t found = 0;
+  };
+
   void OnHeartbeat(std::size_t node, NmtState state) noexcept;
+  void Compare(const SdoStep& step, bool ok) noexcept;
+  void Refused(const SdoStep& step) noexcept;
+  [[nodiscard]] bool Skipped(const SdoStep& step) const noexcept;
+  void BeginTransfer(Frames& out) noexcept;
   void SendNmt(NmtCommand command, Frames& out) noexcept;
   void HoldBack(Frames& out) noexcept;
   void WaitForBootUp(Frames& out) noexcept;
@@ -76,6 +90,7 @@ class BringUp {
   void WaitForOperational() noexcept;
   void Fail(BringUpError error, std::uint32_t expected, std::uint32_t found) noexcept;
   void ShowNode(std::size_t node) noexcept;
+  [[nodiscard]] std::uint32_t Milliseconds(std::uint64_t cycles) const noexcept;
   [[nodiscard]] const SdoStep& step() const noexcept { return nodes_[node_].steps[step_]; }
   [[nodiscard]] bool configuring() const noexcept;
 
@@ -90,8 +105,12 @@ class BringUp {
   std::uint64_t waited_ = 0;  ///< cycles in this phase, or in this step
   std::uint32_t kept_ = 0;    ///< of the last kKeep
   bool kept_valid_ = false;
-  bool written_ = false;   ///< the last write was accepted
-  bool watchdog_ = false;  ///< a watchdog of this node could be set
+  bool written_ = false;    ///< the last write was accepted
+  bool watchdog_ = false;   ///< a watchdog of this node could be set
+  std::uint8_t marks_ = 0;  ///< of the group of steps under way
+  Difference differs_;      ///< the first of that group
+  Difference unwatched_;    ///< of a watchdog that could not be set
+  bool ask_again_ = false;  ///< the node has only now booted: it has not heard the request
 };
 
 }  // namespace contour

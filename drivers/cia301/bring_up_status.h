@@ -77,6 +77,9 @@ enum class BringUpError : std::uint8_t {
   kLimitTooLow = 14,       ///< the drive limits torque below the configured limit
   kRestarted = 15,         ///< boot-up message in the middle of it
   kBusDown = 16,           ///< the bus went down in the middle of it
+  kSegmentedReply = 18,    ///< an object is longer than the four bytes it should have; found is its size
+  kUnexpectedReply = 19,   ///< a reply to something else than was asked; found is its first byte
+  kReadOnlyDiffers = 20,   ///< an object cannot be written and holds something else than it must
 };
 
 }  // namespace contour

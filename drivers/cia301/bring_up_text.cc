@@ -80,6 +80,45 @@ std::string Both(const BringUpStatus& s, std::string_view unit = {}) {
          std::to_string(s.found) + u + " (" + Hex(s.found, 1) + ")";
 }
 
+/// The key of the machine file that says what an object must hold.
+std::string_view KeyOf(std::uint16_t index) noexcept {
+  switch (index) {
+    case 0x1006:
+    case 0x60C2:
+      return "machine.cycle_us";
+    case 0x1015:
+      return "drive.emergency_inhibit_ms";
+    case 0x1016:
+      return "drive.notice_ms";
+    case 0x1017:
+      return "drive.heartbeat_ms";
+    case 0x6007:
+      return "drive.abort_connection_option";
+    case 0x605A:
+      return "drive.quick_stop_option";
+    case 0x6085:
+      return "drive.quick_stop_deceleration_rad_s2";
+    case 0x6060:
+      return "drive.mode";
+    case 0x6072:
+    case 0x60E0:
+    case 0x60E1:
+      return "limits.torque_Nm";
+    default:
+      return {};
+  }
+}
+
+std::string WhatToDo(std::uint16_t index) {
+  const std::string_view key = KeyOf(index);
+  if (!key.empty())
+    return "change it with the maker's tool, or make " + std::string(key) + " of the machine file agree";
+  if (index >= 0x1400 && index < 0x1C00)
+    return "this drive's PDO is fixed and is not the one that is used here; change it with the maker's tool, "
+           "or take a drive whose PDOs can be set up";
+  return "change it with the maker's tool";
+}
+
 std::string NmtName(std::uint32_t state) {
   switch (static_cast<NmtState>(state)) {
     case NmtState::kBootUp:
@@ -101,10 +140,13 @@ std::string Failure(const BringUpStatus& s) {
     case BringUpError::kNone:
       break;
     case BringUpError::kNoAnswer:
-      return "the drive sent no boot-up message and answers no SDO (waited " + Waited(s) +
-             "); check its supply, its node number, the wiring and the bit rate";
+      return "no boot-up message within " + std::to_string(s.expected) +
+             " ms (drive.boot_up_ms) and no reply to SDO within " + std::to_string(s.found) +
+             " ms (drive.sdo_ms); check its supply, its node number, the wiring and the bit rate, or how "
+             "long "
+             "the drive takes to boot";
     case BringUpError::kSdoTimeout:
-      return "no reply to SDO for " + Object(s) + " within " + Waited(s);
+      return "no reply to SDO for " + Object(s) + " within " + Waited(s) + " (drive.sdo_ms)";
     case BringUpError::kSdoAbort:
       return "the drive refused " + Object(s) + ": " + std::string(SdoAbortText(s.abort_code)) +
              " (abort code " + Hex(s.abort_code, 8) + ")";
@@ -128,20 +170,34 @@ std::string Failure(const BringUpStatus& s) {
              Hex(s.found, 1) + " found";
     case BringUpError::kNoLossDetection:
       return "the drive has neither a heartbeat consumer (0x1016) nor an RPDO timeout (0x1400:05), so it "
-             "would not "
-             "notice that the master is gone";
+             "would not notice that the master is gone" +
+             (s.expected == 0 ? std::string()
+                              : "; 0x1016:01 cannot be written: " + Both(s) + ", " + WhatToDo(0x1016));
     case BringUpError::kModeNotTaken:
       return Object(s) + " shows mode " + std::to_string(s.found) + " instead of " +
-             std::to_string(s.expected) + " after " + Waited(s);
+             std::to_string(s.expected) + " after " + Waited(s) + " (drive.mode_ms)";
     case BringUpError::kNotOperational:
       return "the drive did not become Operational within " + Waited(s) +
-             " after NMT start: " + NmtName(s.found);
+             " (drive.operational_ms) after NMT start: " + NmtName(s.found);
     case BringUpError::kLimitTooLow:
       return Object(s) + " in the drive is lower than the axis's torque limit: " + Both(s, "per mille");
     case BringUpError::kRestarted:
       return "the drive restarted (boot-up message) while it was brought up";
     case BringUpError::kBusDown:
       return "the bus went down while the drive was brought up";
+    case BringUpError::kSegmentedReply:
+      return "the drive wants to send " + Object(s) + " in segments" +
+             (s.found == 0 ? std::string() : " (" + std::to_string(s.found) + " bytes)") +
+             ", but this object has at most four bytes; the transfer was aborted. Look whether its "
+             "dictionary "
+             "has something else there";
+    case BringUpError::kUnexpectedReply:
+      return "the drive answered something else than was asked to SDO for " + Object(s) + " (first byte " +
+             Hex(s.found, 2) +
+             "); the transfer was aborted. Look for another program that talks to this drive";
+    case BringUpError::kReadOnlyDiffers:
+      return Object(s) + " cannot be written in this drive and differs: " + Both(s) + "; " +
+             WhatToDo(s.index);
   }
   return "unknown error " + std::to_string(s.error);
 }

@@ -112,9 +112,10 @@ void SdoTransfer::StartWrite(std::uint8_t node_id, std::uint16_t index, std::uin
   Start(SdoWriteFrame(node_id, index, sub, size, value), true, deadline_cycles);
 }
 
-void SdoTransfer::Abort(std::uint32_t code) noexcept {
-  abort_code_ = code;
-  state_ = State::kAborted;
+void SdoTransfer::End(State state, std::uint32_t value, std::uint32_t abort_code) noexcept {
+  state_ = state;
+  value_ = value;
+  abort_code_ = abort_code;
 }
 
 bool SdoTransfer::OnFrame(const CanFrame& frame) noexcept {
@@ -124,15 +125,18 @@ bool SdoTransfer::OnFrame(const CanFrame& frame) noexcept {
 
   const auto command = static_cast<std::uint8_t>(frame.data[0] & 0xE0);
   if (command == kAbort) {
-    Abort(GetU32(frame, 4));
+    End(State::kAborted, 0, GetU32(frame, 4));
   } else if (write_ && command == kDownloadReply) {
     state_ = State::kDone;
   } else if (!write_ && command == kUploadReply && (frame.data[0] & kExpedited) != 0) {
     const unsigned size = (frame.data[0] & kSizeGiven) != 0 ? 4u - ((frame.data[0] >> 2) & 3u) : 4u;
     value_ = GetU32(frame, 4) & (size >= 4 ? 0xFFFFFFFFu : (1u << (8 * size)) - 1u);
     state_ = State::kDone;
+  } else if (!write_ && command == kUploadReply) {
+    const std::uint32_t size = (frame.data[0] & kSizeGiven) != 0 ? GetU32(frame, 4) : 0;
+    End(State::kSegmented, size, sdo_abort::kLengthTooHigh);
   } else {
-    Abort(sdo_abort::kCommandUnknown);  // a segmented reply: no object of ours is longer than four bytes
+    End(State::kUnexpected, frame.data[0], sdo_abort::kCommandUnknown);
   }
   return true;
 }

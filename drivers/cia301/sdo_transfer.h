@@ -15,6 +15,7 @@ inline constexpr std::uint32_t kUnsupportedAccess = 0x06010000;
 inline constexpr std::uint32_t kWriteOnly = 0x06010001;
 inline constexpr std::uint32_t kReadOnly = 0x06010002;
 inline constexpr std::uint32_t kNoObject = 0x06020000;
+inline constexpr std::uint32_t kLengthTooHigh = 0x06070012;
 inline constexpr std::uint32_t kNoSubIndex = 0x06090011;
 }  // namespace sdo_abort
 
@@ -33,7 +34,15 @@ inline constexpr std::uint32_t kNoSubIndex = 0x06090011;
 /// One expedited SDO transfer with one node, as a step machine: frames and elapsed cycles are handed in.
 class SdoTransfer {
  public:
-  enum class State : std::uint8_t { kIdle, kWaiting, kDone, kAborted, kTimedOut };
+  enum class State : std::uint8_t {
+    kIdle,
+    kWaiting,
+    kDone,
+    kAborted,  ///< by the drive
+    kTimedOut,
+    kSegmented,   ///< the drive wants to send in segments; no object of ours is longer than four bytes
+    kUnexpected,  ///< a reply to something else than was asked; value() is its first byte
+  };
 
   void StartRead(std::uint8_t node_id, std::uint16_t index, std::uint8_t sub,
                  std::uint64_t deadline_cycles) noexcept;
@@ -51,13 +60,15 @@ class SdoTransfer {
   void Elapse(std::uint64_t cycles) noexcept;
 
   [[nodiscard]] State state() const noexcept { return state_; }
-  [[nodiscard]] std::uint32_t value() const noexcept { return value_; }            ///< read, in kDone
-  [[nodiscard]] std::uint32_t abort_code() const noexcept { return abort_code_; }  ///< in kAborted
+  /// Read, in kDone; bytes that the drive wants to send, in kSegmented, 0 when it does not say.
+  [[nodiscard]] std::uint32_t value() const noexcept { return value_; }
+  /// In kAborted; what the drive is to be sent, in kSegmented and kUnexpected.
+  [[nodiscard]] std::uint32_t abort_code() const noexcept { return abort_code_; }
   [[nodiscard]] std::uint64_t waited_cycles() const noexcept { return waited_; }
 
  private:
   void Start(const CanFrame& request, bool write, std::uint64_t deadline_cycles) noexcept;
-  void Abort(std::uint32_t code) noexcept;
+  void End(State state, std::uint32_t value, std::uint32_t abort_code) noexcept;
 
   CanFrame request_{};
   std::uint64_t deadline_ = 0;

@@ -19,6 +19,8 @@ enum class DriveMode : std::uint8_t {
 };
 
 constexpr std::string_view Name(DriveMode m) noexcept { return m == DriveMode::kCst ? "cst" : "csp"; }
+/// As 0x6060 and 0x6061 hold it.
+constexpr std::uint8_t ModeOfOperation(DriveMode m) noexcept { return m == DriveMode::kCst ? 10 : 8; }
 constexpr std::string_view Choices(DriveMode) noexcept { return "cst, csp"; }
 constexpr bool FromName(std::string_view name, DriveMode& mode) noexcept {
   if (name == "cst") mode = DriveMode::kCst;

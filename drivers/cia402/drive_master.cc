@@ -65,7 +65,8 @@ DriveMaster::DriveMaster(const MasterConfig& config)
       status_(config.axes.size()),
       sent_torque_Nm_(config.axes.size()),
       axis_of_node_(config.buses.size() * kNodes, kNoAxis),
-      period_ns_(std::int64_t{config.cycle_us} * 1000) {
+      period_ns_(std::int64_t{config.cycle_us} * 1000),
+      patrols_(config.start_up != StartUp::kOfLogFormat4) {
   if (config.axes.empty() || config.axes.size() > kMaxAxes) {
     throw std::invalid_argument("a machine has 1 to " + std::to_string(kMaxAxes) + " axes");
   }
@@ -75,13 +76,15 @@ DriveMaster::DriveMaster(const MasterConfig& config)
   CheckNodes(config);
 
   std::vector<std::vector<BringUpNode>> nodes(config.buses.size());
+  std::vector<std::vector<PatrolledDrive>> patrols(config.buses.size());
   std::vector<std::uint64_t> heartbeat_cycles(config.buses.size(), ~std::uint64_t{0});
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     const AxisDriveConfig& a = config.axes[i];
     Check(a, config);
     const DriveConfig& d = a.drive;
     nodes[a.bus].push_back(DriveScript(d, static_cast<std::uint8_t>(i), a.torque_limit_Nm,
-                                       config.buses[a.bus].master_node_id, config.cycle_us));
+                                       config.buses[a.bus].master_node_id, config.cycle_us,
+                                       config.start_up != StartUp::kOfLogFormat4));
     heartbeat_cycles[a.bus] =
         std::min(heartbeat_cycles[a.bus], MasterHeartbeatCycles(d.notice_ms, config.cycle_us));
     axis_of_node_[a.bus * kNodes + static_cast<std::size_t>(d.node_id)] = static_cast<std::uint8_t>(i);
@@ -103,6 +106,8 @@ DriveMaster::DriveMaster(const MasterConfig& config)
       if (!parsed) Refuse(a, "emergency_reaction: '" + codes + "' is no error code such as 0x4210 or 0x42xx");
       axis.stronger.push_back({*parsed, reaction});
     }
+    axis.patrolled = patrols[a.bus].size();
+    patrols[a.bus].push_back({axis.node_id, ModeOfOperation(d.mode), CyclesOf(d.sdo_ms, config.cycle_us)});
     if (d.follows_target_bit) axis.follow_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
     axis.heartbeat_timeout_cycles = CyclesOf(d.heartbeat_timeout_ms, config.cycle_us);
     axes_.push_back(axis);
@@ -110,6 +115,8 @@ DriveMaster::DriveMaster(const MasterConfig& config)
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
     Bus bus;
     bus.bring_up = BringUp(std::move(nodes[b]), config.cycle_us);
+    if (config.start_up != StartUp::kOfLogFormat4)
+      bus.patrol = DrivePatrol(std::move(patrols[b]), config.cycle_us);
     bus.master_node_id = static_cast<std::uint8_t>(config.buses[b].master_node_id);
     bus.heartbeat_cycles = heartbeat_cycles[b];
     buses_.push_back(std::move(bus));
@@ -135,6 +142,7 @@ void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
   if (stamped.bus >= buses_.size()) return;
   const CanFrame& frame = stamped.frame;
   buses_[stamped.bus].bring_up.OnFrame(frame);
+  buses_[stamped.bus].patrol.OnFrame(frame);
 
   const std::size_t axis = axis_of_node_[stamped.bus * kNodes + (frame.id & 0x7F)];
   if (axis == kNoAxis) return;
@@ -182,6 +190,7 @@ void DriveMaster::OnEmergency(std::size_t axis, const CanFrame& frame) noexcept 
     if (e.error_register == 0) ForgetEmergency(axis);
     return;
   }
+  if (patrols_) buses_[a.bus].patrol.ReadErrors(a.patrolled);
   EmergencyReaction reaction = ReactionTo(e);
   for (const StrongerReaction& r : a.stronger)
     if (r.codes.Holds(e.error_code)) reaction = std::max(reaction, r.reaction);
@@ -245,7 +254,13 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
   AxisFeedback& f = feedback_[axis];
   AxisDriveStatus& s = status_[axis];
   if (!f.fresh) f.age_cycles += static_cast<std::uint32_t>(elapsed_);
-  s.fault = f.valid && IsFaultState(f.drive_state);
+  const bool fault = f.valid && IsFaultState(f.drive_state);
+  if (patrols_) {
+    DrivePatrol& patrol = buses_[axes_[axis].bus].patrol;
+    if (fault && !s.fault) patrol.ReadErrors(axes_[axis].patrolled);
+    s.mode_changed = pdos_run_ && patrol.mode_changed(axes_[axis].patrolled);
+  }
+  s.fault = fault;
   if (cycle_ != axes_[axis].reported_cycle) s.emergency = axes_[axis].reported;
   s.silent_cycles = cycle_ - axes_[axis].alive_cycle;
   WatchFollowing(axis);
@@ -283,6 +298,7 @@ bool DriveMaster::operational() const noexcept {
 
 void DriveMaster::StartBringUp() noexcept {
   bool needed = !operational();
+  for (const AxisDriveStatus& s : status_) needed = needed || s.mode_changed;
   for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
   // Whoever asks for it has seen what the drives reported.
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -293,7 +309,10 @@ void DriveMaster::StartBringUp() noexcept {
   pdos_run_ = false;
   sync_sent_ = false;
   started_ = true;
-  for (Bus& b : buses_) b.bring_up.Start();
+  for (Bus& b : buses_) {
+    b.bring_up.Start();
+    b.patrol.Stop();
+  }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     status_[i] = {};
     feedback_[i].valid = feedback_[i].fresh = feedback_[i].has_scale = false;
@@ -337,6 +356,7 @@ void DriveMaster::StartPdos() noexcept {
   if (pdos_run_) return;
   if (!std::all_of(buses_.begin(), buses_.end(), [](const Bus& b) { return b.bring_up.done(); })) return;
   pdos_run_ = true;
+  for (Bus& b : buses_) b.patrol.Start();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     status_[i].configured = true;
     status_[i].nmt = NmtState::kOperational;
@@ -392,6 +412,7 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
     }
     BringUp::Frames frames;
     bus.bring_up.Step(elapsed_, frames);
+    bus.patrol.Step(elapsed_, frames);
     for (const CanFrame& f : frames) out.push_back({f, index, 0});
     if (started_ && cycle_ >= bus.heartbeat_due) {
       out.push_back({HeartbeatFrame(bus.master_node_id, NmtState::kOperational), index, 0});

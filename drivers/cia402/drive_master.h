@@ -12,6 +12,7 @@
 #include "drivers/cia301/bring_up.h"
 #include "drivers/cia301/messages.h"
 #include "drivers/cia402/drive_config.h"
+#include "drivers/cia402/drive_patrol.h"
 #include "drivers/cia402/drive_walk.h"
 #include "drivers/cia402/scaling.h"
 #include "drivers/cia402/torque_rounding.h"
@@ -60,6 +61,7 @@ struct AxisDriveStatus {
   std::uint16_t emergency_cause = 0;  ///< the code that asks for it
   bool lost_master = false;           ///< said so by an emergency message; until it is brought up or reset
   bool not_following = false;         ///< enabled, but bit 12 of the statusword is missing for too long
+  bool mode_changed = false;          ///< 0x6061 shows another mode than was set; until it is brought up
   std::uint64_t silent_cycles = 0;    ///< since its last sign of life
 };
 
@@ -141,6 +143,7 @@ class DriveMaster {
     Unwrap scale_unwrap;
     DriveWalk walk;
     std::vector<StrongerReaction> stronger;  ///< as configured
+    std::size_t patrolled = 0;               ///< its place in the patrol of its bus
     std::uint64_t follow_cycles = 0;         ///< bit 12 may be missing that long; 0: not watched
     std::uint64_t not_following_cycles = 0;
     EmergencyReaction reported = EmergencyReaction::kNone;
@@ -153,10 +156,11 @@ class DriveMaster {
   };
   struct Bus {
     BringUp bring_up;
+    DrivePatrol patrol;
     std::uint8_t master_node_id = 127;
     std::uint64_t heartbeat_cycles = 1;
     std::uint64_t heartbeat_due = 0;
-    void Keep(StateKeeper& keep) noexcept { keep(bring_up, heartbeat_due); }
+    void Keep(StateKeeper& keep) noexcept { keep(bring_up, patrol, heartbeat_due); }
   };
 
   void OnFrame(const StampedFrame& frame) noexcept;
@@ -185,6 +189,7 @@ class DriveMaster {
   std::int64_t grid_ns_ = 0;       ///< this grid point
   std::int64_t sync_grid_ns_ = 0;  ///< the grid point of the newest SYNC
   std::int64_t period_ns_;
+  bool patrols_;          ///< drives are asked while they run
   bool started_ = false;  ///< ever brought up: the master's heartbeat runs
   bool pdos_run_ = false;
   bool sync_sent_ = false;

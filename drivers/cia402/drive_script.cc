@@ -22,9 +22,17 @@ constexpr std::uint8_t kSynchronous = 1;       // transmission type: every SYNC,
 constexpr int kPdosPerDirection = 4;           // of the predefined connection set
 constexpr std::uint32_t kPreOperationalOnError = 0;
 
-/// Appends steps to a script; one method per kind of thing one does to a drive.
+// Marks of a group of steps: what differs.
+constexpr std::uint8_t kDiffers = 1;
+constexpr std::uint8_t kCommunicationDiffers = 1;
+constexpr std::uint8_t kMappingDiffers = 2;
+
+/// Appends steps to a script; one method per kind of thing one does to a drive. What is right already is not
+/// written, except by the start-up of logs of format 4.
 class Script {
  public:
+  explicit Script(bool reads_first) : reads_first_(reads_first) {}
+  [[nodiscard]] bool reads_first() const { return reads_first_; }
   void Phase(BringUpPhase phase) { phase_ = phase; }
 
   void Equal(std::uint16_t index, std::uint8_t sub, std::uint32_t value, BringUpError error,
@@ -81,11 +89,47 @@ class Script {
     steps_.push_back(s);
   }
 
-  void WriteAndReadBack(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t value,
-                        Tolerate tolerate = Tolerate::kNothing, bool watchdog = false) {
-    Write(index, sub, size, value, tolerate, watchdog);
+  /// The object is to hold this value: read, and where it differs written and read back.
+  void Set(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t value,
+           Tolerate tolerate = Tolerate::kNothing, bool watchdog = false) {
+    Ensure(index, sub, size, value, tolerate, watchdog);
     ReadBack(index, sub, size, value);
+    if (reads_first_) steps_.back().only_if = kDiffers;
   }
+
+  /// The same without looking whether it took.
+  void Ensure(std::uint16_t index, std::uint8_t sub, std::uint8_t size, std::uint32_t value,
+              Tolerate tolerate = Tolerate::kNothing, bool watchdog = false) {
+    const std::uint32_t width = size >= 4 ? 0xFFFFFFFFu : (1u << (8 * size)) - 1u;
+    if (reads_first_) {
+      Compare(index, sub, value & width, width, kDiffers, tolerate);
+      steps_.back().first = true;
+      steps_.back().watchdog = watchdog;
+    }
+    Write(index, sub, size, value, tolerate, watchdog);
+    if (reads_first_) steps_.back().only_if = kDiffers;
+  }
+
+  /// The last two steps: 0 is right as well where the object cannot be written.
+  void OrZero() {
+    if (!reads_first_) return;
+    for (std::size_t back = 1; back <= 2; ++back) steps_[steps_.size() - back].or_zero = true;
+  }
+
+  void Compare(std::uint16_t index, std::uint8_t sub, std::uint32_t value, std::uint32_t mask,
+               std::uint8_t mark, Tolerate tolerate = Tolerate::kNothing) {
+    SdoStep s = Make(SdoAction::kCompare, index, sub, value & mask, tolerate);
+    s.mask = mask;
+    s.mark = mark;
+    steps_.push_back(s);
+  }
+
+  /// Every step from this one on is skipped unless one of these marks is set.
+  [[nodiscard]] std::size_t size() const { return steps_.size(); }
+  void OnlyIf(std::size_t from, std::uint8_t marks) {
+    for (std::size_t i = from; i < steps_.size(); ++i) steps_[i].only_if = marks;
+  }
+  SdoStep& last() { return steps_.back(); }
 
   void Poll(std::uint16_t index, std::uint8_t sub, std::uint32_t value, BringUpError error,
             std::uint64_t deadline) {
@@ -116,6 +160,7 @@ class Script {
     return s;
   }
 
+  bool reads_first_;
   BringUpPhase phase_ = BringUpPhase::kOff;
   std::vector<SdoStep> steps_;
 };
@@ -154,39 +199,39 @@ void CompareUnits(Script& script, const DriveConfig& drive) {
 void SetWatchdogs(Script& script, const DriveConfig& drive, int master_node_id) {
   script.Phase(BringUpPhase::kWatchdogs);
   const std::uint32_t notice_ms = WholeMilliseconds(drive.notice_ms);
-  script.WriteAndReadBack(0x1016, 1, 4, (static_cast<std::uint32_t>(master_node_id) << 16) | notice_ms,
-                          Tolerate::kReadOnly, true);
-  if (drive.rpdo_timeout) script.WriteAndReadBack(0x1400, 5, 2, notice_ms, Tolerate::kAnyAbort, true);
+  script.Set(0x1016, 1, 4, (static_cast<std::uint32_t>(master_node_id) << 16) | notice_ms,
+             Tolerate::kReadOnly, true);
+  if (drive.rpdo_timeout) script.Set(0x1400, 5, 2, notice_ms, Tolerate::kAnyAbort, true);
   script.RequireWatchdog();
-  script.WriteAndReadBack(0x1017, 0, 2, WholeMilliseconds(drive.heartbeat_ms));
-  script.Write(0x1015, 0, 2, static_cast<std::uint32_t>(std::lround(drive.emergency_inhibit_ms * 10.0)),
-               Tolerate::kAnyAbort);
+  script.Set(0x1017, 0, 2, WholeMilliseconds(drive.heartbeat_ms));
+  script.Ensure(0x1015, 0, 2, static_cast<std::uint32_t>(std::lround(drive.emergency_inhibit_ms * 10.0)),
+                Tolerate::kAnyAbort);
 }
 
 void SetStopBehaviour(Script& script, const DriveConfig& drive) {
   script.Phase(BringUpPhase::kStopBehaviour);
-  script.WriteAndReadBack(0x1029, 1, 1, kPreOperationalOnError, Tolerate::kReadOnly);
-  script.WriteAndReadBack(0x6007, 0, 2, static_cast<std::uint32_t>(drive.abort_connection_option));
-  script.WriteAndReadBack(0x605A, 0, 2, static_cast<std::uint32_t>(drive.quick_stop_option),
-                          Tolerate::kAbsent);
-  script.Write(0x605B, 0, 2, 0, Tolerate::kAnyAbort);  // shutdown: disable
-  script.Write(0x605C, 0, 2, 1, Tolerate::kAnyAbort);  // disable operation: slow down, then disable
-  script.Write(0x605D, 0, 2, 1, Tolerate::kAnyAbort);  // halt: slow down
-  script.Write(0x605E, 0, 2, 2, Tolerate::kAnyAbort);  // fault reaction: quick-stop ramp
+  script.Set(0x1029, 1, 1, kPreOperationalOnError, Tolerate::kReadOnly);
+  script.Set(0x6007, 0, 2, static_cast<std::uint32_t>(drive.abort_connection_option));
+  script.Set(0x605A, 0, 2, static_cast<std::uint32_t>(drive.quick_stop_option), Tolerate::kAbsent);
+  script.Ensure(0x605B, 0, 2, 0, Tolerate::kAnyAbort);  // shutdown: disable
+  script.Ensure(0x605C, 0, 2, 1, Tolerate::kAnyAbort);  // disable operation: slow down, then disable
+  script.Ensure(0x605D, 0, 2, 1, Tolerate::kAnyAbort);  // halt: slow down
+  script.Ensure(0x605E, 0, 2, 2, Tolerate::kAnyAbort);  // fault reaction: quick-stop ramp
   if (drive.quick_stop_deceleration_rad_s2 > 0.0) {
     const double counts_s2 =
         drive.quick_stop_deceleration_rad_s2 / (2.0 * std::numbers::pi) * drive.encoder_counts_per_rev;
-    script.WriteAndReadBack(0x6085, 0, 4,
-                            static_cast<std::uint32_t>(std::clamp(counts_s2, 1.0, 4294967295.0)));
+    script.Set(0x6085, 0, 4, static_cast<std::uint32_t>(std::clamp(counts_s2, 1.0, 4294967295.0)));
   }
 }
 
 void SetCycleTime(Script& script, std::uint32_t cycle_us) {
   script.Phase(BringUpPhase::kCycleTime);
   const InterpolationPeriod period = ToInterpolationPeriod(cycle_us);
-  script.WriteAndReadBack(0x1006, 0, 4, cycle_us, Tolerate::kReadOnly);
-  script.WriteAndReadBack(0x60C2, 1, 1, period.value, Tolerate::kAbsent);
-  script.WriteAndReadBack(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent), Tolerate::kAbsent);
+  // A period of 0 says that the drive does not watch SYNC.
+  script.Set(0x1006, 0, 4, cycle_us, script.reads_first() ? Tolerate::kAbsent : Tolerate::kReadOnly);
+  script.OrZero();
+  script.Set(0x60C2, 1, 1, period.value, Tolerate::kAbsent);
+  script.Set(0x60C2, 2, 1, static_cast<std::uint8_t>(period.exponent), Tolerate::kAbsent);
 }
 
 void SetLimits(Script& script, const DriveConfig& drive, double torque_limit_Nm) {
@@ -194,8 +239,23 @@ void SetLimits(Script& script, const DriveConfig& drive, double torque_limit_Nm)
   const auto per_mille =
       static_cast<std::uint32_t>(std::ceil(torque_limit_Nm / drive.rated_torque_Nm * 1000.0 - 1e-9));
   for (const std::uint16_t index : std::array<std::uint16_t, 3>{0x6072, 0x60E0, 0x60E1}) {
-    script.Write(index, 0, 2, per_mille, Tolerate::kReadOnly);
+    script.Ensure(index, 0, 2, per_mille, Tolerate::kReadOnly);
     script.AtLeast(index, per_mille, BringUpError::kLimitTooLow);
+    if (script.reads_first()) script.last().only_if = kDiffers;
+  }
+}
+
+/// What of a PDO differs. A mapping with another number of entries is not read further.
+void ComparePdo(Script& script, std::uint16_t communication, std::uint32_t cob_id,
+                std::span<const std::uint32_t> mapping) {
+  const auto map = static_cast<std::uint16_t>(communication + 0x200);
+  script.Compare(communication, 1, cob_id, kCobIdMask, kCommunicationDiffers);
+  script.last().first = true;
+  script.Compare(communication, 2, kSynchronous, 0xFF, kCommunicationDiffers);
+  script.Compare(map, 0, static_cast<std::uint32_t>(mapping.size()), 0xFF, kMappingDiffers);
+  for (std::uint32_t i = 0; i < mapping.size(); ++i) {
+    script.Compare(map, static_cast<std::uint8_t>(i + 1), mapping[i], 0xFFFFFFFF, kMappingDiffers);
+    script.last().skip_if = kMappingDiffers;
   }
 }
 
@@ -205,19 +265,40 @@ void SetPdo(Script& script, std::uint16_t communication, std::uint32_t cob_id,
             std::span<const std::uint32_t> mapping) {
   const auto map = static_cast<std::uint16_t>(communication + 0x200);
   const auto count = static_cast<std::uint32_t>(mapping.size());
+  const std::uint8_t any = kCommunicationDiffers | kMappingDiffers;
+  const bool reads_first = script.reads_first();
+  if (reads_first) ComparePdo(script, communication, cob_id, mapping);
+  const std::size_t begin = script.size();
   script.Write(communication, 1, 4, kPdoInvalid | cob_id);
+  const std::size_t entries = script.size();
   script.Write(map, 0, 1, 0);
   for (std::uint32_t i = 0; i < count; ++i)
     script.Write(map, static_cast<std::uint8_t>(i + 1), 4, mapping[i]);
   script.Write(map, 0, 1, count);
+  const std::size_t behind = script.size();
   script.Write(communication, 2, 1, kSynchronous);
   script.Write(communication, 1, 4, cob_id);
 
   script.ReadBack(communication, 1, 4, cob_id, kCobIdMask);
   script.ReadBack(communication, 2, 1, kSynchronous);
+  const std::size_t read_entries = script.size();
   script.ReadBack(map, 0, 1, count);
   for (std::uint32_t i = 0; i < count; ++i)
     script.ReadBack(map, static_cast<std::uint8_t>(i + 1), 4, mapping[i]);
+  if (!reads_first) return;
+  script.OnlyIf(begin, any);
+  script.OnlyIf(entries, kMappingDiffers);
+  script.OnlyIf(behind, any);
+  script.OnlyIf(read_entries, kMappingDiffers);
+}
+
+void SwitchOffPdo(Script& script, std::uint16_t communication, std::uint32_t cob_id) {
+  if (script.reads_first()) {
+    script.Compare(communication, 1, kPdoInvalid, kPdoInvalid, kCommunicationDiffers, Tolerate::kAbsent);
+    script.last().first = true;
+  }
+  script.Write(communication, 1, 4, kPdoInvalid | cob_id, Tolerate::kAbsent);
+  if (script.reads_first()) script.last().only_if = kCommunicationDiffers;
 }
 
 void SetPdos(Script& script, const DriveConfig& drive) {
@@ -231,16 +312,16 @@ void SetPdos(Script& script, const DriveConfig& drive) {
     const auto offset = static_cast<std::uint32_t>(0x100 * i);
     const auto rpdo = static_cast<std::uint16_t>(0x1400 + i);
     const auto tpdo = static_cast<std::uint16_t>(0x1800 + i);
-    script.Write(rpdo, 1, 4, kPdoInvalid | (cob::kRpdo1 + offset + node), Tolerate::kAbsent);
+    SwitchOffPdo(script, rpdo, cob::kRpdo1 + offset + node);
     if (i == 1 && drive.linear_scale) continue;
-    script.Write(tpdo, 1, 4, kPdoInvalid | kNoRtr | (cob::kTpdo1 + offset + node), Tolerate::kAbsent);
+    SwitchOffPdo(script, tpdo, kNoRtr | (cob::kTpdo1 + offset + node));
   }
 }
 
 void SetMode(Script& script, const DriveConfig& drive, std::uint32_t cycle_us) {
   script.Phase(BringUpPhase::kMode);
-  const std::uint32_t mode = drive.mode == DriveMode::kCst ? 10 : 8;
-  script.Write(0x6060, 0, 1, mode);
+  const std::uint32_t mode = ModeOfOperation(drive.mode);
+  script.Ensure(0x6060, 0, 1, mode);
   script.Poll(0x6061, 0, mode, BringUpError::kModeNotTaken, CyclesOf(drive.mode_ms, cycle_us));
 }
 
@@ -271,8 +352,8 @@ std::uint64_t MasterHeartbeatCycles(double notice_ms, std::uint32_t cycle_us) no
 }
 
 BringUpNode DriveScript(const DriveConfig& drive, std::uint8_t axis, double torque_limit_Nm,
-                        int master_node_id, std::uint32_t cycle_us) {
-  Script script;
+                        int master_node_id, std::uint32_t cycle_us, bool reads_first) {
+  Script script(reads_first);
   Identify(script, drive);
   CompareUnits(script, drive);
   SetWatchdogs(script, drive, master_node_id);

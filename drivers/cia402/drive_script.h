@@ -25,8 +25,9 @@ struct InterpolationPeriod {
 [[nodiscard]] std::uint64_t MasterHeartbeatCycles(double notice_ms, std::uint32_t cycle_us) noexcept;
 
 /// How one drive is brought up: its deadlines and the SDO script that identifies, compares and configures it.
-/// `torque_limit_Nm` goes to the drive as 0x6072. Throws std::invalid_argument on nonsense.
+/// `torque_limit_Nm` goes to the drive as 0x6072. With `reads_first` only what differs is written. Throws
+/// std::invalid_argument on nonsense.
 [[nodiscard]] BringUpNode DriveScript(const DriveConfig& drive, std::uint8_t axis, double torque_limit_Nm,
-                                      int master_node_id, std::uint32_t cycle_us);
+                                      int master_node_id, std::uint32_t cycle_us, bool reads_first);
 
 }  // namespace contour

@@ -51,13 +51,14 @@ TEST(BringUpText, NamesObjectBothValuesAndAbortCode) {
   s.found = 0x7F;
   s.waited_us = 500'000;
   EXPECT_EQ(BringUpText(s, kAxes),
-            "axis y (node 2), wait for Operational: the drive did not become Operational within 500 ms after "
-            "NMT start: "
+            "axis y (node 2), wait for Operational: the drive did not become Operational within 500 ms "
+            "(drive.operational_ms) after NMT start: "
             "its heartbeat says Pre-operational");
 }
 
 TEST(BringUpText, HasASentenceForEveryError) {
-  for (std::uint8_t e = 1; e <= static_cast<std::uint8_t>(BringUpError::kBusDown); ++e) {
+  for (std::uint8_t e = 1; e <= static_cast<std::uint8_t>(BringUpError::kReadOnlyDiffers); ++e) {
+    if (e == 17) continue;
     const std::string text = BringUpText(Status(BringUpPhase::kFind, static_cast<BringUpError>(e)), kAxes);
     EXPECT_EQ(text.find("unknown error"), std::string::npos) << text;
     EXPECT_GT(text.size(), 50u) << text;

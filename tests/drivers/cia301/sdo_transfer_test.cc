@@ -69,12 +69,25 @@ TEST(SdoTransfer, PassesOverWhatIsNotItsReply) {
   EXPECT_EQ(t.state(), State::kWaiting);
 }
 
-TEST(SdoTransfer, SegmentedReplyIsNotUnderstood) {
+TEST(SdoTransfer, ASegmentedReplyIsNoAbortOfTheDrive) {
   SdoTransfer t;
   t.StartRead(1, 0x1008, 0, 10);
   EXPECT_TRUE(t.OnFrame(Reply(0x41, 0x1008, 0, 20)));
-  EXPECT_EQ(t.state(), State::kAborted);
-  EXPECT_EQ(t.abort_code(), sdo_abort::kCommandUnknown);
+  EXPECT_EQ(t.state(), State::kSegmented);
+  EXPECT_EQ(t.value(), 20u) << "bytes";
+  EXPECT_EQ(t.abort_code(), sdo_abort::kLengthTooHigh) << "what to tell the drive";
+  t.StartRead(1, 0x1008, 0, 10);
+  EXPECT_TRUE(t.OnFrame(Reply(0x40, 0x1008, 0, 20)));
+  EXPECT_EQ(t.state(), State::kSegmented);
+  EXPECT_EQ(t.value(), 0u) << "it does not say how many";
+}
+
+TEST(SdoTransfer, AReplyToSomethingElseIsNoAbortOfTheDrive) {
+  SdoTransfer t;
+  t.StartRead(1, 0x6061, 0, 10);
+  EXPECT_TRUE(t.OnFrame(Reply(0x60, 0x6061, 0)));
+  EXPECT_EQ(t.state(), State::kUnexpected);
+  EXPECT_EQ(t.value(), 0x60u);
 }
 
 TEST(SdoTransfer, TimesOutAndSaysHowLongItWaited) {

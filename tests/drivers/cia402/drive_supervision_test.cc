@@ -133,5 +133,78 @@ TEST_F(DriveSupervision, ADriveWithoutTheBitIsConfiguredSo) {
   EXPECT_FALSE(status().not_following);
 }
 
+TEST_F(DriveSupervision, TheModeOfEachDriveIsReadTenTimesASecondAndNeverOftenerThanReckoned) {
+  Enable();
+  machine().Cycles(200);
+  const std::uint64_t before = slave().reads();
+  int last = -10;
+  for (int cycle = 0; cycle < 1000; ++cycle) {
+    machine().Cycle();
+    int requests = 0;
+    for (const StampedFrame& f : machine().sent) requests += (f.frame.id & 0x780) == 0x600 ? 1 : 0;
+    if (requests == 0) continue;
+    EXPECT_EQ(requests, 1);
+    EXPECT_GE(cycle - last, 2);
+    last = cycle;
+  }
+  EXPECT_EQ(slave().reads() - before, 10u);
+  EXPECT_EQ(slave().last_read(), (FakeSlave::Object{0x6061, 0}));
+}
+
+TEST_F(DriveSupervision, AnotherModeThanWasSetIsNoticedAndSetAgainByAReset) {
+  Enable();
+  machine().Cycles(300);
+  EXPECT_FALSE(status().mode_changed);
+  slave().objects()[{0x6060, 0}] = slave().objects()[{0x6061, 0}] = 8;
+  int cycles = 0;
+  for (; !status().mode_changed && cycles < 1000; ++cycles) machine().Cycle();
+  EXPECT_LE(cycles, 103);
+  EXPECT_FALSE(status(1).mode_changed);
+  machine().Goal(DriveGoal::kQuickStop);
+  machine().Cycles(5);
+  machine().BringUp();
+  machine().Cycles(300);
+  EXPECT_TRUE(machine().master.operational());
+  EXPECT_FALSE(status().mode_changed);
+  EXPECT_EQ((slave().objects()[{0x6061, 0}]), 10u);
+}
+
+TEST_F(DriveSupervision, ADriveThatAnswersNoSdoWhileItRunsIsNoFault) {
+  Enable();
+  slave().behaviour.mute_object = FakeSlave::Object{0x6061, 0};
+  machine().Cycles(2000);
+  EXPECT_FALSE(status().mode_changed);
+  EXPECT_TRUE(machine().master.operational());
+  slave().behaviour.mute_object.reset();
+  slave().objects()[{0x6061, 0}] = 1;
+  machine().Cycles(500);
+  EXPECT_TRUE(status().mode_changed) << "it is asked again";
+}
+
+TEST_F(DriveSupervision, WhatTheDriveRemembersOfErrorsIsReadAfterEach) {
+  machine_.emplace();
+  slave().objects()[{0x1003, 0}] = 2;
+  slave().objects()[{0x1003, 1}] = 0x4210;
+  slave().objects()[{0x1003, 2}] = 0x3210;
+  machine().BringUp();
+  std::vector<FakeSlave::Object> read;
+  const auto watch = [&](int cycles) {
+    read.clear();
+    for (int i = 0; i < cycles; ++i) {
+      machine().Cycle();
+      for (const StampedFrame& f : machine().sent)
+        if (f.frame.id == 0x601 && GetU16(f.frame, 1) == 0x1003) read.push_back({0x1003, f.frame.data[3]});
+    }
+  };
+  const std::vector<FakeSlave::Object> all{{0x1003, 0}, {0x1003, 1}, {0x1003, 2}};
+  watch(300);
+  EXPECT_EQ(read, all) << "once it is up";
+  watch(300);
+  EXPECT_TRUE(read.empty());
+  slave().Report({0x8120, 0x11});
+  watch(300);
+  EXPECT_EQ(read, all) << "and after an error";
+}
+
 }  // namespace
 }  // namespace contour::test

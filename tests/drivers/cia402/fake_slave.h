@@ -21,10 +21,12 @@ class FakeSlave : public BusNode {
 
   struct Behaviour {
     bool boot_up = true;                         ///< sends a boot-up message after a reset
+    std::int64_t boot_ns = 2'000'000;            ///< and answers no SDO before
     bool self_start = false;                     ///< goes to Operational by itself after a reset
     bool silent = false;                         ///< answers nothing
     bool stays_pre_operational = false;          ///< ignores NMT start
     std::optional<Object> mute_object;           ///< never answers this object
+    std::optional<Object> segmented;             ///< wants to send this object in segments
     std::map<Object, std::uint32_t> aborts;      ///< refused with this code, read and write
     std::map<Object, std::uint32_t> sticky;      ///< accepts a write but holds this value
     std::map<Object, std::uint32_t> read_only;   ///< refuses writes with this code
@@ -69,6 +71,12 @@ class FakeSlave : public BusNode {
   [[nodiscard]] std::int32_t target_position() const { return target_position_; }
   [[nodiscard]] std::uint64_t syncs() const { return syncs_; }
   [[nodiscard]] const std::vector<Object>& writes() const { return writes_; }
+  /// Transfers that the master broke off, with its code.
+  [[nodiscard]] const std::vector<std::pair<Object, std::uint32_t>>& master_aborts() const {
+    return master_aborts_;
+  }
+  [[nodiscard]] std::uint64_t reads() const { return reads_; }
+  [[nodiscard]] Object last_read() const { return last_read_; }
   [[nodiscard]] std::uint64_t master_heartbeats() const { return master_heartbeats_; }
   [[nodiscard]] std::int64_t position() const { return position_; }
   void set_position(std::int64_t counts) { position_ = counts; }
@@ -140,13 +148,14 @@ class FakeSlave : public BusNode {
       case NmtCommand::kResetNode:
       case NmtCommand::kResetCommunication:
         for (const Object& o : {Object{0x1016, 1}, Object{0x1017, 0}}) {
-          if (objects_.contains(o)) objects_[o] = 0;
+          if (objects_.contains(o) && !behaviour.read_only.contains(o)) objects_[o] = 0;
         }
-        next_heartbeat_ns_ = kNever;
+        next_heartbeat_ns_ = Value({0x1017, 0}) == 0 ? kNever : time_ns + behaviour.boot_ns + 50'000'000;
         nmt_ = behaviour.self_start ? NmtState::kOperational : NmtState::kPreOperational;
         state_ = DriveState::kSwitchOnDisabled;
         if (behaviour.boot_up)
-          out.push_back({HeartbeatFrame(node_id_, NmtState::kBootUp), time_ns + 2'000'000});
+          out.push_back({HeartbeatFrame(node_id_, NmtState::kBootUp), time_ns + behaviour.boot_ns});
+        booted_ns_ = time_ns + behaviour.boot_ns;
         return;
       case NmtCommand::kStart:
         if (!behaviour.stays_pre_operational) nmt_ = NmtState::kOperational;
@@ -171,7 +180,11 @@ class FakeSlave : public BusNode {
   void OnSdo(const CanFrame& f, std::int64_t time_ns, PendingFrames& out) {
     const Object object{GetU16(f, 1), f.data[3]};
     const auto command = static_cast<std::uint8_t>(f.data[0] & 0xE0);
-    if (command == 0x80 || behaviour.mute_object == object) return;
+    if (command == 0x80) master_aborts_.push_back({object, GetU32(f, 4)});
+    if (command == 0x80 || behaviour.mute_object == object || time_ns < booted_ns_) return;
+    reads_ += command == 0x40 ? 1 : 0;
+    if (command == 0x40) last_read_ = object;
+    if (behaviour.segmented == object) return Reply(f, 0x41, 12, time_ns, out);
     if (behaviour.aborts.contains(object)) return Reply(f, 0x80, behaviour.aborts.at(object), time_ns, out);
     if (!objects_.contains(object)) return Reply(f, 0x80, 0x06020000, time_ns, out);
     if (command == 0x40) return Reply(f, 0x43, objects_.at(object), time_ns, out);
@@ -273,6 +286,10 @@ class FakeSlave : public BusNode {
   std::uint8_t node_id_;
   std::map<Object, std::uint32_t> objects_;
   std::vector<Object> writes_;
+  std::vector<std::pair<Object, std::uint32_t>> master_aborts_;
+  std::uint64_t reads_ = 0;
+  Object last_read_{};
+  std::int64_t booted_ns_ = 0;
   NmtState nmt_ = NmtState::kStopped;  // a master must not rely on what it finds
   DriveState state_ = DriveState::kSwitchOnDisabled;
   std::int64_t next_heartbeat_ns_ = kNever;
