@@ -103,6 +103,7 @@ void Pump::Drain() {
       snapshots_->Release();
     }
   }
+  for (const std::string& line : hub_.TakeEmergencyLines()) spdlog::warn("drive of {}", line);
   if (const auto message = hub_.TakeHealthMessage()) spdlog::warn("{}", *message);
   ReportFlight();
   ReportLog();

@@ -257,6 +257,7 @@ MachineStatus Supervisor::Status() {
   if (clock_ == "wall") out.late_cycles = parts_.loop.counters().late_cycles.load();
   out.skipped_grid_points = parts_.loop.counters().skipped_grid_points.load();
   out.health = s.health;
+  out.drive_errors = s.drive_errors;
   out.dropped_entries = parts_.queue.dropped();
   for (std::size_t b = 0; b < bus_names_.size(); ++b)
     out.buses.push_back({bus_names_[b], interfaces_[b], parts_.loop.bus_states().Read(b)});

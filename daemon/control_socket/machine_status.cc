@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "drivers/cia301/emergency_table.h"
+
 namespace contour {
 namespace {
 
@@ -98,11 +100,32 @@ json Feedback(const MachineStatus& s, std::size_t i) {
   return {{"stale_cycles", axis.stale_cycles}, {"response", Summary(axis.response)}};
 }
 
+json Errors(const DriveErrors& d) {
+  json received = json::array();
+  for (const ReceivedEmergency& e : d.received)
+    received.push_back({{"cycle", e.cycle},
+                        {"grid_time_ns", e.grid_time_ns},
+                        {"code", e.emergency.error_code},
+                        {"register", e.emergency.error_register},
+                        {"maker", e.maker},
+                        {"text", EmergencyText(e.emergency.error_code)},
+                        {"reaction", Name(ReactionTo(e.emergency))}});
+  json stored = json::array();
+  for (const std::uint32_t error : d.stored)
+    stored.push_back({{"code", error & 0xFFFF},
+                      {"maker", error >> 16},
+                      {"text", EmergencyText(static_cast<std::uint16_t>(error & 0xFFFF))}});
+  return {{"received", received},       {"received_count", d.received_count},
+          {"stored", stored},           {"stored_cycle", d.stored_cycle},
+          {"mode_reads", d.mode_reads}, {"mode_answers", d.mode_answers}};
+}
+
 json Axes(const MachineStatus& s) {
   json axes = json::array();
   for (std::size_t i = 0; i < s.axis_names.size(); ++i) {
     axes.push_back(Axis(s.axis_names[i], i < s.record.axes.size() ? s.record.axes[i] : AxisRecord{}));
     axes.back()["feedback"] = Feedback(s, i);
+    axes.back()["errors"] = Errors(i < s.drive_errors.size() ? s.drive_errors[i] : DriveErrors{});
     if (i < s.axis_facts.size()) axes.back()["facts"] = Facts(s.axis_facts[i]);
   }
   return axes;

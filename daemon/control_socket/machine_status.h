@@ -9,6 +9,7 @@
 #include "core/cycle_record.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/telemetry/cycle_health.h"
+#include "daemon/telemetry/emergency_history.h"
 #include "daemon/telemetry/flight_recorder.h"
 #include "daemon/telemetry/log_stats.h"
 #include "drivers/can/frame_bus.h"
@@ -50,7 +51,8 @@ struct MachineStatus {
   std::uint64_t cycles = 0;
   std::optional<std::uint64_t> late_cycles;  ///< nothing where time is not the wall's
   std::uint64_t skipped_grid_points = 0;
-  CycleHealth::Summary health;  ///< stages, causes of late cycles, feedback
+  CycleHealth::Summary health;            ///< stages, causes of late cycles, feedback
+  std::vector<DriveErrors> drive_errors;  ///< one per axis
 
   std::uint64_t dropped_entries = 0;  ///< cycles that never reached telemetry, log and clients
   std::vector<BusStatus> buses;

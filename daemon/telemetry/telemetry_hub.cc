@@ -1,12 +1,20 @@
 #include "daemon/telemetry/telemetry_hub.h"
 
+#include <algorithm>
+#include <contour_lcm/drive_emergency.hpp>
 #include <utility>
+
+#include "drivers/cia301/emergency_table.h"
+#include "drivers/lcm/cycle_messages.h"
 
 namespace contour {
 
 TelemetryHub::TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
                            const std::optional<LogTarget>& log, std::chrono::milliseconds patience)
-    : encoder_(config, cycle_us, axis_names), health_(axis_names) {
+    : encoder_(config, cycle_us, axis_names),
+      axis_names_(axis_names),
+      health_(axis_names),
+      emergencies_(axis_names.size()) {
   if (config.publish) {
     publisher_ = std::make_unique<BackgroundPublisher>(config.lcm_url, patience);
     sinks_.push_back(publisher_.get());
@@ -23,6 +31,34 @@ void TelemetryHub::Consume(const CycleEntry& entry) {
   Observe(entry);
   if (flight_ != nullptr) flight_->OnCycle(entry);
   if (!sinks_.empty()) encoder_.Add(entry, sinks_);
+  TellEmergencies();
+}
+
+// News are only touched by Consume's thread.
+void TelemetryHub::TellEmergencies() {
+  for (const ReceivedEmergency& e : emergencies_.news()) {
+    const std::string& axis = axis_names_[e.axis];
+    const std::string line = EmergencyLine(e, axis);
+    Note(kEmergencyNote + axis, line);
+    contour_lcm::drive_emergency m{};
+    m.cycle = static_cast<std::int64_t>(e.cycle);
+    m.grid_time_ns = e.grid_time_ns;
+    m.axis = axis;
+    m.error_code = e.emergency.error_code;
+    m.error_register = e.emergency.error_register;
+    std::copy(e.maker.begin(), e.maker.end(), m.maker);
+    m.text = EmergencyText(e.emergency.error_code);
+    m.reaction = Name(ReactionTo(e.emergency));
+    const std::string bytes = Encode(m);
+    for (TelemetrySink* sink : sinks_) sink->OnEvent({kEmergencyChannel, bytes, e.grid_time_ns, 0});
+    const std::lock_guard lock(mutex_);
+    emergency_lines_.push_back(line);
+  }
+}
+
+std::vector<std::string> TelemetryHub::TakeEmergencyLines() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(emergency_lines_, {});
 }
 
 void TelemetryHub::Flush() { encoder_.Flush(sinks_); }
@@ -44,6 +80,7 @@ void TelemetryHub::Observe(const CycleEntry& entry) {
     timing_ = entry.timing;
     skipped_grid_points_ += entry.timing.skipped_grid_points;
     health_.Add(entry);
+    emergencies_.Add(entry);
     feeds = feeds_;
   }
   for (const auto& feed : feeds) feed->Push(entry);
@@ -61,6 +98,7 @@ void TelemetryHub::Detach(const std::shared_ptr<RowFeed>& feed) {
 
 void TelemetryHub::WatchFeedback(std::vector<FeedbackSource> sources) {
   const std::lock_guard lock(mutex_);
+  emergencies_.Watch(sources);
   health_.Watch(std::move(sources));
 }
 
@@ -92,6 +130,7 @@ TelemetryHub::Snapshot TelemetryHub::snapshot() const {
     s.timing = timing_;
     s.skipped_grid_points = skipped_grid_points_;
     s.health = health_.summary();
+    s.drive_errors = emergencies_.drives();
   }
   if (publisher_ != nullptr) s.publisher = publisher_->stats();
   if (log_ != nullptr) s.log = log_->stats();

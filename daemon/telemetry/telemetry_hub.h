@@ -13,6 +13,7 @@
 #include "daemon/telemetry/background_log.h"
 #include "daemon/telemetry/background_publisher.h"
 #include "daemon/telemetry/cycle_health.h"
+#include "daemon/telemetry/emergency_history.h"
 #include "daemon/telemetry/flight_recorder.h"
 #include "daemon/telemetry/row_feed.h"
 #include "drivers/lcm/telemetry_config.h"
@@ -54,6 +55,8 @@ class TelemetryHub {
   void OnState(std::uint64_t cycle, std::string bytes);
   /// A line on late cycles and missing feedback, when there is something new to say.
   std::optional<std::string> TakeHealthMessage();
+  /// A line for each emergency message of a drive since the last call.
+  std::vector<std::string> TakeEmergencyLines();
 
   /// Into the log, when there is one.
   void Note(const std::string& key, const std::string& text);
@@ -64,6 +67,7 @@ class TelemetryHub {
     CycleTiming timing;
     std::uint64_t skipped_grid_points = 0;
     CycleHealth::Summary health;
+    std::vector<DriveErrors> drive_errors;  ///< one per axis
     PublisherStats publisher;
     LogStats log;
     FlightRecordStats flight;
@@ -76,8 +80,10 @@ class TelemetryHub {
 
  private:
   void Observe(const CycleEntry& entry);
+  void TellEmergencies();
 
   TelemetryEncoder encoder_;
+  const std::vector<std::string> axis_names_;
   std::unique_ptr<BackgroundPublisher> publisher_;
   std::unique_ptr<BackgroundLog> log_;
   std::unique_ptr<FlightRecorder> flight_;
@@ -90,6 +96,8 @@ class TelemetryHub {
   CycleRecord record_;
   CycleTiming timing_;
   CycleHealth health_;
+  EmergencyHistory emergencies_;
+  std::vector<std::string> emergency_lines_;
 };
 
 }  // namespace contour

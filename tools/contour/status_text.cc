@@ -71,6 +71,31 @@ std::string Late(const json& s) {
   return text;
 }
 
+/// What the drives said of their errors, the newest last, and what they remember themselves.
+std::string Errors(const json& s) {
+  constexpr std::size_t kShown = 3;
+  std::string text;
+  for (const json& a : s["axes"]) {
+    if (!a.contains("errors")) continue;
+    const json& received = a["errors"]["received"];
+    for (std::size_t i = received.size() > kShown ? received.size() - kShown : 0; i < received.size(); ++i) {
+      char line[64];
+      std::snprintf(line, sizeof line, "  %s: emergency 0x%04X (", Text(a["name"]).substr(0, 16).c_str(),
+                    received[i]["code"].get<unsigned>());
+      text += line + Text(received[i]["text"]) + "), " + Text(received[i]["reaction"]) + ", in cycle " +
+              Text(received[i]["cycle"]) + "\n";
+    }
+    std::string stored;
+    for (const json& e : a["errors"]["stored"]) {
+      char code[16];
+      std::snprintf(code, sizeof code, "0x%04X", e["code"].get<unsigned>());
+      stored += (stored.empty() ? "" : ", ") + std::string(code) + " (" + Text(e["text"]) + ")";
+    }
+    if (!stored.empty()) text += "  " + Text(a["name"]) + " remembers " + stored + "\n";
+  }
+  return text;
+}
+
 std::string Counters(const json& s) {
   std::string text = "  cycles " + Text(s["cycles"]);
   if (!s["late_cycles"].is_null()) text += ", late " + Text(s["late_cycles"]);
@@ -139,7 +164,7 @@ std::string Around(const json& s) {
 }  // namespace
 
 std::string StatusText(const json& status) {
-  return Machine(status) + Axes(status) + Counters(status) + Buses(status) + Around(status);
+  return Machine(status) + Axes(status) + Errors(status) + Counters(status) + Buses(status) + Around(status);
 }
 
 std::string StatusLine(const json& status) {
