@@ -54,7 +54,7 @@ void CascadeLaw::Reset() noexcept {
 
 void CascadeLaw::Axis::Keep(StateKeeper& keep) noexcept { keep(bend, told, known); }
 
-void CascadeLaw::Keep(StateKeeper& keep) noexcept { keep(states_); }
+void CascadeLaw::Keep(StateKeeper& keep) noexcept { keep(states_, share_); }
 
 // The measured position belongs to t(k-1), the motor then to t(k-3/2): between the targets for t(k-2) and
 // t(k-1), which were sent at t(k-3) and t(k-2). The newest target told is the one for t(k).
@@ -92,8 +92,8 @@ void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept
     const double limit = axes_[i].limits.force_N;
     const ReferencePoint& next = PointAt(reference, 2);
     output.feedforward_N[i] = wanted;
-    output.force_N[i] = std::clamp(wanted, -limit, limit);
-    output.limit[i] = output.force_N[i] != wanted ? Reason::kTorqueLimit : Reason::kNone;
+    output.force_N[i] = share_ * std::clamp(wanted, -limit, limit);
+    output.limit[i] = std::abs(wanted) > limit ? Reason::kTorqueLimit : Reason::kNone;
     output.target_position_m[i] = next.position_m + w[2] + axis.bend.share_s2() * next.acceleration_m_s2;
     axis.told = {Told{next.position_m + w[2], next.velocity_m_s, next.acceleration_m_s2}, axis.told[0],
                  axis.told[1]};

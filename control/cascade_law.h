@@ -44,6 +44,7 @@ class CascadeLaw final : public ControlLaw {
   CascadeLaw(const PerAxis<ControlledAxis>& axes, double period_s);
   void Reset() noexcept override;
   void Release(std::size_t) noexcept override {}  // the drive's own cascade goes on holding
+  void Soften(Softness softness) noexcept override { share_ = OffsetShare(softness); }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return 4; }
   void Keep(StateKeeper& keep) noexcept override;
@@ -67,6 +68,7 @@ class CascadeLaw final : public ControlLaw {
 
   PerAxis<ControlledAxis> axes_;
   double period_s_;
+  double share_ = 1.0;  ///< of the torque offset
   std::vector<Axis> states_;
 };
 

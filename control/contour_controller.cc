@@ -15,7 +15,8 @@ namespace {
 
 std::unique_ptr<ControlLaw> MakeLaw(ControllerName name, const ControllerConfig& config,
                                     const PerAxis<ControlledAxis>& axes, double period_s, bool cascade) {
-  const ControllerOptions options = OptionsFor(name);
+  ControllerOptions options = OptionsFor(name);
+  options.softer = config.supervision.softer;
   switch (options.kind) {
     case ControllerKind::kPid:
       return std::make_unique<PidLaw>(config.pid, options, axes, period_s);
@@ -71,6 +72,8 @@ void ContourController::Reset() noexcept {
 }
 
 void ContourController::Release(std::size_t axis) noexcept { law_->Release(axis); }
+
+void ContourController::Soften(Softness softness) noexcept { law_->Soften(softness); }
 
 void ContourController::Plan(ControlInput& input, bool follow) noexcept {
   if (!planner_) {

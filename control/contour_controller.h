@@ -19,7 +19,15 @@ struct ControllerOptions {
   ControllerKind kind = ControllerKind::kMpc;
   bool friction_feedforward = false;  ///< add the FrictionPreview to the force
   bool windup_compensation =
-      false;  ///< lead the motor by the screw's wind-up, so that the table is on the path
+      false;            ///< lead the motor by the screw's wind-up, so that the table is on the path
+  double softer = 1.0;  ///< bandwidth of the softened loop, as a share of its own
+};
+
+/// How much of what it could do a controller uses; see control/supervision_ladder.h.
+enum class Softness : std::uint8_t {
+  kNone,
+  kSofter,   ///< lower bandwidth; where the drive closes the loop, half the torque offset
+  kWithout,  ///< the same; where the drive closes the loop, no torque offset
 };
 
 constexpr ControllerOptions OptionsFor(ControllerName name) noexcept {
@@ -93,6 +101,8 @@ class ContourController {
   void Reset() noexcept;
   /// Another force than this controller's acts on the axis in this cycle: forgets what it holds of it.
   void Release(std::size_t axis) noexcept;
+  /// From the next Step on. The force may jump by what the gains differ: the caller blends it.
+  void Soften(Softness softness) noexcept;
   /// Fills input.planned from input.reference: the same, or what the torque allows of it at corners. To be
   /// called once per cycle before Step, and before the friction ahead is asked for. `follow` false: nothing
   /// is moving by this controller (axes not enabled), the reference is taken as it is. Step works without it,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "control/supervision_config.h"
 #include "core/visit.h"
 
 namespace contour {
@@ -163,6 +164,7 @@ struct ControllerConfig {
   MpcConfig full;
   PlannerConfig planner;
   GuardConfig guard;
+  SupervisionConfig supervision;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -176,6 +178,7 @@ struct ControllerConfig {
     v.Optional("full", full, "MPC with friction preview and wind-up compensation");
     v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
+    v.Optional("supervision", supervision, "how the machine watches its own control");
   }
 };
 

@@ -1,6 +1,7 @@
 #include "control/csp_law.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace contour {
 
@@ -23,8 +24,8 @@ void CspLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
     const double wanted = plan_.command_m_s2[0] * axes_[i].mechanics.mass_kg;
     const double limit = axes_[i].limits.force_N;
     output.feedforward_N[i] = wanted;
-    output.force_N[i] = torque_offset_ ? std::clamp(wanted, -limit, limit) : 0.0;
-    output.limit[i] = torque_offset_ && output.force_N[i] != wanted ? Reason::kTorqueLimit : Reason::kNone;
+    output.force_N[i] = torque_offset_ ? share_ * std::clamp(wanted, -limit, limit) : 0.0;
+    output.limit[i] = torque_offset_ && std::abs(wanted) > limit ? Reason::kTorqueLimit : Reason::kNone;
     output.target_position_m[i] = plan_.target_position_m;
   }
 }

@@ -25,8 +25,9 @@ MpcGroup<Axes>::MpcGroup(const MpcConfig& config, const ControllerOptions& optio
     problem_.dynamics[i] = feedforward_[i].dynamics();
     problem_.effort[i] = 1.0;
   }
-  weights_.emplace_back(config.contour_bandwidth_Hz, config.lag_bandwidth_Hz,
-                        config.rest_velocity_um_s * 1e-6, problem_.dynamics);
+  for (const double share : {1.0, options.softer})
+    weights_.emplace_back(share * config.contour_bandwidth_Hz, share * config.lag_bandwidth_Hz,
+                          config.rest_velocity_um_s * 1e-6, problem_.dynamics);
   Reset();
 }
 
@@ -79,7 +80,7 @@ void MpcGroup<Axes>::ShiftWarmStart() noexcept {
 
 template <std::size_t Axes>
 void MpcGroup<Axes>::Step(const ControlInput& input, ControlOutput& output) noexcept {
-  weights_.front().Fill(Reference(input), first_, problem_);
+  weights_[softer_ ? 1 : 0].Fill(Reference(input), first_, problem_);
   for (std::size_t i = 0; i < Axes; ++i) BuildAxis(input, i);
   has_planned_ = true;
   ShiftWarmStart();

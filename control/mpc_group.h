@@ -17,6 +17,7 @@ class MpcGroupBase {
  public:
   virtual ~MpcGroupBase() = default;
   virtual void Reset() noexcept CONTOUR_NONBLOCKING = 0;
+  virtual void Soften(bool softer) noexcept CONTOUR_NONBLOCKING = 0;
   virtual void Step(const ControlInput& input, ControlOutput& output) noexcept CONTOUR_NONBLOCKING = 0;
   virtual void Keep(StateKeeper& keep) noexcept CONTOUR_NONBLOCKING = 0;
 };
@@ -30,9 +31,10 @@ class MpcGroup final : public MpcGroupBase {
   MpcGroup(const MpcConfig& config, const ControllerOptions& options, const PerAxis<ControlledAxis>& axes,
            std::size_t first, double period_s);
   void Reset() noexcept override;
+  void Soften(bool softer) noexcept override { softer_ = softer; }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   void Keep(StateKeeper& keep) noexcept override {
-    keep(plan_, planned_m_s2_, has_planned_, active_, solution_);
+    keep(plan_, planned_m_s2_, has_planned_, active_, solution_, softer_);
   }
 
  private:
@@ -46,11 +48,12 @@ class MpcGroup final : public MpcGroupBase {
   AxisVector<Axes> mass_kg_{};
   AxisVector<Axes> bound_m_s2_{};
   AxisVector<Axes> step_m_s2_{};
-  std::vector<PathWeights<Axes>> weights_;  // one, made once the dynamics are known
+  std::vector<PathWeights<Axes>> weights_;  // its own and the softer ones, made once the dynamics are known
   std::vector<FlatFeedforward> feedforward_;
   std::array<AxisPlan, Axes> plan_{};
   AxisVector<Axes> planned_m_s2_{};  // feed-forward command of the last Step
   bool has_planned_ = false;
+  bool softer_ = false;
   QpProblem<Axes> problem_;
   QpSolver<Axes> solver_;
   typename QpSolver<Axes>::Active active_{};

@@ -21,6 +21,10 @@ void MpcLaw::Reset() noexcept {
   for (auto& group : groups_) group->Reset();
 }
 
+void MpcLaw::Soften(Softness softness) noexcept {
+  for (auto& group : groups_) group->Soften(softness != Softness::kNone);
+}
+
 void MpcLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   output.iterations = 0;
   for (auto& group : groups_) group->Step(input, output);

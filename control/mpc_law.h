@@ -15,6 +15,7 @@ class MpcLaw final : public ControlLaw {
          double period_s);
   void Reset() noexcept override;
   void Release(std::size_t) noexcept override {}  // has no integrator
+  void Soften(Softness softness) noexcept override;
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return horizon_points_; }
   void Keep(StateKeeper& keep) noexcept override { keep(groups_); }

@@ -54,14 +54,15 @@ void PidLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
     } else {
       feedforward += gains.viscous_Ns_m * 0.5 * (start.velocity_m_s + end.velocity_m_s);
     }
-    const double feedback =
-        gains.proportional_N_m * error + gains.derivative_Ns_m * memory.velocity_error_m_s;
+    const double feedback = gain_share_ * (gain_share_ * gains.proportional_N_m * error +
+                                           gains.derivative_Ns_m * memory.velocity_error_m_s);
     const double wanted = feedforward + feedback + memory.integral_N;
     const double within = std::clamp(wanted, -gains.force_N, gains.force_N);
     const double previous = input.previous_force_N[i];
     const double reachable = std::clamp(previous, -gains.force_N, gains.force_N);
     const double force = std::clamp(within, reachable - gains.step_N, reachable + gains.step_N);
-    const double step = gains.proportional_N_m * integral_1_s_ * period_s_ * error;
+    const double step =
+        gain_share_ * gain_share_ * gain_share_ * gains.proportional_N_m * integral_1_s_ * period_s_ * error;
     if (force == wanted || (wanted - force) * step < 0.0) memory.integral_N += step;
 
     output.force_N[i] = force;

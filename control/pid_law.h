@@ -14,9 +14,12 @@ class PidLaw final : public ControlLaw {
          double period_s);
   void Reset() noexcept override;
   void Release(std::size_t axis) noexcept override { memory_[axis] = AxisMemory{}; }
+  void Soften(Softness softness) noexcept override {
+    gain_share_ = softness == Softness::kNone ? 1.0 : options_.softer;
+  }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return 2; }
-  void Keep(StateKeeper& keep) noexcept override { keep(memory_); }
+  void Keep(StateKeeper& keep) noexcept override { keep(memory_, gain_share_); }
 
  private:
   struct AxisGains {
@@ -35,6 +38,7 @@ class PidLaw final : public ControlLaw {
   };
 
   ControllerOptions options_;
+  double gain_share_ = 1.0;  ///< of the bandwidth
   double period_s_;
   double integral_1_s_;
   double filter_;  ///< share of the old value in the velocity filter

@@ -138,6 +138,14 @@ void AxisEstimator::Reset(double position_m) noexcept {
   knows_followed_ = false;
 }
 
+void AxisEstimator::Freeze(bool frozen) noexcept {
+  if (frozen == frozen_) return;
+  frozen_ = frozen;
+  WithFilter(filter_, [&](auto& filter) noexcept {
+    if constexpr (requires { filter.Freeze(frozen); }) filter.Freeze(frozen);
+  });
+}
+
 AxisEstimate AxisEstimator::Update(const Input& in) noexcept {
   if (is_full()) return UpdateFull(in);
   at_rest_ = in.at_rest || !in.enabled;
@@ -178,7 +186,7 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   const AxisEstimate estimate = filter.Update(followed);
   // Over the period that ends with this measurement.
   const double force_N = lag_.Step(in.force_N[1])[0];
-  if (in.enabled && in.fresh && !followed.at_rest && estimate.limit != Reason::kInnovationGated) {
+  if (in.enabled && in.fresh && !frozen_ && !followed.at_rest && estimate.limit != Reason::kInnovationGated) {
     momentum_.Learn(in.position_m, force_N, roll_.rolled_N());
     if (const auto& m = momentum_.missing(); m.known)
       map_.Learn(m.position_m, m.velocity_m_s, m.acceleration_m_s2, m.force_N);
@@ -227,7 +235,7 @@ void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t po
   if (is_full()) {
     const auto& filter = *std::get_if<SevenStateFilter<SqrtUkf<kSevenStates>>>(&filter_);
     roll_.Run(filter.model(), filter.state(), correction_, viscous_,
-              {known_, temperature_degC_, map_, momentum_.extra_kg(), filter.lasting_N()}, at_rest_,
+              {known_, temperature_degC_, map_, momentum_.extra_kg(), filter.lasting_N(), !frozen_}, at_rest_,
               reference, points, out);
     // The commissioned compliance is made up for where the reference is; what has been learnt of it, here.
     const double extra_m_N = wind_up_.extra_compliance_m_N();

@@ -53,6 +53,10 @@ class AxisEstimator {
   /// Starts anew at a position, at rest; friction parameters as commissioned.
   void Reset(double position_m) noexcept;
 
+  /// From now on nothing is learnt, and the bristle's stiffness goes back to the commissioned one; false:
+  /// learning goes on from there. Only where there is something that is learnt.
+  void Freeze(bool frozen) noexcept;
+
   /// Filter at t(k-1) and prediction to t(k).
   AxisEstimate Update(const Input& in) noexcept;
 
@@ -63,7 +67,7 @@ class AxisEstimator {
   /// The extensions of the model stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
     keep(filter_, roll_, correction_, viscous_, momentum_, map_, wind_up_, lag_, drive_N_, temperature_degC_,
-         at_rest_, followed_, knows_followed_);
+         at_rest_, frozen_, followed_, knows_followed_);
   }
 
  private:
@@ -91,6 +95,7 @@ class AxisEstimator {
   KnownEffects known_;
   double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();
   bool at_rest_ = true;
+  bool frozen_ = false;
   /// Of what is followed, at the next sample: where corners are planned it is not the program's own motion.
   ReferencePoint followed_;
   bool knows_followed_ = false;

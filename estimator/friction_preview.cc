@@ -129,7 +129,7 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   const double velocity = at.velocity_m_s[0];
   const bool forward = velocity >= 0.0;
   const double share = (forward ? a.bristle_N[0] : -a.bristle_N[0]) * a.per_level_1_N[0];
-  const bool sliding = !at_rest && share > kSlidingShare;
+  const bool sliding = known.learns && !at_rest && share > kSlidingShare;
   // Of this period and the ones ahead, by what is known before this one teaches more.
   const double sigma2 = model.sigma2_Ns_m() + viscous.extra_Ns_m();
   if (sliding) {

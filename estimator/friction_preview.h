@@ -18,6 +18,7 @@ struct KnownNow {
   const AngleForceMap& map;
   double extra_kg;   ///< by which the axis is heavier than commissioned
   double lasting_N;  ///< the part of the disturbance that is an outside force for certain
+  bool learns = true;
 };
 
 /// Friction the reference motion will meet: the bristle rolled along the reference with the levels and

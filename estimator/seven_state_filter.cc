@@ -40,6 +40,9 @@ constexpr double kShareRate = 0.02;
 constexpr double kGivenUpShare = 0.2;
 constexpr double kComingDownShare = 0.5;
 
+// What is frozen leaves the learnt stiffness by this share per millisecond.
+constexpr double kForgetShare = 0.02;
+
 // Mean of the squared, normalised innovations; share per millisecond.
 constexpr double kSurpriseShare = 0.01;
 
@@ -59,7 +62,8 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
       gate_{setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6},
       lasting_share_(ShareOfPeriod(kLastingRate, setup.period_s)),
       asymmetry_share_(ShareOfPeriod(kShareRate, setup.period_s)),
-      surprise_share_(ShareOfPeriod(kSurpriseShare, setup.period_s)) {
+      surprise_share_(ShareOfPeriod(kSurpriseShare, setup.period_s)),
+      forget_share_(ShareOfPeriod(kForgetShare, setup.period_s)) {
   const auto& c = setup.config;
   // A coarse encoder would slow the parameters down with the rest of the filter, more than their drift
   // allows.
@@ -188,7 +192,7 @@ template <class Core>
 StateMask<kSevenStates> SevenStateFilter<Core>::Adapted(bool at_rest) const noexcept {
   auto mask = AllStates<kSevenStates>();
   const auto& x = core_.x;
-  const bool moving = !at_rest && setup_.config.adapt;
+  const bool moving = !at_rest && adapts();
   const bool forward = x[kVelocity] >= 0.0;
   mask[kLevelPlus] = moving && forward;
   mask[kLevelMinus] = moving && !forward;
@@ -228,7 +232,7 @@ void SevenStateFilter<Core>::JudgeLevel(bool at_rest) noexcept {
   const double step_m = std::abs(x[kVelocity]) * setup_.period_s;
   travel_m_ += step_m;
   travel_s_ += setup_.period_s;
-  if (at_rest || !setup_.config.adapt) return;
+  if (at_rest || !adapts()) return;
   const double level_N = Level_N();
   // By the commissioned stiffness: the estimated one goes down instead of the level when there is no
   // friction.
@@ -373,9 +377,10 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
     }
     out.innovation_m = innovation.value;
     out.innovation_std_m = innovation.std;
+    if (frozen_) core_.x[kLogSigma0] -= forget_share_ * core_.x[kLogSigma0];
     JudgeLevel(in.at_rest);
     const bool bounded = Bound();
-    if (!in.at_rest && setup_.config.adapt) {
+    if (!in.at_rest && adapts()) {
       const Friction& f = setup_.friction;
       const double plus = core_.x[kLevelPlus] / f.Fc_plus_N, minus = core_.x[kLevelMinus] / f.Fc_minus_N;
       // Without any level there is nothing to tell an outside force from: it may be friction that comes back.

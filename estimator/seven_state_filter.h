@@ -27,6 +27,8 @@ class SevenStateFilter {
   explicit SevenStateFilter(const FilterSetup& setup) noexcept;
 
   void Reset(double position_m) noexcept;
+  /// Levels keep their values; sigma0 goes back to the commissioned one, smoothly.
+  void Freeze(bool frozen) noexcept { frozen_ = frozen; }
 
   /// Filter at the sample t(k-1) and prediction to t(k). Factors of the level may be set before.
   AxisEstimate Update(const AxisEstimatorInput& in) noexcept;
@@ -81,6 +83,7 @@ class SevenStateFilter {
   [[nodiscard]] double CommissionedLevel_N() const noexcept {
     return LevelState() == kLevelPlus ? setup_.friction.Fc_plus_N : setup_.friction.Fc_minus_N;
   }
+  [[nodiscard]] bool adapts() const noexcept { return setup_.config.adapt && !frozen_; }
   void Follow(double position_m) noexcept;
   void Reverse(double commanded_velocity_m_s) noexcept;
   CONTOUR_WIDE_VECTORS void TimeUpdate(const AxisEstimatorInput& in) noexcept;
@@ -103,6 +106,7 @@ class SevenStateFilter {
   double lasting_share_ = 0.0;  // shares per period
   double asymmetry_share_ = 0.0;
   double surprise_share_ = 0.0;
+  double forget_share_ = 0.0;
   X std_limit_{};
   X initial_std_{};
   Core core_;
@@ -128,6 +132,7 @@ class SevenStateFilter {
   double surprise_ = 1.0;  // mean square of innovation / its standard deviation
   std::uint32_t gated_in_a_row_ = 0;
   bool following_ = true;
+  bool frozen_ = false;
 };
 
 extern template class SevenStateFilter<SqrtUkf<kSevenStates>>;

@@ -18,6 +18,8 @@ constexpr std::uint32_t kSettledCycles = 300;
 constexpr std::uint32_t kFaultSettledCycles = 3000;
 /// Reference points to either side of the feedback's instant that make the local path of the contour error.
 constexpr int kLocalPathReach = 8;
+/// In which the difference of two controllers' forces fades.
+constexpr double kBlend_s = 0.03;
 /// Damping ratio of an axis held by a spring, friction apart.
 constexpr double kSpringDamping = 0.7;
 
@@ -39,6 +41,9 @@ Cycle::Axis::Axis(const CycleAxisConfig& config, EstimatorKind kind, double peri
       estimator(kind, config.mechanics, config.friction, config.estimator, period_s, config.lag_s,
                 2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev,
                 config.known),
+      observer(EstimatorKind::kDisturbanceObserver, config.mechanics, config.friction, config.estimator,
+               period_s, config.lag_s,
+               2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev),
       mass_kg(config.mechanics.mass_kg) {}
 
 Cycle::Cycle(const CycleConfig& config)
@@ -48,6 +53,9 @@ Cycle::Cycle(const CycleConfig& config)
       reasons_(config.cycle_us),
       follower_(config.axes.size(), period_s_, StopOnPathTime_s(config) / period_s_, kMaxHorizonPoints),
       controller_(MakeController(config)),
+      fallback_(MakeFallback(config)),
+      watch_(config),
+      blend_kept_(std::exp(-period_s_ / kBlend_s)),
       guard_(config.control.guard, GuardedAxes(config), period_s_),
       csp_(InCascade(config)),
       by_reported_torque_(csp_ && config.controller == ControllerName::kFull),
@@ -101,6 +109,7 @@ void Cycle::Step(const CycleInput& in, CycleOutput& out, StageSink* stages) noex
 void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexcept CONTOUR_NONBLOCKING {
   Observe(in);
   Estimate(in.io);
+  WatchItself();
   if (stages != nullptr) stages->Passed(CycleStage::kEstimated);
   Orders orders = transitions_.Step(Assess(in));
   CarryOut(orders);
@@ -133,8 +142,9 @@ void Cycle::EncodeHeartbeat(CycleOutput& out) const noexcept {
 }
 
 void Cycle::Keep(StateKeeper& keep) noexcept {
-  keep(master_, axes_, transitions_, reasons_, follower_, controller_, guard_, estimates_, control_in_,
-       control_out_, guarded_, setpoints_, near_position_m_, near_path_, stale_cycles_);
+  keep(master_, axes_, transitions_, reasons_, follower_, controller_, fallback_, watch_, acted_, take_over_,
+       late_, guard_, estimates_, control_in_, control_out_, guarded_, setpoints_, near_position_m_,
+       near_path_, stale_cycles_);
 }
 
 std::size_t Cycle::StateSize() noexcept {
@@ -165,7 +175,7 @@ void Cycle::Observe(const CycleInput& in) noexcept {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
     stale = stale || (f.valid && !f.fresh);
-    follower_.Horizon(i, controller_.horizon_points(), control_in_.reference[i]);
+    follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
   }
   if (stale && master_.operational()) ++stale_cycles_;
 }
@@ -196,6 +206,10 @@ void Cycle::Estimate(const IoInput& io) noexcept {
     input.at_rest = commanded.velocity_m_s == 0.0 && commanded.extra_torque_Nm == 0.0;
     input.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
     estimates_[i] = axis.estimator.Update(input);
+    if (fallback_ != nullptr && watch_.step() >= SupervisionStep::kSoftened) {
+      const AxisEstimate observed = axis.observer.Update(input);
+      if (fallen_back()) estimates_[i] = observed;
+    }
     if (skipped_ != 0) CatchUp(axis, i, input);
   }
 }
@@ -210,6 +224,7 @@ ReferencePoint Cycle::AtSample(std::size_t axis) const noexcept {
 // From the newest feedback to one period before the torque now being computed, under the torque that acted.
 void Cycle::CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept {
   const AxisEstimate measured = estimates_[index];
+  AxisEstimator& estimator = fallen_back() ? axis.observer : axis.estimator;
   const double held_N = input.force_N[0];
   input.fresh = false;
   input.force_N = {held_N, held_N, held_N};
@@ -217,7 +232,7 @@ void Cycle::CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noe
     const ReferencePoint commanded = follower_.Near(index, static_cast<int>(s) - static_cast<int>(skipped_));
     input.commanded_velocity_m_s = commanded.velocity_m_s;
     input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
-    estimates_[index] = axis.estimator.Update(input);
+    estimates_[index] = estimator.Update(input);
     axis.sent_force_N = {held_N, axis.sent_force_N[0], axis.sent_force_N[1]};
   }
   AxisEstimate& now = estimates_[index];
@@ -264,7 +279,7 @@ FaultSeen Cycle::FindFault() const noexcept {
     if (status.not_following && Acts(Reason::kDriveNotFollowing)) return {Reason::kDriveNotFollowing, where};
     if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
   }
-  return {};
+  return watch_.Fault();
 }
 
 FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
@@ -292,7 +307,7 @@ FaultSeen Cycle::FindStop() const noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath && Acts(Reason::kDriveEmergency))
       return {Reason::kDriveEmergency, static_cast<std::uint8_t>(i)};
-  return {};
+  return watch_.Stop();
 }
 
 std::uint8_t Cycle::FindStuck() const noexcept {
@@ -348,21 +363,59 @@ void Cycle::Decide(const Orders& orders) noexcept {
   // The path ahead is what Observe found, unless an order has just changed it.
   if (ChangesPath(orders))
     for (std::size_t i = 0; i < axes_.size(); ++i)
-      follower_.Horizon(i, controller_.horizon_points(), control_in_.reference[i]);
-  controller_.Plan(control_in_, orders.torque_allowed);
+      follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
+  ContourController& in_use = controller();
+  in_use.Plan(control_in_, orders.torque_allowed);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    axes_[i].estimator.PreviewFriction(Reference(control_in_)[i], controller_.friction_points(),
-                                       control_in_.friction[i]);
+    AxisEstimator& estimator = fallen_back() ? axes_[i].observer : axes_[i].estimator;
+    estimator.PreviewFriction(Reference(control_in_)[i], in_use.friction_points(), control_in_.friction[i]);
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
   }
   control_in_.estimate = estimates_;
   if (orders.torque_allowed) {
-    controller_.Step(control_in_, control_out_);
+    in_use.Step(control_in_, control_out_);
+    Blend();
     HoldBySprings();
   } else {
     // Whatever it found would not be sent, and axes that are moved by hand would keep its solver busy.
-    controller_.Rest(control_out_);
+    in_use.Rest(control_out_);
+    for (Axis& axis : axes_) axis.blend_N = 0.0;
   }
+}
+
+// The ladder's step of this cycle, and what controllers and estimators have to do with it.
+void Cycle::WatchItself() noexcept {
+  const bool had_fallen_back = fallen_back();
+  if (transitions_.holds_torque()) {
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      watch_.Look(i, {master_.feedback()[i], estimates_[i], AtSample(i), axes_[i].position_m,
+                      axes_[i].radius_m_rad, control_out_.limit[i] == Reason::kSolverCap});
+    watch_.EndCycle(late_);
+  } else {
+    watch_.Reset();
+  }
+  if (acted_ == watch_.step()) return;
+  const bool soft = watch_.step() >= SupervisionStep::kSoftened;
+  controller_.Soften(watch_.softness());
+  for (Axis& axis : axes_) {
+    axis.estimator.Freeze(soft);
+    if (soft && acted_ < SupervisionStep::kSoftened) axis.observer.Reset(axis.position_m);
+  }
+  if (fallen_back() != had_fallen_back) controller().Reset();
+  // To be noticed changes nothing.
+  take_over_ = transitions_.holds_torque() && std::max(acted_, watch_.step()) >= SupervisionStep::kSoftened;
+  acted_ = watch_.step();
+}
+
+// A change of controller takes over the force that is there; the difference fades.
+void Cycle::Blend() noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    double& blend_N = axes_[i].blend_N;
+    if (take_over_) blend_N = axes_[i].sent_force_N[0] - control_out_.force_N[i];
+    control_out_.force_N[i] += blend_N;
+    blend_N *= blend_kept_;
+  }
+  take_over_ = false;
 }
 
 /// Where an experiment asks for it, a damped spring towards the reference takes the controller's place: weak
@@ -473,6 +526,7 @@ void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
   const AxisDriveStatus& status = master_.status()[i];
   if (held && r.limit == Reason::kNone && status.emergency == EmergencyReaction::kWarn)
     r.limit = Reason::kEmergencyNoticed;
+  if (held && r.limit == Reason::kNone) r.limit = watch_.Limit(i);
   r.emergency_code = status.emergency_code;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "daemon/rt/cycle_config.h"
 #include "daemon/rt/path_follower.h"
 #include "daemon/rt/reason_watch.h"
+#include "daemon/rt/self_watch.h"
 #include "daemon/rt/transitions.h"
 #include "drivers/cia301/bus_traffic.h"
 #include "drivers/cia402/drive_master.h"
@@ -48,6 +50,9 @@ class Cycle {
   [[nodiscard]] bool FeedbackComplete(const CycleInput& in) const noexcept;
   /// Nodes of the drives, bus by bus.
   [[nodiscard]] const FixedVector<BusNodes, kMaxBuses>& bus_nodes() const noexcept { return bus_nodes_; }
+  /// Whether the frames of the cycle before left late: the cycle itself sees no clock. A replay tells it from
+  /// the log.
+  void TellLate(bool late) noexcept { late_ = late; }
   /// The master's heartbeats alone, for a loop whose time stands still.
   void EncodeHeartbeat(CycleOutput& out) const noexcept;
 
@@ -67,14 +72,16 @@ class Cycle {
     Axis(const CycleAxisConfig& config, EstimatorKind kind, double period_s);
     double radius_m_rad;
     AxisEstimator estimator;
+    AxisEstimator observer;  ///< to fall back to
     double mass_kg;
     std::array<double, 3> sent_force_N{};  ///< newest first
     double reported_N = 0.0;               ///< torque at the sample before, as the drive told it
     double wanted_torque_Nm = 0.0;         ///< before the guard
     double position_m = 0.0;
+    double blend_N = 0.0;  ///< what a change of controller must not make of the force, fading away
 
     void Keep(StateKeeper& keep) noexcept {
-      keep(estimator, sent_force_N, reported_N, wanted_torque_Nm, position_m);
+      keep(estimator, observer, sent_force_N, reported_N, wanted_torque_Nm, position_m, blend_N);
     }
   };
 
@@ -97,6 +104,12 @@ class Cycle {
   void FollowFeedback() noexcept;
   void Decide(const Orders& orders) noexcept;
   void HoldBySprings() noexcept;
+  void WatchItself() noexcept;
+  void Blend() noexcept;
+  [[nodiscard]] bool fallen_back() const noexcept {
+    return fallback_ != nullptr && watch_.step() >= SupervisionStep::kFallenBack;
+  }
+  [[nodiscard]] ContourController& controller() noexcept { return fallen_back() ? *fallback_ : controller_; }
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;
   void RecordContourError(CycleRecord& record) noexcept;
@@ -109,6 +122,13 @@ class Cycle {
   ReasonWatch reasons_;
   PathFollower follower_;
   ContourController controller_;
+  std::unique_ptr<ContourController> fallback_;  // none: there is nothing to fall back to
+  SelfWatch watch_;
+  SupervisionStep acted_ =
+      SupervisionStep::kNone;  ///< the ladder's step that controllers and estimators know of
+  bool take_over_ = false;     ///< the next force comes from another controller than the last
+  bool late_ = false;
+  double blend_kept_ = 0.0;  // per cycle
   TorqueGuard guard_;
   bool csp_;
   bool by_reported_torque_;  // the estimators are told what the drives report instead of what they were sent

@@ -65,6 +65,14 @@ ContourController MakeController(const CycleConfig& config) {
           InCascade(config)};
 }
 
+std::unique_ptr<ContourController> MakeFallback(const CycleConfig& config) {
+  const EstimatorKind kind = EstimatorFor(config);
+  if (InCascade(config) || kind == EstimatorKind::kKinematic || kind == EstimatorKind::kDisturbanceObserver)
+    return nullptr;
+  return std::make_unique<ContourController>(ControllerName::kMpcObserver, config.control,
+                                             ControlledAxes(config), config.cycle_us * 1e-6);
+}
+
 double StopOnPathTime_s(const CycleConfig& config) {
   // The ramp's steepest slope is 1.5 / T, its sharpest bend 6 / T^2: an axis at its highest speed then just
   // keeps its limits of acceleration and jerk.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "control/contour_controller.h"
 #include "control/torque_guard.h"
 #include "daemon/rt/cycle_config.h"
@@ -19,6 +21,10 @@ namespace contour {
 
 /// The controller of such a cycle; takes all memory there will be. Throws std::invalid_argument.
 [[nodiscard]] ContourController MakeController(const CycleConfig& config);
+
+/// What is fallen back to when the controller of such a cycle fails: MPC with a disturbance observer, which
+/// learns nothing. None where the controller has nothing more to give up, or the drives close the loop.
+[[nodiscard]] std::unique_ptr<ContourController> MakeFallback(const CycleConfig& config);
 
 /// Length of a stop on the path: an axis at its highest speed keeps its limits of acceleration and jerk.
 [[nodiscard]] double StopOnPathTime_s(const CycleConfig& config);

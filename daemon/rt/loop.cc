@@ -125,6 +125,7 @@ void Loop::Finish(CycleEntry& entry, const GridPoint& grid, std::int64_t early_n
   if (timing.wakeup_late_ns > counters_.max_wakeup_late_ns.load(std::memory_order_relaxed))
     counters_.max_wakeup_late_ns.store(timing.wakeup_late_ns, std::memory_order_relaxed);
   const std::uint64_t cycle = entry.input.cycle;
+  cycle_.TellLate(timing.late);
   telemetry_.Publish();
   if (config_.snapshots != nullptr) config_.snapshots->TakeWhenDue(cycle_, cycle);
 }

@@ -195,6 +195,7 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
           recorded->input.request.program_id != kNothingChanged)
         Tune(cycle, source, log.notes(), recorded->input.request.program_id);
       cycle.Step(replayed->input, replayed->output);
+      cycle.TellLate(recorded->timing.late);
       if (outputs) differences.Add(recorded->output, replayed->output);
       if (options.observer) options.observer(*replayed);
       report.last_cycle = number;

@@ -64,6 +64,21 @@ TEST_F(TransitionsTest, NothingEnablesItself) {
   EXPECT_EQ(machine_.state(), MachineState::kIdle);
 }
 
+TEST_F(TransitionsTest, WhatTheMachineFindsWrongWithItselfIsAStopOnThePath) {
+  ToRunning();
+  now_.stop = {Reason::kOscillation, 1};
+  const Orders orders = Step();
+  EXPECT_TRUE(orders.stop_path);
+  EXPECT_TRUE(orders.torque_allowed);
+  EXPECT_EQ(machine_.state(), MachineState::kStopping);
+  EXPECT_FALSE(Step().stop_path) << "begun once";
+  now_.path_at_rest = true;
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kOscillation);
+  EXPECT_EQ(machine_.reason_where(), 1);
+}
+
 TEST_F(TransitionsTest, EnableRunAndProgramEnd) {
   ToRunning();
   EXPECT_EQ(machine_.program_id(), 3u);

@@ -1,0 +1,116 @@
+#include "control/oscillation_detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace contour {
+namespace {
+
+// Half waves of one oscillation differ by less than this from those of the same side before.
+constexpr double kSamePeriod = 0.6;
+// What falls by more per period dies out by itself: damping ratio ln(1 / 0.8) / 2 pi = 0.036.
+constexpr double kKept = 0.8;
+constexpr double kGrown = 1.15;
+constexpr int kGrowingHalfWaves = 4;
+// A reference that swings by this share of the force's swing explains it.
+constexpr double kExplained = 0.5;
+// A sign counts from this share of the smallest swing that is looked for.
+constexpr double kHysteresis = 0.2;
+// So many of the slowest half waves after a motion, the axis is at rest.
+constexpr double kSettledHalfWaves = 2.0;
+constexpr std::uint32_t kLongAgo = 1U << 30;
+
+// A mean that follows up to half the lowest frequency looked for, per cycle.
+double ShareAt(double low_Hz, double period_s) noexcept {
+  return std::min(1.0, std::numbers::pi * low_Hz * period_s);
+}
+
+}  // namespace
+
+OscillationDetector::OscillationDetector(const OscillationBounds& bounds) noexcept
+    : bounds_(bounds),
+      share_(ShareAt(bounds.low_Hz, bounds.period_s)),
+      moving_share_(ShareAt(bounds.low_moving_Hz, bounds.period_s)) {
+  Reset();
+}
+
+void OscillationDetector::Reset() noexcept {
+  started_ = false;
+  sign_ = 0;
+  now_ = {};
+  before_ = {};
+  highest_m_s2_ = lowest_m_s2_ = before_highest_m_s2_ = before_lowest_m_s2_ = 0.0;
+  moved_ago_ = kLongAgo;
+  run_ = growing_ = 0;
+}
+
+Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
+  if (bounds_.half_waves == 0) return Oscillation::kNone;
+  if (!now.watched) {
+    if (started_) Reset();
+    return Oscillation::kNone;
+  }
+  if (!started_) {
+    started_ = true;
+    mean_m_ = now.following_error_m;
+    mean_N_ = now.force_N;
+  }
+  const double share = now.reference_velocity_m_s != 0.0 ? moving_share_ : share_;
+  mean_m_ += share * (now.following_error_m - mean_m_);
+  mean_N_ += share * (now.force_N - mean_N_);
+  const double error_m = now.following_error_m - mean_m_;
+  moved_ago_ = now.reference_velocity_m_s != 0.0 ? 0 : std::min(moved_ago_ + 1, kLongAgo);
+  Oscillation found = Oscillation::kNone;
+  if (std::abs(error_m) > kHysteresis * bounds_.swing_m) {
+    const int sign = error_m > 0.0 ? 1 : -1;
+    if (sign != sign_) {
+      if (sign_ != 0) found = EndHalfWave();
+      sign_ = sign;
+      now_ = {};
+      before_highest_m_s2_ = highest_m_s2_;
+      before_lowest_m_s2_ = lowest_m_s2_;
+      highest_m_s2_ = lowest_m_s2_ = now.reference_acceleration_m_s2;
+    }
+  }
+  ++now_.cycles;
+  now_.peak_m = std::max(now_.peak_m, std::abs(error_m));
+  now_.peak_N = std::max(now_.peak_N, std::abs(now.force_N - mean_N_));
+  highest_m_s2_ = std::max(highest_m_s2_, now.reference_acceleration_m_s2);
+  lowest_m_s2_ = std::min(lowest_m_s2_, now.reference_acceleration_m_s2);
+  return found;
+}
+
+// Against the half wave of the same side: friction and outside forces make the two sides differ.
+bool OscillationDetector::GoesOn(const HalfWave& before) const noexcept {
+  const double length_s = now_.cycles * bounds_.period_s;
+  const bool moving = moved_ago_ * bounds_.period_s < kSettledHalfWaves * 0.5 / bounds_.low_Hz;
+  const double low_Hz = moving ? bounds_.low_moving_Hz : bounds_.low_Hz;
+  if (length_s > 0.5 / low_Hz || length_s < 0.5 / bounds_.high_Hz) return false;
+  const double swing_m = now_.peak_m + before_[0].peak_m;
+  const double swing_N = now_.peak_N + before_[0].peak_N;
+  if (swing_m < bounds_.swing_m) return false;
+  if (swing_N < (moving ? bounds_.swing_moving_N : bounds_.swing_N)) return false;
+  const double reference_N = bounds_.mass_kg * (std::max(highest_m_s2_, before_highest_m_s2_) -
+                                                std::min(lowest_m_s2_, before_lowest_m_s2_));
+  if (reference_N > kExplained * swing_N) return false;
+  if (before.cycles == 0) return true;
+  const auto [shorter, longer] = std::minmax(now_.cycles, before.cycles);
+  return shorter + 1 >= kSamePeriod * longer && now_.peak_m >= kKept * before.peak_m;
+}
+
+Oscillation OscillationDetector::EndHalfWave() noexcept {
+  const HalfWave same_side = before_[1];
+  const bool goes_on = GoesOn(same_side);
+  run_ = goes_on ? run_ + 1 : 0;
+  const bool grew = goes_on && same_side.cycles != 0 && now_.peak_m > kGrown * same_side.peak_m;
+  growing_ = grew ? growing_ + 1 : 0;
+  before_[1] = before_[0];
+  before_[0] = now_;
+  if (growing_ >= kGrowingHalfWaves && now_.peak_m > bounds_.growing_m) return Oscillation::kGrowing;
+  if (run_ < bounds_.half_waves) return Oscillation::kNone;
+  run_ = 0;
+  return Oscillation::kLasting;
+}
+
+}  // namespace contour

@@ -1,0 +1,150 @@
+#include "daemon/rt/self_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "daemon/rt/cycle_parts.h"
+
+namespace contour {
+namespace {
+
+// A loop oscillates near its own bandwidth, at the slowest when friction has hold of it; in motion the path
+// has its say below a quarter of it.
+constexpr double kSlowestOfBandwidth = 1.0 / 16.0;
+constexpr double kSlowestMovingOfBandwidth = 1.0 / 4.0;
+// The model's stiffness may be wrong by as much.
+constexpr double kModeMargin = 1.2;
+// Two counts and one step of torque are moved through at rest by rounding alone; twice that is more than
+// rounding.
+constexpr double kRoundingCounts = 2.0;
+constexpr double kBeyondRounding = 2.0;
+constexpr double kFewestCyclesPerPeriod = 4.0;
+// Of the following error that is a fault.
+constexpr double kDangerousShare = 0.125;
+
+double LoopBandwidth_Hz(const CycleConfig& config) {
+  if (config.controller == ControllerName::kPid) return config.control.pid.bandwidth_Hz;
+  const MpcConfig& mpc = MpcConfigFor(config.control, config.controller);
+  return std::min(mpc.contour_bandwidth_Hz, mpc.lag_bandwidth_Hz);
+}
+
+std::uint32_t Cycles(const CycleConfig& config, double time_s) {
+  return static_cast<std::uint32_t>(time_s * 1e6 / config.cycle_us) + 1;
+}
+
+}  // namespace
+
+OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t axis) {
+  const CycleAxisConfig& a = config.axes[axis];
+  const Mechanics& m = a.mechanics;
+  const Friction f = ToSi(a.friction, m.radius_m_rad);
+  const double torque_step_N = 1e-3 * config.master.axes[axis].drive.rated_torque_Nm / m.radius_m_rad;
+  const double count_m = 2.0 * std::numbers::pi * m.radius_m_rad / a.encoder_counts_per_rev;
+  const double motor_kg = m.mass_kg - m.table_mass_kg;
+  const double mode_Hz =
+      std::sqrt(m.stiffness_N_m * (1.0 / motor_kg + 1.0 / m.table_mass_kg)) / (2.0 * std::numbers::pi);
+  OscillationBounds b;
+  b.period_s = config.cycle_us * 1e-6;
+  b.low_Hz = kSlowestOfBandwidth * LoopBandwidth_Hz(config);
+  b.low_moving_Hz = kSlowestMovingOfBandwidth * LoopBandwidth_Hz(config);
+  b.high_Hz = std::min(kModeMargin * mode_Hz, 1.0 / (kFewestCyclesPerPeriod * b.period_s));
+  b.swing_m = kBeyondRounding * (kRoundingCounts * count_m + torque_step_N / f.sigma0_N_m);
+  b.swing_N = kBeyondRounding * torque_step_N;
+  b.swing_moving_N = 2.0 * std::max(f.Fs_plus_N, f.Fs_minus_N);
+  b.mass_kg = m.mass_kg;
+  b.growing_m = kDangerousShare * a.limits.following_error_mm * 1e-3;
+  b.half_waves = config.control.supervision.half_waves;
+  return b;
+}
+
+SelfWatch::SelfWatch(const CycleConfig& config)
+    : ladder_(Cycles(config, config.control.supervision.step_s),
+              Cycles(config, config.control.supervision.quiet_s)),
+      late_(config.control.supervision.late_cycles) {
+  const SupervisionConfig& s = config.control.supervision;
+  const EstimatorKind kind = EstimatorFor(config);
+  friction_filter_ = kind != EstimatorKind::kKinematic && kind != EstimatorKind::kDisturbanceObserver;
+  for (std::size_t i = 0; i < config.axes.size(); ++i) {
+    oscillation_.push_back(OscillationDetector(OscillationBoundsFor(config, i)));
+    innovation_.push_back(InnovationWatch({s.innovation_sigma, s.innovation_samples, s.gated_cycles}));
+    capped_.push_back(InARow(s.solver_cap_cycles));
+  }
+}
+
+void SelfWatch::Reset() noexcept {
+  if (clean_) return;
+  ladder_.Reset();
+  for (OscillationDetector& o : oscillation_) o.Reset();
+  for (InnovationWatch& w : innovation_) w.Reset();
+  for (InARow& c : capped_) c.Reset();
+  late_.Reset();
+  alarm_ = growing_ = {};
+  clean_ = true;
+}
+
+void SelfWatch::Raise(Reason alarm, std::size_t axis) noexcept {
+  if (alarm_.reason == Reason::kNone) alarm_ = {alarm, static_cast<std::uint8_t>(axis)};
+}
+
+void SelfWatch::Look(std::size_t axis, const Seen& seen) noexcept {
+  clean_ = false;
+  if (capped_[axis].Step(seen.capped)) Raise(Reason::kSolverCapLasting, axis);
+  if (!seen.feedback.fresh) return;
+  const ReferencePoint& r = seen.reference;
+  const bool watched = r.extra_torque_Nm == 0.0 && !(r.spring_N_m > 0.0);
+  switch (
+      oscillation_[axis].Step({r.position_m - seen.position_m, seen.feedback.torque_Nm / seen.radius_m_rad,
+                               r.velocity_m_s, r.acceleration_m_s2, watched})) {
+    case Oscillation::kGrowing:
+      growing_ = {Reason::kOscillation, static_cast<std::uint8_t>(axis)};
+      break;
+    case Oscillation::kLasting:
+      Raise(Reason::kOscillation, axis);
+      break;
+    case Oscillation::kNone:
+      break;
+  }
+  const AxisEstimate& e = seen.estimate;
+  const bool gated = e.limit == Reason::kInnovationGated;
+  // The observer's noise is a bandwidth, not a statement: only what it does not believe counts.
+  const bool stated = friction_filter_ && ladder_.step() < SupervisionStep::kFallenBack;
+  if (innovation_[axis].Step(stated ? e.innovation_m : 0.0, e.innovation_std_m, gated))
+    Raise(Reason::kEstimatorInconsistent, axis);
+}
+
+void SelfWatch::EndCycle(bool late) noexcept {
+  if (late_.Step(late)) Raise(Reason::kCyclesLate, 0xFF);
+  ladder_.Step(alarm_.reason, alarm_.where);
+  alarm_ = {};
+}
+
+Softness SelfWatch::softness() const noexcept {
+  if (ladder_.step() < SupervisionStep::kSoftened) return Softness::kNone;
+  return ladder_.step() == SupervisionStep::kSoftened ? Softness::kSofter : Softness::kWithout;
+}
+
+FaultSeen SelfWatch::Stop() const noexcept {
+  if (ladder_.step() != SupervisionStep::kStopped) return {};
+  return {ladder_.reason(), ladder_.where()};
+}
+
+Reason SelfWatch::Limit(std::size_t axis) const noexcept {
+  switch (ladder_.step()) {
+    case SupervisionStep::kNone:
+      return Reason::kNone;
+    case SupervisionStep::kNoticed:
+      break;
+    case SupervisionStep::kSoftened:
+      return Reason::kSoftened;
+    case SupervisionStep::kFallenBack:
+    case SupervisionStep::kStopped:
+      return Reason::kFallenBack;
+  }
+  if (ladder_.where() != axis) return Reason::kNone;
+  if (ladder_.reason() == Reason::kOscillation) return Reason::kOscillationNoticed;
+  if (ladder_.reason() == Reason::kEstimatorInconsistent) return Reason::kInnovationGated;
+  return ladder_.reason() == Reason::kSolverCapLasting ? Reason::kSolverCap : Reason::kNone;
+}
+
+}  // namespace contour

@@ -1,0 +1,139 @@
+#include "daemon/rt/self_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "daemon/make_cycle_config.h"
+#include "tests/closed_loop/test_machine.h"
+
+namespace contour::test {
+namespace {
+
+Program Text(const std::string& text) { return ParseProgram(text, "test.yaml", ProgramFormat::kYaml); }
+
+/// What the axes showed in a run, and what came of it.
+struct Watched {
+  std::map<Reason, int> shown;
+  Reason ended = Reason::kNone;
+  double swing_m = 0.0;         ///< of the last second, the larger of both axes
+  double torque_step_Nm = 0.0;  ///< largest, in a cycle in which the ladder moved, at rest
+};
+
+Watched RunWatched(const EmulatedMachineFile& file, ControllerName controller, const Program& program) {
+  VirtualMachine machine(file, controller);
+  machine.BringUp();
+  machine.Enable();
+  Watched seen;
+  std::array<std::vector<double>, 2> error_m;
+  std::array<double, 2> torque_Nm{};
+  std::array<Reason, 2> limit{};
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) {
+    const CycleRecord& r = entry.output.record;
+    if (r.state != MachineState::kRunning) {
+      if (r.state == MachineState::kFaulted || r.state == MachineState::kStopping) seen.ended = r.reason;
+      return;
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      const AxisRecord& a = r.axes[i];
+      ++seen.shown[a.limit];
+      error_m[i].push_back(a.following_error_m);
+      if (a.limit != limit[i] && (a.limit == Reason::kSoftened || a.limit == Reason::kFallenBack))
+        seen.torque_step_Nm = std::max(seen.torque_step_Nm, std::abs(a.torque_Nm - torque_Nm[i]));
+      torque_Nm[i] = a.torque_Nm;
+      limit[i] = a.limit;
+    }
+  });
+  try {
+    machine.Run(program);
+  } catch (const std::runtime_error&) {
+    for (int i = 0; i < 3000 && machine.record().state != MachineState::kFaulted; ++i) machine.Tick();
+  }
+  for (const std::vector<double>& e : error_m) {
+    if (e.size() < 1000) continue;
+    const auto [low, high] = std::minmax_element(e.end() - 1000, e.end());
+    seen.swing_m = std::max(seen.swing_m, *high - *low);
+  }
+  return seen;
+}
+
+// Before: y swings by 1.6 um at 16 Hz for as long as it stands, status Ready, not a word.
+TEST(SelfWatch, AStandingAxisThatSwingsIsNamedAndSoftenedUntilItStands) {
+  const Watched seen = RunWatched(
+      ExampleMachine({"emulator.seed=2"}), ControllerName::kFull,
+      Text("{sequence: [{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 4, corners: continuous}, "
+           "{shape: hold, seconds: 4}]}"));
+  EXPECT_TRUE(seen.shown.contains(Reason::kOscillationNoticed));
+  EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
+  EXPECT_EQ(seen.ended, Reason::kNone);
+  EXPECT_LT(seen.swing_m, 0.05e-6);
+  // 3 N at the table, in the middle of a swing of 6 N.
+  EXPECT_LT(seen.torque_step_Nm, 0.0024);
+}
+
+TEST(SelfWatch, ALoopInOrderIsLeftAlone) {
+  for (const char* program :
+       {"{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 2}",
+        "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 2}", "{shape: hold, seconds: 3}"}) {
+    const Watched seen = RunWatched(ExampleMachine(), ControllerName::kFull, Text(program));
+    EXPECT_EQ(seen.ended, Reason::kNone) << program;
+    for (const Reason r :
+         {Reason::kOscillationNoticed, Reason::kSoftened, Reason::kFallenBack, Reason::kInnovationGated})
+      EXPECT_FALSE(seen.shown.contains(r)) << program << " " << Name(r);
+  }
+}
+
+// Each alarm takes the bound in a row; late cycles are told by the loop, of the cycle before.
+TEST(SelfWatch, LateCyclesInARowEndInAStop) {
+  const EmulatedMachineFile file = ExampleMachine({"control.supervision.late_cycles=400"});
+  SelfWatch watch(MakeCycleConfig(file.machine, ControllerName::kFull));
+  SelfWatch::Seen seen;
+  seen.radius_m_rad = 1e-3;
+  int cycles = 0;
+  while (watch.Stop().reason == Reason::kNone && cycles < 10000) {
+    watch.Look(0, seen);
+    watch.EndCycle(true);
+    ++cycles;
+  }
+  EXPECT_EQ(watch.Stop().reason, Reason::kCyclesLate);
+  EXPECT_EQ(cycles, 1600);
+  watch.Reset();
+  for (int i = 0; i < 10000; ++i) {
+    watch.Look(0, seen);
+    watch.EndCycle(i % 400 != 0);
+  }
+  EXPECT_EQ(watch.step(), SupervisionStep::kNone);
+}
+
+TEST(SelfWatch, ASolverAtItsCapAndAFilterThatContradictsItselfClimbTheSameLadder) {
+  const EmulatedMachineFile file = ExampleMachine({"control.supervision.step_s=0"});
+  SelfWatch watch(MakeCycleConfig(file.machine, ControllerName::kFull));
+  SelfWatch::Seen seen;
+  seen.radius_m_rad = 1e-3;
+  seen.capped = true;
+  for (int i = 0; i < 100; ++i) {
+    watch.Look(1, seen);
+    watch.EndCycle(false);
+  }
+  EXPECT_EQ(watch.step(), SupervisionStep::kNoticed);
+  EXPECT_EQ(watch.Limit(1), Reason::kSolverCap);
+  EXPECT_EQ(watch.Limit(0), Reason::kNone);
+  seen = {};
+  seen.radius_m_rad = 1e-3;
+  seen.feedback.fresh = true;
+  seen.estimate.innovation_m = 1e-3;
+  seen.estimate.innovation_std_m = 1e-8;
+  seen.estimate.limit = Reason::kInnovationGated;
+  for (int i = 0; i < 60; ++i) {
+    watch.Look(1, seen);
+    watch.EndCycle(false);
+  }
+  EXPECT_EQ(watch.Stop().reason, Reason::kEstimatorInconsistent);
+  EXPECT_EQ(watch.Stop().where, 1);
+}
+
+}  // namespace
+}  // namespace contour::test

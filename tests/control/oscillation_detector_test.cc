@@ -1,0 +1,135 @@
+#include "control/oscillation_detector.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace contour {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+
+OscillationBounds Bounds() {
+  OscillationBounds b;
+  b.low_Hz = 2.0;
+  b.low_moving_Hz = 8.0;
+  b.swing_m = 0.4e-6;
+  b.swing_N = 1.6;
+  b.swing_moving_N = 120.0;
+  b.mass_kg = 90.0;
+  b.growing_m = 60e-6;
+  return b;
+}
+
+struct Found {
+  int lasting = 0;
+  int growing = 0;
+  double first_s = -1.0;
+};
+
+template <class Sample>
+Found Watch(double seconds, Sample sample, OscillationBounds bounds = Bounds()) {
+  OscillationDetector detector(bounds);
+  Found found;
+  for (double t = 0.0; t < seconds; t += kPeriod_s) {
+    const Oscillation o = detector.Step(sample(t));
+    found.lasting += o == Oscillation::kLasting ? 1 : 0;
+    found.growing += o == Oscillation::kGrowing ? 1 : 0;
+    if (o != Oscillation::kNone && found.first_s < 0.0) found.first_s = t;
+  }
+  return found;
+}
+
+double Wave(double t, double frequency_Hz) { return std::sin(2.0 * std::numbers::pi * frequency_Hz * t); }
+
+// The case found on the product: 16 Hz at rest, 1.6 um and 6 N peak to peak.
+TEST(OscillationDetector, ALimitCycleAtRestIsFoundWithinTwelveHalfWaves) {
+  const Found f = Watch(2.0, [](double t) {
+    return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, true};
+  });
+  EXPECT_GE(f.lasting, 4);
+  EXPECT_EQ(f.growing, 0);
+  EXPECT_LT(f.first_s, 0.5);
+}
+
+TEST(OscillationDetector, WhatCountsAndTorqueStepsExplainIsNone) {
+  EXPECT_EQ(Watch(5.0,
+                  [](double t) {
+                    return OscillationSample{0.15e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, true};
+                  })
+                .lasting,
+            0);
+  EXPECT_EQ(Watch(5.0,
+                  [](double t) {
+                    return OscillationSample{0.8e-6 * Wave(t, 16.0), 0.6 * Wave(t, 16.0), 0.0, 0.0, true};
+                  })
+                .lasting,
+            0);
+}
+
+TEST(OscillationDetector, NoiseHasNoPeriod) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  double slow = 0.0;
+  EXPECT_EQ(Watch(60.0,
+                  [&](double) {
+                    slow += 0.05 * (normal(random) - slow);
+                    return OscillationSample{3e-6 * slow, 20.0 * slow, 0.0, 0.0, true};
+                  })
+                .lasting,
+            0);
+}
+
+TEST(OscillationDetector, WhatDiesOutByItselfIsNone) {
+  EXPECT_EQ(Watch(3.0,
+                  [](double t) {
+                    const double left = std::exp(-4.0 * t);  // 22 % per period
+                    return OscillationSample{40e-6 * left * Wave(t, 16.0), 200.0 * left * Wave(t, 16.0), 0.0,
+                                             0.0, true};
+                  })
+                .lasting,
+            0);
+}
+
+TEST(OscillationDetector, InMotionFrictionAndThePathExplainMore) {
+  const auto moving = [](double force_N, double acceleration_m_s2, double frequency_Hz) {
+    return Watch(3.0, [=](double t) {
+      return OscillationSample{5e-6 * Wave(t, frequency_Hz), force_N * Wave(t, frequency_Hz), 0.05,
+                               acceleration_m_s2 * Wave(t, frequency_Hz), true};
+    });
+  };
+  EXPECT_EQ(moving(40.0, 0.0, 30.0).lasting, 0) << "cogging";
+  EXPECT_GT(moving(100.0, 0.0, 30.0).lasting, 0);
+  EXPECT_EQ(moving(100.0, 1.0, 30.0).lasting, 0) << "the reference itself asks for it";
+  EXPECT_EQ(moving(100.0, 0.0, 3.0).lasting, 0) << "slower than the loop";
+}
+
+TEST(OscillationDetector, GrowthIsToldBeforeItIsAFollowingError) {
+  const Found f = Watch(2.0, [](double t) {
+    const double grown = std::exp(6.0 * t);
+    return OscillationSample{5e-6 * grown * Wave(t, 20.0), 100.0 * grown * Wave(t, 20.0), 0.05, 0.0, true};
+  });
+  EXPECT_GE(f.growing, 1);
+}
+
+TEST(OscillationDetector, ExperimentsAreNotWatchedAndZeroSwitchesOff) {
+  const auto sample = [](double t) {
+    return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, false};
+  };
+  EXPECT_EQ(Watch(2.0, sample).lasting, 0);
+  OscillationBounds off = Bounds();
+  off.half_waves = 0;
+  EXPECT_EQ(Watch(
+                2.0,
+                [](double t) {
+                  return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, true};
+                },
+                off)
+                .lasting,
+            0);
+}
+
+}  // namespace
+}  // namespace contour
