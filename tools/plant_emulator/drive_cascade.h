@@ -56,9 +56,11 @@ class DriveCascade {
         mean_share_(1.0 - portable::Exp(-kSmoothingsPerRest * 1e3 * tick_s / gains.rest_delay_ms)),
         filter_share_(1.0 - portable::Exp(-6.283185307179586 * gains.velocity_filter_Hz * tick_s)) {}
 
-  /// Encoder reading of this tick. Velocity is its filtered difference.
-  void Sense(double position_m) noexcept {
-    if (sensed_) velocity_m_s_ += filter_share_ * ((position_m - position_m_) / tick_s_ - velocity_m_s_);
+  /// Encoder reading, so many ticks after the one before: a SYNC out of its time re-phases them. Velocity is
+  /// the filtered difference.
+  void Sense(double position_m, double ticks) noexcept {
+    if (sensed_)
+      velocity_m_s_ += filter_share_ * ((position_m - position_m_) / tick_s_ - velocity_m_s_ * ticks);
     position_m_ = position_m;
     sensed_ = true;
   }

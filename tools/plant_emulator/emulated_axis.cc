@@ -295,10 +295,11 @@ void EmulatedAxis::Integrate(std::int64_t duration_ns) noexcept {
 
 void EmulatedAxis::Sense() noexcept {
   if (sensed_ns_ == now_ns_) return;
+  const double ticks = static_cast<double>(now_ns_ - sensed_ns_) / static_cast<double>(kTick_ns);
   sensed_ns_ = now_ns_;
   counts_ =
       tampering_.Read(encoder_.Read(plant_.motor_angle_rad(), plant_.motor_velocity_m_s() / p_.radius_m_rad));
-  cascade_.Sense(static_cast<double>(counts_) * TravelPerCount_m());
+  cascade_.Sense(static_cast<double>(counts_) * TravelPerCount_m(), ticks);
   past_ = (past_ + 1) % past_counts_.size();
   past_counts_[past_] = counts_;
 }
