@@ -58,8 +58,9 @@ std::vector<ConfigDifference> Differences(const MachineConfig& was, const Machin
 bool MayChangeWhileRunning(const std::string& key) {
   if (!key.starts_with("control.")) return false;
   // The guard is no gain; horizons and whether there is a planner decide what memory there is.
-  return !key.starts_with("control.guard.") && !key.starts_with("control.supervision.") &&
-         !key.starts_with("control.csp.") && !key.ends_with(".horizon") && key != "control.planner.enabled";
+  return !key.starts_with("control.guard.") && !key.starts_with("control.monitor.") &&
+         !key.starts_with("control.supervision.") && !key.starts_with("control.csp.") &&
+         !key.ends_with(".horizon") && key != "control.planner.enabled";
 }
 
 }  // namespace contour

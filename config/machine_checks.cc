@@ -13,6 +13,7 @@
 #include "config/bus_timing.h"
 #include "config/emergency_checks.h"
 #include "config/key_table.h"
+#include "config/motion_bounds.h"
 #include "config/number_text.h"
 #include "config/plausible_limits.h"
 #include "config/stopping.h"
@@ -246,6 +247,19 @@ void CheckStopping(const MachineConfig& c, const std::string& key, const AxisCon
                                                      Say(axis.drive.notice_ms) + ") and has stopped");
 }
 
+// The same thresholds that watch the axis in the cycle say how far it can get before they act.
+void CheckDepartures(const MachineConfig& c, const std::string& key, const AxisConfig& axis,
+                     Problems& problems) {
+  const WorstDeparture worst = WorstDepartureOf(c, axis);
+  if (worst.bound.departure_mm <= axis.limits.safe_travel_mm) return;
+  problems.Add(key + ".limits.safe_travel_mm",
+               "found " + Say(axis.limits.safe_travel_mm) + ", but with the fault '" +
+                   std::string(Name(worst.fault)) + "' at " + Say(worst.feed_mm_s) +
+                   " mm/s the axis goes up to " + Say(worst.bound.departure_mm) +
+                   " mm from its path until the torque is off. A finer encoder, a stiffer loop, or a smaller "
+                   "following_error_mm, torque_Nm or external_force_N make that smaller");
+}
+
 std::set<std::string> ParameterKeys() {
   std::set<std::string> keys;
   for (const KeyRow& row : DescribeKeys<ModelConfig>())
@@ -332,6 +346,7 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     CheckLimits(key, axis, problems);
     CheckReserve(key, axis, problems);
     CheckStopping(c, key, axis, problems);
+    CheckDepartures(c, key, axis, problems);
     Append(ImplausibleLimits(c, name), problems);
     Append(Check(axis.model, key + ".model"), problems);
   }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "control/monitor_config.h"
 #include "control/supervision_config.h"
 #include "core/visit.h"
 
@@ -19,6 +20,7 @@ struct AxisLimits {
   double torque_rate_Nm_s = 0.0;
   double following_error_mm = 0.0;
   double safe_travel_mm = 0.0;
+  double external_force_N = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -30,7 +32,10 @@ struct AxisLimits {
     v.Optional("torque_rate_Nm_s", torque_rate_Nm_s, kNotNegative, "highest change of torque; 0: no limit");
     v.Required("following_error_mm", following_error_mm, kPositive,
                "fault above this distance to the reference");
-    v.Required("safe_travel_mm", safe_travel_mm, kPositive, "travel allowed to experiments and stops");
+    v.Required("safe_travel_mm", safe_travel_mm, kPositive,
+               "travel allowed to experiments, stops, and whatever goes wrong until the torque is off");
+    v.Optional("external_force_N", external_force_N, kNotNegative,
+               "largest force on the table besides friction (cutting, weight); 0: a quarter of rated force");
   }
 };
 
@@ -47,6 +52,7 @@ struct AxisLimitsSi {
   double force_rate_N_s = std::numeric_limits<double>::infinity();
   double following_error_m = 0.0;
   double safe_travel_m = 0.0;
+  double external_force_N = 0.0;
 };
 
 constexpr AxisLimitsSi ToSi(const AxisLimits& c, double radius_m_rad) noexcept {
@@ -61,7 +67,8 @@ constexpr AxisLimitsSi ToSi(const AxisLimits& c, double radius_m_rad) noexcept {
           c.torque_Nm / radius_m_rad,
           rate / radius_m_rad,
           c.following_error_mm * 1e-3,
-          c.safe_travel_mm * 1e-3};
+          c.safe_travel_mm * 1e-3,
+          c.external_force_N};
 }
 
 /// PID with feed-forward, stated as pole frequencies so that one tuning fits axes of any mass.
@@ -165,6 +172,7 @@ struct ControllerConfig {
   PlannerConfig planner;
   GuardConfig guard;
   SupervisionConfig supervision;
+  MonitorConfig monitor;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -179,6 +187,7 @@ struct ControllerConfig {
     v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
     v.Optional("supervision", supervision, "how the machine watches its own control");
+    v.Optional("monitor", monitor, "what motion and torque may contradict each other by");
   }
 };
 

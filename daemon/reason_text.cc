@@ -136,7 +136,7 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
              DriveText(detail);
     case Reason::kTorqueNotDelivered:
       return axis +
-             ": the drive reports another torque than it was sent; quick stop. Look for a limit in the "
+             ": the drive reports another torque than it was sent; voltage off. Look for a limit in the "
              "drive, its supply, or a lost phase" +
              DriveText(detail);
     case Reason::kScaleDisagrees:

@@ -36,7 +36,8 @@ PerAxis<double> Zeros(std::size_t n) {
 
 }  // namespace
 
-Cycle::Axis::Axis(const CycleAxisConfig& config, EstimatorKind kind, double period_s)
+Cycle::Axis::Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored,
+                  const MonitorConfig& monitoring, EstimatorKind kind, double period_s)
     : radius_m_rad(config.mechanics.radius_m_rad),
       estimator(kind, config.mechanics, config.friction, config.estimator, period_s, config.lag_s,
                 2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev,
@@ -44,6 +45,7 @@ Cycle::Axis::Axis(const CycleAxisConfig& config, EstimatorKind kind, double peri
       observer(EstimatorKind::kDisturbanceObserver, config.mechanics, config.friction, config.estimator,
                period_s, config.lag_s,
                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev),
+      monitor(monitored, monitoring, period_s),
       mass_kg(config.mechanics.mass_kg) {}
 
 Cycle::Cycle(const CycleConfig& config)
@@ -59,13 +61,16 @@ Cycle::Cycle(const CycleConfig& config)
       guard_(config.control.guard, GuardedAxes(config), period_s_),
       csp_(InCascade(config)),
       by_reported_torque_(csp_ && config.controller == ControllerName::kFull),
+      soft_loop_rel_(config.control.supervision.softer * config.control.supervision.softer),
       most_skipped_(static_cast<std::uint32_t>(config.control.guard.stale_cycles)),
       estimates_(config.axes.size()),
       guarded_(config.axes.size()),
       setpoints_(config.axes.size()),
       near_position_m_(config.axes.size()),
       near_path_(config.axes.size()) {
-  for (const CycleAxisConfig& a : config.axes) axes_.emplace_back(a, EstimatorFor(config), period_s_);
+  const PerAxis<MonitoredAxis> monitored = MonitoredAxes(config);
+  for (std::size_t i = 0; i < config.axes.size(); ++i)
+    axes_.emplace_back(config.axes[i], monitored[i], config.control.monitor, EstimatorFor(config), period_s_);
   for (const AxisDriveConfig& a : config.master.axes)
     answers_.push_back({{static_cast<std::uint16_t>(cob::kTpdo1 + a.drive.node_id), 0, {}}, a.bus, 0});
   for (const BusConfig& b : config.master.buses) {
@@ -108,6 +113,7 @@ void Cycle::Step(const CycleInput& in, CycleOutput& out, StageSink* stages) noex
 
 void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexcept CONTOUR_NONBLOCKING {
   Observe(in);
+  Monitor();
   Estimate(in.io);
   WatchItself();
   if (stages != nullptr) stages->Passed(CycleStage::kEstimated);
@@ -115,8 +121,12 @@ void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexc
   CarryOut(orders);
   Decide(orders);
   if (stages != nullptr) stages->Passed(CycleStage::kDecided);
+  // What the monitor sees says more of the cause than a limit that is exceeded by it.
+  const FaultSeen exceeded = Guard(orders);
+  const FaultSeen fault = contradiction_.reason != Reason::kNone ? contradiction_ : exceeded;
   // Without torque a fault of the guard moves nothing, and the enabling to come starts everything anew.
-  if (const FaultSeen fault = Guard(orders); fault.reason != Reason::kNone && orders.torque_allowed) {
+  const bool enabling = contradiction_.reason != Reason::kNone && orders.goal == DriveGoal::kEnabled;
+  if (fault.reason != Reason::kNone && (orders.torque_allowed || enabling)) {
     orders = transitions_.RaiseLate(fault);
     CarryOut(orders);
     Guard(orders);
@@ -144,7 +154,7 @@ void Cycle::EncodeHeartbeat(CycleOutput& out) const noexcept {
 void Cycle::Keep(StateKeeper& keep) noexcept {
   keep(master_, axes_, transitions_, reasons_, follower_, controller_, fallback_, watch_, acted_, take_over_,
        late_, guard_, estimates_, control_in_, control_out_, guarded_, setpoints_, near_position_m_,
-       near_path_, stale_cycles_);
+       near_path_, stale_cycles_, skipped_before_);
 }
 
 std::size_t Cycle::StateSize() noexcept {
@@ -180,6 +190,34 @@ void Cycle::Observe(const CycleInput& in) noexcept {
   if (stale && master_.operational()) ++stale_cycles_;
 }
 
+/// Holds what the encoders say against the torque that acted, before anybody learns from it.
+void Cycle::Monitor() noexcept {
+  contradiction_ = {};
+  // While others are still being enabled, a drive that is holds its axis already.
+  const bool holds = transitions_.holds_torque() || transitions_.state() == MachineState::kEnabling;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Axis& axis = axes_[i];
+    const AxisFeedback& f = master_.feedback()[i];
+    const ReferencePoint sampled = AtSample(i);
+    MotionSample s;
+    s.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
+    s.fresh = f.fresh;
+    s.periods = skipped_before_ + 1;
+    s.position_m = axis.position_m;
+    s.sent_force_N = axis.sent_force_N[0];
+    s.reported_force_N = f.torque_Nm / axis.radius_m_rad;
+    s.reference_m = sampled.position_m;
+    s.loop_rel = csp_ || watch_.step() < SupervisionStep::kSoftened ? 1.0 : soft_loop_rel_;
+    s.spring_N_m = csp_ ? 0.0 : control_in_.reference[i][1].spring_N_m;
+    s.has_scale = f.has_scale;
+    s.table_position_m = f.table_position_m;
+    const Reason reason = axis.monitor.Step(s);
+    if (reason != Reason::kNone && contradiction_.reason == Reason::kNone)
+      contradiction_ = {reason, static_cast<std::uint8_t>(i)};
+  }
+  skipped_before_ = skipped_;
+}
+
 void Cycle::Estimate(const IoInput& io) noexcept {
   const bool holds = transitions_.holds_torque();
   std::size_t moving = 0;
@@ -190,7 +228,7 @@ void Cycle::Estimate(const IoInput& io) noexcept {
     const ReferencePoint commanded = AtSample(i);
     AxisEstimatorInput input;
     input.position_m = axis.position_m;
-    input.fresh = f.fresh;
+    input.fresh = f.fresh && axis.monitor.believed();
     input.force_N = axis.sent_force_N;
     if (by_reported_torque_) {
       // What the drive's own loops made of it, at the ends of the period that has passed.
@@ -527,6 +565,8 @@ void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
   if (held && r.limit == Reason::kNone && status.emergency == EmergencyReaction::kWarn)
     r.limit = Reason::kEmergencyNoticed;
   if (held && r.limit == Reason::kNone) r.limit = watch_.Limit(i);
+  if (r.limit == Reason::kNone && held && axes_[i].monitor.torque_constant_changed())
+    r.limit = Reason::kTorqueConstantChanged;
   r.emergency_code = status.emergency_code;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "control/contour_controller.h"
+#include "control/motion_monitor.h"
 #include "control/torque_guard.h"
 #include "core/cycle_record.h"
 #include "core/horizon.h"
@@ -69,10 +70,12 @@ class Cycle {
 
  private:
   struct Axis {
-    Axis(const CycleAxisConfig& config, EstimatorKind kind, double period_s);
+    Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored, const MonitorConfig& monitoring,
+         EstimatorKind kind, double period_s);
     double radius_m_rad;
     AxisEstimator estimator;
     AxisEstimator observer;  ///< to fall back to
+    MotionMonitor monitor;
     double mass_kg;
     std::array<double, 3> sent_force_N{};  ///< newest first
     double reported_N = 0.0;               ///< torque at the sample before, as the drive told it
@@ -81,7 +84,7 @@ class Cycle {
     double blend_N = 0.0;  ///< what a change of controller must not make of the force, fading away
 
     void Keep(StateKeeper& keep) noexcept {
-      keep(estimator, observer, sent_force_N, reported_N, wanted_torque_Nm, position_m, blend_N);
+      keep(estimator, observer, monitor, sent_force_N, reported_N, wanted_torque_Nm, position_m, blend_N);
     }
   };
 
@@ -110,6 +113,7 @@ class Cycle {
     return fallback_ != nullptr && watch_.step() >= SupervisionStep::kFallenBack;
   }
   [[nodiscard]] ContourController& controller() noexcept { return fallen_back() ? *fallback_ : controller_; }
+  void Monitor() noexcept;
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;
   void RecordContourError(CycleRecord& record) noexcept;
@@ -133,9 +137,12 @@ class Cycle {
   bool csp_;
   bool by_reported_torque_;  // the estimators are told what the drives report instead of what they were sent
   std::array<bool, 128> unsupervised_{};  ///< by reason; all false but in tests
+  double soft_loop_rel_;                  ///< stiffness of a softened loop, over its own
   std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 
+  FaultSeen contradiction_;           ///< of this cycle, by the motion monitors
+  std::uint32_t skipped_before_ = 0;  ///< in the cycle before: a SYNC was left out before the newest sample
   PerAxis<AxisEstimate> estimates_;
   ControlInput control_in_;
   ControlOutput control_out_;

@@ -48,6 +48,24 @@ PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config) {
   return axes;
 }
 
+PerAxis<MonitoredAxis> MonitoredAxes(const CycleConfig& config) {
+  PerAxis<MonitoredAxis> axes;
+  const double loop_Hz = LoopBandwidth_Hz(config.control, config.controller, InCascade(config));
+  for (std::size_t i = 0; i < config.axes.size(); ++i) {
+    const CycleAxisConfig& a = config.axes[i];
+    const DriveConfig& d = config.master.axes[i].drive;
+    const Friction f = ToSi(a.friction, a.mechanics.radius_m_rad);
+    const MonitoredFriction friction{std::max(f.Fs_plus_N, f.Fs_minus_N), std::min(f.Fc_plus_N, f.Fc_minus_N),
+                                     f.vs_m_s, f.sigma0_N_m, f.sigma2_Ns_m};
+    const MonitoredDrive drive{
+        d.rated_torque_Nm, a.encoder_counts_per_rev, static_cast<std::uint32_t>(d.delay_cycles),
+        config.master.buses[config.master.axes[i].bus].bitrate_bit_s, InCascade(config)};
+    axes.push_back(
+        ToMonitored(a.mechanics, friction, drive, ToSi(a.limits, a.mechanics.radius_m_rad), loop_Hz));
+  }
+  return axes;
+}
+
 Transitions::Config TransitionTimes(const CycleConfig& config) {
   const auto cycles = [&](double ms) { return static_cast<std::uint32_t>(ms * 1e3 / config.cycle_us) + 1; };
   double walk_ms = 0.0;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "control/contour_controller.h"
+#include "control/monitored_axis.h"
 #include "control/torque_guard.h"
 #include "daemon/rt/cycle_config.h"
 #include "daemon/rt/transitions.h"
@@ -18,6 +19,9 @@ namespace contour {
 [[nodiscard]] EstimatorKind EstimatorFor(const CycleConfig& config) noexcept;
 
 [[nodiscard]] PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config);
+
+/// The axes as the motion monitor knows them.
+[[nodiscard]] PerAxis<MonitoredAxis> MonitoredAxes(const CycleConfig& config);
 
 /// The controller of such a cycle; takes all memory there will be. Throws std::invalid_argument.
 [[nodiscard]] ContourController MakeController(const CycleConfig& config);

@@ -1,5 +1,7 @@
 #include "daemon/rt/transitions.h"
 
+#include "control/motion_monitor.h"
+
 namespace contour {
 namespace {
 
@@ -316,8 +318,9 @@ DriveGoal Transitions::Goal() const noexcept {
     case MachineState::kStopping:
       return DriveGoal::kEnabled;
     case MachineState::kFaulted:
-      // The drive's own ramp first; once it has let go, keep it without voltage.
-      return drives_off_ ? DriveGoal::kDisabled : DriveGoal::kQuickStop;
+      // The drive's own ramp first; once it has let go, keep it without voltage. Where
+      // no ramp will do, the voltage goes off at once, and the drive closes its brake.
+      return drives_off_ || RampInDoubt(reason_) ? DriveGoal::kDisabled : DriveGoal::kQuickStop;
     case MachineState::kIdle:
       return DriveGoal::kSwitchedOn;
     case MachineState::kStarting:

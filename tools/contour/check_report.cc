@@ -7,6 +7,7 @@
 #include "config/bus_timing.h"
 #include "config/machine_checks.h"
 #include "config/mode_advice.h"
+#include "config/motion_bounds.h"
 #include "config/number_text.h"
 #include "config/stopping.h"
 #include "core/mechanics.h"
@@ -108,6 +109,49 @@ std::string Stops(const MachineConfig& c) {
          "Safe travel\n" + safe;
 }
 
+// How far the table can be from the commanded path, and how long that takes, until the torque is off.
+std::string Departures(const MachineConfig& c) {
+  std::string text =
+      "\nFaults of feedback and torque: departure from the commanded path until the torque is off, at a feed "
+      "of\n";
+  for (const auto& [name, axis] : c.axes) {
+    const std::vector<double> feeds = BoundFeeds_mm_s(axis);
+    TextColumns table;
+    std::vector<std::string> head{"axis " + name};
+    for (const double feed : feeds) head.push_back(feed == 0.0 ? "rest" : Number(feed, "mm/s"));
+    table.Add(head);
+    for (const MotionFault fault : kMotionFaults) {
+      std::vector<std::string> departure{std::string(Name(fault))};
+      std::vector<std::string> time{"  within"};
+      for (const double feed : feeds) {
+        const FaultBound b = BoundOf(c, axis, fault, feed);
+        departure.push_back(Fixed(b.departure_mm, b.departure_mm < 0.1 ? 4 : 3, "mm"));
+        time.push_back(Fixed(1e3 * b.time_s, 1, "ms"));
+      }
+      table.Add(departure);
+      if (fault != MotionFault::kSmallJump) table.Add(time);
+    }
+    const WorstDeparture worst = WorstDepartureOf(c, axis);
+    text += table.Text() + "  worst: " + Fixed(worst.bound.departure_mm, 2, "mm") + " (" +
+            std::string(Name(worst.fault)) + " at " + Number(worst.feed_mm_s, "mm/s") + "), safe travel " +
+            Number(axis.limits.safe_travel_mm, "mm") +
+            "; with the voltage off the axis then coasts: from its highest speed up to " +
+            Fixed(CoastTravel_mm(axis), 1, "mm") +
+            " by friction alone, less where the drive closes a brake\n";
+  }
+  text +=
+      "  A lying encoder gets \"disable voltage\", no ramp that goes by it. At rest a frozen encoder shows "
+      "with the "
+      "next motion.\n";
+  for (const auto& [name, axis] : c.axes)
+    if (!axis.drive.linear_scale)
+      text +=
+          "  " + name +
+          ": an encoder that slips by less than a jump that is seen, or has another scale than stated, shows "
+          "only with a linear scale; this axis has none\n";
+  return text;
+}
+
 std::string Response(const std::optional<double>& response_us) {
   return response_us ? Fixed(*response_us, 0, "us") : "-";
 }
@@ -161,7 +205,7 @@ std::string Advice(const MachineConfig& c) {
 }  // namespace
 
 std::string CheckReport(const MachineConfig& c) {
-  return Head(c) + Axes(c) + Stops(c) + Buses(c) + Timing(c) + Advice(c);
+  return Head(c) + Axes(c) + Stops(c) + Departures(c) + Buses(c) + Timing(c) + Advice(c);
 }
 
 }  // namespace contour

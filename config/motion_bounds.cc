@@ -1,0 +1,190 @@
+#include "config/motion_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "config/extended_model.h"
+#include "control/monitored_axis.h"
+#include "core/mechanics.h"
+#include "drivers/cia402/mode_for.h"
+
+namespace contour {
+namespace {
+
+// A drive takes the voltage off by its own clock, at most one period of ours after the frame; its current
+// then fades along its lag.
+constexpr double kLagsToNothing = 3.0;
+// What a loop's other terms add to its proportional one, at most.
+constexpr double kLoopOvershoot = 4.0;
+
+struct Axis {
+  MonitoredAxis monitored;
+  MotionThresholds t;
+  AxisLimitsSi limits;
+  double period_s = 0.0;
+  double lag_s = 0.0;
+  double friction_drop_N = 0.0;
+};
+
+Axis Known(const MachineConfig& config, const AxisConfig& axis) {
+  const ExtendedModel model = Extended(axis.model);
+  const Mechanics m = ToSi(model.mechanics);
+  const Friction f = ToSi(model.friction, m.radius_m_rad);
+  const MonitoredFriction friction{std::max(f.Fs_plus_N, f.Fs_minus_N), std::min(f.Fc_plus_N, f.Fc_minus_N),
+                                   f.vs_m_s, f.sigma0_N_m, f.sigma2_Ns_m};
+  const bool in_cascade = ModeFor(config.machine.controller, axis.drive) == DriveMode::kCsp;
+  // A file with other mistakes is refused for those.
+  const auto bus = config.buses.find(axis.drive.bus);
+  const std::uint32_t bitrate_bit_s =
+      bus == config.buses.end() ? BusConfig{}.bitrate_bit_s : bus->second.bitrate_bit_s;
+  const MonitoredDrive drive{axis.drive.rated_torque_Nm,
+                             static_cast<double>(axis.drive.encoder_counts_per_rev),
+                             static_cast<std::uint32_t>(axis.drive.delay_cycles), bitrate_bit_s, in_cascade};
+  Axis a;
+  a.limits = ToSi(axis.limits, m.radius_m_rad);
+  a.monitored = ToMonitored(m, friction, drive, a.limits,
+                            LoopBandwidth_Hz(config.control, config.machine.controller, in_cascade));
+  a.period_s = 1e-6 * config.machine.cycle_us;
+  a.t = ThresholdsOf(a.monitored, config.control.monitor, a.period_s);
+  a.lag_s = 1e-3 * axis.drive.lag_ms;
+  a.friction_drop_N = a.monitored.Fs_N - a.monitored.Fc_N;
+  return a;
+}
+
+// From the sample that shows it to no torque: one period to the frame, one for the drive, its lag.
+double Off_s(const Axis& a) {
+  return (1.0 + a.monitored.delay_cycles) * a.period_s + kLagsToNothing * a.lag_s;
+}
+
+// What the torque limit can do while a force that is on its way has not been judged yet.
+double Slam_m(const Axis& a, double speed_m_s) {
+  const double open_s = a.period_s + Off_s(a);
+  return speed_m_s * open_s + 0.5 * a.limits.force_N / a.t.light_kg * open_s * open_s;
+}
+
+double JumpSeen_m(const Axis& a, double feed_m_s) {
+  // Anything up to the limits may act when it happens.
+  return a.t.Jump_m(feed_m_s, a.limits.force_N, a.period_s, 1.0, 1.0);
+}
+
+FaultBound Frozen(const Axis& a, const Standing& standing, double feed_m_s) {
+  if (feed_m_s <= 0.0) {
+    // At rest nothing asks for another force; what the force may change by moves presliding at its softest.
+    const double soft_N_m =
+        a.monitored.sigma0_N_m * a.t.friction_N / (a.t.friction_N + a.friction_drop_N) / 3.0;
+    return {1e3 * a.t.frozen_force_N / soft_N_m + 1e3 * Slam_m(a, 0.0), Off_s(a)};
+  }
+  // What the loop makes of the standing reading counts as settling, too, by its share.
+  // Seen by the reading's step to rest at once, or by the path going on for as long as the loop takes to
+  // answer.
+  const bool at_once = feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s);
+  const double path_m = standing.Path_m(a.t.loop_N_m);
+  const double answer_s = (a.t.loop_periods + 1.0) * a.period_s;
+  const double seen_s =
+      at_once ? a.period_s
+              : std::max(path_m / feed_m_s / (1.0 - kSettlingShare * kLoopOvershoot) + a.period_s, answer_s);
+  // Until then the force is what moved the axis before, changed by what the loop makes of the standing
+  // reading, and by no more than would show by itself; friction may fall from break-away to Coulomb's.
+  const double built_N =
+      at_once ? 0.0 : std::min(kLoopOvershoot * a.t.loop_N_m * feed_m_s * seen_s, a.t.frozen_force_N);
+  const double excess_N = a.friction_drop_N + built_N;
+  const double acceleration = excess_N / a.t.light_kg;
+  const double away_m = 0.5 * acceleration * seen_s * seen_s;
+  return {1e3 * (away_m + Slam_m(a, acceleration * seen_s)), seen_s + a.period_s + Off_s(a)};
+}
+
+// Feedback that tells the truth, or its mirror image: the following error ends it.
+FaultBound ByFollowingError(const Axis& a, double feed_m_s, bool runs_away) {
+  // A sign that changes in motion shows in the reading that changes: by twice the way of a period.
+  if (runs_away && 2.0 * feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s))
+    return {1e3 * Slam_m(a, 0.0), a.period_s + Off_s(a)};
+  const double fe_m = a.limits.following_error_m;
+  const double gain_m_s = runs_away ? std::sqrt(2.0 * a.limits.force_N / a.t.light_kg * fe_m) : 0.0;
+  const double open_m = runs_away ? Slam_m(a, gain_m_s + 2.0 * feed_m_s) : feed_m_s * (a.period_s + Off_s(a));
+  double seen_s = 0.0;
+  if (feed_m_s > 0.0) seen_s = fe_m / feed_m_s;
+  if (runs_away) {
+    // An unstable loop leaves its first count by e^(w t).
+    const double rate_1_s = std::sqrt(a.t.loop_N_m / (a.t.mass_kg * 2.0));
+    seen_s = std::min(feed_m_s > 0.0 ? seen_s + 1.0 / rate_1_s : 1e9,
+                      std::log(1.0 + fe_m / a.monitored.count_m) / rate_1_s);
+  }
+  return {1e3 * (fe_m + open_m), seen_s + a.period_s + Off_s(a)};
+}
+
+}  // namespace
+
+std::string_view Name(MotionFault fault) {
+  switch (fault) {
+    case MotionFault::kFrozen:
+      return "encoder frozen";
+    case MotionFault::kFlickers:
+      return "frozen, flickers";
+    case MotionFault::kJump:
+      return "encoder jumps";
+    case MotionFault::kSmallJump:
+      return "jump not seen";
+    case MotionFault::kReversed:
+      return "encoder reversed";
+    case MotionFault::kTorqueLost:
+      return "torque lost";
+    case MotionFault::kNotFollowing:
+      return "drive tells of it";
+  }
+  return "unknown";
+}
+
+FaultBound BoundOf(const MachineConfig& config, const AxisConfig& axis, MotionFault fault, double feed_mm_s) {
+  const Axis a = Known(config, axis);
+  const double feed_m_s = 1e-3 * feed_mm_s;
+  switch (fault) {
+    case MotionFault::kFrozen:
+      return Frozen(a, a.t.frozen, feed_m_s);
+    case MotionFault::kFlickers:
+      return Frozen(a, a.t.flickering, feed_m_s);
+    case MotionFault::kJump:
+      // Seen in the reading that jumps, before anything answers it.
+      return {1e3 * Slam_m(a, 0.0), a.period_s + Off_s(a)};
+    case MotionFault::kSmallJump:
+      return {1e3 * JumpSeen_m(a, feed_m_s), 0.0};
+    case MotionFault::kReversed:
+      return ByFollowingError(a, feed_m_s, true);
+    case MotionFault::kTorqueLost:
+      return ByFollowingError(a, feed_m_s, false);
+    case MotionFault::kNotFollowing:
+      return {1e3 * (a.limits.following_error_m + Slam_m(a, 0.0)), a.period_s + Off_s(a)};
+  }
+  return {};
+}
+
+std::vector<double> BoundFeeds_mm_s(const AxisConfig& axis) {
+  std::vector<double> feeds{0.0};
+  for (double feed = kSlowestFeed_mm_s; feed < 0.999 * axis.limits.velocity_mm_s; feed *= 10.0)
+    feeds.push_back(feed);
+  feeds.push_back(axis.limits.velocity_mm_s);
+  return feeds;
+}
+
+WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& axis) {
+  WorstDeparture worst;
+  // Finer than what is printed: the worst feed is where a reading's step to rest is just not seen.
+  std::vector<double> feeds = BoundFeeds_mm_s(axis);
+  for (double feed = kSlowestFeed_mm_s; feed < axis.limits.velocity_mm_s; feed *= 1.25) feeds.push_back(feed);
+  for (const MotionFault fault : kMotionFaults)
+    for (const double feed : feeds) {
+      if (fault == MotionFault::kFlickers) continue;
+      const FaultBound bound = BoundOf(config, axis, fault, feed);
+      if (bound.departure_mm > worst.bound.departure_mm) worst = {bound, fault, feed};
+    }
+  return worst;
+}
+
+double CoastTravel_mm(const AxisConfig& axis) {
+  const Mechanics m = ToSi(axis.model.mechanics);
+  const Friction f = ToSi(axis.model.friction, m.radius_m_rad);
+  const double speed_m_s = 1e-3 * axis.limits.velocity_mm_s;
+  return 1e3 * 0.5 * m.mass_kg * speed_m_s * speed_m_s / std::min(f.Fc_plus_N, f.Fc_minus_N);
+}
+
+}  // namespace contour

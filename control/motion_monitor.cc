@@ -1,0 +1,224 @@
+#include "control/motion_monitor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+// A reading that stays the same for less is the encoder's step.
+constexpr std::uint32_t kSameAtLeast_periods = 3;
+// Held forces that are remembered, at most.
+constexpr std::uint32_t kMostHeld = 8;
+// Readings in a row that momentum must be missing in.
+constexpr std::uint32_t kBeyondAtLeast = 2;
+// A report is low-passed over so many periods, and must differ for as many more: drives filter it.
+constexpr double kReport_periods = 10.0;
+constexpr std::uint32_t kUndelivered_periods = 20;
+// Drives know their torque to that share of it.
+constexpr double kReportGain = 0.3;
+constexpr std::uint32_t kLearnEvery_readings = 8;
+// csp: less than this share of Coulomb friction is no torque, for so many periods.
+constexpr double kNoTorque = 0.1;
+constexpr std::uint32_t kIdle_periods = 5;
+// Lead errors of screws that are sold are well below half a millimetre per metre.
+constexpr double kLeadError_rel = 5e-4;
+
+}  // namespace
+
+MotionMonitor::MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& config, double period_s) noexcept
+    : axis_(axis),
+      config_(config),
+      t_(ThresholdsOf(axis, config, period_s)),
+      period_s_(period_s),
+      watch_(axis.Fs_N, axis.slide_m_s, config.torque_constant_error_rel) {
+  axis_.delay_cycles = std::clamp<std::uint32_t>(axis_.delay_cycles, 1, 4);
+}
+
+Reason MotionMonitor::Step(const MotionSample& s) noexcept {
+  waited_periods_ += s.periods;
+  believed_ = true;
+  if (!s.enabled) held_ = false;
+  Reason found = Reason::kNone;
+  if (s.enabled) {
+    if (!held_) Restart(s);
+    Push(s);
+    if (s.fresh) found = Judge(s);
+  }
+  if (s.fresh) {
+    if (readings_ > 0) velocity_m_s_ = (s.position_m - position_m_) / (waited_periods_ * period_s_);
+    last_gap_periods_ = waited_periods_;
+    position_m_ = s.position_m;
+    waited_periods_ = 0;
+    readings_ = std::min(readings_ + 1, 2U);
+  }
+  return found;
+}
+
+void MotionMonitor::Restart(const MotionSample& s) noexcept {
+  held_ = true;
+  forces_N_.fill(0.0);
+  report_before_N_ = s.reported_force_N;
+  peak_N_ = force_N_ = unexplained_N_ = sent_N_ = reported_N_ = 0.0;
+  slow_force_N_ = axis_.in_cascade ? s.reported_force_N : 0.0;
+  least_N_ = most_N_ = slower_force_N_ = slow_force_N_;
+  settling_N_ = 0.0;
+  same_reference_m_ = s.reference_m;
+  near_ = false;
+  same_ = near_periods_ = beyond_ = undelivered_ = 0;
+  report_seen_ = scale_seen_ = false;
+}
+
+// At skipped grid points the drives hold the last torque.
+void MotionMonitor::Push(const MotionSample& s) noexcept {
+  for (std::uint32_t i = 0; i < std::min(s.periods, kMostHeld); ++i) {
+    std::copy_backward(forces_N_.begin(), forces_N_.end() - 1, forces_N_.end());
+  }
+  forces_N_[0] = s.sent_force_N;
+}
+
+Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
+  const double force_N = axis_.in_cascade ? 0.5 * (s.reported_force_N + report_before_N_) : Acting_N();
+  report_before_N_ = s.reported_force_N;
+  const double spread_N = axis_.in_cascade ? 0.0 : std::abs(Acting_N() - forces_N_[axis_.delay_cycles - 1]);
+  peak_N_ = std::max(peak_N_ * t_.peak_decay, std::abs(force_N) + spread_N);
+
+  Reason found = Reason::kNone;
+  const auto keep = [&](bool acts, Reason r) {
+    if (acts && found == Reason::kNone) found = r;
+  };
+  keep(config_.jump, Jump(s, force_N));
+  keep(config_.frozen, Frozen(s));
+  if (readings_ > 1) {
+    const double gap_s = waited_periods_ * period_s_;
+    const double velocity_m_s = (s.position_m - position_m_) / gap_s;
+    const double between_s = 0.5 * (gap_s + last_gap_periods_ * period_s_);
+    const double missing_N = force_N - t_.mass_kg * (velocity_m_s - velocity_m_s_) / between_s;
+    unexplained_N_ += t_.filter * (missing_N - unexplained_N_);
+    force_N_ += t_.filter * (force_N - force_N_);
+    keep(config_.momentum, Momentum(velocity_m_s, std::abs(s.position_m - position_m_) <= t_.flicker_m));
+    Learn(velocity_m_s);
+  }
+  keep(config_.delivery, Delivery(s));
+  keep(config_.scale, Scale(s));
+  return found;
+}
+
+Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
+  if (readings_ < 2) return Reason::kNone;
+  const double n = waited_periods_;
+  const double before = last_gap_periods_;
+  const double acceleration_m_s2 = force_N / t_.mass_kg;
+  const double predicted_m = position_m_ + velocity_m_s_ * n * period_s_ +
+                             0.5 * acceleration_m_s2 * period_s_ * period_s_ * n * (n + before);
+  const double off_m = std::abs(s.position_m - predicted_m);
+  believed_ = off_m <= t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
+  if (off_m <= t_.Jump_m(velocity_m_s_, peak_N_, period_s_, n, before)) return Reason::kNone;
+  return std::abs(s.position_m - position_m_) <= t_.flicker_m ? Reason::kFeedbackFrozen
+                                                              : Reason::kFeedbackJump;
+}
+
+Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
+  // A force counts once it has acted for a whole period before this sample.
+  const double settled_N = axis_.in_cascade ? s.reported_force_N : forces_N_[axis_.delay_cycles + 1];
+  slow_force_N_ += t_.frozen_filter * (settled_N - slow_force_N_);
+  slower_force_N_ += t_.settling_filter * (slow_force_N_ - slower_force_N_);
+  settling_N_ = std::max(settling_N_ * t_.settling_decay, std::abs(slow_force_N_ - slower_force_N_));
+  // A reading that is exactly the same, under another force or along a path that goes on.
+  if (readings_ == 0 || s.position_m != position_m_) {
+    least_N_ = most_N_ = slow_force_N_;
+    same_reference_m_ = s.reference_m;
+    same_ = 0;
+  } else {
+    same_ += waited_periods_;
+    least_N_ = std::min(least_N_, slow_force_N_);
+    most_N_ = std::max(most_N_, slow_force_N_);
+  }
+  // A reading that only flickers, along a path that goes on.
+  if (!near_ || std::abs(s.position_m - near_position_m_) > t_.flicker_m) {
+    near_ = true;
+    near_position_m_ = s.position_m;
+    near_reference_m_ = s.reference_m;
+    near_periods_ = 0;
+  } else {
+    near_periods_ += waited_periods_;
+  }
+  const double settling_N = kSettlingShare * settling_N_;
+  double loop_N_m = t_.loop_N_m * s.loop_rel;
+  std::uint32_t answer_periods = t_.loop_periods;
+  if (s.spring_N_m > 0.0) {
+    loop_N_m = s.spring_N_m;
+    answer_periods = static_cast<std::uint32_t>(std::sqrt(t_.mass_kg / s.spring_N_m) / period_s_) + 1;
+  }
+  const bool by_force = same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N;
+  const bool by_path = same_ >= answer_periods &&
+                       std::abs(s.reference_m - same_reference_m_) > t_.frozen.Path_m(loop_N_m, settling_N);
+  const bool by_flicker = near_periods_ >= answer_periods && std::abs(s.reference_m - near_reference_m_) >
+                                                                 t_.flickering.Path_m(loop_N_m, settling_N);
+  if (!by_force && !by_path && !by_flicker) return Reason::kNone;
+  // A drive that closes the loop and gives no torque lets the axis stand.
+  const bool idle = axis_.in_cascade && std::abs(s.reported_force_N) <= kNoTorque * axis_.Fc_N;
+  return idle && report_seen_ ? Reason::kTorqueNotDelivered : Reason::kFeedbackFrozen;
+}
+
+Reason MotionMonitor::Momentum(double velocity_m_s, bool stands) noexcept {
+  const double allowed_N = t_.Unexplained_N(velocity_m_s, force_N_);
+  beyond_ = std::abs(unexplained_N_) > allowed_N ? beyond_ + 1 : 0;
+  if (beyond_ < kBeyondAtLeast) return Reason::kNone;
+  // A reading that stands contradicts a small torque by itself; under a large one the axis may stand.
+  if (stands) {
+    return std::abs(force_N_) > t_.friction_N + t_.external_N ? Reason::kTorqueWithoutMotion
+                                                              : Reason::kFeedbackFrozen;
+  }
+  // Momentum won, in the torque's direction or against it.
+  const double won_N = force_N_ - unexplained_N_;
+  const bool lacks = unexplained_N_ * force_N_ > 0.0;
+  const bool against = won_N * force_N_ < 0.0 && std::abs(won_N) > 0.5 * (t_.friction_N + t_.external_N);
+  return lacks && !against ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
+}
+
+// Neighbouring samples say the same twice: one in a filter's memory is enough.
+void MotionMonitor::Learn(double velocity_m_s) noexcept {
+  if (until_learning_ > 0) --until_learning_;
+  if (until_learning_ > 0 || std::abs(velocity_m_s) < axis_.slide_m_s) return;
+  until_learning_ = kLearnEvery_readings;
+  watch_.Learn(force_N_, force_N_ - unexplained_N_, velocity_m_s);
+}
+
+// A report that has never shown the torque is none: some drives leave 0x6077 at zero.
+Reason MotionMonitor::Delivery(const MotionSample& s) noexcept {
+  if (axis_.in_cascade) return DeliveryInCascade(s);
+  const double share = waited_periods_ / (kReport_periods + waited_periods_);
+  sent_N_ += share * (Acting_N() - sent_N_);
+  reported_N_ += share * (s.reported_force_N - reported_N_);
+  const double allowed_N = t_.delivery_N + kReportGain * std::abs(sent_N_);
+  if (sent_N_ * reported_N_ > 0.0 && std::abs(reported_N_) > 0.1 * t_.delivery_N) report_seen_ = true;
+  undelivered_ = std::abs(sent_N_ - reported_N_) > allowed_N ? undelivered_ + waited_periods_ : 0;
+  return report_seen_ && undelivered_ > kUndelivered_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
+}
+
+// The torque that a drive's own loop wants is not known, but one that is behind by so much wants some.
+Reason MotionMonitor::DeliveryInCascade(const MotionSample& s) noexcept {
+  const double force_N = std::abs(s.reported_force_N);
+  const double none_N = kNoTorque * axis_.Fc_N;
+  if (force_N > none_N) report_seen_ = true;
+  const double wanted_N = t_.loop_N_m * std::abs(s.reference_m - s.position_m);
+  const bool idle = force_N <= none_N && wanted_N > 0.5 * t_.friction_N;
+  undelivered_ = idle ? undelivered_ + waited_periods_ : 0;
+  return report_seen_ && undelivered_ >= kIdle_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
+}
+
+Reason MotionMonitor::Scale(const MotionSample& s) noexcept {
+  if (!s.has_scale) return Reason::kNone;
+  const double apart_m = s.table_position_m - s.position_m;
+  if (!scale_seen_) {
+    scale_seen_ = true;
+    scale_offset_m_ = apart_m;
+    scale_begin_m_ = s.position_m;
+  }
+  const double travel_m = std::abs(s.position_m - scale_begin_m_);
+  const double allowed_m = t_.windup_m + t_.reading_m + kLeadError_rel * travel_m;
+  return std::abs(apart_m - scale_offset_m_) > allowed_m ? Reason::kScaleDisagrees : Reason::kNone;
+}
+
+}  // namespace contour

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "control/motion_thresholds.h"
+#include "control/torque_constant_watch.h"
+#include "core/reason.h"
+
+namespace contour {
+
+/// What one axis showed at one SYNC, and what acted on it.
+struct MotionSample {
+  bool enabled = false;  ///< the axis is held: torque acts
+  bool fresh = false;
+  std::uint32_t periods = 1;  ///< since the sample before; more than 1 when SYNCs were left out between them
+  double position_m = 0.0;    ///< R theta
+  double sent_force_N = 0.0;  ///< of the cycle before: it begins to act at this sample
+  double reported_force_N = 0.0;  ///< 0x6077 of this sample
+  double reference_m = 0.0;       ///< of this sample
+  double loop_rel = 1.0;    ///< stiffness of the loop over the configured one, where gains were softened
+  double spring_N_m = 0.0;  ///< above 0: an experiment holds the axis by a spring instead of the loop
+  bool has_scale = false;
+  double table_position_m = 0.0;
+};
+
+/// Holds motion against torque, one axis. It knows mass, friction and encoder within stated bounds and asks
+/// whether what the encoder says can be true under the torque that acted. It is no estimator: what it takes
+/// for granted does not learn, so nothing can teach it a fault.
+///
+/// - frozen: the reading has not changed by a count although the force changed by more than presliding at its
+///   stiffest can hold, or it only flickers although the reference went further than the loop can bear;
+/// - jump: the reading is further from its prediction than any force can take the motor;
+/// - momentum: u - m a, low-passed, is the force that neither torque nor motion explain (De Luca et al.,
+///   collision detection by generalised momentum); beyond friction and outside forces it is torque without
+///   motion, or motion against the torque;
+/// - delivery: the drive reports another torque than it was sent;
+/// - scale: table and motor are further apart than the screw can wind up.
+class MotionMonitor {
+ public:
+  MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& config, double period_s) noexcept;
+
+  /// Once per cycle. kNone, or what cannot be.
+  Reason Step(const MotionSample& sample) noexcept;
+
+  /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
+  /// of a SYNC that came late: nothing should be learnt from it.
+  [[nodiscard]] bool believed() const noexcept { return believed_; }
+
+  [[nodiscard]] const MotionThresholds& thresholds() const noexcept { return t_; }
+  /// Torque constant or mass are not what was stated. To be told, not to be acted upon.
+  [[nodiscard]] bool torque_constant_changed() const noexcept { return watch_.changed(); }
+  /// Force per acceleration, over what was stated.
+  [[nodiscard]] double torque_ratio() const noexcept { return watch_.ratio(); }
+
+ private:
+  void Push(const MotionSample& s) noexcept;
+  [[nodiscard]] double Acting_N() const noexcept { return forces_N_[axis_.delay_cycles]; }
+  Reason Judge(const MotionSample& s) noexcept;
+  Reason Jump(const MotionSample& s, double force_N) noexcept;
+  Reason Frozen(const MotionSample& s) noexcept;
+  Reason Momentum(double velocity_m_s, bool stands) noexcept;
+  void Learn(double velocity_m_s) noexcept;
+  Reason Delivery(const MotionSample& s) noexcept;
+  Reason DeliveryInCascade(const MotionSample& s) noexcept;
+  Reason Scale(const MotionSample& s) noexcept;
+  void Restart(const MotionSample& s) noexcept;
+
+  MonitoredAxis axis_;
+  MonitorConfig config_;
+  MotionThresholds t_;
+  double period_s_;
+  TorqueConstantWatch watch_;
+  std::uint32_t until_learning_ = 0;
+
+  // Readings, also of an axis that is not held.
+  std::uint32_t readings_ = 0;        ///< 0, 1, 2: how many of the two below are there
+  double position_m_ = 0.0;           ///< the newest reading
+  double velocity_m_s_ = 0.0;         ///< between it and the one before
+  std::uint32_t waited_periods_ = 0;  ///< since the newest reading
+  std::uint32_t last_gap_periods_ = 1;
+  // The rest begins anew whenever the axis is enabled.
+  bool believed_ = true;
+  bool held_ = false;
+  std::array<double, 8> forces_N_{};  ///< sent, newest first
+  double report_before_N_ = 0.0;
+  double peak_N_ = 0.0;
+  double slow_force_N_ = 0.0;  ///< for the frozen encoder
+  double slower_force_N_ = 0.0;
+  double settling_N_ = 0.0;              ///< largest recent change of it, fading
+  double least_N_ = 0.0, most_N_ = 0.0;  ///< of it, since the reading last changed
+  std::uint32_t same_ = 0;               ///< periods since then
+  double same_reference_m_ = 0.0;        ///< the reference when that began
+  bool near_ = false;                    ///< the reading has been near the one below
+  double near_position_m_ = 0.0;
+  double near_reference_m_ = 0.0;  ///< the reference when that began
+  std::uint32_t near_periods_ = 0;
+  double force_N_ = 0.0;                    ///< low-passed torque
+  double unexplained_N_ = 0.0;              ///< low-passed u - m a
+  std::uint32_t beyond_ = 0;                ///< readings in a row
+  double sent_N_ = 0.0, reported_N_ = 0.0;  ///< low-passed, for delivery
+  bool report_seen_ = false;                ///< the report has been seen to be one, in this enabling
+  std::uint32_t undelivered_ = 0;           ///< periods in a row
+  bool scale_seen_ = false;
+  double scale_offset_m_ = 0.0, scale_begin_m_ = 0.0;
+};
+
+/// Whether after this fault no ramp of the drive's will do: the encoder it would go by cannot be believed, or
+/// the torque is not there.
+constexpr bool RampInDoubt(Reason r) noexcept {
+  return r == Reason::kFeedbackFrozen || r == Reason::kFeedbackJump || r == Reason::kFeedbackReversed ||
+         r == Reason::kTorqueWithoutMotion || r == Reason::kTorqueNotDelivered ||
+         r == Reason::kScaleDisagrees;
+}
+
+}  // namespace contour

@@ -1,0 +1,87 @@
+#include "control/motion_thresholds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace contour {
+namespace {
+
+// The screw's oscillation has to pass the filters of force by so little that it does not count.
+constexpr double kBelowMode = 3.0;
+// Oscillations of a screw whose damping is not known are taken to last for so many periods of its mode.
+constexpr double kRinging_periods = 5.0;
+// Periods over which a chatter of the torque is averaged before it must have moved the axis.
+constexpr double kChatter_periods = 4.0;
+// Of the torque limit, what is left over friction and outside forces must do to be told from nothing.
+constexpr double kSureOfLimit = 0.9;
+// Largest share of the torque that may go unexplained: a table that was made much heavier than stated.
+constexpr double kMostUnexplained = 0.6;
+// Of a scale that does not see the motor: wind-up at the torque limit, with this much room for damping.
+constexpr double kWindupRoom = 1.5;
+// Of friction: what the torque may still change by while a disturbance of before settles.
+constexpr double kSettling = 0.005;
+// A disturbance shows in the torque faster than this, and integral action has settled it after that.
+constexpr double kSettlingBegin_s = 0.05;
+constexpr double kSettlingEnd_s = 0.2;
+// Time constants of the loop until it has answered.
+constexpr double kAnswer = 2.0;
+// Noise of the filtered force by the encoder's steps, as a share of the outside force.
+constexpr double kNoiseShare = 0.2;
+
+}  // namespace
+
+MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, double period_s) noexcept {
+  MotionThresholds t;
+  t.mass_kg = a.motor_mass_kg + a.table_mass_kg;
+  t.light_kg = (1.0 - c.mass_error_rel) * t.mass_kg;
+  t.motor_kg = (1.0 - c.mass_error_rel) * a.motor_mass_kg;
+  t.friction_N = c.friction_factor * a.Fs_N;
+  t.viscous_Ns_m = c.friction_factor * a.sigma2_Ns_m;
+  t.external_N = a.external_force_N;
+  t.screw_share_1_kg = 1.0 / t.motor_kg - 1.0 / ((1.0 + c.mass_error_rel) * t.mass_kg);
+  // One misread reading comes twice into a second difference; rounding of three readings up to two counts.
+  t.reading_m = (2.0 * c.misread_counts + 2.0) * a.count_m;
+
+  // Of three readings the middle one counts twice.
+  t.jitter_s = 4.0 * a.sample_jitter_s;
+
+  const double mode_rad_s =
+      std::sqrt(a.stiffness_N_m * t.mass_kg / std::max(1e-9, a.motor_mass_kg * a.table_mass_kg));
+  const double ringing_s = std::max(5.0 * period_s, kRinging_periods * 2.0 * std::numbers::pi / mode_rad_s);
+  t.peak_decay = std::exp(-period_s / ringing_s);
+
+  // In presliding the axis gives way by force over stiffness, at break-away altogether.
+  const auto standing = [&](double by_m) {
+    const double settling_N = kSettling * t.friction_N;
+    return Standing{by_m, settling_N + std::min(c.presliding_factor * a.sigma0_N_m * by_m,
+                                                2.0 * t.friction_N + t.external_N)};
+  };
+  const double step_m = (c.hysteresis_counts + 1) * a.count_m;
+  t.frozen = standing(step_m);
+  // To and fro by a step, and as far again to leave it.
+  t.flicker_m = 1.25 * step_m;
+  t.flickering = standing(2.0 * t.flicker_m);
+  // Outside forces and friction that settles on the table are answered by torque while the motor stands.
+  t.frozen_force_N = t.friction_N + t.external_N + t.frozen.force_N;
+  // The controller's stiffness goes by the mass it was told; a drive's own by the mass it was tuned for.
+  const double loop_rad_s = 2.0 * std::numbers::pi * a.loop_Hz;
+  t.loop_N_m = (a.in_cascade ? t.light_kg : t.mass_kg) * loop_rad_s * loop_rad_s;
+  t.loop_periods = static_cast<std::uint32_t>(std::max(3.0, std::ceil(kAnswer / (loop_rad_s * period_s))));
+  t.settling_filter = 1.0 - std::exp(-period_s / kSettlingBegin_s);
+  t.settling_decay = std::exp(-period_s / kSettlingEnd_s);
+  t.frozen_filter = 1.0 - std::exp(-1.0 / kChatter_periods);
+
+  const double filter_s = std::max(3.0 * period_s, kBelowMode / mode_rad_s);
+  const double count_N = t.mass_kg * a.count_m / (period_s * period_s);
+  t.filter = std::min(1.0 - std::exp(-period_s / filter_s),
+                      kNoiseShare * (t.external_N + t.friction_N) / std::max(count_N, 1e-12));
+  const double sure_N = kSureOfLimit * a.force_limit_N;
+  t.unexplained_rel =
+      std::clamp(1.0 - (t.friction_N + t.external_N) / std::max(sure_N, 1e-9), 0.0, kMostUnexplained);
+  t.delivery_N = c.reported_torque_error_rel * a.rated_force_N;
+  t.windup_m = kWindupRoom * (a.force_limit_N + t.friction_N) / a.stiffness_N_m;
+  return t;
+}
+
+}  // namespace contour

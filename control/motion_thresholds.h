@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstdint>
+
+#include "control/monitor_config.h"
+
+namespace contour {
+
+/// What the motion monitor has to know of an axis. Table side: forces F = T / R, positions R theta.
+struct MonitoredAxis {
+  double radius_m_rad = 0.0;
+  double motor_mass_kg = 0.0;  ///< Jm / R^2
+  double table_mass_kg = 0.0;
+  double stiffness_N_m = 0.0;  ///< of the screw
+  double Fs_N = 0.0;           ///< the larger of both directions
+  double Fc_N = 0.0;           ///< the smaller of both directions
+  double sigma0_N_m = 0.0;
+  double sigma2_Ns_m = 0.0;
+  double force_limit_N = 0.0;
+  double external_force_N = 0.0;  ///< what may push besides friction
+  double rated_force_N = 0.0;
+  double count_m = 0.0;          ///< travel per encoder count
+  double loop_Hz = 0.0;          ///< bandwidth of the position loop, at least
+  double sample_jitter_s = 0.0;  ///< by which a SYNC may come late or early
+  double slide_m_s = 0.0;        ///< above this speed the axis slides
+  std::uint32_t delay_cycles = 1;
+  bool in_cascade = false;  ///< csp: the torque is the drive's own, known by its report only
+};
+
+/// By what the reference must have gone further before a reading that stands is none.
+struct Standing {
+  double moved_m = 0.0;  ///< of the reading itself
+  double force_N = 0.0;  ///< that moves the axis as far, by presliding at its stiffest
+  /// With a loop of this stiffness.
+  [[nodiscard]] double Path_m(double loop_N_m, double settling_N = 0.0) const noexcept {
+    return moved_m + (force_N + settling_N) / loop_N_m;
+  }
+};
+
+/// Share of a change of torque that may still be on its way back while a reading stands.
+inline constexpr double kSettlingShare = 0.05;
+
+/// What follows from it; the same numbers decide in the cycle and are printed by `contour check`.
+struct MotionThresholds {
+  double mass_kg = 0.0;       ///< m, as stated
+  double light_kg = 0.0;      ///< m, as light as it may be
+  double motor_kg = 0.0;      ///< the motor's share alone, as light as it may be
+  double friction_N = 0.0;    ///< largest friction at rest
+  double viscous_Ns_m = 0.0;  ///< largest viscous friction
+  double external_N = 0.0;
+  double screw_share_1_kg = 0.0;   ///< of a force, acceleration of the motor beyond that of a rigid axis
+  double jitter_s = 0.0;           ///< of the time between two readings
+  double reading_m = 0.0;          ///< by which readings may be off, in an acceleration
+  double peak_decay = 0.0;         ///< per period, of a force that may still ring in the screw
+  double frozen_force_N = 0.0;     ///< change of force that must move the encoder
+  double flicker_m = 0.0;          ///< by which a reading may change and still be the same
+  Standing frozen;                 ///< a reading that is exactly the same
+  Standing flickering;             ///< one that stays within flicker_m
+  std::uint32_t loop_periods = 3;  ///< until the loop has answered a reference that begins to move
+  double filter = 0.0;             ///< share of the new value in the filtered forces
+  double loop_N_m = 0.0;           ///< stiffness of the position loop, at least
+  double settling_filter = 0.0;    ///< of the torque that a disturbance of before has changed
+  double settling_decay = 0.0;
+  double frozen_filter = 0.0;
+  double unexplained_rel = 0.0;  ///< share of the torque that may go unexplained
+  double delivery_N = 0.0;
+  double windup_m = 0.0;  ///< largest difference of scale and motor, lead errors apart
+
+  /// Largest displacement in one reading that forces leave unexplained, `n` periods after the one before,
+  /// which came `before` periods after its own: e = a T^2 n (n + before) / 2.
+  [[nodiscard]] double Forced_m(double velocity_m_s, double peak_force_N, double period_s, double n,
+                                double before) const noexcept {
+    const double speed_m_s = velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s;
+    const double acceleration_m_s2 =
+        (friction_N + viscous_Ns_m * speed_m_s + external_N) / motor_kg + peak_force_N * screw_share_1_kg;
+    return acceleration_m_s2 * period_s * period_s * 0.5 * n * (n + before) + reading_m;
+  }
+  /// The same where the SYNCs came as late and early as they may: beyond this the reading is wrong.
+  [[nodiscard]] double Jump_m(double velocity_m_s, double peak_force_N, double period_s, double n,
+                              double before) const noexcept {
+    const double speed_m_s = velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s;
+    return Forced_m(velocity_m_s, peak_force_N, period_s, n, before) + jitter_s * speed_m_s;
+  }
+  /// Force that motion may lack or have beyond the torque, slowly.
+  [[nodiscard]] double Unexplained_N(double velocity_m_s, double force_N) const noexcept {
+    const double speed_m_s = velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s;
+    const double size_N = force_N < 0.0 ? -force_N : force_N;
+    return friction_N + viscous_Ns_m * speed_m_s + external_N + unexplained_rel * size_N;
+  }
+};
+
+MotionThresholds ThresholdsOf(const MonitoredAxis& axis, const MonitorConfig& config,
+                              double period_s) noexcept;
+
+}  // namespace contour
