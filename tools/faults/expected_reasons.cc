@@ -70,6 +70,8 @@ const Expectation& ExpectationOf(Fault fault) noexcept { return kRows[static_cas
 
 ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept {
   const Expectation& row = ExpectationOf(fault);
+  // A stop on the path may be over before its motion shows what shows at rest only by chance.
+  if (phase == Phase::kStopping) return {row.at_rest == kMayStop ? kMayStop : row.moving, row.reasons};
   if (Holds(phase)) return {Moves(phase) ? row.moving : row.at_rest, row.reasons};
   // What nothing may stop for in motion stops nothing here either.
   if (row.moving == kGoesOn) return {kGoesOn, {}};

@@ -1,10 +1,13 @@
 #include "tools/faults/fault_bounds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <string_view>
 
+#include "config/motion_bounds.h"
 #include "config/stopping.h"
+#include "drivers/cia402/mode_for.h"
 
 namespace contour::faults {
 namespace {
@@ -70,9 +73,8 @@ Promise PromiseOf(Fault fault) {
 
 /// 0x6061 is read once in this time, at the slowest.
 constexpr double kModeRead_s = 0.15;
-/// Until the machine file has a bound of its own for what motion shows: as long as a following error needs to
-/// grow, at most this long.
-constexpr double kLongestNotice_s = 3.0;
+/// Feeds of an axis that does not move evenly, in steps of this ratio.
+constexpr double kFeedStep = 1.3;
 
 const AxisConfig& AxisOf(const MachineConfig& machine, std::size_t axis) {
   return std::next(machine.axes.begin(), static_cast<std::ptrdiff_t>(axis))->second;
@@ -112,16 +114,89 @@ RunBound Bound(const MachineConfig& machine, Promise promise, std::size_t number
   }
 }
 
+/// The axis as it is run: the mode of the run is that of all axes.
+struct RunMachine {
+  MachineConfig machine;
+  const AxisConfig& axis;
+  RunMachine(const MachineConfig& m, const FaultCase& c) : machine(m), axis(AxisOf(machine, c.axis)) {
+    for (auto& [name, a] : machine.axes) a.drive.mode = c.mode;
+  }
+};
+
+MotionFault MotionFaultOf(Fault fault, double jump_mm, double seen_mm) {
+  switch (fault) {
+    case Fault::kEncoderFrozen:
+      return MotionFault::kFrozen;
+    case Fault::kEncoderFlickers:
+      return MotionFault::kFlickers;
+    case Fault::kEncoderReversed:
+      return MotionFault::kReversed;
+    case Fault::kEncoderJump:
+    case Fault::kEncoderJumpLarge:
+      return jump_mm > seen_mm ? MotionFault::kJump : MotionFault::kSmallJump;
+    default:
+      return MotionFault::kTorqueLost;
+  }
+}
+
+/// The screw's wind-up under static friction: a table that is where it should be has its motor elsewhere.
+double SettledError_m(const AxisConfig& axis) {
+  const Mechanics m = ToSi(axis.model.mechanics);
+  const Friction f = ToSi(axis.model.friction, m.radius_m_rad);
+  return std::max(f.Fs_plus_N, f.Fs_minus_N) / m.stiffness_N_m;
+}
+
+/// Feeds that the axis has from the fault on: its own, and those on its way there or to rest.
+std::vector<double> FeedsOf(const FaultCase& c) {
+  std::vector<double> feeds;
+  if (!Moves(c.phase) || c.phase == Phase::kStopping) feeds.push_back(0.0);
+  if (!Moves(c.phase)) return feeds;
+  feeds.push_back(c.feed_mm_s);
+  if (c.phase != Phase::kConstant)
+    for (double feed = contour::kSlowestFeed_mm_s; feed < c.feed_mm_s; feed *= kFeedStep)
+      feeds.push_back(feed);
+  return feeds;
+}
+
+RunBound MotionBound(const MachineConfig& machine, const FaultCase& c) {
+  const RunMachine run(machine, c);
+  RunBound bound;
+  for (const double feed : FeedsOf(c)) {
+    const double seen_mm = BoundOf(run.machine, run.axis, MotionFault::kSmallJump, feed).departure_mm;
+    const MotionFault fault = MotionFaultOf(c.fault, JumpSize_mm(machine, c), seen_mm);
+    const FaultBound at = BoundOf(run.machine, run.axis, fault, feed);
+    bound.departure_m = std::max(bound.departure_m, 1e-3 * at.departure_mm);
+    // Slower than its feed the axis is only on the way: the feed itself says how long.
+    if (feed == c.feed_mm_s || !Moves(c.phase)) bound.time_s = std::max(bound.time_s, at.time_s);
+  }
+  // Before the fault the axis may be this far from its path already, and wound up.
+  bound.departure_m += SettledError_m(run.axis);
+  return bound;
+}
+
 }  // namespace
+
+bool ShownByMotion(Fault fault) { return PromiseOf(fault) == Promise::kMotion; }
+
+double JumpSize_mm(const MachineConfig& machine, const FaultCase& c) {
+  const double safe_mm = AxisOf(machine, c.axis).limits.safe_travel_mm;
+  if (c.fault == Fault::kEncoderJump) return 0.1 * safe_mm;
+  if (c.fault == Fault::kEncoderJumpLarge) return 3.0 * safe_mm;
+  return 0.0;
+}
+
+bool JumpIsSeen(const MachineConfig& machine, const FaultCase& c) {
+  const RunMachine run(machine, c);
+  for (const double feed : FeedsOf(c))
+    if (JumpSize_mm(machine, c) <= BoundOf(run.machine, run.axis, MotionFault::kSmallJump, feed).departure_mm)
+      return false;
+  return true;
+}
 
 RunBound RunBoundOf(const MachineConfig& machine, const FaultCase& c) {
   const Promise promise = PromiseOf(c.fault);
-  RunBound bound = Bound(machine, promise, c.axis);
-  if (promise != Promise::kMotion) return bound;
-  const AxisConfig& axis = AxisOf(machine, c.axis);
-  bound.departure_m = 1e-3 * axis.limits.safe_travel_mm;
-  bound.time_s += std::min(kLongestNotice_s, axis.limits.following_error_mm / std::max(c.feed_mm_s, 1e-6));
-  return bound;
+  if (promise == Promise::kMotion) return MotionBound(machine, c);
+  return Bound(machine, promise, c.axis);
 }
 
 RunBound BoundOfOthers(const MachineConfig& machine, const FaultCase& c, std::size_t axis) {

@@ -11,6 +11,13 @@ struct RunBound {
   double time_s = 0.0;       ///< from the fault to no torque, or rest
 };
 
+/// Encoder and motor faults, which only what the axis does can show.
+bool ShownByMotion(Fault fault);
+/// How far the encoder jumps in this case.
+double JumpSize_mm(const MachineConfig& machine, const FaultCase& c);
+/// Whether that is more than is promised to be seen, at every speed that the axis may have.
+bool JumpIsSeen(const MachineConfig& machine, const FaultCase& c);
+
 /// For the axis that is broken, at the feed of the run.
 RunBound RunBoundOf(const MachineConfig& machine, const FaultCase& c);
 /// For an axis that stops because another one is broken.

@@ -6,6 +6,7 @@
 
 #include "drivers/cia301/messages.h"
 #include "drivers/cia402/pdo_layout.h"
+#include "tools/faults/fault_bounds.h"
 #include "tools/faults/machine_tamper.h"
 
 namespace contour::faults {
@@ -200,18 +201,14 @@ void Injection::BreakDrive(plant::EmulatedAxis& axis) {
 void Injection::BreakEncoder(plant::EmulatedAxis& axis) {
   plant::Tampering& t = axis.tampering();
   const int sign = Draw(0, 1) == 0 ? -1 : 1;
-  const auto jump = [&](double share) {
-    t.Jump(sign * std::llround(share * axis_.limits.safe_travel_mm * CountsPerMm()));
-  };
   switch (c_.fault) {
     case Fault::kEncoderReversed:
       return t.Scale(-1.0);
     case Fault::kEncoderJumpTiny:
       return t.Jump(sign * Draw(1, 3));
     case Fault::kEncoderJump:
-      return jump(0.1);
     case Fault::kEncoderJumpLarge:
-      return jump(3.0);
+      return t.Jump(sign * std::llround(JumpSize_mm(config_, c_) * CountsPerMm()));
     case Fault::kEncoderFrozen:
       return t.Freeze();
     case Fault::kEncoderFlickers:

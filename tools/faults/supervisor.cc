@@ -23,7 +23,19 @@ void Unsupervised(CycleConfig& c) {
 const std::vector<Supervisor>& Supervisors() {
   using R = Reason;
   static const std::vector<Supervisor> all{
-      {"following_error", "the guard's distance to the path", NoFollowingError, Fault::kTorqueLostSilently},
+      {"frozen", "the motion monitor's check of a standing encoder",
+       [](CycleConfig& c) { c.control.monitor.frozen = false; }, Fault::kEncoderFrozen, Phase::kConstant,
+       1.0},
+      {"jump", "its check of a reading against its prediction",
+       [](CycleConfig& c) { c.control.monitor.jump = false; }, Fault::kEncoderJump},
+      {"momentum", "its check of motion against torque",
+       [](CycleConfig& c) { c.control.monitor.momentum = false; }, Fault::kTorqueLostSilently,
+       Phase::kConstant, 1.0},
+      {"delivery", "its check of the reported torque",
+       [](CycleConfig& c) { c.control.monitor.delivery = false; }, Fault::kTorqueLost, Phase::kConstant, 50.0,
+       false},
+      {"following_error", "the guard's distance to the path", NoFollowingError, Fault::kTorqueLostSilently,
+       Phase::kConstant, 50.0, false},
       {"stale_feedback", "the guard's count of cycles without feedback", NoStaleness,
        Fault::kFeedbackFramesLost},
       {"emergencies", "emergency messages of drives that go on", Unsupervised<R::kDriveEmergency>,

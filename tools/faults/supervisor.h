@@ -17,6 +17,8 @@ struct Supervisor {
   void (*off)(CycleConfig&);
   Fault missed;  ///< one that nobody else notices, or only under another name
   Phase where = Phase::kConstant;
+  double feed_mm_s = 50.0;
+  bool alone = true;  ///< false: others notice the same in time and with a reason of the row
 };
 const std::vector<Supervisor>& Supervisors();
 /// Null when there is none of that name.
