@@ -12,76 +12,19 @@ acted from it to the next.
 import argparse
 import os
 import select
-import socket
-import struct
 import sys
 import time
 from pathlib import Path
 
-import canopen
 import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from peer_drive.fault_control import FaultControl  # noqa: E402
+from peer_drive.network import SocketNetwork  # noqa: E402
 from peer_drive.node import DriveNode, NodeParameters  # noqa: E402
 
 SYNC = 0x080
 COLUMNS = ("motor_m", "table_m", "table_velocity_m_s", "torque_Nm", "demand_Nm", "counts", "statusword", "nmt")
-
-
-FRAME = struct.Struct("<IB3x8s")
-
-
-class Periodic:
-    """A frame that the library wants to be sent again and again: the heartbeat."""
-
-    def __init__(self, network, cob_id, data, period_s):
-        self.network, self.cob_id, self.data, self.period_ms = network, cob_id, data, period_s * 1000.0
-        self.left_ms = self.period_ms
-
-    def update(self, data):
-        self.data = data
-
-    def stop(self):
-        self.network.periodic.discard(self)
-
-
-class OurNetwork(canopen.Network):
-    """No threads and no clock: the machine's loop reads the bus, hands frames in and says how much of its time has passed. Frames go
-    through a socket of our own: on a guest's processor each call into the kernel costs as much as an axis's whole period."""
-
-    def __init__(self, bus):
-        super().__init__()
-        self.periodic = set()
-        self.socket = socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
-        self.socket.bind((bus,))
-        self.socket.setblocking(False)
-
-    def receive(self):
-        """The next frame: identifier and data; None when there is none."""
-        try:
-            frame = self.socket.recv(FRAME.size)
-        except BlockingIOError:
-            return None
-        identifier, length, data = FRAME.unpack(frame)
-        return identifier, data[:length]
-
-    def send_message(self, can_id, data, remote=False):
-        del remote
-        self.socket.send(FRAME.pack(can_id, len(data), bytes(data)))
-
-    def send_periodic(self, can_id, data, period, remote=False):
-        del remote
-        task = Periodic(self, can_id, data, period)
-        self.periodic.add(task)
-        return task
-
-    def elapse(self, time_ms):
-        for task in self.periodic:
-            task.left_ms -= time_ms
-            if task.left_ms <= 0.0:
-                task.left_ms = task.period_ms
-                self.send_message(task.cob_id, task.data)
 
 
 class Machine:
@@ -107,7 +50,7 @@ class Machine:
         self.faults = FaultControl(self)
         self._last_sign = self._last_beat = time.monotonic()
         self._due = False
-        self.truth = open(truth_path, "w", encoding="utf-8", buffering=1 << 16)
+        self.truth = open(truth_path, "w", encoding="utf-8", buffering=1 << 16)  # closed where the loop ends
         head = ["sync_number", "free_running"] + [f"{d.name}_{column}" for d in self.drives for column in COLUMNS]
         print(",".join(head), file=self.truth)
 
@@ -206,7 +149,7 @@ def main():
         for word in path:
             place = place.setdefault(word, {})
         place[last] = yaml.safe_load(value)
-    machine = Machine(config, OurNetwork(arguments.bus), arguments.truth, arguments.silence_ms)
+    machine = Machine(config, SocketNetwork(arguments.bus), arguments.truth, arguments.silence_ms)
     machine.faults.listen(arguments.control)
     machine.run()
 
