@@ -73,8 +73,10 @@ def foreign_frame(bench, kind, moving):
     sync = bench.peer("status")["sync_number"]
     foreign.send(kind, NODE)
     foreign.close()
-    if moving:
-        wait_for_run(bench)
+    if not moving:
+        # At rest lock-step time stands still: what has come is looked at when it goes on.
+        bench.begin(bench.write_program("hold", {"shape": "hold", "seconds": 0.2}))
+    wait_for_run(bench)
     bench.wait_for("the axes to rest", lambda: bench.status()["state"] != "Running", seconds=30, pause_s=0.2)
     time.sleep(0.3)
     status, off, text = describe(bench, sync)
