@@ -97,14 +97,13 @@ class Machine:
             ready, _, _ = select.select(sockets, [], [], 0.02)
             if self.faults in ready:
                 self.faults.serve()
-            if self.network.socket in ready:
-                self._receive()
-            else:
+            # A master's heartbeats keep the socket busy while no SYNC comes.
+            if self.network.socket not in ready or not self._receive():
                 self._stand_still(time.monotonic())
         self.truth.close()
 
     def _receive(self):
-        """Frames up to a SYNC, and its period."""
+        """Frames up to a SYNC, and its period; whether there was one."""
         while (frame := self.network.receive()) is not None:
             self.network.notify(*frame, 0.0)
             if self._due:
@@ -112,7 +111,8 @@ class Machine:
                 self.free_running = False
                 self.period()
                 self._last_sign = self._last_beat = time.monotonic()
-                return
+                return True
+        return False
 
     def _stand_still(self, now):
         """No SYNC: heartbeats and booting go by the clock; so does everything once the master is dead."""
