@@ -211,7 +211,9 @@ def judge(bench, case, outcome, status, bound):
     elif case.row:
         if outcome.departure_mm > bound[0]:
             problems.append(f"departure {outcome.departure_mm:.4f} mm is beyond the bound of {bound[0]:g} mm")
-        if case.reasons and bound[1] and outcome.off_after_ms is not None and outcome.off_after_ms > bound[1]:
+        # The mode is asked for in turn, ten times a second: only the departure is promised for it.
+        timed = case.reasons and "mode_changed" not in case.reasons
+        if timed and bound[1] and outcome.off_after_ms is not None and outcome.off_after_ms > bound[1]:
             problems.append(f"torque off after {outcome.off_after_ms} ms is beyond the bound of {bound[1]:g} ms")
     return problems
 
