@@ -2,7 +2,7 @@
 """Python drives with their own plant and friction, in order: brought up, enabled, moved in both modes without a fault, and where
 they really go is the circle that was asked for.
 
-    peer_drive_runs.py PROGRAMS
+    peer_drive_runs.py PROGRAMS [MODE...]
 """
 import math
 import os
@@ -68,7 +68,7 @@ def run_mode(programs, mode):
 
 def main():
     try:
-        for mode in ("cst", "csp"):
+        for mode in sys.argv[2:] or ("cst", "csp"):
             run_mode(Path(sys.argv[1]), mode)
     except (BenchError, AssertionError) as error:
         print(f"FAILED: {error}")
