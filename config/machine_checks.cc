@@ -67,6 +67,11 @@ void CheckBuses(const MachineConfig& c, Problems& problems) {
   std::map<std::string, std::string> bus_of_interface;
   for (const auto& [name, bus] : c.buses) {
     const std::string key = "buses." + name;
+    const double least_ms = 3e-3 * c.machine.cycle_us;
+    if (bus.listen_ms != 0.0 && bus.listen_ms < least_ms)
+      problems.Add(key + ".listen_ms", "found " + Say(bus.listen_ms) + ", expected at least three cycles, " +
+                                           Say(least_ms) +
+                                           " ms, to see the SYNC of another master, or 0 to hear nothing");
     if (bus.interface.empty())
       problems.Add(key + ".interface", "found nothing, expected the name of an interface");
     if (bus.interface == "loopback") continue;

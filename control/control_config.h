@@ -21,6 +21,7 @@ struct AxisLimits {
   double following_error_mm = 0.0;
   double safe_travel_mm = 0.0;
   double external_force_N = 0.0;
+  double unreferenced_travel_mm = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -36,6 +37,10 @@ struct AxisLimits {
                "travel allowed to experiments, stops, and whatever goes wrong until the torque is off");
     v.Optional("external_force_N", external_force_N, kNotNegative,
                "largest force on the table besides friction (cutting, weight); 0: a quarter of rated force");
+    v.Optional(
+        "unreferenced_travel_mm", unreferenced_travel_mm, kNotNegative,
+        "of an axis without drive.absolute_encoder that was not told yet where it is: programs may take "
+        "it so far to either side of where it was enabled; 0: no programs before `contour reference`");
   }
 };
 
@@ -53,6 +58,7 @@ struct AxisLimitsSi {
   double following_error_m = 0.0;
   double safe_travel_m = 0.0;
   double external_force_N = 0.0;
+  double unreferenced_travel_m = 0.0;
 };
 
 constexpr AxisLimitsSi ToSi(const AxisLimits& c, double radius_m_rad) noexcept {
@@ -68,7 +74,8 @@ constexpr AxisLimitsSi ToSi(const AxisLimits& c, double radius_m_rad) noexcept {
           rate / radius_m_rad,
           c.following_error_mm * 1e-3,
           c.safe_travel_mm * 1e-3,
-          c.external_force_N};
+          c.external_force_N,
+          c.unreferenced_travel_mm * 1e-3};
 }
 
 /// PID with feed-forward, stated as pole frequencies so that one tuning fits axes of any mass.

@@ -72,6 +72,10 @@ Reason TorqueGuard::FindFault(std::size_t axis, double wanted_torque_Nm, const A
     const double beyond = limits.following_error_m;
     memory.allowed_min_m = position < limits.position_min_m ? position - beyond : limits.position_min_m;
     memory.allowed_max_m = position > limits.position_max_m ? position + beyond : limits.position_max_m;
+    if (memory.confined_to_m > 0.0) {
+      memory.allowed_min_m = position - memory.confined_to_m;
+      memory.allowed_max_m = position + memory.confined_to_m;
+    }
   }
   if (!feedback.valid || feedback.age_cycles >= static_cast<std::uint32_t>(config_.stale_cycles)) {
     return Reason::kStaleFeedback;

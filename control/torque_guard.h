@@ -35,6 +35,12 @@ class TorqueGuard {
   /// Forgets the last torque and position of every axis.
   void Reset() noexcept;
 
+  /// Until the next Reset the axis has no limits of position but these: so far to either side of where it is
+  /// when it is enabled next. For an axis that does not know where it is.
+  void Confine(std::size_t axis, double travel_m) noexcept { memory_[axis].confined_to_m = travel_m; }
+  [[nodiscard]] double allowed_min_m(std::size_t axis) const noexcept { return memory_[axis].allowed_min_m; }
+  [[nodiscard]] double allowed_max_m(std::size_t axis) const noexcept { return memory_[axis].allowed_max_m; }
+
   /// So many periods go by until the drives latch the next position, beyond the usual one.
   void Skip(std::uint32_t periods) noexcept;
 
@@ -51,6 +57,7 @@ class TorqueGuard {
     bool was_enabled = false;
     double allowed_min_m = 0.0;  ///< position limits of this enabling
     double allowed_max_m = 0.0;
+    double confined_to_m = 0.0;  ///< 0: to the axis's own limits
   };
   Reason FindFault(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
                    double reference_position_m, bool enabled) noexcept;

@@ -23,6 +23,7 @@ enum class RequestKind : std::uint8_t {
   kReset = 5,      ///< Faulted to Idle, bringing drives up again as needed
   kTerminate = 6,  ///< as kDisable, then the loop ends
   kTune = 7,       ///< gains have been changed from this cycle on; program_id numbers the change
+  kReference = 8,  ///< an axis is told where it is; program_id says which and where, see core/reference.h
 };
 /// Number of a change of gains that the cycle could not take: the request is refused.
 inline constexpr std::uint32_t kNothingChanged = 0;

@@ -6,6 +6,7 @@
 #include "core/cycle_input.h"
 #include "core/late_cause.h"
 #include "core/reason.h"
+#include "core/reference.h"
 #include "core/states.h"
 
 namespace contour {
@@ -39,6 +40,10 @@ struct AxisRecord {
   DriveGoal goal = DriveGoal::kDisabled;
   Reason limit = Reason::kNone;
   std::uint16_t emergency_code = 0;  ///< last EMCY error code of this node, 0 none
+  // Not in the log: a replay computes it again.
+  ReferenceState reference_state = ReferenceState::kAbsolute;
+  double travel_min_m = 0.0;  ///< where a program may take it: its limits, or around where it was enabled
+  double travel_max_m = 0.0;
 };
 
 /// What a drive said in the cycle in which the reason arose, for the reason's text; later cycles do not

@@ -93,6 +93,17 @@ std::vector<FeedbackSource> FeedbackSources(const MachineConfig& machine) {
   return sources;
 }
 
+std::vector<BusParties> Parties(const MachineConfig& machine) {
+  std::vector<BusParties> parties;
+  for (const auto& [name, bus] : machine.buses) {
+    parties.push_back({name, static_cast<std::uint8_t>(bus.master_node_id), {}});
+    for (const auto& [axis_name, axis] : machine.axes)
+      if (axis.drive.bus == name)
+        parties.back().nodes.push_back(static_cast<std::uint8_t>(axis.drive.node_id));
+  }
+  return parties;
+}
+
 /// SIGTERM, SIGINT and SIGHUP are taken by the main thread alone.
 sigset_t BlockSignals() {
   sigset_t set;
@@ -195,6 +206,7 @@ class Daemon {
     });
     pump_.AlsoDrain([this] { buses_.DrainTruth(); });
     hub_.WatchFeedback(FeedbackSources(machine_));
+    hub_.WatchForeign(Parties(machine_));
     SetUpFlightRecorder();
     const Loop::Config loop{std::int64_t{1000} * machine_.machine.cycle_us, SendDeadline_ns(machine_),
                             snapshots_.get()};
@@ -336,7 +348,7 @@ class Daemon {
                                                              ? std::string()
                                                              : ": " + std::string(Name(record.reason))));
       notifier.Alive(loop_->counters().cycles.load());
-      const bool failed = record.reason == Reason::kBringUpFailed;
+      const bool failed = record.reason == Reason::kBringUpFailed || record.reason == Reason::kSecondMaster;
       if (record.state == MachineState::kIdle || (record.state == MachineState::kFaulted && !failed)) {
         notifier.Ready();
         up = true;

@@ -45,6 +45,7 @@ MachineBuses::MachineBuses(const MachineConfig& machine, const std::optional<Emu
     RequireInterfaces(machine);
     for (const auto& [name, bus] : machine.buses) {
       all_virtual_ = all_virtual_ && IsVirtualCan(bus.interface);
+      locks_.push_back(std::make_unique<InterfaceLock>(bus.interface));
       buses_.push_back(std::make_unique<SocketCanBus>(bus.interface, NodesOn(machine, name)));
       pointers_.push_back(buses_.back().get());
     }

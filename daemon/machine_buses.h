@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/machine_config.h"
+#include "daemon/interface_lock.h"
 #include "daemon/lanes/slow_lane.h"
 #include "daemon/truth_relay.h"
 #include "drivers/can/frame_bus.h"
@@ -15,8 +16,8 @@
 
 namespace contour {
 
-/// The buses of a machine: SocketCAN interfaces, or, when all are `loopback`, in-process buses with the
-/// emulated machine on them.
+/// The buses of a machine: SocketCAN interfaces, locked against another contourd of this computer, or, when
+/// all are `loopback`, in-process buses with the emulated machine on them.
 class MachineBuses {
  public:
   /// `emulator` is needed for loopback only. Throws ConfigError (loopback mixed with real buses, no emulator
@@ -40,6 +41,7 @@ class MachineBuses {
   std::shared_ptr<TruthRelay> relay_;
   std::unique_ptr<SlowLane> truth_lane_;
   std::uint64_t reported_lost_ = 0;
+  std::vector<std::unique_ptr<InterfaceLock>> locks_;
   std::vector<std::unique_ptr<FrameBus>> buses_;
   std::vector<FrameBus*> pointers_;
   bool all_virtual_ = true;

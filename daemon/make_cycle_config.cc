@@ -40,7 +40,8 @@ CycleConfig MakeCycleConfig(const MachineConfig& machine, ControllerName control
   for (const auto& [name, axis] : machine.axes) {
     out.axes.push_back(MakeAxis(name, axis, machine.estimator));
     AxisDriveConfig drive{name, static_cast<std::uint8_t>(BusIndex(machine, axis.drive.bus)), axis.drive,
-                          std::min(axis.limits.torque_Nm, axis.drive.peak_torque_Nm)};
+                          std::min(axis.limits.torque_Nm, axis.drive.peak_torque_Nm),
+                          1e-3 * axis.limits.safe_travel_mm / out.axes.back().mechanics.radius_m_rad};
     drive.drive.mode = ModeFor(controller, axis.drive);
     out.master.axes.push_back(drive);
   }

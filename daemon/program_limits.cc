@@ -16,4 +16,15 @@ PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
   return limits;
 }
 
+PerAxis<PlanLimits> LimitsNow(const PerAxis<PlanLimits>& limits, const CycleRecord& now) {
+  PerAxis<PlanLimits> out = limits;
+  for (std::size_t i = 0; i < out.size() && i < now.axes.size(); ++i) {
+    const AxisRecord& axis = now.axes[i];
+    if (IsReferenced(axis.reference_state)) continue;
+    out[i].position_min_m = axis.travel_min_m;
+    out[i].position_max_m = axis.travel_max_m;
+  }
+  return out;
+}
+
 }  // namespace contour

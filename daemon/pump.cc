@@ -93,6 +93,7 @@ void Pump::Drain() {
     hub_.Consume(*entry);
     last_grid_time_ = std::chrono::nanoseconds(entry->output.record.grid_time_ns);
     Report(entry->output.record);
+    ReportReferences(entry->output.record);
     MeasureMotion(entry->output.record);
     queue_.Release();
   }
@@ -105,6 +106,7 @@ void Pump::Drain() {
   }
   for (const std::string& line : hub_.TakeEmergencyLines()) spdlog::warn("drive of {}", line);
   if (const auto message = hub_.TakeHealthMessage()) spdlog::warn("{}", *message);
+  if (const auto message = hub_.TakeForeignMessage()) spdlog::warn("{}", *message);
   ReportFlight();
   ReportLog();
   if (report_motion_) report_motion_(travel_m_, static_cast<double>(moving_cycles_) * period_s_);
@@ -137,6 +139,28 @@ void Pump::ReportLog() {
     spdlog::warn("the log {} loses cycles: {}. The machine runs on; status counts them", log.file,
                  log.last_error);
   reported_log_losses_ = log.lost_cycles;
+}
+
+void Pump::ReportReferences(const CycleRecord& record) {
+  if (references_.size() != record.axes.size()) references_.resize(record.axes.size());
+  for (std::size_t i = 0; i < record.axes.size(); ++i) {
+    const ReferenceState now = record.axes[i].reference_state;
+    if (references_[i] == now) continue;
+    references_[i] = now;
+    const std::string axis = i < axis_names_.size() ? axis_names_[i] : "?";
+    if (now == ReferenceState::kLost)
+      spdlog::warn(
+          "axis {} does not know any more where it is: programs are refused until it is told (contour "
+          "reference {}=MM)",
+          axis, axis);
+    else if (now == ReferenceState::kNeverTold)
+      spdlog::info(
+          "axis {} was not told yet where it is: programs begin where it stands and keep within "
+          "limits.unreferenced_travel_mm",
+          axis);
+    else
+      spdlog::info("axis {} knows where it is", axis);
+  }
 }
 
 void Pump::MeasureMotion(const CycleRecord& record) {

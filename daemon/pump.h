@@ -53,6 +53,7 @@ class Pump {
   void Drain();
   void Feed();
   void Report(const CycleRecord& record);
+  void ReportReferences(const CycleRecord& record);
   void ReportFlight();
   void ReportLog();
   void MeasureMotion(const CycleRecord& record);
@@ -79,6 +80,7 @@ class Pump {
   double travel_m_ = 0.0;
   std::uint64_t moving_cycles_ = 0;
   PerAxis<double> last_position_m_;
+  PerAxis<ReferenceState> references_;  ///< as last told
   double period_s_;
   std::chrono::nanoseconds last_grid_time_{0};
   std::atomic<bool> finish_{false};

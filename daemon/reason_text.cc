@@ -1,6 +1,7 @@
 #include "daemon/reason_text.h"
 
 #include "daemon/rt/transitions.h"
+#include "drivers/cia301/bring_up_text.h"
 #include "drivers/cia301/emergency_table.h"
 
 namespace contour {
@@ -164,7 +165,11 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
       return axis + ": the drive sent " + EmergencyOf(detail.emergency_code) +
              "; the machine stopped. Mend what it names, then reset";
     case Reason::kSecondMaster:
-      return bus + ": another master sends on this bus; the machine stopped. End it, then reset";
+      return bus + ": another master sends on this bus" +
+             (SecondMasterText(record.bring_up).empty() ? std::string()
+                                                        : ", seen by " + SecondMasterText(record.bring_up)) +
+             "; ours stopped the drives and is silent now. Only one may command them: end the other, then "
+             "reset";
     case Reason::kOscillation:
       return axis + ": the loop oscillates, also with softer gains; stopped. Check model and tuning";
     case Reason::kEstimatorInconsistent:
@@ -178,8 +183,12 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
              "real time";
     case Reason::kNotReferenced:
       return axis +
-             " does not know where it is since its drive restarted; tell it (contour reference), then run "
-             "the program";
+             (at < record.axes.size() && record.axes[at].reference_state == ReferenceState::kNeverTold
+                  ? " was never told where it is, and limits.unreferenced_travel_mm states no travel for that"
+                  : " does not know any more where it is: its drive restarted, was out of reach, or gave "
+                    "positions that cannot be") +
+             "; disable the machine and tell it (contour reference " +
+             (at < axis_names.size() ? axis_names[at] : "AXIS") + "=MM), then run the program";
     case Reason::kTorqueLimit:
     case Reason::kTorqueRateLimit:
     case Reason::kSolverCap:
@@ -222,7 +231,13 @@ std::string RefusalText(const CycleRecord& record, RequestKind request,
         return "not permitted: " + ReasonText(io, axis_names, bus_names);
       return state + "; only an Idle machine can be enabled";
     }
+    case RequestKind::kReference:
+      return state + (record.state == MachineState::kIdle
+                          ? "; an axis can be told where it is once its position is known, within its limits"
+                          : "; an axis is told where it is while the machine is Idle: disable it first");
     case RequestKind::kRun:
+      if (record.state == MachineState::kReady && record.reason == Reason::kNotReferenced)
+        return ReasonText(record, axis_names, bus_names);
       return state + "; a program starts only from Ready" +
              (record.state == MachineState::kIdle ? ": enable the machine first" : "");
     case RequestKind::kReset:

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -9,7 +10,9 @@
 #include <utility>
 
 #include "config/config_difference.h"
+#include "config/number_text.h"
 #include "config/yaml_writer.h"
+#include "core/reference.h"
 #include "core/version.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/program/path_generator.h"
@@ -133,6 +136,37 @@ Answer Supervisor::Disable() { return Ask(RequestKind::kDisable, {}); }
 Answer Supervisor::Stop() { return Ask(RequestKind::kStop, {}); }
 Answer Supervisor::Reset(const std::stop_token& unwanted) { return Ask(RequestKind::kReset, unwanted); }
 
+Answer Supervisor::Reference(const std::map<std::string, double>& position_mm,
+                             const std::stop_token& unwanted) {
+  std::vector<std::uint32_t> codes;
+  std::string told;
+  for (const auto& [name, at_mm] : position_mm) {
+    const auto found = std::find(axis_names_.begin(), axis_names_.end(), name);
+    if (found == axis_names_.end()) return {false, "there is no axis " + name + " on this machine"};
+    const auto index = static_cast<std::size_t>(found - axis_names_.begin());
+    if (machine_.axes.at(name).drive.absolute_encoder)
+      return {false,
+              "axis " + name +
+                  " has an absolute encoder (drive.absolute_encoder): it knows where it is, and is set up "
+                  "in its drive"};
+    const auto code = Encode({static_cast<std::uint8_t>(index), 1e-3 * at_mm});
+    const std::array<double, 2>& range_mm = machine_.axes.at(name).limits.position_mm;
+    if (!code || at_mm < range_mm[0] || at_mm > range_mm[1])
+      return {false, "axis " + name + " cannot be at " + RoundedText(at_mm) + " mm: limits.position_mm is " +
+                         RoundedText(range_mm[0]) + " to " + RoundedText(range_mm[1])};
+    codes.push_back(*code);
+    told += (told.empty() ? "" : ", ") + name + " at " + RoundedText(at_mm) + " mm";
+  }
+  if (codes.empty()) return {false, "no axis was named"};
+  Answer answer;
+  for (const std::uint32_t code : codes) {
+    answer = Ask(RequestKind::kReference, unwanted, code);
+    if (!answer.accepted) return answer;
+  }
+  spdlog::info("told where the axes are: {}", told);
+  return answer;
+}
+
 Answer Supervisor::Reload() {
   const std::lock_guard lock(reload_);
   try {
@@ -190,8 +224,8 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
         upload.text, upload.name, upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml);
     PerAxis<double> start_m;
     for (const AxisRecord& a : now.axes) start_m.push_back(a.reference.position_m);
-    auto generator =
-        std::make_unique<PathGenerator>(program, start_m, limits_, cycle_us_ * 1e-6, ++program_id_);
+    auto generator = std::make_unique<PathGenerator>(program, start_m, LimitsNow(limits_, now),
+                                                     cycle_us_ * 1e-6, ++program_id_);
     const double duration_s = generator->duration_s();
     // Planning takes its time; nothing is learnt, noted or supplied for nobody.
     if (unwanted.stop_requested()) return {false, kUnwanted};
@@ -240,8 +274,10 @@ MachineStatus Supervisor::Status() {
   out.cycle_us = cycle_us_;
   out.emulator_seed = parts_.emulator_seed;
   out.axis_names = axis_names_;
+  const PerAxis<PlanLimits> limits = LimitsNow(limits_, s.record);
   for (std::size_t a = 0; a < axis_names_.size(); ++a)
-    out.axis_facts.push_back({limits_[a], encoder_counts_m_[a]});
+    out.axis_facts.push_back({limits[a], encoder_counts_m_[a]});
+  out.foreign = s.foreign;
   out.warnings = warnings_;
   out.record = answers_.record();
   out.bring_up = BringUpText(out.record.bring_up, axis_names_);

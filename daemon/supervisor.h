@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -48,6 +49,8 @@ class Supervisor final : public OperatorDesk {
   Answer Disable() override;
   Answer Stop() override;
   Answer Reset(const std::stop_token& unwanted) override;
+  Answer Reference(const std::map<std::string, double>& position_mm,
+                   const std::stop_token& unwanted) override;
   Answer Reload() override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   MachineStatus Status() override;

@@ -22,6 +22,8 @@ json Axis(const std::string& name, const AxisRecord& a) {
       {"drive_state", Name(a.feedback.drive_state)},
       {"statusword", a.feedback.statusword},
       {"emergency_code", a.emergency_code},
+      {"referenced", IsReferenced(a.reference_state)},
+      {"reference", Name(a.reference_state)},
       {"feedback_fresh", a.feedback.fresh},
       {"feedback_age_cycles", a.feedback.age_cycles},
       {"motor_angle_rad", Number(a.feedback.position_rad)},
@@ -52,7 +54,9 @@ json Facts(const AxisFacts& f) {
 
 json Buses(const MachineStatus& s) {
   json buses = json::array();
-  for (const BusStatus& b : s.buses) {
+  for (std::size_t i = 0; i < s.buses.size(); ++i) {
+    const BusStatus& b = s.buses[i];
+    const auto foreign = i < s.foreign.size() ? s.foreign[i] : ForeignTraffic::OnBus{};
     buses.push_back({{"name", b.name},
                      {"interface", b.interface},
                      {"up", b.state.up},
@@ -62,7 +66,9 @@ json Buses(const MachineStatus& s) {
                      {"send_failures", b.state.send_failures},
                      {"error_frames", b.state.error_frames},
                      {"receive_overflows", b.state.receive_overflows},
-                     {"frames_dropped", b.state.frames_dropped}});
+                     {"frames_dropped", b.state.frames_dropped},
+                     {"foreign_sdo_requests", foreign.sdo_requests},
+                     {"other_nodes", foreign.nodes}});
   }
   return buses;
 }

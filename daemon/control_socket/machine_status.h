@@ -11,6 +11,7 @@
 #include "daemon/telemetry/cycle_health.h"
 #include "daemon/telemetry/emergency_history.h"
 #include "daemon/telemetry/flight_recorder.h"
+#include "daemon/telemetry/foreign_traffic.h"
 #include "daemon/telemetry/log_stats.h"
 #include "drivers/can/frame_bus.h"
 #include "drivers/lcm/publisher_stats.h"
@@ -60,6 +61,7 @@ struct MachineStatus {
   PublisherStats publisher;
   LogStats log;
   FlightRecordStats flight;
+  std::vector<ForeignTraffic::OnBus> foreign;  ///< one per bus; empty when nobody watches
 };
 
 /// The status as the socket carries it and `contour status --json` prints it; docs/operating.md lists the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <stop_token>
 #include <string>
@@ -49,6 +50,9 @@ class OperatorDesk {
   virtual Answer Disable() = 0;
   virtual Answer Stop() = 0;
   virtual Answer Reset(const std::stop_token& unwanted) = 0;
+  /// Tells axes without an absolute encoder where they stand now; the machine must be Idle.
+  virtual Answer Reference(const std::map<std::string, double>& position_mm,
+                           const std::stop_token& unwanted) = 0;
   /// Reads the machine file again and takes what may change while running; refused as a whole if anything
   /// else has changed. Answer::reason says in any case what came of it.
   virtual Answer Reload() = 0;

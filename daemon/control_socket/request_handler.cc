@@ -1,5 +1,6 @@
 #include "daemon/control_socket/request_handler.h"
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -66,6 +67,18 @@ json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwante
   return reply;
 }
 
+json Reference(const json& request, OperatorDesk& desk, const std::stop_token& unwanted) {
+  const auto at = request.find("position_mm");
+  if (at == request.end() || !at->is_object())
+    throw BadRequest("\"position_mm\" must be there and be an object");
+  std::map<std::string, double> position_mm;
+  for (const auto& [axis, value] : at->items()) {
+    if (!value.is_number()) throw BadRequest("\"position_mm\" must have a number for each axis");
+    position_mm[axis] = value.get<double>();
+  }
+  return Reply(desk.Reference(position_mm, unwanted));
+}
+
 json Watch(const json& request, Subscriptions& subscriptions) {
   const auto at = request.find("period_ms");
   if (at == request.end()) {
@@ -88,6 +101,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   if (kind == "disable") return Reply(desk.Disable());
   if (kind == "stop") return Reply(desk.Stop());
   if (kind == "reset") return Reply(desk.Reset(unwanted));
+  if (kind == "reference") return Reference(request, desk, unwanted);
   if (kind == "reload") {
     const Answer answer = desk.Reload();
     json reply = Reply(answer);
@@ -100,9 +114,9 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     subscriptions.rows = Flag(request, "on");
     return {{"ok", true}};
   }
-  throw BadRequest(
-      "unknown request \"" + kind +
-      "\"; there are status, machine_file, enable, disable, stop, reset, reload, upload, run, watch, rows");
+  throw BadRequest("unknown request \"" + kind +
+                   "\"; there are status, machine_file, enable, disable, stop, reset, reference, reload, "
+                   "upload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

@@ -46,7 +46,11 @@ Cycle::Axis::Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored,
                period_s, config.lag_s,
                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev),
       monitor(monitored, monitoring, period_s),
-      mass_kg(config.mechanics.mass_kg) {}
+      mass_kg(config.mechanics.mass_kg),
+      unreferenced_travel_m(1e-3 * config.limits.unreferenced_travel_mm),
+      following_error_m(1e-3 * config.limits.following_error_mm),
+      position_min_m(1e-3 * config.limits.position_mm[0]),
+      position_max_m(1e-3 * config.limits.position_mm[1]) {}
 
 Cycle::Cycle(const CycleConfig& config)
     : period_s_(config.cycle_us * 1e-6),
@@ -118,7 +122,7 @@ void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexc
   WatchItself();
   if (stages != nullptr) stages->Passed(CycleStage::kEstimated);
   Orders orders = transitions_.Step(Assess(in));
-  CarryOut(orders);
+  CarryOut(orders, in.request);
   Decide(orders);
   if (stages != nullptr) stages->Passed(CycleStage::kDecided);
   // What the monitor sees says more of the cause than a limit that is exceeded by it.
@@ -128,7 +132,7 @@ void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexc
   const bool enabling = contradiction_.reason != Reason::kNone && orders.goal == DriveGoal::kEnabled;
   if (fault.reason != Reason::kNone && (orders.torque_allowed || enabling)) {
     orders = transitions_.RaiseLate(fault);
-    CarryOut(orders);
+    CarryOut(orders, in.request);
     Guard(orders);
   }
   reasons_.Update(transitions_, master_);
@@ -148,7 +152,8 @@ bool Cycle::FeedbackComplete(const CycleInput& in) const noexcept {
 }
 
 void Cycle::EncodeHeartbeat(CycleOutput& out) const noexcept {
-  for (const StampedFrame& f : heartbeats_) out.frames.push_back(f);
+  for (const StampedFrame& f : heartbeats_)
+    if (master_.HeartbeatRuns(f.bus)) out.frames.push_back(f);
 }
 
 void Cycle::Keep(StateKeeper& keep) noexcept {
@@ -292,6 +297,10 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
   now.lost = FindLost(in);
   now.stop = FindStop();
   now.stuck = FindStuck();
+  if (const std::uint8_t bus = master_.second_master(); bus != DriveMaster::kNoBus)
+    now.second_master = {Reason::kSecondMaster, bus};
+  now.not_referenced = NotReferenced();
+  now.can_reference = CanReference(in.request);
   now.path_prefetched = follower_.Prefetched();
   now.path_begins_here = now.path_prefetched && PathBeginsHere();
   now.path_running_dry = follower_.running_dry();
@@ -364,6 +373,49 @@ bool Cycle::PathBeginsHere() const noexcept {
   return true;
 }
 
+// Of an axis that knew where it is, or moved, and does not any more, no program can be right. One that was
+// never told may move as far as the operator says.
+std::uint8_t Cycle::NotReferenced() const noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const ReferenceState state = master_.reference(i);
+    const bool may_move =
+        IsReferenced(state) || (state == ReferenceState::kNeverTold && axes_[i].unreferenced_travel_m > 0.0);
+    if (!may_move) return static_cast<std::uint8_t>(i);
+  }
+  return 0xFF;
+}
+
+bool Cycle::CanReference(const Request& request) const noexcept {
+  if (request.kind != RequestKind::kReference) return false;
+  const ReferenceRequest told = DecodeReference(request.program_id);
+  return master_.CanTellPosition(told.axis) && told.position_m >= axes_[told.axis].position_min_m &&
+         told.position_m <= axes_[told.axis].position_max_m;
+}
+
+void Cycle::TellWhere(const Request& request) noexcept {
+  const ReferenceRequest told = DecodeReference(request.program_id);
+  Axis& axis = axes_[told.axis];
+  master_.TellPosition(told.axis, told.position_m / axis.radius_m_rad);
+  axis.position_m = told.position_m;
+}
+
+// An incremental encoder that was not believed, or seemed faster than its axis can be, may have lost counts.
+void Cycle::DoubtPosition() noexcept {
+  if (transitions_.state() != MachineState::kFaulted) return;
+  const std::uint8_t axis = transitions_.reason_where();
+  if (axis >= axes_.size()) return;
+  switch (transitions_.reason()) {
+    case Reason::kFeedbackFrozen:
+    case Reason::kFeedbackJump:
+    case Reason::kFeedbackReversed:
+    case Reason::kVelocityLimit:
+      master_.DoubtPosition(axis);
+      return;
+    default:
+      return;
+  }
+}
+
 void Cycle::HoldHere() noexcept {
   PerAxis<double> here;
   for (Axis& axis : axes_) {
@@ -374,6 +426,13 @@ void Cycle::HoldHere() noexcept {
   follower_.Hold(here);
   controller_.Reset();
   guard_.Reset();
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (IsReferenced(master_.reference(i))) continue;
+    const Axis& axis = axes_[i];
+    // Where no program is allowed the axis only holds.
+    const bool moves = master_.reference(i) == ReferenceState::kNeverTold && axis.unreferenced_travel_m > 0.0;
+    guard_.Confine(i, moves ? axis.unreferenced_travel_m : axis.following_error_m);
+  }
 }
 
 void Cycle::FollowFeedback() noexcept {
@@ -382,8 +441,11 @@ void Cycle::FollowFeedback() noexcept {
   follower_.Hold(here);
 }
 
-void Cycle::CarryOut(const Orders& orders) noexcept {
+void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
+  DoubtPosition();
+  if (orders.reference) TellWhere(request);
   if (orders.start_bring_up) master_.StartBringUp();
+  if (orders.fall_silent) master_.FallSilent();
   if (orders.hold_here) HoldHere();
   if (orders.forget_path) {
     PerAxis<double> here;
@@ -568,6 +630,17 @@ void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
   if (r.limit == Reason::kNone && held && axes_[i].monitor.torque_constant_changed())
     r.limit = Reason::kTorqueConstantChanged;
   r.emergency_code = status.emergency_code;
+  r.reference_state = master_.reference(i);
+  if (IsReferenced(r.reference_state)) {
+    r.travel_min_m = axes_[i].position_min_m;
+    r.travel_max_m = axes_[i].position_max_m;
+  } else if (held) {
+    r.travel_min_m = guard_.allowed_min_m(i);
+    r.travel_max_m = guard_.allowed_max_m(i);
+  } else {
+    r.travel_min_m = axes_[i].position_m - axes_[i].unreferenced_travel_m;
+    r.travel_max_m = axes_[i].position_m + axes_[i].unreferenced_travel_m;
+  }
 }
 
 }  // namespace contour

@@ -54,6 +54,10 @@ class Cycle {
   /// Whether the frames of the cycle before left late: the cycle itself sees no clock. A replay tells it from
   /// the log.
   void TellLate(bool late) noexcept { late_ = late; }
+  /// These frames must not wait, although nothing else is to be done: another master has come.
+  [[nodiscard]] bool MustSee(const ReceivedFrames& frames) const noexcept {
+    return master_.NewSecondMaster(frames);
+  }
   /// The master's heartbeats alone, for a loop whose time stands still.
   void EncodeHeartbeat(CycleOutput& out) const noexcept;
 
@@ -81,7 +85,11 @@ class Cycle {
     double reported_N = 0.0;               ///< torque at the sample before, as the drive told it
     double wanted_torque_Nm = 0.0;         ///< before the guard
     double position_m = 0.0;
-    double blend_N = 0.0;  ///< what a change of controller must not make of the force, fading away
+    double blend_N = 0.0;          ///< what a change of controller must not make of the force, fading away
+    double unreferenced_travel_m;  ///< 0: no programs before it is told where it is
+    double following_error_m;
+    double position_min_m;
+    double position_max_m;
 
     void Keep(StateKeeper& keep) noexcept {
       keep(estimator, observer, monitor, sent_force_N, reported_N, wanted_torque_Nm, position_m, blend_N);
@@ -100,7 +108,11 @@ class Cycle {
     return !unsupervised_[static_cast<std::size_t>(fault)];
   }
   [[nodiscard]] bool PathBeginsHere() const noexcept;
-  void CarryOut(const Orders& orders) noexcept;
+  [[nodiscard]] bool CanReference(const Request& request) const noexcept;
+  [[nodiscard]] std::uint8_t NotReferenced() const noexcept;
+  void TellWhere(const Request& request) noexcept;
+  void DoubtPosition() noexcept;
+  void CarryOut(const Orders& orders, const Request& request) noexcept;
   [[nodiscard]] ReferencePoint AtSample(std::size_t axis) const noexcept;
   void CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept;
   void HoldHere() noexcept;

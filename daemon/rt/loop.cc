@@ -208,6 +208,7 @@ void Loop::WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoi
     // push the feedback out of it.
     runner_.Receive(grid.time_ns, frames);
     KeepLatestOfEach(frames);
+    if (cycle_.MustSee(frames) && !crowded) return;
     const std::int64_t now = ClockNow_ns();
     if (now >= next_heartbeat) {
       next_heartbeat = now + kLockstepHeartbeat_ns;

@@ -23,6 +23,8 @@ bool AllEnabled(const Situation& now) noexcept {
 }
 
 constexpr std::uint8_t kNone = 0xFF;
+/// Drives that gave no torque when the other master was seen are told "disable voltage" so often.
+constexpr std::uint32_t kCyclesToSilence = 10;
 
 /// Index of a drive in Fault, or kNone.
 std::uint8_t FaultedDrive(const Situation& now) noexcept {
@@ -77,7 +79,10 @@ Orders Transitions::Step(const Situation& now) noexcept {
     Enter(MachineState::kStarting);
   }
   const bool may_move = state_ == MachineState::kEnabling || HoldsTorque(state_);
-  if (may_move && now.fault.reason != Reason::kNone) {
+  if ((may_move || state_ == MachineState::kIdle) && now.second_master.reason != Reason::kNone) {
+    // First: what else is seen may be the other master's doing.
+    Fault(now.second_master);
+  } else if (may_move && now.fault.reason != Reason::kNone) {
     Fault(now.fault);
   } else if ((may_move || state_ == MachineState::kIdle) && now.lost.reason != Reason::kNone) {
     Fault(now.lost);
@@ -89,7 +94,17 @@ Orders Transitions::Step(const Situation& now) noexcept {
   Progress(now, orders);
   orders.torque_allowed = HoldsTorque(state_);
   SetGoals(orders);
+  orders.fall_silent = SilentNow(now);
   return orders;
+}
+
+// Two masters must not go on commanding one machine. The drives are brought to rest by their own ramp first,
+// which no other controlword ends but "disable voltage"; then the bus is left alone: what we sent would only
+// quarrel with the other's frames, and two SYNCs a period are more than the bus can carry.
+bool Transitions::SilentNow(const Situation& now) const noexcept {
+  if (state_ != MachineState::kFaulted) return false;
+  if (reason_ != Reason::kSecondMaster && now.second_master.reason == Reason::kNone) return false;
+  return (drives_off_ && since_ >= kCyclesToSilence) || since_ > config_.stop_timeout_cycles;
 }
 
 Orders Transitions::RaiseLate(FaultSeen fault) noexcept {
@@ -142,7 +157,7 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
     case RequestKind::kEnable:
       return Enable(now, orders, request);
     case RequestKind::kRun:
-      return Run(orders, request);
+      return Run(now, orders, request);
     case RequestKind::kReset:
       if (state_ == MachineState::kFaulted) {
         reset_pending_ = true;
@@ -155,6 +170,8 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
         Acknowledge(request, state_ == MachineState::kIdle);
       }
       return;
+    case RequestKind::kReference:
+      return Reference(now, orders);
     case RequestKind::kTune:
       return Acknowledge(request, request.program_id != kNothingChanged);
     case RequestKind::kStop:
@@ -211,9 +228,27 @@ void Transitions::BeginReset(Orders& orders) noexcept {
   Enter(MachineState::kStarting);
 }
 
-void Transitions::Run(Orders& orders, const Request& request) noexcept {
-  const bool ok = state_ == MachineState::kReady && !run_pending_ && !terminating_;
+// Nothing holds the axes then, so nothing moves when their positions become others.
+void Transitions::Reference(const Situation& now, Orders& orders) noexcept {
+  const bool ok = state_ == MachineState::kIdle && !terminating_ && now.can_reference;
+  Acknowledge(now.request, ok);
+  if (!ok) return;
+  orders.reference = true;
+  orders.hold_here = true;
+  if (reason_ == Reason::kNotReferenced) {
+    reason_ = Reason::kNone;
+    where_ = kNone;
+  }
+}
+
+void Transitions::Run(const Situation& now, Orders& orders, const Request& request) noexcept {
+  const bool ready = state_ == MachineState::kReady && !run_pending_ && !terminating_;
+  const bool ok = ready && now.not_referenced == kNone;
   Acknowledge(request, ok);
+  if (ready && !ok) {
+    reason_ = Reason::kNotReferenced;
+    where_ = now.not_referenced;
+  }
   if (!ok) return;
   program_id_ = request.program_id;
   reason_ = Reason::kNone;
@@ -229,7 +264,8 @@ void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
     case MachineState::kStarting:
       if (orders.start_bring_up) break;
       if (now.bring_up_failed) {
-        Fault({Reason::kBringUpFailed, 0xFF});
+        Fault(now.second_master.reason != Reason::kNone ? now.second_master
+                                                        : FaultSeen{Reason::kBringUpFailed, kNone});
       } else if (now.operational && !now.bring_up_active && FaultedDrive(now) != kNone) {
         // A reset clears the drives' faults too; at the first start that is left to the operator.
         if (!resetting_ || since_ > config_.stop_timeout_cycles)

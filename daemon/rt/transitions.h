@@ -29,6 +29,10 @@ struct Situation {
   FaultSeen lost;             ///< bus or drive lost: acts in every state but Off and Starting
   FaultSeen stop;             ///< leaves time for a stop on the path, which then ends in Faulted
   std::uint8_t stuck = 0xFF;  ///< first drive whose transition has missed its deadline; 0xFF none
+  FaultSeen second_master;  ///< another master on a bus: acts in every state but Off; a Faulted machine only
+                            ///< falls silent
+  std::uint8_t not_referenced = 0xFF;  ///< an axis that may run no program before it is told where it is
+  bool can_reference = false;          ///< the request of this cycle tells an axis what can be true
   bool path_prefetched = false;
   bool path_begins_here = false;  ///< first point lies where the axes stand
   bool path_running_dry = false;
@@ -44,6 +48,8 @@ struct Orders {
   bool start_path = false;
   bool stop_path = false;    ///< begin the stop ramp
   bool forget_path = false;  ///< hold where the reference stands
+  bool reference = false;    ///< the axis of the request is where it says
+  bool fall_silent = false;  ///< not a frame any more, until the next bring-up
   bool torque_allowed = false;
   bool finished = false;  ///< terminate is carried out
   DriveGoal goal = DriveGoal::kDisabled;
@@ -90,7 +96,8 @@ class Transitions {
   void Acknowledge(const Request& request, bool ok) noexcept;
   void HandleRequest(const Situation& now, Orders& orders) noexcept;
   void Enable(const Situation& now, Orders& orders, const Request& request) noexcept;
-  void Run(Orders& orders, const Request& request) noexcept;
+  void Run(const Situation& now, Orders& orders, const Request& request) noexcept;
+  void Reference(const Situation& now, Orders& orders) noexcept;
   void BeginStop(Orders& orders, FaultSeen why, MachineState after) noexcept;
   void StopFor(FaultSeen why, Orders& orders) noexcept;
   void SetGoals(Orders& orders) const noexcept;
@@ -101,6 +108,7 @@ class Transitions {
   void ProgressStopping(const Situation& now, Orders& orders) noexcept;
   void WatchIo(const Situation& now, Orders& orders) noexcept;
   [[nodiscard]] DriveGoal Goal() const noexcept;
+  [[nodiscard]] bool SilentNow(const Situation& now) const noexcept;
 
   Config config_;
   MachineState state_ = MachineState::kOff;

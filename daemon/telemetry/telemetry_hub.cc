@@ -81,6 +81,7 @@ void TelemetryHub::Observe(const CycleEntry& entry) {
     skipped_grid_points_ += entry.timing.skipped_grid_points;
     health_.Add(entry);
     emergencies_.Add(entry);
+    foreign_.Add(entry.input);
     feeds = feeds_;
   }
   for (const auto& feed : feeds) feed->Push(entry);
@@ -102,6 +103,11 @@ void TelemetryHub::WatchFeedback(std::vector<FeedbackSource> sources) {
   health_.Watch(std::move(sources));
 }
 
+void TelemetryHub::WatchForeign(std::vector<BusParties> buses) {
+  const std::lock_guard lock(mutex_);
+  foreign_.Watch(std::move(buses));
+}
+
 void TelemetryHub::AddFlightRecorder(std::unique_ptr<FlightRecorder> recorder) {
   flight_ = std::move(recorder);
   sinks_.push_back(flight_.get());
@@ -114,6 +120,11 @@ void TelemetryHub::OnState(std::uint64_t cycle, std::string bytes) {
 std::optional<std::string> TelemetryHub::TakeHealthMessage() {
   const std::lock_guard lock(mutex_);
   return health_.TakeMessage();
+}
+
+std::optional<std::string> TelemetryHub::TakeForeignMessage() {
+  const std::lock_guard lock(mutex_);
+  return foreign_.TakeMessage();
 }
 
 void TelemetryHub::Note(const std::string& key, const std::string& text) {
@@ -131,6 +142,7 @@ TelemetryHub::Snapshot TelemetryHub::snapshot() const {
     s.skipped_grid_points = skipped_grid_points_;
     s.health = health_.summary();
     s.drive_errors = emergencies_.drives();
+    s.foreign = foreign_.summary();
   }
   if (publisher_ != nullptr) s.publisher = publisher_->stats();
   if (log_ != nullptr) s.log = log_->stats();

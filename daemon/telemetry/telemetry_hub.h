@@ -15,6 +15,7 @@
 #include "daemon/telemetry/cycle_health.h"
 #include "daemon/telemetry/emergency_history.h"
 #include "daemon/telemetry/flight_recorder.h"
+#include "daemon/telemetry/foreign_traffic.h"
 #include "daemon/telemetry/row_feed.h"
 #include "drivers/lcm/telemetry_config.h"
 #include "drivers/lcm/telemetry_encoder.h"
@@ -50,6 +51,7 @@ class TelemetryHub {
 
   /// Before the first cycle: whose feedback to watch, and a recorder of the last seconds.
   void WatchFeedback(std::vector<FeedbackSource> sources);
+  void WatchForeign(std::vector<BusParties> buses);
   void AddFlightRecorder(std::unique_ptr<FlightRecorder> recorder);
   /// A copy of the cycle's state, for the flight recorder.
   void OnState(std::uint64_t cycle, std::string bytes);
@@ -57,6 +59,8 @@ class TelemetryHub {
   std::optional<std::string> TakeHealthMessage();
   /// A line for each emergency message of a drive since the last call.
   std::vector<std::string> TakeEmergencyLines();
+  /// A line on others who send on the buses.
+  std::optional<std::string> TakeForeignMessage();
 
   /// Into the log, when there is one.
   void Note(const std::string& key, const std::string& text);
@@ -71,6 +75,7 @@ class TelemetryHub {
     PublisherStats publisher;
     LogStats log;
     FlightRecordStats flight;
+    std::vector<ForeignTraffic::OnBus> foreign;
   };
   [[nodiscard]] Snapshot snapshot() const;
   [[nodiscard]] LogStats log() const { return log_ ? log_->stats() : LogStats{}; }
@@ -98,6 +103,7 @@ class TelemetryHub {
   CycleHealth health_;
   EmergencyHistory emergencies_;
   std::vector<std::string> emergency_lines_;
+  ForeignTraffic foreign_;
 };
 
 }  // namespace contour

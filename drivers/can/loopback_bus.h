@@ -40,13 +40,17 @@ class LoopbackBus : public FrameBus {
   /// `ip link set ... down` would. The nodes' timers go on.
   void SetLink(std::int64_t now_ns, bool up) noexcept;
 
+  /// A frame of somebody who is neither the master nor one of the nodes, ready now: all of them receive it.
+  void Inject(std::int64_t now_ns, const CanFrame& frame) noexcept;
+
   /// Time the bus has been busy, for load figures.
   [[nodiscard]] std::int64_t busy_ns() const noexcept { return busy_ns_; }
   /// Frames of nodes that found no room in their mailboxes.
   [[nodiscard]] std::uint64_t node_overflows() const noexcept { return node_overflows_; }
 
  private:
-  static constexpr std::size_t kMaster = SIZE_MAX;  ///< sender number of the master
+  static constexpr std::size_t kMaster = SIZE_MAX;        ///< sender number of the master
+  static constexpr std::size_t kStranger = SIZE_MAX - 1;  ///< of a frame that was injected
 
   struct Waiting {
     CanFrame frame;

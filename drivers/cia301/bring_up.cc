@@ -30,12 +30,21 @@ bool Tolerated(Tolerate tolerate, std::uint32_t abort_code) noexcept {
   return false;
 }
 
+/// A transfer that collides with a service tool's is begun anew so often.
+constexpr std::uint8_t kMaxRetries = 3;
+
 std::uint32_t Distance(std::uint32_t a, std::uint32_t b) noexcept { return a > b ? a - b : b - a; }
 
 }  // namespace
 
-BringUp::BringUp(std::vector<BringUpNode> nodes, std::uint32_t cycle_us)
-    : nodes_(std::move(nodes)), states_(nodes_.size()), cycle_us_(cycle_us) {}
+BringUp::BringUp(std::vector<BringUpNode> nodes, std::uint32_t cycle_us, const BringUpBus& bus)
+    : nodes_(std::move(nodes)),
+      states_(nodes_.size()),
+      cycle_us_(cycle_us),
+      watch_(bus.master_node_id),
+      bus_(bus) {
+  for (const BringUpNode& n : nodes_) watch_.Add(n.node_id);
+}
 
 void BringUp::Start() noexcept {
   std::fill(states_.begin(), states_.end(), NodeState{});
@@ -44,11 +53,14 @@ void BringUp::Start() noexcept {
   node_ = 0;
   step_ = 0;
   waited_ = 0;
-  phase_ = nodes_.empty() ? BringUpPhase::kOperational : BringUpPhase::kReset;
+  phase_ = nodes_.empty()                 ? BringUpPhase::kOperational
+           : quiet_ >= bus_.listen_cycles ? BringUpPhase::kReset
+                                          : BringUpPhase::kListen;
   ShowNode(0);
 }
 
 void BringUp::BusDown() noexcept {
+  quiet_ = 0;
   if (running()) Fail(BringUpError::kBusDown, 0, 0);
 }
 
@@ -57,11 +69,23 @@ bool BringUp::configuring() const noexcept {
 }
 
 void BringUp::OnFrame(const CanFrame& frame) noexcept {
+  if (const MasterSign sign = watch_.SignOf(frame); sign != MasterSign::kNone) OnSign(sign, frame);
   if (!running()) return;
   transfer_.OnFrame(frame);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (frame.id == cob::kHeartbeat + nodes_[i].node_id && frame.length >= 1)
       OnHeartbeat(i, HeartbeatState(frame));
+  }
+}
+
+// Before we have sent anything, whoever asks our drives is their master. Later an SDO is a service tool's,
+// and may only have come between one of ours and its answer.
+void BringUp::OnSign(MasterSign sign, const CanFrame& frame) noexcept {
+  if (IsSecondMaster(sign) || (running() && phase_ == BringUpPhase::kListen)) {
+    quiet_ = 0;
+    if (!failed()) Fail(BringUpError::kSecondMaster, bus_.bus, frame.id);
+  } else if (transfer_.state() == SdoTransfer::State::kWaiting && frame.id == transfer_.request().id) {
+    collided_ = true;
   }
 }
 
@@ -85,9 +109,13 @@ void BringUp::OnHeartbeat(std::size_t node, NmtState state) noexcept {
 }
 
 void BringUp::Step(std::uint64_t elapsed_cycles, Frames& out) noexcept {
+  quiet_ += elapsed_cycles;
   if (!running()) return;
   waited_ += elapsed_cycles;
-  if (phase_ == BringUpPhase::kReset) {
+  if (phase_ == BringUpPhase::kListen && quiet_ >= bus_.listen_cycles) phase_ = BringUpPhase::kReset;
+  if (phase_ == BringUpPhase::kListen) {
+    // Not a frame.
+  } else if (phase_ == BringUpPhase::kReset) {
     SendNmt(NmtCommand::kResetCommunication, out);
     phase_ = BringUpPhase::kBootUp;
     waited_ = 0;
@@ -141,6 +169,7 @@ void BringUp::Configure(Frames& out) noexcept {
     case SdoTransfer::State::kWaiting:
       return;
     case SdoTransfer::State::kTimedOut: {
+      if (Retry(out)) return;
       out.push_back(SdoAbortFrame(nodes_[node_].node_id, step().index, step().sub, sdo_abort::kTimeout));
       const bool silent = phase_ == BringUpPhase::kFind && !states_[node_].booted;
       Fail(silent ? BringUpError::kNoAnswer : BringUpError::kSdoTimeout, 0, 0);
@@ -148,17 +177,28 @@ void BringUp::Configure(Frames& out) noexcept {
     }
     case SdoTransfer::State::kSegmented:
     case SdoTransfer::State::kUnexpected: {
+      if (Retry(out)) return;
       out.push_back(SdoAbortFrame(nodes_[node_].node_id, step().index, step().sub, transfer_.abort_code()));
       const bool segmented = transfer_.state() == SdoTransfer::State::kSegmented;
       Fail(segmented ? BringUpError::kSegmentedReply : BringUpError::kUnexpectedReply, 0, transfer_.value());
       return;
     }
-    case SdoTransfer::State::kDone:
     case SdoTransfer::State::kAborted:
+      if (Retry(out)) return;
+      [[fallthrough]];
+    case SdoTransfer::State::kDone:
       FinishTransfer();
       if (!failed()) NextStep(out);
       return;
   }
+}
+
+// A drive serves one request at a time: it may have dropped ours for a service tool's, or have refused it.
+bool BringUp::Retry(Frames& out) noexcept {
+  if (!collided_ || retries_ == kMaxRetries) return false;
+  ++retries_;
+  BeginTransfer(out);
+  return true;
 }
 
 void BringUp::FinishTransfer() noexcept {
@@ -261,6 +301,7 @@ void BringUp::NextStep(Frames& out) noexcept {
 // Sends the request of the next step that needs one; after the last step of the last node, starts all nodes.
 void BringUp::BeginStep(Frames& out) noexcept {
   waited_ = 0;
+  retries_ = 0;
   transfer_.Cancel();
   while (node_ < nodes_.size()) {
     if (step_ >= nodes_[node_].steps.size()) {
@@ -302,6 +343,7 @@ void BringUp::BeginStep(Frames& out) noexcept {
 void BringUp::BeginTransfer(Frames& out) noexcept {
   const BringUpNode& n = nodes_[node_];
   const SdoStep& s = step();
+  collided_ = false;
   if (s.action == SdoAction::kWrite) {
     transfer_.StartWrite(n.node_id, s.index, s.sub, s.size, s.value, n.sdo_cycles);
   } else {

@@ -8,6 +8,7 @@
 #include "core/fixed_vector.h"
 #include "core/state_keeper.h"
 #include "drivers/cia301/bring_up_status.h"
+#include "drivers/cia301/master_watch.h"
 #include "drivers/cia301/messages.h"
 #include "drivers/cia301/sdo_step.h"
 #include "drivers/cia301/sdo_transfer.h"
@@ -24,23 +25,32 @@ struct BringUpNode {
   std::vector<SdoStep> steps;
 };
 
+/// The bus as the one who brings it up knows it.
+struct BringUpBus {
+  std::uint8_t bus = 0;  ///< for messages
+  std::uint8_t master_node_id = 0;
+  std::uint64_t listen_cycles = 0;  ///< without a sign of another master, before the first frame is sent
+};
+
 /// Brings the nodes of one bus up, one step per cycle:
-/// NMT reset communication to all, boot-up messages (a node that sends none is asked by SDO), NMT
-/// pre-operational, each node's script one object at a time, NMT start to all, Operational confirmed by
-/// heartbeat. One SDO at a time per bus bounds the bus load. Nothing is retried; Start begins again from the
-/// reset.
+/// listening for another master, then NMT reset communication to all, boot-up messages (a node that sends
+/// none is asked by SDO), NMT pre-operational, each node's script one object at a time, NMT start to all,
+/// Operational confirmed by heartbeat. One SDO at a time per bus bounds the bus load. Nothing is retried but
+/// a transfer that a service tool's came between; Start begins again from the reset.
+///
+/// It hears all the time: listening is over at once when the bus has been heard for long enough already.
 class BringUp {
  public:
   using Frames = FixedVector<CanFrame, 20>;  ///< of one cycle: at most two NMT commands per node and one SDO
 
   BringUp() = default;
-  BringUp(std::vector<BringUpNode> nodes, std::uint32_t cycle_us);
+  BringUp(std::vector<BringUpNode> nodes, std::uint32_t cycle_us, const BringUpBus& bus = {});
 
   void Start() noexcept;
   /// Stops whatever is under way and reports that the bus went down.
   void BusDown() noexcept;
 
-  /// A frame of this bus: heartbeats, boot-up messages and SDO replies concern it, others are passed over.
+  /// A frame of this bus: heartbeats, boot-up messages, SDO replies and signs of another master concern it.
   void OnFrame(const CanFrame& frame) noexcept;
   /// One cycle: checks deadlines, goes on where it can and appends what is to be sent.
   void Step(std::uint64_t elapsed_cycles, Frames& out) noexcept;
@@ -48,13 +58,24 @@ class BringUp {
   [[nodiscard]] const BringUpStatus& status() const noexcept { return status_; }
   [[nodiscard]] BringUpPhase phase() const noexcept { return phase_; }
   [[nodiscard]] bool failed() const noexcept { return status_.error != 0; }
-  [[nodiscard]] bool done() const noexcept { return phase_ == BringUpPhase::kOperational; }
+  [[nodiscard]] bool done() const noexcept { return phase_ == BringUpPhase::kOperational && !failed(); }
+  [[nodiscard]] bool second_master() const noexcept {
+    return status_.error == static_cast<std::uint8_t>(BringUpError::kSecondMaster);
+  }
+  /// Whether the frame says that another master is there, which is not known yet.
+  [[nodiscard]] bool NewSecondMaster(const CanFrame& frame) const noexcept {
+    return !second_master() && IsSecondMaster(watch_.SignOf(frame));
+  }
+  /// Nothing may be sent on this bus, not even a heartbeat.
+  [[nodiscard]] bool silent() const noexcept {
+    return phase_ == BringUpPhase::kListen || (second_master() && phase_ != BringUpPhase::kOperational);
+  }
   [[nodiscard]] bool running() const noexcept { return phase_ != BringUpPhase::kOff && !done() && !failed(); }
 
   /// The nodes and their scripts stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
     keep(states_, phase_, status_, transfer_, node_, step_, waited_, kept_, kept_valid_, written_, watchdog_,
-         marks_, differs_, unwatched_, ask_again_);
+         marks_, differs_, unwatched_, ask_again_, quiet_, collided_, retries_);
   }
 
  private:
@@ -74,6 +95,7 @@ class BringUp {
     std::uint32_t found = 0;
   };
 
+  void OnSign(MasterSign sign, const CanFrame& frame) noexcept;
   void OnHeartbeat(std::size_t node, NmtState state) noexcept;
   void Compare(const SdoStep& step, bool ok) noexcept;
   void Refused(const SdoStep& step) noexcept;
@@ -83,6 +105,7 @@ class BringUp {
   void HoldBack(Frames& out) noexcept;
   void WaitForBootUp(Frames& out) noexcept;
   void Configure(Frames& out) noexcept;
+  [[nodiscard]] bool Retry(Frames& out) noexcept;
   void FinishTransfer() noexcept;
   void Judge(const SdoStep& step, std::uint32_t found) noexcept;
   void NextStep(Frames& out) noexcept;
@@ -111,6 +134,11 @@ class BringUp {
   Difference differs_;      ///< the first of that group
   Difference unwatched_;    ///< of a watchdog that could not be set
   bool ask_again_ = false;  ///< the node has only now booted: it has not heard the request
+  MasterWatch watch_;
+  BringUpBus bus_;
+  std::uint64_t quiet_ = 0;   ///< cycles that the bus was heard without another master
+  bool collided_ = false;     ///< somebody else asked the node while our transfer was under way
+  std::uint8_t retries_ = 0;  ///< of this step
 };
 
 }  // namespace contour

@@ -5,7 +5,7 @@
 
 namespace contour {
 
-/// What is being done while the drives of a bus are brought up, in this order.
+/// What is being done while the drives of a bus are brought up, in this order (kListen first).
 /// Values are part of the log format: append, never renumber.
 enum class BringUpPhase : std::uint8_t {
   kOff = 0,
@@ -22,6 +22,7 @@ enum class BringUpPhase : std::uint8_t {
   kMode = 11,          ///< mode of operation
   kStart = 12,         ///< NMT start, until the heartbeat says Operational
   kOperational = 13,   ///< all drives are up; SYNC runs
+  kListen = 14,        ///< comes first: is another master on the bus? Nothing is sent
 };
 
 constexpr std::string_view Name(BringUpPhase p) noexcept {
@@ -54,8 +55,19 @@ constexpr std::string_view Name(BringUpPhase p) noexcept {
       return "wait for Operational";
     case BringUpPhase::kOperational:
       return "operational";
+    case BringUpPhase::kListen:
+      return "listen for another master";
   }
   return "unknown";
+}
+
+/// Whether `a` comes before `b`.
+constexpr bool ComesBefore(BringUpPhase a, BringUpPhase b) noexcept {
+  const auto place = [](BringUpPhase p) {
+    // Between kOff and kReset, whatever its number.
+    return p == BringUpPhase::kListen ? 1 : 2 * static_cast<int>(p);
+  };
+  return place(a) < place(b);
 }
 
 /// Why bringing up failed. Values are part of the log format: append, never renumber.
@@ -77,9 +89,10 @@ enum class BringUpError : std::uint8_t {
   kLimitTooLow = 14,       ///< the drive limits torque below the configured limit
   kRestarted = 15,         ///< boot-up message in the middle of it
   kBusDown = 16,           ///< the bus went down in the middle of it
-  kSegmentedReply = 18,    ///< an object is longer than the four bytes it should have; found is its size
-  kUnexpectedReply = 19,   ///< a reply to something else than was asked; found is its first byte
-  kReadOnlyDiffers = 20,   ///< an object cannot be written and holds something else than it must
+  kSecondMaster = 17,    ///< another master sends on the bus `expected`; `found` is the COB-ID it was seen by
+  kSegmentedReply = 18,  ///< an object is longer than the four bytes it should have; found is its size
+  kUnexpectedReply = 19,  ///< a reply to something else than was asked; found is its first byte
+  kReadOnlyDiffers = 20,  ///< an object cannot be written and holds something else than it must
 };
 
 }  // namespace contour

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "drivers/cia301/bring_up_status.h"
+#include "drivers/cia301/master_watch.h"
 #include "drivers/cia301/messages.h"
 #include "drivers/cia301/sdo_transfer.h"
 
@@ -185,6 +186,9 @@ std::string Failure(const BringUpStatus& s) {
       return "the drive restarted (boot-up message) while it was brought up";
     case BringUpError::kBusDown:
       return "the bus went down while the drive was brought up";
+    case BringUpError::kSecondMaster:
+      return "another master sends on this bus: " + SecondMasterText(s) +
+             ". Only one may command these drives: end it, or disconnect it";
     case BringUpError::kSegmentedReply:
       return "the drive wants to send " + Object(s) + " in segments" +
              (s.found == 0 ? std::string() : " (" + std::to_string(s.found) + " bytes)") +
@@ -213,6 +217,19 @@ std::string BringUpText(const BringUpStatus& s, std::span<const std::string> axi
       "axis " + name + " (node " + std::to_string(s.node_id) + "), " + std::string(Name(phase)) + ": ";
   if (s.error != 0) return who + Failure(s);
   return who + (s.index != 0 ? Object(s) + ", " : std::string()) + "waiting for " + Waited(s);
+}
+
+std::string SecondMasterText(const BringUpStatus& s) {
+  if (s.error != static_cast<std::uint8_t>(BringUpError::kSecondMaster)) return {};
+  // For a set-point or an SDO request any drive is one of ours here.
+  MasterWatch watch(static_cast<std::uint8_t>(s.found & 0x7F));
+  watch.Add(static_cast<std::uint8_t>(s.found & 0x7F));
+  CanFrame frame;
+  frame.id = static_cast<std::uint16_t>(s.found);
+  const MasterSign sign = watch.SignOf(frame);
+  const bool to_drive = sign == MasterSign::kSetpoint || sign == MasterSign::kSdoRequest;
+  return std::string(Name(sign)) + (to_drive ? " to node " + std::to_string(s.found & 0x7F) : "") +
+         " (COB-ID " + Hex(s.found, 3) + ")";
 }
 
 }  // namespace contour

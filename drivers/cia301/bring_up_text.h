@@ -15,4 +15,7 @@ namespace contour {
 /// file.
 [[nodiscard]] std::string BringUpText(const BringUpStatus& status, std::span<const std::string> axis_names);
 
+/// What another master was seen by, when that is what failed; empty otherwise.
+[[nodiscard]] std::string SecondMasterText(const BringUpStatus& status);
+
 }  // namespace contour

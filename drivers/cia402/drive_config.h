@@ -101,9 +101,10 @@ struct DriveConfig {
     v.Required("peak_torque_Nm", peak_torque_Nm, kPositive, "largest torque drive and motor can give");
     v.Required("encoder_counts_per_rev", encoder_counts_per_rev, Range{1, 4294967295.0},
                "counts of 0x6064 per motor turn; must agree with 0x608F");
-    v.Optional(
-        "absolute_encoder", absolute_encoder,
-        "the drive knows after power-up where the axis is; without, a place learnt before means nothing");
+    v.Optional("absolute_encoder", absolute_encoder,
+               "the drive knows after power-up where the axis is; without, it has to be told (contour "
+               "reference), and "
+               "a place learnt before means nothing");
     v.Optional("identity", identity, "who the drive must say it is (0x1018)");
     v.Optional("linear_scale", linear_scale, "scale at the table, read by the drive (0x60E4:01)");
     v.Optional("delay_cycles", delay_cycles, Range{1, 3},
@@ -152,6 +153,7 @@ struct BusConfig {
   std::string interface;
   std::uint32_t bitrate_bit_s = 1'000'000;
   int master_node_id = 127;
+  double listen_ms = 1200.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -161,6 +163,12 @@ struct BusConfig {
                "bit rate; the interface itself is set up outside");
     v.Optional("master_node_id", master_node_id, Range{1, 127},
                "node number under which the master sends its heartbeat");
+    // Three heartbeats of a master that sends one every 400 ms, and one of a master that does every second.
+    v.Optional("listen_ms", listen_ms, Range{0, 60000},
+               "before the first frame is sent, the bus is heard for this long; another master's heartbeat, "
+               "SYNC or "
+               "command refuses the start. Longer than the longest heartbeat period of any master that could "
+               "be there; 0 does not listen");
   }
 };
 

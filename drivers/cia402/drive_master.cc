@@ -110,14 +110,20 @@ DriveMaster::DriveMaster(const MasterConfig& config)
     patrols[a.bus].push_back({axis.node_id, ModeOfOperation(d.mode), CyclesOf(d.sdo_ms, config.cycle_us)});
     if (d.follows_target_bit) axis.follow_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
     axis.heartbeat_timeout_cycles = CyclesOf(d.heartbeat_timeout_ms, config.cycle_us);
+    if (!d.absolute_encoder && config.start_up != StartUp::kOfLogFormat4)
+      axis.reference = ReferenceState::kNeverTold;
+    axis.unseen_travel_rad = a.unseen_travel_rad;
     axes_.push_back(axis);
   }
   for (std::size_t b = 0; b < config.buses.size(); ++b) {
     Bus bus;
-    bus.bring_up = BringUp(std::move(nodes[b]), config.cycle_us);
     if (config.start_up != StartUp::kOfLogFormat4)
       bus.patrol = DrivePatrol(std::move(patrols[b]), config.cycle_us);
     bus.master_node_id = static_cast<std::uint8_t>(config.buses[b].master_node_id);
+    const double listen_ms = config.start_up == StartUp::kOfLogFormat4 ? 0.0 : config.buses[b].listen_ms;
+    bus.bring_up = BringUp(std::move(nodes[b]), config.cycle_us,
+                           {static_cast<std::uint8_t>(b), bus.master_node_id,
+                            listen_ms > 0.0 ? CyclesOf(listen_ms, config.cycle_us) : 0});
     bus.heartbeat_cycles = heartbeat_cycles[b];
     buses_.push_back(std::move(bus));
   }
@@ -133,7 +139,11 @@ void DriveMaster::Receive(const CycleInput& in) noexcept {
   for (AxisFeedback& f : feedback_) f.fresh = false;
   for (const StampedFrame& frame : in.frames) OnFrame(frame);
   for (std::size_t b = 0; b < buses_.size() && b < in.buses.size(); ++b) {
-    if (!in.buses[b].up || in.buses[b].bus_off) buses_[b].bring_up.BusDown();
+    if (in.buses[b].up && !in.buses[b].bus_off) continue;
+    buses_[b].bring_up.BusDown();
+    // Nobody would hear a boot-up message now.
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      if (axes_[i].bus == b) CountBeganAnew(i);
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) Supervise(i);
 }
@@ -172,11 +182,14 @@ void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
 void DriveMaster::OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept {
   AxisDriveStatus& s = status_[axis];
   s.nmt = HeartbeatState(frame);
+  if (!Heard(axis) && !buses_[axes_[axis].bus].bring_up.running()) CountBeganAnew(axis);
   axes_[axis].alive_cycle = cycle_;
   if (s.nmt == NmtState::kBootUp) {
     s.restarted = s.restarted || s.configured;
     s.emergency_code = 0;
     ForgetEmergency(axis);
+    if (!axes_[axis].boot_up_due) CountBeganAnew(axis);
+    axes_[axis].boot_up_due = false;
   }
 }
 
@@ -205,6 +218,36 @@ void DriveMaster::ForgetEmergency(std::size_t axis) noexcept {
   axes_[axis].reported = EmergencyReaction::kNone;
   status_[axis].emergency = EmergencyReaction::kNone;
   status_[axis].emergency_cause = 0;
+}
+
+// Also when nobody could have heard it begin anew.
+void DriveMaster::CountBeganAnew(std::size_t axis) noexcept {
+  Axis& a = axes_[axis];
+  DoubtPosition(axis);
+  if (a.reference != ReferenceState::kAbsolute) a.offset_rad = 0.0;
+  a.seen_before = false;
+}
+
+void DriveMaster::DoubtPosition(std::size_t axis) noexcept {
+  Axis& a = axes_[axis];
+  const bool knew = a.reference == ReferenceState::kTold || a.was_enabled;
+  if (a.reference != ReferenceState::kAbsolute && knew) a.reference = ReferenceState::kLost;
+}
+
+bool DriveMaster::Heard(std::size_t axis) const noexcept {
+  const Axis& a = axes_[axis];
+  return a.alive_cycle == 0 || cycle_ - a.alive_cycle < a.heartbeat_timeout_cycles;
+}
+
+bool DriveMaster::CanTellPosition(std::size_t axis) const noexcept {
+  return axis < axes_.size() && axes_[axis].reference != ReferenceState::kAbsolute && Healthy(axis) &&
+         feedback_[axis].valid && feedback_[axis].fresh;
+}
+
+void DriveMaster::TellPosition(std::size_t axis, double position_rad) noexcept {
+  axes_[axis].offset_rad += position_rad - feedback_[axis].position_rad;
+  feedback_[axis].position_rad = position_rad;
+  axes_[axis].reference = ReferenceState::kTold;
 }
 
 // A drive answers each SYNC, in their order, and an answer that misses its grid point has the look of one to
@@ -239,10 +282,15 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   AxisFeedback& f = feedback_[axis];
   Axis& a = axes_[axis];
   const bool newest = AnswersNewestSync(a, f, stamped.stamp_ns);
-  f.position_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
+  const double counted_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
+  const double moved_rad = std::abs(counted_rad + a.offset_rad - a.last_seen_rad);
+  if (a.seen_before && a.unseen_travel_rad > 0.0 && moved_rad > a.unseen_travel_rad) CountBeganAnew(axis);
+  a.seen_before = false;
+  f.position_rad = counted_rad + a.offset_rad;
   f.torque_Nm = a.torque.FromPerMille(raw.torque_per_mille);
   f.statusword = raw.statusword;
   f.drive_state = DecodeStatusword(raw.statusword);
+  a.was_enabled = a.was_enabled || f.drive_state == DriveState::kOperationEnabled;
   f.fresh = newest;
   f.valid = true;
   if (newest) f.age_cycles = 0;
@@ -265,6 +313,7 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
   s.silent_cycles = cycle_ - axes_[axis].alive_cycle;
   WatchFollowing(axis);
   if (s.configured && cycle_ - axes_[axis].alive_cycle >= axes_[axis].heartbeat_timeout_cycles) {
+    if (!s.heartbeat_lost) CountBeganAnew(axis);
     s.heartbeat_lost = true;
     s.nmt = NmtState::kUnknown;
   }
@@ -297,7 +346,7 @@ bool DriveMaster::operational() const noexcept {
 }
 
 void DriveMaster::StartBringUp() noexcept {
-  bool needed = !operational();
+  bool needed = !operational() || bring_up_failed();
   for (const AxisDriveStatus& s : status_) needed = needed || s.mode_changed;
   for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
   // Whoever asks for it has seen what the drives reported.
@@ -314,6 +363,12 @@ void DriveMaster::StartBringUp() noexcept {
     b.patrol.Stop();
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (!Heard(i)) CountBeganAnew(i);
+    axes_[i].boot_up_due = false;
+    if (feedback_[i].valid) {
+      axes_[i].seen_before = !status_[i].restarted && !status_[i].heartbeat_lost;
+      axes_[i].last_seen_rad = feedback_[i].position_rad;
+    }
     status_[i] = {};
     feedback_[i].valid = feedback_[i].fresh = feedback_[i].has_scale = false;
     feedback_[i].drive_state = DriveState::kUnknown;
@@ -324,12 +379,31 @@ void DriveMaster::StartBringUp() noexcept {
   }
 }
 
+std::uint8_t DriveMaster::second_master() const noexcept {
+  for (std::size_t b = 0; b < buses_.size(); ++b)
+    if (buses_[b].bring_up.second_master()) return static_cast<std::uint8_t>(b);
+  return kNoBus;
+}
+
+bool DriveMaster::NewSecondMaster(const ReceivedFrames& frames) const noexcept {
+  return std::any_of(frames.begin(), frames.end(), [&](const StampedFrame& f) {
+    return f.bus < buses_.size() && buses_[f.bus].bring_up.NewSecondMaster(f.frame);
+  });
+}
+
+void DriveMaster::FallSilent() noexcept {
+  pdos_run_ = false;
+  sync_sent_ = false;
+  started_ = false;
+  for (Bus& b : buses_) b.patrol.Stop();
+}
+
 BringUpStatus DriveMaster::bring_up() const noexcept {
   const BringUp* shown = &buses_.front().bring_up;
   for (const Bus& b : buses_) {
     const BringUp& other = b.bring_up;
     const bool failed_first = other.failed() && !shown->failed();
-    const bool behind = other.failed() == shown->failed() && other.phase() < shown->phase();
+    const bool behind = other.failed() == shown->failed() && ComesBefore(other.phase(), shown->phase());
     if (failed_first || behind) shown = &other;
   }
   return shown->status();
@@ -364,6 +438,7 @@ void DriveMaster::StartPdos() noexcept {
     status_[i].lost_master = false;
     if ((status_[i].emergency_cause & 0xF000) == 0x8000) ForgetEmergency(i);
     axes_[i].alive_cycle = cycle_;
+    axes_[i].boot_up_due = false;
   }
 }
 
@@ -394,7 +469,8 @@ CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoi
   // A drive that does not follow is told to be where it is, so that enabling it finds no step.
   const double target_rad =
       follows && std::isfinite(setpoint.position_rad) ? setpoint.position_rad : f.position_rad;
-  return EncodePositionSetpoint(a.node_id, word, a.position.ToCounts(target_rad), a.torque_offset, torque);
+  return EncodePositionSetpoint(a.node_id, word, a.position.ToCounts(target_rad - a.offset_rad),
+                                a.torque_offset, torque);
 }
 
 void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noexcept {
@@ -411,10 +487,13 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
       out.push_back({SyncFrame(), index, 0});
     }
     BringUp::Frames frames;
+    const bool waits = bus.bring_up.phase() == BringUpPhase::kBootUp;
     bus.bring_up.Step(elapsed_, frames);
+    if (!waits && bus.bring_up.phase() == BringUpPhase::kBootUp)
+      for (Axis& a : axes_) a.boot_up_due = a.boot_up_due || a.bus == b;
     bus.patrol.Step(elapsed_, frames);
     for (const CanFrame& f : frames) out.push_back({f, index, 0});
-    if (started_ && cycle_ >= bus.heartbeat_due) {
+    if (HeartbeatRuns(b) && cycle_ >= bus.heartbeat_due) {
       out.push_back({HeartbeatFrame(bus.master_node_id, NmtState::kOperational), index, 0});
       bus.heartbeat_due = cycle_ + bus.heartbeat_cycles;
     }

@@ -8,6 +8,7 @@
 #include "core/axis.h"
 #include "core/cycle_input.h"
 #include "core/cycle_record.h"
+#include "core/reference.h"
 #include "core/state_keeper.h"
 #include "drivers/cia301/bring_up.h"
 #include "drivers/cia301/messages.h"
@@ -25,6 +26,9 @@ struct AxisDriveConfig {
   std::uint8_t bus = 0;  ///< index into MasterConfig::buses
   DriveConfig drive;
   double torque_limit_Nm = 0.0;  ///< written to the drive (0x6072); the axis's limit, at most its peak torque
+  /// An axis without an absolute encoder that is found further than this from where it was last seen has lost
+  /// its count; 0: not looked at.
+  double unseen_travel_rad = 0.0;
 };
 
 /// How the drives are found, configured and asked while they run. A log replays as it was recorded: what is
@@ -85,6 +89,29 @@ class DriveMaster {
   /// Brings all drives up again unless all are operational, configured and heard of. Also for a reset after a
   /// fault.
   void StartBringUp() noexcept;
+  /// Whether the axis knows where it is. A drive with an incremental encoder has lost that when it restarted,
+  /// or may have without being heard. NMT reset communication, which every bring-up sends, takes nothing but
+  /// the communication objects back (CiA 301), so the count goes on; a boot-up message that was not asked for
+  /// is that of a power-up or a reset node.
+  [[nodiscard]] ReferenceState reference(std::size_t axis) const noexcept { return axes_[axis].reference; }
+  /// The axis can be told where it is: it counts, its encoder is not absolute, and its position is known now.
+  [[nodiscard]] bool CanTellPosition(std::size_t axis) const noexcept;
+  /// Where it stands now; feedback() says so from here on. CanTellPosition() before.
+  void TellPosition(std::size_t axis, double position_rad) noexcept;
+  /// What it counts cannot be believed any more. Nothing, for an absolute encoder.
+  void DoubtPosition(std::size_t axis) noexcept;
+
+  /// Another master commands this machine: from now on not a frame, until StartBringUp.
+  void FallSilent() noexcept;
+  /// Index of a bus on which another master was seen since it was last brought up; kNoBus when there is none.
+  [[nodiscard]] std::uint8_t second_master() const noexcept;
+  static constexpr std::uint8_t kNoBus = 0xFF;
+  /// Whether these frames say that another master is there, which is not known yet.
+  [[nodiscard]] bool NewSecondMaster(const ReceivedFrames& frames) const noexcept;
+  /// The master's heartbeat goes out on this bus.
+  [[nodiscard]] bool HeartbeatRuns(std::size_t bus) const noexcept {
+    return started_ && !buses_[bus].bring_up.silent();
+  }
   /// Where bringing up stands: the failed node if there is one, else the one furthest behind.
   [[nodiscard]] BringUpStatus bring_up() const noexcept;
   [[nodiscard]] bool bring_up_failed() const noexcept { return bring_up().error != 0; }
@@ -153,6 +180,13 @@ class DriveMaster {
     std::uint64_t answer_cycle = 0;                    ///< cycle of the last feedback
     bool behind = false;                               ///< that was an answer to the SYNC before
     std::int64_t earliest_answer_ns = kNeverAnswered;  ///< after the grid point whose SYNC it answers
+    ReferenceState reference = ReferenceState::kAbsolute;
+    bool was_enabled = false;    ///< ever, in this daemon's life
+    bool boot_up_due = false;    ///< NMT reset communication was sent: its boot-up message is no restart
+    bool seen_before = false;    ///< last_seen_rad is there to compare with
+    double last_seen_rad = 0.0;  ///< before it was brought up anew
+    double unseen_travel_rad = 0.0;
+    double offset_rad = 0.0;  ///< from the drive's count to where the axis is
   };
   struct Bus {
     BringUp bring_up;
@@ -168,6 +202,8 @@ class DriveMaster {
   void OnEmergency(std::size_t axis, const CanFrame& frame) noexcept;
   void ForgetEmergency(std::size_t axis) noexcept;
   void WatchFollowing(std::size_t axis) noexcept;
+  void CountBeganAnew(std::size_t axis) noexcept;
+  [[nodiscard]] bool Heard(std::size_t axis) const noexcept;
   void OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept;
   bool AnswersNewestSync(Axis& axis, const AxisFeedback& feedback, std::int64_t stamp_ns) const noexcept;
   void Supervise(std::size_t axis) noexcept;

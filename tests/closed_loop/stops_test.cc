@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "drivers/cia301/messages.h"
 #include "tests/closed_loop/test_machine.h"
 #include "tests/support/drive_faults.h"
 
@@ -148,6 +149,53 @@ TEST_F(Stops, DriveFault) {
   EXPECT_EQ(machine_.record().axes[1].emergency_code, 0x3210);
   ExpectWorksAgain();
 }
+
+/// Another master on the bus of a moving machine.
+class SecondMaster : public Stops, public ::testing::WithParamInterface<CanFrame> {
+ protected:
+  void OtherSends() { machine_.bus(0).Inject(machine_.last().input.grid_time_ns, GetParam()); }
+  std::size_t FramesSent(int cycles) {
+    std::size_t frames = 0;
+    for (int i = 0; i < cycles; ++i) {
+      machine_.Tick();
+      frames += machine_.last().output.frames.size();
+    }
+    return frames;
+  }
+  void Reset(int limit) {
+    machine_.mailbox().Post(RequestKind::kReset);
+    machine_.Tick();
+    for (int i = 0; i < limit && machine_.record().state == MachineState::kStarting; ++i) {
+      machine_.Tick();
+      if (other_is_there_ && i % 10 == 0) OtherSends();
+    }
+  }
+  bool other_is_there_ = true;
+};
+
+TEST_P(SecondMaster, DrivesAreBroughtToRestThenTheBusIsLeftAlone) {
+  OtherSends();
+  machine_.Tick();
+  // Without SYNC the emulated machine waits 200 ms before it goes on by itself: so late it is seen to rest.
+  EXPECT_LE(TicksToStandstill(400), 80 + 200);
+  EXPECT_EQ(first_state_, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kSecondMaster);
+  EXPECT_EQ(machine_.record().reason_axis, 0) << "the bus";
+  EXPECT_EQ(machine_.record().bring_up.found, GetParam().id);
+  EXPECT_EQ(FramesSent(500), 0u);
+
+  Reset(3000);
+  EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kSecondMaster) << "it is still there";
+  EXPECT_EQ(FramesSent(500), 0u);
+  other_is_there_ = false;
+  ExpectWorksAgain();
+}
+
+INSTANTIATE_TEST_SUITE_P(Signs, SecondMaster,
+                         ::testing::Values(SyncFrame(), HeartbeatFrame(127, NmtState::kOperational),
+                                           CanFrame{0x202, 4, {0x0F, 0, 0, 0}},
+                                           NmtFrame(NmtCommand::kStart, 0)));
 
 TEST_F(Stops, PathSupplyRunsDry) {
   EXPECT_LE(TicksToStandstill(3000, true), 2500);

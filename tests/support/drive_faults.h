@@ -20,6 +20,10 @@ class DriveFaults {
                      std::uint8_t error_register) noexcept {
     machine.axis(axis).SendEmergency(error_code, error_register);
   }
+  /// The drive's supply fails for a moment: it forgets what it was told, and says boot-up.
+  static void Restart(EmulatedMachine& machine, std::size_t axis) noexcept {
+    machine.axis(axis).InterruptSupply();
+  }
 };
 
 }  // namespace contour

@@ -17,6 +17,7 @@
 #include "tools/contour/emulate_command.h"
 #include "tools/contour/export_command.h"
 #include "tools/contour/identify_command.h"
+#include "tools/contour/reference_command.h"
 #include "tools/contour/reload_command.h"
 #include "tools/contour/replay_command.h"
 #include "tools/contour/request_command.h"
@@ -72,6 +73,7 @@ int main(int argc, char** argv) {
   contour::AddCommissionCommand(app, action);
   contour::AddContestCommand(app, action);
   contour::AddTuneCommand(app, action);
+  contour::AddReferenceCommand(app, action);
   contour::AddReloadCommand(app, action);
   contour::AddDoctorCommand(app, action);
   contour::AddReplayCommand(app, action);

@@ -47,6 +47,7 @@ std::string Axes(const json& s) {
       drive += code;
     }
     if (a["feedback_fresh"] == false) drive += ", feedback old";
+    if (a.value("referenced", true) == false) drive += ", not referenced (" + Text(a["reference"]) + ")";
     table.Add({Text(a["name"]), drive, Number(a["position_m"], 1e3, 4),
                Number(a["following_error_m"], 1e6, 2), Number(a["torque_Nm"], 1.0, 4),
                Number(a["friction_N"], 1.0, 1), Number(a["friction_std_N"], 1.0, 1),
@@ -128,6 +129,11 @@ std::string Buses(const json& s) {
             ", received " + Text(b["frames_received"]) + ", sent " + Text(b["frames_sent"]) + ", not sent " +
             Text(b["send_failures"]) + ", error frames " + Text(b["error_frames"]) + ", overflows " +
             Text(b["receive_overflows"]) + ", dropped " + Text(b["frames_dropped"]) + "\n";
+    if (b.value("foreign_sdo_requests", 0U) != 0)
+      text +=
+          "      somebody else asked our drives by SDO: " + Text(b["foreign_sdo_requests"]) + " requests\n";
+    if (const json nodes = b.value("other_nodes", json::array()); !nodes.empty())
+      text += "      other nodes: " + nodes.dump() + "\n";
   }
   return text;
 }

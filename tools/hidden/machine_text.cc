@@ -12,8 +12,10 @@ void AddAxis(std::string& text, const char* name, int node, const Setting& s) {
   text +=
       FormatText("  %s:\n    drive: {bus: %s, node_id: %d, rated_torque_Nm: %.9g, peak_torque_Nm: 1.911, ",
                  name, node == 1 ? "main" : "other", node, m.rated_torque_Nm);
-  text += FormatText("encoder_counts_per_rev: %.9g, lag_ms: %.9g, quick_stop_deceleration_rad_s2: 6000",
-                     m.encoder_counts_per_rev, m.lag_ms);
+  text += FormatText(
+      "absolute_encoder: true, encoder_counts_per_rev: %.9g, lag_ms: %.9g, quick_stop_deceleration_rad_s2: "
+      "6000",
+      m.encoder_counts_per_rev, m.lag_ms);
   if (m.scale_counts_per_mm > 0.0)
     text += FormatText(", linear_scale: {counts_per_mm: %.9g}", m.scale_counts_per_mm);
   text +=

@@ -64,6 +64,11 @@ class CanopenSlave {
 
   /// An emergency message; goes out at the next OnTimer, not sooner than the inhibit time (0x1015) allows.
   void Emergency(std::uint16_t code, std::uint8_t register_bits) noexcept;
+  /// As if switched off and on.
+  void Restart() noexcept {
+    device_.OnPowerCycle();
+    Boot(bus_ns_);
+  }
   /// All errors are gone: EMCY 0x0000 if any was reported.
   void ClearErrors() noexcept;
 

@@ -42,6 +42,7 @@ EmulatedAxis::EmulatedAxis(const AxisParameters& parameters, const EmulatedAxisP
   Sense();
   past_counts_.fill(counts_);
   latched_counts_ = counts_;
+  if (p_.incremental_encoder) zero_counts_ = counts_;
   UpdateActualValues();
 }
 
@@ -190,7 +191,7 @@ void EmulatedAxis::UpdateActualValues() noexcept {
     return static_cast<std::int64_t>(
         static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(v))));
   };
-  position_->value = wrap(latched_counts_);
+  position_->value = wrap(latched_counts_ - zero_counts_);
   velocity_->value = wrap(std::llround(cascade_.velocity_m_s() / TravelPerCount_m()));
   const auto per_mille = [&](double torque_Nm) {
     return std::clamp<std::int64_t>(std::llround(1000.0 * torque_Nm / p_.rated_torque_Nm), -32768, 32767);
@@ -251,6 +252,7 @@ void EmulatedAxis::OnPowerCycle() noexcept {
   TorqueOff();
   error_code_->value = 0;
   slave_.ClearErrors();
+  if (p_.incremental_encoder) zero_counts_ = latched_counts_ = counts_;
   UpdateActualValues();
 }
 
@@ -494,9 +496,9 @@ void EmulatedAxis::ApplyTarget() noexcept {
     return;
   }
   // The target is a wrapped count: the one nearest to where the axis is.
-  const auto step =
-      static_cast<std::int32_t>(static_cast<std::uint32_t>(target_position_->value) -
-                                static_cast<std::uint32_t>(static_cast<std::uint64_t>(counts_)));
+  const auto step = static_cast<std::int32_t>(
+      static_cast<std::uint32_t>(target_position_->value) -
+      static_cast<std::uint32_t>(static_cast<std::uint64_t>(counts_ - zero_counts_)));
   delayed_positions_[0] = counts_ + step;
   target_.Push(static_cast<double>(delayed_positions_[cycles]) * TravelPerCount_m());
 }
@@ -536,7 +538,7 @@ void EmulatedAxis::FillTruth(AxisTruth& truth) const noexcept {
   truth.bristle_N = plant_.elastic_N();
   truth.torque_Nm = plant_.DeliveredTorque_Nm(tampering_.torque_share() * current_.torque_Nm());
   truth.command_Nm = current_.command_Nm();
-  truth.reported_position_rad = encoder_.ToRad(latched_counts_);
+  truth.reported_position_rad = encoder_.ToRad(latched_counts_ - zero_counts_);
   truth.temperature_degC = plant_.temperature_degC();
   truth.drive_state = power_.state();
 }

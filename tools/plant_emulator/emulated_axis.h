@@ -43,6 +43,8 @@ class EmulatedAxis final : private SlaveDevice {
   void FillTruth(AxisTruth& truth) const noexcept;
   /// Fails as broken hardware would: EMCY with this code, fault reaction, Fault.
   void InjectFault(std::uint16_t error_code) noexcept { Fault(error_code, 0x20); }
+  /// The drive's supply fails for a moment, whatever it is doing.
+  void InterruptSupply() noexcept { slave_.Restart(); }
 
   // Other things that drives do unasked:
   /// Encoder and motor lie.
@@ -154,6 +156,7 @@ class EmulatedAxis final : private SlaveDevice {
   std::int64_t sensed_ns_ = -1;
   std::int64_t counts_ = 0;
   std::int64_t latched_counts_ = 0;
+  std::int64_t zero_counts_ = 0;                ///< where an incremental encoder began to count
   std::array<std::int64_t, 17> past_counts_{};  ///< of the last 2 ms
   std::size_t past_ = 0;
 

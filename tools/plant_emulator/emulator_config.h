@@ -145,6 +145,7 @@ struct EmulatedAxisConfig {
   std::optional<double> encoder_counts_per_rev;
   std::optional<double> scale_counts_per_mm;
   double encoder_noise_lsb = 0.3;
+  bool incremental_encoder = false;
   double stroke_mm = 400.0;
   double start_position_mm = 0.0;
   double start_variation_mm = 2.5;
@@ -177,6 +178,8 @@ struct EmulatedAxisConfig {
                "of the emulated encoder; default: as `drive` states");
     v.Optional("scale_counts_per_mm", scale_counts_per_mm, kPositive,
                "of the emulated linear scale (0x60E4:01); default: as `drive` states, none if it has none");
+    v.Optional("incremental_encoder", incremental_encoder,
+               "the drive counts from where the axis stands at power-up; NMT reset node is one, too");
     v.Optional("encoder_noise_lsb", encoder_noise_lsb, Range{0.0, 1000.0},
                "standard deviation of a reading, counts");
     v.Optional("stroke_mm", stroke_mm, kPositive, "travel over which friction varies");

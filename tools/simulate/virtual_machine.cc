@@ -120,7 +120,7 @@ void VirtualMachine::Enable() {
 std::uint32_t VirtualMachine::Start(const Program& program) {
   PerAxis<double> start_m;
   for (const AxisRecord& a : record().axes) start_m.push_back(a.reference.position_m);
-  auto generator = std::make_unique<PathGenerator>(program, start_m, limits_,
+  auto generator = std::make_unique<PathGenerator>(program, start_m, LimitsNow(limits_, record()),
                                                    static_cast<double>(period_ns_) * 1e-9, ++program_id_);
   plan_ = generator->plan();
   learning_.Prepare(program.name, start_m, program_id_, *generator);

@@ -14,6 +14,8 @@ namespace contour::test {
 /// A desk that accepts or refuses as told and keeps what it was asked.
 class FakeDesk final : public OperatorDesk {
  public:
+  std::map<std::string, double> referenced_mm;
+
   Answer Enable(const std::stop_token& unwanted) override {
     Answer answer = Do("enable");
     std::unique_lock lock(mutex_);
@@ -24,6 +26,11 @@ class FakeDesk final : public OperatorDesk {
   Answer Disable() override { return Do("disable"); }
   Answer Stop() override { return Do("stop"); }
   Answer Reset(const std::stop_token& /*unwanted*/) override { return Do("reset"); }
+  Answer Reference(const std::map<std::string, double>& position_mm,
+                   const std::stop_token& /*unwanted*/) override {
+    for (const auto& [axis, at_mm] : position_mm) referenced_mm[axis] = at_mm;
+    return Do("reference");
+  }
   Answer Reload() override { return Do("reload"); }
   Answer Run(const ProgramUpload& program, const std::stop_token& /*unwanted*/) override {
     Answer answer = Do("run");

@@ -39,6 +39,16 @@ TEST_F(RequestHandlerTest, ARefusalComesWithItsReason) {
   EXPECT_EQ(reply["error"], "axis x is in Fault");
 }
 
+TEST_F(RequestHandlerTest, ReferenceTellsWhereEachNamedAxisStands) {
+  EXPECT_EQ(Ask(R"({"request": "reference", "position_mm": {"x": 12.5, "y": -3}})")["ok"], true);
+  EXPECT_EQ(desk_.referenced_mm, (std::map<std::string, double>{{"x", 12.5}, {"y", -3.0}}));
+  const auto asked = desk_.asked().size();
+  for (const char* wrong : {R"({"request": "reference"})", R"({"request": "reference", "position_mm": 3})",
+                            R"({"request": "reference", "position_mm": {"x": "12"}})"})
+    EXPECT_EQ(Ask(wrong)["ok"], false) << wrong;
+  EXPECT_EQ(desk_.asked().size(), asked);
+}
+
 TEST_F(RequestHandlerTest, RunUploadsTheProgram) {
   const json reply =
       Ask(R"({"request": "run", "name": "a.yaml", "format": "yaml", "text": "shape: circle\n"})");

@@ -370,5 +370,75 @@ TEST_F(TransitionsTest, ALateFaultActsInTheSameCycle) {
   EXPECT_TRUE(orders.forget_path);
 }
 
+TEST_F(TransitionsTest, AnotherMasterIsAFaultFromIdleUpAndEndsInSilence) {
+  ToReady();
+  now_.second_master = {Reason::kSecondMaster, 1};
+  now_.lost = {Reason::kHeartbeatLost, 0};  // its doing
+  EXPECT_EQ(Step().goal, DriveGoal::kQuickStop);
+  EXPECT_EQ(machine_.reason(), Reason::kSecondMaster);
+  EXPECT_EQ(machine_.reason_where(), 1);
+  int cycles = 0;
+  while (!Step().fall_silent && cycles < 100) ++cycles;
+  EXPECT_GT(cycles, 3) << "the drives are told to disable their voltage first";
+  EXPECT_LT(cycles, 20);
+}
+
+TEST_F(TransitionsTest, AnotherMasterFaultsAnIdleMachineAndSilencesAFaultedOne) {
+  ToIdle();
+  now_.second_master = {Reason::kSecondMaster, 0};
+  Step();
+  EXPECT_EQ(machine_.reason(), Reason::kSecondMaster);
+
+  Transitions other({10, 20, 30});
+  std::swap(machine_, other);
+  now_.second_master = {};
+  ToReady();
+  now_.fault = {Reason::kDriveFault, 0};
+  Step();
+  ASSERT_EQ(machine_.state(), MachineState::kFaulted);
+  now_.second_master = {Reason::kSecondMaster, 0};
+  bool silent = false;
+  for (int i = 0; i < 50; ++i) silent = Step().fall_silent;
+  EXPECT_TRUE(silent);
+  EXPECT_EQ(machine_.reason(), Reason::kDriveFault) << "the first cause stays";
+}
+
+TEST_F(TransitionsTest, DrivesThatDoNotLetGoDoNotKeepItTalking) {
+  ToReady();
+  now_.second_master = {Reason::kSecondMaster, 0};
+  bool silent = false;
+  for (int i = 0; i < 40; ++i) {
+    silent = Step().fall_silent;
+    SetDrives(DriveState::kOperationEnabled);
+    if (i < 15) {
+      EXPECT_FALSE(silent);
+    }
+  }
+  EXPECT_TRUE(silent) << "after the stop's own deadline";
+}
+
+TEST_F(TransitionsTest, WithoutAReferenceProgramsAreRefusedAndItCanBeToldInIdleOnly) {
+  ToReady();
+  now_.not_referenced = 1;
+  now_.can_reference = true;
+  EXPECT_FALSE(Step(RequestKind::kRun, 3).expect_path);
+  EXPECT_FALSE(machine_.acknowledged_ok());
+  EXPECT_EQ(machine_.reason(), Reason::kNotReferenced);
+  EXPECT_EQ(machine_.reason_where(), 1);
+  EXPECT_FALSE(Step(RequestKind::kReference).reference) << "held";
+  EXPECT_FALSE(machine_.acknowledged_ok());
+  Step(RequestKind::kDisable);
+  now_.path_at_rest = true;
+  for (int i = 0; i < 5; ++i) Step();
+  ASSERT_EQ(machine_.state(), MachineState::kIdle);
+  const Orders orders = Step(RequestKind::kReference);
+  EXPECT_TRUE(orders.reference);
+  EXPECT_TRUE(orders.hold_here);
+  EXPECT_TRUE(machine_.acknowledged_ok());
+  now_.can_reference = false;
+  EXPECT_FALSE(Step(RequestKind::kReference).reference);
+  EXPECT_FALSE(machine_.acknowledged_ok());
+}
+
 }  // namespace
 }  // namespace contour

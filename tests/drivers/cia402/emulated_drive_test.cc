@@ -35,8 +35,9 @@ class Machine {
   explicit Machine(DriveMode mode = DriveMode::kCst, EmulatedClock clock = EmulatedClock::kSync)
       : emulated(NominalMachine(), std::array{Place("x", 1), Place("y", 2)}, 1000, clock),
         bus(1'000'000, {&emulated.node(0)}),
-        master(
-            {{{"x", 0, Drive(1, mode), 1.5}, {"y", 0, Drive(2, mode), 1.5}}, {BusConfig{"loopback"}}, 1000}),
+        master({{{"x", 0, Drive(1, mode), 1.5}, {"y", 0, Drive(2, mode), 1.5}},
+                {BusConfig{"loopback", 1'000'000, 127, 0.0}},
+                1000}),
         setpoints(2) {}
 
   void Cycle() {

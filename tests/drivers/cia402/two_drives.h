@@ -30,6 +30,7 @@ inline MasterConfig TwoAxes() {
   c.axes = {{"x", 0, Drive(1), 1.5}, {"y", 0, Drive(2), 1.5}};
   BusConfig bus;
   bus.interface = "loopback";
+  bus.listen_ms = 0.0;  // nobody else is there; tests of the listening itself say how long
   c.buses = {bus};
   return c;
 }
@@ -81,6 +82,13 @@ class Machine {
   }
   [[nodiscard]] std::int64_t now_ns() const { return static_cast<std::int64_t>(cycle_) * 1'000'000; }
   [[nodiscard]] BringUpError error() const { return static_cast<BringUpError>(master.bring_up().error); }
+  /// A frame of somebody else on the bus.
+  void Inject(const CanFrame& frame) { bus_.Inject(now_ns(), frame); }
+  [[nodiscard]] bool SentSync() const {
+    for (const StampedFrame& f : sent)
+      if (f.frame == SyncFrame()) return true;
+    return false;
+  }
   void SetLink(bool up) { bus_.SetLink(now_ns(), up); }
   void Skip(std::uint64_t cycles) { cycle_ += cycles; }
 

@@ -238,5 +238,16 @@ TEST_F(DaemonCommandsTest, ExportWritesOneRowPerCycleAndSaysWhatIsMissing) {
   EXPECT_NE(o.errors.find("is not a log"), std::string::npos) << o.errors;
 }
 
+TEST_F(DaemonCommandsTest, ReferenceTellsWhereAxesStandAndRefusesWhatIsNoPosition) {
+  const std::string socket = " --socket " + (directory_ / "control.sock").string();
+  EXPECT_EQ(Contour("reference x=12.5 y=-3" + socket).status, 0);
+  EXPECT_EQ(machine_.referenced_mm, (std::map<std::string, double>{{"x", 12.5}, {"y", -3.0}}));
+  for (const char* wrong : {"x", "x=", "=3", "x=3mm", "x=1 x=2"}) {
+    const Outcome outcome = Contour("reference " + std::string(wrong) + socket);
+    EXPECT_EQ(outcome.status, 2) << wrong;
+    EXPECT_NE(outcome.errors.find("expected AXIS=MM"), std::string::npos) << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace contour

@@ -20,6 +20,12 @@ class ScriptedMachine final : public OperatorDesk {
   Answer Enable(const std::stop_token&) override { return Go(MachineState::kReady, Reason::kNone); }
   Answer Disable() override { return Go(MachineState::kIdle, Reason::kDisableRequest); }
   Answer Stop() override { return Go(MachineState::kReady, Reason::kOperatorStop); }
+  Answer Reference(const std::map<std::string, double>& position_mm,
+                   const std::stop_token& /*unwanted*/) override {
+    for (const auto& [axis, at_mm] : position_mm) referenced_mm[axis] = at_mm;
+    return {true, ""};
+  }
+  std::map<std::string, double> referenced_mm;
   Answer Reload() override { return {true, "nothing has changed"}; }
   Answer Reset(const std::stop_token&) override { return Go(MachineState::kIdle, Reason::kNone); }
   Answer Run(const ProgramUpload& upload, const std::stop_token&) override;
