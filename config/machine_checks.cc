@@ -28,6 +28,7 @@ namespace {
 class Problems {
  public:
   void Add(std::string key, std::string message) { list_.push_back({std::move(key), std::move(message)}); }
+  [[nodiscard]] bool empty() const { return list_.empty(); }
   std::vector<ConfigProblem> Take() { return std::move(list_); }
 
  private:
@@ -262,7 +263,8 @@ void CheckDepartures(const MachineConfig& c, const std::string& key, const AxisC
                    std::string(Name(worst.fault)) + "' at " + Say(worst.feed_mm_s) +
                    " mm/s the axis goes up to " + Say(worst.bound.departure_mm) +
                    " mm from its path until the torque is off. A finer encoder, a stiffer loop, or a smaller "
-                   "following_error_mm, torque_Nm or external_force_N make that smaller");
+                   "following_error_mm, torque_Nm or external_force_N make that smaller; "
+                   "limits.slowest_feed_mm_s says from which speed on it must hold");
 }
 
 std::set<std::string> ParameterKeys() {
@@ -351,7 +353,7 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     CheckLimits(key, axis, problems);
     CheckReserve(key, axis, problems);
     CheckStopping(c, key, axis, problems);
-    CheckDepartures(c, key, axis, problems);
+    if (problems.empty()) CheckDepartures(c, key, axis, problems);
     Append(ImplausibleLimits(c, name), problems);
     Append(Check(axis.model, key + ".model"), problems);
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "config/extended_model.h"
+#include "config/stopping.h"
 #include "control/monitored_axis.h"
 #include "core/mechanics.h"
 #include "drivers/cia402/mode_for.h"
@@ -15,6 +16,10 @@ namespace {
 // A drive takes the voltage off by its own clock, at most one period of ours after the frame; its current
 // then fades along its lag.
 constexpr double kLagsToNothing = 3.0;
+// Statuswords in which a drive does not follow until that is a fault, besides its delay.
+constexpr double kTellingWords = 3.0;
+// Presliding may be so much softer than stated.
+constexpr double kSofter = 3.0;
 // What a loop's other terms add to its proportional one, at most.
 constexpr double kLoopOvershoot = 4.0;
 
@@ -71,9 +76,9 @@ double JumpSeen_m(const Axis& a, double feed_m_s) {
 FaultBound Frozen(const Axis& a, const Standing& standing, double feed_m_s) {
   if (feed_m_s <= 0.0) {
     // At rest nothing asks for another force; what the force may change by moves presliding at its softest.
-    const double soft_N_m =
-        a.monitored.sigma0_N_m * a.t.friction_N / (a.t.friction_N + a.friction_drop_N) / 3.0;
-    return {1e3 * a.t.frozen_force_N / soft_N_m + 1e3 * Slam_m(a, 0.0), Off_s(a)};
+    const double soft_N_m = a.monitored.sigma0_N_m / kSofter;
+    // In the time that the force is judged late, and after, it may break away.
+    return {1e3 * a.t.rest_force_N / soft_N_m + 1e3 * Slam_m(a, 0.0), Off_s(a)};
   }
   // What the loop makes of the standing reading counts as settling, too, by its share.
   // Seen by the reading's step to rest at once, or by the path going on for as long as the loop takes to
@@ -153,7 +158,11 @@ FaultBound BoundOf(const MachineConfig& config, const AxisConfig& axis, MotionFa
     case MotionFault::kTorqueLost:
       return ByFollowingError(a, feed_m_s, false);
     case MotionFault::kNotFollowing:
-      return {1e3 * (a.limits.following_error_m + Slam_m(a, 0.0)), a.period_s + Off_s(a)};
+      // Some statuswords without the bit, then the drive's own ramp.
+      return {1e3 * (a.limits.following_error_m + Slam_m(a, 0.0)),
+              QuickStop(ToStoppingAxis(config, axis), feed_m_s,
+                        (kTellingWords + a.monitored.delay_cycles) * a.period_s + Off_s(a))
+                  .time_s};
   }
   return {};
 }
@@ -166,11 +175,18 @@ std::vector<double> BoundFeeds_mm_s(const AxisConfig& axis) {
   return feeds;
 }
 
+double PromisedFeed_mm_s(const MachineConfig& config, const AxisConfig& axis) {
+  if (axis.limits.slowest_feed_mm_s > 0.0) return axis.limits.slowest_feed_mm_s;
+  const Axis a = Known(config, axis);
+  return std::max(kSlowestFeed_mm_s, 1e3 * a.t.frozen.Path_m(a.t.loop_N_m) / kShows_s);
+}
+
 WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& axis) {
   WorstDeparture worst;
   // Finer than what is printed: the worst feed is where a reading's step to rest is just not seen.
-  std::vector<double> feeds = BoundFeeds_mm_s(axis);
-  for (double feed = kSlowestFeed_mm_s; feed < axis.limits.velocity_mm_s; feed *= 1.25) feeds.push_back(feed);
+  std::vector<double> feeds{0.0, axis.limits.velocity_mm_s};
+  for (double feed = PromisedFeed_mm_s(config, axis); feed < axis.limits.velocity_mm_s; feed *= 1.25)
+    feeds.push_back(feed);
   for (const MotionFault fault : kMotionFaults)
     for (const double feed : feeds) {
       if (fault == MotionFault::kFlickers) continue;

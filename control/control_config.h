@@ -21,6 +21,7 @@ struct AxisLimits {
   double following_error_mm = 0.0;
   double safe_travel_mm = 0.0;
   double external_force_N = 0.0;
+  double slowest_feed_mm_s = 0.0;
   double unreferenced_travel_mm = 0.0;
 
   template <class Visitor>
@@ -37,6 +38,9 @@ struct AxisLimits {
                "travel allowed to experiments, stops, and whatever goes wrong until the torque is off");
     v.Optional("external_force_N", external_force_N, kNotNegative,
                "largest force on the table besides friction (cutting, weight); 0: a quarter of rated force");
+    v.Optional("slowest_feed_mm_s", slowest_feed_mm_s, kNotNegative,
+               "from this speed of the axis on safe_travel_mm must be kept with a frozen encoder; 0: from "
+               "where one shows within 50 ms");
     v.Optional(
         "unreferenced_travel_mm", unreferenced_travel_mm, kNotNegative,
         "of an axis without drive.absolute_encoder that was not told yet where it is: programs may take "

@@ -21,6 +21,8 @@ constexpr std::uint32_t kLearnEvery_readings = 8;
 // csp: less than this share of Coulomb friction is no torque, for so many periods.
 constexpr double kNoTorque = 0.1;
 constexpr std::uint32_t kIdle_periods = 5;
+// Where a limit is exceeded anyway, so much of what may go unexplained is enough to doubt the encoder.
+constexpr double kInDoubt = 0.5;
 // Lead errors of screws that are sold are well below half a millimetre per metre.
 constexpr double kLeadError_rel = 5e-4;
 
@@ -63,6 +65,9 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   slow_force_N_ = axis_.in_cascade ? s.reported_force_N : 0.0;
   least_N_ = most_N_ = slower_force_N_ = slow_force_N_;
   settling_N_ = 0.0;
+  rest_reference_m_ = s.reference_m;
+  rest_periods_ = 0;
+  rest_least_N_ = rest_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
   near_ = false;
   same_ = near_periods_ = beyond_ = undelivered_ = 0;
@@ -134,6 +139,18 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     least_N_ = std::min(least_N_, slow_force_N_);
     most_N_ = std::max(most_N_, slow_force_N_);
   }
+  // At rest nothing but readings changes the torque of a loop, so a torque that goes on changing under one
+  // and the same reading is a loop that pushes against it.
+  if (s.reference_m != rest_reference_m_) {
+    rest_reference_m_ = s.reference_m;
+    rest_periods_ = 0;
+  } else {
+    rest_periods_ = std::min(rest_periods_ + waited_periods_, t_.rest_periods);
+  }
+  if (same_ == 0 || rest_periods_ < t_.rest_periods) rest_least_N_ = rest_most_N_ = slow_force_N_;
+  rest_least_N_ = std::min(rest_least_N_, slow_force_N_);
+  rest_most_N_ = std::max(rest_most_N_, slow_force_N_);
+  const bool at_rest = s.spring_N_m == 0.0 && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
   // A reading that only flickers, along a path that goes on.
   if (!near_ || std::abs(s.position_m - near_position_m_) > t_.flicker_m) {
     near_ = true;
@@ -155,7 +172,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
                        std::abs(s.reference_m - same_reference_m_) > t_.frozen.Path_m(loop_N_m, settling_N);
   const bool by_flicker = near_periods_ >= answer_periods && std::abs(s.reference_m - near_reference_m_) >
                                                                  t_.flickering.Path_m(loop_N_m, settling_N);
-  if (!by_force && !by_path && !by_flicker) return Reason::kNone;
+  if (!by_force && !by_path && !by_flicker && !at_rest) return Reason::kNone;
   // A drive that closes the loop and gives no torque lets the axis stand.
   const bool idle = axis_.in_cascade && std::abs(s.reported_force_N) <= kNoTorque * axis_.Fc_N;
   return idle && report_seen_ ? Reason::kTorqueNotDelivered : Reason::kFeedbackFrozen;
@@ -185,6 +202,14 @@ void MotionMonitor::Learn(double velocity_m_s) noexcept {
   watch_.Learn(force_N_, force_N_ - unexplained_N_, velocity_m_s);
 }
 
+Reason MotionMonitor::Doubt() const noexcept {
+  const double allowed_N = t_.Unexplained_N(velocity_m_s_, force_N_);
+  if (!held_ || std::abs(unexplained_N_) <= kInDoubt * allowed_N) return Reason::kNone;
+  const double won_N = force_N_ - unexplained_N_;
+  return unexplained_N_ * force_N_ > 0.0 && won_N * force_N_ >= 0.0 ? Reason::kTorqueWithoutMotion
+                                                                    : Reason::kFeedbackReversed;
+}
+
 // A report that has never shown the torque is none: some drives leave 0x6077 at zero.
 Reason MotionMonitor::Delivery(const MotionSample& s) noexcept {
   if (axis_.in_cascade) return DeliveryInCascade(s);
@@ -202,8 +227,9 @@ Reason MotionMonitor::DeliveryInCascade(const MotionSample& s) noexcept {
   const double force_N = std::abs(s.reported_force_N);
   const double none_N = kNoTorque * axis_.Fc_N;
   if (force_N > none_N) report_seen_ = true;
-  const double wanted_N = t_.loop_N_m * std::abs(s.reference_m - s.position_m);
-  const bool idle = force_N <= none_N && wanted_N > 0.5 * t_.friction_N;
+  // Drives interpolate their targets, and so are up to a period behind.
+  const double behind_m = std::abs(s.reference_m - s.position_m) - std::abs(velocity_m_s_) * period_s_;
+  const bool idle = force_N <= none_N && t_.loop_N_m * behind_m > t_.friction_N + t_.external_N;
   undelivered_ = idle ? undelivered_ + waited_periods_ : 0;
   return report_seen_ && undelivered_ >= kIdle_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
 }

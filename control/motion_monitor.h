@@ -48,6 +48,9 @@ class MotionMonitor {
   [[nodiscard]] bool believed() const noexcept { return believed_; }
 
   [[nodiscard]] const MotionThresholds& thresholds() const noexcept { return t_; }
+  /// Why the encoder is in doubt, for an axis that exceeds a limit: torque_without_motion, feedback_reversed,
+  /// or kNone.
+  [[nodiscard]] Reason Doubt() const noexcept;
   /// Torque constant or mass are not what was stated. To be told, not to be acted upon.
   [[nodiscard]] bool torque_constant_changed() const noexcept { return watch_.changed(); }
   /// Force per acceleration, over what was stated.
@@ -87,11 +90,14 @@ class MotionMonitor {
   double peak_N_ = 0.0;
   double slow_force_N_ = 0.0;  ///< for the frozen encoder
   double slower_force_N_ = 0.0;
-  double settling_N_ = 0.0;              ///< largest recent change of it, fading
-  double least_N_ = 0.0, most_N_ = 0.0;  ///< of it, since the reading last changed
-  std::uint32_t same_ = 0;               ///< periods since then
-  double same_reference_m_ = 0.0;        ///< the reference when that began
-  bool near_ = false;                    ///< the reading has been near the one below
+  double rest_reference_m_ = 0.0;
+  std::uint32_t rest_periods_ = 0;                 ///< since the reference moved
+  double rest_least_N_ = 0.0, rest_most_N_ = 0.0;  ///< of the force, at rest, since the reading last changed
+  double settling_N_ = 0.0;                        ///< largest recent change of it, fading
+  double least_N_ = 0.0, most_N_ = 0.0;            ///< of it, since the reading last changed
+  std::uint32_t same_ = 0;                         ///< periods since then
+  double same_reference_m_ = 0.0;                  ///< the reference when that began
+  bool near_ = false;                              ///< the reading has been near the one below
   double near_position_m_ = 0.0;
   double near_reference_m_ = 0.0;  ///< the reference when that began
   std::uint32_t near_periods_ = 0;

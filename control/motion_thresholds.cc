@@ -24,6 +24,10 @@ constexpr double kSettling = 0.005;
 // A disturbance shows in the torque faster than this, and integral action has settled it after that.
 constexpr double kSettlingBegin_s = 0.05;
 constexpr double kSettlingEnd_s = 0.2;
+// Share of the report's error that is noise.
+constexpr double kReportNoise = 0.2;
+// After this long nothing of a motion is left in the feed-forward.
+constexpr double kRest_s = 0.5;
 // Time constants of the loop until it has answered.
 constexpr double kAnswer = 2.0;
 // Noise of the filtered force by the encoder's steps, as a share of the outside force.
@@ -68,6 +72,8 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   const double loop_rad_s = 2.0 * std::numbers::pi * a.loop_Hz;
   t.loop_N_m = (a.in_cascade ? t.light_kg : t.mass_kg) * loop_rad_s * loop_rad_s;
   t.loop_periods = static_cast<std::uint32_t>(std::max(3.0, std::ceil(kAnswer / (loop_rad_s * period_s))));
+  t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
+  t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));
   t.settling_filter = 1.0 - std::exp(-period_s / kSettlingBegin_s);
   t.settling_decay = std::exp(-period_s / kSettlingEnd_s);
   t.frozen_filter = 1.0 - std::exp(-1.0 / kChatter_periods);

@@ -542,8 +542,13 @@ FaultSeen Cycle::Guard(const Orders& orders) noexcept {
     axes_[i].wanted_torque_Nm = controller_Nm + control_in_.reference[i][1].extra_torque_Nm;
     guarded_[i] = guard_.Limit(i, axes_[i].wanted_torque_Nm, master_.feedback()[i], AtSample(i).position_m,
                                orders.torque_allowed);
-    if (guarded_[i].fault != Reason::kNone && fault.reason == Reason::kNone)
+    if (guarded_[i].fault != Reason::kNone && fault.reason == Reason::kNone) {
       fault = {guarded_[i].fault, static_cast<std::uint8_t>(i)};
+      // An axis that runs away against its torque must not be braked by the encoder that says so.
+      const bool ran_away = fault.reason == Reason::kFollowingError || fault.reason == Reason::kVelocityLimit;
+      if (const Reason doubt = axes_[i].monitor.Doubt(); ran_away && doubt != Reason::kNone)
+        fault.reason = doubt;
+    }
   }
   return fault;
 }

@@ -139,6 +139,10 @@ std::string Departures(const MachineConfig& c) {
             Fixed(CoastTravel_mm(axis), 1, "mm") +
             " by friction alone, less where the drive closes a brake\n";
   }
+  for (const auto& [name, axis] : c.axes)
+    if (const double feed = PromisedFeed_mm_s(c, axis); feed > kSlowestFeed_mm_s)
+      text += "  " + name + ": safe_travel_mm is kept from " + Number(feed, "mm/s") +
+              " on; slower, an encoder of this resolution takes longer to show that it is frozen\n";
   text +=
       "  A lying encoder gets \"disable voltage\", no ramp that goes by it. At rest a frozen encoder shows "
       "with the "

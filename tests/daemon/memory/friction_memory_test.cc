@@ -29,7 +29,8 @@ class FrictionMemoryTest : public testing::Test {
       set.push_back("emulator.axes." + axis + ".friction.position_amplitude_rel=0");
       set.push_back("emulator.axes." + axis +
                     ".effects.position_friction={amplitude_rel: 0.25, periods_per_stroke: 4}");
-      if (absolute) set.push_back("axes." + axis + ".drive.absolute_encoder=true");
+      set.push_back("axes." + axis + ".drive.absolute_encoder=" + (absolute ? "true" : "false"));
+      if (!absolute) set.push_back("axes." + axis + ".limits.unreferenced_travel_mm=1000");
     }
     return set;
   }
