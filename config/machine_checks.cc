@@ -353,7 +353,6 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     CheckLimits(key, axis, problems);
     CheckReserve(key, axis, problems);
     CheckStopping(c, key, axis, problems);
-    if (problems.empty()) CheckDepartures(c, key, axis, problems);
     Append(ImplausibleLimits(c, name), problems);
     Append(Check(axis.model, key + ".model"), problems);
   }
@@ -365,6 +364,9 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
       problems.Add("io.modbus.inputs.screw_temperature.degC_per_count",
                    "found 0, expected what a count is worth: the temperature would never change");
   }
+  // What else is wrong with a file makes these bounds meaningless.
+  if (!problems.empty()) return problems.Take();
+  for (const auto& [name, axis] : c.axes) CheckDepartures(c, "axes." + name, axis, problems);
   return problems.Take();
 }
 

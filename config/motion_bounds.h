@@ -41,7 +41,7 @@ std::vector<double> BoundFeeds_mm_s(const AxisConfig& axis);
 
 /// From this feed on the file promises its safe travel: as stated, or where a frozen encoder shows within
 /// kShows_s; never below kSlowestFeed_mm_s.
-inline constexpr double kShows_s = 0.05;
+inline constexpr double kShows_s = 0.03;
 double PromisedFeed_mm_s(const MachineConfig& config, const AxisConfig& axis);
 
 /// The worst of all faults at rest and at feeds from PromisedFeed_mm_s on, and where; without kFlickers,

@@ -40,7 +40,7 @@ struct AxisLimits {
                "largest force on the table besides friction (cutting, weight); 0: a quarter of rated force");
     v.Optional("slowest_feed_mm_s", slowest_feed_mm_s, kNotNegative,
                "from this speed of the axis on safe_travel_mm must be kept with a frozen encoder; 0: from "
-               "where one shows within 50 ms");
+               "where one shows within 30 ms");
     v.Optional(
         "unreferenced_travel_mm", unreferenced_travel_mm, kNotNegative,
         "of an axis without drive.absolute_encoder that was not told yet where it is: programs may take "

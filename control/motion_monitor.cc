@@ -139,8 +139,8 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     least_N_ = std::min(least_N_, slow_force_N_);
     most_N_ = std::max(most_N_, slow_force_N_);
   }
-  // At rest nothing but readings changes the torque of a loop, so a torque that goes on changing under one
-  // and the same reading is a loop that pushes against it.
+  // A drive's own loop at rest: nothing but readings changes its torque, so one that goes on changing under
+  // one and the same reading pushes against it.
   if (s.reference_m != rest_reference_m_) {
     rest_reference_m_ = s.reference_m;
     rest_periods_ = 0;
@@ -150,7 +150,8 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   if (same_ == 0 || rest_periods_ < t_.rest_periods) rest_least_N_ = rest_most_N_ = slow_force_N_;
   rest_least_N_ = std::min(rest_least_N_, slow_force_N_);
   rest_most_N_ = std::max(rest_most_N_, slow_force_N_);
-  const bool at_rest = s.spring_N_m == 0.0 && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
+  const bool at_rest =
+      axis_.in_cascade && same_ >= t_.rest_periods && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
   // A reading that only flickers, along a path that goes on.
   if (!near_ || std::abs(s.position_m - near_position_m_) > t_.flicker_m) {
     near_ = true;

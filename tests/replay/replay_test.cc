@@ -289,10 +289,11 @@ TEST_F(ReplayTest, GainsThatTheControllerCannotTakeAreRefused) {
 class FlightRecordTest : public ReplayTest {
  protected:
   /// A long run through a flight recorder of 1.5 s; the files it left.
-  std::vector<fs::path> Fly(EventfulRun& run, const std::function<void(EventfulRun&)>& script) {
+  std::vector<fs::path> Fly(EventfulRun& run, const std::function<void(EventfulRun&)>& script,
+                            std::uint64_t window_cycles = 1500) {
     FlightRecorder::Config config;
     config.directory = directory_ / "flight";
-    config.window_cycles = 1500;
+    config.window_cycles = window_cycles;
     FlightRecorder recorder(config, Header());
     TelemetryEncoder encoder({}, 1000, Header().axis_names);
     TelemetrySink* sinks[] = {&recorder};
@@ -361,11 +362,14 @@ TEST_F(FlightRecordTest, TheLastSecondsBeforeAFaultAreKeptAndComeOutBitForBit) {
 
 TEST_F(FlightRecordTest, AFaultSoonAfterTheStartIsRecordedFromTheStart) {
   EventfulRun run(Machine(), ControllerName::kFull);
-  const std::vector<fs::path> files = Fly(run, [](EventfulRun& r) {
-    r.BringUp();
-    r.Enable();
-    r.EmergencyStop();
-  });
+  const std::vector<fs::path> files = Fly(
+      run,
+      [](EventfulRun& r) {
+        r.BringUp();
+        r.Enable();
+        r.EmergencyStop();
+      },
+      3000);  // longer than the start, which listens first
   ASSERT_EQ(files.size(), 1u);
   LogReader log(files[0]);
   const ReplayReport report = Replay(log);
