@@ -63,6 +63,12 @@ double Off_s(const Axis& a) {
 }
 
 // What the torque limit can do while a force that is on its way has not been judged yet.
+// The path ends where the fault is seen; an axis in motion goes on until the torque is off, and one behind a
+// drive's interpolation is a period behind before.
+double GoesOn_m(const Axis& a, double feed_m_s) {
+  return feed_m_s * (Off_s(a) + (a.monitored.in_cascade ? a.period_s : 0.0));
+}
+
 double Slam_m(const Axis& a, double speed_m_s) {
   const double open_s = a.period_s + Off_s(a);
   return speed_m_s * open_s + 0.5 * a.limits.force_N / a.t.light_kg * open_s * open_s;
@@ -73,7 +79,8 @@ double JumpSeen_m(const Axis& a, double feed_m_s) {
   return a.t.Jump_m(feed_m_s, a.limits.force_N, a.period_s, 1.0, 1.0);
 }
 
-FaultBound Frozen(const Axis& a, const Standing& standing, double feed_m_s) {
+// `begins`: how often the reading that stands may be taken for a new one.
+FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double feed_m_s) {
   if (feed_m_s <= 0.0) {
     // At rest nothing asks for another force; what the force may change by moves presliding at its softest.
     const double soft_N_m = a.monitored.sigma0_N_m / kSofter;
@@ -84,8 +91,8 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double feed_m_s) {
   // Seen by the reading's step to rest at once, or by the path going on for as long as the loop takes to
   // answer.
   const bool at_once = feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s);
-  const double path_m = standing.Path_m(a.t.loop_N_m);
-  const double answer_s = (a.t.loop_periods + 1.0) * a.period_s;
+  const double path_m = begins * standing.Path_m(a.t.loop_N_m);
+  const double answer_s = begins * (a.t.loop_periods + 1.0) * a.period_s;
   const double seen_s =
       at_once ? a.period_s
               : std::max(path_m / feed_m_s / (1.0 - kSettlingShare * kLoopOvershoot) + a.period_s, answer_s);
@@ -96,14 +103,15 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double feed_m_s) {
   const double excess_N = a.friction_drop_N + built_N;
   const double acceleration = excess_N / a.t.light_kg;
   const double away_m = 0.5 * acceleration * seen_s * seen_s;
-  return {1e3 * (away_m + Slam_m(a, acceleration * seen_s)), seen_s + a.period_s + Off_s(a)};
+  return {1e3 * (away_m + Slam_m(a, acceleration * seen_s) + GoesOn_m(a, feed_m_s)),
+          seen_s + a.period_s + Off_s(a)};
 }
 
 // Feedback that tells the truth, or its mirror image: the following error ends it.
 FaultBound ByFollowingError(const Axis& a, double feed_m_s, bool runs_away) {
   // A sign that changes in motion shows in the reading that changes: by twice the way of a period.
   if (runs_away && 2.0 * feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s))
-    return {1e3 * Slam_m(a, 0.0), a.period_s + Off_s(a)};
+    return {1e3 * (Slam_m(a, 0.0) + GoesOn_m(a, feed_m_s)), a.period_s + Off_s(a)};
   const double fe_m = a.limits.following_error_m;
   const double gain_m_s = runs_away ? std::sqrt(2.0 * a.limits.force_N / a.t.light_kg * fe_m) : 0.0;
   const double open_m = runs_away ? Slam_m(a, gain_m_s + 2.0 * feed_m_s) : feed_m_s * (a.period_s + Off_s(a));
@@ -145,12 +153,12 @@ FaultBound BoundOf(const MachineConfig& config, const AxisConfig& axis, MotionFa
   const double feed_m_s = 1e-3 * feed_mm_s;
   switch (fault) {
     case MotionFault::kFrozen:
-      return Frozen(a, a.t.frozen, feed_m_s);
+      return Frozen(a, a.t.frozen, 1.0, feed_m_s);
     case MotionFault::kFlickers:
-      return Frozen(a, a.t.flickering, feed_m_s);
+      return Frozen(a, a.t.flickering, 2.0, feed_m_s);
     case MotionFault::kJump:
       // Seen in the reading that jumps, before anything answers it.
-      return {1e3 * Slam_m(a, 0.0), a.period_s + Off_s(a)};
+      return {1e3 * (Slam_m(a, 0.0) + GoesOn_m(a, feed_m_s)), a.period_s + Off_s(a)};
     case MotionFault::kSmallJump:
       return {1e3 * JumpSeen_m(a, feed_m_s), 0.0};
     case MotionFault::kReversed:
@@ -159,7 +167,7 @@ FaultBound BoundOf(const MachineConfig& config, const AxisConfig& axis, MotionFa
       return ByFollowingError(a, feed_m_s, false);
     case MotionFault::kNotFollowing:
       // Some statuswords without the bit, then the drive's own ramp.
-      return {1e3 * (a.limits.following_error_m + Slam_m(a, 0.0)),
+      return {1e3 * (a.limits.following_error_m + Slam_m(a, 0.0) + GoesOn_m(a, feed_m_s)),
               QuickStop(ToStoppingAxis(config, axis), feed_m_s,
                         (kTellingWords + a.monitored.delay_cycles) * a.period_s + Off_s(a))
                   .time_s};

@@ -8,6 +8,8 @@ namespace {
 
 // A reading that stays the same for less is the encoder's step.
 constexpr std::uint32_t kSameAtLeast_periods = 3;
+// The same under our own loops, for a small change of force.
+constexpr std::uint32_t kSameForForce_periods = 20;
 // Held forces that are remembered, at most.
 constexpr std::uint32_t kMostHeld = 8;
 // Readings in a row that momentum must be missing in.
@@ -147,11 +149,19 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   } else {
     rest_periods_ = std::min(rest_periods_ + waited_periods_, t_.rest_periods);
   }
-  if (same_ == 0 || rest_periods_ < t_.rest_periods) rest_least_N_ = rest_most_N_ = slow_force_N_;
+  if (same_ == 0 || (axis_.in_cascade && rest_periods_ < t_.rest_periods))
+    rest_least_N_ = rest_most_N_ = slow_force_N_;
+  if (!axis_.in_cascade) {
+    // Our own loops answer more than readings, and outside forces that grow slowly: only what goes fast
+    // counts.
+    rest_least_N_ += t_.rest_fade * (slow_force_N_ - rest_least_N_);
+    rest_most_N_ += t_.rest_fade * (slow_force_N_ - rest_most_N_);
+  }
   rest_least_N_ = std::min(rest_least_N_, slow_force_N_);
   rest_most_N_ = std::max(rest_most_N_, slow_force_N_);
+  const std::uint32_t rest_periods = axis_.in_cascade ? t_.rest_periods : kSameForForce_periods;
   const bool at_rest =
-      axis_.in_cascade && same_ >= t_.rest_periods && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
+      s.spring_N_m == 0.0 && same_ >= rest_periods && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
   // A reading that only flickers, along a path that goes on.
   if (!near_ || std::abs(s.position_m - near_position_m_) > t_.flicker_m) {
     near_ = true;

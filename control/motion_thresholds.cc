@@ -74,6 +74,7 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.loop_periods = static_cast<std::uint32_t>(std::max(3.0, std::ceil(kAnswer / (loop_rad_s * period_s))));
   t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
   t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));
+  t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);
   t.settling_filter = 1.0 - std::exp(-period_s / kSettlingBegin_s);
   t.settling_decay = std::exp(-period_s / kSettlingEnd_s);
   t.frozen_filter = 1.0 - std::exp(-1.0 / kChatter_periods);

@@ -61,7 +61,8 @@ struct MotionThresholds {
   double loop_N_m = 0.0;           ///< stiffness of the position loop, at least
   double rest_force_N = 0.0;       ///< the same for an axis at rest
   std::uint32_t rest_periods = 0;  ///< from the end of a motion until that is so
-  double settling_filter = 0.0;    ///< of the torque that a disturbance of before has changed
+  double rest_fade = 0.0;
+  double settling_filter = 0.0;  ///< of the torque that a disturbance of before has changed
   double settling_decay = 0.0;
   double frozen_filter = 0.0;
   double unexplained_rel = 0.0;  ///< share of the torque that may go unexplained

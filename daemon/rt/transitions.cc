@@ -22,6 +22,12 @@ bool AllEnabled(const Situation& now) noexcept {
   return true;
 }
 
+bool AnyUnknown(const Situation& now) noexcept {
+  for (const DriveState s : now.drives)
+    if (s == DriveState::kUnknown) return true;
+  return false;
+}
+
 constexpr std::uint8_t kNone = 0xFF;
 /// Drives that gave no torque when the other master was seen are told "disable voltage" so often.
 constexpr std::uint32_t kCyclesToSilence = 10;
@@ -162,12 +168,12 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
       if (state_ == MachineState::kFaulted) {
         reset_pending_ = true;
         reset_ = request;
-      } else if (state_ == MachineState::kIdle && FaultedDrive(now) != kNone) {
-        // A drive may have fallen into Fault by itself while nothing was asked of it.
+      } else if (state_ == MachineState::kIdle) {
+        // A drive may have fallen into Fault, or told of an error, while nothing was asked of it.
         reset_ = request;
         BeginReset(orders);
       } else {
-        Acknowledge(request, state_ == MachineState::kIdle);
+        Acknowledge(request, false);
       }
       return;
     case RequestKind::kReference:
@@ -266,6 +272,9 @@ void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
       if (now.bring_up_failed) {
         Fault(now.second_master.reason != Reason::kNone ? now.second_master
                                                         : FaultSeen{Reason::kBringUpFailed, kNone});
+      } else if (now.operational && !now.bring_up_active && AnyUnknown(now) &&
+                 since_ <= config_.stop_timeout_cycles) {
+        break;  // what state a drive is in is not known before its first statusword
       } else if (now.operational && !now.bring_up_active && FaultedDrive(now) != kNone) {
         // A reset clears the drives' faults too; at the first start that is left to the operator.
         if (!resetting_ || since_ > config_.stop_timeout_cycles)

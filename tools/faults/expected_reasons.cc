@@ -73,6 +73,9 @@ ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept {
   // A stop on the path may be over before its motion shows what shows at rest only by chance.
   if (phase == Phase::kStopping) return {row.at_rest == kMayStop ? kMayStop : row.moving, row.reasons};
   if (Holds(phase)) return {Moves(phase) ? row.moving : row.at_rest, row.reasons};
+  // A tool that speaks to a drive before we do may be another master: the start is refused.
+  if (fault == F::kForeignSdo && phase == Phase::kBringUp)
+    return {kMayStop, {R::kSecondMaster}, R::kBringUpFailed};
   // What nothing may stop for in motion stops nothing here either.
   if (row.moving == kGoesOn) return {kGoesOn, {}};
   switch (phase) {
