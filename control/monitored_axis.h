@@ -31,6 +31,9 @@ struct MonitoredDrive {
 // leaves it the highest priority but for NMT).
 inline constexpr double kLongestFrame_bits = 135.0;
 
+// A controller without integral action or observer leaves friction to its stiffness alone.
+inline constexpr double kUncompensated = 0.5;
+
 /// Bandwidth of a controller's position loop, Hz: of the slower direction, since at low speed a path has
 /// none. What an observer finds is answered at once, so there the stiffer one counts.
 constexpr double LoopBandwidth_Hz(const ControllerConfig& c, ControllerName controller,
@@ -41,7 +44,7 @@ constexpr double LoopBandwidth_Hz(const ControllerConfig& c, ControllerName cont
     case ControllerName::kPid:
       return c.pid.bandwidth_Hz;
     case ControllerName::kMpc:
-      return slower(c.mpc);
+      return kUncompensated * slower(c.mpc);
     case ControllerName::kMpcObserver:
       return std::max(c.mpc_observer.contour_bandwidth_Hz, c.mpc_observer.lag_bandwidth_Hz);
     case ControllerName::kMpcSrukf4:

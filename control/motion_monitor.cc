@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace contour {
 namespace {
@@ -10,6 +11,7 @@ namespace {
 constexpr std::uint32_t kSameAtLeast_periods = 3;
 // The same under our own loops, for a small change of force.
 constexpr std::uint32_t kSameForForce_periods = 20;
+constexpr double kLongest_periods = 1e6;
 // Held forces that are remembered, at most.
 constexpr std::uint32_t kMostHeld = 8;
 // Readings in a row that momentum must be missing in.
@@ -25,6 +27,9 @@ constexpr double kNoTorque = 0.1;
 constexpr std::uint32_t kIdle_periods = 5;
 // Where a limit is exceeded anyway, so much of what may go unexplained is enough to doubt the encoder.
 constexpr double kInDoubt = 0.5;
+constexpr std::uint32_t kScaleApart = 3;
+// Readings whose second differences a SYNC is part of.
+constexpr std::uint32_t kReadingsOfASync = 3;
 // Lead errors of screws that are sold are well below half a millimetre per metre.
 constexpr double kLeadError_rel = 5e-4;
 
@@ -42,6 +47,7 @@ MotionMonitor::MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& con
 Reason MotionMonitor::Step(const MotionSample& s) noexcept {
   waited_periods_ += s.periods;
   believed_ = true;
+  if (s.late) late_readings_ = kReadingsOfASync;
   if (!s.enabled) held_ = false;
   Reason found = Reason::kNone;
   if (s.enabled) {
@@ -74,6 +80,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   near_ = false;
   same_ = near_periods_ = beyond_ = undelivered_ = 0;
   report_seen_ = scale_seen_ = false;
+  scale_apart_ = 0;
 }
 
 // At skipped grid points the drives hold the last torque.
@@ -120,7 +127,13 @@ Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
                              0.5 * acceleration_m_s2 * period_s_ * period_s_ * n * (n + before);
   const double off_m = std::abs(s.position_m - predicted_m);
   believed_ = off_m <= t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
-  if (off_m <= t_.Jump_m(velocity_m_s_, peak_N_, period_s_, n, before)) return Reason::kNone;
+  double allowed_m = t_.Jump_m(velocity_m_s_, peak_N_, period_s_, n, before);
+  // A cycle that was late sent its SYNC late, by less than a period.
+  if (late_readings_ > 0) {
+    --late_readings_;
+    allowed_m += 2.0 * period_s_ * std::abs(velocity_m_s_);
+  }
+  if (off_m <= allowed_m) return Reason::kNone;
   return std::abs(s.position_m - position_m_) <= t_.flicker_m ? Reason::kFeedbackFrozen
                                                               : Reason::kFeedbackJump;
 }
@@ -176,7 +189,9 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   std::uint32_t answer_periods = t_.loop_periods;
   if (s.spring_N_m > 0.0) {
     loop_N_m = s.spring_N_m;
-    answer_periods = static_cast<std::uint32_t>(std::sqrt(t_.mass_kg / s.spring_N_m) / period_s_) + 1;
+    answer_periods = static_cast<std::uint32_t>(
+                         std::min(std::sqrt(t_.mass_kg / s.spring_N_m) / period_s_, kLongest_periods)) +
+                     1;
   }
   const bool by_force = same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N;
   const bool by_path = same_ >= answer_periods &&
@@ -238,8 +253,10 @@ Reason MotionMonitor::DeliveryInCascade(const MotionSample& s) noexcept {
   const double force_N = std::abs(s.reported_force_N);
   const double none_N = kNoTorque * axis_.Fc_N;
   if (force_N > none_N) report_seen_ = true;
-  // Drives interpolate their targets, and so are up to a period behind.
-  const double behind_m = std::abs(s.reference_m - s.position_m) - std::abs(velocity_m_s_) * period_s_;
+  // Drives interpolate their targets, and their loops follow behind.
+  const double behind_m =
+      std::abs(s.reference_m - s.position_m) -
+      std::abs(velocity_m_s_) * (period_s_ + 1.0 / (2.0 * std::numbers::pi * axis_.loop_Hz));
   const bool idle = force_N <= none_N && t_.loop_N_m * behind_m > t_.friction_N + t_.external_N;
   undelivered_ = idle ? undelivered_ + waited_periods_ : 0;
   return report_seen_ && undelivered_ >= kIdle_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
@@ -255,7 +272,9 @@ Reason MotionMonitor::Scale(const MotionSample& s) noexcept {
   }
   const double travel_m = std::abs(s.position_m - scale_begin_m_);
   const double allowed_m = t_.windup_m + t_.reading_m + kLeadError_rel * travel_m;
-  return std::abs(apart_m - scale_offset_m_) > allowed_m ? Reason::kScaleDisagrees : Reason::kNone;
+  // The scale comes in a message of its own, which may be lost or late.
+  scale_apart_ = std::abs(apart_m - scale_offset_m_) > allowed_m ? scale_apart_ + 1 : 0;
+  return scale_apart_ >= kScaleApart ? Reason::kScaleDisagrees : Reason::kNone;
 }
 
 }  // namespace contour

@@ -13,6 +13,7 @@ namespace contour {
 struct MotionSample {
   bool enabled = false;  ///< the axis is held: torque acts
   bool fresh = false;
+  bool late = false;          ///< the SYNC of this sample was sent late
   std::uint32_t periods = 1;  ///< since the sample before; more than 1 when SYNCs were left out between them
   double position_m = 0.0;    ///< R theta
   double sent_force_N = 0.0;  ///< of the cycle before: it begins to act at this sample
@@ -84,6 +85,7 @@ class MotionMonitor {
   std::uint32_t last_gap_periods_ = 1;
   // The rest begins anew whenever the axis is enabled.
   bool believed_ = true;
+  std::uint32_t late_readings_ = 0;  ///< that a late SYNC is still part of
   bool held_ = false;
   std::array<double, 8> forces_N_{};  ///< sent, newest first
   double report_before_N_ = 0.0;
@@ -108,6 +110,7 @@ class MotionMonitor {
   bool report_seen_ = false;                ///< the report has been seen to be one, in this enabling
   std::uint32_t undelivered_ = 0;           ///< periods in a row
   bool scale_seen_ = false;
+  std::uint32_t scale_apart_ = 0;  ///< samples in a row
   double scale_offset_m_ = 0.0, scale_begin_m_ = 0.0;
 };
 

@@ -76,13 +76,18 @@ struct MotionThresholds {
     const double speed_m_s = velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s;
     const double acceleration_m_s2 =
         (friction_N + viscous_Ns_m * speed_m_s + external_N) / motor_kg + peak_force_N * screw_share_1_kg;
-    return acceleration_m_s2 * period_s * period_s * 0.5 * n * (n + before) + reading_m;
+    return acceleration_m_s2 * period_s * period_s * 0.5 * n * (n + before) + reading_m * Weight(n, before);
   }
   /// The same where the SYNCs came as late and early as they may: beyond this the reading is wrong.
   [[nodiscard]] double Jump_m(double velocity_m_s, double peak_force_N, double period_s, double n,
                               double before) const noexcept {
     const double speed_m_s = velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s;
-    return Forced_m(velocity_m_s, peak_force_N, period_s, n, before) + jitter_s * speed_m_s;
+    return Forced_m(velocity_m_s, peak_force_N, period_s, n, before) +
+           jitter_s * Weight(n, before) * speed_m_s;
+  }
+  /// How much the middle one of three readings counts, over how much it does when they are evenly apart.
+  [[nodiscard]] static double Weight(double n, double before) noexcept {
+    return n > before ? 0.5 * (1.0 + n / before) : 1.0;
   }
   /// Force that motion may lack or have beyond the torque, slowly.
   [[nodiscard]] double Unexplained_N(double velocity_m_s, double force_N) const noexcept {

@@ -48,7 +48,7 @@ inline constexpr std::int32_t kMost = (1 << (kPositionBits - 1)) - 1;  ///< step
 
 /// Nothing when the position is no number or too far away, or there can be no such axis.
 constexpr std::optional<std::uint32_t> Encode(const ReferenceRequest& r) noexcept {
-  using namespace reference_request;
+  using reference_request::kMost, reference_request::kPositionBits, reference_request::kStep_m;
   const double steps = r.position_m / kStep_m;
   if (r.axis > 7 || !(steps >= -kMost && steps <= kMost)) return std::nullopt;
   const auto whole = static_cast<std::int32_t>(steps < 0.0 ? steps - 0.5 : steps + 0.5);
@@ -57,7 +57,7 @@ constexpr std::optional<std::uint32_t> Encode(const ReferenceRequest& r) noexcep
 }
 
 constexpr ReferenceRequest DecodeReference(std::uint32_t code) noexcept {
-  using namespace reference_request;
+  using reference_request::kPositionBits, reference_request::kStep_m;
   // The sign is that of the position's highest bit.
   const auto whole = static_cast<std::int32_t>(code << (32 - kPositionBits)) >> (32 - kPositionBits);
   return {static_cast<std::uint8_t>(code >> kPositionBits), whole * kStep_m};

@@ -135,6 +135,9 @@ void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexc
     CarryOut(orders, in.request);
     Guard(orders);
   }
+  // Seen together with another fault: that axis must not be braked by its encoder either.
+  if (transitions_.state() == MachineState::kFaulted && RampInDoubt(contradiction_.reason))
+    orders.voltage_off = contradiction_.where;
   reasons_.Update(transitions_, master_);
   guard_.Skip(skipped_);
   Command(orders, out);
@@ -207,6 +210,7 @@ void Cycle::Monitor() noexcept {
     MotionSample s;
     s.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
     s.fresh = f.fresh;
+    s.late = late_;
     s.periods = skipped_before_ + 1;
     s.position_m = axis.position_m;
     s.sent_force_N = axis.sent_force_N[0];

@@ -66,7 +66,8 @@ void Transitions::Enter(MachineState next) noexcept {
 void Transitions::Fault(FaultSeen fault) noexcept {
   reason_ = fault.reason;
   where_ = fault.where;
-  voltage_off_ = fault.voltage_off;
+  // Where no ramp of that axis will do; the others have theirs.
+  voltage_off_ = fault.voltage_off || RampInDoubt(fault.reason);
   Enter(MachineState::kFaulted);
 }
 
@@ -118,6 +119,7 @@ Orders Transitions::RaiseLate(FaultSeen fault) noexcept {
   Orders orders;
   orders.forget_path = true;
   SetGoals(orders);
+  if (voltage_off_) orders.voltage_off = where_;
   return orders;
 }
 
@@ -363,9 +365,8 @@ DriveGoal Transitions::Goal() const noexcept {
     case MachineState::kStopping:
       return DriveGoal::kEnabled;
     case MachineState::kFaulted:
-      // The drive's own ramp first; once it has let go, keep it without voltage. Where
-      // no ramp will do, the voltage goes off at once, and the drive closes its brake.
-      return drives_off_ || RampInDoubt(reason_) ? DriveGoal::kDisabled : DriveGoal::kQuickStop;
+      // The drive's own ramp first; once it has let go, keep it without voltage.
+      return drives_off_ ? DriveGoal::kDisabled : DriveGoal::kQuickStop;
     case MachineState::kIdle:
       return DriveGoal::kSwitchedOn;
     case MachineState::kStarting:

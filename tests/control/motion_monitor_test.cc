@@ -259,6 +259,8 @@ TEST(MotionMonitor, ScaleAndMotorApartByMoreThanWindUp) {
   s.table_position_m += 0.9 * monitor.thresholds().windup_m;
   EXPECT_EQ(monitor.Step(s), Reason::kNone);
   s.table_position_m += 0.2 * monitor.thresholds().windup_m;
+  EXPECT_EQ(monitor.Step(s), Reason::kNone) << "a single message may be lost";
+  EXPECT_EQ(monitor.Step(s), Reason::kNone);
   EXPECT_EQ(monitor.Step(s), Reason::kScaleDisagrees);
 }
 

@@ -34,7 +34,7 @@ def computed(contour, controller, directory):
     # Another controller than the one that ran asks for another torque than the one that moved the axes: nothing is to be made of that.
     loose = ["--set", "control.monitor.reported_torque_error_rel=1"]
     for axis in ("x", "y"):
-        loose += ["--set", f"axes.{axis}.limits.external_force_N=1e5", "--set", f"axes.{axis}.limits.safe_travel_mm=100"]
+        loose += ["--set", f"axes.{axis}.limits.external_force_N=5e3", "--set", f"axes.{axis}.limits.safe_travel_mm=100"]
     run = subprocess.run([contour, "replay", str(log), "--set", f"machine.controller={controller}", *loose, "--table", str(table)],
                          capture_output=True, text=True, check=False)
     if run.returncode != 0:

@@ -46,7 +46,7 @@ const std::vector<Supervisor>& Supervisors() {
        Unsupervised<R::kDriveNotFollowing, R::kModeChanged>, Fault::kDriveWrongMode},
       {"lost_drives", "boot-up, NMT state, heartbeat, and drives that lost their master",
        Unsupervised<R::kDriveRestarted, R::kDriveLeftOperational, R::kHeartbeatLost, R::kDriveLostMaster>,
-       Fault::kDriveRestarts, Phase::kIdle},
+       Fault::kDriveRestarts, Phase::kIdle, 50.0, false},
       {"bus", "interfaces that are down or take no frames", Unsupervised<R::kBusDown, R::kSendFailed>,
        Fault::kBusDown},
   };

@@ -24,7 +24,7 @@ class FrictionMemoryTest : public testing::Test {
   ~FrictionMemoryTest() override { fs::remove_all(directory_); }
 
   static std::vector<std::string> Set(bool absolute = true) {
-    std::vector<std::string> set;
+    std::vector<std::string> set{"memory.friction_map=true"};
     for (const std::string axis : {"x", "y"}) {
       set.push_back("emulator.axes." + axis + ".friction.position_amplitude_rel=0");
       set.push_back("emulator.axes." + axis +

@@ -85,7 +85,8 @@ def starts_first(bench, _program):
     expect("second_master" in text and "bus main" in text and "heartbeat" in text, f"it does not say why: {text}")
     time.sleep(0.2)
     ids = {line.split()[2].split("#")[0] for line in (bench.work / "candump.log").read_text().splitlines()}
-    expect(ids == {"77F"}, f"frames beside the other master's were on the bus: {ids}")
+    # The drives were there before, and beat; the heartbeat under the master's number is the other one's.
+    expect(ids <= {"77F", "701", "702"}, f"frames beside the other master's were on the bus: {ids}")
 
 
 def comes_later(bench, program):
