@@ -30,7 +30,7 @@ constexpr std::array kRows{
     Expectation{F::kForeignNmt,              kStops,   kStops,   {R::kSecondMaster}},
     Expectation{F::kForeignSetpoint,         kStops,   kStops,   {R::kSecondMaster}},
     Expectation{F::kForeignHeartbeat,        kStops,   kStops,   {R::kSecondMaster}},
-    Expectation{F::kForeignSdo,              kGoesOn,  kGoesOn,  {}, R::kForeignSdo},
+    Expectation{F::kForeignSdo,              kGoesOn,  kGoesOn,  {}},
     Expectation{F::kDriveRestarts,           kStops,   kStops,   {R::kDriveRestarted, R::kStaleFeedback}},
     Expectation{F::kDriveLeavesOperational,  kStops,   kStops,   {R::kDriveLeftOperational, R::kStaleFeedback}},
     Expectation{F::kDriveDropsOut,           kStops,   kStops,   {R::kDriveLeftEnabled, R::kDriveNotFollowing}},
@@ -52,7 +52,7 @@ constexpr std::array kRows{
     Expectation{F::kEncoderFlickers,         kMayStop, kStops,   {R::kFeedbackFrozen, R::kTorqueWithoutMotion}},
     Expectation{F::kTorqueLost,              kMayStop, kStops,   {R::kTorqueNotDelivered, R::kTorqueWithoutMotion}},
     Expectation{F::kTorqueLostSilently,      kMayStop, kStops,   {R::kTorqueWithoutMotion, R::kFollowingError}},
-    Expectation{F::kTorqueHalved,            kGoesOn,  kGoesOn,  {}, R::kTorqueConstantChanged},
+    Expectation{F::kTorqueHalved,            kGoesOn,  kGoesOn,  {}},
     Expectation{F::kLogBlocked,              kGoesOn,  kGoesOn,  {}},
 };
 // clang-format on
