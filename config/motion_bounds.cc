@@ -62,13 +62,13 @@ double Off_s(const Axis& a) {
   return (1.0 + a.monitored.delay_cycles) * a.period_s + kLagsToNothing * a.lag_s;
 }
 
-// What the torque limit can do while a force that is on its way has not been judged yet.
 // The path ends where the fault is seen; an axis in motion goes on until the torque is off, and one behind a
 // drive's interpolation is a period behind before.
 double GoesOn_m(const Axis& a, double feed_m_s) {
   return feed_m_s * (Off_s(a) + (a.monitored.in_cascade ? a.period_s : 0.0));
 }
 
+// What the torque limit can do while a force that is on its way has not been judged yet.
 double Slam_m(const Axis& a, double speed_m_s) {
   const double open_s = a.period_s + Off_s(a);
   return speed_m_s * open_s + 0.5 * a.limits.force_N / a.t.light_kg * open_s * open_s;

@@ -29,8 +29,9 @@ struct MotionSample {
 /// whether what the encoder says can be true under the torque that acted. It is no estimator: what it takes
 /// for granted does not learn, so nothing can teach it a fault.
 ///
-/// - frozen: the reading has not changed by a count although the force changed by more than presliding at its
-///   stiffest can hold, or it only flickers although the reference went further than the loop can bear;
+/// - frozen: the reading stands, or only flickers, although the reference went further than the loop can
+/// bear;
+///   or it stands under a torque that changed by more than friction and outside forces explain;
 /// - jump: the reading is further from its prediction than any force can take the motor;
 /// - momentum: u - m a, low-passed, is the force that neither torque nor motion explain (De Luca et al.,
 ///   collision detection by generalised momentum); beyond friction and outside forces it is torque without
@@ -83,9 +84,9 @@ class MotionMonitor {
   double velocity_m_s_ = 0.0;         ///< between it and the one before
   std::uint32_t waited_periods_ = 0;  ///< since the newest reading
   std::uint32_t last_gap_periods_ = 1;
-  // The rest begins anew whenever the axis is enabled.
   bool believed_ = true;
   std::uint32_t late_readings_ = 0;  ///< that a late SYNC is still part of
+  // The rest begins anew whenever the axis is enabled.
   bool held_ = false;
   std::array<double, 8> forces_N_{};  ///< sent, newest first
   double report_before_N_ = 0.0;
@@ -95,8 +96,8 @@ class MotionMonitor {
   double rest_reference_m_ = 0.0;
   std::uint32_t rest_periods_ = 0;                 ///< since the reference moved
   double rest_least_N_ = 0.0, rest_most_N_ = 0.0;  ///< of the force, at rest, since the reading last changed
-  double settling_N_ = 0.0;                        ///< largest recent change of it, fading
-  double least_N_ = 0.0, most_N_ = 0.0;            ///< of it, since the reading last changed
+  double settling_N_ = 0.0;                        ///< largest recent change of the force, fading
+  double least_N_ = 0.0, most_N_ = 0.0;            ///< of the force, since the reading last changed
   std::uint32_t same_ = 0;                         ///< periods since then
   double same_reference_m_ = 0.0;                  ///< the reference when that began
   bool near_ = false;                              ///< the reading has been near the one below

@@ -59,8 +59,8 @@ struct MotionThresholds {
   std::uint32_t loop_periods = 3;  ///< until the loop has answered a reference that begins to move
   double filter = 0.0;             ///< share of the new value in the filtered forces
   double loop_N_m = 0.0;           ///< stiffness of the position loop, at least
-  double rest_force_N = 0.0;       ///< the same for an axis at rest
-  std::uint32_t rest_periods = 0;  ///< from the end of a motion until that is so
+  double rest_force_N = 0.0;       ///< change of force that counts under a reading that stands
+  std::uint32_t rest_periods = 0;  ///< csp: from the end of a motion until it does
   double rest_fade = 0.0;
   double settling_filter = 0.0;  ///< of the torque that a disturbance of before has changed
   double settling_decay = 0.0;
