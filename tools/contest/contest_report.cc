@@ -146,7 +146,7 @@ std::string VerdictText(const Verdict& v) {
 void WriteContestMarkdown(std::ostream& out, const std::vector<Heat>& heats, const Verdict& verdict,
                           const std::string& command) {
   out << "# Contest\n\nMade by `" << command
-      << "`; do not edit. Programs and machines: [config/contest.yaml](../config/contest.yaml).\n\n"
+      << "`; do not edit. Programs and machines: [config/contest.yaml](../../config/contest.yaml).\n\n"
          "Every controller on every program and machine, through the daemon's own cycle in virtual time. All "
          "work "
          "with the same machine file,\nwhose model is wrong on purpose, each in the mode of the drives that "

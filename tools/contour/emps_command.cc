@@ -16,7 +16,7 @@ namespace {
 
 struct Options {
   std::string emps;
-  std::string out = "docs";
+  std::string out = "docs/laboratory";
 };
 
 int RunEmps(const Options& options) {
@@ -45,7 +45,7 @@ int RunEmps(const Options& options) {
 void AddEmpsCommand(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
   CLI::App* sub =
-      app.add_subcommand("emps", "Diagnosis of the EMPS recordings, a real axis, as docs/emps.md");
+      app.add_subcommand("emps", "Diagnosis of the EMPS recordings, a real axis, as docs/laboratory/emps.md");
   sub->add_option("--emps", options->emps, "Directory with emps_train.csv and emps_pulses.csv")->required();
   sub->add_option("--out", options->out, "Directory for emps.md and its pictures");
   sub->callback([options, &action] { action = [options] { return RunEmps(*options); }; });

@@ -247,7 +247,8 @@ void WriteEmpsReport(const ReportOptions& options) {
       diagnosis::Diagnose(LogOf(options.emps / "emps_pulses.csv", {100, 24700}), AuthorsAxis(), how);
   std::ostringstream md;
   md << "# EMPS: a real ball-screw axis\n\n"
-        "Made by `contour emps --emps DIR --out docs` from `emps_train.csv` and `emps_pulses.csv` of A. "
+        "Made by `contour emps --emps DIR --out docs/laboratory` from `emps_train.csv` and `emps_pulses.csv` "
+        "of A. "
         "Janot, M. Gautier, M. Brunot, "
         "\"Data Set and Reference Models of EMPS\", Workshop on Nonlinear System Identification Benchmarks, "
         "2019 "

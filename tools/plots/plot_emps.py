@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures of docs/emps.md from the data that `contour emps` wrote.
+"""Draws the pictures of docs/laboratory/emps.md from the data that `contour emps` wrote.
 
     plot_emps.py DATA.csv DIR
 """
