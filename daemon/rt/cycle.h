@@ -113,7 +113,12 @@ class Cycle {
   void TellWhere(const Request& request) noexcept;
   void DoubtPosition() noexcept;
   void CarryOut(const Orders& orders, const Request& request) noexcept;
-  [[nodiscard]] ReferencePoint AtSample(std::size_t axis) const noexcept;
+  /// Nothing was sent at the skipped grid points, so the newest feedback is that much older, and the last
+  /// torque has acted on since.
+  [[nodiscard]] ReferencePoint AtSample(std::size_t axis) const noexcept {
+    if (skipped_ == 0) return control_in_.reference[axis][0];
+    return follower_.Near(axis, -static_cast<int>(skipped_));
+  }
   void CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept;
   void HoldHere() noexcept;
   void FollowFeedback() noexcept;

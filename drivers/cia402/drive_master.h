@@ -146,6 +146,8 @@ class DriveMaster {
 
  private:
   static constexpr std::int64_t kNeverAnswered = INT64_MAX;
+  static constexpr std::uint8_t kNoAxis = 0xFF;
+  static constexpr std::size_t kNodes = 128;
   struct StrongerReaction {
     EmergencyClass codes;
     EmergencyReaction reaction;

@@ -1,0 +1,64 @@
+#include "daemon/rt/cycle.h"
+
+#include <cstddef>
+#include <cstdint>
+
+// What the axes do and what holds them back, as of the newest feedback.
+namespace contour {
+
+void Cycle::Estimate(const IoInput& io) noexcept {
+  const bool holds = transitions_.holds_torque();
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < axes_.size(); ++i) moving += AtSample(i).velocity_m_s != 0.0 ? 1u : 0u;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Axis& axis = axes_[i];
+    const AxisFeedback& f = master_.feedback()[i];
+    const ReferencePoint commanded = AtSample(i);
+    AxisEstimatorInput input;
+    input.position_m = axis.position_m;
+    input.fresh = f.fresh && axis.monitor.believed();
+    input.force_N = axis.sent_force_N;
+    if (by_reported_torque_) {
+      // What the drive's own loops made of it, at the ends of the period that has passed.
+      const double now_N = f.torque_Nm / axis.radius_m_rad;
+      input.force_N = {now_N, 0.5 * (now_N + axis.reported_N), axis.reported_N};
+      axis.reported_N = now_N;
+    }
+    input.commanded_velocity_m_s = commanded.velocity_m_s;
+    input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
+    if (io.configured && io.fresh) input.temperature_degC = io.screw_temperature_degC;
+    input.alone = moving == (commanded.velocity_m_s != 0.0 ? 1u : 0u);
+    // An experiment pushes the axis although nothing commands it to move.
+    input.at_rest = commanded.velocity_m_s == 0.0 && commanded.extra_torque_Nm == 0.0;
+    input.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
+    estimates_[i] = axis.estimator.Update(input);
+    if (fallback_ != nullptr && watch_.step() >= SupervisionStep::kSoftened) {
+      const AxisEstimate observed = axis.observer.Update(input);
+      if (fallen_back()) estimates_[i] = observed;
+    }
+    if (skipped_ != 0) CatchUp(axis, i, input);
+  }
+}
+
+// From the newest feedback to one period before the torque now being computed, under the torque that acted.
+void Cycle::CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept {
+  const AxisEstimate measured = estimates_[index];
+  AxisEstimator& estimator = fallen_back() ? axis.observer : axis.estimator;
+  const double held_N = input.force_N[0];
+  input.fresh = false;
+  input.force_N = {held_N, held_N, held_N};
+  for (std::uint32_t s = 1; s <= skipped_; ++s) {
+    const ReferencePoint commanded = follower_.Near(index, static_cast<int>(s) - static_cast<int>(skipped_));
+    input.commanded_velocity_m_s = commanded.velocity_m_s;
+    input.commanded_acceleration_m_s2 = commanded.acceleration_m_s2;
+    estimates_[index] = estimator.Update(input);
+    axis.sent_force_N = {held_N, axis.sent_force_N[0], axis.sent_force_N[1]};
+  }
+  AxisEstimate& now = estimates_[index];
+  now.innovation_m = measured.innovation_m;
+  now.innovation_std_m = measured.innovation_std_m;
+  if (now.limit == Reason::kNone) now.limit = measured.limit;
+  now.diverged = now.diverged || measured.diverged;
+}
+
+}  // namespace contour

@@ -1,0 +1,195 @@
+#include <algorithm>
+#include <cmath>
+
+#include "drivers/cia402/drive_master.h"
+#include "drivers/cia402/drive_state.h"
+#include "drivers/cia402/pdo_layout.h"
+
+// What the drives send, and what it says of them.
+namespace contour {
+namespace {
+
+constexpr std::int64_t kSameClock_periods = 1000;  // stamps further away from the grid are not of its clock
+
+}  // namespace
+
+void DriveMaster::Receive(const CycleInput& in) noexcept {
+  // The number of the grid point is the clock: a skipped point counts as time gone by.
+  elapsed_ = seen_cycle_ && in.cycle > cycle_ ? in.cycle - cycle_ : 1;
+  cycle_ = in.cycle;
+  grid_ns_ = in.grid_time_ns;
+  seen_cycle_ = true;
+
+  for (AxisFeedback& f : feedback_) f.fresh = false;
+  for (const StampedFrame& frame : in.frames) OnFrame(frame);
+  for (std::size_t b = 0; b < buses_.size() && b < in.buses.size(); ++b) {
+    if (in.buses[b].up && !in.buses[b].bus_off) continue;
+    buses_[b].bring_up.BusDown();
+    // Nobody would hear a boot-up message now.
+    for (std::size_t i = 0; i < axes_.size(); ++i)
+      if (axes_[i].bus == b) CountBeganAnew(i);
+  }
+  for (std::size_t i = 0; i < axes_.size(); ++i) Supervise(i);
+}
+
+void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
+  if (stamped.bus >= buses_.size()) return;
+  const CanFrame& frame = stamped.frame;
+  buses_[stamped.bus].bring_up.OnFrame(frame);
+  buses_[stamped.bus].patrol.OnFrame(frame);
+
+  const std::size_t axis = axis_of_node_[stamped.bus * kNodes + (frame.id & 0x7F)];
+  if (axis == kNoAxis) return;
+  switch (frame.id & 0x780) {
+    case cob::kEmergency:
+      if (frame.length >= 3) OnEmergency(axis, frame);
+      return;
+    case cob::kTpdo1:
+      if (frame.length >= kFeedbackLength) OnFeedback(axis, stamped);
+      return;
+    case cob::kTpdo1 + 0x100:
+      if (axes_[axis].has_scale && frame.length >= kScaleLength && status_[axis].configured) {
+        AxisFeedback& f = feedback_[axis];
+        f.table_position_m = static_cast<double>(axes_[axis].scale_unwrap.Update(DecodeScale(frame))) *
+                             axes_[axis].scale_m_per_count;
+        f.has_scale = true;
+      }
+      return;
+    case cob::kHeartbeat:
+      if (frame.length >= 1) OnHeartbeat(axis, frame);
+      return;
+    default:
+      return;
+  }
+}
+
+void DriveMaster::OnHeartbeat(std::size_t axis, const CanFrame& frame) noexcept {
+  AxisDriveStatus& s = status_[axis];
+  s.nmt = HeartbeatState(frame);
+  if (!Heard(axis) && !buses_[axes_[axis].bus].bring_up.running()) CountBeganAnew(axis);
+  axes_[axis].alive_cycle = cycle_;
+  if (s.nmt == NmtState::kBootUp) {
+    s.restarted = s.restarted || s.configured;
+    s.emergency_code = 0;
+    ForgetEmergency(axis);
+    if (!axes_[axis].boot_up_due) CountBeganAnew(axis);
+    axes_[axis].boot_up_due = false;
+  }
+}
+
+void DriveMaster::OnEmergency(std::size_t axis, const CanFrame& frame) noexcept {
+  AxisDriveStatus& s = status_[axis];
+  Axis& a = axes_[axis];
+  const Emergency e = DecodeEmergency(frame);
+  s.emergency_code = e.error_code;
+  if (e.error_code == 0) {
+    // With bits left in the register only one of several errors is gone.
+    if (e.error_register == 0) ForgetEmergency(axis);
+    return;
+  }
+  if (patrols_) buses_[a.bus].patrol.ReadErrors(a.patrolled);
+  EmergencyReaction reaction = ReactionTo(e);
+  for (const StrongerReaction& r : a.stronger)
+    if (r.codes.Holds(e.error_code)) reaction = std::max(reaction, r.reaction);
+  s.lost_master = s.lost_master || SaysMasterLost(e.error_code);
+  if (reaction <= a.reported) return;
+  a.reported = reaction;
+  a.reported_cycle = cycle_;
+  s.emergency_cause = e.error_code;
+}
+
+void DriveMaster::ForgetEmergency(std::size_t axis) noexcept {
+  axes_[axis].reported = EmergencyReaction::kNone;
+  status_[axis].emergency = EmergencyReaction::kNone;
+  status_[axis].emergency_cause = 0;
+}
+
+// A drive answers each SYNC, in their order, and an answer that misses its grid point has the look of one to
+// the next SYNC. What tells them apart after an answer was missed is the time: nobody answers a SYNC much
+// sooner than ever before. From then on the drive is one answer behind, until two come in one cycle. Stamps
+// of another clock (lock-step) are never this close to the grid.
+bool DriveMaster::AnswersNewestSync(Axis& axis, const AxisFeedback& feedback,
+                                    std::int64_t stamp_ns) const noexcept {
+  const bool second = feedback.valid && axis.answer_cycle == cycle_;
+  const bool next = axis.answer_cycle + elapsed_ == cycle_;
+  axis.answer_cycle = cycle_;
+  if (second || !feedback.valid) {
+    axis.behind = false;
+    return true;
+  }
+  const std::int64_t after_ns = stamp_ns - sync_grid_ns_;
+  if (feedback.age_cycles == 0) {
+    if (after_ns > 0) axis.earliest_answer_ns = std::min(axis.earliest_answer_ns, after_ns);
+    return true;
+  }
+  const bool same_clock =
+      axis.earliest_answer_ns <= period_ns_ && after_ns > -kSameClock_periods * period_ns_;
+  const bool too_soon = same_clock && after_ns < axis.earliest_answer_ns - axis.earliest_answer_ns / 4;
+  axis.behind = too_soon || (axis.behind && next);
+  return !axis.behind;
+}
+
+void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept {
+  // Before the drive is configured its TPDO may hold anything.
+  if (!status_[axis].configured) return;
+  const RawFeedback raw = DecodeFeedback(stamped.frame);
+  AxisFeedback& f = feedback_[axis];
+  Axis& a = axes_[axis];
+  const bool newest = AnswersNewestSync(a, f, stamped.stamp_ns);
+  const double counted_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
+  const double moved_rad = std::abs(counted_rad + a.offset_rad - a.last_seen_rad);
+  if (a.seen_before && a.unseen_travel_rad > 0.0 && moved_rad > a.unseen_travel_rad) CountBeganAnew(axis);
+  a.seen_before = false;
+  f.position_rad = counted_rad + a.offset_rad;
+  f.torque_Nm = a.torque.FromPerMille(raw.torque_per_mille);
+  f.statusword = raw.statusword;
+  f.drive_state = DecodeStatusword(raw.statusword);
+  a.was_enabled = a.was_enabled || f.drive_state == DriveState::kOperationEnabled;
+  f.fresh = newest;
+  f.valid = true;
+  if (newest) f.age_cycles = 0;
+  a.alive_cycle = cycle_;  // it answers every SYNC: a sign of life at least as good as its heartbeat
+  feedback_sync_ = std::max(feedback_sync_, newest ? sync_number_ : sync_number_ - 1);
+}
+
+void DriveMaster::Supervise(std::size_t axis) noexcept {
+  AxisFeedback& f = feedback_[axis];
+  AxisDriveStatus& s = status_[axis];
+  if (!f.fresh) f.age_cycles += static_cast<std::uint32_t>(elapsed_);
+  const bool fault = f.valid && IsFaultState(f.drive_state);
+  if (patrols_) {
+    DrivePatrol& patrol = buses_[axes_[axis].bus].patrol;
+    if (fault && !s.fault) patrol.ReadErrors(axes_[axis].patrolled);
+    s.mode_changed = pdos_run_ && patrol.mode_changed(axes_[axis].patrolled);
+  }
+  s.fault = fault;
+  if (cycle_ != axes_[axis].reported_cycle) s.emergency = axes_[axis].reported;
+  s.silent_cycles = cycle_ - axes_[axis].alive_cycle;
+  WatchFollowing(axis);
+  if (s.configured && cycle_ - axes_[axis].alive_cycle >= axes_[axis].heartbeat_timeout_cycles) {
+    if (!s.heartbeat_lost) CountBeganAnew(axis);
+    s.heartbeat_lost = true;
+    s.nmt = NmtState::kUnknown;
+  }
+}
+
+// A statusword that shows Operation Enabled for the first time was latched before any set-point was sent, and
+// so was the next one; the drive may take `delay_cycles` to act upon a set-point.
+void DriveMaster::WatchFollowing(std::size_t axis) noexcept {
+  Axis& a = axes_[axis];
+  const AxisFeedback& f = feedback_[axis];
+  const bool told = goal_[axis] == DriveGoal::kEnabled && f.drive_state == DriveState::kOperationEnabled;
+  if (!told || FollowsTarget(f.statusword)) {
+    a.not_following_cycles = 0;
+  } else if (f.fresh) {
+    a.not_following_cycles += elapsed_;
+  }
+  status_[axis].not_following = a.follow_cycles != 0 && a.not_following_cycles > a.follow_cycles;
+}
+
+bool DriveMaster::Heard(std::size_t axis) const noexcept {
+  const Axis& a = axes_[axis];
+  return a.alive_cycle == 0 || cycle_ - a.alive_cycle < a.heartbeat_timeout_cycles;
+}
+
+}  // namespace contour
