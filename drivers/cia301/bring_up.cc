@@ -99,8 +99,10 @@ void BringUp::OnHeartbeat(std::size_t node, NmtState state) noexcept {
       ShowNode(node);
       Fail(BringUpError::kRestarted, 0, 0);
     }
-    // It was given up waiting for, and has not heard what it is being asked. Once: it may boot for ever.
-    ask_again_ = ask_again_ || (configuring() && node == node_ && !states_[node].booted);
+    // It has not heard what it is being asked: it was given up waiting for, or booted twice. Once: it may
+    // boot for ever.
+    if (configuring() && node == node_ && !states_[node].asked_again)
+      ask_again_ = states_[node].asked_again = true;
     states_[node].booted = phase_ != BringUpPhase::kReset;
   } else if (state == NmtState::kOperational) {
     states_[node].operational = phase_ == BringUpPhase::kStart;

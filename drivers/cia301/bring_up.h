@@ -83,6 +83,7 @@ class BringUp {
     bool booted = false;
     bool operational = false;
     bool started_itself = false;  ///< said Operational before it was told to
+    bool asked_again = false;     ///< had booted only after its first request
     NmtState nmt = NmtState::kUnknown;
   };
 

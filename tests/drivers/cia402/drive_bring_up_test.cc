@@ -82,6 +82,32 @@ TEST(DriveBringUp, FindsADriveThatSendsNoBootUp) {
   EXPECT_TRUE(m.master.operational());
 }
 
+// A drive may tell of its boot-up twice: it has not heard what came between the two.
+TEST(DriveBringUp, ADriveThatBootsAgainBeforeItsFirstAnswerIsAskedAgain) {
+  Machine m;
+  m.slave[1].behaviour.mute_object = {0x1000, 0};
+  m.master.StartBringUp();
+  for (int i = 0; i < 5000 && m.master.bring_up().index != 0x1000; ++i) m.Cycle();
+  for (int i = 0; i < 5000 && m.master.bring_up().axis != 1; ++i) m.Cycle();
+  ASSERT_EQ(m.master.bring_up().index, 0x1000);
+  m.Cycles(5);
+  m.slave[1].behaviour.mute_object.reset();
+  m.Inject(HeartbeatFrame(2, NmtState::kBootUp));
+  for (int i = 0; i < 5000 && !m.master.operational() && !m.master.bring_up_failed(); ++i) m.Cycle();
+  EXPECT_TRUE(m.master.operational());
+}
+
+TEST(DriveBringUp, ADriveThatBootsForEverIsGivenUp) {
+  Machine m;
+  m.slave[1].behaviour.mute_object = {0x1000, 0};
+  m.master.StartBringUp();
+  for (int i = 0; i < 5000 && !m.master.operational() && !m.master.bring_up_failed(); ++i) {
+    if (m.master.bring_up().axis == 1 && i % 100 == 0) m.Inject(HeartbeatFrame(2, NmtState::kBootUp));
+    m.Cycle();
+  }
+  EXPECT_TRUE(m.master.bring_up_failed());
+}
+
 TEST(DriveBringUp, ADriveThatStartsItselfIsNoError) {
   Machine m;
   m.slave[0].behaviour.self_start = true;
