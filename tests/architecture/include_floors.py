@@ -12,6 +12,34 @@ from pathlib import Path
 # A folder, and the folders it may include besides itself. The longest matching folder counts.
 RT_DRIVERS = ["drivers/can", "drivers/cia301", "drivers/cia402"]
 FLOOR_1 = ["core", "drivers", "estimator", "control"]
+BELOW_ANALYSIS = [*FLOOR_1, "config", "daemon"]
+SIMULATED = ["tools/plant_emulator", "tools/machine", "tools/simulate"]
+# The floors of analysis/, lowest first.
+MODEL = ["analysis/recording", "analysis/axis_model"]
+PREDICTION = [*MODEL, "analysis/prediction_error", "analysis/prediction_error/simd"]
+DIAGNOSIS = ["result", "tuning", "causes", "screening", "adequacy", "decision", "quantification"]
+
+
+def diagnosis_floors(names):
+    return [f"analysis/diagnosis/{name}" for name in names]
+
+
+ANALYSIS = {
+    "analysis/text": [],
+    "analysis/recording": BELOW_ANALYSIS,
+    "analysis/metrics": BELOW_ANALYSIS,
+    "analysis/axis_model": ["core", "estimator", "config"],
+    "analysis/prediction_error/simd": [],
+    "analysis/prediction_error": PREDICTION,
+    "analysis/identification": ["core", "config", "analysis/text", *PREDICTION],
+    "analysis/diagnosis/result": ["analysis/recording"],
+    "analysis/diagnosis/tuning": ["analysis/diagnosis/result"],
+    "analysis/diagnosis/causes": ["config", "estimator", *PREDICTION, *diagnosis_floors(["result", "tuning"])],
+    **{f"analysis/diagnosis/{name}": [*PREDICTION, *diagnosis_floors(DIAGNOSIS[:i])]
+       for i, name in enumerate(DIAGNOSIS) if i >= DIAGNOSIS.index("screening")},
+    "analysis/diagnosis": [*PREDICTION, *diagnosis_floors(DIAGNOSIS)],
+    "analysis/diagnosis/report": ["core", "config", "estimator", *MODEL, *diagnosis_floors(["result", "tuning", "causes"])],
+}
 MAY_INCLUDE = {
     # floor 0: plain data
     "core": [],
@@ -27,10 +55,26 @@ MAY_INCLUDE = {
     "config": FLOOR_1,
     # floor 3
     "daemon": [*FLOOR_1, "daemon/rt", "config"],
-    # The emulated machine shares no code with the estimator it is to test.
+    # What works on recorded data. It does not know the emulated machine, nor the machine it.
+    **ANALYSIS,
+    # What is designed offline
+    "design": [*BELOW_ANALYSIS, "analysis"],
+    # The emulated machine shares no code with the estimator it is to test, nor with what judges its recordings.
     "tools/plant_emulator": ["core", "drivers", "config"],
-    "tools": [*FLOOR_1, "config", "daemon", "tools/plant_emulator"],
-    "tests": [*FLOOR_1, "config", "daemon", "tools"],
+    "tools/machine": ["core", "drivers", "config", "tools/plant_emulator"],
+    "tools/doctor": ["core"],
+    "tools/replay": BELOW_ANALYSIS,
+    "tools/simulate": [*BELOW_ANALYSIS, "analysis/metrics", "tools/plant_emulator", "tools/machine"],
+    "tools/faults": [*BELOW_ANALYSIS, *SIMULATED],
+    # Each way of validation is blind to the others.
+    "tools/validation/contest": [*BELOW_ANALYSIS, "analysis/metrics", "design", *SIMULATED],
+    "tools/validation/emps": [*BELOW_ANALYSIS, "analysis"],
+    "tools/validation/hidden": [*BELOW_ANALYSIS, "analysis", *SIMULATED],
+    "tools/contour_gain": [*BELOW_ANALYSIS, "analysis", "tools/validation/contest", *SIMULATED],
+    # The programs know everything.
+    "tools/bench": [*BELOW_ANALYSIS, *SIMULATED],
+    "tools/contour": [*BELOW_ANALYSIS, "analysis", "design", "tools"],
+    "tests": [*BELOW_ANALYSIS, "analysis", "design", "tools"],
 }
 # The daemon's program joins the parts: these files alone know the emulated machine, for the bus `loopback`.
 EMULATED_MACHINE = ["tools/plant_emulator", "tools/machine"]
@@ -75,6 +119,9 @@ def is_realtime(path):
 
 def offences_in(root, path):
     name = path.relative_to(root).as_posix()
+    if home_of(name) is None:
+        yield f"{name}: lies on no floor"
+        return
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
         match = INCLUDE.match(line)
         if not match:

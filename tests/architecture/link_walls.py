@@ -18,7 +18,11 @@ FORBIDDEN_LINK = re.compile(r"yaml|lcm|modbus|spdlog|fmt|nlohmann|CLI11|systemd|
 FORBIDDEN_SYMBOL = re.compile(r"^(_ZNK?4YAML|_ZNK?3lcm|lcm_|modbus_|_ZNK?6spdlog|_ZNK?3fmt|sd_notify|sd_journal)")
 # Libraries that may neither link nor refer to each other, in either direction.
 STRANGERS = [("contour_estimator", "contour_emulator"), ("contour_control", "contour_emulator"),
-             ("contour_estimator", "contour_control")]
+             ("contour_estimator", "contour_control"),
+             *((analysis, "contour_emulator") for analysis in (
+                 "contour_recording", "contour_axis_model", "contour_metrics", "contour_prediction_error", "contour_identification",
+                 "contour_diagnosis", "contour_diagnosis_report", "contour_design")),
+             ("contour_identification", "contour_diagnosis")]
 
 
 def closure(links, library):

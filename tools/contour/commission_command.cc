@@ -13,15 +13,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/recording/record_axis.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
 #include "daemon/control_socket/base64.h"
+#include "design/commission_plan.h"
 #include "drivers/lcm/cycle_messages.h"
-#include "tools/commission/commission_plan.h"
-#include "tools/commission/record_axis.h"
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/identification_report.h"
-#include "tools/diagnosis/files/read_stated_axis.h"
 
 namespace contour {
 namespace {

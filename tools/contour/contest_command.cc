@@ -14,10 +14,10 @@
 #include <thread>
 
 #include "core/exit_status.h"
-#include "tools/contest/contest_plan.h"
-#include "tools/contest/contest_report.h"
-#include "tools/contest/kept_cells.h"
-#include "tools/contest/run_cells.h"
+#include "tools/validation/contest/contest_plan.h"
+#include "tools/validation/contest/contest_report.h"
+#include "tools/validation/contest/kept_cells.h"
+#include "tools/validation/contest/run_cells.h"
 
 namespace contour {
 namespace {

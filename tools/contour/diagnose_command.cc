@@ -11,21 +11,21 @@
 #include <thread>
 #include <vector>
 
+#include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/diagnosis/causes/extensions_of.h"
+#include "analysis/diagnosis/diagnose.h"
+#include "analysis/diagnosis/report/diagnosis_json.h"
+#include "analysis/diagnosis/report/diagnosis_text.h"
+#include "analysis/diagnosis/report/extended_file.h"
+#include "analysis/diagnosis/report/report.h"
+#include "analysis/prediction_error/keep_memory.h"
+#include "analysis/recording/read_log.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
 #include "config/number_text.h"
 #include "daemon/program/program.h"
 #include "tools/contour/terminal_progress.h"
-#include "tools/diagnosis/diagnose.h"
-#include "tools/diagnosis/files/diagnosis_json.h"
-#include "tools/diagnosis/files/diagnosis_text.h"
-#include "tools/diagnosis/files/extended_file.h"
-#include "tools/diagnosis/files/extensions_of.h"
-#include "tools/diagnosis/files/read_log.h"
-#include "tools/diagnosis/files/read_stated_axis.h"
-#include "tools/diagnosis/keep_memory.h"
-#include "tools/diagnosis/predict/contour_gain.h"
-#include "tools/diagnosis/report/report.h"
+#include "tools/contour_gain/contour_gain.h"
 
 namespace contour {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <thread>
 
+#include "analysis/diagnosis/report/draw.h"
 #include "tools/contour/terminal_progress.h"
-#include "tools/diagnosis/report/draw.h"
-#include "tools/emps/emps_report.h"
+#include "tools/validation/emps/emps_report.h"
 
 namespace contour {
 namespace {

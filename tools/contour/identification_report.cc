@@ -7,8 +7,8 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "tools/identify/identification.h"
-#include "tools/identify/result_files.h"
+#include "analysis/identification/identification.h"
+#include "analysis/identification/result_files.h"
 
 namespace contour {
 namespace {

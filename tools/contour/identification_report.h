@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/axis_model/stated_axis.h"
+#include "analysis/recording/axis_log.h"
 #include "config/model_config.h"
-#include "tools/diagnosis/axis_log.h"
-#include "tools/diagnosis/stated_axis.h"
 
 namespace contour {
 

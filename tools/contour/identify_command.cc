@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/recording/read_log.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
 #include "tools/contour/identification_report.h"
-#include "tools/diagnosis/files/read_log.h"
-#include "tools/diagnosis/files/read_stated_axis.h"
 
 namespace contour {
 namespace {

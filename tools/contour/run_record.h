@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/metrics/metrics_json.h"
+#include "analysis/metrics/run_metrics.h"
+#include "analysis/metrics/truth_table.h"
 #include "core/cycle_record.h"
 #include "daemon/program/motion_plan.h"
-#include "tools/metrics/metrics_json.h"
-#include "tools/metrics/run_metrics.h"
-#include "tools/metrics/truth_table.h"
 
 namespace contour {
 

@@ -13,8 +13,8 @@
 
 #include "config/config_error.h"
 #include "core/exit_status.h"
-#include "tools/contest/contest_plan.h"
-#include "tools/contest/tuning.h"
+#include "tools/validation/contest/contest_plan.h"
+#include "tools/validation/contest/tuning.h"
 
 namespace contour {
 namespace {

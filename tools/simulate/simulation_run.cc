@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "analysis/metrics/metrics_json.h"
+#include "analysis/metrics/run_metrics.h"
 #include "daemon/telemetry/cycle_csv.h"
-#include "tools/metrics/metrics_json.h"
-#include "tools/metrics/run_metrics.h"
 #include "tools/simulate/run_log.h"
 #include "tools/simulate/virtual_machine.h"
 

@@ -1,0 +1,75 @@
+#include "analysis/diagnosis/adequacy/firm_slides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/diagnosis/screening/score.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Maxwell-slip elements of real axes break away within some ten lengths of the bristle that fits best.
+constexpr double kLengths = 20.0;
+// Of a mean square, in stated deviations: with friction of the law and a soft element it ends above zero, on
+// Maxwell-slip friction well below.
+constexpr double kBelowZero = 0.5;
+
+bool ShowsAtReversals(const std::string& kind) {
+  return kind == "presliding_hysteresis" || kind == "backlash" || kind == "compliance";
+}
+
+}  // namespace
+
+std::vector<double> WaySinceReversal(const Signals& s) {
+  const Signal& x = s.table_m;
+  std::vector<double> way(x.size(), 0.0);
+  double turned_at = x[0], furthest = x[0];
+  bool up = true;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (up ? x[k] > furthest : x[k] < furthest) furthest = x[k];
+    if (std::fabs(s.sign[k]) > kFollowsMotion && (s.sign[k] > 0.0) != up) {
+      up = !up;
+      turned_at = furthest;
+      furthest = x[k];
+    }
+    way[k] = std::fabs(x[k] - turned_at);
+  }
+  return way;
+}
+
+bool OfAnotherLaw(const Problem& problem, const Fit& fit) {
+  const std::vector<SharedEffect>& effects = fit.point.effects;
+  if (std::none_of(effects.begin(), effects.end(),
+                   [](const SharedEffect& e) { return e->kind == "presliding_hysteresis"; }))
+    return false;
+  for (std::size_t i = 0; i < problem.terms_.size(); ++i) {
+    const BaseTerm& t = problem.terms_[i];
+    if (t.name == "rough" && fit.point.base[i] < -kBelowZero * t.sigma) return true;
+  }
+  return false;
+}
+
+std::vector<bool> FirmSlides(const Problem& problem) {
+  const Signals& s = *problem.signals_;
+  const StatedFriction& f = problem.nominal_.friction;
+  const double far_m = kLengths * f.Fc_plus / f.s0 * problem.stated_.table_per_q;
+  const std::vector<double> way = WaySinceReversal(s);
+  std::vector<bool> out(problem.rows());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = problem.counted_[k] != 0 && way[k] > far_m && std::fabs(s.velocity[k]) > f.vs;
+  return out;
+}
+
+double DropOf(const Problem& problem, const Fit& without, const Fit& with) {
+  const std::string& kind = with.point.effects.back()->kind;
+  if (!OfAnotherLaw(problem, without) || ShowsAtReversals(kind) || InBase(problem, kind))
+    return without.cost - with.cost;
+  const std::vector<bool> firm = FirmSlides(problem);
+  double drop = 0.0;
+  for (std::size_t k = 0; k < with.residual.size(); ++k)
+    if (k >= firm.size() || firm[k])
+      drop += without.residual[k] * without.residual[k] - with.residual[k] * with.residual[k];
+  return drop;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,151 @@
+#include "analysis/diagnosis/adequacy/leftover_maps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "analysis/diagnosis/adequacy/firm_slides.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr int kPlaces = 48, kSpeeds = 16, kWays = 14, kAngles = 48, kTemperatures = 12;
+constexpr double kTorqueEach_s = 0.25, kFrictionEach_s = 1.0;
+constexpr double kShortestWay_m = 1e-6;
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+struct Range {
+  double low = 0.0, high = 1.0;
+  [[nodiscard]] int Bin(double x, int count) const {
+    if (!(high > low)) return 0;
+    return std::clamp(static_cast<int>((x - low) / (high - low) * count), 0, count - 1);
+  }
+  [[nodiscard]] double Middle(int bin, int count) const { return low + (high - low) * (bin + 0.5) / count; }
+};
+
+Range RangeOf(const Signal& x) {
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  return {*low, std::max(*high, *low + 1e-12)};
+}
+
+std::string Text(double x, const char* unit) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.3g %s", x, unit);
+  return text;
+}
+
+/// Slow speeds in finer steps.
+int SpeedBin(const Signals& s, std::size_t k) {
+  return Range{}.Bin(std::sqrt(std::fabs(s.velocity[k]) / std::max(s.max_speed, 1e-12)), kSpeeds);
+}
+
+class Maps {
+ public:
+  Maps(const Problem& p, const std::vector<bool>& slides)
+      : p_(p), s_(*p.signals_), n_(p.rows()), slides_(slides) {}
+
+  std::vector<BinnedRows> All() {
+    const Range x = RangeOf(s_.table_m);
+    BothWays(
+        "the position", "position_friction", kPlaces,
+        [&](std::size_t k) { return x.Bin(s_.table_m[k], kPlaces); },
+        [x, middle_m = s_.middle_m](int b) { return Text(1e3 * (x.Middle(b, kPlaces) + middle_m), "mm"); });
+    BothWays(
+        "the speed", "viscous_nonlinear", kSpeeds, [&](std::size_t k) { return SpeedBin(s_, k); },
+        [fastest_m_s = s_.max_speed * p_.stated_.table_per_q](int b) {
+          return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kSpeeds), 2), "mm/s");
+        });
+    const std::vector<double> way = WaySinceReversal(s_);
+    const Range log_way{std::log(kShortestWay_m), std::log(2.0 * s_.half_stroke_m + kShortestWay_m)};
+    BothWays(
+        "the way since the last reversal", "stribeck", kWays,
+        [&](std::size_t k) { return log_way.Bin(std::log(way[k] + kShortestWay_m), kWays); },
+        [log_way](int b) { return Text(1e3 * std::exp(log_way.Middle(b, kWays)), "mm after a reversal"); });
+    BothWays(
+        "the angle of the motor", "cogging", kAngles,
+        [&](std::size_t k) {
+          const double turns = s_.angle_rad[k] / kTurn;
+          return Range{}.Bin(turns - std::floor(turns), kAngles);
+        },
+        [](int b) { return Text(360.0 * Range{}.Middle(b, kAngles), "degrees"); });
+    out_.back().series = true;
+    if (!s_.temperature_K.empty()) {
+      const Range t = RangeOf(s_.temperature_K);
+      BothWays(
+          "the temperature", "temperature_viscosity", kTemperatures,
+          [&](std::size_t k) { return t.Bin(s_.temperature_K[k], kTemperatures); },
+          [t, mean_degC = s_.mean_degC](int b) {
+            return Text(t.Middle(b, kTemperatures) + mean_degC, "degC");
+          });
+    }
+    OfTime("time, as a torque", kTorqueEach_s, {}, kUnexplainedTorque);
+    OfTime("time, as friction", kFrictionEach_s, s_.sign, kUnexplainedFriction);
+    return std::move(out_);
+  }
+
+ private:
+  template <class BinOf, class PlaceOf>
+  void BothWays(const char* over, const char* like, int count, BinOf&& bin_of, PlaceOf place) {
+    BinnedRows rows;
+    rows.over = std::string(over) + " and the direction";
+    rows.like = like;
+    rows.bin.assign(n_, -1);
+    rows.count = 2 * count;
+    for (std::size_t k = 0; k < n_; ++k)
+      if (slides_[k]) rows.bin[k] = bin_of(k) + (s_.sign[k] > 0.0 ? count : 0);
+    rows.place = [count, place](int b) {
+      return place(b % count) + (b < count ? ", moving down" : ", moving up");
+    };
+    out_.push_back(std::move(rows));
+  }
+
+  void OfTime(const char* over, double each_s, const std::vector<double>& size, std::string_view margin) {
+    const Range time{0.0, static_cast<double>(n_) * p_.log_.period_s};
+    const int count = std::max(1, static_cast<int>(time.high / each_s));
+    BinnedRows rows;
+    rows.over = over;
+    rows.like = "friction_drift";
+    rows.bin.assign(n_, -1);
+    rows.size = size;
+    rows.margin = margin;
+    rows.count = count;
+    for (std::size_t k = 0; k < n_; ++k)
+      if (slides_[k]) rows.bin[k] = time.Bin(static_cast<double>(k) * p_.log_.period_s, count);
+    rows.place = [time, count](int b) { return Text(time.Middle(b, count), "s"); };
+    out_.push_back(std::move(rows));
+  }
+
+  const Problem& p_;
+  const Signals& s_;
+  std::size_t n_;
+  const std::vector<bool>& slides_;
+  std::vector<BinnedRows> out_;
+};
+
+}  // namespace
+
+std::vector<bool> Slides(const Problem& p) {
+  std::vector<bool> out(p.rows());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = p.counted_[k] != 0 && std::fabs(p.signals_->sign[k]) > kFollowsMotion;
+  return out;
+}
+
+std::vector<BinnedRows> LeftoverMaps(const Problem& problem, const std::vector<bool>& slides) {
+  return Maps(problem, slides).All();
+}
+
+BinnedRows FrictionCurve(const Problem& problem, const std::vector<bool>& slides) {
+  const Signals& s = *problem.signals_;
+  BinnedRows rows;
+  rows.bin.assign(slides.size(), -1);
+  rows.size = s.sign;
+  rows.count = kSpeeds;
+  for (std::size_t k = 0; k < slides.size(); ++k)
+    if (slides[k]) rows.bin[k] = SpeedBin(s, k);
+  return rows;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,141 @@
+#include "analysis/diagnosis/decision/gate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string_view>
+
+#include "analysis/diagnosis/tuning/margins.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Of numbers of the base beside accepted causes, whose left-overs they may take up; per row.
+constexpr double kBesidePerRow = 3e-5;
+// Each kind that is a number of the base has this share of the false alarms.
+constexpr double kShareInBase = 0.2;
+// A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
+// rate (3.1 standard deviations).
+constexpr double kBeyondStated = 2e-3;
+double NormalTail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
+
+// Exceeded by chi^2 with the given probability.
+double ChiSquare(std::size_t degrees, double probability) {
+  if (degrees >= 2) return -2.0 * std::log(probability);
+  double low = 0.0, high = 10.0;
+  for (int i = 0; i < 60; ++i) {
+    const double z = 0.5 * (low + high);
+    (2.0 * NormalTail(z) > probability ? low : high) = z;
+  }
+  return low * low;
+}
+
+}  // namespace
+
+Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more) {
+  constexpr int kDraws = 1500;
+  constexpr int kScans = 6;
+  std::mt19937_64 random(seed * 2654435761U + 99);
+  std::uniform_real_distribution<double> uniform(1e-12, 1.0);
+  std::vector<double> largest;
+  Eigen::VectorXd signs(kBlocks);
+  for (int d = 0; d < kDraws; ++d) {
+    for (Eigen::Index b = 0; b < kBlocks; ++b) signs(b) = (random() & 1U) != 0 ? 1.0 : -1.0;
+    double best = -1e300;
+    for (int i = 0; i < kScans; ++i) best = std::max(best, -2.0 * std::log(-std::log(uniform(random))) - 6.0);
+    for (const Scored& s : scored) {
+      if (s.effect->wave && s.effect->grid >= 12.0) continue;  // a scan's
+      const Eigen::VectorXd h = s.per_block * signs;
+      best = std::max(best, h.dot(s.covariance * h) / s.excess - Penalty(*s.effect));
+    }
+    largest.push_back(best);
+  }
+  std::sort(largest.begin(), largest.end());
+  const auto drawn = [&](double p) {
+    return largest[std::min<std::size_t>(kDraws - 1, static_cast<std::size_t>(p * kDraws))];
+  };
+  // Straight through the 80 % and the 98 % quantile on Gumbel's paper.
+  const auto paper = [](double p) { return -std::log(-std::log(p)); };
+  const double slope = (drawn(0.98) - drawn(0.80)) / (paper(0.98) - paper(0.80));
+  const auto at_rate = [&](double rate) {
+    if (rate >= 0.02) return drawn(1.0 - rate);
+    return drawn(0.98) + slope * (paper(1.0 - rate) - paper(0.98));
+  };
+  return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
+}
+
+Gate WithoutMargins(Gate gate) {
+  gate.margins = false;
+  gate.left = 0.0;
+  gate.left_of_kind.clear();
+  return gate;
+}
+
+double Gate::LeftAs(const std::string& kind) const {
+  const auto same = left_of_kind.find(kind);
+  return left + (same == left_of_kind.end() ? 0.0 : same->second);
+}
+
+namespace {
+
+/// `covariance`: of what the log says about the numbers that the kind frees.
+double VagueBy(const Problem& problem, const std::string& kind, const Eigen::MatrixXd& covariance) {
+  // All forces at once: what the log leaves of each of them counts.
+  if (kind == "torque_constant" || !InBase(problem, kind)) return 1.0;
+  const std::vector<std::size_t> terms = FreedTerms(problem, kind);
+  double most = 0.0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (at < covariance.rows())
+      most = std::max(most, covariance(at, at) * std::pow(problem.terms_[terms[i]].sigma, -2));
+  }
+  return most;
+}
+
+double Threshold(const Problem& problem, const Gate& gate, std::string_view kind) {
+  if (!gate.margins) return gate.flips;
+  const double errors = MarginPerRow(kind, gate.rate) * static_cast<double>(problem.rows());
+  return std::max(gate.flips, gate.calibrated + errors);
+}
+
+}  // namespace
+
+Showing ShowingOf(const Problem& problem, const Scored& scored) {
+  return {scored.excess, VagueBy(problem, scored.effect->kind, scored.covariance)};
+}
+
+Showing ShowingOf(const Problem& problem, const Fit& fit) {
+  Showing showing;
+  const std::string& kind = fit.point.effects.back()->kind;
+  if (!InBase(problem, kind)) {
+    showing.excess = ExcessOfLast(problem, fit);
+    return showing;
+  }
+  const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
+  // The base's term goes on having its prior; what is free scatters by as much more.
+  showing.vague = kind == "torque_constant"
+                      ? 1.0
+                      : std::max(0.0, VagueBy(problem, kind, fit.covariance.bottomRightCorner(n, n)) - 1.0);
+  return showing;
+}
+
+double Threshold(const Problem& problem, const Gate& gate) {
+  return Threshold(problem, gate, "") + gate.left;
+}
+
+double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const Showing& showing) {
+  double left = gate.LeftAs(effect.kind);
+  if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind) + left / showing.excess;
+  // The stated uncertainties say what chance does here.
+  const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
+  const double by_chance = ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated));
+  if (gate.accepted == 0) return by_chance - Penalty(effect);
+  left += kBesidePerRow * static_cast<double>(problem.rows());
+  // At its worst a left-over of chi^2 moves the number by its root, in standard errors of the log.
+  const double moved = showing.vague * left;
+  left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));
+  return std::max(by_chance - Penalty(effect), gate.flips) + left;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnosis/screening/score.h"
+
+namespace contour::diagnosis {
+
+/// What a score must exceed for its kind to be named.
+struct Gate {
+  double flips = 0.0;       ///< as SignFlips has it, at the asked rate
+  double calibrated = 0.0;  ///< the same at the rate of the calibration
+  double rate = 0.05;       ///< of false alarms
+  int accepted = 0;         ///< causes that are accepted already
+  double left = 0.0;        ///< what of their scores may look like other causes
+  /// The same, as another cause of a kind that is among them: harmonics, neighbouring orders.
+  std::map<std::string, double> left_of_kind = {};
+
+  bool margins = true;  ///< for the model's own errors
+
+  [[nodiscard]] double LeftAs(const std::string& kind) const;
+};
+
+/// By chance alone, but for numbers of the base: no margins, and nothing left of accepted causes. What the
+/// margins are read off is measured against it.
+Gate WithoutMargins(Gate gate);
+
+/// How a left-over shows in a kind's score.
+struct Showing {
+  double excess = 1.0;  ///< of chance, which scores are divided by
+  /// Of a number of the base: the variance that the log leaves it, over its stated variance. A left-over
+  /// moves the number by so much, and only there lies the evidence.
+  double vague = 1.0;
+};
+
+Showing ShowingOf(const Problem& problem, const Scored& scored);
+/// Of the last effect of a fit.
+Showing ShowingOf(const Problem& problem, const Fit& fit);
+
+/// The score that the best of all candidates exceeds by chance with a given probability: residual blocks
+/// with random signs against the fixed columns, waves found by a scan as the largest of their grid; beyond
+/// the 2 % quantile along a Gumbel fit. `more` is added to it.
+Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more);
+
+double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const Showing& showing);
+/// The same of a kind without a number in the base.
+double Threshold(const Problem& problem, const Gate& gate);
+
+}  // namespace contour::diagnosis

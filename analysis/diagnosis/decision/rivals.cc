@@ -1,0 +1,413 @@
+#include "analysis/diagnosis/decision/rivals.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "analysis/diagnosis/adequacy/firm_slides.h"
+#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/screening/full_size.h"
+#include "analysis/prediction_error/common_factor.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kMostDamped = 1.0,
+                 kLeastShare = 0.1;  // logarithm of the damping ratio over 0.04; of the inertia
+constexpr double kNothingBehind = 0.01, kMostBent = 4.0;  // of the inertia; power of the speed
+constexpr double kNever = -1e300;
+constexpr double kSmall = 60.0, kNoLuck = 300.0;  // drops
+constexpr std::size_t kMostKinds = 4, kMostTried = 6;
+constexpr double kFewOfMost = 0.1;
+constexpr int kMostTurns = 3;
+constexpr std::size_t kMostKept = 6;
+// Of the best score: rivals below are given up at first, and what is no more than this is no reason to go on.
+constexpr double kGivenUp = 0.02, kAllTheSame = 1e-3;
+constexpr double kMayMatter = 0.3;    // the least share of the best one's score that is tested at all
+constexpr double kMayWin = 0.4;       // the same before the last steps
+constexpr double kSmallStill = 30.0;  // of a score, which new noise may bring
+constexpr double kNearGate = 0.5;
+
+/// Catalogue first, the best first, those given up at the end; what lies outside it comes first only where it
+/// explains far more.
+void Sort(std::vector<Rival>& rivals) {
+  std::stable_sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) {
+    if (a.given_up != b.given_up) return b.given_up;
+    const bool x = Outside(a.effect().kind), y = Outside(b.effect().kind);
+    return x != y ? y : a.score > b.score;
+  });
+  const auto outside = std::find_if(rivals.begin(), rivals.end(),
+                                    [](const Rival& r) { return !r.given_up && Outside(r.effect().kind); });
+  if (outside == rivals.end() || outside == rivals.begin()) return;
+  if (outside->score > 1.3 * std::max(0.0, rivals[0].score) + 25.0)
+    std::rotate(rivals.begin(), outside, outside + 1);
+}
+
+bool AddsCoupling(const Problem& problem, const Rival& r) {
+  return r.effect().kind == "compliance" && !problem.nominal_.two_inertia;
+}
+
+/// Damped as no coupling is, or with next to nothing behind it: it stands for something else.
+bool NoCoupling(const Rival& r) {
+  const std::vector<double>& a = r.fit.point.amplitudes.back();
+  return (a[2] > kMostDamped && a[0] < kLeastShare) || a[0] < kNothingBehind;
+}
+
+/// Bent as no drag is: it stands for what happens at the highest speed.
+bool NoDrag(const Rival& r) {
+  const Effect& e = r.effect();
+  return e.kind == "viscous_nonlinear" && e.order * std::exp(r.fit.point.amplitudes.back()[1]) > kMostBent;
+}
+
+/// A coupling that every screw has.
+bool NoFault(const Problem& problem, const Rival& r) {
+  const AxisModel m = problem.Build(r.fit.point);
+  return m.two_inertia && m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kNoFault_Hz, 2);
+}
+
+void Judge(const Problem& problem, const Fit& current, Rival& r) {
+  // A start may be no machine at all.
+  const bool coupling = AddsCoupling(problem, r);
+  const bool out = !std::isfinite(r.fit.cost) || (coupling && NoCoupling(r)) || NoDrag(r);
+  r.no_fault = !out && coupling && NoFault(problem, r);
+  r.score = out ? kNever : DropOf(problem, current, r.fit) - Penalty(r.effect());
+}
+
+// Beside a large cause the score test falls short by as much: the noise that it was made under has the other
+// one in it.
+constexpr double kShortBeside = 0.1;
+
+bool Promising(const Problem& problem, const Scored& s, Gate gate) {
+  gate.left *= kShortBeside;
+  for (auto& [kind, left] : gate.left_of_kind) left *= kShortBeside;
+  Showing showing = ShowingOf(problem, s);
+  showing.excess = std::min(s.excess, kMostExcess);
+  return s.drop / showing.excess - Penalty(*s.effect) > Threshold(problem, gate, *s.effect, showing);
+}
+
+/// From the linear estimate.
+Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
+  Point start = current.point;
+  start.effects.push_back(s.effect);
+  std::vector<double> a(s.effect->steps.size(), 0.0);
+  for (std::size_t i = 0; i < s.effect->tested; ++i) a[i] = s.amplitude(static_cast<Eigen::Index>(i));
+  for (std::size_t i = 0; i < a.size() && !s.effect->low.empty(); ++i)
+    a[i] = std::clamp(a[i], s.effect->low[i], s.effect->high[i]);
+  // What the effect does the base need not do any more: the same model, and no deviation.
+  const std::vector<std::size_t> freed = FreedTerms(problem, s.effect->kind);
+  for (std::size_t i = 0; i < freed.size() && i < a.size(); ++i) start.base[freed[i]] -= a[i];
+  start.amplitudes.push_back(std::move(a));
+  if (s.effect->kind == "torque_constant")
+    ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
+  return {std::move(start),
+          {.most_steps = 3,
+           .most_refreshes = 1,
+           .close_enough = 1.0,
+           .covariance = false,
+           .share_enough = kAllTheSame,
+           .from = current.cost},
+          &current};
+}
+
+/// Of a kind, what no fit leads from one to the other: a drag that bends with a power of the speed and one
+/// with a knee differ in how much of it is linear.
+std::string FamilyOf(const Effect& effect) {
+  const bool knee = effect.kind == "viscous_nonlinear" && effect.order < 1.0;
+  return effect.kind + (knee ? " with a knee" : "");
+}
+
+bool Among(const std::vector<std::string>& families, const Scored& s) {
+  return std::find(families.begin(), families.end(), FamilyOf(*s.effect)) != families.end();
+}
+
+/// Of each kind the best only; sorted before.
+void OneOfEach(std::vector<Rival>& rivals) {
+  std::vector<Rival> out;
+  for (Rival& r : rivals)
+    if (std::none_of(out.begin(), out.end(), [&](const Rival& o) {
+          return o.effect().kind == r.effect().kind && o.no_fault == r.no_fault;
+        }))
+      out.push_back(std::move(r));
+  rivals = std::move(out);
+}
+
+/// Far from linear: the kind's whole grid at full size shows where to begin. A coupling that every screw has
+/// begins beside the best, which may be a softer one that stands for it.
+std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
+                           const std::vector<Scored>& scored) {
+  Place best, stiff;
+  const bool coupling = kind == "compliance" && !problem.nominal_.two_inertia;
+  for (Place& p : FullSize(problem, current, kind, scored)) {
+    Place& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
+    if (p.cost < of.cost) of = std::move(p);
+  }
+  std::vector<Beginning> out;
+  // The base's sensitivities serve until they lead astray.
+  for (Place* p : {&best, &stiff})
+    if (std::isfinite(p->cost))
+      out.push_back({std::move(p->point),
+                     {.most_steps = 8,
+                      .most_refreshes = 3,
+                      .close_enough = 1.0,
+                      .covariance = false,
+                      .share_enough = kAllTheSame,
+                      .from = current.cost,
+                      .hopeless_above = current.cost},
+                     &current});
+  return out;
+}
+
+}  // namespace
+
+bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
+
+bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const Gate& gate,
+                  const std::vector<std::string>& tried) {
+  return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+    return !Outside(s.effect->kind) && !Among(tried, s) && Promising(problem, s, gate);
+  });
+}
+
+namespace {
+
+/// Where fits of the best candidates begin that have not been tried; none where nothing beyond the gate is
+/// promised. `most`: the drop that the best of them is promised.
+std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current,
+                                      const std::vector<Scored>& scored, const Gate& gate,
+                                      std::vector<std::string>& tried, double& most) {
+  std::vector<Beginning> beginnings;
+  const std::vector<std::string> before = tried;
+  std::size_t fitted = 0, looked_at = 0;
+  bool outside = !before.empty(), promising = false;
+  most = 0.0;
+  for (const Scored& s : scored)
+    if (!Outside(s.effect->kind) && !Among(before, s)) most = std::max(most, s.drop);
+  for (const Scored& s : scored) {
+    if (Outside(s.effect->kind)) {
+      if (!outside && s.drop > most) beginnings.push_back(Near(problem, current, s));
+      outside = true;
+    } else {
+      // Evidence in the priors is small beside what lies in the residual, and as good.
+      const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, gate);
+      if (!by_priors && (fitted >= kMostKinds || looked_at >= kMostTried || s.drop < kFewOfMost * most))
+        continue;
+      if (Among(tried, s)) continue;
+      tried.push_back(FamilyOf(*s.effect));
+      ++looked_at;
+      if (!s.effect->start.empty()) {
+        if (!Promising(problem, s, gate)) continue;
+        std::vector<Beginning> far = Far(problem, current, s.effect->kind, scored);
+        if (far.empty() && by_priors) far.push_back(Near(problem, current, s));
+        if (far.empty()) continue;
+        promising = true;
+        std::move(far.begin(), far.end(), std::back_inserter(beginnings));
+        if (!by_priors) ++fitted;
+        continue;
+      }
+      beginnings.push_back(Near(problem, current, s));
+      if (!by_priors) ++fitted;
+    }
+    promising = promising || Promising(problem, s, gate);
+  }
+  if (!promising) beginnings.clear();
+  return beginnings;
+}
+
+/// Whether the score test promises enough to be tested beside the best; it says nothing about what is far
+/// from linear.
+bool MayMatter(const std::vector<Scored>& scored, const Rival& r, double best) {
+  if (!r.effect().start.empty()) return true;
+  return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+    return s.effect->kind == r.effect().kind && s.drop > kMayMatter * best - kSmallStill;
+  });
+}
+
+/// Where the stated numbers went too far, the fit may be in a wrong place: once more from where they are
+/// stated. One after the other, for the memory.
+void FitAllFromStated(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                      std::vector<Rival>& rivals) {
+  const FitEffort effort{.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false};
+  double best = 0.0;
+  for (Rival& r : rivals) {
+    if (Outside(r.effect().kind)) continue;
+    if (!InBase(problem, r.effect().kind) && !MayMatter(scored, r, best)) continue;
+    double worth = std::numeric_limits<double>::infinity();
+    if (!InBase(problem, r.effect().kind)) worth = current.cost - Penalty(r.effect()) - kMayMatter * best;
+    if (FitFromStated(problem, r.fit, effort, worth)) Judge(problem, current, r);
+    best = std::max(best, r.score);
+  }
+}
+
+/// Those below a share of the best one's score, never the first; sorted before and after.
+void GiveUpFarBehind(const Problem& problem, double share, std::vector<Rival>& rivals) {
+  for (Rival& r : rivals) {
+    if (&r == rivals.data() || r.given_up || InBase(problem, r.effect().kind)) continue;
+    r.given_up = r.score < share * std::max(0.0, rivals[0].score) - kSmallStill;
+    if (!r.given_up) continue;
+    Fit left;
+    left.point = std::move(r.fit.point);
+    left.cost = r.fit.cost;
+    left.promised = r.fit.promised;
+    r.fit = std::move(left);
+  }
+  Sort(rivals);
+}
+
+/// The worst of too many go, for the memory; sorted before.
+void KeepBest(const Problem& problem, std::vector<Rival>& rivals) {
+  std::size_t kept = 0;
+  std::erase_if(rivals, [&](const Rival& r) {
+    return !InBase(problem, r.effect().kind) && !Outside(r.effect().kind) && kept++ >= kMostKept;
+  });
+}
+
+}  // namespace
+
+std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                             const Gate& gate, std::vector<std::string>& tried) {
+  std::vector<Rival> out;
+  double best = kNever;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    double most = 0.0;
+    for (Fit& fit : FitPoints(problem, NextBeginnings(problem, current, scored, gate, tried, most))) {
+      out.push_back({std::move(fit)});
+      Judge(problem, current, out.back());
+      best = std::max(best, out.back().score);
+    }
+    // Where the best came to nothing, those far behind it have their turn.
+    if (best > kFewOfMost * most || !MorePromised(problem, scored, gate, tried)) break;
+  }
+  Sort(out);
+  KeepBest(problem, out);
+  FitAllFromStated(problem, current, scored, out);
+  Sort(out);
+  GiveUpFarBehind(problem, kGivenUp, out);
+  return out;
+}
+
+bool MayHold(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate) {
+  return std::any_of(rivals.begin(), rivals.end(), [&](const Rival& r) {
+    if (r.given_up) return false;
+    const Showing showing = gate.accepted > 0 ? ShowingOf(problem, r.fit) : Showing{};
+    return r.score + r.fit.promised > kNearGate * Threshold(problem, gate, r.effect(), showing);
+  });
+}
+
+namespace {
+
+/// The base may lie in another valley since: from there anew, where the score test promises far more than a
+/// rival has, and enough to matter.
+void FitAnew(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
+  const double matters = kMayMatter * rivals[0].score;
+  std::vector<std::size_t> again;
+  std::vector<Beginning> beginnings;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    Rival& r = rivals[i];
+    const bool by_priors = InBase(problem, r.effect().kind);
+    if (!by_priors && (!r.effect().signals || OfAnotherLaw(problem, current))) continue;
+    const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
+    const double promised = s.drop - Penalty(*s.effect);
+    if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;
+    if (!by_priors && promised < matters) continue;
+    again.push_back(i);
+    beginnings.push_back(Near(problem, current, s));
+  }
+  if (again.empty()) return;
+  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
+  std::vector<std::size_t> on;
+  beginnings.clear();
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    Rival& r = rivals[again[i]];
+    Rival anew{std::move(fits[i])};
+    Judge(problem, current, anew);
+    // Where three steps have not led below the base, more of them do not win.
+    const double least = InBase(problem, r.effect().kind) ? r.score : std::max(r.score, matters);
+    if (anew.score < 0.0 || anew.score + anew.fit.promised < least) continue;
+    on.push_back(again[i]);
+    fits[on.size() - 1] = std::move(anew.fit);
+  }
+  for (std::size_t i = 0; i < on.size(); ++i)
+    beginnings.push_back(
+        {fits[i].point, {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3}, nullptr, &fits[i]});
+  fits = FitPoints(problem, std::move(beginnings));
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    Rival anew{std::move(fits[i])};
+    Judge(problem, current, anew);
+    if (anew.score > rivals[on[i]].score) rivals[on[i]] = std::move(anew);
+  }
+}
+
+}  // namespace
+
+void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) {
+  Rewhiten(problem, current);
+  for (Rival& r : rivals) {
+    if (r.given_up) continue;
+    RewhitenResidual(problem, r.fit);
+    Judge(problem, current, r);
+  }
+  Sort(rivals);
+  // What will not be tested needs no sensitivities.
+  GiveUpFarBehind(problem, kMayMatter, rivals);
+  for (Rival& r : rivals)
+    if (!r.given_up) RewhitenSensitivities(problem, r.fit);
+  // A valley may end in two places: the base goes on from where the best rival's lies, where that is lower.
+  Point other = rivals[0].fit.point;
+  other.effects.pop_back();
+  other.amplitudes.pop_back();
+  const bool there = CostAt(problem, other) < current.cost;
+  const double best = rivals[0].score;
+  // A base is as well known as the scores need it.
+  std::vector<Beginning> beginnings = {
+      {there ? std::move(other) : current.point,
+       {.most_steps = 10, .most_refreshes = 3, .close_enough = std::max(0.1, kAllTheSame * best)},
+       nullptr,
+       there ? nullptr : &current}};
+  std::vector<std::size_t> again;
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    const Rival& r = rivals[i];
+    if (r.given_up) continue;
+    if (i > 0 && r.score < kMayWin * best - kSmallStill) continue;
+    again.push_back(i);
+    beginnings.push_back({r.fit.point,
+                          {.most_steps = i == 0 ? 10 : 5,
+                           .most_refreshes = i == 0 ? 4 : 1,
+                           .close_enough = i == 0 ? 0.1 : 0.3,
+                           .covariance = i == 0,
+                           .share_enough = i == 0 ? 0.02 * kAllTheSame : kAllTheSame,
+                           .from = current.cost},
+                          nullptr,
+                          &rivals[i].fit});
+  }
+  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
+  current = std::move(fits[0]);
+  for (std::size_t i = 0; i < again.size(); ++i) rivals[again[i]].fit = std::move(fits[i + 1]);
+  for (Rival& r : rivals)
+    if (!r.given_up) Judge(problem, current, r);
+  const Effect* const first = &rivals[0].effect();
+  if (!rivals[0].no_fault) FitAnew(problem, current, rivals);
+  Sort(rivals);
+  OneOfEach(rivals);
+  if (&rivals[0].effect() != first)
+    rivals[0].fit = FitOn(problem, std::move(rivals[0].fit), {.most_steps = 3, .most_refreshes = 2});
+}
+
+double TestedScore(const Problem& problem, const Fit& current, const Rival& rival) {
+  const SharedEffect& effect = rival.fit.point.effects.back();
+  double drop = rival.score + Penalty(*effect);
+  double most = std::numeric_limits<double>::infinity();
+  // Luck does not go that far; a base that lies elsewhere without the effect does.
+  if (drop < kNoLuck && effect->start.empty() && !InBase(problem, effect->kind)) {
+    const Scored again = ScoreEffects(problem, current, {effect})[0];
+    if (again.drop < kSmall) drop = std::min(drop, again.drop);
+    // An effect that is there makes its score scatter from block to block, but not as a single event does.
+    most = kMostExcess * again.drop / again.excess;
+  }
+  return std::min(drop / ExcessOfLast(problem, rival.fit), most) - Penalty(*effect);
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,67 @@
+#include "analysis/diagnosis/decision/verdict.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/experiments.h"
+#include "analysis/diagnosis/decision/rivals.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Of what there is to explain, causes by their right names leave less than a hundredth, others a tenth and
+// more.
+constexpr double kLargeShare = 0.04;
+// A torque that is left says little about an error of the lead, which shows on the scale alone.
+constexpr double kLargeBesideScale = 0.3;
+
+std::string LeftoverText(const Problem& problem, const Leftover& left) {
+  const bool linear = problem.log_.linear;
+  std::array<char, 200> size{};
+  std::snprintf(size.data(), size.size(), "chi^2 falls by %.0f where %.0f is chance; most at %s: %+.3g %s",
+                left.drop, left.bins, left.at.c_str(), linear ? left.amount : 1e3 * left.amount,
+                linear ? "N" : "mN m");
+  return "What is left depends on " + left.over + " (" + size.data() +
+         "). To see more of it: " + DecidingExperiment(problem, left.like, {}).text;
+}
+
+std::string NearestText(const std::vector<Cause>& causes) {
+  std::string text = "Of the known causes these come nearest, and leave too much: ";
+  for (const Cause& c : causes) text += (&c == causes.data() ? "" : ", ") + c.kind;
+  return text + ".";
+}
+
+}  // namespace
+
+void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnosis& out) {
+  const bool something = left[0].score > left[0].asked;
+  double beyond = 0.0, named = 0.0;
+  for (const Leftover& one : left)
+    if (one.score > one.asked && !(one.series && !out.causes.empty()))
+      beyond = std::max(beyond, one.drop - one.bins);
+  // A shape that was fitted, but is none of the catalogue, is no explanation either.
+  for (const Cause& c : out.causes) (Outside(c.kind) ? beyond : named) += 2.0 * c.log_evidence_gain;
+  const bool scale = !out.causes.empty() && out.causes[0].kind == "pitch_error";
+  const bool unexplained = beyond > (scale ? kLargeBesideScale : kLargeShare) * (named + beyond);
+  for (const Cause& c : out.causes)
+    if (Outside(c.kind))
+      out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
+                          c.kind.substr(std::string_view(kOutside).size()) + ".");
+  std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind); });
+  if (something) out.notes.push_back(LeftoverText(problem, left[0]));
+  if (unexplained) {
+    if (!out.causes.empty()) out.notes.push_back(NearestText(out.causes));
+    out.verdict = Verdict::kUnexplained;
+    out.causes.clear();
+    for (Candidate& c : out.candidates) c.accepted = false;
+  } else if (out.causes.empty()) {
+    out.verdict = Verdict::kNothingFound;
+  } else {
+    out.verdict = out.causes[0].indistinguishable_from.empty() ? Verdict::kCauseFound : Verdict::kAmbiguous;
+  }
+}
+
+}  // namespace contour::diagnosis

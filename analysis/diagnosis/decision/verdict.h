@@ -1,0 +1,15 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/diagnosis/adequacy/leftover.h"
+#include "analysis/diagnosis/result/finding.h"
+
+namespace contour::diagnosis {
+
+/// From the causes that were accepted and from what they leave, the largest first: the verdict, and notes in
+/// plain words. Where what is left exceeds what is asked of it and is a large part of all there is to
+/// explain, no cause keeps its name.
+void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnosis& out);
+
+}  // namespace contour::diagnosis

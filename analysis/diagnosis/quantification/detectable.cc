@@ -1,0 +1,241 @@
+#include "analysis/diagnosis/quantification/detectable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/parameters.h"
+#include "analysis/diagnosis/screening/full_size.h"
+#include "analysis/prediction_error/products.h"
+#include "analysis/prediction_error/simd/lanes.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Beyond this, the first amplitude of a kind is no small flaw any more but another machine.
+double Largest(const Problem& p, const std::string& kind) {
+  const Signals& s = *p.signals_;
+  const double Fc = s.coulomb;
+  if (kind == "constant_torque" || kind == "cogging" || kind == "periodic_force") return 0.7 * Fc;
+  if (kind == "cable_spring" || kind == "viscous_nonlinear") return 1.5 * Fc;
+  if (kind == "temperature_viscosity") return 0.15;
+  if (kind == "torque_saturation") return 0.3;
+  if (kind == "torque_constant") return 0.35;
+  if (kind == "payload_step") return 1.0;
+  if (kind == "input_delay" || kind == "current_lag") return 3.0 * p.log_.period_s;
+  if (kind == "backlash") return 200e-6 / p.stated_.table_per_q;
+  if (kind == "encoder_eccentricity" || kind == "encoder_subdivision") return 0.02 / s.angle_per_q;
+  if (kind == "pitch_error") return 1e-3;
+  if (kind == "cross_coupling") {
+    double top = 0.0;
+    for (const double a : s.axis2_m_s2) top = std::max(top, std::fabs(a));
+    return top > 0.01 ? Fc / top : 0.0;
+  }
+  if (kind == "stribeck" || kind == "compliance") return 1.5;
+  return 0.7;
+}
+
+// A cause must also hold in several blocks, in unseen halves and against its rivals, and the rest of the fit
+// takes a part of it over: by recorded machines (docs/diagnosis_results.md).
+constexpr double kBeyondTheGate = 1.6;
+// The same where the size comes from runs at that size.
+constexpr double kBeyondRuns = 1.5;
+
+// A log is good for a kind while such a flaw would show by this much less.
+constexpr double kHopeless = 1.5;
+
+// Standard deviations that 90 % of cases stay within on one side.
+constexpr double kNinety = 1.2816;
+
+/// Standard errors that exceed a threshold of the squared score in 90 % of cases.
+double Needed(double threshold) { return std::sqrt(std::max(threshold, 1.0)) + kNinety; }
+
+double Needed(const Problem& problem, const Gate& gate, const Scored& s) {
+  return Needed(Threshold(problem, gate, *s.effect, ShowingOf(problem, s)) + Penalty(*s.effect));
+}
+
+/// An effect that is there makes every score scatter.
+double ByChance(const Scored& s) { return std::min(s.excess, kMostExcess); }
+
+/// By the first amplitude: the linear estimate of what exceeds the gate in 90 % of cases.
+double LinearSize(const Problem& problem, const Gate& gate, const Scored& s) {
+  const std::string& kind = s.effect->kind;
+  if (InBase(problem, kind)) {
+    // What is stated is as far off as its uncertainty says, and an effect may have to begin on the other
+    // side.
+    double variance = s.covariance(0, 0);
+    const std::vector<std::size_t> terms = FreedTerms(problem, kind);
+    if (!terms.empty()) variance += std::pow(problem.terms_[terms[0]].sigma, 2);
+    return Needed(problem, gate, s) * std::sqrt(variance);
+  }
+  // The mean standard error over the amplitudes; a shape may lie along any of them.
+  const double n = static_cast<double>(s.covariance.rows());
+  return Needed(problem, gate, s) * std::sqrt(std::max(0.0, s.covariance.trace() / n) * ByChance(s));
+}
+
+/// An effect and the first amplitude that is found in 90 % of cases.
+struct Detectable {
+  SharedEffect effect;
+  double gate = 0.0;  ///< exceeds the gate
+  double size = 0.0;  ///< passes everything
+};
+
+/// Of a shape that is not known (an exponent, an instant, a ratio) the one in the middle; of several lengths
+/// of one shape the best, as the score test has it.
+std::optional<Detectable> Middle(const Problem& problem, const Gate& gate, std::span<const Scored> scored,
+                                 const std::string& kind) {
+  std::vector<std::pair<double, const Scored*>> shapes;
+  for (const Scored& s : scored) {
+    if (s.effect->kind != kind) continue;
+    const auto longer = [&](const Scored& other) { return other.effect->shorter == s.effect; };
+    if (std::any_of(scored.begin(), scored.end(), longer)) continue;
+    double least = LinearSize(problem, gate, s);
+    const Scored* best = &s;
+    for (const Scored& other : scored) {
+      const double size = LinearSize(problem, gate, other);
+      if (other.effect != s.effect->shorter || size >= least) continue;
+      least = size;
+      best = &other;
+    }
+    if (std::isfinite(least)) shapes.emplace_back(least, best);
+  }
+  if (shapes.empty()) return std::nullopt;
+  std::sort(shapes.begin(), shapes.end());
+  const auto& [size, at] = shapes[(shapes.size() - 1) / 2];
+  return Detectable{at->effect, size, (InBase(problem, kind) ? 1.0 : kBeyondTheGate) * size};
+}
+
+/// A point beside the base, with a first amplitude.
+Point Beside(const Fit& base, const SharedEffect& effect, double first) {
+  Point p = base.point;
+  p.effects.push_back(effect);
+  p.amplitudes.push_back(effect->start.empty() ? std::vector<double>(effect->steps.size(), 0.0)
+                                               : effect->start);
+  p.amplitudes.back()[0] = first;
+  return p;
+}
+
+/// Products of what is left of runs with an effect once the base has followed to first order; on the diagonal
+/// the drop that finding the effect promises.
+Eigen::MatrixXd LeftOf(const Problem& problem, const Fit& base, std::span<const Point> points) {
+  std::vector<std::vector<double>> runs = problem.Residuals(points);
+  std::vector<const double*> columns;
+  Eigen::MatrixXd onto(base.jacobian.cols(), static_cast<Eigen::Index>(runs.size()));
+  for (std::vector<double>& r : runs) {
+    for (std::size_t k = 0; k < r.size(); ++k) r[k] -= base.residual[k];
+    onto.col(static_cast<Eigen::Index>(columns.size())) = GradientOf(base.jacobian, r);
+    columns.push_back(r.data());
+  }
+  return ProductsOf(columns, columns, problem.data_size()) - onto.transpose() * base.covariance * onto;
+}
+
+/// What begins far from linear shows by runs at several sizes how it grows. Its fit begins where the linear
+/// test promises something, which knows the columns at the grid's places only.
+std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const Gate& gate,
+                                 std::span<const Scored> scored, const Detectable& linear) {
+  std::vector<double> sizes;
+  std::vector<Point> points;
+  const double largest = linear.effect->high[0];
+  for (double size = 0.5 * linear.gate; size < largest && points.size() < kLanes; size *= 2.0) {
+    sizes.push_back(size);
+    points.push_back(Beside(base, linear.effect, size));
+  }
+  double enough = 0.0;
+  std::vector<double> promising;
+  for (const Scored& s : scored) {
+    if (s.effect == linear.effect) enough = std::pow(Needed(problem, gate, s), 2) * ByChance(s);
+    if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
+    points.push_back(Beside(base, s.effect, s.effect->steps[0]));
+    promising.push_back(kMostExcess * std::pow(Needed(problem, gate, s) - kNinety, 2));
+  }
+  const Eigen::MatrixXd left = LeftOf(problem, base, points);
+  const auto n = static_cast<Eigen::Index>(sizes.size());
+  // The drop over what is asked for, at its worst.
+  std::vector<double> over;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    double promise = 0.0;
+    for (std::size_t g = 0; g < promising.size(); ++g) {
+      const Eigen::Index at = n + static_cast<Eigen::Index>(g);
+      promise = std::max(promise, std::pow(left(i, at), 2) / left(at, at) / promising[g]);
+    }
+    over.push_back(std::min(left(i, i) / enough, promise));
+  }
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (!(over[i] > 1.0)) continue;
+    double size = sizes[i];
+    if (i > 0 && over[i - 1] > 0.0) size *= std::exp2(-std::log(over[i]) / std::log(over[i] / over[i - 1]));
+    return Detectable{linear.effect, size, kBeyondRuns * size};
+  }
+  return std::nullopt;
+}
+
+/// The stiffest coupling that shows at its usual share of the inertia and is a fault: its place in the grid.
+std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, const Gate& gate,
+                                   std::span<const Scored> scored) {
+  std::vector<Point> points;
+  std::vector<const Scored*> places;
+  for (const Scored& s : scored) {
+    if (s.effect->kind != "compliance" || s.effect->start.empty() || s.effect->order > kNoFault_Hz) continue;
+    places.push_back(&s);
+    points.push_back(Beside(base, s.effect, s.effect->start[0]));
+  }
+  if (points.empty()) return std::nullopt;
+  const Eigen::VectorXd promised = LeftOf(problem, base, points).diagonal();
+  const Scored* best = nullptr;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double enough = std::pow(kBeyondRuns * Needed(problem, gate, *places[i]), 2) * ByChance(*places[i]);
+    if (promised(static_cast<Eigen::Index>(i)) > enough &&
+        (best == nullptr || places[i]->effect->order > best->effect->order))
+      best = places[i];
+  }
+  if (best == nullptr) return std::nullopt;
+  const double share = best->effect->start[0];
+  return Detectable{best->effect, share, share};
+}
+
+std::optional<Detectable> Smallest(const Problem& problem, const Fit& base, const Gate& gate,
+                                   std::span<const Scored> scored, const std::string& kind) {
+  std::optional<Detectable> d = Middle(problem, gate, scored, kind);
+  if (!d || InBase(problem, kind) || d->effect->start.empty()) return d;
+  if (kind == "compliance") return Stiffest(problem, base, gate, scored);
+  return ByRuns(problem, base, gate, scored, *d);
+}
+
+}  // namespace
+
+void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
+                    const Jitter& jitter, const Gate& gate, std::span<const std::string> only,
+                    Diagnosis& out) {
+  for (const std::string_view kind_view : kKinds) {
+    const std::string kind(kind_view);
+    if (!only.empty() && std::find(only.begin(), only.end(), kind) == only.end()) continue;
+    const std::optional<Detectable> d = Smallest(problem, base, gate, scored, kind);
+    if (!d || d->gate > kHopeless * Largest(problem, kind)) continue;
+    Fit at;
+    at.point = base.point;
+    // Numbers of the model deviate from what is stated.
+    if (InBase(problem, kind)) std::fill(at.point.base.begin(), at.point.base.end(), 0.0);
+    // Softer is the fault.
+    const bool stiffness = kind == "compliance" && InBase(problem, kind);
+    at.point = Beside(at, d->effect, stiffness ? -d->size : d->size);
+    const auto count = static_cast<Eigen::Index>(ParameterCount(at.point));
+    at.covariance = Eigen::MatrixXd::Zero(count, count);
+    Cause described;
+    described.kind = kind;
+    DescribeEffect(problem, at, at.point.effects.size() - 1, described);
+    const std::string name = MainParameter(kind);
+    out.smallest_detectable[kind][name] = std::fabs(described.parameters[name].value);
+  }
+  if (jitter.tested) {
+    out.smallest_detectable["sample_jitter"]["rms_us"] =
+        1e6 * std::sqrt(kBeyondTheGate * Needed(Threshold(problem, gate) + 3.0) * jitter.sigma_s2);
+  }
+  out.not_excited.clear();
+  for (const std::string_view kind : kKinds)
+    if (!out.smallest_detectable.contains(std::string(kind))) out.not_excited.emplace_back(kind);
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/diagnosis/result/finding.h"
+
+namespace contour::diagnosis {
+
+/// What was found, how sure, what it gains and what to do next, in plain words; lines of at most 100
+/// characters.
+std::string DiagnosisText(const Diagnosis& diagnosis);
+
+/// The first sentence of it.
+std::string VerdictText(const Diagnosis& diagnosis);
+
+}  // namespace contour::diagnosis

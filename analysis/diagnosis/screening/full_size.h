@@ -1,0 +1,26 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnosis/screening/score.h"
+#include "analysis/prediction_error/fit.h"
+
+namespace contour::diagnosis {
+
+/// A coupling above is one that every screw has.
+inline constexpr double kNoFault_Hz = 700.0;
+
+/// A place of a grid at full size, and what the cost would be there, the base following to first order.
+struct Place {
+  Point point;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+/// The places of a kind's whole grid, in several sizes, at which the cost would be lower than the fit's.
+/// Where the score test promises much, an excerpt of the log says first which of them are worth the whole.
+std::vector<Place> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
+                            const std::vector<Scored>& scored);
+
+}  // namespace contour::diagnosis

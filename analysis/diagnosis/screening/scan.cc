@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/screening/score.h"
+
+// Waves of the motor's angle and of time by matched filters: the response of the white innovation to a pulse
+// of torque (or of the reading) is that of the linear observer, friction left out; one transform gives all
+// orders.
+namespace contour::diagnosis {
+namespace {
+
+// Fewer periods of friction over the travel than this are friction along the stroke, whose cosines cover
+// them.
+constexpr double kFewestPeriods = 4.5;
+
+// A force held over a row hardly moves anything near half the rate: nothing divided by nothing.
+constexpr double kHighestPerRow = 0.4;
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr std::size_t kResponse = 256;
+constexpr std::size_t kTransfer = 4096;
+
+struct Matched {
+  std::vector<double> lambda;    // gradient of |r|^2 / 2 by a pulse at each row
+  std::vector<double> transfer;  // |response|^2 by frequency, kTransfer / 2 bins up to half the rate
+  double At(double cycles_per_row) const {
+    const double f = std::fabs(cycles_per_row) * kTransfer;
+    const auto i = static_cast<std::size_t>(f);
+    return i + 1 < transfer.size() ? transfer[i] : 0.0;
+  }
+};
+
+Matched Match(const Problem& problem, bool reading, Signal gradient) {
+  const std::vector<double> h = PulseResponse(problem, reading);
+  Matched m;
+  m.lambda = std::move(gradient);
+  std::vector<double> re(kTransfer, 0.0), im(kTransfer, 0.0);
+  std::copy(h.begin(), h.end(), re.begin());
+  FourierTransform(re, im, false);
+  m.transfer.resize(kTransfer / 2 + 1);
+  for (std::size_t i = 0; i < m.transfer.size(); ++i) m.transfer[i] = re[i] * re[i] + im[i] * im[i];
+  return m;
+}
+
+struct Peak {
+  double order = 0.0, score = -1.0;
+};
+
+// Best `count` orders, apart by more than `apart`.
+std::vector<double> Best(std::vector<Peak> peaks, std::size_t count, double apart) {
+  std::stable_sort(peaks.begin(), peaks.end(),
+                   [](const Peak& a, const Peak& b) { return a.score > b.score; });
+  std::vector<double> out;
+  for (const Peak& p : peaks) {
+    if (out.size() == count || p.score <= 0.0) break;
+    if (std::all_of(out.begin(), out.end(), [&](double o) { return std::fabs(o - p.order) > apart; }))
+      out.push_back(p.order);
+  }
+  return out;
+}
+
+struct Histogram {
+  std::vector<double> weight, speed;  // speed in rad of motor angle per row
+  double InformationAt(const Matched& m, double order) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < weight.size(); ++i) sum += weight[i] * m.At(order * speed[i] / kTwoPi);
+    return 0.5 * sum;
+  }
+};
+
+// Spectrum over the angle of the weighted gradient: score of every order up to `highest`. Folded onto one
+// turn, it has the integer orders and no others.
+std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
+                              const std::vector<double>& weight, double highest, bool folded) {
+  const Signals& s = *problem.signals_;
+  const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
+  const double revs = std::max(1.0, (*high - *low) / kTwoPi);
+  const double per_rev = std::exp2(std::ceil(std::log2(4.0 * highest)));
+  const auto length = folded ? static_cast<std::size_t>(per_rev)
+                             : std::bit_ceil(static_cast<std::size_t>(per_rev * revs * 2.0) + 2);
+  std::vector<double> re(length, 0.0), im(length, 0.0);
+  Histogram histogram;
+  constexpr std::size_t kBins = 200;
+  histogram.weight.assign(kBins, 0.0);
+  histogram.speed.assign(kBins, 0.0);
+  double fastest = 1e-12;
+  const std::size_t n = problem.rows();
+  std::vector<double> speed(n);
+  for (std::size_t k = 1; k < n; ++k) {
+    speed[k] = std::fabs(s.velocity[k]) * problem.log_.period_s * s.angle_per_q;
+    fastest = std::max(fastest, speed[k]);
+  }
+  for (std::size_t i = 0; i < kBins; ++i)
+    histogram.speed[i] = fastest * std::pow((static_cast<double>(i) + 0.5) / kBins, 2);
+  for (std::size_t k = 0; k < n; ++k) {
+    if (problem.counted_[k] == 0 || weight[k] == 0.0) continue;
+    const auto bin = static_cast<std::size_t>((s.angle_rad[k] - *low) / kTwoPi * per_rev + 0.5);
+    re[bin & (length - 1)] += weight[k] * matched.lambda[k];
+    const auto b = std::min(kBins - 1, static_cast<std::size_t>(std::sqrt(speed[k] / fastest) * kBins));
+    histogram.weight[b] += weight[k] * weight[k] * problem.root_weight_[k] * problem.root_weight_[k];
+  }
+  FourierTransform(re, im, false);
+  std::vector<Peak> out;
+  const double step = per_rev / static_cast<double>(length);
+  double info = 0.0, info_at = -1.0;
+  for (std::size_t i = 1; i < length / 2; ++i) {
+    const double order = step * static_cast<double>(i);
+    if (order > highest) break;
+    if (order > info_at * 1.01 + 0.02 || info_at < 0.0) {
+      info = histogram.InformationAt(matched, order);
+      info_at = order;
+    }
+    if (info > 0.0) out.push_back({order, (re[i] * re[i] + im[i] * im[i]) / info});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> PulseResponse(const Problem& problem, bool reading) {
+  // In the middle of the longest slide.
+  const Signals& s = *problem.signals_;
+  const std::size_t n = problem.rows();
+  const double slow = 0.02 * s.max_speed;
+  std::size_t row = n / 2, longest = 0, since = 0;
+  for (std::size_t k = 1; k <= n; ++k) {
+    const bool slides = k < n && problem.counted_[k] != 0 && std::fabs(s.velocity[k]) > slow &&
+                        (s.velocity[k] > 0.0) == (s.velocity[k - 1] > 0.0);
+    if (slides) continue;
+    if (k - since > longest) {
+      longest = k - since;
+      row = (since + k) / 2;
+    }
+    since = k;
+  }
+  return problem.noise_.Pulse(std::min(row, n > kResponse + 2 ? n - kResponse - 2 : 0), reading, kResponse,
+                              problem.counted_);
+}
+
+std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
+  const Signals& s = *problem.signals_;
+  const std::size_t n = problem.rows();
+  std::vector<SharedEffect> out;
+  // The grid is what was looked at: every order up to the highest, every frequency that the log resolves.
+  const auto add = [&](Wave wave, const std::vector<double>& orders, double grid) {
+    for (const double o : orders) out.push_back(WaveEffect(problem, wave, o, grid));
+  };
+  std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + static_cast<std::ptrdiff_t>(n));
+  NoiseFilter::Gradient back = problem.noise_.Back(innovation, problem.counted_, problem.root_weight_.data());
+  for (double& x : back.level) x /= s.coulomb;
+  const Matched torque = Match(problem, false, std::move(back.motor));
+  const Matched level{std::move(back.level), torque.transfer};
+  // Stuck, the axis hardly answers to a torque: the information is in the slides.
+  std::vector<double> sliding(n), loaded(n);
+  double torque_scale = 1e-300;
+  for (std::size_t k = 0; k < n; ++k) torque_scale = std::max(torque_scale, std::fabs(s.model_torque[k]));
+  for (std::size_t k = 0; k < n; ++k) {
+    sliding[k] = std::fabs(s.sign[k]) > kFollowsMotion ? 1.0 : 0.0;
+    loaded[k] = sliding[k] * s.model_torque[k] / torque_scale;
+  }
+  const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
+  const double revs = (*high - *low) / kTwoPi;
+  if (revs > 1.5) {
+    add(Wave::kFrictionOfAngle, Best(AngleScores(problem, level, sliding, 40.0, true), 2, 0.5), 40.0);
+    std::vector<Peak> between;
+    if (revs > 5.0)
+      for (const Peak& p : AngleScores(problem, level, sliding, 20.0, false))
+        if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > kFewestPeriods / revs)
+          between.push_back(p);
+    add(Wave::kFrictionOfAngle, Best(std::move(between), 2, 1.0 / revs), 20.0 * revs);
+    add(Wave::kTorqueOfAngle, Best(AngleScores(problem, torque, sliding, 144.0, true), 2, 0.5), 144.0);
+    add(Wave::kGainOfAngle, Best(AngleScores(problem, torque, loaded, 144.0, true), 1, 0.5), 144.0);
+  }
+  if (revs > 0.05) {
+    const Matched reading = Match(problem, true, std::move(back.reading));
+    std::vector<Peak> lines = AngleScores(problem, reading, std::vector<double>(n, 1.0), 4096.0, true);
+    std::erase_if(lines, [](const Peak& peak) { return peak.order < 8.0; });
+    add(Wave::kReadingOfAngle, Best(std::move(lines), 2, 0.5), 4096.0);
+  }
+  // Time: one transform of the gradient.
+  const std::size_t length = std::bit_ceil(2 * n);
+  std::vector<double> re(length, 0.0), im(length, 0.0);
+  double moving = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    re[k] = sliding[k] * torque.lambda[k];
+    moving += sliding[k] * problem.root_weight_[k] * problem.root_weight_[k];
+  }
+  FourierTransform(re, im, false);
+  std::vector<Peak> time;
+  for (std::size_t i = 1; i < length / 2; ++i) {
+    const double f = static_cast<double>(i) / static_cast<double>(length);
+    if (f * static_cast<double>(n) < 6.0 || f > kHighestPerRow) continue;
+    time.push_back({f / problem.log_.period_s,
+                    2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
+  }
+  add(Wave::kForceOfTime, Best(time, 2, 2.0 / (static_cast<double>(n) * problem.log_.period_s)),
+      0.5 * static_cast<double>(n));
+  return out;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,252 @@
+#include "analysis/diagnosis/screening/score.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/prediction_error/common_factor.h"
+#include "analysis/prediction_error/products.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Products of columns with each other and, in blocks of time, with the residual.
+ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<const double* const> a,
+                          std::span<const double* const> b) {
+  return MakeProductsInBlocks(a, b, fit.residual.data(), problem.rows(), problem.data_size(),
+                              static_cast<std::size_t>(kBlocks));
+}
+
+double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
+  const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
+  return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
+}
+
+}  // namespace
+
+std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& kind) {
+  std::vector<std::string> names;
+  if (kind == "stribeck") names = {"Fs", "vs"};
+  if (kind == "input_delay") names = {"delay"};
+  if (kind == "current_lag") names = {"lag"};
+  if (kind == "compliance") names = {"stiffness", "damping"};
+  std::vector<std::size_t> out;
+  for (const std::string& name : names)
+    for (std::size_t i = 0; i < problem.terms_.size(); ++i)
+      if (problem.terms_[i].name == name) out.push_back(i);
+  return out;
+}
+
+bool InBase(const Problem& problem, const std::string& kind) {
+  return kind == "torque_constant" || !FreedTerms(problem, kind).empty();
+}
+
+double ExcessOfLast(const Problem& problem, const Fit& fit) {
+  if (InBase(problem, fit.point.effects.back()->kind)) return 1.0;
+  const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
+  const Eigen::Index others = fit.jacobian.cols() - n;
+  const Eigen::MatrixXd blocks = InBlocks(problem, fit, {}, ColumnsOf(fit.jacobian)).with_r;
+  Eigen::MatrixXd normal = fit.normal;
+  for (std::size_t i = 0; i < fit.point.base.size(); ++i)
+    normal(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) +=
+        std::pow(problem.terms_[i].sigma, -2);
+  const Eigen::MatrixXd onto =
+      normal.topLeftCorner(others, others).ldlt().solve(normal.topRightCorner(others, n));
+  const Eigen::MatrixXd information =
+      normal.bottomRightCorner(n, n) - normal.topRightCorner(others, n).transpose() * onto;
+  const Eigen::MatrixXd projected = blocks.bottomRows(n) - onto.transpose() * blocks.topRows(others);
+  return Excess(projected, information.ldlt().solve(Eigen::MatrixXd::Identity(n, n)));
+}
+
+double Penalty(const Effect& effect) {
+  return 3.0 * static_cast<double>(effect.steps.size()) + 2.0 * std::log(std::max(1.0, effect.grid));
+}
+
+namespace {
+
+// How a column gets its numbers.
+enum class Means { kSignals, kRuns, kTerm };
+Means MeansOf(const Effect& e) {
+  return e.signals ? Means::kSignals : (e.as_term.empty() ? Means::kRuns : Means::kTerm);
+}
+
+// White columns by runs.
+std::vector<std::vector<double>> RunColumns(const Problem& problem, const Fit& fit,
+                                            std::span<const SharedEffect> effects) {
+  std::vector<Point> points;
+  std::vector<double> steps;
+  for (const SharedEffect& e : effects)
+    for (std::size_t i = 0; i < e->tested; ++i) {
+      Point p = fit.point;
+      p.effects.push_back(e);
+      p.amplitudes.emplace_back(e->steps.size(), 0.0);
+      p.amplitudes.back()[i] += e->steps[i];
+      points.push_back(std::move(p));
+      steps.push_back(e->steps[i]);
+    }
+  std::vector<std::vector<double>> columns = problem.Residuals(points);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (std::size_t k = 0; k < columns[c].size(); ++k)
+      columns[c][k] = (columns[c][k] - fit.residual[k]) / steps[c];
+  return columns;
+}
+
+// White columns of what acts as a base term does from a row on.
+std::vector<std::vector<double>> TermColumns(const Problem& problem, const Fit& fit,
+                                             std::span<const SharedEffect> effects) {
+  const AxisModel m = problem.Build(fit.point);
+  const AxisModel& stated = problem.nominal_;
+  // The term moves the logarithm of its own inertia, the effect a share of the whole stated one.
+  const double factor =
+      (stated.motor_inertia + stated.load_inertia) / (m.two_inertia ? m.load_inertia : m.motor_inertia);
+  std::vector<std::vector<double>> columns;
+  for (const SharedEffect& e : effects) {
+    const auto term = std::find_if(problem.terms_.begin(), problem.terms_.end(),
+                                   [&](const BaseTerm& t) { return t.name == e->as_term; });
+    std::vector<double> column(problem.data_size(), 0.0);
+    if (term != problem.terms_.end()) {
+      const double* from = fit.jacobian.col(term - problem.terms_.begin()).data();
+      for (std::size_t base = 0; base < column.size(); base += problem.rows())
+        for (std::size_t k = base + e->from_row; k < base + problem.rows(); ++k) column[k] = factor * from[k];
+    }
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+class Scorer {
+ public:
+  Scorer(const Problem& problem, const Fit& fit)
+      : problem_(problem),
+        fit_(fit),
+        base_columns_(ColumnsOf(fit.jacobian)),
+        base_blocks_(InBlocks(problem, fit, {}, base_columns_).with_r) {}
+
+  /// Every effect with all its columns, then as much shorter as it may be.
+  void Score(std::span<const SharedEffect> effects, std::span<const std::vector<double>> columns,
+             std::vector<Scored>& out) const {
+    std::vector<const double*> all;
+    for (const std::vector<double>& c : columns) all.push_back(c.data());
+    const ProductsInBlocks with_base = InBlocks(problem_, fit_, base_columns_, all);
+    std::size_t first = 0;
+    for (const SharedEffect& effect : effects) {
+      const std::span<const double* const> own = std::span(all).subspan(first, effect->tested);
+      const Eigen::MatrixXd square = ProductsOf(own, own, problem_.data_size());
+      const auto at = static_cast<Eigen::Index>(first);
+      for (SharedEffect e = effect; e; e = e->shorter) {
+        const auto m = static_cast<Eigen::Index>(e->tested);
+        out.push_back(ScoreOne(e, with_base.products.middleCols(at, m), square.topLeftCorner(m, m),
+                               with_base.with_r.middleRows(at, m)));
+      }
+      first += effect->tested;
+    }
+  }
+
+ private:
+  /// What the cost falls by when the prior P of the terms that the kind frees is taken away: with x their
+  /// deviations and C their covariance, x'Px + x'P (C^-1 - P)^-1 Px.
+  void Free(Scored& s) const {
+    if (s.effect->kind == "torque_constant") {
+      const CommonFactor common = FindCommonFactor(problem_, fit_.point);
+      s.amplitude(0) = std::expm1(common.log_ratio);
+      s.covariance(0, 0) = common.sigma * common.sigma;
+      s.drop = common.drop;
+      return;
+    }
+    const std::vector<std::size_t> terms = FreedTerms(problem_, s.effect->kind);
+    const auto n = std::min(static_cast<Eigen::Index>(terms.size()), s.amplitude.size());
+    Eigen::VectorXd x(n), prior(n);
+    Eigen::MatrixXd c(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::size_t t = terms[static_cast<std::size_t>(i)];
+      x(i) = fit_.point.base[t];
+      prior(i) = std::pow(problem_.terms_[t].sigma, -2);
+      for (Eigen::Index j = 0; j < n; ++j)
+        c(i, j) = fit_.covariance(static_cast<Eigen::Index>(t),
+                                  static_cast<Eigen::Index>(terms[static_cast<std::size_t>(j)]));
+    }
+    // In units of the prior's deviation; what the data do not know at all stays where it is.
+    const Eigen::VectorXd root = prior.cwiseSqrt();
+    const Eigen::MatrixXd known = root.asDiagonal() * c * root.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (known + known.transpose()));
+    const Eigen::VectorXd z = eigen.eigenvectors().transpose() * root.asDiagonal() * x;
+    Eigen::VectorXd to = z, spread(n);
+    s.drop = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double share = std::clamp(eigen.eigenvalues()(i), 1e-9, 0.9);
+      s.drop += z(i) * z(i) / (1.0 - share);
+      to(i) = z(i) / (1.0 - share);
+      spread(i) = share / (1.0 - share);
+    }
+    const Eigen::MatrixXd back = root.cwiseInverse().asDiagonal() * eigen.eigenvectors();
+    s.amplitude.head(n) = back * to;
+    s.covariance.topLeftCorner(n, n) = back * spread.asDiagonal() * back.transpose();
+  }
+
+  Scored ScoreOne(const SharedEffect& effect, const Eigen::MatrixXd& cross, const Eigen::MatrixXd& square,
+                  const Eigen::MatrixXd& blocks) const {
+    Scored s;
+    const Eigen::VectorXd gradient = blocks.rowwise().sum();
+    s.effect = effect;
+    const Eigen::Index n = square.rows();
+    const Eigen::MatrixXd onto = fit_.covariance * cross;
+    Eigen::MatrixXd information = square - cross.transpose() * onto;
+    s.per_block = blocks - onto.transpose() * base_blocks_;
+    // Directions that the base explains already, to rounding, carry nothing.
+    const bool nearly_base = n == 1 && information(0, 0) < 1e-3 * square(0, 0);
+    for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-6 * square(i, i) + 1e-300;
+    // The gradient of the prior belongs to the base; at its optimum both parts cancel.
+    const Eigen::LDLT<Eigen::MatrixXd> solver(information);
+    s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
+    s.amplitude = -solver.solve(gradient);
+    s.drop = -gradient.dot(s.amplitude);
+    s.excess = Excess(s.per_block, s.covariance);
+    // What the base can nearly do itself frees it from its priors and no more.
+    if (nearly_base) s.drop = std::min(s.drop, 1.5 * fit_.prior + 5.0);
+    if (InBase(problem_, effect->kind)) {
+      // A number of the base already: the evidence is in the prior and not in the blocks.
+      s.per_block.setZero();
+      s.excess = 1.0;
+      Free(s);
+    }
+    s.score = s.drop / s.excess - Penalty(*effect);
+    const Eigen::RowVectorXd gain = -s.amplitude.transpose() * s.per_block;
+    s.consistency = gain.sum() / (gain.norm() + 1e-300);
+    return s;
+  }
+
+  const Problem& problem_;
+  const Fit& fit_;
+  std::vector<const double*> base_columns_;
+  Eigen::MatrixXd base_blocks_;
+};
+
+}  // namespace
+
+std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects) {
+  std::stable_sort(effects.begin(), effects.end(),
+                   [](const SharedEffect& a, const SharedEffect& b) { return MeansOf(*a) < MeansOf(*b); });
+  const Scorer scorer(problem, fit);
+  std::vector<Scored> out;
+  // Some two dozen columns at a time bound the memory.
+  for (std::size_t at = 0; at < effects.size();) {
+    const Means means = MeansOf(*effects[at]);
+    std::size_t end = at, count = 0;
+    while (end < effects.size() && MeansOf(*effects[end]) == means &&
+           (count == 0 || count + effects[end]->tested <= 24)) {
+      count += effects[end]->tested;
+      ++end;
+    }
+    const std::span<const SharedEffect> some = std::span(effects).subspan(at, end - at);
+    std::vector<std::vector<double>> columns;
+    if (means == Means::kSignals)
+      columns = problem.LinearResponses(fit.point, some);
+    else
+      columns = means == Means::kRuns ? RunColumns(problem, fit, some) : TermColumns(problem, fit, some);
+    scorer.Score(some, columns, out);
+    at = end;
+  }
+  return out;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "analysis/prediction_error/fit.h"
+
+namespace contour::diagnosis {
+
+/// Blocks of time for sign flips and held-out figures.
+inline constexpr Eigen::Index kBlocks = 60;
+
+/// A candidate against the residual of a fit: what its amplitudes would explain beyond the base parameters,
+/// to first order (score test; partial regression with the base's priors).
+struct Scored {
+  SharedEffect effect;
+  double drop = 0.0;         ///< of chi^2 and prior
+  double score = 0.0;        ///< less 3 per amplitude and 2 ln(grid)
+  double consistency = 0.0;  ///< sum over root of sum of squares of the drop per block
+  Eigen::VectorXd amplitude;
+  Eigen::MatrixXd covariance;  ///< of the amplitudes
+  Eigen::MatrixXd per_block;   ///< projected gradient, amplitudes x blocks
+  /// How much larger than white noise would make them the drops are when blocks get random signs; at least 1.
+  /// A residual that is not quite white, or not quite stationary, shows here.
+  double excess = 1.0;
+};
+
+/// An effect that is there makes its own score scatter from block to block, too: beyond this, scatter says no
+/// more about chance.
+inline constexpr double kMostExcess = 3.0;
+
+double Penalty(const Effect& effect);
+
+/// Whether the kind is a number of the base model: its evidence is in the priors.
+bool InBase(const Problem& problem, const std::string& kind);
+
+/// Of such a kind, the base terms that it frees, in the order of its amplitudes.
+std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& kind);
+
+/// Tests effects at zero amplitude beside whatever `fit` holds.
+std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects);
+
+/// Of the last effect of a fit, from the fit's own residual: free of what the effect explains.
+double ExcessOfLast(const Problem& problem, const Fit& fit);
+
+/// White innovation after a pulse of one row of motor torque (or of the reading) while the axis slides.
+std::vector<double> PulseResponse(const Problem& problem, bool reading);
+
+/// Effects that the scans over orders and frequencies propose.
+std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit);
+
+}  // namespace contour::diagnosis

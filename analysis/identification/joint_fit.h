@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "analysis/identification/axis_model.h"
+#include "analysis/identification/simulation.h"
+
+namespace contour::identify {
+
+/// A number of the model that the fit may move.
+struct FreeParameter {
+  std::string key;            ///< of the model's uncertainty, or a name of its own
+  double* (*at)(AxisModel&);  ///< where it is; null: see index
+  bool logarithmic = true;    ///< moves by a factor
+  double prior = 1.0;         ///< standard deviation about the start, in the parameter's own step
+  double step = 1e-3;         ///< for derivatives
+};
+
+struct FitOptions {
+  bool screw = true;      ///< motor and table are free, damping, delay and lag too; else only the whole mass
+  bool stiffness = true;  ///< of the screw is free
+  double stiffness_prior = 1.0;   ///< relative: how well the start is known
+  std::vector<std::string> only;  ///< keys that move; empty: all
+  std::vector<std::string> hold;  ///< keys that do not
+  int rounds = 3;                 ///< weights and whitening are worked out anew in each
+  bool refine = false;            ///< the start is good: whitened from the first round
+  int iterations = 12;            ///< of a round, at most
+  double block_s = 1.0;           ///< for weights and for the spread
+  bool spread = true;             ///< standard deviations are wanted
+  std::function<void(double share)> progress;
+};
+
+struct FittedParameter {
+  std::string key;
+  double value = 0.0;
+  double sigma = 0.0;  ///< relative for logarithmic ones, else absolute
+  bool relative = true;
+};
+
+/// Standard deviation of a parameter; 0: it was not moved.
+double Sigma(const std::vector<FittedParameter>& parameters, const std::string& key);
+
+struct JointFit {
+  AxisModel axis;
+  std::vector<FittedParameter> parameters;
+  Eigen::MatrixXd covariance;  ///< in steps of the parameters
+  double error_rms_m = 0.0;    ///< of the prediction
+  double error_rms_before_m = 0.0;
+  int evaluations = 0;
+};
+
+/// Fits the model to all records at once: least squares of whitened prediction errors, by Levenberg and
+/// Marquardt with finite differences. Standard deviations come from the scatter of the gradient over blocks
+/// of time (a sandwich estimate), so they hold what the model leaves unexplained, not only noise.
+JointFit FitJointly(const AxisModel& start, const std::vector<Measured>& records, const FitOptions& options);
+
+}  // namespace contour::identify

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/identification/simulation.h"
+
+namespace contour::identify {
+
+/// Response of the motor's position to the force at the motor.
+struct ResponsePoint {
+  double frequency_Hz = 0.0;
+  double accelerance_1_kg = 0.0;  ///< |x| (2 pi f)^2 / |F|: 1 / mass where the axis is rigid
+  double coherence = 0.0;
+};
+
+/// Coherence from which a point of the response says something.
+inline constexpr double kGoodCoherence = 0.7;
+
+/// From 100 Hz to nearly half the sampling rate, of records that are shaken there throughout; empty when they
+/// are shorter than some windows of half a second.
+std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records);
+
+}  // namespace contour::identify

@@ -1,0 +1,243 @@
+#include "analysis/identification/shaken_screw.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "analysis/identification/whitening.h"
+
+namespace contour::identify {
+namespace {
+
+constexpr double kWindow_s = 0.1;
+constexpr double kFlank_s = 0.003;
+/// What shakes, rms, in shares of the Coulomb level.
+constexpr double kLeastShaking = 0.2;
+constexpr double kLeast_s = 1.0;  ///< of shaken sliding, all stretches together
+constexpr double kLowest_Hz = 100.0;
+constexpr double kFollow_Hz = 60.0;
+/// Starts: antiresonances a twentieth apart, shares of the table in the whole mass.
+constexpr double kNextStart = 1.05;
+constexpr double kShares[] = {0.05, 0.12, 0.25, 0.5};
+/// So many of them are refined at most, these far apart; two that foresee alike are enough.
+constexpr std::size_t kRefined = 4;
+constexpr double kFarApart = 0.08;
+constexpr double kFoundAgain = 0.01;
+constexpr double kSamePlace = 1e-3;
+constexpr int kLongestValley = 5;
+/// A screw is one when its resonance is below this, its stiffness known this well, and its two masses foresee
+/// the motion so much better than one does.
+constexpr double kKnownStiffness = 0.2;
+constexpr double kLeastGain_log = 5e-3;
+
+double Hz(double stiffness, double mass) { return std::sqrt(stiffness / mass) / (2.0 * std::numbers::pi); }
+
+/// The quick part of the force: second differences, whose gain is 4 sin^2(pi f T), 1 at a sixth of the rate.
+double Quick_N(const Measured& d, std::size_t k) {
+  return d.force_N[k] - 2.0 * d.force_N[k - 1] + d.force_N[k - 2];
+}
+
+Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
+  Measured s;
+  s.period_s = d.period_s;
+  s.position_step_m = d.position_step_m;
+  const auto from = static_cast<std::ptrdiff_t>(begin);
+  const auto to = static_cast<std::ptrdiff_t>(end);
+  s.force_N.assign(d.force_N.begin() + from, d.force_N.begin() + to);
+  s.position_m.assign(d.position_m.begin() + from, d.position_m.begin() + to);
+  s.present.assign(d.present.begin() + from, d.present.begin() + to);
+  return s;
+}
+
+/// Log of the prediction error that is left when each error is foreseen from those before it.
+double LogError(const AxisModel& axis, const std::vector<Measured>& stretches) {
+  const FollowGain gain = MakeFollowGain(axis, stretches.front().period_s, kFollow_Hz);
+  std::vector<double> all;
+  for (const Measured& s : stretches) {
+    const std::vector<double> e = PredictionErrors_m(axis, s, gain);
+    all.insert(all.end(), e.begin(), e.end());
+  }
+  const Eigen::Map<const Eigen::VectorXd> errors(all.data(), static_cast<Eigen::Index>(all.size()));
+  if (!errors.allFinite()) return 1e300;
+  Whitening whitening;
+  whitening.Learn(errors, all.size(), 12, 1e-12);
+  return whitening.log_error();
+}
+
+FitOptions Options(bool screw, bool spread) {
+  FitOptions o;
+  o.screw = screw;
+  o.stiffness = screw;
+  o.spread = spread;
+  o.rounds = 3;
+  o.block_s = 0.5;
+  o.only = {"motor_inertia_kgm2",
+            "table_mass_kg",
+            "screw_damping_Ns_m",
+            "screw_stiffness_N_um",
+            "lag_s",
+            "delay_s",
+            "Fc_plus_N",
+            "Fc_minus_N",
+            "Fs_plus_N",
+            "Fs_minus_N",
+            "sigma0_N_m",
+            "sigma1_Ns_m",
+            "sigma1_decay_mm_s",
+            "sigma2_Ns_m",
+            "vs_mm_s",
+            "place_1",
+            "turn_plus_cos1",
+            "turn_plus_sin1",
+            "turn_minus_cos1",
+            "turn_minus_sin1"};
+  return o;
+}
+
+AxisModel Rigid(AxisModel axis) {
+  axis.motor_mass_kg = axis.mass_kg();
+  axis.table_mass_kg = 0.0;
+  axis.rigid = true;
+  axis.friction_at_motor = true;
+  return axis;
+}
+
+/// On from a fit until it foresees no better: the valley is long and bent.
+std::pair<double, AxisModel> FollowValley(AxisModel axis, const std::vector<Measured>& stretches) {
+  FitOptions on = Options(true, false);
+  double error = LogError(axis, stretches);
+  for (int i = 0; i < kLongestValley; ++i) {
+    const AxisModel next = FitJointly(axis, stretches, on).axis;
+    on.refine = true;
+    on.rounds = 1;
+    const double e = LogError(next, stretches);
+    const bool on_the_way = i == 0 || error - e > kSamePlace;
+    if (e < error || i == 0) {
+      error = e;
+      axis = next;
+    }
+    if (!on_the_way) break;
+  }
+  return {error, axis};
+}
+
+/// Way of a window; 0 where a row is missing or the axis turns back.
+double Way(const Measured& d, std::size_t at, std::size_t window) {
+  const auto flank = static_cast<std::size_t>(kFlank_s / d.period_s);
+  const double way = d.position_m[at + window - 1] - d.position_m[at];
+  for (std::size_t k = at; k < at + window; ++k) {
+    if (d.present[k] == 0) return 0.0;
+    if (k >= at + flank && (d.position_m[k] - d.position_m[k - flank]) * way <= 0.0) return 0.0;
+  }
+  return way;
+}
+
+double HighestGood_Hz(const std::vector<ResponsePoint>& response) {
+  double highest = 0.0;
+  for (const ResponsePoint& p : response)
+    if (p.coherence > kGoodCoherence) highest = std::max(highest, p.frequency_Hz);
+  return highest;
+}
+
+/// The best of each antiresonance, the best first.
+std::vector<AxisModel> Starts(const AxisModel& start, const std::vector<Measured>& stretches,
+                              double highest_Hz) {
+  const double mass = start.mass_kg();
+  std::vector<std::pair<double, AxisModel>> starts;
+  for (double f = kLowest_Hz; f < 1.5 * highest_Hz; f *= kNextStart) {
+    std::pair<double, AxisModel> best{std::numeric_limits<double>::max(), start};
+    for (const double share : kShares) {
+      AxisModel a = start;
+      a.table_mass_kg = share * mass;
+      a.motor_mass_kg = mass - a.table_mass_kg;
+      a.stiffness_N_m = a.table_mass_kg * std::pow(2.0 * std::numbers::pi * f, 2);
+      // Damping ratio of the resonance: 0.03.
+      a.damping_Ns_m = 0.06 * std::sqrt(a.stiffness_N_m * a.table_mass_kg * a.motor_mass_kg / mass);
+      const double e = LogError(a, stretches);
+      if (e < best.first) best = {e, a};
+    }
+    starts.push_back(best);
+  }
+  std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<AxisModel> chosen;
+  for (const auto& [e, axis] : starts) {
+    const double f = Hz(axis.stiffness_N_m, axis.table_mass_kg);
+    const bool near = std::any_of(chosen.begin(), chosen.end(), [&](const AxisModel& c) {
+      return std::fabs(std::log(f / Hz(c.stiffness_N_m, c.table_mass_kg))) < kFarApart;
+    });
+    if (!near) chosen.push_back(axis);
+    if (chosen.size() == kRefined) break;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const AxisModel& axis) {
+  const double least_N = kLeastShaking * 0.5 * (axis.friction.Fc_plus_N + axis.friction.Fc_minus_N);
+  std::vector<Measured> stretches;
+  for (const Measured& d : records) {
+    const auto window = static_cast<std::size_t>(kWindow_s / d.period_s);
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    double before = 0.0;  // way of the window before: the bristle is saturated by then
+    const auto close = [&] {
+      if (end > begin + window) stretches.push_back(Slice(d, begin, end));
+      begin = end = 0;
+    };
+    for (std::size_t at = 2; at + window < d.size(); at += window) {
+      double quick = 0.0;
+      for (std::size_t k = at; k < at + window; ++k)
+        quick += std::pow(Quick_N(d, k), 2) / static_cast<double>(window);
+      const double way = Way(d, at, window);
+      const bool slides = way * before > 0.0;
+      before = way;
+      if (!slides || std::sqrt(quick) < least_N) {
+        close();
+        continue;
+      }
+      if (end == 0) begin = at;
+      end = at + window;
+    }
+    close();
+  }
+  return stretches;
+}
+
+ShakenScrew FitShakenScrew(const AxisModel& start, const std::vector<Measured>& records) {
+  ShakenScrew s;
+  const std::vector<Measured> stretches = ShakenStretches(records, start);
+  for (const Measured& d : stretches) s.seconds += static_cast<double>(d.size()) * d.period_s;
+  if (!stretches.empty()) s.response = MotorResponse(stretches);
+  s.highest_Hz = HighestGood_Hz(s.response);
+  if (s.seconds < kLeast_s || s.highest_Hz < 2.0 * kLowest_Hz) {
+    s.why_not = "nothing shakes the axis above 100 Hz while it slides: the screw needs a chirp";
+    return s;
+  }
+  const AxisModel rigid = FitJointly(Rigid(start), stretches, Options(false, false)).axis;
+  const double rigid_error = LogError(rigid, stretches);
+  std::pair<double, AxisModel> best{std::numeric_limits<double>::max(), start};
+  for (const AxisModel& from : Starts(start, stretches, s.highest_Hz)) {
+    const auto found = FollowValley(from, stretches);
+    const bool same = std::fabs(found.first - best.first) < kFoundAgain;
+    if (found.first < best.first) best = found;
+    if (same) break;
+  }
+  FitOptions last = Options(true, true);
+  last.refine = true;
+  last.rounds = 1;
+  JointFit fit = FitJointly(best.second, stretches, last);
+  s.axis = fit.axis;
+  s.antiresonance_Hz = Hz(s.axis.stiffness_N_m, s.axis.table_mass_kg);
+  s.resonance_Hz = s.antiresonance_Hz * std::sqrt(s.axis.mass_kg() / s.axis.motor_mass_kg);
+  s.parameters = std::move(fit.parameters);
+  const bool screw = rigid_error - best.first > kLeastGain_log && s.resonance_Hz < kRigidFrom_Hz &&
+                     Sigma(s.parameters, "screw_stiffness_N_um") < kKnownStiffness;
+  s.verdict = screw ? ShakenScrew::Verdict::kFound : ShakenScrew::Verdict::kRigid;
+  if (!screw) s.axis = rigid;
+  return s;
+}
+
+}  // namespace contour::identify

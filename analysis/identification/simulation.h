@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "analysis/identification/axis_model.h"
+
+namespace contour::identify {
+
+/// What was measured, in table units. Timing as diagnosis::AxisLog states it.
+struct Measured {
+  double period_s = 1e-3;
+  double position_step_m = 0.0;       ///< one count of the encoder
+  std::vector<double> force_N;        ///< command / R
+  std::vector<double> position_m;     ///< R theta
+  std::vector<double> table_m;        ///< linear scale; empty without one
+  std::vector<std::uint8_t> present;  ///< 0: no sample at this grid point
+  [[nodiscard]] std::size_t size() const { return force_N.size(); }
+};
+
+/// How the simulation follows the measured position: x_m, v_m, x_t, v_t per metre of prediction error.
+using FollowGain = Eigen::Vector4d;
+
+/// Steady-state Kalman gain of the axis without friction, for a disturbance that makes the prediction follow
+/// the measurement at about `bandwidth_Hz`.
+FollowGain MakeFollowGain(const AxisModel& axis, double period_s, double bandwidth_Hz);
+
+/// The axis's own motion one period after the other, led by the torque that was sent and corrected by the
+/// position that was measured. The screw and viscous friction are stepped exactly (matrix exponential), the
+/// bristle between them (Strang splitting); hold, delay and lag of the torque are exact.
+class Simulation {
+ public:
+  static constexpr int kSubSteps = 5;
+
+  Simulation(const AxisModel& axis, const Measured& data, const FollowGain& gain);
+
+  /// Goes on to the next grid point; returns measured minus predicted position, NaN where there is nothing
+  /// to compare (no sample, or the first ones after a gap).
+  double Next();
+
+  // At the grid point reached, after the correction: the mass that rubs.
+  [[nodiscard]] double table_m() const { return state_(place_); }
+  [[nodiscard]] double table_velocity_m_s() const { return state_(speed_); }
+  /// Bristle and viscous friction.
+  [[nodiscard]] double friction_N() const;
+
+ private:
+  void Start();
+  [[nodiscard]] double Level_N(double velocity_m_s) const;
+  void MoveBristle(double from_z, double travel_m, double step_s);
+  [[nodiscard]] double BristleForce_N() const;
+  [[nodiscard]] double BristleDamping_Ns_m(double velocity_m_s) const;
+  void Prepare();
+
+  const AxisModel& axis_;
+  const Measured& data_;
+  const FollowGain gain_;
+  const Eigen::Index place_, speed_;  ///< of the mass that rubs, in state_
+  const double rubbing_mass_kg_;
+  /// One step of the linear part; the command is the older one before the delay's edge.
+  struct Piece {
+    double step_s;
+    Eigen::Matrix4d flow;
+    Eigen::Vector4d delayed, command;  ///< per N
+    double lag_left;
+    bool older;
+  };
+  std::vector<Piece> pieces_;
+  Eigen::Vector4d state_ = Eigen::Vector4d::Zero();
+  double z_m_ = 0.0;
+  double force_N_ = 0.0;  ///< behind the lag
+  std::size_t k_ = 0;
+  bool running_ = false;
+  int to_settle_ = 0;
+  int absent_ = 0;                                 ///< grid points without a sample, up to here
+  double factor_plus_ = 1.0, factor_minus_ = 1.0;  ///< of the levels, at this period's place
+  std::size_t whole_delay_ = 0;
+};
+
+/// Factor of the levels at a place, about 1.
+double LevelFactor(const AxisModel& axis, double motor_m, double table_m, bool up);
+
+/// All prediction errors of a record, zero where there is nothing to compare.
+std::vector<double> PredictionErrors_m(const AxisModel& axis, const Measured& data, const FollowGain& gain);
+
+}  // namespace contour::identify

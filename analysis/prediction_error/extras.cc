@@ -1,0 +1,81 @@
+#include "analysis/prediction_error/extras.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "analysis/prediction_error/wave_signals.h"
+
+namespace contour::diagnosis {
+namespace {
+
+/// Along the log; empty without a table.
+Signal Along(const StatedTable& table, const Signals& s) {
+  Signal out;
+  if (table.position_m.empty()) return out;
+  for (const double x : s.table_m) out.push_back(ValueAt(table.position_m, table.value, x + s.middle_m));
+  return out;
+}
+
+/// Sum of the waves, two elements per row; empty without waves.
+Signal Along(const std::vector<StatedWave>& waves, const Signals& s) {
+  Signal sum;
+  std::vector<double> phase(s.angle_rad.size());
+  for (const StatedWave& w : waves) {
+    for (std::size_t k = 0; k < phase.size(); ++k) phase[k] = w.order_per_rev * s.angle_rad[k] + w.phase_rad;
+    const SharedSignal sine = WaveSignals(phase, {})[0];
+    sum.resize(sine->size(), 0.0);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += w.amplitude * (*sine)[k];
+  }
+  return sum;
+}
+
+SharedSignal Share(Signal s) {
+  return s.empty() ? SharedSignal() : std::make_shared<const Signal>(std::move(s));
+}
+
+/// Either may be empty, or have two elements per row where the other has one.
+template <class F>
+Signal Joined(const Signal& a, const Signal& b, F&& f) {
+  if (a.empty() || b.empty()) return a.empty() ? b : a;
+  Signal out = a.size() < b.size() ? Doubled(a) : a;
+  const Signal other = b.size() < out.size() ? Doubled(b) : b;
+  for (std::size_t k = 0; k < out.size(); ++k) out[k] = f(out[k], other[k]);
+  return out;
+}
+
+/// Sum of the curves, which resist; empty without any.
+Signal Along(const std::vector<StatedDrag>& curves, const Signals& s) {
+  Signal out;
+  for (const StatedDrag& d : curves) {
+    out.resize(s.velocity.size(), 0.0);
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const double y = std::fabs(s.velocity[k]) / d.max_speed;
+      const double curve = d.knee > 0.0 ? y * (1.0 + d.knee) / (y + d.knee) : std::pow(y, d.exponent);
+      out[k] -= std::copysign(d.at_max_speed * curve, s.velocity[k]);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+void AddExtras(const StatedExtras& x, const Signals& s, AxisModel& m) {
+  const auto sum = [](double a, double b) { return a + b; };
+  const auto both = [](double a, double b) { return (1.0 + a) * (1.0 + b) - 1.0; };
+  Signal on_motor = Along(x.cogging, s), on_load = Along(x.spring, s);
+  Signal& carries = m.two_inertia && m.friction_on_load ? on_load : on_motor;
+  carries = Joined(carries, Along(x.drag, s), sum);
+  m.motor_force = Share(std::move(on_motor));
+  m.load_force = Share(std::move(on_load));
+  m.level = Share(Joined(Joined(Along(x.friction_rel, s), Along(x.friction_ripple, s), both),
+                         Along(x.ball_ripple, s), both));
+  m.scale_error_m = Share(Along(x.pitch_error_m, s));
+  if (x.viscous_rate_1_K == 0.0 || s.temperature_K.empty()) return;
+  Signal viscous;
+  for (const double T : s.temperature_K)
+    viscous.push_back(x.viscous_rate_1_K * (T + s.mean_degC - x.reference_degC));
+  m.viscous = Share(std::move(viscous));
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,431 @@
+#include "analysis/prediction_error/fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "analysis/prediction_error/common_factor.h"
+#include "analysis/prediction_error/products.h"
+#include "analysis/prediction_error/simd/lanes.h"
+
+namespace contour::diagnosis {
+namespace {
+
+using Column = Eigen::Map<const Eigen::VectorXd>;
+
+Column ColumnOf(const std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
+
+double StepOf(const Problem& problem, const Point& p, std::size_t i) {
+  if (i < p.base.size()) return problem.terms_[i].step;
+  i -= p.base.size();
+  for (std::size_t e = 0; e < p.effects.size(); ++e) {
+    if (i < p.amplitudes[e].size()) return p.effects[e]->steps[i];
+    i -= p.amplitudes[e].size();
+  }
+  return 0.0;
+}
+
+double PriorOf(const Problem& problem, const Point& p) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms_[i].sigma, 2);
+  return sum;
+}
+
+constexpr double kWorthWhile = 3.0, kKept = 0.1;
+
+/// One fit, which says what runs it needs next and goes on when it has them.
+class Descent {
+ public:
+  Descent(const Problem& problem, Beginning beginning, Extent extent)
+      : problem_(problem),
+        effort_(beginning.effort),
+        size_(static_cast<Eigen::Index>(problem.data_size(extent))) {
+    fit_.point = std::move(beginning.point);
+    count_ = ParameterCount(fit_.point);
+    const auto columns = static_cast<Eigen::Index>(count_);
+    weight_ = Eigen::VectorXd::Zero(columns);
+    for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
+      weight_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
+    if (beginning.continued != nullptr) {
+      known_ = columns;
+      fit_ = std::move(*beginning.continued);
+      fit_.converged = false;
+      stale_ = false;
+      return;
+    }
+    if (beginning.known == nullptr) return;
+    const Fit& known = *beginning.known;
+    known_ = known.jacobian.cols();
+    if (known_ == columns) {
+      fit_ = known;
+      fit_.converged = false;
+    } else {
+      fit_.jacobian.resize(size_, columns);
+      fit_.raw_jacobian.resize(size_, columns);
+      fit_.jacobian.leftCols(known_) = known.jacobian;
+      fit_.raw_jacobian.leftCols(known_) = known.raw_jacobian;
+      fit_.normal = Eigen::MatrixXd::Zero(columns, columns);
+      fit_.normal.topLeftCorner(known_, known_) = known.normal;
+    }
+    stale_ = false;
+  }
+
+  /// None: at the end. `room`: as many points cost no more than one.
+  std::vector<Point> Ask(std::size_t room) {
+    if (fit_.raw.empty()) {
+      stage_ = Stage::kBegin;
+      return {fit_.point};
+    }
+    if (stage_ == Stage::kBegin) {
+      stage_ = Stage::kStep;
+      if (!stale_ && known_ < static_cast<Eigen::Index>(count_)) return AskColumns(known_);
+      Plan();
+    }
+    if (stage_ == Stage::kColumns) return AskColumns(0);
+    if (stage_ == Stage::kEnd) return {};
+    Try(room);
+    chosen_ = tried_.size();
+    before_ = fit_.cost;
+    return tried_;
+  }
+
+  void Take(std::size_t i, std::vector<double> raw, std::vector<double> white) {
+    switch (stage_) {
+      case Stage::kBegin:
+        fit_.prior = PriorOf(problem_, fit_.point);
+        fit_.cost = ColumnOf(white).squaredNorm() + fit_.prior;
+        fit_.raw = std::move(raw);
+        fit_.residual = std::move(white);
+        break;
+      case Stage::kColumns: {
+        if (i == 0) {
+          middle_raw_ = std::move(raw);
+          middle_white_ = std::move(white);
+          break;
+        }
+        const std::size_t at = static_cast<std::size_t>(from_) + i - 1;
+        const double step = StepOf(problem_, fit_.point, at);
+        const auto column = static_cast<Eigen::Index>(at);
+        fit_.raw_jacobian.col(column) = (ColumnOf(raw) - ColumnOf(middle_raw_)) / step;
+        fit_.jacobian.col(column) = (ColumnOf(white) - ColumnOf(middle_white_)) / step;
+        break;
+      }
+      case Stage::kStep: {
+        const double prior = PriorOf(problem_, tried_[i]);
+        const double cost = ColumnOf(white).squaredNorm() + prior;
+        if (!std::isfinite(cost) || cost >= fit_.cost) break;
+        chosen_ = i;
+        fit_.cost = cost;
+        fit_.prior = prior;
+        chosen_raw_ = std::move(raw);
+        chosen_white_ = std::move(white);
+        break;
+      }
+      case Stage::kEnd:
+        break;
+    }
+  }
+
+  /// All that was asked for has come.
+  void Proceed() {
+    switch (stage_) {
+      case Stage::kColumns:
+        middle_raw_ = middle_white_ = {};
+        MakeConsistent(problem_, fit_.point, fit_.jacobian);
+        MakeConsistent(problem_, fit_.point, fit_.raw_jacobian);
+        AddProducts(fit_.jacobian, 0, fit_.normal);
+        stale_ = false;
+        ++refreshes_;
+        if (closing_)
+          stage_ = Stage::kEnd;
+        else
+          PlanStep(from_ == 0);
+        break;
+      case Stage::kStep:
+        Choose();
+        break;
+      case Stage::kBegin:
+      case Stage::kEnd:
+        break;
+    }
+  }
+
+  Fit Result() {
+    const auto columns = static_cast<Eigen::Index>(count_);
+    fit_.covariance = Normal().ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
+    return std::move(fit_);
+  }
+
+ private:
+  enum class Stage { kBegin, kColumns, kStep, kEnd };
+
+  Eigen::MatrixXd Normal() const {
+    Eigen::MatrixXd normal = fit_.normal;
+    normal.diagonal() += weight_;
+    normal.diagonal().array() += 1e-18 * normal.diagonal().maxCoeff();
+    return normal;
+  }
+
+  std::vector<Point> AskColumns(Eigen::Index from) {
+    stage_ = Stage::kColumns;
+    from_ = from;
+    const auto columns = static_cast<Eigen::Index>(count_);
+    if (from == 0) {
+      fit_.jacobian.resize(size_, columns);
+      fit_.raw_jacobian.resize(size_, columns);
+      fit_.normal.resize(columns, columns);
+    }
+    std::vector<Point> around = {fit_.point};
+    for (Eigen::Index i = from; i < columns; ++i) {
+      Eigen::VectorXd by = Eigen::VectorXd::Zero(columns);
+      by(i) = StepOf(problem_, fit_.point, static_cast<std::size_t>(i));
+      around.push_back(Moved(fit_.point, by));
+    }
+    return around;
+  }
+
+  /// Shorter, longer and damped steps (Marquardt, SIAM Journal 11(2), 1963) ride along in lanes that would be
+  /// empty otherwise. A curved valley lets only small or damped ones pass.
+  void Try(std::size_t room) {
+    tried_.clear();
+    const std::size_t most = std::max<std::size_t>(small_ ? 4 : 2, room);
+    const auto along = [&](double part) {
+      if (tried_.size() < most) tried_.push_back(Moved(fit_.point, part * by_));
+    };
+    const auto damped = [&](double by) {
+      if (tried_.size() < most) tried_.push_back(Moved(fit_.point, DampedStep(by)));
+    };
+    if (small_) {
+      along(0.1);
+      for (const double by : {0.03, 0.003, 0.3}) damped(by);
+      along(0.02);
+      return;
+    }
+    along(1.0);
+    along(0.4);
+    damped(0.03);
+    along(1.4);
+    damped(0.003);
+    along(0.15);
+    damped(0.3);
+  }
+
+  Eigen::VectorXd DampedStep(double by) const {
+    Eigen::MatrixXd normal = Normal();
+    normal.diagonal() += by * fit_.normal.diagonal();
+    return -normal.ldlt().solve(gradient_);
+  }
+
+  void Plan() {
+    if (steps_ >= effort_.most_steps) return Close(false);
+    if (stale_ && refreshes_ < effort_.most_refreshes)
+      stage_ = Stage::kColumns;
+    else
+      PlanStep(false);
+  }
+
+  void PlanStep(bool fresh) {
+    fresh_ = fresh;
+    last_chance_ = fresh || refreshes_ >= effort_.most_refreshes;
+    Eigen::VectorXd gradient = GradientOf(fit_.jacobian, fit_.residual);
+    for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
+      gradient(static_cast<Eigen::Index>(i)) += weight_(static_cast<Eigen::Index>(i)) * fit_.point.base[i];
+    gradient_ = gradient;
+    by_ = -Normal().ldlt().solve(gradient);
+    promised_ = -gradient.dot(by_);
+    fit_.promised = kept_ * promised_;
+    const double enough = std::max(effort_.close_enough, effort_.share_enough * (effort_.from - fit_.cost));
+    if (promised_ < enough) {
+      fit_.converged = true;
+      if (last_chance_ || promised_ < 0.5 * enough) return Close(fresh);
+    }
+    if (steps_ >= effort_.most_steps) return Close(fresh);
+    if (fit_.cost - promised_ > effort_.hopeless_above) {
+      effort_.covariance = false;
+      return Close(fresh);
+    }
+    stage_ = Stage::kStep;
+  }
+
+  void Choose() {
+    ++steps_;
+    const double gained = before_ - fit_.cost;
+    kept_ = std::clamp(gained / promised_, 0.0, 1.0);
+    fit_.promised = kept_ * promised_;
+    if (chosen_ < tried_.size()) {
+      if (gained < 0.6 * promised_ || chosen_ > 0) stale_ = true;
+      fit_.point = std::move(tried_[chosen_]);
+      fit_.raw = std::move(chosen_raw_);
+      fit_.residual = std::move(chosen_white_);
+      // A cost that is rough, or sensitivities that serve no more: small steps lead nowhere either.
+      if (small_ && last_chance_ && gained < kKept * promised_) {
+        fit_.converged = true;
+        return Close(false);
+      }
+      small_ = false;
+    } else {
+      if (last_chance_ && !small_ && promised_ > kWorthWhile) {
+        small_ = true;
+        return;
+      }
+      if (last_chance_) {
+        fit_.converged = true;
+        return Close(fresh_);
+      }
+      stale_ = true;
+    }
+    Plan();
+  }
+
+  void Close(bool fresh) {
+    closing_ = effort_.covariance && !fresh && stale_ && refreshes_ <= effort_.most_refreshes;
+    stage_ = closing_ ? Stage::kColumns : Stage::kEnd;
+  }
+
+  const Problem& problem_;
+  FitEffort effort_;
+  Eigen::Index size_;
+  Fit fit_;
+  std::size_t count_ = 0;
+  Eigen::Index known_ = 0, from_ = 0;
+  Eigen::VectorXd weight_, by_, gradient_;
+  Stage stage_ = Stage::kBegin;
+  bool stale_ = true, fresh_ = false, last_chance_ = false, closing_ = false;
+  int steps_ = 0, refreshes_ = 0;
+  double promised_ = 0.0, before_ = 0.0;
+  double kept_ = 1.0;   // of what the last step promised
+  bool small_ = false;  // steps, since larger ones lead nowhere
+  std::vector<Point> tried_;
+  std::size_t chosen_ = 0;
+  std::vector<double> chosen_raw_, chosen_white_;
+  std::vector<double> middle_raw_, middle_white_;  // of the point itself, in the columns' sub-steps
+};
+
+}  // namespace
+
+Point Moved(Point p, const Eigen::VectorXd& by) {
+  Eigen::Index j = 0;
+  for (double& x : p.base) x += by(j++);
+  for (std::size_t e = 0; e < p.effects.size(); ++e)
+    for (std::size_t i = 0; i < p.amplitudes[e].size(); ++i) {
+      double& a = p.amplitudes[e][i];
+      a += by(j++);
+      if (!p.effects[e]->low.empty()) a = std::clamp(a, p.effects[e]->low[i], p.effects[e]->high[i]);
+    }
+  return p;
+}
+
+std::size_t ParameterCount(const Point& p) {
+  std::size_t n = p.base.size();
+  for (const auto& a : p.amplitudes) n += a.size();
+  return n;
+}
+
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings, Extent extent) {
+  std::vector<Descent> descents;
+  for (Beginning& b : beginnings) descents.emplace_back(problem, std::move(b), extent);
+  std::vector<bool> going(descents.size(), true);
+  for (;;) {
+    const auto left = static_cast<std::size_t>(std::count(going.begin(), going.end(), true));
+    std::vector<Point> points;
+    std::vector<std::pair<std::size_t, std::size_t>> owners;
+    for (std::size_t d = 0; d < descents.size(); ++d) {
+      if (!going[d]) continue;
+      std::vector<Point> asked = descents[d].Ask(kLanes / std::max<std::size_t>(1, left));
+      going[d] = !asked.empty();
+      for (std::size_t i = 0; i < asked.size(); ++i) owners.emplace_back(d, i);
+      std::move(asked.begin(), asked.end(), std::back_inserter(points));
+    }
+    if (points.empty()) break;
+    constexpr std::size_t kAtOnce = 3 * kLanes;  // bounds the memory
+    for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
+      const std::size_t count = std::min(kAtOnce, points.size() - first);
+      std::vector<AxisModel> models;
+      for (std::size_t i = first; i < first + count; ++i) models.push_back(problem.Build(points[i]));
+      std::vector<std::vector<double>> raw = problem.Raw(models, extent);
+      std::vector<std::vector<double>> white = problem.White(raw, extent);
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto [owner, place] = owners[first + i];
+        descents[owner].Take(place, std::move(raw[i]), std::move(white[i]));
+      }
+    }
+    for (std::size_t d = 0; d < descents.size(); ++d)
+      if (going[d]) descents[d].Proceed();
+  }
+  std::vector<Fit> fits;
+  for (Descent& d : descents) fits.push_back(d.Result());
+  return fits;
+}
+
+Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort, Extent extent) {
+  return std::move(FitPoints(problem, {{std::move(start), effort}}, extent)[0]);
+}
+
+Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort) {
+  return std::move(FitPoints(problem, {{fit.point, effort, nullptr, &fit}})[0]);
+}
+
+namespace {
+
+// Of chi^2 in excess of twice its degrees; standard deviations.
+constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
+constexpr double kLower = 2.0;  // of chi^2
+
+bool Implausible(const Problem& problem, const Fit& fit) {
+  const auto terms = static_cast<double>(problem.terms_.size());
+  return fit.prior > kHardlyEver * terms;
+}
+
+}  // namespace
+
+bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, double worth) {
+  if (!Implausible(problem, fit)) return false;
+  Point back = fit.point;
+  for (std::size_t i = 0; i < back.base.size(); ++i) {
+    const BaseTerm& t = problem.terms_[i];
+    if (!t.nuisance && std::fabs(back.base[i]) > kFarOff * t.sigma) back.base[i] = 0.0;
+  }
+  if (!problem.excerpt_.empty()) {
+    // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
+    const Fit here = FitPoint(problem, fit.point, kToTheValley, Extent::kExcerpt);
+    Fit there = FitPoint(problem, std::move(back), kToTheValley, Extent::kExcerpt);
+    if (there.cost > here.cost - kLower || fit.cost + there.cost - here.cost > worth) return false;
+    back = std::move(there.point);
+  }
+  Fit other = FitPoint(problem, std::move(back), effort);
+  if (!(other.cost < fit.cost)) return false;
+  fit = std::move(other);
+  return true;
+}
+
+double CostAt(const Problem& problem, const Point& point, Extent extent) {
+  return ColumnOf(problem.Residuals(std::span(&point, 1), extent)[0]).squaredNorm() + PriorOf(problem, point);
+}
+
+void RewhitenResidual(const Problem& problem, Fit& fit) {
+  const std::span<const double> in(fit.raw);
+  const std::span<double> out(fit.residual);
+  problem.WhitenInto(std::span(&in, 1), std::span(&out, 1));
+  fit.prior = PriorOf(problem, fit.point);
+  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
+}
+
+void RewhitenSensitivities(const Problem& problem, Fit& fit) {
+  const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
+  std::vector<std::span<const double>> in;
+  std::vector<std::span<double>> out;
+  for (Eigen::Index i = 0; i < fit.raw_jacobian.cols(); ++i) {
+    in.emplace_back(fit.raw_jacobian.col(i).data(), size);
+    out.emplace_back(fit.jacobian.col(i).data(), size);
+  }
+  problem.WhitenInto(in, out);
+  AddProducts(fit.jacobian, 0, fit.normal);
+}
+
+void Rewhiten(const Problem& problem, Fit& fit) {
+  RewhitenResidual(problem, fit);
+  RewhitenSensitivities(problem, fit);
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <vector>
+
+#include "analysis/prediction_error/problem.h"
+
+namespace contour::diagnosis {
+
+/// A maximum a posteriori point and the local picture there.
+struct Fit {
+  Point point;
+  double cost = 0.0;  ///< |r|^2 + prior
+  double prior = 0.0;
+  std::vector<double> raw, residual;       ///< as Problem::Raw gives it; white
+  Eigen::MatrixXd raw_jacobian, jacobian;  ///< of the same; base terms, then amplitudes
+  Eigen::MatrixXd normal;                  ///< J' J of the white one, priors not included
+  Eigen::MatrixXd covariance;              ///< of the parameters, noise of unit variance
+  double promised = 0.0;  ///< what one more step would take off, as far as the last one kept it
+  bool converged = false;
+};
+
+struct FitEffort {
+  int most_steps = 8;
+  int most_refreshes = 8;      ///< of the sensitivities
+  double close_enough = 0.02;  ///< what one more step would promise at an end, of |r|^2
+  bool covariance = true;      ///< of the end point; else sensitivities may be old
+  /// So much of what the cost has fallen below `from` is close enough, too.
+  double share_enough = 0.0, from = 0.0;
+  /// Given up where not even the first step's promise leads below.
+  double hopeless_above = std::numeric_limits<double>::infinity();
+};
+
+/// To see in which valley a point lies.
+inline constexpr FitEffort kToTheValley = {
+    .most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
+
+/// Where a fit begins.
+struct Beginning {
+  Point point;
+  FitEffort effort;
+  /// Of the same noise: its sensitivities serve for the parameters that it has; its residual too, where it
+  /// has all of them.
+  const Fit* known = nullptr;
+  /// The same, of all its parameters, and given up for this fit: two of them at a time would take memory.
+  Fit* continued = nullptr;
+};
+
+/// Gauss-Newton with the sensitivities kept while they serve. Noise is the problem's, held. All fits go step
+/// by step together, so that their runs share the lanes. On an excerpt of the log: what is known of it is of
+/// the excerpt, too.
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings,
+                           Extent extent = Extent::kWhole);
+Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {},
+             Extent extent = Extent::kWhole);
+/// The same from where a fit stands.
+Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort);
+
+/// A fit for which the stated numbers would have to be off as they hardly ever are may have ended in a wrong
+/// place: once more from where those numbers are back that are far off. The lower end counts. Whether it was
+/// replaced. Where the excerpt ends above the cost that would be `worth` it, the whole log is spared.
+bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort,
+                   double worth = std::numeric_limits<double>::infinity());
+
+double CostAt(const Problem& problem, const Point& point, Extent extent = Extent::kWhole);
+
+/// The fit's own runs under the noise that was learnt since: both of the two below it, of which the residual
+/// alone tells the cost.
+void Rewhiten(const Problem& problem, Fit& fit);
+void RewhitenResidual(const Problem& problem, Fit& fit);
+void RewhitenSensitivities(const Problem& problem, Fit& fit);
+
+std::size_t ParameterCount(const Point& point);
+
+/// Base terms first; amplitudes stay inside their effects' bounds.
+Point Moved(Point point, const Eigen::VectorXd& by);
+
+}  // namespace contour::diagnosis

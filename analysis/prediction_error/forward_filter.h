@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "analysis/axis_model/axis_model.h"
+#include "analysis/prediction_error/excerpt.h"
+#include "analysis/recording/axis_log.h"
+
+namespace contour::diagnosis {
+
+/// Correction of each state per unit of innovation: motor position, motor velocity, load position, velocity.
+using ObserverGain = std::array<double, 4>;
+
+/// Steady-state Kalman gain of the linear nominal plant (friction's viscous part only) for a bandwidth.
+ObserverGain SteadyObserverGain(const AxisModel& nominal, double period_s, double bandwidth_Hz);
+
+/// What a run gives, one element per row.
+struct FilterRun {
+  std::vector<double> innovation;      ///< measured minus predicted position; 0 at masked rows
+  std::vector<double> table_position;  ///< q of the body that carries the table, after the correction
+  std::vector<double> velocity;        ///< of the body that carries the friction, after the correction
+  std::vector<double> friction;        ///< LuGre force without its viscous part, at the row
+};
+
+/// What the drive delivers of the logged command: the hold, the pure delay, the first-order lag, all exact.
+struct Delivered {
+  std::vector<double> mean;  ///< over every sub-step of every row
+  /// Per sub-step of every row, too: what the delivered torque moves a unit inertia beyond what its mean
+  /// does, because it is not constant inside the sub-step: the integral of (h/2 - t) u(t) dt. Without it the
+  /// model shifts some 30 us from lag to delay.
+  std::vector<double> late;
+};
+
+/// Arrays that runs need and leave again: fresh memory costs as much as filling it does.
+class DeliveredStore {
+ public:
+  Delivered Take();
+  void Give(Delivered used);
+
+ private:
+  std::mutex mutex_;
+  std::vector<Delivered> free_;
+};
+
+/// Everything that the runs of one diagnosis share.
+struct FilterSetup {
+  const AxisLog* log = nullptr;
+  std::vector<std::uint8_t> valid;  ///< rows whose position may correct
+  std::vector<double> start;        ///< position and velocity of the motor at the first row
+  ObserverGain gain{}, gain_two{};  ///< for rigid runs, for two-inertia runs
+  int substeps_rigid = 4, substeps_two = 8;
+  bool full = false;  ///< fill table_position; velocity and friction too when `trace`
+  bool trace = false;
+  /// Only these are run, back to back in what comes out; none: the whole log.
+  std::span<const Stretch> stretches;
+  std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
+};
+
+/// Per row, as the model's shape asks for.
+int SubstepsOf(const FilterSetup& setup, const AxisModel& m);
+
+/// The model driven by the logged command and held to the measured position by a fixed gain: DIAGNOSIS eqs.
+/// of the forward model in innovation form. Lanes of eight run together; the result of each does not depend
+/// on the others, nor on the number of threads.
+std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisModel> models, int threads);
+
+/// A delay below 0 counts as 0.
+Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps);
+/// The same into what is there already; over some stretches only, back to back, where there are any.
+void DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps,
+                    std::span<const Stretch> stretches, Delivered& out);
+
+}  // namespace contour::diagnosis

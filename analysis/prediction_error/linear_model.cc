@@ -1,0 +1,228 @@
+#include "analysis/prediction_error/linear_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/prediction_error/lane_bundle.h"
+#include "analysis/prediction_error/simd/lane_loops.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Places in an entry of Lanes::tangent.
+enum Slot { kInnovation, kTh, kW, kDrag, kZ, kSoft, kThl, kWl };
+
+struct Direction {
+  Vec LanePush::*push;
+  double size;
+};
+
+struct Directions {
+  std::vector<Slot> states;        // th first
+  std::vector<Direction> columns;  // of the states after th, then the reading, then the inputs
+};
+
+Directions DirectionsOf(const AxisModel& m) {
+  const double z = m.friction.Fc_plus / m.friction.s0;
+  const double w = 1e-5 * m.friction.vs;
+  const double u = 1e-4 * m.friction.Fc_plus;
+  Directions d;
+  d.states = {kTh, kW, kDrag, kZ};
+  d.columns = {{&LanePush::w, w}, {&LanePush::drag, u}, {&LanePush::z, 1e-4 * z}};
+  if (m.two_inertia) {
+    d.states.insert(d.states.end(), {kThl, kWl});
+    d.columns.insert(d.columns.end(), {{&LanePush::thl, 1e-4 * z}, {&LanePush::wl, w}});
+  }
+  if (m.soft_share > 0.0) {
+    d.states.push_back(kSoft);
+    d.columns.push_back({&LanePush::soft, 1e-4 * z});
+  }
+  d.columns.push_back({&LanePush::reading, 1e-4 * z});
+  d.columns.push_back({&LanePush::motor_from, u});
+  d.columns.push_back({&LanePush::motor_to, u});
+  if (m.two_inertia) {
+    d.columns.push_back({&LanePush::load_from, u});
+    d.columns.push_back({&LanePush::load_to, u});
+  }
+  d.columns.push_back({&LanePush::level_from, 1e-4});
+  d.columns.push_back({&LanePush::level_to, 1e-4});
+  return d;
+}
+
+// Where the column of a direction goes: e at `e` (with its sign), states at `x`, `step` apart.
+struct Place {
+  std::size_t e, x, step;
+};
+
+}  // namespace
+
+LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
+  LinearModel out;
+  const std::size_t rows = setup.log->size();
+  const int substeps = SubstepsOf(setup, model);
+  const Directions d = DirectionsOf(model);
+  const std::size_t n = d.states.size();
+  out.rows = rows;
+  out.states = static_cast<int>(n);
+  out.table_state = model.two_inertia ? 4 : 0;
+  out.stride = n * n + 2 * n + kLinearInputs * (n + 1);
+  out.step.assign((rows - 1) * out.stride, 0.0F);
+  out.valid = setup.valid;
+  out.viscous = model.friction.s2;
+  out.friction_on_load = model.two_inertia && model.friction_on_load;
+  out.innovation.resize(rows);
+  out.velocity.resize(rows);
+  out.table.resize(rows);
+  const std::size_t c = n * n, g = c + n, inputs = g + n;
+  std::vector<Place> places;
+  for (std::size_t j = 1; j < n; ++j) places.push_back({c + j, j, n});
+  places.push_back({g, g, 1});  // the reading: its innovation is `valid`, written over by G
+  for (std::size_t i = 0; i + n < d.columns.size(); ++i) {
+    // Rigid axes have one force; it serves as the load's too.
+    const std::size_t which = model.two_inertia || i < 2 ? i : i + 2;
+    const std::size_t at = inputs + which * (n + 1);
+    places.push_back({at, at + 1, 1});
+  }
+  FilterSetup traced = setup;
+  traced.full = true;
+  traced.trace = true;
+  const Delivered delivered = DeliveredMeans(*setup.log, model.delay_s - model.lag_for_delay_s,
+                                             model.lag_s + model.lag_for_delay_s, substeps);
+  std::vector<double> measured = setup.log->position, zeros(rows, 0.0), spare(rows);
+  for (std::size_t k = 0; k < rows; ++k)
+    if (setup.valid[k] == 0) measured[k] = 0.0;
+  const AxisModel* models[] = {&model};
+  const Delivered* means[] = {&delivered};
+  constexpr std::size_t kAtOnce = kLanes - 1;
+  std::vector<float> tangent((rows - 1) * kAtOnce * kTangentStates);
+  for (std::size_t first = 0; first < d.columns.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, d.columns.size() - first);
+    Lanes m = MakeLanes(traced, models, means, measured.data(), zeros.data());
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      m.innovation[i] = i == 0 ? out.innovation.data() : spare.data();
+      m.velocity[i] = i == 0 ? out.velocity.data() : spare.data();
+      m.friction[i] = spare.data();
+      m.table[i] = i == 0 ? out.table.data() : spare.data();
+    }
+    m.push.inverse = m.push.inverse + 1.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      (m.push.*d.columns[first + i].push)[i + 1] = d.columns[first + i].size;
+      m.push.inverse[i + 1] = 1.0 / d.columns[first + i].size;
+    }
+    m.tangent = tangent.data();
+    BestLoops().run(m);
+    for (std::size_t k = 0; k + 1 < rows; ++k) {
+      float* to = &out.step[k * out.stride];
+      for (std::size_t i = 0; i < count; ++i) {
+        const float* from = &tangent[(k * kAtOnce + i) * kTangentStates];
+        const Place& place = places[first + i];
+        to[place.e] = -from[kInnovation];
+        for (std::size_t s = 0; s < n; ++s) to[place.x + s * place.step] = from[d.states[s]];
+      }
+    }
+  }
+  for (std::size_t k = 0; k + 1 < rows; ++k) {
+    float* p = &out.step[k * out.stride];
+    const float valid = setup.valid[k + 1] != 0 ? 1.0F : 0.0F;
+    // Everything moved together, the reading too, changes nothing: the motor's position is that less the
+    // reading, less the load's.
+    for (std::size_t s = 0; s < n; ++s) {
+      const bool frame = d.states[s] == kTh || d.states[s] == kThl;
+      p[s * n] = (frame ? 1.0F : 0.0F) - p[g + s] - (model.two_inertia ? p[s * n + 4] : 0.0F);
+    }
+    p[c] = valid - (model.two_inertia ? p[c + 4] : 0.0F);
+    if (!model.two_inertia) std::copy_n(p + inputs, 2 * (n + 1), p + inputs + 2 * (n + 1));
+  }
+  return out;
+}
+
+std::vector<FilterRun> LinearColumns(const LinearModel& model, std::span<const LinearInput> inputs,
+                                     bool table) {
+  std::vector<FilterRun> out(inputs.size());
+  const std::vector<double> zeros(model.rows, 0.0);
+  std::vector<double> spare(model.rows);
+  for (std::size_t first = 0; first < inputs.size(); first += kLanes) {
+    LaneColumns m;
+    m.rows = model.rows;
+    m.stride = model.stride;
+    m.states = model.states;
+    m.table_state = model.table_state;
+    m.step = model.step.data();
+    m.valid = model.valid.data();
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const bool used = first + i < inputs.size();
+      const LinearInput none, &in = used ? inputs[first + i] : none;
+      const auto set = [&](LaneSignal& lane, const SharedSignal& s, bool& any) {
+        lane.from.at[i] = s ? s->data() : zeros.data();
+        lane.to.at[i] = s ? s->data() + (s->size() == 2 * model.rows ? model.rows : 1) : zeros.data();
+        any = any || s;
+      };
+      set(m.motor, in.motor_force, m.has_motor);
+      set(m.load, in.load_force, m.has_load);
+      set(m.level, in.level, m.has_level);
+      m.reading[i] = in.reading_error ? in.reading_error->data() : zeros.data();
+      m.has_reading = m.has_reading || in.reading_error;
+      if (used) {
+        out[first + i].innovation.resize(model.rows);
+        if (table) out[first + i].table_position.resize(model.rows);
+      }
+      m.innovation[i] = used ? out[first + i].innovation.data() : spare.data();
+      if (table) m.table[i] = used ? out[first + i].table_position.data() : spare.data();
+    }
+    BestLoops().columns(m);
+  }
+  return out;
+}
+
+namespace {
+
+SharedSignal Difference(const SharedSignal& without, const SharedSignal& with, std::size_t rows, double per) {
+  if (without == with) return nullptr;
+  const std::size_t size = std::max(without ? without->size() : rows, with ? with->size() : rows);
+  auto out = std::make_shared<Signal>(size, 0.0);
+  const auto add = [&](const SharedSignal& s, double factor) {
+    if (!s) return;
+    if (s->size() == size) {
+      for (std::size_t k = 0; k < size; ++k) (*out)[k] += factor * (*s)[k];
+      return;
+    }
+    for (std::size_t k = 0; k < rows; ++k) {
+      (*out)[k] += factor * (*s)[k];
+      (*out)[rows + k] += factor * (*s)[std::min(k + 1, rows - 1)];
+    }
+  };
+  add(with, per);
+  add(without, -per);
+  return out;
+}
+
+}  // namespace
+
+bool SignalsOnly(const LinearModel& linear, const AxisModel& without, const AxisModel& with, double per,
+                 LinearInput& input, SharedSignal& scale_error_m) {
+  AxisModel same = with;
+  same.motor_force = without.motor_force;
+  same.load_force = without.load_force;
+  same.level = without.level;
+  same.viscous = without.viscous;
+  same.reading_error = without.reading_error;
+  same.scale_error_m = without.scale_error_m;
+  if (same != without) return false;
+  const std::size_t rows = linear.rows;
+  input.motor_force = Difference(without.motor_force, with.motor_force, rows, per);
+  input.load_force = Difference(without.load_force, with.load_force, rows, per);
+  input.level = Difference(without.level, with.level, rows, per);
+  input.reading_error = Difference(without.reading_error, with.reading_error, rows, per);
+  scale_error_m = Difference(without.scale_error_m, with.scale_error_m, rows, per);
+  const SharedSignal viscous = Difference(without.viscous, with.viscous, rows, per);
+  if (viscous) {
+    SharedSignal& force = linear.friction_on_load ? input.load_force : input.motor_force;
+    if (force || viscous->size() != rows) return false;
+    auto drag = std::make_shared<Signal>(rows);
+    for (std::size_t k = 0; k < rows; ++k) (*drag)[k] = -linear.viscous * linear.velocity[k] * (*viscous)[k];
+    force = drag;
+  }
+  return true;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "analysis/prediction_error/excerpt.h"
+#include "analysis/prediction_error/linear_model.h"
+#include "analysis/prediction_error/whitener.h"
+
+namespace contour::diagnosis {
+
+/// Makes innovations white. Torque that nobody commanded moves a sliding axis and hardly a stuck one, and the
+/// reading has noise of its own: a Kalman filter on the linearised model (time-varying gain; Anderson and
+/// Moore, Optimal Filtering, 6.2) takes both into account; an autoregressive filter after it takes what
+/// colour is left.
+class NoiseFilter {
+ public:
+  NoiseFilter() = default;
+  /// The ratio of the two noises by maximum likelihood from the innovations of the linearised run.
+  /// `counted`: rows whose innovation counts. `before`: the log's filter of an earlier run, whose ratio lies
+  /// near; null: none.
+  NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::vector<std::uint8_t>& counted,
+              double inertia, double period_s, double reading_step, const NoiseFilter* before);
+
+  /// Whitens each, in place of size rows; rows that do not count come out 0 before the colour filter.
+  /// Of an excerpt's stretches where there are any: in, out and weight are theirs then, back to back.
+  void Apply(std::span<const double* const> in, std::span<double* const> out,
+             const std::vector<std::uint8_t>& counted, const double* weight,
+             std::span<const Stretch> stretches = {}) const;
+
+  /// What the filters make of a pulse of motor torque over one row (or of the reading at one), at row k.
+  std::vector<double> Pulse(std::size_t row, bool reading, std::size_t length,
+                            const std::vector<std::uint8_t>& counted) const;
+
+  struct Gradient {
+    Signal motor, level;  ///< per transition: of a constant over it
+    Signal reading;       ///< per row
+  };
+  /// Of |white|^2 / 2 with respect to signals, where `white` is the filters' own output, weights included.
+  Gradient Back(const std::vector<double>& white, const std::vector<std::uint8_t>& counted,
+                const double* weight) const;
+
+  bool learnt() const { return linear_ != nullptr; }
+  const LinearModel& linear() const { return *linear_; }
+  double torque_noise() const { return torque_noise_; }
+
+ private:
+  std::shared_ptr<const LinearModel> linear_;
+  std::vector<float> gain_;  ///< per transition: kappa, 1 / sqrt(S)
+  std::vector<double> taps_;
+  double torque_noise_ = 0.0;
+  double ratio_ = 0.0;  ///< of the variances, torque's over the reading's: its decimal logarithm
+};
+
+/// A colour filter alone.
+void ApplyColourFilter(const Whitener& whitener, std::span<const double* const> in,
+                       std::span<double* const> out, const std::vector<std::uint8_t>& counted,
+                       const double* weight, std::span<const Stretch> stretches = {});
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,12 @@
+#include "analysis/prediction_error/simd/lane_linear.h"
+#include "analysis/prediction_error/simd/lane_loops.h"
+#include "analysis/prediction_error/simd/lane_run.h"
+// The loops themselves, translated with this file's flags.
+#include "analysis/prediction_error/simd/lane_linear.inc"
+#include "analysis/prediction_error/simd/lane_run.inc"
+
+namespace contour::diagnosis {
+
+const LaneLoops kBaselineLoops = {RunAll, RunBoth, ColumnsAll, WhitenAll, ProductsAll};
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,171 @@
+#include "analysis/recording/log_columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+#include <string_view>
+
+#include "config/config_error.h"
+#include "config/key_hints.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr std::array<std::string_view, 11> kQuantities = {"time_s",
+                                                          "torque_Nm",
+                                                          "motor_angle_rad",
+                                                          "force_N",
+                                                          "position_m",
+                                                          "table_position_m",
+                                                          "temperature_degC",
+                                                          "axis2_position_m",
+                                                          "reference_position_m",
+                                                          "reference_angle_rad",
+                                                          "temperature_c"};
+
+std::string Lower(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+std::string Joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size() && i < 40; ++i) out += (i == 0 ? "" : ", ") + names[i];
+  return out + (names.size() > 40 ? ", ..." : "");
+}
+
+class Finder {
+ public:
+  Finder(const std::string& file, const std::vector<std::string>& header, const std::string& axis,
+         const ColumnNames& names)
+      : file_(file), header_(header), names_(names), axis_(axis) {
+    for (const std::string& name : header) lower_.push_back(Lower(name));
+    if (axis_.empty()) ChooseAxis();
+  }
+
+  std::optional<std::size_t> Find(const std::string& quantity) const {
+    if (const auto named = names_.find(quantity); named != names_.end()) {
+      const auto at = std::find(header_.begin(), header_.end(), named->second);
+      if (at == header_.end())
+        throw ConfigError({file_ + ": --columns: " + quantity + "=" + named->second +
+                           ": no such column; there are " + Joined(header_)});
+      return static_cast<std::size_t>(at - header_.begin());
+    }
+    if (const auto at = Column(axis_.empty() ? quantity : axis_ + "_" + quantity)) return at;
+    return Column(quantity);
+  }
+  /// The same under either of two spellings.
+  std::optional<std::size_t> Find(const std::string& a, const std::string& b) const {
+    const auto at = Find(a);
+    return at ? at : Find(b);
+  }
+  std::size_t Demand(const std::string& quantity) const {
+    if (const auto at = Find(quantity)) return *at;
+    throw ConfigError({file_ + ": no column " + quantity + "; there are " + Joined(header_) +
+                       ". Name it by --columns " + quantity + "=HEADER"});
+  }
+  [[nodiscard]] const std::string& axis() const { return axis_; }
+  [[nodiscard]] std::vector<std::string> OtherAxes() const {
+    std::vector<std::string> others;
+    for (const std::string& name : Axes())
+      if (name != Lower(axis_)) others.push_back(name);
+    return others;
+  }
+
+ private:
+  std::optional<std::size_t> Column(const std::string& name) const {
+    const auto at = std::find(lower_.begin(), lower_.end(), Lower(name));
+    if (at == lower_.end()) return {};
+    return static_cast<std::size_t>(at - lower_.begin());
+  }
+  /// Axes of one of our own tables: what stands before _motor_angle_rad.
+  std::set<std::string> Axes() const {
+    constexpr std::string_view kEnd = "_motor_angle_rad";
+    std::set<std::string> axes;
+    for (const std::string& name : lower_)
+      if (name.ends_with(kEnd) && !name.starts_with("target") && name.find("_target") == std::string::npos)
+        axes.insert(name.substr(0, name.size() - kEnd.size()));
+    return axes;
+  }
+  void ChooseAxis() {
+    const std::set<std::string> axes = Axes();
+    if (axes.empty() || Column("motor_angle_rad") || names_.contains("motor_angle_rad") ||
+        names_.contains("position_m"))
+      return;
+    if (axes.size() > 1)
+      throw ConfigError(
+          {file_ + ": holds the axes " + Joined({axes.begin(), axes.end()}) + "; say by --axis which one"});
+    axis_ = *axes.begin();
+  }
+
+  const std::string& file_;
+  const std::vector<std::string>& header_;
+  const ColumnNames& names_;
+  std::string axis_;
+  std::vector<std::string> lower_;
+};
+
+}  // namespace
+
+ColumnNames ParseColumnNames(const std::string& text) {
+  ColumnNames names;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    const std::string item = text.substr(at, end - at);
+    at = end + 1;
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == item.size())
+      throw ConfigError({"--columns: found '" + item + "', expected name=header"});
+    const auto known = std::find_if(kQuantities.begin(), kQuantities.end(), [&](std::string_view q) {
+      return Lower(q) == Lower(item.substr(0, equals));
+    });
+    if (known == kQuantities.end()) {
+      const KeyHint hint = NearestKey(item.substr(0, equals), {kQuantities.begin(), kQuantities.end()});
+      std::string message = "--columns: " + item.substr(0, equals) + ": unknown quantity";
+      message += hint.key.empty()
+                     ? "; expected one of " + Joined({kQuantities.begin(), kQuantities.end() - 1})
+                     : "; did you mean " + hint.key + "?";
+      throw ConfigError({message});
+    }
+    const std::string name = *known == "temperature_c" ? "temperature_degC" : std::string(*known);
+    if (!names.emplace(name, item.substr(equals + 1)).second)
+      throw ConfigError({"--columns: " + name + " is named twice"});
+  }
+  return names;
+}
+
+LogColumns FindColumns(const std::string& file, const std::vector<std::string>& header,
+                       const std::string& axis, const ColumnNames& names) {
+  const Finder finder(file, header, axis, names);
+  LogColumns columns;
+  columns.time = finder.Demand("time_s");
+  const auto force = finder.Find("force_N");
+  const auto torque = finder.Find("torque_Nm");
+  const bool named_force = names.contains("force_N");
+  if (!force && !torque)
+    throw ConfigError({file + ": neither torque_Nm nor force_N; there are " + Joined(header) +
+                       ". Name it by --columns torque_Nm=HEADER"});
+  columns.linear = named_force || !torque;
+  columns.command = columns.linear ? *force : *torque;
+  columns.position = finder.Demand(columns.linear ? "position_m" : "motor_angle_rad");
+  columns.table_position = finder.Find("table_position_m");
+  columns.temperature = finder.Find("temperature_degC", "temperature_c");
+  columns.axis2_position = finder.Find("axis2_position_m");
+  if (!columns.axis2_position && !finder.axis().empty())
+    for (const std::string& other : finder.OtherAxes())
+      if (!columns.axis2_position) columns.axis2_position = finder.Find(other + "_position_m");
+  if (!columns.linear) columns.reference = finder.Find("reference_angle_rad");
+  if (!columns.reference) {
+    columns.reference = finder.Find("reference_position_m");
+    columns.reference_in_m = columns.reference.has_value();
+  }
+  if (!finder.axis().empty()) {
+    columns.drive_state = finder.Find("drive_state");
+    columns.fresh = finder.Find("feedback_fresh");
+  }
+  return columns;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,70 @@
+// What a joint fit lowers chi^2 by is believed as far as it comes from all over the log.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/decision/rivals.h"
+#include "tests/analysis/support/learnt_problem.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kDrop = 150.0;  // weak enough for luck
+
+test::HiddenOptions Short() {
+  test::HiddenOptions o;
+  o.duration_s = 20.0;
+  o.parameter_spread = 0.0;
+  return o;
+}
+
+class TestedScoreTest : public testing::Test {
+ protected:
+  TestedScoreTest() {
+    const std::vector<SharedEffect> all = CatalogueEffects(problem_);
+    effect_ =
+        *std::find_if(all.begin(), all.end(), [](const auto& e) { return e->kind == "constant_torque"; });
+    base_ = FitPoint(problem_, made_.point);
+    Point with = base_.point;
+    with.effects.push_back(effect_);
+    with.amplitudes.emplace_back(effect_->steps.size(), 0.0);
+    rival_.fit = FitPoint(problem_, with);
+    rival_.score = kDrop - Penalty(*effect_);
+  }
+
+  /// Of the rival, where a constant torque that lowers chi^2 by kDrop acts in rows `from` to `to`.
+  double TestedWith(std::size_t from, std::size_t to) const {
+    const Eigen::VectorXd column = rival_.fit.jacobian.rightCols(1);
+    const auto first = static_cast<Eigen::Index>(from), count = static_cast<Eigen::Index>(to - from);
+    const double all = column.squaredNorm(), own = column.segment(first, count).squaredNorm();
+    const double amplitude =
+        std::sqrt(kDrop * ScoreEffects(problem_, base_, {effect_})[0].covariance(0, 0)) * all / own;
+    Fit current = base_;
+    for (std::size_t k = from; k < to; ++k)
+      current.residual[k] += amplitude * column(static_cast<Eigen::Index>(k));
+    return TestedScore(problem_, current, rival_);
+  }
+
+  test::LearntProblem made_{test::MakeHiddenAxis(Short())};
+  const Problem& problem_ = made_.problem;
+  SharedEffect effect_;
+  Fit base_;
+  Rival rival_;
+};
+
+TEST_F(TestedScoreTest, IsTheJointFitsWhereTheEffectIsThereAllTheTime) {
+  EXPECT_GT(TestedWith(0, problem_.rows()), 0.5 * rival_.score);
+}
+
+TEST_F(TestedScoreTest, IsLittleWhereOneEventMakesIt) {
+  const std::size_t block = problem_.rows() / static_cast<std::size_t>(kBlocks);
+  EXPECT_LT(TestedWith(20 * block, 21 * block), 0.1 * rival_.score);
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,116 @@
+#include "analysis/diagnosis/decision/verdict.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/analysis/support/hidden_axis.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kThreshold = 15.0;
+
+class VerdictTest : public testing::Test {
+ protected:
+  static test::HiddenOptions Short() {
+    test::HiddenOptions o;
+    o.duration_s = 5.0;
+    return o;
+  }
+
+  static Leftover Of(const std::string& over, double beyond) {
+    Leftover one;
+    one.over = over;
+    one.like = "position_friction";
+    one.bins = 90.0;
+    one.drop = 90.0 + beyond;
+    one.score = beyond;
+    one.asked = kThreshold;
+    one.at = "12 mm, moving up";
+    return one;
+  }
+
+  static Diagnosis Named(const std::vector<std::pair<std::string, double>>& causes) {
+    Diagnosis d;
+    for (const auto& [kind, score] : causes) {
+      Cause c;
+      c.kind = kind;
+      c.log_evidence_gain = 0.5 * score;
+      d.causes.push_back(c);
+      d.candidates.push_back({kind, score, score, true});
+    }
+    return d;
+  }
+
+  Diagnosis Concluded(Diagnosis d, const std::vector<Leftover>& left) const {
+    Conclude(problem_, left, d);
+    return d;
+  }
+
+  test::HiddenAxis axis_ = test::MakeHiddenAxis(Short());
+  Problem problem_{axis_.log, axis_.stated, 1};
+};
+
+TEST_F(VerdictTest, NothingIsFoundWhereNothingIsLeft) {
+  const Diagnosis d = Concluded({}, {Of("time", 5.0)});
+  EXPECT_EQ(d.verdict, Verdict::kNothingFound);
+  EXPECT_TRUE(d.notes.empty());
+}
+
+TEST_F(VerdictTest, WhatIsLeftWithoutACauseIsUnexplained) {
+  const Diagnosis d = Concluded({}, {Of("the position and the direction", 40.0)});
+  EXPECT_EQ(d.verdict, Verdict::kUnexplained);
+  ASSERT_EQ(d.notes.size(), 1u);
+  EXPECT_NE(d.notes[0].find("the position and the direction"), std::string::npos);
+  EXPECT_NE(d.notes[0].find("12 mm, moving up"), std::string::npos);
+}
+
+TEST_F(VerdictTest, ACauseKeepsItsNameBesideLittle) {
+  const Diagnosis d = Concluded(Named({{"cogging", 20000.0}}), {Of("time", 100.0)});
+  EXPECT_EQ(d.verdict, Verdict::kCauseFound);
+  ASSERT_EQ(d.causes.size(), 1u);
+  EXPECT_TRUE(d.candidates[0].accepted);
+  EXPECT_EQ(d.notes.size(), 1u);  // that something small is left
+}
+
+TEST_F(VerdictTest, ACauseThatLeavesATenthLosesIt) {
+  const Diagnosis d = Concluded(Named({{"presliding_hysteresis", 6000.0}, {"cable_spring", 500.0}}),
+                                {Of("time", 900.0), Of("the speed", 4.0)});
+  EXPECT_EQ(d.verdict, Verdict::kUnexplained);
+  EXPECT_TRUE(d.causes.empty());
+  EXPECT_FALSE(d.candidates[0].accepted);
+  EXPECT_NE(d.notes.back().find("presliding_hysteresis, cable_spring"), std::string::npos);
+}
+
+TEST_F(VerdictTest, ATorqueMakesAnErrorOfTheLeadNoLessTrueUnlessItIsLarge) {
+  const Diagnosis beside = Concluded(Named({{"pitch_error", 9000.0}}), {Of("time", 900.0)});
+  EXPECT_EQ(beside.verdict, Verdict::kCauseFound);
+  EXPECT_EQ(beside.causes.size(), 1u);
+  const Diagnosis large =
+      Concluded(Named({{"pitch_error", 3400.0}, {"outside:force of time", 7000.0}}), {Of("time", 180.0)});
+  EXPECT_EQ(large.verdict, Verdict::kUnexplained);
+}
+
+TEST_F(VerdictTest, FurtherOrdersOfATurnMakeNoNameWrong) {
+  Leftover angle = Of("the angle of the motor and the direction", 1200.0);
+  angle.series = true;
+  EXPECT_EQ(Concluded(Named({{"cogging", 8000.0}}), {angle, Of("time", 80.0)}).verdict, Verdict::kCauseFound);
+  EXPECT_EQ(Concluded({}, {angle}).verdict, Verdict::kUnexplained);
+}
+
+TEST_F(VerdictTest, AShapeOutsideTheCatalogueIsNoExplanation) {
+  const Diagnosis much = Concluded(Named({{"friction_drift", 34000.0}, {"outside:friction of time", 9000.0}}),
+                                   {Of("time", 5.0)});
+  EXPECT_EQ(much.verdict, Verdict::kUnexplained);
+  EXPECT_TRUE(much.causes.empty());
+  const Diagnosis little =
+      Concluded(Named({{"friction_drift", 34000.0}, {"outside:friction of time", 90.0}}), {Of("time", 5.0)});
+  EXPECT_EQ(little.verdict, Verdict::kCauseFound);
+  ASSERT_EQ(little.causes.size(), 1u);
+  EXPECT_EQ(little.causes[0].kind, "friction_drift");
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

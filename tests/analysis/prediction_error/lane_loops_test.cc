@@ -1,0 +1,286 @@
+#include "analysis/prediction_error/simd/lane_loops.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "analysis/prediction_error/products.h"
+#include "analysis/prediction_error/simd/lane_linear.h"
+#include "analysis/prediction_error/simd/lane_run.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr std::size_t kRows = 700;
+
+/// Of this machine: those that multiply and add in one rounding.
+std::vector<const LaneLoops*> Fused() {
+  std::vector<const LaneLoops*> out;
+  if (HasAvx2()) out.push_back(&kAvx2Loops);
+  if (HasAvx512()) out.push_back(&kAvx512Loops);
+  return out;
+}
+
+double Largest(const std::vector<double>& x) {
+  double largest = 0.0;
+  for (const double v : x) largest = std::max(largest, std::fabs(v));
+  return largest;
+}
+
+/// The baseline rounds twice where the others round once.
+void ExpectNear(const std::vector<double>& a, const std::vector<double>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  std::vector<double> difference(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
+  EXPECT_LT(Largest(difference), 1e-9 * Largest(b));
+}
+
+std::vector<double> Noise(std::size_t size, double scale, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal(0.0, scale);
+  std::vector<double> out(size);
+  for (double& x : out) x = normal(random);
+  return out;
+}
+
+enum class Beside { kNothing, kAfter, kBefore };
+
+// Runs of a table axis, every lane with parameters of its own, through rest, slides and reversals; another
+// bundle may run beside it.
+std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool square, bool bare,
+                          Beside beside = Beside::kNothing) {
+  constexpr int kSubsteps = 4;
+  Lanes m{};
+  m.rows = kRows;
+  m.substeps = kSubsteps;
+  m.period_s = 1e-3;
+  m.two = two;
+  m.on_load = two;
+  m.soft = soft;
+  m.fading = true;
+  m.gap = m.payload = !bare;
+  m.linear = square ? 0.0 : 1.0;
+  m.square = square ? 1.0 : 0.0;
+  m.full = m.trace = true;
+  std::vector<double> torque(kRows * kSubsteps), measured(kRows);
+  for (std::size_t i = 0; i < torque.size(); ++i)
+    torque[i] = 0.05 * std::sin(0.004 * static_cast<double>(i)) + 1e-3;
+  for (std::size_t k = 0; k < kRows; ++k) measured[k] = 2.0 - 2.0 * std::cos(0.016 * static_cast<double>(k));
+  const std::vector<double> noise = Noise(kRows + 1, 1e-3, 5), late = Noise(kRows * kSubsteps, 1e-12, 6);
+  std::vector<std::uint8_t> valid(kRows, 1);
+  valid[300] = 0;
+  m.measured = measured.data();
+  m.valid = valid.data();
+  m.l[0] = m.l[2] = 0.2;
+  m.l[1] = m.l[3] = 20.0;
+  std::vector<double> out(4 * kLanes * kRows);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    const double x = 1.0 + 0.03 * static_cast<double>(i);
+    m.torque.at[i] = torque.data();
+    m.late.at[i] = late.data();
+    for (LaneSignal* s : {&m.motor, &m.load, &m.level}) {
+      s->from.at[i] = noise.data();
+      s->to.at[i] = noise.data() + 1;
+    }
+    m.viscous.at[i] = noise.data();
+    m.reading.at[i] = late.data();
+    m.inv_motor[i] = 1e4 / x;
+    m.inv_load[i] = 2e4;
+    m.inv_payload[i] = 9e3;
+    m.payload_row[i] = static_cast<std::int64_t>(400 + i);
+    for (LaneFlow* flow : {&m.flow, &m.flow_payload}) {
+      flow->dd[i] = 0.91 + 0.001 * x;
+      flow->dr[i] = flow->ra[i] = 2.4e-4;
+      flow->da[i] = 3e-8;
+      flow->rd[i] = -700.0 * x;
+      flow->rr[i] = 0.85;
+      flow->half_rd[i] = -370.0 * x;
+      flow->half_rr[i] = 0.93;
+      flow->half_ra[i] = 1.2e-4;
+      flow->stiff[i] = 3e6 * x;
+      flow->damp[i] = 300.0;
+      flow->motor_share[i] = flow == &m.flow ? 0.7 : 0.5;
+      flow->load_share[i] = 1.0 - flow->motor_share[i];
+    }
+    m.half_gap[i] = 1e-5 * static_cast<double>(i);
+    m.Fc_plus[i] = 0.02;
+    m.Fc_minus[i] = 0.021;
+    m.dF_plus[i] = m.dF_minus[i] = 0.004 * x;
+    m.inv_vs[i] = 0.7;
+    m.s0[i] = 1.4 * x;
+    m.s1[i] = 1e-3;
+    m.inv_vd[i] = 0.4;
+    m.s2[i] = 1e-4;
+    m.smallest[i] = 1e-6;
+    m.gain[i] = 1.0;
+    m.saturation[i] = 0.1;
+    m.soft_level[i] = 0.2;
+    m.soft_s0[i] = 0.1;
+    m.rough[i] = 1e-4;
+    m.innovation[i] = &out[i * kRows];
+    m.table[i] = &out[(kLanes + i) * kRows];
+    m.velocity[i] = &out[(2 * kLanes + i) * kRows];
+    m.friction[i] = &out[(3 * kLanes + i) * kRows];
+  }
+  std::vector<double> spare(kRows);
+  Lanes other = m;
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    other.Fc_plus[i] = 0.03;
+    other.flow.rd[i] = -900.0;
+    other.innovation[i] = other.table[i] = other.velocity[i] = other.friction[i] = spare.data();
+  }
+  if (beside == Beside::kNothing) loops.run(m);
+  if (beside == Beside::kAfter) loops.run_both(m, other);
+  if (beside == Beside::kBefore) loops.run_both(other, m);
+  return out;
+}
+
+TEST(LaneLoops, RunsGiveTheSameBitsWithEveryFusedInstructionSet) {
+  for (const bool two : {false, true})
+    for (const bool soft : {false, true})
+      for (const auto& [square, bare] :
+           {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+        const std::vector<double> baseline = RunOf(kBaselineLoops, two, soft, square, bare);
+        EXPECT_TRUE(std::isfinite(Largest(baseline)) && Largest(baseline) > 0.1);
+        for (const Beside beside : {Beside::kAfter, Beside::kBefore})
+          EXPECT_EQ(RunOf(kBaselineLoops, two, soft, square, bare, beside), baseline);
+        if (Fused().empty()) continue;
+        const std::vector<double> expected = RunOf(*Fused()[0], two, soft, square, bare);
+        ExpectNear(baseline, expected);
+        for (const LaneLoops* loops : Fused())
+          for (const Beside beside : {Beside::kNothing, Beside::kAfter, Beside::kBefore})
+            EXPECT_EQ(RunOf(*loops, two, soft, square, bare, beside), expected);
+      }
+}
+
+TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryFusedInstructionSet) {
+  constexpr std::size_t kStates = 4,
+                        kStride = kStates * kStates + 2 * kStates + kLinearInputs * (kStates + 1);
+  const std::vector<double> numbers = Noise(kRows * kStride, 0.2, 7),
+                            signals = Noise(9 * (kRows + 1), 1.0, 8);
+  const std::vector<float> step(numbers.begin(), numbers.end());
+  const std::vector<std::uint8_t> valid(kRows, 1);
+  const std::vector<double> taps = Noise(kWhitenTaps, 0.3, 9);
+  const auto work = [&](const LaneLoops& loops) {
+    std::vector<double> out(3 * kLanes * kRows);
+    LaneColumns c;
+    c.rows = kRows;
+    c.stride = kStride;
+    c.states = kStates;
+    c.step = step.data();
+    c.valid = valid.data();
+    c.has_motor = c.has_level = c.has_reading = true;
+    LaneWhiten w;
+    w.rows = kRows;
+    w.stride = kStride;
+    w.states = kStates;
+    w.step = step.data();
+    w.gain = step.data() + 11;
+    w.taps = taps.data();
+    w.counted = valid.data();
+    w.weight = signals.data();
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      const double* s = &signals[i * (kRows + 1)];
+      for (LaneSignal* lane : {&c.motor, &c.load, &c.level}) {
+        lane->from.at[i] = s;
+        lane->to.at[i] = s + 1;
+      }
+      c.reading[i] = s;
+      c.innovation[i] = &out[i * kRows];
+      w.in[0][i] = w.in[1][kLanes - 1 - i] = s;
+      for (std::size_t g = 0; g < kMostGroups; ++g) w.out[g][i] = &out[((1 + g) * kLanes + i) * kRows];
+    }
+    loops.columns(c);
+    w.groups = kMostGroups;
+    loops.whiten(w);
+    // One group alone gives what it gives beside another.
+    const std::vector<double> both = out;
+    std::fill_n(out.begin() + kLanes * kRows, kLanes * kRows, 0.0);
+    w.groups = 1;
+    loops.whiten(w);
+    EXPECT_EQ(both, out);
+    for (std::size_t i = 0; i < kLanes; ++i)
+      EXPECT_EQ(out[(kLanes + i) * kRows + kRows / 2], out[(3 * kLanes - 1 - i) * kRows + kRows / 2]);
+    return out;
+  };
+  const std::vector<double> baseline = work(kBaselineLoops);
+  EXPECT_NE(baseline[kRows / 2], 0.0);
+  EXPECT_NE(baseline.back(), 0.0);
+  for (const LaneLoops* loops : Fused()) {
+    const std::vector<double> fused = work(*loops);
+    ExpectNear(baseline, fused);
+    EXPECT_EQ(fused, work(*Fused()[0]));
+  }
+}
+
+TEST(LaneLoops, ProductsGiveTheSameBitsWithEveryFusedInstructionSetAndTheRightSums) {
+  constexpr std::size_t kSize = 1237, kA = 7, kB = 5;
+  const std::vector<double> numbers = Noise((kA + kB) * kSize, 1.0, 10);
+  const double* columns[kA + kB];
+  for (std::size_t i = 0; i < kA + kB; ++i) columns[i] = &numbers[i * kSize];
+  const auto work = [&](const LaneLoops& loops) {
+    std::vector<double> out(kA * kB);
+    LaneProducts m;
+    m.size = kSize;
+    m.a_count = kA;
+    m.b_count = kB;
+    m.a = columns;
+    m.b = columns + kA;
+    m.out = out.data();
+    loops.products(m);
+    return out;
+  };
+  const std::vector<double> expected = work(kBaselineLoops);
+  for (const LaneLoops* loops : Fused()) {
+    ExpectNear(work(*loops), expected);
+    EXPECT_EQ(work(*loops), work(*Fused()[0]));
+  }
+  for (std::size_t i = 0; i < kA; ++i)
+    for (std::size_t j = 0; j < kB; ++j) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kSize; ++k) sum += columns[i][k] * columns[kA + j][k];
+      EXPECT_NEAR(expected[i * kB + j], sum, 1e-10);
+    }
+}
+
+TEST(LaneLoops, ProductsOfColumnsWithThemselvesAreMirrored) {
+  constexpr std::size_t kSize = 611, kCount = 9;
+  const std::vector<double> numbers = Noise(kCount * kSize, 1.0, 11);
+  std::vector<const double*> a, b;
+  for (std::size_t i = 0; i < kCount; ++i) a.push_back(&numbers[i * kSize]);
+  const Eigen::MatrixXd own = ProductsOf(a, a, kSize);
+  for (std::size_t i = 0; i < kCount; ++i)
+    for (std::size_t j = 0; j < kCount; ++j) {
+      const double* one[] = {a[i]};
+      const double* other[] = {a[j]};
+      EXPECT_NEAR(own(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)),
+                  ProductsOf(one, other, kSize)(0, 0), 1e-10);
+    }
+}
+
+TEST(LaneLoops, ProductsInBlocksAddUp) {
+  constexpr std::size_t kSize = 500, kRuns = 2, kBlocks = 7;
+  const std::vector<double> numbers = Noise(4 * kRuns * kSize, 1.0, 12);
+  const auto column = [&](std::size_t i) { return &numbers[i * kRuns * kSize]; };
+  const double* a[] = {column(0), column(1)};
+  const double* b[] = {column(2)};
+  const double* r = column(3);
+  const ProductsInBlocks got = MakeProductsInBlocks(a, b, r, kSize, kRuns * kSize, kBlocks);
+  ASSERT_EQ(got.with_r.cols(), static_cast<Eigen::Index>(kBlocks));
+  const double* one[] = {r};
+  EXPECT_NEAR(got.with_r.sum(), ProductsOf(b, one, kRuns * kSize)(0, 0), 1e-10);
+  EXPECT_LT((got.products - ProductsOf(a, b, kRuns * kSize)).norm(), 1e-10);
+  double third = 0.0;
+  for (std::size_t run = 0; run < kRuns; ++run)
+    for (std::size_t k = kSize * 2 / kBlocks; k < kSize * 3 / kBlocks; ++k)
+      third += b[0][run * kSize + k] * r[run * kSize + k];
+  EXPECT_NEAR(got.with_r(0, 2), third, 1e-10);
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

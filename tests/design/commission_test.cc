@@ -1,0 +1,94 @@
+// Commissioning of an emulated axis in virtual time, and the plan of its motions.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/identification/result_files.h"
+#include "config/config_error.h"
+#include "config/load_machine.h"
+#include "tests/design/virtual_commissioning.h"
+
+namespace contour::test {
+namespace {
+
+MachineConfig Example() { return LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/xy_emulated.yaml"); }
+
+std::string Refusal(double position_mm, const CommissionLimits& limits) {
+  try {
+    PlanCommissioning(Example(), "x", position_mm, limits);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(CommissionPlanTest, KeepsToTheTravelAlsoNearAnEnd) {
+  const MachineConfig machine = Example();
+  const CommissionLimits limits = DefaultCommissionLimits(machine.axes.at("x"));
+  EXPECT_DOUBLE_EQ(limits.travel_mm, 20.0);
+  EXPECT_DOUBLE_EQ(limits.max_speed_mm_s, 100.0);
+  for (const double position_mm : {0.0, 199.0, -195.0}) {
+    const CommissionPlan plan = PlanCommissioning(machine, "x", position_mm, limits);
+    EXPECT_NEAR(plan.high_mm - plan.low_mm, limits.travel_mm, 1e-9);
+    EXPECT_GE(plan.low_mm, -200.0);
+    EXPECT_LE(plan.high_mm, 200.0);
+    EXPECT_LE(plan.low_mm, position_mm);
+    EXPECT_GE(plan.high_mm, position_mm);
+    EXPECT_LT(plan.largest_torque_Nm, limits.max_torque_Nm);
+  }
+}
+
+TEST(CommissionPlanTest, RefusesWhatDoesNotFitAndSaysWhatDoes) {
+  EXPECT_NE(Refusal(0.0, {500.0, 100.0, 0.9}).find("--travel_mm: found 500"), std::string::npos);
+  EXPECT_NE(Refusal(0.0, {3.0, 100.0, 0.9}).find("whole turn"), std::string::npos);
+  EXPECT_NE(Refusal(0.0, {20.0, 300.0, 0.9}).find("--max_speed_mm_s: found 300"), std::string::npos);
+  EXPECT_NE(Refusal(0.0, {20.0, 100.0, 2.0}).find("--max_torque_Nm: found 2"), std::string::npos);
+  EXPECT_NE(Refusal(0.0, {20.0, 100.0, 0.2}).find("--max_torque_Nm: found 0.2"), std::string::npos);
+  EXPECT_NE(Refusal(199.9, {20.0, 100.0, 0.9}).find("move it away from its end"), std::string::npos);
+  EXPECT_EQ(Refusal(0.0, {20.0, 100.0, 0.9}), "");
+}
+
+TEST(CommissionTest, AModelThatIsHalfWrongIsPutRightInsideTheLimits) {
+  const EmulatedMachineFile file = WrongMachine(11, 0.5, 0.3);
+  const AxisConfig& stated = file.machine.axes.at("x");
+  const VirtualCommissioning run = Commission(file, "x", "mpc_observer");
+  EXPECT_LT(run.machine_time_s, 300.0);
+  EXPECT_GE(run.low_m * 1e3, run.plan.low_mm);
+  EXPECT_LE(run.high_m * 1e3, run.plan.high_mm);
+  EXPECT_LE(run.largest_speed_m_s * 1e3, run.plan.limits.max_speed_mm_s);
+  EXPECT_LE(run.largest_torque_Nm, run.plan.limits.max_torque_Nm);
+
+  const identify::Identification id =
+      identify::Identify(diagnosis::ToStatedAxis(file.machine, "x"), {run.log}, {});
+  const auto truth = Truth(file, "x", id.fit.axis.variation.low_m, id.fit.axis.variation.high_m);
+  const auto found = Found(id);
+  const std::map<std::string, double> allowed = {{"Fs_plus_N", 0.05},
+                                                 {"Fs_minus_N", 0.05},
+                                                 {"Fc_plus_N", 0.05},
+                                                 {"Fc_minus_N", 0.05},
+                                                 {"vs_mm_s", 0.15},
+                                                 {"sigma0_N_m", 0.1},
+                                                 {"sigma1_Ns_m", 0.3},
+                                                 {"sigma2_Ns_m", 0.05},
+                                                 {"motor_inertia_kgm2", 0.02},
+                                                 {"table_mass_kg", 0.03},
+                                                 {"screw_stiffness_N_um", 0.03}};
+  for (const auto& [key, share] : allowed)
+    EXPECT_NEAR(found.at(key).value / truth.at(key), 1.0, share) << key;
+
+  EXPECT_TRUE(id.notes.empty()) << id.notes.front();
+
+  // What is written is a model that a machine file takes.
+  const ModelConfig model = identify::ToModel(id, stated.model);
+  EXPECT_NEAR(model.mechanics.table_mass_kg / truth.at("table_mass_kg"), 1.0, 0.05);
+  EXPECT_TRUE(model.uncertainty.contains("sigma0_N_m"));
+  const std::string path = ::testing::TempDir() + "commission_test_model.yaml";
+  identify::WriteModelFile(path, model, id, {"a test"});
+  const ModelConfig back = LoadModel(path);
+  EXPECT_DOUBLE_EQ(back.friction.sigma0_N_m, model.friction.sigma0_N_m);
+  EXPECT_EQ(back.uncertainty, model.uncertainty);
+}
+
+}  // namespace
+}  // namespace contour::test

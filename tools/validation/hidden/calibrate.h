@@ -1,0 +1,13 @@
+#pragma once
+
+#include <istream>
+#include <string>
+
+namespace contour::hidden {
+
+/// From what `--evidence` wrote of machines without an effect, and of machines with one: the lines of
+/// analysis/diagnosis/tuning/margin_table.inc. Throws std::runtime_error where the table is no such evidence
+/// or has no clean log.
+std::string MarginTable(std::istream& evidence);
+
+}  // namespace contour::hidden
