@@ -21,7 +21,7 @@ struct BinnedRows {
   /// Causes of it come as a series, order by order: what is left are further orders, which make no name
   /// wrong.
   bool series = false;
-  std::string_view margin = kUnexplained;  ///< whose margins it has
+  std::string_view margin = kUnexplainedAll;  ///< whose margins it has
 };
 
 /// What a residual still has of one quantity, whatever its shape: the drop of chi^2 by a torque (or a level
@@ -29,7 +29,7 @@ struct BinnedRows {
 struct Leftover {
   std::string over, like;
   bool series = false;
-  std::string_view margin = kUnexplained;
+  std::string_view margin = kUnexplainedAll;
   double asked = 0.0;  ///< the score that something unknown must exceed
   double drop = 0.0;
   double bins = 0.0;    ///< that the drop is of by chance: those that what was taken out left free

@@ -10,12 +10,12 @@ inline constexpr double kCalibratedRate = 0.05;
 
 /// Beside the kinds of cause: that something is left which none of them fits. Over the time the model's own
 /// errors show, motion by motion, and nowhere else; each has margins of its own.
-inline constexpr std::string_view kUnexplained = "unexplained";
+inline constexpr std::string_view kUnexplainedAll = "unexplained";
 inline constexpr std::string_view kUnexplainedTorque = "unexplained:torque of time";
 inline constexpr std::string_view kUnexplainedFriction = "unexplained:friction of time";
-inline constexpr std::array kLeftovers = {kUnexplained, kUnexplainedTorque, kUnexplainedFriction};
+inline constexpr std::array kLeftovers = {kUnexplainedAll, kUnexplainedTorque, kUnexplainedFriction};
 
-constexpr bool IsLeftover(std::string_view kind) { return kind.starts_with(kUnexplained); }
+constexpr bool IsLeftover(std::string_view kind) { return kind.starts_with(kUnexplainedAll); }
 
 /// How a kind's scores exceed the sign flips on machines without any effect: in a share of the logs, by
 /// `scale` per 100 000 rows on the average there, exponentially distributed.
