@@ -69,7 +69,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   held_ = true;
   forces_N_.fill(0.0);
   report_before_N_ = s.reported_force_N;
-  peak_N_ = force_N_ = unexplained_N_ = sent_N_ = reported_N_ = 0.0;
+  peak_N_ = force_N_ = jitter_N_ = unexplained_N_ = sent_N_ = reported_N_ = 0.0;
   slow_force_N_ = axis_.in_cascade ? s.reported_force_N : 0.0;
   least_N_ = most_N_ = slower_force_N_ = slow_force_N_;
   settling_N_ = 0.0;
@@ -79,7 +79,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   same_reference_m_ = s.reference_m;
   near_ = false;
   same_ = near_periods_ = beyond_ = undelivered_ = 0;
-  report_seen_ = scale_seen_ = false;
+  report_seen_ = scale_seen_ = tells_none_ = false;
   scale_apart_ = 0;
 }
 
@@ -115,7 +115,16 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
   }
   keep(config_.delivery, Delivery(s));
   keep(config_.scale, Scale(s));
-  return found;
+  return Named(found, s.reported_force_N, force_N);
+}
+
+// A drive that tells of no torque says why its axis stands or falls behind.
+Reason MotionMonitor::Named(Reason found, double reported_N, double force_N) noexcept {
+  const double wanted_N = axis_.in_cascade ? axis_.Fc_N : std::abs(force_N);
+  tells_none_ = report_seen_ && std::abs(reported_N) <= kNoTorque * wanted_N;
+  const bool torque = found == Reason::kFeedbackFrozen || found == Reason::kTorqueWithoutMotion ||
+                      found == Reason::kFeedbackReversed;
+  return torque && tells_none_ ? Reason::kTorqueNotDelivered : found;
 }
 
 Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
@@ -127,6 +136,10 @@ Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
                              0.5 * acceleration_m_s2 * period_s_ * period_s_ * n * (n + before);
   const double off_m = std::abs(s.position_m - predicted_m);
   believed_ = off_m <= t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
+  // To momentum a SYNC that came late is a push that is taken back at once; only what goes on counts.
+  const double jitter_m = std::min(off_m, t_.jitter_s * std::abs(velocity_m_s_));
+  if (!believed_)
+    jitter_N_ = std::max(jitter_N_, t_.filter * t_.mass_kg * jitter_m / (period_s_ * period_s_));
   double allowed_m = t_.Jump_m(velocity_m_s_, peak_N_, period_s_, n, before);
   // A cycle that was late sent its SYNC late, by less than a period.
   if (late_readings_ > 0) {
@@ -199,13 +212,19 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   const bool by_flicker = near_periods_ >= answer_periods && std::abs(s.reference_m - near_reference_m_) >
                                                                  t_.flickering.Path_m(loop_N_m, settling_N);
   if (!by_force && !by_path && !by_flicker && !at_rest) return Reason::kNone;
-  // A drive that closes the loop and gives no torque lets the axis stand.
-  const bool idle = axis_.in_cascade && std::abs(s.reported_force_N) <= kNoTorque * axis_.Fc_N;
-  return idle && report_seen_ ? Reason::kTorqueNotDelivered : Reason::kFeedbackFrozen;
+  return Reason::kFeedbackFrozen;
 }
 
 Reason MotionMonitor::Momentum(double velocity_m_s, bool stands) noexcept {
-  const double allowed_N = t_.Unexplained_N(velocity_m_s, force_N_);
+  const double won_N = force_N_ - unexplained_N_;
+  // What slides and gains speed against its torque has friction on the side of the torque, and no heavier
+  // mass explains it.
+  const bool driven =
+      won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0 && std::abs(velocity_m_s) > axis_.slide_m_s;
+  const double allowed_N = (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N
+                                   : t_.Unexplained_N(velocity_m_s, force_N_)) +
+                           jitter_N_;
+  jitter_N_ *= 1.0 - t_.filter;
   beyond_ = std::abs(unexplained_N_) > allowed_N ? beyond_ + 1 : 0;
   if (beyond_ < kBeyondAtLeast) return Reason::kNone;
   // A reading that stands contradicts a small torque by itself; under a large one the axis may stand.
@@ -214,10 +233,11 @@ Reason MotionMonitor::Momentum(double velocity_m_s, bool stands) noexcept {
                                                               : Reason::kFeedbackFrozen;
   }
   // Momentum won, in the torque's direction or against it.
-  const double won_N = force_N_ - unexplained_N_;
   const bool lacks = unexplained_N_ * force_N_ > 0.0;
-  const bool against = won_N * force_N_ < 0.0 && std::abs(won_N) > 0.5 * (t_.friction_N + t_.external_N);
-  return lacks && !against ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
+  // An axis without torque is braked by friction.
+  const double braked_N = 0.5 * (t_.friction_N + t_.external_N) + t_.viscous_Ns_m * std::abs(velocity_m_s);
+  const bool against = won_N * force_N_ < 0.0 && std::abs(won_N) > braked_N;
+  return lacks && !against && !driven ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
 }
 
 // Neighbouring samples say the same twice: one in a filter's memory is enough.
@@ -229,11 +249,13 @@ void MotionMonitor::Learn(double velocity_m_s) noexcept {
 }
 
 Reason MotionMonitor::Doubt() const noexcept {
+  if (held_ && config_.delivery && tells_none_) return Reason::kTorqueNotDelivered;
   const double allowed_N = t_.Unexplained_N(velocity_m_s_, force_N_);
   if (!held_ || std::abs(unexplained_N_) <= kInDoubt * allowed_N) return Reason::kNone;
   const double won_N = force_N_ - unexplained_N_;
-  return unexplained_N_ * force_N_ > 0.0 && won_N * force_N_ >= 0.0 ? Reason::kTorqueWithoutMotion
-                                                                    : Reason::kFeedbackReversed;
+  // Without torque an axis falls behind, with a reversed encoder it seems to gain speed the other way.
+  const bool gains = won_N * force_N_ < 0.0 && velocity_m_s_ * force_N_ < 0.0;
+  return unexplained_N_ * force_N_ > 0.0 && !gains ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
 }
 
 // A report that has never shown the torque is none: some drives leave 0x6077 at zero.

@@ -64,6 +64,7 @@ class MotionMonitor {
   Reason Judge(const MotionSample& s) noexcept;
   Reason Jump(const MotionSample& s, double force_N) noexcept;
   Reason Frozen(const MotionSample& s) noexcept;
+  Reason Named(Reason found, double reported_N, double force_N) noexcept;
   Reason Momentum(double velocity_m_s, bool stands) noexcept;
   void Learn(double velocity_m_s) noexcept;
   Reason Delivery(const MotionSample& s) noexcept;
@@ -106,9 +107,11 @@ class MotionMonitor {
   std::uint32_t near_periods_ = 0;
   double force_N_ = 0.0;                    ///< low-passed torque
   double unexplained_N_ = 0.0;              ///< low-passed u - m a
+  double jitter_N_ = 0.0;                   ///< of it, what a SYNC that came late may have made
   std::uint32_t beyond_ = 0;                ///< readings in a row
   double sent_N_ = 0.0, reported_N_ = 0.0;  ///< low-passed, for delivery
   bool report_seen_ = false;                ///< the report has been seen to be one, in this enabling
+  bool tells_none_ = false;                 ///< a report that has been seen shows no torque
   std::uint32_t undelivered_ = 0;           ///< periods in a row
   bool scale_seen_ = false;
   std::uint32_t scale_apart_ = 0;  ///< samples in a row

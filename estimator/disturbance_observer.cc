@@ -6,7 +6,9 @@
 namespace contour {
 
 DisturbanceObserver::DisturbanceObserver(const FilterSetup& setup) noexcept
-    : setup_(setup), lag_(setup.period_s, setup.lag_s) {
+    : setup_(setup),
+      lag_(setup.period_s, setup.lag_s),
+      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}, setup.Sudden_m()) {
   const double mass_kg = setup.mechanics.mass_kg;
   const double rate = setup.friction.sigma2_Ns_m / mass_kg;
   velocity_decay_ = Exp(-rate * setup.period_s);
@@ -24,6 +26,7 @@ void DisturbanceObserver::Reset(double position_m) noexcept {
   core_.s[2][2] = 30.0;
   lag_.Reset();
   gated_in_a_row_ = 0;
+  gate_.Reset();
 }
 
 void DisturbanceObserver::Propagate(X& x, double force_N) const noexcept {
@@ -49,10 +52,11 @@ AxisEstimate DisturbanceObserver::Update(const AxisEstimatorInput& in) noexcept 
         },
         noise_);
     if (in.fresh) {
-      const InnovationGate gate{setup_.config.innovation_gate_sigma, setup_.config.innovation_gate_um * 1e-6};
       Innovation innovation;
-      if (core_.UpdateState0(in.position_m, setup_.measurement_std_m, gate, AllStates<3>(), innovation) ==
-          UpdateResult::kGated) {
+      const UpdateResult result = core_.UpdateState0(in.position_m, setup_.measurement_std_m, gate_.gate(),
+                                                     AllStates<3>(), innovation);
+      gate_.After(innovation.value, innovation.std);
+      if (result == UpdateResult::kGated) {
         out.limit = Reason::kInnovationGated;
         if (++gated_in_a_row_ >= kGatedBeforeRestart) Reset(in.position_m);
       } else {

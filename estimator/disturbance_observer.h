@@ -36,6 +36,7 @@ class DisturbanceObserver {
   double velocity_decay_ = 1.0;
   double velocity_gain_ = 0.0;
   double friction_ahead_N_ = 0.0;
+  SuddenGate gate_;
   std::uint32_t gated_in_a_row_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/mechanics.h"
@@ -7,6 +8,9 @@
 #include "estimator/friction_config.h"
 
 namespace contour {
+
+/// Friction that turns round is twice itself; an outside force may be as large.
+inline constexpr double kSuddenFrictions = 4.0;
 
 /// What every filter of an axis is built from.
 struct FilterSetup {
@@ -18,6 +22,14 @@ struct FilterSetup {
   double measurement_std_m = 2e-8;  ///< position noise, quantisation included
   bool looks_ahead = true;  ///< FrictionAhead_N is wanted; not where friction is rolled along the reference
   bool reported_torque = false;  ///< torque as the drive tells it, at the samples, not as it was commanded
+
+  /// So far a change of force takes an axis in one period, a T^2 / 2: friction that turns round, and as much
+  /// from outside. A single reading that is further off is no motion.
+  [[nodiscard]] double Sudden_m() const noexcept {
+    const double friction_N =
+        std::max({friction.Fs_plus_N, friction.Fs_minus_N, friction.Fc_plus_N, friction.Fc_minus_N});
+    return 0.5 * kSuddenFrictions * friction_N / mechanics.mass_kg * period_s * period_s;
+  }
 
   /// Noise that one period adds, from the noise of one millisecond.
   [[nodiscard]] double PerPeriod(double per_millisecond) const noexcept {

@@ -16,7 +16,9 @@ constexpr std::size_t kG = 3;
 }  // namespace
 
 FourStateFilter::FourStateFilter(const FilterSetup& setup) noexcept
-    : setup_(setup), lag_(setup.period_s, setup.lag_s) {
+    : setup_(setup),
+      lag_(setup.period_s, setup.lag_s),
+      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}, setup.Sudden_m()) {
   const Friction& f = setup.friction;
   const auto& c = setup.config;
   const double mass_kg = setup.mechanics.mass_kg;
@@ -46,6 +48,7 @@ void FourStateFilter::Follow(double position_m) noexcept {
   core_.s[kG][kG] = g_std;
   lag_.Reset();
   gated_in_a_row_ = 0;
+  gate_.Reset();
   following_ = true;
 }
 
@@ -111,10 +114,10 @@ AxisEstimate FourStateFilter::Update(const AxisEstimatorInput& in) noexcept {
     }
     following_ = false;
     if (in.fresh) {
-      const InnovationGate gate{c.innovation_gate_sigma, c.innovation_gate_um * 1e-6};
       Innovation innovation;
-      const auto result = core_.UpdateState0(in.position_m, setup_.measurement_std_m, gate,
+      const auto result = core_.UpdateState0(in.position_m, setup_.measurement_std_m, gate_.gate(),
                                              {true, true, true, adapted}, innovation);
+      gate_.After(innovation.value, innovation.std);
       gated_in_a_row_ = result == UpdateResult::kGated ? gated_in_a_row_ + 1 : 0;
       if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
       if (gated_in_a_row_ >= kGatedBeforeRestart) Follow(in.position_m);

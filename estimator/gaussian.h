@@ -21,6 +21,29 @@ struct InnovationGate {
   double absolute = 0.0;
 };
 
+/// Which gate a reading has to pass. One reading that is suddenly off may come of a SYNC that came late, or
+/// of a flipped bit; the next one tells. So the first is left out, and what lasts is believed.
+class SuddenGate {
+ public:
+  SuddenGate(const InnovationGate& gate, double sudden_m) noexcept
+      : gate_{gate.sigmas, kTwoPeriods * gate.absolute},
+        first_{gate.sigmas, std::min(gate.absolute, sudden_m)} {}
+
+  [[nodiscard]] const InnovationGate& gate() const noexcept { return off_ ? gate_ : first_; }
+  void After(double innovation_m, double std_m) noexcept {
+    off_ = !(std::abs(innovation_m) <= std::max(first_.sigmas * std_m, first_.absolute));
+  }
+  void Reset() noexcept { off_ = false; }
+
+ private:
+  /// What a force has done in two periods, over one.
+  static constexpr double kTwoPeriods = 4.0;
+
+  InnovationGate gate_;
+  InnovationGate first_;
+  bool off_ = false;  ///< the reading before was suddenly off
+};
+
 /// An encoder that disagrees this often in a row has really moved: filters start again from it.
 inline constexpr std::uint32_t kGatedBeforeRestart = 20;
 

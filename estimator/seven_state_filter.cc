@@ -59,7 +59,7 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
       model_(setup.friction, setup.mechanics.mass_kg, setup.period_s,
              setup.config.disturbance_decay_ms * 1e-3, AheadOfTable(setup.mechanics)),
       lag_(setup.period_s, setup.lag_s),
-      gate_{setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6},
+      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}, setup.Sudden_m()),
       lasting_share_(ShareOfPeriod(kLastingRate, setup.period_s)),
       asymmetry_share_(ShareOfPeriod(kShareRate, setup.period_s)),
       surprise_share_(ShareOfPeriod(kSurpriseShare, setup.period_s)),
@@ -126,6 +126,7 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   at_ = model_.TermsAt(x[kVelocity]);
   predicted_ = x;
   gated_in_a_row_ = 0;
+  gate_.Reset();
   following_ = true;
 }
 
@@ -209,7 +210,8 @@ UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput&
   const double least_plus_N = std::min(kLeastLeft * x[kLevelPlus], kLeastByReading * f.Fc_plus_N);
   const double least_minus_N = std::min(kLeastLeft * x[kLevelMinus], kLeastByReading * f.Fc_minus_N);
   const UpdateResult result =
-      core_.UpdateState0(y, setup_.measurement_std_m, gate_, Adapted(in.at_rest), innovation);
+      core_.UpdateState0(y, setup_.measurement_std_m, gate_.gate(), Adapted(in.at_rest), innovation);
+  gate_.After(innovation.value, innovation.std);
   x[kLevelPlus] = std::max(x[kLevelPlus], least_plus_N);
   x[kLevelMinus] = std::max(x[kLevelMinus], least_minus_N);
   at_ = model_.TermsAt(x[kVelocity]);

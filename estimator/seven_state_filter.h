@@ -101,7 +101,7 @@ class SevenStateFilter {
   FilterSetup setup_;
   SevenStateModel model_;
   DriveLag<kSubsteps> lag_;
-  InnovationGate gate_;
+  SuddenGate gate_;
   X noise_{};
   double lasting_share_ = 0.0;  // shares per period
   double asymmetry_share_ = 0.0;
