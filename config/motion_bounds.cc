@@ -92,10 +92,12 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
   // answer.
   const bool at_once = feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s);
   const double path_m = begins * standing.Path_m(a.t.loop_N_m);
-  const double answer_s = begins * (a.t.loop_periods + 1.0) * a.period_s;
+  const double begin_s = a.t.begin_periods * a.period_s;
+  const double answer_s = begins * (a.t.loop_periods + 1.0) * a.period_s + begin_s;
   const double seen_s =
       at_once ? a.period_s
-              : std::max(path_m / feed_m_s / (1.0 - kSettlingShare * kLoopOvershoot) + a.period_s, answer_s);
+              : std::max(path_m / feed_m_s / (1.0 - kSettlingShare * kLoopOvershoot) + a.period_s + begin_s,
+                         answer_s);
   // Until then the force is what moved the axis before, changed by what the loop makes of the standing
   // reading, and by no more than would show by itself; friction may fall from break-away to Coulomb's.
   const double built_N =

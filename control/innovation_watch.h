@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 namespace contour {
@@ -10,13 +11,16 @@ namespace contour {
 class InnovationWatch {
  public:
   struct Bounds {
-    double sigma = 48.0;  ///< 0: not watched
+    double sigma = 48.0;     ///< 0: not watched
+    double explained = 0.0;  ///< root mean square that a model off by much explains: never an alarm
     std::int32_t samples = 500;
     std::int32_t gated = 20;  ///< in a row; 0: not watched
   };
   InnovationWatch() noexcept = default;
   explicit InnovationWatch(const Bounds& bounds) noexcept
-      : bounds_(bounds), share_(1.0 / static_cast<double>(bounds.samples)) {}
+      : bounds_(bounds),
+        least_std_(bounds.sigma > 0.0 ? bounds.explained / bounds.sigma : 0.0),
+        share_(1.0 / static_cast<double>(bounds.samples)) {}
 
   void Reset() noexcept {
     mean_square_ = 1.0;
@@ -29,7 +33,7 @@ class InnovationWatch {
     gated_ = gated ? gated_ + 1 : 0;
     // What is gated is counted above; a single one is not to stand for a whole mean.
     if (!gated) {
-      const double ratio = innovation / std;
+      const double ratio = innovation / std::max(std, least_std_);
       mean_square_ += share_ * (ratio * ratio - mean_square_);
     }
     const bool above = bounds_.sigma > 0.0 && mean_square_ > bounds_.sigma * bounds_.sigma;
@@ -47,6 +51,7 @@ class InnovationWatch {
 
  private:
   Bounds bounds_;
+  double least_std_ = 0.0;
   double share_ = 1.0;
   double mean_square_ = 1.0;
   std::int32_t above_ = 0;

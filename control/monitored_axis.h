@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "control/control_config.h"
 #include "control/motion_thresholds.h"
@@ -35,9 +36,9 @@ inline constexpr double kLongestFrame_bits = 135.0;
 inline constexpr double kUncompensated = 0.5;
 
 /// Bandwidth of a controller's position loop, Hz: of the slower direction, since at low speed a path has
-/// none. What an observer finds is answered at once, so there the stiffer one counts.
-constexpr double LoopBandwidth_Hz(const ControllerConfig& c, ControllerName controller,
-                                  bool in_cascade) noexcept {
+/// none. What an observer finds is answered at once, so there it is the mean of both.
+inline double LoopBandwidth_Hz(const ControllerConfig& c, ControllerName controller,
+                               bool in_cascade) noexcept {
   const auto slower = [](const MpcConfig& m) { return std::min(m.contour_bandwidth_Hz, m.lag_bandwidth_Hz); };
   if (in_cascade) return c.monitor.drive_loop_Hz;
   switch (controller) {
@@ -46,7 +47,7 @@ constexpr double LoopBandwidth_Hz(const ControllerConfig& c, ControllerName cont
     case ControllerName::kMpc:
       return kUncompensated * slower(c.mpc);
     case ControllerName::kMpcObserver:
-      return std::max(c.mpc_observer.contour_bandwidth_Hz, c.mpc_observer.lag_bandwidth_Hz);
+      return std::sqrt(c.mpc_observer.contour_bandwidth_Hz * c.mpc_observer.lag_bandwidth_Hz);
     case ControllerName::kMpcSrukf4:
       return slower(c.mpc_srukf4);
     case ControllerName::kMpcEkf7:

@@ -69,7 +69,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   held_ = true;
   forces_N_.fill(0.0);
   report_before_N_ = s.reported_force_N;
-  peak_N_ = force_N_ = jitter_N_ = unexplained_N_ = sent_N_ = reported_N_ = 0.0;
+  peak_N_ = force_N_ = jitter_N_ = unexplained_N_ = on_its_way_N_ = sent_N_ = reported_N_ = 0.0;
   slow_force_N_ = axis_.in_cascade ? s.reported_force_N : 0.0;
   least_N_ = most_N_ = slower_force_N_ = slow_force_N_;
   settling_N_ = 0.0;
@@ -78,7 +78,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   rest_least_N_ = rest_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
   near_ = false;
-  same_ = near_periods_ = beyond_ = undelivered_ = 0;
+  same_ = near_periods_ = same_gone_ = near_gone_ = beyond_ = undelivered_ = 0;
   report_seen_ = scale_seen_ = tells_none_ = false;
   scale_apart_ = 0;
 }
@@ -110,6 +110,9 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
     const double missing_N = force_N - t_.mass_kg * (velocity_m_s - velocity_m_s_) / between_s;
     unexplained_N_ += t_.filter * (missing_N - unexplained_N_);
     force_N_ += t_.filter * (force_N - force_N_);
+    // What it would be with a drive that answers a cycle later than stated.
+    const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
+    on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
     keep(config_.momentum, Momentum(velocity_m_s, std::abs(s.position_m - position_m_) <= t_.flicker_m));
     Learn(velocity_m_s);
   }
@@ -207,10 +210,15 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
                      1;
   }
   const bool by_force = same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N;
-  const bool by_path = same_ >= answer_periods &&
-                       std::abs(s.reference_m - same_reference_m_) > t_.frozen.Path_m(loop_N_m, settling_N);
-  const bool by_flicker = near_periods_ >= answer_periods && std::abs(s.reference_m - near_reference_m_) >
-                                                                 t_.flickering.Path_m(loop_N_m, settling_N);
+  // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
+  const auto gone = [&](std::uint32_t& periods, double from_m, const Standing& standing) {
+    const bool beyond = std::abs(s.reference_m - from_m) > standing.Path_m(loop_N_m, settling_N);
+    periods = beyond ? periods + waited_periods_ : 0;
+    return periods > t_.begin_periods;
+  };
+  const bool by_path = gone(same_gone_, same_reference_m_, t_.frozen) && same_ >= answer_periods;
+  const bool by_flicker =
+      gone(near_gone_, near_reference_m_, t_.flickering) && near_periods_ >= answer_periods;
   if (!by_force && !by_path && !by_flicker && !at_rest) return Reason::kNone;
   return Reason::kFeedbackFrozen;
 }
@@ -223,7 +231,7 @@ Reason MotionMonitor::Momentum(double velocity_m_s, bool stands) noexcept {
       won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0 && std::abs(velocity_m_s) > axis_.slide_m_s;
   const double allowed_N = (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N
                                    : t_.Unexplained_N(velocity_m_s, force_N_)) +
-                           jitter_N_;
+                           jitter_N_ + std::abs(on_its_way_N_);
   jitter_N_ *= 1.0 - t_.filter;
   beyond_ = std::abs(unexplained_N_) > allowed_N ? beyond_ + 1 : 0;
   if (beyond_ < kBeyondAtLeast) return Reason::kNone;

@@ -105,14 +105,16 @@ class MotionMonitor {
   double near_position_m_ = 0.0;
   double near_reference_m_ = 0.0;  ///< the reference when that began
   std::uint32_t near_periods_ = 0;
-  double force_N_ = 0.0;                    ///< low-passed torque
-  double unexplained_N_ = 0.0;              ///< low-passed u - m a
-  double jitter_N_ = 0.0;                   ///< of it, what a SYNC that came late may have made
-  std::uint32_t beyond_ = 0;                ///< readings in a row
-  double sent_N_ = 0.0, reported_N_ = 0.0;  ///< low-passed, for delivery
-  bool report_seen_ = false;                ///< the report has been seen to be one, in this enabling
-  bool tells_none_ = false;                 ///< a report that has been seen shows no torque
-  std::uint32_t undelivered_ = 0;           ///< periods in a row
+  std::uint32_t same_gone_ = 0, near_gone_ = 0;  ///< periods that the reference has been too far for that
+  double on_its_way_N_ = 0.0;                    ///< low-passed: a period's change of the torque
+  double force_N_ = 0.0;                         ///< low-passed torque
+  double unexplained_N_ = 0.0;                   ///< low-passed u - m a
+  double jitter_N_ = 0.0;                        ///< of it, what a SYNC that came late may have made
+  std::uint32_t beyond_ = 0;                     ///< readings in a row
+  double sent_N_ = 0.0, reported_N_ = 0.0;       ///< low-passed, for delivery
+  bool report_seen_ = false;                     ///< the report has been seen to be one, in this enabling
+  bool tells_none_ = false;                      ///< a report that has been seen shows no torque
+  std::uint32_t undelivered_ = 0;                ///< periods in a row
   bool scale_seen_ = false;
   std::uint32_t scale_apart_ = 0;  ///< samples in a row
   double scale_offset_m_ = 0.0, scale_begin_m_ = 0.0;

@@ -30,6 +30,8 @@ constexpr double kReportNoise = 0.2;
 constexpr double kRest_s = 0.5;
 // Time constants of the loop until it has answered.
 constexpr double kAnswer = 2.0;
+// Cycles by which a drive may answer later than stated.
+constexpr std::uint32_t kLaterThanStated = 1;
 // Noise of the filtered force by the encoder's steps, as a share of the outside force.
 constexpr double kNoiseShare = 0.2;
 
@@ -75,6 +77,7 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
   t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));
   t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);
+  t.begin_periods = a.delay_cycles + kLaterThanStated;
   t.settling_filter = 1.0 - std::exp(-period_s / kSettlingBegin_s);
   t.settling_decay = std::exp(-period_s / kSettlingEnd_s);
   t.frozen_filter = 1.0 - std::exp(-1.0 / kChatter_periods);

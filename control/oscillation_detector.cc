@@ -55,7 +55,14 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
     started_ = true;
     mean_m_ = now.following_error_m;
     mean_N_ = now.force_N;
+    reference_velocity_m_s_ = now.reference_velocity_m_s;
   }
+  // In a corner at full feed the velocity jumps: what rings after it was struck by the path.
+  const double change_m_s2 = (now.reference_velocity_m_s - reference_velocity_m_s_) / bounds_.period_s;
+  reference_velocity_m_s_ = now.reference_velocity_m_s;
+  const double reference_m_s2 = std::abs(change_m_s2) > std::abs(now.reference_acceleration_m_s2)
+                                    ? change_m_s2
+                                    : now.reference_acceleration_m_s2;
   const double share = now.reference_velocity_m_s != 0.0 ? moving_share_ : share_;
   mean_m_ += share * (now.following_error_m - mean_m_);
   mean_N_ += share * (now.force_N - mean_N_);
@@ -70,14 +77,14 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
       now_ = {};
       before_highest_m_s2_ = highest_m_s2_;
       before_lowest_m_s2_ = lowest_m_s2_;
-      highest_m_s2_ = lowest_m_s2_ = now.reference_acceleration_m_s2;
+      highest_m_s2_ = lowest_m_s2_ = reference_m_s2;
     }
   }
   ++now_.cycles;
   now_.peak_m = std::max(now_.peak_m, std::abs(error_m));
   now_.peak_N = std::max(now_.peak_N, std::abs(now.force_N - mean_N_));
-  highest_m_s2_ = std::max(highest_m_s2_, now.reference_acceleration_m_s2);
-  lowest_m_s2_ = std::min(lowest_m_s2_, now.reference_acceleration_m_s2);
+  highest_m_s2_ = std::max(highest_m_s2_, reference_m_s2);
+  lowest_m_s2_ = std::min(lowest_m_s2_, reference_m_s2);
   return found;
 }
 

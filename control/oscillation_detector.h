@@ -55,6 +55,7 @@ class OscillationDetector {
   OscillationBounds bounds_;
   double share_ = 0.0;  ///< of the slow mean that is taken away, at rest
   double moving_share_ = 0.0;
+  double reference_velocity_m_s_ = 0.0;
   double mean_m_ = 0.0;
   double mean_N_ = 0.0;
   bool started_ = false;

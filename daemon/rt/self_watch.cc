@@ -20,6 +20,9 @@ constexpr double kModeMargin = 1.2;
 constexpr double kRoundingCounts = 2.0;
 constexpr double kBeyondRounding = 2.0;
 constexpr double kFewestCyclesPerPeriod = 4.0;
+// Of the torque limit that a filter's model may be off by, for a period: rivals ride corners at full feed
+// with a mass, a delay or friction that is not stated, and keep the path.
+constexpr double kUnmodelled = 0.5;
 // Of the following error that is a fault.
 constexpr double kDangerousShare = 0.125;
 
@@ -27,6 +30,14 @@ double LoopBandwidth_Hz(const CycleConfig& config) {
   if (config.controller == ControllerName::kPid) return config.control.pid.bandwidth_Hz;
   const MpcConfig& mpc = MpcConfigFor(config.control, config.controller);
   return std::min(mpc.contour_bandwidth_Hz, mpc.lag_bandwidth_Hz);
+}
+
+// What a force of that share moves the axis in one period.
+double ExplainedInnovation_m(const CycleConfig& config, std::size_t axis) {
+  const CycleAxisConfig& a = config.axes[axis];
+  const double force_N = kUnmodelled * a.limits.torque_Nm / a.mechanics.radius_m_rad;
+  const double period_s = config.cycle_us * 1e-6;
+  return 0.5 * force_N / a.mechanics.mass_kg * period_s * period_s;
 }
 
 std::uint32_t Cycles(const CycleConfig& config, double time_s) {
@@ -68,7 +79,8 @@ SelfWatch::SelfWatch(const CycleConfig& config)
   friction_filter_ = kind != EstimatorKind::kKinematic && kind != EstimatorKind::kDisturbanceObserver;
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     oscillation_.push_back(OscillationDetector(OscillationBoundsFor(config, i)));
-    innovation_.push_back(InnovationWatch({s.innovation_sigma, s.innovation_samples, s.gated_cycles}));
+    innovation_.push_back(InnovationWatch(
+        {s.innovation_sigma, ExplainedInnovation_m(config, i), s.innovation_samples, s.gated_cycles}));
     capped_.push_back(InARow(s.solver_cap_cycles));
   }
 }
