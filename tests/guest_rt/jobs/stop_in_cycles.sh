@@ -1,7 +1,6 @@
 # How many cycles lie between an operator's program being started for a stop and the cycle that begins to brake, by the numbers
 # that the daemon gives its cycles: stop_in_cycles.sh MACHINE PROGRAM WHAT
-# WHAT fails meanwhile: nothing, log (into a pipe that nobody reads), lcm (the same), modbus (a server that never answers),
-# clients (sixteen that flood the control socket and never read).
+# WHAT fails meanwhile: nothing, log (into a pipe that nobody reads), lcm (the same), clients (sixteen that flood the control socket and never read).
 machine=$1 program=$2 what=$3
 most_cycles=100
 socket=/run/contourd.sock
@@ -39,10 +38,6 @@ chrt -f -p 70 "$emulator" || fail "no real-time priority for the emulated machin
 case $what in
   log) blocked_pipe /tmp/pipe && options="--log /tmp/pipe" ;;
   lcm) blocked_pipe /tmp/pipe && options="--set telemetry.lcm_url=file:///tmp/pipe?mode=w" ;;
-  modbus)
-    sleep 100000 | nc -ll -p 1503 >/dev/null &
-    options="--set io.modbus.port=1503"
-    ;;
 esac
 # shellcheck disable=SC2086  # words
 contourd --config /tmp/machine.yaml --bus vcan0 --socket "$socket" --set realtime.cpu=0 $options >/tmp/contourd.log 2>&1 &
