@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/diagnosis/adequacy/firm_slides.h"
 #include "analysis/diagnosis/adequacy/leftover_maps.h"
+#include "analysis/diagnosis/screening/firm_slides.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/margins.h"
 

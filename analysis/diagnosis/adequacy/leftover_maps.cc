@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/diagnosis/adequacy/firm_slides.h"
+#include "analysis/diagnosis/screening/firm_slides.h"
 
 namespace contour::diagnosis {
 namespace {

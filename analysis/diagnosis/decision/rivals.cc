@@ -8,8 +8,8 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/diagnosis/adequacy/firm_slides.h"
 #include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/screening/firm_slides.h"
 #include "analysis/diagnosis/screening/full_size.h"
 #include "analysis/prediction_error/common_factor.h"
 

@@ -1,4 +1,4 @@
-#include "analysis/diagnosis/adequacy/firm_slides.h"
+#include "analysis/diagnosis/screening/firm_slides.h"
 
 #include <algorithm>
 #include <cmath>

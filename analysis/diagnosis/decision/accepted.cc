@@ -1,0 +1,83 @@
+#include "analysis/diagnosis/decision/accepted.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "analysis/diagnosis/causes/experiments.h"
+#include "analysis/diagnosis/decision/choose.h"
+#include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/tuning/margins.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Most effects show in a few strokes only, whose scatter says the less of an interval: Student's t of six
+// over normal.
+constexpr double kFewStrokes = 1.25;
+// An extension that was found in another log may be off by a hundredth of its amplitude.
+constexpr double kOffStated = 1e-4;
+// Scores that are alike, of the best. Where friction is of another law, what is wrong with the model takes
+// part in the difference, and constant torque and asymmetry differ at reversals only, which do not count.
+constexpr double kAlike = 0.03, kAlikeByAnotherLaw = 0.1;
+// An element in presliding is a neighbour's name for another law, and leaves more than a right name does.
+constexpr double kLeftByAnotherLaw = 0.05;
+
+/// What the rivals scored, and which of them cannot be told from the first.
+void NoteRivals(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate,
+                const Accepted& accepted, Cause& cause, Diagnosis& out) {
+  const Rival& best = rivals[0];
+  const double alike = OfAnotherLaw(problem, accepted.fit) ? kAlikeByAnotherLaw : kAlike;
+  for (const Rival& r : rivals) {
+    const std::string& kind = r.effect().kind;
+    for (Candidate& c : out.candidates)
+      if (c.kind == kind && std::isnan(c.refitted)) {
+        c.refitted = r.score;
+        c.accepted = &r == &best;
+      }
+    // What would not have been accepted alone explains too little to be the cause.
+    if (&r != &best && !r.refused && !r.given_up && !Outside(kind) && r.score > Asked(problem, r, gate) &&
+        r.score > best.score - std::max(12.0, alike * best.score) && !StandsBeside(problem, best.fit, r) &&
+        !StandsBeside(problem, r.fit, best))
+      cause.indistinguishable_from.push_back(kind);
+  }
+}
+
+}  // namespace
+
+Gate GateOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
+            double by_extras, const DiagnoseOptions& options) {
+  Gate gate = SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
+  gate.accepted = static_cast<int>(accepted.places.size());
+  gate.left = accepted.left +
+              (OfAnotherLaw(problem, accepted.fit) ? kLeftByAnotherLaw * accepted.in_presliding : 0.0);
+  gate.left_of_kind = accepted.left_of_kind;
+  return gate;
+}
+
+void AcceptFirst(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate,
+                 Accepted& accepted, Diagnosis& out) {
+  const Rival& best = rivals[0];
+  Cause cause;
+  cause.kind = best.effect().kind;
+  cause.log_evidence_gain = 0.5 * best.score;
+  NoteRivals(problem, rivals, gate, accepted, cause, out);
+  const Experiment experiment = DecidingExperiment(problem, cause.kind, cause.indistinguishable_from);
+  cause.deciding_experiment = experiment.text;
+  cause.deciding_program = experiment.program;
+  accepted.scatter.push_back(ExcessOfLast(problem, best.fit) * kFewStrokes * kFewStrokes);
+  std::vector<BlockGain> blocks;
+  HeldOutGain(problem, accepted.fit, best.fit, cause.kind == "pitch_error", cause, blocks);
+  if (out.causes.empty()) out.blocks = blocks;
+  out.causes.push_back(std::move(cause));
+  accepted.places.push_back(best.fit.point.effects.size() - 1);
+  const std::string& kind = best.effect().kind;
+  accepted.explained += best.score;
+  if (kind == "presliding_hysteresis") accepted.in_presliding = best.score;
+  accepted.left += UnlikeShare(kind) * best.score;
+  accepted.left_of_kind[kind] += LikeShare(kind) * best.score;
+  accepted.fit = best.fit;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/diagnosis/decision/gate.h"
+#include "analysis/diagnosis/decision/rivals.h"
+#include "analysis/diagnosis/result/diagnose_options.h"
+#include "analysis/diagnosis/result/finding.h"
+
+namespace contour::diagnosis {
+
+/// What is in the model so far, and what it leaves behind.
+struct Accepted {
+  Fit fit;                          ///< base and accepted effects
+  std::vector<std::size_t> places;  ///< of the causes in the fit, jitter left out
+  std::vector<double> scatter;      ///< of their residuals from block to block, over white noise's
+  double explained = 0.0;           ///< drop by what is accepted
+  double in_presliding = 0.0;       ///< by an element in presliding
+  double left = 0.0;                ///< what of their scores may look like other causes
+  std::map<std::string, double> left_of_kind;
+};
+
+/// What a score must exceed beside what is accepted.
+Gate GateOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
+            double by_extras, const DiagnoseOptions& options);
+
+/// Takes the first of the rivals into the model and says so in `out`: its cause, what cannot be told from it,
+/// the experiment that would decide.
+void AcceptFirst(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate,
+                 Accepted& accepted, Diagnosis& out);
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,90 @@
+#include "analysis/diagnosis/decision/choose.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/screening/firm_slides.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
+constexpr double kConsistent = 1.2;
+// Of the drop.
+constexpr double kStillThere = 0.6;
+constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
+
+bool Holds(const Problem& problem, const Fit& current, const Rival& r, double tested, const Gate& gate) {
+  // From outside the catalogue only what is beyond doubt.
+  const double least = Asked(problem, r, gate);
+  if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
+  // What a base parameter does already shows in the priors.
+  if (InBase(problem, r.effect().kind)) return true;
+  // A further effect that does harm in the half of the log that it was not fitted on is none.
+  Cause cause;
+  std::vector<BlockGain> blocks;
+  if (gate.accepted > 0) {
+    HeldOutGain(problem, current, r.fit, r.effect().kind == "pitch_error", cause, blocks);
+    if (cause.heldout_gain_high < 0.0) return false;
+  }
+  if (Consistency(problem, current, r.fit, true) > kConsistent) return true;
+  // Left out, the only stroke that shows a base parameter may take it far. Where chance is out of the
+  // question, it is enough that the drop does not come from one event.
+  return tested > kNoChance && Consistency(problem, current, r.fit, false) > kNotOneEvent;
+}
+
+/// The rival itself, or a number of the base behind it that the log says more about, where that is not for
+/// the same reason: a score is worth what its scatter from block to block leaves of it.
+std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::vector<Rival>& rivals,
+                        std::size_t holds, const Gate& gate, double& tested) {
+  std::size_t surest = holds;
+  for (std::size_t i = holds + 1; i < rivals.size(); ++i) {
+    if (!InBase(problem, rivals[i].effect().kind)) continue;
+    const double score = TestedScore(problem, current, rivals[i]);
+    if (score <= tested || !Holds(problem, current, rivals[i], score, gate) ||
+        !StandsBeside(problem, rivals[holds].fit, rivals[i]))
+      continue;
+    surest = i;
+    tested = score;
+  }
+  return surest;
+}
+
+}  // namespace
+
+double Asked(const Problem& problem, const Rival& r, const Gate& gate) {
+  // Nothing is left of what nobody has found yet.
+  const Showing showing = gate.accepted > 0 ? ShowingOf(problem, r.fit) : Showing{};
+  return Threshold(problem, gate, r.effect(), showing);
+}
+
+bool StandsBeside(const Problem& problem, const Fit& other, const Rival& r) {
+  const SharedEffect& effect = r.fit.point.effects.back();
+  if (!effect->signals && !InBase(problem, effect->kind)) return false;
+  return ScoreEffects(problem, other, {effect})[0].drop > kStillThere * (r.score + Penalty(*effect));
+}
+
+Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Rival>& rivals) {
+  Choice choice;
+  for (std::size_t i = 0; i < rivals.size() && !choice.found; ++i) {
+    if (rivals[i].given_up) continue;
+    if (i > 0 && rivals[i].score < 0.3 * rivals[0].score && !InBase(problem, rivals[i].effect().kind))
+      continue;
+    const double score = TestedScore(problem, current, rivals[i]);
+    if (i == 0) choice.tested = score;
+    rivals[i].refused = !Holds(problem, current, rivals[i], score, gate);
+    if (rivals[i].refused) continue;
+    choice.found = true;
+    choice.tested = score;
+    const std::size_t chosen = SurerNumber(problem, current, rivals, i, gate, choice.tested);
+    if (chosen == 0) continue;
+    std::rotate(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(chosen),
+                rivals.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
+    rivals[0].fit = FitOn(problem, std::move(rivals[0].fit), {.most_steps = 4, .most_refreshes = 2});
+    rivals[0].score = DropOf(problem, current, rivals[0].fit) - Penalty(rivals[0].effect());
+  }
+  return choice;
+}
+
+}  // namespace contour::diagnosis

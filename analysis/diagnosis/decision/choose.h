@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/diagnosis/decision/gate.h"
+#include "analysis/diagnosis/decision/rivals.h"
+
+namespace contour::diagnosis {
+
+/// What a rival's score must exceed.
+double Asked(const Problem& problem, const Rival& r, const Gate& gate);
+
+/// Whether what speaks for an effect goes on doing so when another one is in the model: these two do not
+/// explain the same. Of what a test for small sizes says something about.
+bool StandsBeside(const Problem& problem, const Fit& other, const Rival& r);
+
+struct Choice {
+  bool found = false;   ///< the first of the rivals holds
+  double tested = 0.0;  ///< its tested score; of the best where none holds
+};
+
+/// The best of the rivals, or the next that holds where the best does not, goes to their front. Those that do
+/// not hold are marked as refused.
+Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Rival>& rivals);
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,73 @@
+#include "analysis/diagnosis/decision/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "analysis/diagnosis/decision/choose.h"
+#include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/tuning/margins.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// No score of a machine.
+constexpr double kFarOut = -1e6;
+
+}  // namespace
+
+void TellEvidence(const Problem& problem, const Accepted& accepted, const std::vector<Scored>& scored,
+                  const std::vector<Rival>& rivals, const Gate& gate, const DiagnoseOptions& options) {
+  if (!options.evidence) return;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> told;
+  for (const Scored& s : scored) {
+    const std::string& kind = s.effect->kind;
+    if (std::find(told.begin(), told.end(), kind) != told.end()) continue;
+    told.push_back(kind);
+    Evidence e;
+    e.accepted = gate.accepted;
+    e.explained = accepted.explained;
+    e.in_base = InBase(problem, kind);
+    e.kind = kind;
+    e.screened = s.drop;
+    e.penalty = Penalty(*s.effect);
+    e.excess = s.excess;
+    e.refitted = e.tested = e.unseen = kNone;
+    e.flips = gate.calibrated;
+    e.asked = Threshold(problem, gate, *s.effect, ShowingOf(problem, s));
+    for (const Rival& r : rivals) {
+      if (r.effect().kind != kind || r.score < kFarOut || r.given_up) continue;
+      e.penalty = Penalty(r.effect());
+      e.refitted = r.score + e.penalty;
+      e.asked = Asked(problem, r, gate);
+      e.tested = TestedScore(problem, accepted.fit, r);
+      e.unseen = Consistency(problem, accepted.fit, r.fit, true);
+    }
+    options.evidence(e);
+  }
+}
+
+void TellLeftovers(const Accepted& accepted, const std::vector<Leftover>& left,
+                   const DiagnoseOptions& options) {
+  if (!options.evidence) return;
+  for (const std::string_view margin : kLeftovers) {
+    const auto best =
+        std::find_if(left.begin(), left.end(), [&](const Leftover& l) { return l.margin == margin; });
+    if (best == left.end()) continue;
+    Evidence e;
+    e.accepted = static_cast<int>(accepted.places.size());
+    e.explained = accepted.explained;
+    e.kind = margin;
+    e.screened = best->drop;
+    e.penalty = best->bins;
+    e.refitted = e.tested = best->score;
+    e.unseen = std::sqrt(best->score);
+    e.flips = -2.0 * std::log(kCalibratedRate);
+    e.asked = best->asked;
+    options.evidence(e);
+  }
+}
+
+}  // namespace contour::diagnosis

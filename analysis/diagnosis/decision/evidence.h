@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/diagnosis/adequacy/leftover.h"
+#include "analysis/diagnosis/decision/accepted.h"
+
+namespace contour::diagnosis {
+
+// What calibrations are made from. Nothing is done where nobody asks.
+
+/// Of every kind, what it scored in one round.
+void TellEvidence(const Problem& problem, const Accepted& accepted, const std::vector<Scored>& scored,
+                  const std::vector<Rival>& rivals, const Gate& gate, const DiagnoseOptions& options);
+
+/// Of what is left at the end, the best of each margin.
+void TellLeftovers(const Accepted& accepted, const std::vector<Leftover>& left,
+                   const DiagnoseOptions& options);
+
+}  // namespace contour::diagnosis

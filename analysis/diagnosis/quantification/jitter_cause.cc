@@ -1,0 +1,32 @@
+#include "analysis/diagnosis/quantification/jitter_cause.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "analysis/diagnosis/causes/experiments.h"
+#include "analysis/diagnosis/quantification/widen.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kJitterPenalty = 3.0;
+
+}  // namespace
+
+double ScoreOf(const Jitter& jitter) { return jitter.drop - kJitterPenalty; }
+
+void AcceptJitter(const Problem& problem, const Fit& nominal, const Jitter& jitter, Diagnosis& out) {
+  Cause cause;
+  cause.kind = "sample_jitter";
+  cause.log_evidence_gain = 0.5 * ScoreOf(jitter);
+  cause.parameters["rms_us"] = {1e6 * jitter.rms_s, 1e6 * std::max(0.0, jitter.rms_s - 1.96 * jitter.sigma_s),
+                                1e6 * (jitter.rms_s + 1.96 * jitter.sigma_s)};
+  WidenIntervals(problem, nominal.point, cause);
+  cause.unit = problem.log_.linear ? "N" : "Nm";
+  cause.deciding_experiment = DecidingExperiment(problem, cause.kind, {}).text;
+  for (Candidate& c : out.candidates)
+    if (c.kind == cause.kind) c.accepted = true;
+  out.causes.push_back(std::move(cause));
+}
+
+}  // namespace contour::diagnosis

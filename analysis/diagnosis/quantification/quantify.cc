@@ -1,0 +1,85 @@
+#include "analysis/diagnosis/quantification/quantify.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "analysis/diagnosis/causes/parameters.h"
+#include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/quantification/widen.h"
+#include "analysis/prediction_error/bootstrap.h"
+
+namespace contour::diagnosis {
+namespace {
+
+/// Intervals of all that was accepted, from the fit of all of it.
+void Bootstrap(const Problem& problem, const Accepted& accepted, Fit fit, const DiagnoseOptions& options,
+               Diagnosis& out) {
+  const Eigen::MatrixXd draws =
+      StrokeBootstrap(problem, fit, options.bootstrap_runs, options.seed,
+                      [&](double done) { Say(options, "refits with strokes at random", done); });
+  const Eigen::MatrixXd about = draws.colwise() - draws.rowwise().mean();
+  fit.covariance = about * about.transpose() / static_cast<double>(draws.cols() - 1);
+  std::size_t index = 0;
+  for (Cause& cause : out.causes) {
+    if (cause.kind == "sample_jitter") continue;  // not in the fit
+    DescribeEffect(problem, fit, accepted.places[index++], draws, cause);
+    WidenIntervals(problem, fit.point, cause);
+  }
+  out.bootstrap_runs = options.bootstrap_runs;
+}
+
+/// What was accepted first was fitted before the rest was known, and only well enough to be judged.
+Fit Together(const Problem& problem, Fit accepted) {
+  const FitEffort effort{.most_steps = 12, .most_refreshes = 4};
+  Fit fit = FitOn(problem, std::move(accepted), effort);
+  FitFromStated(problem, fit, effort);
+  return fit;
+}
+
+/// Sizes of all that was accepted. The residual's own scatter from block to block widens the intervals
+/// where it is more than white noise's.
+void Describe(const Problem& problem, const Accepted& accepted, const Fit& fit, Diagnosis& out) {
+  std::size_t index = 0;
+  for (Cause& cause : out.causes) {
+    if (cause.kind == "sample_jitter") continue;  // not in the fit
+    Fit scattered = fit;
+    scattered.covariance *= accepted.scatter[index];
+    DescribeEffect(problem, scattered, accepted.places[index++], cause);
+    WidenIntervals(problem, fit.point, cause);
+  }
+}
+
+/// The model's own numbers, as they are stated and as the log has them.
+void DescribeBase(const Problem& problem, const Fit& fit, Diagnosis& out) {
+  for (std::size_t i = 0; i < problem.terms_.size(); ++i) {
+    const BaseTerm& t = problem.terms_[i];
+    if (t.nuisance) continue;
+    const double x = fit.point.base[i];
+    const double sd =
+        std::sqrt(std::max(0.0, fit.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i))));
+    const double fitted = t.additive ? t.stated + x : t.stated * std::exp(x);
+    out.base.push_back({t.name, t.stated, fitted, t.additive ? sd : fitted * sd});
+  }
+}
+
+}  // namespace
+
+Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, const DiagnoseOptions& options,
+             Diagnosis& out) {
+  Fit fit = std::move(accepted.fit);
+  if (!fit.point.effects.empty()) {
+    fit = Together(problem, std::move(fit));
+    if (options.bootstrap_runs > 0)
+      Bootstrap(problem, accepted, fit, options, out);
+    else
+      Describe(problem, accepted, fit, out);
+  }
+  out.data_quality = problem.quality_;
+  DescribeBase(problem, fit, out);
+  out.traces = MakeTraces(problem, nominal.point, fit.point);
+  return fit;
+}
+
+}  // namespace contour::diagnosis

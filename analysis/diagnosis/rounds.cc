@@ -1,0 +1,182 @@
+#include "analysis/diagnosis/rounds.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/diagnosis/decision/choose.h"
+#include "analysis/diagnosis/decision/evidence.h"
+#include "analysis/diagnosis/quantification/detectable.h"
+#include "analysis/diagnosis/quantification/jitter_cause.h"
+#include "analysis/diagnosis/screening/screen.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kNoDoubt = 1000.0;  // of a score
+// Of the drop of jitter: beside a mean effect that its variance was about, less is left.
+constexpr double kJitterLeft = 0.6;
+
+/// What goes on from round to round.
+struct Rounds {
+  Problem& problem;
+  const Nominal& nominal;
+  const DiagnoseOptions& options;
+  Diagnosis& out;
+  Accepted accepted = {};
+  std::vector<std::string> tried = {};  ///< since the last cause was accepted, and refuted
+  /// What could be found was stated for all kinds, with so many causes in the model.
+  std::size_t stated_beside = std::numeric_limits<std::size_t>::max();
+  bool first = true, jitter_known = false;
+  int further_orders = 0;
+};
+
+enum class Next { kSameRound, kNextRound, kEnd };
+
+/// What screening sees beside the accepted causes.
+struct Seen {
+  std::vector<Scored> scored;
+  Gate gate;
+  Gate sought;  ///< for the rivals that are to be fitted
+  Jitter jitter;
+  bool jitter_there = false;
+};
+
+bool Known(const std::string& kind, const Diagnosis& out) {
+  return std::any_of(out.causes.begin(), out.causes.end(), [&](const Cause& c) { return c.kind == kind; });
+}
+
+/// Where one of them will be in the model next time around: their kinds; what could be found of the others
+/// is not asked before. Else none.
+std::vector<std::string> ThoseWithoutDoubt(const std::vector<Rival>& rivals) {
+  std::vector<std::string> out;
+  if (rivals.empty() || rivals[0].no_fault || rivals[0].score < kNoDoubt) return out;
+  for (const Rival& r : rivals) out.push_back(r.effect().kind);
+  return out;
+}
+
+/// Those that are promised most; where all of them come to nothing in the fit, the next ones.
+std::vector<Rival> RivalsThatMayHold(const Problem& problem, const Fit& current,
+                                     const std::vector<Scored>& scored, const Gate& gate,
+                                     std::vector<std::string>& tried) {
+  for (;;) {
+    std::vector<Rival> rivals = FitRivals(problem, current, scored, gate, tried);
+    if (rivals.empty() || MayHold(problem, rivals, gate)) return rivals;
+    if (!MorePromised(problem, scored, gate, tried)) return {};
+  }
+}
+
+void KeepFirst(const std::vector<Scored>& scored, Diagnosis& out) {
+  for (const Scored& s : scored) {
+    const bool known = std::any_of(out.candidates.begin(), out.candidates.end(),
+                                   [&](const Candidate& c) { return c.kind == s.effect->kind; });
+    if (!known)
+      out.candidates.push_back({s.effect->kind, s.score, std::numeric_limits<double>::quiet_NaN(), false});
+  }
+}
+
+Seen Look(Rounds& r) {
+  Seen seen;
+  seen.scored = Screen(r.problem, r.accepted.fit, r.nominal.catalogue);
+  seen.gate = GateOf(r.problem, r.accepted, seen.scored, r.nominal.by_extras, r.options);
+  seen.sought = r.options.evidence ? WithoutMargins(seen.gate) : seen.gate;
+  seen.jitter = TestJitter(r.problem, r.accepted.fit);
+  if (r.first) {
+    KeepFirst(seen.scored, r.out);
+    r.out.candidates.push_back(
+        {"sample_jitter", ScoreOf(seen.jitter), std::numeric_limits<double>::quiet_NaN(), false});
+    r.out.gate = Threshold(r.problem, seen.gate);
+    r.first = false;
+  }
+  seen.jitter_there = !r.jitter_known && ScoreOf(seen.jitter) > Threshold(r.problem, seen.gate);
+  return seen;
+}
+
+/// A cause that is there hides the others; once it is in the model they would be seen by less.
+void StateDetectable(const Seen& seen, const std::vector<std::string>& only, Rounds& r) {
+  if (r.stated_beside == r.accepted.places.size()) return;
+  if (only.empty()) r.stated_beside = r.accepted.places.size();
+  KeepDetectable(r.problem, r.accepted.fit, seen.scored, seen.jitter, seen.gate, only, r.out);
+}
+
+Next EndWithJitter(const Seen& seen, Rounds& r) {
+  if (seen.jitter_there) AcceptJitter(r.problem, r.nominal.fit, seen.jitter, r.out);
+  return Next::kEnd;
+}
+
+/// What the score test likes best may come to nothing; the others had no turn yet.
+Next TryOthers(const Seen& seen, Rounds& r) {
+  if (!MorePromised(r.problem, seen.scored, seen.sought, r.tried)) return Next::kEnd;
+  r.problem.LearnNoise(r.accepted.fit.point);
+  Rewhiten(r.problem, r.accepted.fit);
+  return Next::kSameRound;
+}
+
+/// The first of the rivals, once it holds.
+Next Take(const std::vector<Rival>& rivals, const Gate& gate, Rounds& r) {
+  r.tried.clear();
+  const std::string kind = rivals[0].effect().kind;
+  // A further order of what is known takes no other cause's place.
+  const bool further = Known(kind, r.out) && r.further_orders++ < r.options.most_effects;
+  AcceptFirst(r.problem, rivals, gate, r.accepted, r.out);
+  if (Outside(kind)) return Next::kEnd;
+  return further ? Next::kSameRound : Next::kNextRound;
+}
+
+Next OneRound(int round, Rounds& r) {
+  Say(r.options, "candidates", 0.2 + 0.25 * round);
+  const Seen seen = Look(r);
+  Say(r.options, "rivals", 0.3 + 0.25 * round);
+  std::vector<Rival> rivals = RivalsThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.sought, r.tried);
+  StateDetectable(seen, ThoseWithoutDoubt(rivals), r);
+  if (rivals.empty()) return EndWithJitter(seen, r);
+  // Noise as the best candidate leaves it.
+  r.problem.LearnNoise(rivals[0].fit.point);
+  Say(r.options, "rivals under the noise that is left", 0.35 + 0.25 * round);
+  FitAgain(r.problem, r.accepted.fit, rivals);
+  if (rivals[0].no_fault && rivals[0].score > Asked(r.problem, rivals[0], seen.gate)) {
+    // No cause of a deviation, but there; unless the model has it, others stand for it.
+    r.accepted.fit = std::move(rivals[0].fit);
+    r.tried.clear();
+    return Next::kSameRound;
+  }
+  std::erase_if(rivals, [](const Rival& rival) { return rival.no_fault; });
+  if (rivals.empty() || rivals[0].given_up) return EndWithJitter(seen, r);
+  TellEvidence(r.problem, r.accepted, seen.scored, rivals, seen.gate, r.options);
+  const Choice choice = ChooseFirst(r.problem, r.accepted.fit, seen.gate, rivals);
+  if (seen.jitter_there) {
+    // A mean effect that the variance was about leaves none behind.
+    const Jitter left = TestJitter(r.problem, rivals[0].fit);
+    if (left.drop > kJitterLeft * seen.jitter.drop && (!choice.found || left.drop > choice.tested)) {
+      AcceptJitter(r.problem, r.nominal.fit, left, r.out);
+      r.jitter_known = true;
+      r.tried.clear();
+      return choice.found ? Next::kNextRound : Next::kEnd;
+    }
+  }
+  return choice.found ? Take(rivals, seen.gate, r) : TryOthers(seen, r);
+}
+
+}  // namespace
+
+RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const DiagnoseOptions& options,
+                            Diagnosis& out) {
+  Rounds r{problem, nominal, options, out};
+  r.accepted.fit = nominal.fit;
+  int round = 0;
+  for (Next next = Next::kSameRound; next != Next::kEnd && round < options.most_effects;) {
+    next = OneRound(round, r);
+    if (next == Next::kNextRound) ++round;
+  }
+  // Beside all that is in the model now, a shape from outside the catalogue among it.
+  if (r.stated_beside != r.accepted.places.size()) {
+    const std::vector<Scored> scored = Screen(problem, r.accepted.fit, nominal.catalogue);
+    KeepDetectable(problem, r.accepted.fit, scored, TestJitter(problem, r.accepted.fit),
+                   GateOf(problem, r.accepted, scored, nominal.by_extras, options), {}, out);
+  }
+  return {std::move(r.accepted), round >= options.most_effects};
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,36 @@
+#include "analysis/diagnosis/screening/nominal.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "analysis/diagnosis/causes/effects.h"
+
+namespace contour::diagnosis {
+
+Nominal FitNominal(Problem& problem) {
+  Nominal nominal;
+  Point start;
+  for (const BaseTerm& t : problem.terms_) start.base.push_back(t.start);
+  problem.LearnOutliers(start);
+  problem.LearnNoise(start);
+  const Extent ahead = problem.excerpt_.empty() ? Extent::kWhole : Extent::kExcerpt;
+  nominal.fit =
+      FitPoint(problem, start,
+               {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false}, ahead);
+  problem.LearnNoise(nominal.fit.point);
+  const FitEffort effort{.most_steps = 12, .most_refreshes = 4, .close_enough = 0.1};
+  if (ahead == Extent::kExcerpt) {
+    nominal.fit = FitPoint(problem, FitPoint(problem, nominal.fit.point, kToTheValley, ahead).point, effort);
+  } else {
+    Rewhiten(problem, nominal.fit);
+    nominal.fit = FitOn(problem, std::move(nominal.fit), effort);
+  }
+  // A resonance may have been taken for another one.
+  FitFromStated(problem, nominal.fit, effort);
+  problem.LearnSignals(nominal.fit.point);
+  nominal.catalogue = CatalogueEffects(problem);
+  nominal.by_extras = std::max(0.0, problem.ExplainedByExtras(nominal.fit.point));
+  return nominal;
+}
+
+}  // namespace contour::diagnosis

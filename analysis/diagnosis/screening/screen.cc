@@ -1,0 +1,40 @@
+#include "analysis/diagnosis/screening/screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/screening/firm_slides.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Waves of one kind that are two, by order or Hz.
+constexpr double kOrdersApart = 0.9;
+
+}  // namespace
+
+std::vector<Scored> Screen(const Problem& problem, const Fit& fit, std::span<const SharedEffect> catalogue) {
+  std::vector<SharedEffect> effects(catalogue.begin(), catalogue.end());
+  for (SharedEffect& e : ScanWaves(problem, fit)) effects.push_back(std::move(e));
+  // Numbers of a law of friction that does not hold are no cause when they are not as stated, and where
+  // friction is not what the law says is no matter of time.
+  const bool another_law = OfAnotherLaw(problem, fit);
+  std::erase_if(effects, [&](const SharedEffect& e) {
+    if (another_law && (e->kind == "stribeck" || e->kind == kFrictionOfTime)) return true;
+    return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
+      // A wave may have further orders.
+      const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kOrdersApart;
+      return f->kind == e->kind && !another;
+    });
+  });
+  std::vector<Scored> scored = ScoreEffects(problem, fit, std::move(effects));
+  std::stable_sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) {
+    return a.drop - Penalty(*a.effect) > b.drop - Penalty(*b.effect);
+  });
+  return scored;
+}
+
+}  // namespace contour::diagnosis
