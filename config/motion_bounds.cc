@@ -6,6 +6,7 @@
 
 #include "config/extended_model.h"
 #include "config/stopping.h"
+#include "control/loop_bandwidth.h"
 #include "control/monitored_axis.h"
 #include "core/mechanics.h"
 #include "drivers/cia402/mode_for.h"
@@ -36,8 +37,6 @@ Axis Known(const MachineConfig& config, const AxisConfig& axis) {
   const ExtendedModel model = Extended(axis.model);
   const Mechanics m = ToSi(model.mechanics);
   const Friction f = ToSi(model.friction, m.radius_m_rad);
-  const MonitoredFriction friction{std::max(f.Fs_plus_N, f.Fs_minus_N), std::min(f.Fc_plus_N, f.Fc_minus_N),
-                                   f.vs_m_s, f.sigma0_N_m, f.sigma2_Ns_m};
   const bool in_cascade = ModeFor(config.machine.controller, axis.drive) == DriveMode::kCsp;
   // A file with other mistakes is refused for those.
   const auto bus = config.buses.find(axis.drive.bus);
@@ -48,8 +47,8 @@ Axis Known(const MachineConfig& config, const AxisConfig& axis) {
                              static_cast<std::uint32_t>(axis.drive.delay_cycles), bitrate_bit_s, in_cascade};
   Axis a;
   a.limits = ToSi(axis.limits, m.radius_m_rad);
-  a.monitored = ToMonitored(m, friction, drive, a.limits,
-                            LoopBandwidth_Hz(config.control, config.machine.controller, in_cascade));
+  a.monitored = ToMonitored(m, ToMonitored(f), drive, a.limits,
+                            StiffnessBandwidth_Hz(config.control, config.machine.controller, in_cascade));
   a.period_s = 1e-6 * config.machine.cycle_us;
   a.t = ThresholdsOf(a.monitored, config.control.monitor, a.period_s);
   a.lag_s = 1e-3 * axis.drive.lag_ms;

@@ -5,6 +5,7 @@
 
 #include "control/cascade_law.h"
 #include "control/csp_law.h"
+#include "control/loop_bandwidth.h"
 #include "control/mpc_law.h"
 #include "control/pid_law.h"
 #include "control/reference_planner.h"
@@ -53,7 +54,10 @@ const MpcConfig& MpcConfigFor(const ControllerConfig& config, ControllerName nam
 
 ContourController::ContourController(ControllerName name, const ControllerConfig& config,
                                      const PerAxis<ControlledAxis>& axes, double period_s, bool cascade)
-    : options_(OptionsFor(name)) {
+    : options_(OptionsFor(name)),
+      loop_Hz_(StiffnessBandwidth_Hz(config, name, cascade)),
+      // A drive's own loop is not ours to soften.
+      soft_loop_Hz_(cascade ? loop_Hz_ : config.supervision.softer * loop_Hz_) {
   if (axes.empty()) throw std::invalid_argument("controller: there is no axis");
   if (!(period_s > 0.0)) throw std::invalid_argument("controller: the period must be positive");
   law_ = MakeLaw(name, config, axes, period_s, cascade);

@@ -114,6 +114,9 @@ class ContourController {
 
   [[nodiscard]] const ControllerOptions& options() const noexcept { return options_; }
   void Keep(StateKeeper& keep) noexcept;
+  /// Bandwidth of a rigid axis held as stiffly as by these gains, Hz, or by the softened ones; see
+  /// control/loop_bandwidth.h.
+  [[nodiscard]] double loop_Hz(bool softened) const noexcept { return softened ? soft_loop_Hz_ : loop_Hz_; }
 
   /// Points of the reference that Plan and Step look at; what lies beyond is ignored.
   [[nodiscard]] std::size_t horizon_points() const noexcept;
@@ -122,6 +125,8 @@ class ContourController {
 
  private:
   ControllerOptions options_;
+  double loop_Hz_;
+  double soft_loop_Hz_;
   std::unique_ptr<ControlLaw> law_;
   std::unique_ptr<ReferencePlanner> planner_;  ///< none: nothing is planned
 };

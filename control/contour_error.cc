@@ -76,6 +76,7 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
       std::min(kFarthestPeriods, std::ceil(2.0 * std::sqrt(best) / std::max(speed * period_s, 1e-12)));
   const double from = origin - reach;
   const double to = std::min(origin + reach, path.end());
+  bool sampled_origin = true;
   for (double at = from; at <= to; at += 1.0) {
     if (at == origin) continue;
     double distance2 = 0.0;
@@ -83,6 +84,7 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
       distance2 = path.Distance2(position_m, static_cast<std::size_t>(at));
     } else {
       path.At(at, sample);
+      sampled_origin = false;
       distance2 = Distance2(position_m, sample);
     }
     if (distance2 < best) {
@@ -91,7 +93,7 @@ ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<A
     }
   }
   double at = best_at;
-  path.At(at, sample);
+  if (at != origin || !sampled_origin) path.At(at, sample);
   for (int i = 0; i < kNewtonSteps; ++i) {
     const double before = at;
     at = std::clamp(at + StepToFoot(position_m, sample, period_s), std::min(from, best_at),

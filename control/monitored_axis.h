@@ -1,11 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
+#include <numbers>
 
-#include "control/control_config.h"
 #include "control/motion_thresholds.h"
-#include "core/controller_name.h"
 #include "core/mechanics.h"
 
 namespace contour {
@@ -18,6 +17,13 @@ struct MonitoredFriction {
   double sigma0_N_m = 0.0;
   double sigma2_Ns_m = 0.0;
 };
+
+/// Of a Friction of the estimator, which is a neighbour of this floor.
+template <class Friction>
+constexpr MonitoredFriction ToMonitored(const Friction& f) noexcept {
+  return {std::max(f.Fs_plus_N, f.Fs_minus_N), std::min(f.Fc_plus_N, f.Fc_minus_N), f.vs_m_s, f.sigma0_N_m,
+          f.sigma2_Ns_m};
+}
 
 /// Drive and encoder as far as the monitor needs them.
 struct MonitoredDrive {
@@ -32,35 +38,6 @@ struct MonitoredDrive {
 // leaves it the highest priority but for NMT).
 inline constexpr double kLongestFrame_bits = 135.0;
 
-// A controller without integral action or observer leaves friction to its stiffness alone.
-inline constexpr double kUncompensated = 0.5;
-
-/// Bandwidth of a controller's position loop, Hz: of the slower direction, since at low speed a path has
-/// none. What an observer finds is answered at once, so there it is the mean of both.
-inline double LoopBandwidth_Hz(const ControllerConfig& c, ControllerName controller,
-                               bool in_cascade) noexcept {
-  const auto slower = [](const MpcConfig& m) { return std::min(m.contour_bandwidth_Hz, m.lag_bandwidth_Hz); };
-  if (in_cascade) return c.monitor.drive_loop_Hz;
-  switch (controller) {
-    case ControllerName::kPid:
-      return c.pid.bandwidth_Hz;
-    case ControllerName::kMpc:
-      return kUncompensated * slower(c.mpc);
-    case ControllerName::kMpcObserver:
-      return std::sqrt(c.mpc_observer.contour_bandwidth_Hz * c.mpc_observer.lag_bandwidth_Hz);
-    case ControllerName::kMpcSrukf4:
-      return slower(c.mpc_srukf4);
-    case ControllerName::kMpcEkf7:
-      return slower(c.mpc_ekf7);
-    case ControllerName::kMpcSrukf7:
-      return slower(c.mpc_srukf7);
-    case ControllerName::kFull:
-      return slower(c.full);
-    default:
-      return c.monitor.drive_loop_Hz;
-  }
-}
-
 // An axis that slides is at some multiple of its Stribeck speed.
 inline constexpr double kSlideOverStribeck = 5.0;
 // Of rated force, where the machine file does not state what may push besides friction.
@@ -70,7 +47,6 @@ constexpr MonitoredAxis ToMonitored(const Mechanics& m, const MonitoredFriction&
                                     const MonitoredDrive& drive, const AxisLimitsSi& limits,
                                     double loop_Hz) noexcept {
   MonitoredAxis a;
-  a.radius_m_rad = m.radius_m_rad;
   a.motor_mass_kg = m.mass_kg - m.table_mass_kg;
   a.table_mass_kg = m.table_mass_kg;
   a.stiffness_N_m = m.stiffness_N_m;
@@ -83,7 +59,7 @@ constexpr MonitoredAxis ToMonitored(const Mechanics& m, const MonitoredFriction&
   a.rated_force_N = drive.rated_torque_Nm / m.radius_m_rad;
   a.external_force_N =
       limits.external_force_N > 0.0 ? limits.external_force_N : kExternalShare * a.rated_force_N;
-  a.count_m = 2.0 * 3.141592653589793 * m.radius_m_rad / drive.counts_per_rev;
+  a.count_m = 2.0 * std::numbers::pi * m.radius_m_rad / drive.counts_per_rev;
   a.loop_Hz = loop_Hz;
   a.delay_cycles = drive.delay_cycles;
   a.in_cascade = drive.in_cascade;

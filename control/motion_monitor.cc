@@ -11,6 +11,7 @@ namespace {
 constexpr std::uint32_t kSameAtLeast_periods = 3;
 // The same under our own loops, for a small change of force.
 constexpr std::uint32_t kSameForForce_periods = 20;
+// A spring so soft that it answers later than this answers never; whole numbers end somewhere.
 constexpr double kLongest_periods = 1e6;
 // Held forces that are remembered, at most.
 constexpr std::uint32_t kMostHeld = 8;
@@ -32,6 +33,8 @@ constexpr std::uint32_t kScaleApart = 3;
 constexpr std::uint32_t kReadingsOfASync = 3;
 // Lead errors of screws that are sold are well below half a millimetre per metre.
 constexpr double kLeadError_rel = 5e-4;
+// A screw that warms grows within many minutes: an offset that changes no faster than that is no slip.
+constexpr double kWarms_s = 600.0;
 
 }  // namespace
 
@@ -42,27 +45,6 @@ MotionMonitor::MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& con
       period_s_(period_s),
       watch_(axis.Fs_N, axis.slide_m_s, config.torque_constant_error_rel) {
   axis_.delay_cycles = std::clamp<std::uint32_t>(axis_.delay_cycles, 1, 4);
-}
-
-Reason MotionMonitor::Step(const MotionSample& s) noexcept {
-  waited_periods_ += s.periods;
-  believed_ = true;
-  if (s.late) late_readings_ = kReadingsOfASync;
-  if (!s.enabled) held_ = false;
-  Reason found = Reason::kNone;
-  if (s.enabled) {
-    if (!held_) Restart(s);
-    Push(s);
-    if (s.fresh) found = Judge(s);
-  }
-  if (s.fresh) {
-    if (readings_ > 0) velocity_m_s_ = (s.position_m - position_m_) / (waited_periods_ * period_s_);
-    last_gap_periods_ = waited_periods_;
-    position_m_ = s.position_m;
-    waited_periods_ = 0;
-    readings_ = std::min(readings_ + 1, 2U);
-  }
-  return found;
 }
 
 void MotionMonitor::Restart(const MotionSample& s) noexcept {
@@ -85,40 +67,14 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
 
 // At skipped grid points the drives hold the last torque.
 void MotionMonitor::Push(const MotionSample& s) noexcept {
-  for (std::uint32_t i = 0; i < std::min(s.periods, kMostHeld); ++i) {
-    std::copy_backward(forces_N_.begin(), forces_N_.end() - 1, forces_N_.end());
-  }
+  for (std::uint32_t i = 0; i < std::min(s.periods, kMostHeld); ++i)
+    for (std::size_t age = axis_.delay_cycles + 1; age > 0; --age) forces_N_[age] = forces_N_[age - 1];
   forces_N_[0] = s.sent_force_N;
 }
 
-Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
-  const double force_N = axis_.in_cascade ? 0.5 * (s.reported_force_N + report_before_N_) : Acting_N();
-  report_before_N_ = s.reported_force_N;
-  const double spread_N = axis_.in_cascade ? 0.0 : std::abs(Acting_N() - forces_N_[axis_.delay_cycles - 1]);
+// Of a force, and by how much it changed: it may ring in the screw for a while.
+void MotionMonitor::SeePeak(double force_N, double spread_N) noexcept {
   peak_N_ = std::max(peak_N_ * t_.peak_decay, std::abs(force_N) + spread_N);
-
-  Reason found = Reason::kNone;
-  const auto keep = [&](bool acts, Reason r) {
-    if (acts && found == Reason::kNone) found = r;
-  };
-  keep(config_.jump, Jump(s, force_N));
-  keep(config_.frozen, Frozen(s));
-  if (readings_ > 1) {
-    const double gap_s = waited_periods_ * period_s_;
-    const double velocity_m_s = (s.position_m - position_m_) / gap_s;
-    const double between_s = 0.5 * (gap_s + last_gap_periods_ * period_s_);
-    const double missing_N = force_N - t_.mass_kg * (velocity_m_s - velocity_m_s_) / between_s;
-    unexplained_N_ += t_.filter * (missing_N - unexplained_N_);
-    force_N_ += t_.filter * (force_N - force_N_);
-    // What it would be with a drive that answers a cycle later than stated.
-    const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
-    on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
-    keep(config_.momentum, Momentum(velocity_m_s, std::abs(s.position_m - position_m_) <= t_.flicker_m));
-    Learn(velocity_m_s);
-  }
-  keep(config_.delivery, Delivery(s));
-  keep(config_.scale, Scale(s));
-  return Named(found, s.reported_force_N, force_N);
 }
 
 // A drive that tells of no torque says why its axis stands or falls behind.
@@ -201,7 +157,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     near_periods_ += waited_periods_;
   }
   const double settling_N = kSettlingShare * settling_N_;
-  double loop_N_m = t_.loop_N_m * s.loop_rel;
+  double loop_N_m = t_.loop_N_m;
   std::uint32_t answer_periods = t_.loop_periods;
   if (s.spring_N_m > 0.0) {
     loop_N_m = s.spring_N_m;
@@ -248,12 +204,15 @@ Reason MotionMonitor::Momentum(double velocity_m_s, bool stands) noexcept {
   return lacks && !against && !driven ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
 }
 
-// Neighbouring samples say the same twice: one in a filter's memory is enough.
+// Neighbouring samples say the same twice: one in a filter's memory is enough. An acceleration that friction
+// could hide is mostly the encoder's steps, and noise in what is multiplied makes the factor come out small.
 void MotionMonitor::Learn(double velocity_m_s) noexcept {
   if (until_learning_ > 0) --until_learning_;
-  if (until_learning_ > 0 || std::abs(velocity_m_s) < axis_.slide_m_s) return;
+  if (until_learning_ > 0 || !believed_ || std::abs(velocity_m_s) < axis_.slide_m_s) return;
+  const double inertial_N = force_N_ - unexplained_N_;
+  if (std::abs(inertial_N) <= axis_.Fs_N) return;
   until_learning_ = kLearnEvery_readings;
-  watch_.Learn(force_N_, force_N_ - unexplained_N_, velocity_m_s);
+  watch_.Learn(force_N_, inertial_N, velocity_m_s);
 }
 
 Reason MotionMonitor::Doubt() const noexcept {
@@ -304,7 +263,61 @@ Reason MotionMonitor::Scale(const MotionSample& s) noexcept {
   const double allowed_m = t_.windup_m + t_.reading_m + kLeadError_rel * travel_m;
   // The scale comes in a message of its own, which may be lost or late.
   scale_apart_ = std::abs(apart_m - scale_offset_m_) > allowed_m ? scale_apart_ + 1 : 0;
+  if (scale_apart_ == 0)
+    scale_offset_m_ += waited_periods_ * period_s_ / kWarms_s * (apart_m - scale_offset_m_);
   return scale_apart_ >= kScaleApart ? Reason::kScaleDisagrees : Reason::kNone;
+}
+
+Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
+  const double force_N = axis_.in_cascade ? 0.5 * (s.reported_force_N + report_before_N_) : Acting_N();
+  report_before_N_ = s.reported_force_N;
+  if (axis_.in_cascade) SeePeak(force_N, 0.0);
+
+  Reason found = Reason::kNone;
+  const auto keep = [&](bool acts, Reason r) {
+    if (acts && found == Reason::kNone) found = r;
+  };
+  keep(config_.jump, Jump(s, force_N));
+  keep(config_.frozen, Frozen(s));
+  if (readings_ > 1) {
+    const double gap_s = waited_periods_ * period_s_;
+    const double velocity_m_s = (s.position_m - position_m_) / gap_s;
+    const double between_s = 0.5 * (gap_s + last_gap_periods_ * period_s_);
+    const double missing_N = force_N - t_.mass_kg * (velocity_m_s - velocity_m_s_) / between_s;
+    unexplained_N_ += t_.filter * (missing_N - unexplained_N_);
+    force_N_ += t_.filter * (force_N - force_N_);
+    // What it would be with a drive that answers a cycle later than stated.
+    const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
+    on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
+    keep(config_.momentum, Momentum(velocity_m_s, std::abs(s.position_m - position_m_) <= t_.flicker_m));
+    Learn(velocity_m_s);
+  }
+  keep(config_.delivery, Delivery(s));
+  keep(config_.scale, Scale(s));
+  return Named(found, s.reported_force_N, force_N);
+}
+
+Reason MotionMonitor::Step(const MotionSample& s) noexcept {
+  waited_periods_ += s.periods;
+  believed_ = true;
+  if (s.late) late_readings_ = kReadingsOfASync;
+  if (!s.enabled) held_ = false;
+  Reason found = Reason::kNone;
+  if (s.enabled) {
+    if (!held_) Restart(s);
+    Push(s);
+    // Also of a force that acts while no reading comes.
+    if (!axis_.in_cascade) SeePeak(Acting_N(), std::abs(Acting_N() - forces_N_[axis_.delay_cycles - 1]));
+    if (s.fresh) found = Judge(s);
+  }
+  if (s.fresh) {
+    if (readings_ > 0) velocity_m_s_ = (s.position_m - position_m_) / (waited_periods_ * period_s_);
+    last_gap_periods_ = waited_periods_;
+    position_m_ = s.position_m;
+    waited_periods_ = 0;
+    readings_ = std::min(readings_ + 1, 2U);
+  }
+  return found;
 }
 
 }  // namespace contour

@@ -6,6 +6,7 @@
 #include "control/motion_thresholds.h"
 #include "control/torque_constant_watch.h"
 #include "core/reason.h"
+#include "core/state_keeper.h"
 
 namespace contour {
 
@@ -19,8 +20,7 @@ struct MotionSample {
   double sent_force_N = 0.0;  ///< of the cycle before: it begins to act at this sample
   double reported_force_N = 0.0;  ///< 0x6077 of this sample
   double reference_m = 0.0;       ///< of this sample
-  double loop_rel = 1.0;    ///< stiffness of the loop over the configured one, where gains were softened
-  double spring_N_m = 0.0;  ///< above 0: an experiment holds the axis by a spring instead of the loop
+  double spring_N_m = 0.0;        ///< above 0: an experiment holds the axis by a spring instead of the loop
   bool has_scale = false;
   double table_position_m = 0.0;
 };
@@ -45,6 +45,20 @@ class MotionMonitor {
   /// Once per cycle. kNone, or what cannot be.
   Reason Step(const MotionSample& sample) noexcept;
 
+  /// Another loop holds the axis from now on: other gains, softened ones, or another controller.
+  void UseLoop(double loop_Hz) noexcept { contour::UseLoop(loop_Hz, axis_, period_s_, t_); }
+
+  /// What has been seen; what is known of the axis stays as constructed, and the loop as last told.
+  void Keep(StateKeeper& keep) noexcept {
+    keep(watch_, until_learning_, readings_, position_m_, velocity_m_s_, waited_periods_, last_gap_periods_,
+         believed_, late_readings_, held_, forces_N_, report_before_N_, peak_N_, slow_force_N_,
+         slower_force_N_, rest_reference_m_, rest_periods_, rest_least_N_, rest_most_N_, settling_N_,
+         least_N_, most_N_, same_, same_reference_m_, near_, near_position_m_, near_reference_m_,
+         near_periods_, same_gone_, near_gone_, on_its_way_N_, force_N_, unexplained_N_, jitter_N_, beyond_,
+         sent_N_, reported_N_, report_seen_, undelivered_, tells_none_, scale_seen_, scale_apart_,
+         scale_offset_m_, scale_begin_m_);
+  }
+
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
   /// of a SYNC that came late: nothing should be learnt from it.
   [[nodiscard]] bool believed() const noexcept { return believed_; }
@@ -59,17 +73,19 @@ class MotionMonitor {
   [[nodiscard]] double torque_ratio() const noexcept { return watch_.ratio(); }
 
  private:
-  void Push(const MotionSample& s) noexcept;
+  // Inline: once per axis and cycle, and only from here.
+  inline void Push(const MotionSample& s) noexcept;
+  inline void SeePeak(double force_N, double spread_N) noexcept;
   [[nodiscard]] double Acting_N() const noexcept { return forces_N_[axis_.delay_cycles]; }
-  Reason Judge(const MotionSample& s) noexcept;
-  Reason Jump(const MotionSample& s, double force_N) noexcept;
-  Reason Frozen(const MotionSample& s) noexcept;
-  Reason Named(Reason found, double reported_N, double force_N) noexcept;
-  Reason Momentum(double velocity_m_s, bool stands) noexcept;
-  void Learn(double velocity_m_s) noexcept;
-  Reason Delivery(const MotionSample& s) noexcept;
-  Reason DeliveryInCascade(const MotionSample& s) noexcept;
-  Reason Scale(const MotionSample& s) noexcept;
+  inline Reason Judge(const MotionSample& s) noexcept;
+  inline Reason Jump(const MotionSample& s, double force_N) noexcept;
+  inline Reason Frozen(const MotionSample& s) noexcept;
+  inline Reason Named(Reason found, double reported_N, double force_N) noexcept;
+  inline Reason Momentum(double velocity_m_s, bool stands) noexcept;
+  inline void Learn(double velocity_m_s) noexcept;
+  inline Reason Delivery(const MotionSample& s) noexcept;
+  inline Reason DeliveryInCascade(const MotionSample& s) noexcept;
+  inline Reason Scale(const MotionSample& s) noexcept;
   void Restart(const MotionSample& s) noexcept;
 
   MonitoredAxis axis_;

@@ -37,6 +37,13 @@ constexpr double kNoiseShare = 0.2;
 
 }  // namespace
 
+// The controller's stiffness goes by the mass it was told; a drive's own by the mass it was tuned for.
+void UseLoop(double loop_Hz, const MonitoredAxis& a, double period_s, MotionThresholds& t) noexcept {
+  const double loop_rad_s = 2.0 * std::numbers::pi * loop_Hz;
+  t.loop_N_m = (a.in_cascade ? t.light_kg : t.mass_kg) * loop_rad_s * loop_rad_s;
+  t.loop_periods = static_cast<std::uint32_t>(std::max(3.0, std::ceil(kAnswer / (loop_rad_s * period_s))));
+}
+
 MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, double period_s) noexcept {
   MotionThresholds t;
   t.mass_kg = a.motor_mass_kg + a.table_mass_kg;
@@ -70,10 +77,7 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.flickering = standing(2.0 * t.flicker_m);
   // Outside forces and friction that settles on the table are answered by torque while the motor stands.
   t.frozen_force_N = t.friction_N + t.external_N + t.frozen.force_N;
-  // The controller's stiffness goes by the mass it was told; a drive's own by the mass it was tuned for.
-  const double loop_rad_s = 2.0 * std::numbers::pi * a.loop_Hz;
-  t.loop_N_m = (a.in_cascade ? t.light_kg : t.mass_kg) * loop_rad_s * loop_rad_s;
-  t.loop_periods = static_cast<std::uint32_t>(std::max(3.0, std::ceil(kAnswer / (loop_rad_s * period_s))));
+  UseLoop(a.loop_Hz, a, period_s, t);
   t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
   t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));
   t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);

@@ -8,7 +8,6 @@ namespace contour {
 
 /// What the motion monitor has to know of an axis. Table side: forces F = T / R, positions R theta.
 struct MonitoredAxis {
-  double radius_m_rad = 0.0;
   double motor_mass_kg = 0.0;  ///< Jm / R^2
   double table_mass_kg = 0.0;
   double stiffness_N_m = 0.0;  ///< of the screw
@@ -97,6 +96,10 @@ struct MotionThresholds {
     return friction_N + viscous_Ns_m * speed_m_s + external_N + unexplained_rel * size_N;
   }
 };
+
+/// What of them goes by the position loop, for one of this bandwidth.
+void UseLoop(double loop_Hz, const MonitoredAxis& axis, double period_s,
+             MotionThresholds& thresholds) noexcept;
 
 MotionThresholds ThresholdsOf(const MonitoredAxis& axis, const MonitorConfig& config,
                               double period_s) noexcept;

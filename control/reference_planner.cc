@@ -100,6 +100,8 @@ class PlannerGroup final : public PlannerGroupBase {
       const AxisHorizon& axis = wanted[first_ + i];
       double most_m_s = 0.0, before_m_s = PointAt(axis, 1).velocity_m_s;
       const std::size_t end = std::min(axis.size(), problem_.horizon + 3);
+      // Every cycle looks at every point: the loop's own counting would be half of it.
+#pragma GCC unroll 8
       for (std::size_t n = 2; n < end; ++n) {
         const double now_m_s = axis[n].velocity_m_s;
         most_m_s = std::max(most_m_s, std::abs(now_m_s - before_m_s));

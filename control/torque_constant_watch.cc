@@ -15,7 +15,7 @@ constexpr double kSure = 3.0;  // standard deviations
 
 TorqueConstantWatch::TorqueConstantWatch(double friction_N, double speed_m_s, double allowed_rel) noexcept
     : noise_N2_(kFrictionNoise * friction_N * kFrictionNoise * friction_N),
-      allowed_rel_(allowed_rel),
+      allowed_log_(std::log1p(allowed_rel)),
       theta_{1.0, friction_N, 0.0},
       prior_{1.0, friction_N * friction_N, friction_N * friction_N / (speed_m_s * speed_m_s)} {
   for (std::size_t i = 0; i < 3; ++i) p_[i][i] = prior_[i];
@@ -37,12 +37,13 @@ void TorqueConstantWatch::Learn(double force_N, double inertial_N, double veloci
     // Forgetting by what the prior knew, so that nothing winds up where nothing is excited.
     p_[i][i] += kForget * (prior_[i] - p_[i][i]);
   }
+  changed_ = Changed();
 }
 
-bool TorqueConstantWatch::changed() const noexcept {
+bool TorqueConstantWatch::Changed() const noexcept {
   const double off = std::abs(std::log(theta_[0] > 1e-3 ? theta_[0] : 1e-3));
   const double sd = std::sqrt(p_[0][0]) / (theta_[0] > 1e-3 ? theta_[0] : 1e-3);
-  return off - kSure * sd > std::log1p(allowed_rel_);
+  return off - kSure * sd > allowed_log_;
 }
 
 }  // namespace contour

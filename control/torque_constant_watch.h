@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "core/state_keeper.h"
+
 namespace contour {
 
 /// Watches what force an acceleration takes: u = k m a + F sgn(v) + b v by recursive least squares, one axis.
@@ -16,15 +18,20 @@ class TorqueConstantWatch {
   void Learn(double force_N, double inertial_N, double velocity_m_s) noexcept;
 
   /// k is off by more than is allowed, and surely so.
-  [[nodiscard]] bool changed() const noexcept;
+  [[nodiscard]] bool changed() const noexcept { return changed_; }
   [[nodiscard]] double ratio() const noexcept { return theta_[0]; }
+  /// What was learnt, not what it is held against.
+  void Keep(StateKeeper& keep) noexcept { keep(theta_, p_, changed_); }
 
  private:
+  [[nodiscard]] bool Changed() const noexcept;
+
   double noise_N2_;
-  double allowed_rel_;
+  double allowed_log_;
   std::array<double, 3> theta_;
   std::array<std::array<double, 3>, 3> p_{};
   std::array<double, 3> prior_{};
+  bool changed_ = false;
 };
 
 }  // namespace contour

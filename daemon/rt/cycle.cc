@@ -12,6 +12,8 @@ namespace {
 
 /// In which the difference of two controllers' forces fades.
 constexpr double kBlend_s = 0.03;
+/// More grid points than that are not told apart: readings so far apart say nothing of each other.
+constexpr std::uint64_t kMostSkipped = 1'000'000;
 
 PerAxis<double> Zeros(std::size_t n) {
   PerAxis<double> zeros(n);
@@ -50,7 +52,6 @@ Cycle::Cycle(const CycleConfig& config)
       guard_(config.control.guard, GuardedAxes(config), period_s_),
       csp_(InCascade(config)),
       by_reported_torque_(csp_ && config.controller == ControllerName::kFull),
-      soft_loop_rel_(config.control.supervision.softer * config.control.supervision.softer),
       most_skipped_(static_cast<std::uint32_t>(config.control.guard.stale_cycles)),
       estimates_(config.axes.size()),
       guarded_(config.axes.size()),
@@ -71,6 +72,7 @@ Cycle::Cycle(const CycleConfig& config)
   for (const AxisDriveConfig& a : config.master.axes) bus_nodes_[a.bus].Add(a.drive.node_id);
   for (const Reason r : config.unsupervised) unsupervised_[static_cast<std::size_t>(r)] = true;
   const std::size_t n = axes_.size();
+  control_in_.estimate.resize(n);
   control_in_.reference.resize(n);
   control_in_.friction.resize(n);
   control_in_.previous_force_N = Zeros(n);
@@ -92,6 +94,7 @@ bool Cycle::TakeController(ContourController& next) noexcept CONTOUR_NONBLOCKING
   if (!saving.whole() || !loading.whole()) return false;
   // What is destroyed in between has been moved from, and owns nothing.
   CONTOUR_KNOWN_NONBLOCKING(std::swap(controller_, next);)
+  TellLoop();
   return true;
 }
 
@@ -164,6 +167,7 @@ void Cycle::SaveState(std::span<std::byte> to) noexcept CONTOUR_NONBLOCKING {
 bool Cycle::LoadState(std::span<const std::byte> from) noexcept {
   StateKeeper loading = StateKeeper::Loading(from);
   Keep(loading);
+  TellLoop();
   return loading.whole();
 }
 
@@ -191,7 +195,6 @@ void Cycle::Monitor() noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
     const AxisFeedback& f = master_.feedback()[i];
-    const ReferencePoint sampled = AtSample(i);
     MotionSample s;
     s.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
     s.fresh = f.fresh;
@@ -200,8 +203,7 @@ void Cycle::Monitor() noexcept {
     s.position_m = axis.position_m;
     s.sent_force_N = axis.sent_force_N[0];
     s.reported_force_N = f.torque_Nm / axis.radius_m_rad;
-    s.reference_m = sampled.position_m;
-    s.loop_rel = csp_ || watch_.step() < SupervisionStep::kSoftened ? 1.0 : soft_loop_rel_;
+    s.reference_m = AtSample(i).position_m;
     s.spring_N_m = csp_ ? 0.0 : control_in_.reference[i][1].spring_N_m;
     s.has_scale = f.has_scale;
     s.table_position_m = f.table_position_m;
@@ -209,7 +211,8 @@ void Cycle::Monitor() noexcept {
     if (reason != Reason::kNone && contradiction_.reason == Reason::kNone)
       contradiction_ = {reason, static_cast<std::uint8_t>(i)};
   }
-  skipped_before_ = skipped_;
+  skipped_before_ =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(master_.elapsed_cycles() - 1, kMostSkipped));
 }
 
 FaultSeen Cycle::Guard(const Orders& orders) noexcept {

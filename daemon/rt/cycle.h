@@ -115,9 +115,9 @@ class Cycle {
   void CarryOut(const Orders& orders, const Request& request) noexcept;
   /// Nothing was sent at the skipped grid points, so the newest feedback is that much older, and the last
   /// torque has acted on since.
-  [[nodiscard]] ReferencePoint AtSample(std::size_t axis) const noexcept {
+  [[nodiscard]] const ReferencePoint& AtSample(std::size_t axis) noexcept {
     if (skipped_ == 0) return control_in_.reference[axis][0];
-    return follower_.Near(axis, -static_cast<int>(skipped_));
+    return at_sample_ = follower_.Near(axis, -static_cast<int>(skipped_));
   }
   void CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept;
   void HoldHere() noexcept;
@@ -126,6 +126,7 @@ class Cycle {
   void HoldBySprings() noexcept;
   void WatchItself() noexcept;
   void Blend() noexcept;
+  void TellLoop() noexcept;
   [[nodiscard]] bool fallen_back() const noexcept {
     return fallback_ != nullptr && watch_.step() >= SupervisionStep::kFallenBack;
   }
@@ -134,7 +135,7 @@ class Cycle {
   FaultSeen Guard(const Orders& orders) noexcept;
   void Command(const Orders& orders, CycleOutput& out) noexcept;
   void RecordContourError(CycleRecord& record) noexcept;
-  void RecordAxis(std::size_t i, AxisRecord& record) const noexcept;
+  void RecordAxis(std::size_t i, AxisRecord& record) noexcept;
 
   double period_s_;
   DriveMaster master_;
@@ -154,10 +155,10 @@ class Cycle {
   bool csp_;
   bool by_reported_torque_;  // the estimators are told what the drives report instead of what they were sent
   std::array<bool, 128> unsupervised_{};  ///< by reason; all false but in tests
-  double soft_loop_rel_;                  ///< stiffness of a softened loop, over its own
   std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 
+  ReferencePoint at_sample_;          ///< what AtSample gives, until the next
   FaultSeen contradiction_;           ///< of this cycle, by the motion monitors
   std::uint32_t skipped_before_ = 0;  ///< in the cycle before: a SYNC was left out before the newest sample
   PerAxis<AxisEstimate> estimates_;

@@ -41,6 +41,14 @@ void Cycle::WatchItself() noexcept {
   // To be noticed changes nothing.
   take_over_ = transitions_.holds_torque() && std::max(acted_, watch_.step()) >= SupervisionStep::kSoftened;
   acted_ = watch_.step();
+  TellLoop();
+}
+
+// The motion monitors go by the loop that acts: reloaded, softened, or the one fallen back to.
+void Cycle::TellLoop() noexcept {
+  const bool soft = watch_.step() >= SupervisionStep::kSoftened && !fallen_back();
+  const double loop_Hz = controller().loop_Hz(soft);
+  for (Axis& axis : axes_) axis.monitor.UseLoop(loop_Hz);
 }
 
 void Cycle::Decide(const Orders& orders) noexcept {
@@ -54,8 +62,8 @@ void Cycle::Decide(const Orders& orders) noexcept {
     AxisEstimator& estimator = fallen_back() ? axes_[i].observer : axes_[i].estimator;
     estimator.PreviewFriction(Reference(control_in_)[i], in_use.friction_points(), control_in_.friction[i]);
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
+    control_in_.estimate[i] = estimates_[i];
   }
-  control_in_.estimate = estimates_;
   if (orders.torque_allowed) {
     in_use.Step(control_in_, control_out_);
     Blend();

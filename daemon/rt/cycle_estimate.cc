@@ -13,7 +13,7 @@ void Cycle::Estimate(const IoInput& io) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
     const AxisFeedback& f = master_.feedback()[i];
-    const ReferencePoint commanded = AtSample(i);
+    const ReferencePoint& commanded = AtSample(i);
     AxisEstimatorInput input;
     input.position_m = axis.position_m;
     input.fresh = f.fresh && axis.monitor.believed();

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/loop_bandwidth.h"
+
 namespace contour {
 namespace {
 
@@ -50,18 +52,16 @@ PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config) {
 
 PerAxis<MonitoredAxis> MonitoredAxes(const CycleConfig& config) {
   PerAxis<MonitoredAxis> axes;
-  const double loop_Hz = LoopBandwidth_Hz(config.control, config.controller, InCascade(config));
+  const double loop_Hz = StiffnessBandwidth_Hz(config.control, config.controller, InCascade(config));
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     const CycleAxisConfig& a = config.axes[i];
     const DriveConfig& d = config.master.axes[i].drive;
     const Friction f = ToSi(a.friction, a.mechanics.radius_m_rad);
-    const MonitoredFriction friction{std::max(f.Fs_plus_N, f.Fs_minus_N), std::min(f.Fc_plus_N, f.Fc_minus_N),
-                                     f.vs_m_s, f.sigma0_N_m, f.sigma2_Ns_m};
     const MonitoredDrive drive{
         d.rated_torque_Nm, a.encoder_counts_per_rev, static_cast<std::uint32_t>(d.delay_cycles),
         config.master.buses[config.master.axes[i].bus].bitrate_bit_s, InCascade(config)};
     axes.push_back(
-        ToMonitored(a.mechanics, friction, drive, ToSi(a.limits, a.mechanics.radius_m_rad), loop_Hz));
+        ToMonitored(a.mechanics, ToMonitored(f), drive, ToSi(a.limits, a.mechanics.radius_m_rad), loop_Hz));
   }
   return axes;
 }

@@ -59,7 +59,7 @@ void Cycle::RecordContourError(CycleRecord& record) noexcept {
   record.lag_error_m = error.lag_m;
 }
 
-void Cycle::RecordAxis(std::size_t i, AxisRecord& r) const noexcept {
+void Cycle::RecordAxis(std::size_t i, AxisRecord& r) noexcept {
   r.feedback = master_.feedback()[i];
   r.reference = AtSample(i);
   // What an experiment puts on belongs to the torque of this row, which begins to act one period later.

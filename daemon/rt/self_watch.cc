@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "control/loop_bandwidth.h"
 #include "daemon/rt/cycle_parts.h"
 
 namespace contour {
@@ -25,12 +26,6 @@ constexpr double kFewestCyclesPerPeriod = 4.0;
 constexpr double kUnmodelled = 0.5;
 // Of the following error that is a fault.
 constexpr double kDangerousShare = 0.125;
-
-double LoopBandwidth_Hz(const CycleConfig& config) {
-  if (config.controller == ControllerName::kPid) return config.control.pid.bandwidth_Hz;
-  const MpcConfig& mpc = MpcConfigFor(config.control, config.controller);
-  return std::min(mpc.contour_bandwidth_Hz, mpc.lag_bandwidth_Hz);
-}
 
 // What a force of that share moves the axis in one period.
 double ExplainedInnovation_m(const CycleConfig& config, std::size_t axis) {
@@ -57,8 +52,8 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
       std::sqrt(m.stiffness_N_m * (1.0 / motor_kg + 1.0 / m.table_mass_kg)) / (2.0 * std::numbers::pi);
   OscillationBounds b;
   b.period_s = config.cycle_us * 1e-6;
-  b.low_Hz = kSlowestOfBandwidth * LoopBandwidth_Hz(config);
-  b.low_moving_Hz = kSlowestMovingOfBandwidth * LoopBandwidth_Hz(config);
+  b.low_Hz = kSlowestOfBandwidth * LoopBandwidth_Hz(config.control, config.controller);
+  b.low_moving_Hz = kSlowestMovingOfBandwidth * LoopBandwidth_Hz(config.control, config.controller);
   b.high_Hz = std::min(kModeMargin * mode_Hz, 1.0 / (kFewestCyclesPerPeriod * b.period_s));
   b.swing_m = kBeyondRounding * (kRoundingCounts * count_m + torque_step_N / f.sigma0_N_m);
   b.swing_N = kBeyondRounding * torque_step_N;
@@ -128,7 +123,11 @@ void SelfWatch::Look(std::size_t axis, const Seen& seen) noexcept {
 
 void SelfWatch::EndCycle(bool late) noexcept {
   if (late_.Step(late)) Raise(Reason::kCyclesLate, 0xFF);
+  const SupervisionStep before = ladder_.step();
   ladder_.Step(alarm_.reason, alarm_.where);
+  // What the filter said of itself says nothing of the observer that has taken its place.
+  if (ladder_.step() == SupervisionStep::kFallenBack && before == SupervisionStep::kSoftened)
+    for (InnovationWatch& w : innovation_) w.Reset();
   alarm_ = {};
 }
 

@@ -20,9 +20,9 @@ class SelfWatch {
   explicit SelfWatch(const CycleConfig& config);
 
   struct Seen {
-    AxisFeedback feedback;
-    AxisEstimate estimate;
-    ReferencePoint reference;  ///< of the feedback's instant
+    const AxisFeedback& feedback;
+    const AxisEstimate& estimate;
+    const ReferencePoint& reference;  ///< of the feedback's instant
     double position_m = 0.0;
     double radius_m_rad = 0.0;
     bool capped = false;  ///< the solver reached its cap in the cycle before

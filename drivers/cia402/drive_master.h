@@ -156,7 +156,8 @@ class DriveMaster {
     /// What is configured stays as constructed.
     void Keep(StateKeeper& keep) noexcept {
       keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, reported, reported_cycle, alive_cycle,
-           answer_cycle, behind, earliest_answer_ns);
+           answer_cycle, behind, earliest_answer_ns, reference, was_enabled, boot_up_due, seen_before,
+           last_seen_rad, offset_rad);
     }
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;

@@ -41,6 +41,7 @@ void DrivePatrol::Stop() noexcept {
 void DrivePatrol::ReadErrors(std::size_t drive) noexcept {
   states_[drive].errors_due = true;
   states_[drive].next_error = 0;
+  look_at_ = 0;
 }
 
 void DrivePatrol::OnFrame(const CanFrame& frame) noexcept {
@@ -87,7 +88,7 @@ void DrivePatrol::Step(std::uint64_t elapsed_cycles, BringUp::Frames& out) noexc
     transfer_.Cancel();
     if (foreign) return;
   }
-  if (now_ < free_at_) return;
+  if (now_ < free_at_ || now_ < look_at_) return;
   // The mode goes first: a supervisor waits for it.
   for (const bool errors : {false, true}) {
     for (std::size_t i = 0; i < drives_.size(); ++i) {
@@ -95,6 +96,9 @@ void DrivePatrol::Step(std::uint64_t elapsed_cycles, BringUp::Frames& out) noexc
       if (Due(drive) && (errors || now_ >= states_[drive].mode_at)) return Ask(drive, errors, out);
     }
   }
+  look_at_ = ~std::uint64_t{0};
+  for (const State& s : states_)
+    look_at_ = std::min(look_at_, std::max(s.quiet_until, s.errors_due ? now_ + 1 : s.mode_at));
 }
 
 void DrivePatrol::Ask(std::size_t drive, bool errors, BringUp::Frames& out) noexcept {

@@ -44,7 +44,7 @@ class DrivePatrol {
 
   /// The drives stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
-    keep(states_, transfer_, asked_, errors_, sub_, now_, free_at_, running_);
+    keep(states_, transfer_, asked_, errors_, sub_, now_, free_at_, look_at_, running_);
   }
 
  private:
@@ -70,6 +70,7 @@ class DrivePatrol {
   std::uint8_t sub_ = 0;   ///< of the transfer
   std::uint64_t now_ = 0;
   std::uint64_t free_at_ = 0;  ///< no request before
+  std::uint64_t look_at_ = 0;  ///< nothing is due before
   bool running_ = false;
 };
 

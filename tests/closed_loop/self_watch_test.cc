@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <stdexcept>
 
 #include "daemon/make_cycle_config.h"
+#include "daemon/rt/cycle_parts.h"
 #include "tests/closed_loop/test_machine.h"
 
 namespace contour::test {
@@ -90,8 +92,10 @@ TEST(SelfWatch, ALoopInOrderIsLeftAlone) {
 TEST(SelfWatch, LateCyclesInARowEndInAStop) {
   const EmulatedMachineFile file = ExampleMachine({"control.supervision.late_cycles=400"});
   SelfWatch watch(MakeCycleConfig(file.machine, ControllerName::kFull));
-  SelfWatch::Seen seen;
-  seen.radius_m_rad = 1e-3;
+  AxisFeedback feedback;
+  AxisEstimate estimate;
+  const ReferencePoint reference;
+  SelfWatch::Seen seen{feedback, estimate, reference, 0.0, 1e-3};
   int cycles = 0;
   while (watch.Stop().reason == Reason::kNone && cycles < 10000) {
     watch.Look(0, seen);
@@ -111,8 +115,10 @@ TEST(SelfWatch, LateCyclesInARowEndInAStop) {
 TEST(SelfWatch, ASolverAtItsCapAndAFilterThatContradictsItselfClimbTheSameLadder) {
   const EmulatedMachineFile file = ExampleMachine({"control.supervision.step_s=0"});
   SelfWatch watch(MakeCycleConfig(file.machine, ControllerName::kFull));
-  SelfWatch::Seen seen;
-  seen.radius_m_rad = 1e-3;
+  AxisFeedback feedback;
+  AxisEstimate estimate;
+  const ReferencePoint reference;
+  SelfWatch::Seen seen{feedback, estimate, reference, 0.0, 1e-3};
   seen.capped = true;
   for (int i = 0; i < 100; ++i) {
     watch.Look(1, seen);
@@ -121,18 +127,71 @@ TEST(SelfWatch, ASolverAtItsCapAndAFilterThatContradictsItselfClimbTheSameLadder
   EXPECT_EQ(watch.step(), SupervisionStep::kNoticed);
   EXPECT_EQ(watch.Limit(1), Reason::kSolverCap);
   EXPECT_EQ(watch.Limit(0), Reason::kNone);
-  seen = {};
-  seen.radius_m_rad = 1e-3;
-  seen.feedback.fresh = true;
-  seen.estimate.innovation_m = 1e-3;
-  seen.estimate.innovation_std_m = 1e-8;
-  seen.estimate.limit = Reason::kInnovationGated;
+  seen.capped = false;
+  feedback.fresh = true;
+  estimate.innovation_m = 1e-3;
+  estimate.innovation_std_m = 1e-8;
+  estimate.limit = Reason::kInnovationGated;
   for (int i = 0; i < 60; ++i) {
     watch.Look(1, seen);
     watch.EndCycle(false);
   }
   EXPECT_EQ(watch.Stop().reason, Reason::kEstimatorInconsistent);
   EXPECT_EQ(watch.Stop().where, 1);
+}
+
+// A filter that contradicts itself in the running loop: the learning controller is left for the observer,
+// whose innovations state nothing, and the program goes on to its end.
+TEST(SelfWatch, AFilterThatContradictsItselfIsFallenBackFromAndTheProgramGoesOn) {
+  const Watched seen = RunWatched(
+      ExampleMachine({"control.supervision.innovation_sigma=1", "estimator.measurement_noise_um=0.00001",
+                      "estimator.position_noise_um=0", "estimator.velocity_noise_mm_s=0.0001"}),
+      ControllerName::kFull, Text("{shape: circle, radius_mm: 1, feed_mm_min: 120, turns: 2}"));
+  EXPECT_TRUE(seen.shown.contains(Reason::kInnovationGated));
+  EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
+  EXPECT_TRUE(seen.shown.contains(Reason::kFallenBack));
+  EXPECT_EQ(seen.ended, Reason::kNone) << Name(seen.ended);
+}
+
+// What the filter said before it was given up says nothing of the observer. Before: the mean of its
+// innovations took seconds to fade, and the ladder went on to a stop.
+TEST(SelfWatch, TheObserverIsNotJudgedByWhatTheFilterSaid) {
+  SelfWatch watch(MakeCycleConfig(ExampleMachine().machine, ControllerName::kFull));
+  AxisFeedback feedback;
+  AxisEstimate estimate;
+  const ReferencePoint reference;
+  const SelfWatch::Seen seen{feedback, estimate, reference, 0.0, 1e-3};
+  feedback.fresh = true;
+  estimate.innovation_m = 1e-3;
+  estimate.innovation_std_m = 1e-8;
+  for (int i = 0; i < 10000 && watch.step() != SupervisionStep::kFallenBack; ++i) {
+    watch.Look(0, seen);
+    watch.EndCycle(false);
+  }
+  ASSERT_EQ(watch.step(), SupervisionStep::kFallenBack);
+  for (int i = 0; i < 4000; ++i) {
+    watch.Look(0, seen);
+    watch.EndCycle(false);
+    ASSERT_EQ(watch.Stop().reason, Reason::kNone) << "cycle " << i;
+  }
+}
+
+// What the motion monitor goes by comes with the gains, so a reload and its replay tell it the same.
+TEST(SelfWatch, AControllerSaysHowStifflyItHolds) {
+  const auto controller = [](const char* bandwidth_Hz, ControllerName name) {
+    const std::string set = std::string("control.full.contour_bandwidth_Hz=") + bandwidth_Hz;
+    return MakeController(MakeCycleConfig(ExampleMachine({set}).machine, name));
+  };
+  const double softer = ExampleMachine().machine.control.supervision.softer;
+  const ContourController own = controller("25", ControllerName::kFull);
+  EXPECT_EQ(own.loop_Hz(false), 25.0);
+  EXPECT_EQ(own.loop_Hz(true), softer * 25.0);
+  EXPECT_EQ(controller("20", ControllerName::kFull).loop_Hz(false), 20.0);
+  const std::unique_ptr<ContourController> fallback =
+      MakeFallback(MakeCycleConfig(ExampleMachine().machine, ControllerName::kFull));
+  ASSERT_NE(fallback, nullptr);
+  const MpcConfig& observer = ExampleMachine().machine.control.mpc_observer;
+  EXPECT_EQ(fallback->loop_Hz(false), std::max(observer.contour_bandwidth_Hz, observer.lag_bandwidth_Hz));
 }
 
 }  // namespace

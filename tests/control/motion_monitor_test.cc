@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace contour {
 namespace {
@@ -13,7 +15,6 @@ constexpr double kPeriod_s = 1e-3;
 
 MonitoredAxis Axis(double counts_per_mm = 209715.2) {
   MonitoredAxis a;
-  a.radius_m_rad = 7.96e-4;
   a.motor_mass_kg = 79.0;
   a.table_mass_kg = 10.0;
   a.stiffness_N_m = 40e6;
@@ -272,6 +273,75 @@ TEST(MotionMonitor, AnAxisThatIsNotHeldMayBeMovedByHand) {
     s.position_m = 0.01 * std::sin(0.1 * i * i);
     EXPECT_EQ(monitor.Step(s), Reason::kNone);
   }
+}
+
+// Softer gains let the path go further before the torque is there that moves an axis at rest.
+TEST(MotionMonitor, GoesByTheLoopThatActs) {
+  MotionMonitor monitor(Axis(), {}, kPeriod_s);
+  const MotionThresholds own = monitor.thresholds();
+  monitor.UseLoop(0.5 * Axis().loop_Hz);
+  EXPECT_NEAR(monitor.thresholds().loop_N_m, 0.25 * own.loop_N_m, 1e-9 * own.loop_N_m);
+  EXPECT_GT(monitor.thresholds().loop_periods, own.loop_periods);
+  monitor.UseLoop(Axis().loop_Hz);
+  EXPECT_EQ(monitor.thresholds().loop_N_m, own.loop_N_m);
+  EXPECT_EQ(monitor.thresholds().loop_periods, own.loop_periods);
+}
+
+// What is kept is what was seen: other keys hold for a state of before, too.
+TEST(MotionMonitor, AStateOfBeforeKeepsNoThresholds) {
+  MonitorConfig tolerant;
+  tolerant.friction_factor = 10.0;
+  MotionMonitor strict(Axis(), {}, kPeriod_s), other(Axis(), tolerant, kPeriod_s);
+  const double friction_N = other.thresholds().friction_N;
+  StateKeeper measuring;
+  strict.Keep(measuring);
+  std::vector<std::byte> state(measuring.used());
+  StateKeeper saving = StateKeeper::Saving(state);
+  strict.Keep(saving);
+  StateKeeper loading = StateKeeper::Loading(state);
+  other.Keep(loading);
+  EXPECT_TRUE(loading.whole());
+  EXPECT_EQ(other.thresholds().friction_N, friction_N);
+}
+
+// Without a reading the torque acts all the same, and the screw may still ring with it when one comes.
+TEST(MotionMonitor, AForceThatActsWhileNoReadingComesCountsAfterwards) {
+  const auto believed = [](bool pushed_unseen) {
+    MotionMonitor monitor(Axis(), {}, kPeriod_s);
+    MotionSample s;
+    s.enabled = s.fresh = true;
+    for (int k = 0; k < 20; ++k) EXPECT_EQ(monitor.Step(s), Reason::kNone);
+    s.fresh = false;
+    s.sent_force_N = pushed_unseen ? 1500.0 : 0.0;
+    for (int k = 0; k < 3; ++k) monitor.Step(s);
+    s.sent_force_N = 0.0;
+    for (int k = 0; k < 3; ++k) monitor.Step(s);
+    s.fresh = true;
+    const MotionThresholds& t = monitor.thresholds();
+    s.position_m = 1.1 * t.Forced_m(0.0, 0.0, kPeriod_s, 7.0, 1.0);
+    monitor.Step(s);
+    return monitor.believed();
+  };
+  EXPECT_FALSE(believed(false));
+  EXPECT_TRUE(believed(true));
+}
+
+// A screw grows by a micrometre a minute while it warms; one that slips does so at once.
+TEST(MotionMonitor, AScrewThatWarmsIsNoSlip) {
+  MotionMonitor monitor(Axis(), {}, kPeriod_s);
+  MotionSample s;
+  s.enabled = s.fresh = s.has_scale = true;
+  const double allowed_m = monitor.thresholds().windup_m + monitor.thresholds().reading_m;
+  const double warming_m = allowed_m / (600.0 / kPeriod_s) * 0.9;
+  Reason found = Reason::kNone;
+  for (int k = 0; k < 2'000'000 && found == Reason::kNone; ++k) {
+    s.table_position_m += warming_m;
+    found = monitor.Step(s);
+  }
+  EXPECT_EQ(found, Reason::kNone);
+  s.table_position_m += 1.2 * allowed_m;
+  for (int k = 0; k < 5 && found == Reason::kNone; ++k) found = monitor.Step(s);
+  EXPECT_EQ(found, Reason::kScaleDisagrees);
 }
 
 }  // namespace
