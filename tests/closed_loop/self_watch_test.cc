@@ -140,13 +140,13 @@ TEST(SelfWatch, ASolverAtItsCapAndAFilterThatContradictsItselfClimbTheSameLadder
   EXPECT_EQ(watch.Stop().where, 1);
 }
 
-// A filter that contradicts itself in the running loop: the learning controller is left for the observer,
-// whose innovations state nothing, and the program goes on to its end.
+// A filter that believes its model and hardly the encoder, in the running loop: the learning controller is
+// left for the observer, whose innovations state nothing, and the program goes on to its end.
 TEST(SelfWatch, AFilterThatContradictsItselfIsFallenBackFromAndTheProgramGoesOn) {
-  const Watched seen = RunWatched(
-      ExampleMachine({"control.supervision.innovation_sigma=1", "estimator.measurement_noise_um=0.00001",
-                      "estimator.position_noise_um=0", "estimator.velocity_noise_mm_s=0.0001"}),
-      ControllerName::kFull, Text("{shape: circle, radius_mm: 1, feed_mm_min: 120, turns: 2}"));
+  const Watched seen =
+      RunWatched(ExampleMachine({"control.supervision.innovation_sigma=1", "estimator.measurement_noise_um=5",
+                                 "estimator.position_noise_um=0", "estimator.velocity_noise_mm_s=0"}),
+                 ControllerName::kFull, Text("{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 4}"));
   EXPECT_TRUE(seen.shown.contains(Reason::kInnovationGated));
   EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
   EXPECT_TRUE(seen.shown.contains(Reason::kFallenBack));
@@ -191,7 +191,8 @@ TEST(SelfWatch, AControllerSaysHowStifflyItHolds) {
       MakeFallback(MakeCycleConfig(ExampleMachine().machine, ControllerName::kFull));
   ASSERT_NE(fallback, nullptr);
   const MpcConfig& observer = ExampleMachine().machine.control.mpc_observer;
-  EXPECT_EQ(fallback->loop_Hz(false), std::max(observer.contour_bandwidth_Hz, observer.lag_bandwidth_Hz));
+  EXPECT_DOUBLE_EQ(fallback->loop_Hz(false),
+                   std::sqrt(observer.contour_bandwidth_Hz * observer.lag_bandwidth_Hz));
 }
 
 }  // namespace
