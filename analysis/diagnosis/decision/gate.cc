@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <string_view>
 
+#include "analysis/diagnosis/decision/chi_square.h"
 #include "analysis/diagnosis/tuning/margins.h"
 
 namespace contour::diagnosis {
@@ -18,18 +18,6 @@ constexpr double kShareInBase = 0.2;
 // A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
 // rate (3.1 standard deviations).
 constexpr double kBeyondStated = 2e-3;
-double NormalTail(double z) { return 0.5 * std::erfc(z / std::numbers::sqrt2); }
-
-// Exceeded by chi^2 with the given probability.
-double ChiSquare(std::size_t degrees, double probability) {
-  if (degrees >= 2) return -2.0 * std::log(probability);
-  double low = 0.0, high = 10.0;
-  for (int i = 0; i < 60; ++i) {
-    const double z = 0.5 * (low + high);
-    (2.0 * NormalTail(z) > probability ? low : high) = z;
-  }
-  return low * low;
-}
 
 }  // namespace
 
@@ -129,7 +117,7 @@ double Threshold(const Problem& problem, const Gate& gate, const Effect& effect,
   if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind) + left / showing.excess;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
-  const double by_chance = ChiSquare(degrees, std::max(kShareInBase * gate.rate, kBeyondStated));
+  const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * gate.rate, kBeyondStated));
   if (gate.accepted == 0) return by_chance - Penalty(effect);
   left += kBesidePerRow * static_cast<double>(problem.rows());
   // At its worst a left-over of chi^2 moves the number by its root, in standard errors of the log.
