@@ -39,7 +39,7 @@ enum class Next { kSameRound, kNextRound, kEnd };
 struct Seen {
   std::vector<Scored> scored;
   Gate gate;
-  Gate sought;  ///< for the rivals that are to be fitted
+  Gate search;  ///< for the rivals that are to be fitted
   Jitter jitter;
   bool jitter_there = false;
 };
@@ -81,7 +81,7 @@ Seen Look(Rounds& r) {
   Seen seen;
   seen.scored = Screen(r.problem, r.accepted.fit, r.nominal.catalogue);
   seen.gate = GateOf(r.problem, r.accepted, seen.scored, r.nominal.by_extras, r.options);
-  seen.sought = r.options.evidence ? WithoutMargins(seen.gate) : seen.gate;
+  seen.search = r.options.fit_above_chance ? WithoutMargins(seen.gate) : seen.gate;
   seen.jitter = TestJitter(r.problem, r.accepted.fit);
   if (r.first) {
     KeepFirst(seen.scored, r.out);
@@ -108,7 +108,7 @@ Next EndWithJitter(const Seen& seen, Rounds& r) {
 
 /// What the score test likes best may come to nothing; the others had no turn yet.
 Next TryOthers(const Seen& seen, Rounds& r) {
-  if (!MorePromised(r.problem, seen.scored, seen.sought, r.tried)) return Next::kEnd;
+  if (!MorePromised(r.problem, seen.scored, seen.search, r.tried)) return Next::kEnd;
   r.problem.LearnNoise(r.accepted.fit.point);
   Rewhiten(r.problem, r.accepted.fit);
   return Next::kSameRound;
@@ -129,7 +129,7 @@ Next OneRound(int round, Rounds& r) {
   Say(r.options, "candidates", 0.2 + 0.25 * round);
   const Seen seen = Look(r);
   Say(r.options, "rivals", 0.3 + 0.25 * round);
-  std::vector<Rival> rivals = RivalsThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.sought, r.tried);
+  std::vector<Rival> rivals = RivalsThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.search, r.tried);
   StateDetectable(seen, ThoseWithoutDoubt(rivals), r);
   if (rivals.empty()) return EndWithJitter(seen, r);
   // Noise as the best candidate leaves it.

@@ -32,8 +32,10 @@ struct DiagnoseOptions {
   /// Refits with the residual of every stroke at random, from which the intervals come; 0: from the fit's
   /// covariance.
   int bootstrap_runs = 0;
-  /// When given, the best rivals are fitted whether they promise anything or not, and what each kind scored
-  /// is told.
+  /// For calibrations: candidates are fitted that exceed chance, whether they exceed the model-error
+  /// allowance and the residual leakage or not. Slower; which are accepted is decided as ever.
+  bool fit_above_chance = false;
+  /// Gets what each kind scored; observes only.
   std::function<void(const Evidence&)> evidence;
   /// Called now and then from the calling thread with what is being done and how much of it is done, 0..1.
   std::function<void(std::string_view, double)> progress;

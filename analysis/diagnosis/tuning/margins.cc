@@ -8,7 +8,7 @@ namespace contour::diagnosis {
 namespace {
 
 // The first line is that of all kinds that have none of their own, together. Made by
-//   contour_hidden --judge cases --only clean,clear --evidence scores.csv
+//   contour_hidden --judge cases --only clean,clear --fit-above-chance --evidence scores.csv
 //   contour_hidden --calibrate scores.csv > analysis/diagnosis/tuning/margin_table.inc
 constexpr ErrorScore kTable[] = {
 #include "analysis/diagnosis/tuning/margin_table.inc"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -145,6 +146,26 @@ TEST(Diagnose, RefusesColumnsOfDifferentLength) {
   test::HiddenAxis axis = test::MakeHiddenAxis(o);
   axis.log.position.pop_back();
   EXPECT_THROW(Diagnose(axis.log, axis.stated), std::invalid_argument);
+}
+
+// At a rate at which some candidates exceed chance, but not the threshold.
+TEST(Diagnose, IsTheSameWhereItsEvidenceIsWatched) {
+  test::HiddenOptions o = Hidden(103, {});
+  o.duration_s = 20.0;
+  o.scale = o.temperature = o.axis2 = false;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  DiagnoseOptions options;
+  options.false_alarm_rate = 0.5;
+  const Diagnosis alone = Diagnose(axis.log, axis.stated, options);
+  int told = 0;
+  options.evidence = [&](const Evidence&) { ++told; };
+  const Diagnosis watched = Diagnose(axis.log, axis.stated, options);
+  EXPECT_GT(told, 0);
+  EXPECT_EQ(alone.verdict, watched.verdict);
+  EXPECT_EQ(alone.causes.size(), watched.causes.size());
+  ASSERT_EQ(alone.base.size(), watched.base.size());
+  for (std::size_t i = 0; i < alone.base.size(); ++i)
+    EXPECT_EQ(alone.base[i].fitted, watched.base[i].fitted) << alone.base[i].name;
 }
 
 }  // namespace

@@ -84,6 +84,7 @@ Diagnoser Ours(const Options& o, const std::string& name) {
     diagnosis::DiagnoseOptions options;
     options.false_alarm_rate = rate;
     options.bootstrap_runs = o.bootstrap;
+    options.fit_above_chance = o.fit_above_chance;
     std::string table;
     if (!o.evidence.empty())
       options.evidence = [&](const diagnosis::Evidence& e) {

@@ -20,7 +20,7 @@ Hides effects in the emulated machine, records logs over the bus, diagnoses them
   --record DIR         only record: a directory for each case, with the truth beside the log
   --judge DIR          only diagnose what is recorded there; goes on where an earlier run ended
   (neither)            both, and the logs are not kept
-  --calibrate FILE     the gate's margins from what --evidence wrote, on standard output
+  --calibrate FILE     model-error allowances from what --fit-above-chance --evidence wrote, on standard output
 
 What to record (cases that are there already are not recorded again):
   --kinds A,B,...      effects to hide (all of the catalogue); "outside": those outside the catalogue
@@ -39,7 +39,8 @@ How to judge:
   --rate R             false-alarm rate (0.05)
   --strict-rate R      clean machines that raise an alarm are asked again at this rate
   --bootstrap N        refits with every stroke at random, for the intervals (0)
-  --evidence FILE      what every kind scored in every log and round, appended to a table (slower)
+  --evidence FILE      what every kind scored in every log and round, appended to a table
+  --fit-above-chance   candidates that exceed chance are fitted even below the model-error allowance (slower)
   --sizes FILE         true sizes and what is told of them, appended to a table
 
   --threads N          (number of processors)
@@ -172,6 +173,8 @@ Options ParseOptions(int argc, char** argv) {
       std::exit(0);
     } else if (option == "--verbose") {
       o.verbose = true;
+    } else if (option == "--fit-above-chance") {
+      o.fit_above_chance = true;
     } else if (option == "--compact") {
       o.compact = true;
     } else if (option == "--short") {

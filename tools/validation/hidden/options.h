@@ -16,6 +16,7 @@ struct Options {
   int bootstrap = 0;
   unsigned threads = 1;
   bool compact = false;  ///< logs as tables
+  bool fit_above_chance = false;
   bool verbose = false;
 };
 
