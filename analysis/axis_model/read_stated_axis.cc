@@ -56,6 +56,7 @@ StatedAxis ToStatedAxis(const MachineConfig& machine, const std::string& name) {
   const Mechanics m = ToSi(model.mechanics);
   const double r = m.radius_m_rad;
   StatedAxis axis;
+  axis.axis = name;
   axis.lead_m = a.model.mechanics.lead_mm * 1e-3;
   axis.table_per_q = r;
   axis.two_inertia = true;
@@ -89,6 +90,7 @@ StatedAxis ReadStatedAxis(const std::string& file, const std::string& axis,
   } else {
     for (const std::string& assignment : overrides) ApplyOverride(tree, assignment);
     stated = ReadLoose(tree);
+    stated.axis = axis;
   }
   stated.source = file;
   return stated;

@@ -59,6 +59,7 @@ struct StatedExtras {
 /// In the generalised coordinates of AxisLog (rotary: rad, Nm, kg m^2 at the motor; linear: m, N, kg).
 struct StatedAxis {
   std::string source;  ///< file, for messages
+  std::string axis;    ///< its name; empty when not known
   bool linear = false;
   double lead_m = 0.0;       ///< table travel per motor turn; 0 when unknown (linear axes without a screw)
   double table_per_q = 1.0;  ///< table travel in m per unit of q: lead / (2 pi), or 1

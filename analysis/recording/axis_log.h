@@ -16,6 +16,7 @@ namespace contour::diagnosis {
 /// t_k + delay, through the drive's first-order lag, and is held until the next.
 struct AxisLog {
   std::string source;  ///< file, for messages
+  std::string axis;    ///< its name; empty when not known
   bool linear = false;
   double period_s = 1e-3;
 

@@ -75,6 +75,7 @@ AxisLog ReadCsvLog(const std::string& file, const ReadOptions& options) {
 
   AxisLog log;
   log.source = file;
+  log.axis = options.axis;
   log.linear = columns.linear;
   log.period_s = grid.period_s;
   log.rows = rows.time_s.size();

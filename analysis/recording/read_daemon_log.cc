@@ -94,6 +94,7 @@ AxisLog ReadDaemonLog(const std::string& file, const ReadOptions& options) {
                          ": was recorded with the controller csp, in which the drive makes the torque: "
                          "record it in torque mode"});
     const std::size_t axis = AxisNumber(reader.header(), file, options.axis);
+    log.axis = reader.header().axis_names[axis];
     log.period_s = reader.header().cycle_us * 1e-6;
     auto entry = std::make_unique<CycleEntry>();
     std::optional<std::uint64_t> first;

@@ -14,8 +14,15 @@ std::string Number(double x) {
 }
 
 struct Sizes {
-  std::string stroke_mm, slow, middle, fast, torque_Nm;
+  std::string axis, stroke_mm, slow, middle, fast, torque_Nm;
 };
+
+/// The axis as its files name it; that of a file without names is x.
+std::string NameOf(const Problem& p) {
+  for (const std::string* name : {&p.stated_.axis, &p.log_.axis})
+    if (!name->empty()) return *name;
+  return "x";
+}
 
 Sizes SizesOf(const Problem& p) {
   const double stroke_mm = 2e3 * p.signals_->half_stroke_m;
@@ -23,12 +30,13 @@ Sizes SizesOf(const Problem& p) {
   // At the motor, whatever the log's coordinate is.
   const double to_motor =
       p.log_.linear && p.stated_.lead_m > 0.0 ? p.stated_.lead_m / (2.0 * std::numbers::pi) : 1.0;
-  return {Number(stroke_mm), Number(0.02 * fast), Number(0.3 * fast), Number(0.95 * fast),
-          Number(std::max(0.2 * p.stated_.rated, p.signals_->coulomb) * to_motor)};
+  return {NameOf(p),           Number(stroke_mm),
+          Number(0.02 * fast), Number(0.3 * fast),
+          Number(0.95 * fast), Number(std::max(0.2 * p.stated_.rated, p.signals_->coulomb) * to_motor)};
 }
 
 std::string Creep(const Sizes& s, const std::string& speeds, int repeats) {
-  return "shape: creep\naxis: x\nstroke_mm: " + s.stroke_mm + "\nvelocities_mm_s: [" + speeds +
+  return "shape: creep\naxis: " + s.axis + "\nstroke_mm: " + s.stroke_mm + "\nvelocities_mm_s: [" + speeds +
          "]\nrepeats: " + std::to_string(repeats) + "\n";
 }
 
@@ -50,7 +58,7 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
         "Torque steps from rest in both directions, up to break-away: a constant torque is there at rest "
         "too, an "
         "asymmetry of friction only in motion.",
-        "shape: torque_steps\naxis: x\ntorques_Nm: [" + s.torque_Nm + ", -" + s.torque_Nm +
+        "shape: torque_steps\naxis: " + s.axis + "\ntorques_Nm: [" + s.torque_Nm + ", -" + s.torque_Nm +
             "]\ntravel_mm: 2\nrepeats: 5\n"};
   if (In(kind, {"stribeck", "presliding_hysteresis", "backlash"}) && !among("compliance"))
     return {
@@ -58,8 +66,9 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
         "inside "
         "loops belong to presliding, a curve over the speed to Stribeck, a gap does not depend on the "
         "amplitude.",
-        "shape: reversals\naxis: x\namplitudes_mm: [0.002, 0.006, 0.02, 0.06, 0.2, 1]\nfrequency_hz: "
-        "1\ncycles: 4\n"};
+        "shape: reversals\naxis: " + s.axis +
+            "\namplitudes_mm: [0.002, 0.006, 0.02, 0.06, 0.2, 1]\nfrequency_hz: "
+            "1\ncycles: 4\n"};
   if (In(kind, {"position_friction", "cable_spring", "pitch_error"}))
     return {
         "Full strokes both ways at two speeds, twice: friction changes its sign with the direction, a spring "
@@ -80,8 +89,9 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
         "The same strokes at the beginning, after warming up at speed, and after a pause to cool down: "
         "temperature "
         "comes back, time does not.",
-        "sequence:\n  - {shape: creep, axis: x, stroke_mm: " + s.stroke_mm + ", velocities_mm_s: [" +
-            s.middle + ", " + s.fast + "], repeats: 3}\n  - {shape: hold, seconds: 60}\nrepeats: 3\n"};
+        "sequence:\n  - {shape: creep, axis: " + s.axis + ", stroke_mm: " + s.stroke_mm +
+            ", velocities_mm_s: [" + s.middle + ", " + s.fast +
+            "], repeats: 3}\n  - {shape: hold, seconds: 60}\nrepeats: 3\n"};
   if (In(kind, {"viscous_nonlinear", "torque_saturation", "torque_constant", "load_friction"}))
     return {
         "Strokes at five speeds, then pulses of high torque at low and at high speed: saturation and load go "
@@ -89,14 +99,14 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
         "the torque, viscosity with the speed. A torque constant needs one number measured otherwise, such "
         "as the "
         "inertia or the torque at a lever.",
-        Creep(s, s.slow + ", " + s.middle + ", " + s.fast, 2) +
-            "torque: {axis: x, kind: pulses, amplitude_Nm: " + s.torque_Nm + ", period_s: 1}\n"};
+        Creep(s, s.slow + ", " + s.middle + ", " + s.fast, 2) + "torque: {axis: " + s.axis +
+            ", kind: pulses, amplitude_Nm: " + s.torque_Nm + ", period_s: 1}\n"};
   if (In(kind, {"compliance", "input_delay", "current_lag", "backlash"}))
     return {
         "A chirp of torque while creeping, up to 400 Hz: a delay is phase alone, a lag falls off and ends at "
         "-90 "
         "degrees, an elastic coupling shows an antiresonance and then a resonance.",
-        Creep(s, s.slow, 1) + "torque: {axis: x, kind: chirp, amplitude_Nm: " + s.torque_Nm +
+        Creep(s, s.slow, 1) + "torque: {axis: " + s.axis + ", kind: chirp, amplitude_Nm: " + s.torque_Nm +
             ", frequency_min_hz: 10, frequency_max_hz: 400}\n"};
   if (kind == "cross_coupling")
     return {"Move the other axis while this one rests, then both at different rhythms.", ""};

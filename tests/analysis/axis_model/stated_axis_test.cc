@@ -23,6 +23,7 @@ std::string Error(const std::string& text) {
 TEST(StatedAxisTest, MachineFile) {
   const StatedAxis a = ReadStatedAxis(ExampleMachine("xy_emulated.yaml"), "x");
   const double r = 5e-3 / kTwoPi;
+  EXPECT_EQ(a.axis, "x");
   EXPECT_TRUE(a.two_inertia);
   EXPECT_TRUE(a.friction_on_load);
   EXPECT_DOUBLE_EQ(a.motor_inertia, 4.65e-5);

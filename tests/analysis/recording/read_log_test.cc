@@ -60,6 +60,7 @@ TEST(ReadLogTest, OurOwnTableOfSeveralAxesNeedsAName) {
                                          "Enabled,5,6,7.5\n0.002,1.5,2.5,3,Operation Enabled,5,6,8\n");
   EXPECT_NE(Error(file).find("--axis"), std::string::npos);
   const AxisLog log = ReadLog(file, {.axis = "x"});
+  EXPECT_EQ(log.axis, "x");
   EXPECT_FALSE(log.linear);
   EXPECT_EQ(log.present, (std::vector<std::uint8_t>{0, 1, 1}));
   EXPECT_EQ(log.command.back(), 2.5);
@@ -116,6 +117,7 @@ TEST(ReadLogTest, DaemonLogPairsTheFeedbackWithTheCommandComputedFromIt) {
   EXPECT_TRUE(IsDaemonLog(file));
   EXPECT_NE(Error(file).find("--axis"), std::string::npos);
   const AxisLog log = ReadLog(file, {.axis = "y", .table_per_q = 1e-3});
+  EXPECT_EQ(log.axis, "y");
   ASSERT_EQ(log.size(), 8u);  // cycles 12 to 19
   EXPECT_DOUBLE_EQ(log.period_s, 5e-4);
   EXPECT_EQ(log.present, (std::vector<std::uint8_t>{1, 1, 0, 1, 0, 1, 1, 1}));
