@@ -153,9 +153,18 @@ TEST(Effects, TorqueRippleScalesWithTorque) {
 
 TEST(Effects, ViscousNonlinear) {
   EmulatedAxisConfig c = Plain();
-  c.effects.viscous_nonlinear = ViscousNonlinearEffect{0.05, 300.0, 2.0};
+  c.effects.viscous_nonlinear = ViscousNonlinearEffect{{0.05, 300.0, 2.0}, {}};
   EXPECT_NEAR(Sliding_N(c, 0.0, 300.0 * kRadius_m_rad), 40.0 + 0.05 / kRadius_m_rad, 0.02);
   EXPECT_NEAR(Sliding_N(c, 0.0, -150.0 * kRadius_m_rad), -40.0 - 0.0125 / kRadius_m_rad, 0.02);
+}
+
+TEST(Effects, ViscousNonlinearWithAKneeAndFurtherCurves) {
+  EmulatedAxisConfig c = Plain();
+  c.effects.viscous_nonlinear = ViscousNonlinearEffect{{0.05, 300.0, 2.0, 30.0}, {{0.01, 300.0, 2.0, 0.0}}};
+  // y (1 + k) / (y + k) with k = 0.1, at y = 1 and y = 0.1.
+  EXPECT_NEAR(Sliding_N(c, 0.0, 300.0 * kRadius_m_rad), 40.0 + 0.06 / kRadius_m_rad, 0.02);
+  EXPECT_NEAR(Sliding_N(c, 0.0, -30.0 * kRadius_m_rad), -40.0 - (0.05 * 0.55 + 0.01 * 0.01) / kRadius_m_rad,
+              0.02);
 }
 
 TEST(Effects, TemperatureViscosity) {

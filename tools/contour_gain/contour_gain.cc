@@ -79,6 +79,16 @@ CoggingEffect Cogging(const CoggingExtension& c) {
   return e;
 }
 
+ViscousTerm Curve(const ViscousCurve& c) {
+  return {c.torque_at_max_speed_Nm, c.max_speed_rad_s, std::clamp(c.exponent, 1.0, 4.0), c.knee_rad_s};
+}
+
+ViscousNonlinearEffect Viscous(const ViscousNonlinearExtension& x) {
+  ViscousNonlinearEffect e = {Curve(x), {}};
+  for (const ViscousCurve& c : x.further) e.further.push_back(Curve(c));
+  return e;
+}
+
 /// Causes as effects of the emulated machine, from the extensions they are.
 EffectsConfig Effects(const ExtensionsConfig& x) {
   EffectsConfig e;
@@ -91,10 +101,7 @@ EffectsConfig Effects(const ExtensionsConfig& x) {
   if (x.friction_ripple) e.friction_ripple = Ripple(*x.friction_ripple);
   if (x.ball_ripple) e.ball_ripple = Ripple(*x.ball_ripple);
   if (x.cogging) e.cogging = Cogging(*x.cogging);
-  if (x.viscous_nonlinear)
-    e.viscous_nonlinear = ViscousNonlinearEffect{x.viscous_nonlinear->torque_at_max_speed_Nm,
-                                                 x.viscous_nonlinear->max_speed_rad_s,
-                                                 std::clamp(x.viscous_nonlinear->exponent, 1.0, 4.0)};
+  if (x.viscous_nonlinear) e.viscous_nonlinear = Viscous(*x.viscous_nonlinear);
   if (x.temperature_viscosity)
     e.temperature_viscosity = TemperatureViscosityEffect{x.temperature_viscosity->rate_1_K};
   if (x.torque_constant) e.torque_constant = TorqueConstantEffect{x.torque_constant->ratio};

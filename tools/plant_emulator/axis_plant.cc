@@ -163,11 +163,23 @@ double AxisPlant::TableForce_N() const noexcept {
   return force;
 }
 
+namespace {
+
+double ViscousForce_N(const ViscousTerm& e, double speed_rad_s, double radius_m_rad) noexcept {
+  const double y = speed_rad_s / e.max_speed_rad_s, knee = e.knee_rad_s / e.max_speed_rad_s;
+  const double shape = knee > 0.0 ? y * (1.0 + knee) / (y + knee) : portable::Pow(y, e.exponent);
+  return e.torque_at_max_speed_Nm / radius_m_rad * shape;
+}
+
+}  // namespace
+
 double AxisPlant::ExtraFriction_N(double velocity_m_s) const noexcept {
   const auto& e = p_.effects.viscous_nonlinear;
   if (!e || velocity_m_s == 0.0) return 0.0;
-  const double x = std::fabs(velocity_m_s) / p_.radius_m_rad / e->max_speed_rad_s;
-  return Sign(velocity_m_s) * e->torque_at_max_speed_Nm / p_.radius_m_rad * portable::Pow(x, e->exponent);
+  const double speed_rad_s = std::fabs(velocity_m_s) / p_.radius_m_rad;
+  double force_N = ViscousForce_N(*e, speed_rad_s, p_.radius_m_rad);
+  for (const ViscousTerm& term : e->further) force_N += ViscousForce_N(term, speed_rad_s, p_.radius_m_rad);
+  return Sign(velocity_m_s) * force_N;
 }
 
 void AxisPlant::Step(double step_s, double torque_Nm) noexcept {

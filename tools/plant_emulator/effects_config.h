@@ -139,17 +139,29 @@ struct TorqueRippleEffect {
   }
 };
 
-/// Viscous friction that is not proportional to speed.
-struct ViscousNonlinearEffect {
+struct ViscousTerm {
   double torque_at_max_speed_Nm = 0.0;
   double max_speed_rad_s = 300.0;
   double exponent = 2.0;
+  double knee_rad_s = 0.0;
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Required("torque_at_max_speed_Nm", torque_at_max_speed_Nm, kAny,
                "torque beyond the linear term at max_speed");
     v.Required("max_speed_rad_s", max_speed_rad_s, kPositive, "speed the torque is stated for");
     v.Optional("exponent", exponent, Range{1.0, 4.0}, "power of the speed");
+    v.Optional("knee_rad_s", knee_rad_s, kNotNegative, "speed from which it hardly grows; 0: the power law");
+  }
+};
+
+/// Viscous friction that is not proportional to speed; with y = |speed| / max_speed and k = knee / max_speed,
+/// torque_at_max_speed y^exponent, or where there is a knee torque_at_max_speed y (1 + k) / (y + k).
+struct ViscousNonlinearEffect : ViscousTerm {
+  std::vector<ViscousTerm> further;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    ViscousTerm::Visit(v);
+    v.Optional("further", further, "further curves, added to it");
   }
 };
 

@@ -33,7 +33,8 @@ void HideEffect(const Hidden& h, const Setting& s, double begin_s, double durati
   if (h.kind == "friction_ripple") e.friction_ripple = RippleEffect{{h.size, h.order, h.phase_rad}, {}};
   if (h.kind == "ball_ripple") e.ball_ripple = RippleEffect{{h.size, h.order, h.phase_rad}, {}};
   if (h.kind == "cogging") e.cogging = CoggingEffect{{h.size, h.order, h.phase_rad}, {}};
-  if (h.kind == "viscous_nonlinear") e.viscous_nonlinear = ViscousNonlinearEffect{h.size, max_rad_s, h.order};
+  if (h.kind == "viscous_nonlinear")
+    e.viscous_nonlinear = ViscousNonlinearEffect{{h.size, max_rad_s, h.order}, {}};
   if (h.kind == "temperature_viscosity") e.temperature_viscosity = TemperatureViscosityEffect{h.size};
   if (h.kind == "friction_drift")
     e.friction_drift = FrictionDriftEffect{h.size, begin_s + duration_s, h.second};
