@@ -1,6 +1,6 @@
 // The machine that the prediction simulates has all of a cause: what the extended model knows of it is
 // gained.
-#include "tools/diagnosis/predict/contour_gain.h"
+#include "tools/contour_gain/contour_gain.h"
 
 #include <gtest/gtest.h>
 

@@ -5,9 +5,9 @@
 
 namespace contour::hidden {
 
-/// From what `--fit-above-chance --evidence` wrote of machines without an effect, and of machines with one: the lines of
-/// analysis/diagnosis/tuning/margin_table.inc. Throws std::runtime_error where the table is no such evidence
-/// or has no clean log.
+/// From what `--fit-above-chance --evidence` wrote of machines without an effect, and of machines with one:
+/// the lines of analysis/diagnosis/tuning/margin_table.inc. Throws std::runtime_error where the table is no
+/// such evidence or has no clean log.
 std::string MarginTable(std::istream& evidence);
 
 }  // namespace contour::hidden

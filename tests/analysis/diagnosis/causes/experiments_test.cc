@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "analysis/diagnosis/result/finding.h"
 #include "tests/analysis/support/hidden_axis.h"
 
 namespace contour::diagnosis {
