@@ -56,8 +56,7 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
   if (In(kind, {"asymmetric_coulomb", "constant_torque"}))
     return {
         "Torque steps from rest in both directions, up to break-away: a constant torque is there at rest "
-        "too, an "
-        "asymmetry of friction only in motion.",
+        "too, an asymmetry of friction only in motion.",
         "shape: torque_steps\naxis: " + s.axis + "\ntorques_Nm: [" + s.torque_Nm + ", -" + s.torque_Nm +
             "]\ntravel_mm: 2\nrepeats: 5\n"};
   if (In(kind, {"stribeck", "presliding_hysteresis", "backlash"}) && !among("compliance"))
@@ -72,8 +71,7 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
   if (In(kind, {"position_friction", "cable_spring", "pitch_error"}))
     return {
         "Full strokes both ways at two speeds, twice: friction changes its sign with the direction, a spring "
-        "does "
-        "not, an error of the lead shows on the scale alone.",
+        "does not, an error of the lead shows on the scale alone.",
         Creep(s, s.middle + ", " + s.fast, 2)};
   if (In(kind, {"friction_ripple", "ball_ripple", "cogging", "encoder_eccentricity", "encoder_subdivision",
                 "periodic_force"}))
@@ -87,8 +85,8 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
   if (In(kind, {"temperature_viscosity", "friction_drift", "payload_step"}))
     return {
         "The same strokes at the beginning, after warming up at speed, and after a pause to cool down: "
-        "temperature "
-        "comes back, time does not.",
+        "temperature comes back, time "
+        "does not.",
         "sequence:\n  - {shape: creep, axis: " + s.axis + ", stroke_mm: " + s.stroke_mm +
             ", velocities_mm_s: [" + s.middle + ", " + s.fast +
             "], repeats: 3}\n  - {shape: hold, seconds: 60}\nrepeats: 3\n"};
@@ -99,8 +97,8 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
         "the torque, viscosity with the speed. A torque constant needs one number measured otherwise, such "
         "as the "
         "inertia or the torque at a lever.",
-        Creep(s, s.slow + ", " + s.middle + ", " + s.fast, 2) + "torque: {axis: " + s.axis +
-            ", kind: pulses, amplitude_Nm: " + s.torque_Nm + ", period_s: 1}\n"};
+        Creep(s, speeds, 2) + "torque: {axis: " + s.axis + ", kind: pulses, amplitude_Nm: " + s.torque_Nm +
+            ", period_s: 1}\n"};
   if (In(kind, {"compliance", "input_delay", "current_lag", "backlash"}))
     return {
         "A chirp of torque while creeping, up to 400 Hz: a delay is phase alone, a lag falls off and ends at "
