@@ -1,7 +1,9 @@
 #include "analysis/recording/csv_table.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <deque>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -12,36 +14,107 @@
 namespace contour::diagnosis {
 namespace {
 
+bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
 std::string_view Trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t' || text.front() == '"'))
-    text.remove_prefix(1);
-  while (!text.empty() &&
-         (text.back() == ' ' || text.back() == '\t' || text.back() == '\r' || text.back() == '"'))
-    text.remove_suffix(1);
+  while (!text.empty() && IsBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && IsBlank(text.back())) text.remove_suffix(1);
   return text;
 }
 
-void Split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
-  fields.clear();
-  for (;;) {
-    const std::size_t end = line.find(separator);
-    fields.push_back(Trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return;
-    line.remove_prefix(end + 1);
+/// Fields that are not in the text as they are meant.
+using Unquoted = std::deque<std::string>;
+
+std::string WithoutDoubledQuotes(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    out.push_back(text[i]);
+    if (text[i] == '"') ++i;
   }
+  return out;
 }
 
-bool Skipped(std::string_view line) {
-  const std::string_view text = Trimmed(line);
-  return text.empty() || text.front() == '#';
-}
+/// Cuts text into records of fields, as RFC 4180 has them: a field that begins with a quote ends at the next
+/// one that is not doubled, and may hold separators, line ends and doubled quotes.
+class Records {
+ public:
+  Records(const std::string& file, std::string_view text, std::size_t at, std::size_t line)
+      : file_(file), text_(text), at_(at), line_(line) {}
 
-/// The line at `at` without its end; `at` moves behind it.
-std::string_view TakeLine(std::string_view text, std::size_t& at) {
-  const std::size_t end = std::min(text.find('\n', at), text.size());
-  const std::string_view line = text.substr(at, end - at);
-  at = std::min(end + 1, text.size());
-  return line;
+  [[nodiscard]] std::size_t at() const { return at_; }
+  [[nodiscard]] std::size_t line() const { return line_; }
+
+  /// The line that comes next; none but empty ones and comments is left where it is empty. They are passed.
+  std::string_view Peek() {
+    while (at_ < text_.size()) {
+      const std::string_view line = text_.substr(at_, std::min(text_.find('\n', at_), text_.size()) - at_);
+      const std::string_view content = Trimmed(line);
+      if (!content.empty() && content.front() != '#') return line;
+      at_ = std::min(at_ + line.size() + 1, text_.size());
+      ++line_;
+    }
+    return {};
+  }
+
+  /// The fields of the record that comes next, behind Peek().
+  void Take(char separator, std::vector<std::string_view>& fields, Unquoted& unquoted) {
+    fields.clear();
+    unquoted.clear();
+    for (;;) {
+      while (at_ < text_.size() && IsBlank(text_[at_]) && text_[at_] != separator) ++at_;
+      const bool quoted = at_ < text_.size() && text_[at_] == '"';
+      fields.push_back(quoted ? Quoted(separator, unquoted) : Plain(separator));
+      if (at_ >= text_.size()) return;
+      if (text_[at_++] == '\n') {
+        ++line_;
+        return;
+      }
+    }
+  }
+
+ private:
+  std::string_view Plain(char separator) {
+    const std::size_t from = at_;
+    while (at_ < text_.size() && text_[at_] != separator && text_[at_] != '\n') ++at_;
+    return Trimmed(text_.substr(from, at_ - from));
+  }
+
+  std::string_view Quoted(char separator, Unquoted& unquoted) {
+    const std::size_t opened = line_, from = ++at_;
+    bool doubled = false;
+    for (;; ++at_) {
+      if (at_ >= text_.size())
+        throw ConfigError(
+            {file_ + ":" + std::to_string(opened) + ": a field begins with a quote and never ends"});
+      if (text_[at_] == '\n') ++line_;
+      if (text_[at_] != '"') continue;
+      if (at_ + 1 >= text_.size() || text_[at_ + 1] != '"') break;
+      doubled = true;
+      ++at_;
+    }
+    const std::string_view content = text_.substr(from, at_ - from);
+    ++at_;
+    if (const std::string_view rest = Plain(separator); !rest.empty())
+      throw ConfigError({file_ + ":" + std::to_string(line_) + ": found '" + std::string(rest) +
+                         "' behind a quoted field, expected a separator"});
+    return doubled ? unquoted.emplace_back(WithoutDoubledQuotes(content)) : content;
+  }
+
+  const std::string& file_;
+  std::string_view text_;
+  std::size_t at_, line_;
+};
+
+/// Of a header line: a comma outside quotes, or else a semicolon where there is one.
+char SeparatorOf(std::string_view line) {
+  bool quoted = false, semicolon = false;
+  for (const char c : line) {
+    quoted = quoted != (c == '"');
+    if (quoted) continue;
+    if (c == ',') return ',';
+    semicolon = semicolon || c == ';';
+  }
+  return semicolon ? ';' : ',';
 }
 
 }  // namespace
@@ -53,31 +126,30 @@ CsvTable::CsvTable(std::string file) : file_(std::move(file)) {
   if (!in) throw ConfigError({file_ + ": cannot be read"});
   text_ = content.str();
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
-  while (body_ < text_.size()) {
-    const std::string_view line = TakeLine(text_, body_);
-    ++body_line_;
-    if (Skipped(line)) continue;
-    separator_ =
-        line.find(',') == std::string_view::npos && line.find(';') != std::string_view::npos ? ';' : ',';
-    std::vector<std::string_view> names;
-    Split(line, separator_, names);
-    header_.assign(names.begin(), names.end());
-    return;
-  }
-  throw ConfigError({file_ + ": is empty, expected a line of column names and rows of numbers"});
+  Records records(file_, text_, 0, 1);
+  const std::string_view line = records.Peek();
+  if (line.empty())
+    throw ConfigError({file_ + ": is empty, expected a line of column names and rows of numbers"});
+  separator_ = SeparatorOf(line);
+  std::vector<std::string_view> names;
+  Unquoted unquoted;
+  records.Take(separator_, names, unquoted);
+  header_.assign(names.begin(), names.end());
+  body_ = records.at();
+  body_line_ = records.line();
 }
 
 void CsvTable::ForEachRow(const RowReader& reader) const {
   std::vector<std::string_view> fields;
-  std::size_t at = body_;
-  for (std::size_t number = body_line_; at < text_.size(); ++number) {
-    const std::string_view line = TakeLine(text_, at);
-    if (Skipped(line)) continue;
-    Split(line, separator_, fields);
+  Unquoted unquoted;
+  Records records(file_, text_, body_, body_line_);
+  while (!records.Peek().empty()) {
+    const std::size_t line = records.line();
+    records.Take(separator_, fields, unquoted);
     if (fields.size() != header_.size())
-      throw ConfigError({file_ + ":" + std::to_string(number) + ": found " + std::to_string(fields.size()) +
+      throw ConfigError({file_ + ":" + std::to_string(line) + ": found " + std::to_string(fields.size()) +
                          " fields, expected " + std::to_string(header_.size()) + " as in the header"});
-    reader(number, fields);
+    reader(line, fields);
   }
 }
 

@@ -9,10 +9,11 @@
 namespace contour::diagnosis {
 
 /// A text table with one header line, read row by row. Fields are separated by commas or semicolons,
-/// whichever the header has; lines that begin with '#' and empty lines are skipped.
+/// whichever the header has, and may be quoted as RFC 4180 has it: "a, b", "a ""b""". Lines that begin with
+/// '#' and empty lines are skipped.
 class CsvTable {
  public:
-  /// Sees the fields of one row; `line` counts from 1.
+  /// Sees the fields of one row, which live until it returns; `line` counts from 1.
   using RowReader = std::function<void(std::size_t line, const std::vector<std::string_view>& fields)>;
 
   /// Reads file and header. Throws ConfigError when there is none.

@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
 #include "config/config_error.h"
-#include "daemon/telemetry/log_writer.h"
 #include "tests/config/test_files.h"
 
 namespace contour::diagnosis {
@@ -21,7 +19,7 @@ std::string Error(const std::string& file, const ReadOptions& options = {}) {
   return "";
 }
 
-TEST(ReadLogTest, TableWithMissingRowsGoesToItsGrid) {
+TEST(ReadCsvLog, TableWithMissingRowsGoesToItsGrid) {
   const std::string file =
       WriteTestFile("log.csv",
                     "# a comment\ntime_s,torque_nm,motor_angle_rad,temperature_c\n"
@@ -39,7 +37,7 @@ TEST(ReadLogTest, TableWithMissingRowsGoesToItsGrid) {
   EXPECT_TRUE(log.table_position_m.empty());
 }
 
-TEST(ReadLogTest, NamesOfColumnsCanBeGiven) {
+TEST(ReadCsvLog, NamesOfColumnsCanBeGiven) {
   const std::string file =
       WriteTestFile("emps.csv", "t_s;qg_m;qm_m;u\n0;0.1;0.2;3\n0.00100002;0.11;0.21;4\n0.002;0.12;0.22;5\n");
   const AxisLog log = ReadLog(
@@ -52,7 +50,7 @@ TEST(ReadLogTest, NamesOfColumnsCanBeGiven) {
   EXPECT_THROW(ParseColumnNames("time_s"), ConfigError);
 }
 
-TEST(ReadLogTest, OurOwnTableOfSeveralAxesNeedsAName) {
+TEST(ReadCsvLog, OurOwnTableOfSeveralAxesNeedsAName) {
   const std::string file = WriteTestFile("cycles.csv",
                                          "time_s,x_motor_angle_rad,x_torque_Nm,x_position_m,x_drive_state,y_"
                                          "motor_angle_rad,y_torque_Nm,y_position_m\n"
@@ -67,7 +65,7 @@ TEST(ReadLogTest, OurOwnTableOfSeveralAxesNeedsAName) {
   EXPECT_EQ(log.axis2_position_m, (std::vector<double>{7, 7.5, 8}));
 }
 
-TEST(ReadLogTest, ErrorsNameFileAndLine) {
+TEST(ReadCsvLog, ErrorsNameFileAndLine) {
   const auto table = [](const std::string& rows) {
     return WriteTestFile("bad.csv", "time_s,force_n,position_m\n" + rows);
   };
@@ -83,60 +81,24 @@ TEST(ReadLogTest, ErrorsNameFileAndLine) {
   EXPECT_NE(Error("/nowhere.csv").find("cannot be read"), std::string::npos);
 }
 
-/// Cycle k of a daemon's log: feedback of SYNC k-1 and the command computed from it stand in one row.
-TEST(ReadLogTest, DaemonLogPairsTheFeedbackWithTheCommandComputedFromIt) {
-  const std::string file = WriteTestFile("run.lcmlog", "");
-  LogHeader header;
-  header.controller = "full";
-  header.cycle_us = 500;
-  header.axis_names = {"x", "y"};
-  {
-    LogWriter writer(file, header);
-    TelemetryEncoder encoder({}, 500, header.axis_names);
-    TelemetrySink* sinks[] = {&writer};
-    auto entry = std::make_unique<CycleEntry>();
-    for (std::uint64_t k = 10; k < 20; ++k) {
-      if (k == 14) continue;
-      CycleRecord& r = entry->output.record;
-      entry->input.cycle = r.cycle = k;
-      r.axes.resize(2);
-      for (std::size_t i = 0; i < 2; ++i) {
-        AxisRecord& a = r.axes[i];
-        a.feedback.drive_state = k < 12 ? DriveState::kSwitchedOn : DriveState::kOperationEnabled;
-        a.feedback.fresh = k != 16;
-        a.feedback.position_rad = static_cast<double>(100 * i + k);
-        a.position_m = a.feedback.position_rad * 1e-3;
-        a.torque_Nm = 0.01 * static_cast<double>(k);
-        a.reference.position_m = 2e-3 * static_cast<double>(k);
-      }
-      encoder.Add(*entry, sinks);
-    }
-    encoder.Flush(sinks);
-    writer.Close();
-  }
-  EXPECT_TRUE(IsDaemonLog(file));
-  EXPECT_NE(Error(file).find("--axis"), std::string::npos);
-  const AxisLog log = ReadLog(file, {.axis = "y", .table_per_q = 1e-3});
-  EXPECT_EQ(log.axis, "y");
-  ASSERT_EQ(log.size(), 8u);  // cycles 12 to 19
-  EXPECT_DOUBLE_EQ(log.period_s, 5e-4);
-  EXPECT_EQ(log.present, (std::vector<std::uint8_t>{1, 1, 0, 1, 0, 1, 1, 1}));
-  EXPECT_DOUBLE_EQ(log.position[3], 115.0);
-  EXPECT_DOUBLE_EQ(log.command[3], 0.15);
-  EXPECT_DOUBLE_EQ(log.command[2], 0.13);  // cycle 14 never was: the drive went on with the last
-  EXPECT_DOUBLE_EQ(log.command[4], 0.16);  // stale feedback, but the command is known
-  EXPECT_DOUBLE_EQ(log.reference_position[3], 30.0);
-  EXPECT_DOUBLE_EQ(log.axis2_position_m[3], 15e-3);
-  EXPECT_TRUE(log.table_position_m.empty());
+TEST(ReadCsvLog, QuotedNotesBesideTheNumbersAreNoTrouble) {
+  const std::string file = WriteTestFile(
+      "log.csv",
+      "time_s,force_N,position_m,\"note, if any\"\n0,1,2,\"start, slow\"\n0.001,3,4,\n0.002,5,6,\"end\"\n");
+  EXPECT_EQ(ReadLog(file, {}).command, (std::vector<double>{1, 3, 5}));
 }
 
-TEST(ReadLogTest, LogsAreJoinedWithAGap) {
-  const std::string file = WriteTestFile("a.csv", "time_s,force_n,position_m\n0,1,2\n0.1,3,4\n0.2,5,6\n");
-  const AxisLog log = JoinLogs({ReadLog(file, {}), ReadLog(file, {})});
-  EXPECT_EQ(log.rows, 6u);
-  ASSERT_EQ(log.size(), 11u);
-  EXPECT_EQ(log.present, (std::vector<std::uint8_t>{1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 1}));
-  EXPECT_EQ(log.command[5], 5.0);
+TEST(ReadCsvLog, AReferenceStatedAtTheTableIsSeenAtTheMotor) {
+  const std::string file = WriteTestFile("log.csv",
+                                         "time_s,torque_Nm,motor_angle_rad,reference_position_m\n0,1,2,0."
+                                         "002\n0.001,3,4,0.004\n0.002,3,4,0.004\n");
+  EXPECT_EQ(ReadLog(file, {.table_per_q = 1e-3}).reference_position, (std::vector<double>{2, 4, 4}));
+}
+
+TEST(ReadCsvLog, WithoutAnyPositionThereIsNothingToRead) {
+  EXPECT_NE(Error(WriteTestFile("log.csv", "time_s,force_N,position_m\n0,1,\n0.001,1,\n0.002,1,\n"))
+                .find("hold no number"),
+            std::string::npos);
 }
 
 }  // namespace

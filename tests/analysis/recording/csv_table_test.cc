@@ -1,0 +1,81 @@
+#include "analysis/recording/csv_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "config/config_error.h"
+#include "tests/config/test_files.h"
+
+namespace contour::diagnosis {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+Rows RowsOf(const CsvTable& table, std::vector<std::size_t>* lines = nullptr) {
+  Rows rows;
+  table.ForEachRow([&](std::size_t line, const std::vector<std::string_view>& fields) {
+    rows.emplace_back(fields.begin(), fields.end());
+    if (lines != nullptr) lines->push_back(line);
+  });
+  return rows;
+}
+
+std::string Error(const std::string& text) {
+  try {
+    RowsOf(CsvTable(WriteTestFile("t.csv", text)));
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(CsvTable, HeaderAndRowsWithTheirLines) {
+  const CsvTable table(
+      WriteTestFile("t.csv", "\xEF\xBB\xBF# made by hand\n\n a , b\r\n1,2\r\n# more\n\n3 ,\t4\n"));
+  EXPECT_EQ(table.header(), (std::vector<std::string>{"a", "b"}));
+  std::vector<std::size_t> lines;
+  EXPECT_EQ(RowsOf(table, &lines), (Rows{{"1", "2"}, {"3", "4"}}));
+  EXPECT_EQ(lines, (std::vector<std::size_t>{4, 7}));
+}
+
+TEST(CsvTable, SemicolonsSeparateWhereTheHeaderHasNoComma) {
+  EXPECT_EQ(RowsOf(CsvTable(WriteTestFile("t.csv", "a;b\n1,5;2\n"))), (Rows{{"1,5", "2"}}));
+  EXPECT_EQ(RowsOf(CsvTable(WriteTestFile("t.csv", "a,b;c\n1,2\n"))), (Rows{{"1", "2"}}));
+  // A comma inside quotes separates nothing.
+  EXPECT_EQ(CsvTable(WriteTestFile("t.csv", "\"a,b\";c\n")).header(), (std::vector<std::string>{"a,b", "c"}));
+}
+
+TEST(CsvTable, QuotedFieldsHoldSeparatorsQuotesAndLineEnds) {
+  const CsvTable table(WriteTestFile(
+      "t.csv", "\"force, N\",note\n1,\"x, y\"\n\"2\" , \"he said \"\"no\"\"\"\n3,\"two\nlines\"\n4,\"\"\n"));
+  EXPECT_EQ(table.header()[0], "force, N");
+  std::vector<std::size_t> lines;
+  EXPECT_EQ(RowsOf(table, &lines),
+            (Rows{{"1", "x, y"}, {"2", "he said \"no\""}, {"3", "two\nlines"}, {"4", ""}}));
+  EXPECT_EQ(lines, (std::vector<std::size_t>{2, 3, 4, 6}));
+}
+
+TEST(CsvTable, AQuoteInsideAFieldIsALetter) {
+  EXPECT_EQ(RowsOf(CsvTable(WriteTestFile("t.csv", "a,b\n5\" tube,1\n"))), (Rows{{"5\" tube", "1"}}));
+}
+
+TEST(CsvTable, ErrorsNameTheLine) {
+  EXPECT_NE(Error("a,b\n1,2\n1,2,3\n").find("t.csv:3: found 3 fields, expected 2"), std::string::npos);
+  EXPECT_NE(Error("a,b\n1,2\n1,\"2\n3,4\n").find("t.csv:3: a field begins with a quote"), std::string::npos);
+  EXPECT_NE(Error("a,b\n\"1\"x,2\n").find("t.csv:2: found 'x' behind a quoted field"), std::string::npos);
+  EXPECT_NE(Error("# nothing\n\n").find("is empty"), std::string::npos);
+  EXPECT_THROW(CsvTable("/nowhere.csv"), ConfigError);
+}
+
+TEST(NumberOf, TakesNumbersAndNothingElse) {
+  EXPECT_DOUBLE_EQ(NumberOf("-1.5e3", "f", 1, "c"), -1500.0);
+  EXPECT_DOUBLE_EQ(NumberOf("+2", "f", 1, "c"), 2.0);
+  for (const char* none : {"", "nan", "NaN", "NA"})
+    EXPECT_TRUE(std::isnan(NumberOf(none, "f", 1, "c"))) << none;
+  for (const char* wrong : {"1,5", "x", "1 2", "inf", "1e999"})
+    EXPECT_THROW(NumberOf(wrong, "f", 7, "c"), ConfigError) << wrong;
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,54 @@
+#include "analysis/recording/grid.h"
+
+#include <gtest/gtest.h>
+
+#include "config/config_error.h"
+
+namespace contour::diagnosis {
+namespace {
+
+std::vector<std::size_t> Lines(std::size_t count) {
+  std::vector<std::size_t> lines;
+  for (std::size_t i = 0; i < count; ++i) lines.push_back(i + 2);
+  return lines;
+}
+
+Grid Find(const std::vector<double>& time_s) { return FindGrid("f.csv", time_s, Lines(time_s.size())); }
+
+std::string Error(const std::vector<double>& time_s) {
+  try {
+    Find(time_s);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(Grid, RowsThatAreMissingLeaveTheirPlaces) {
+  const Grid grid = Find({5.0, 5.002, 5.004, 5.010, 5.012});
+  EXPECT_DOUBLE_EQ(grid.period_s, 2e-3);
+  EXPECT_EQ(grid.index, (std::vector<std::size_t>{0, 1, 2, 5, 6}));
+}
+
+TEST(Grid, WhatIsNearlyAMicrosecondIsOneAndOtherPeriodsStay) {
+  EXPECT_EQ(Find({0.0, 0.0010000001, 0.002, 0.003}).period_s, 1e-3);
+  EXPECT_NEAR(Find({0.0, 1.0 / 3000, 2.0 / 3000, 3.0 / 3000}).period_s, 1.0 / 3000, 1e-12);
+}
+
+TEST(Grid, TheMeanOverTheWholeCountsNotTheMedianStep) {
+  // A clock that reads 1.00 ms nearly always and 1.01 ms now and then.
+  std::vector<double> time_s = {0.0};
+  for (int i = 0; i < 1000; ++i) time_s.push_back(time_s.back() + (i % 10 == 0 ? 1.1e-3 : 1e-3));
+  EXPECT_NEAR(Find(time_s).period_s, 1.01e-3, 1e-9);
+}
+
+TEST(Grid, TimeThatStandsGoesBackOrIsOffTheGridIsNamedWithItsLine) {
+  EXPECT_NE(Error({0.0, 1e-3, 1e-3}).find("f.csv:4: time_s"), std::string::npos);
+  EXPECT_NE(Error({0.0, 2e-3, 1e-3}).find("expected time to go on"), std::string::npos);
+  EXPECT_NE(Error({0.0, 1e-3, 2e-3, 3e-3, 3.2e-3, 5e-3}).find("f.csv:6: time_s"), std::string::npos);
+  EXPECT_NE(Error({0.0, 1e-3, 2e-3, 3.4e-3, 4e-3, 5e-3}).find("off a grid"), std::string::npos);
+  EXPECT_NE(Error({0.0, 1e-3}).find("fewer than three rows"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,85 @@
+#include "analysis/recording/log_columns.h"
+
+#include <gtest/gtest.h>
+
+#include "config/config_error.h"
+
+namespace contour::diagnosis {
+namespace {
+
+using Names = std::vector<std::string>;
+
+std::string Error(const Names& header, const std::string& axis = "", const ColumnNames& names = {}) {
+  try {
+    FindColumns("f.csv", header, axis, names);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(LogColumns, OurSpellingInSmallAndCapitalLetters) {
+  const LogColumns c = FindColumns("f", {"Motor_Angle_Rad", "TIME_S", "torque_nm", "temperature_c"}, "", {});
+  EXPECT_FALSE(c.linear);
+  EXPECT_EQ(c.position, 0U);
+  EXPECT_EQ(c.time, 1U);
+  EXPECT_EQ(c.command, 2U);
+  EXPECT_EQ(c.temperature, 3U);
+  EXPECT_FALSE(c.table_position || c.axis2_position || c.reference);
+}
+
+TEST(LogColumns, ForceAndPositionAreALinearAxis) {
+  const LogColumns c = FindColumns("f", {"time_s", "force_N", "position_m", "reference_position_m"}, "", {});
+  EXPECT_TRUE(c.linear);
+  EXPECT_EQ(c.command, 1U);
+  EXPECT_EQ(c.position, 2U);
+  EXPECT_EQ(c.reference, 3U);
+  EXPECT_TRUE(c.reference_in_m);
+}
+
+TEST(LogColumns, OneAxisOfSeveralAndTheOtherAsItsNeighbour) {
+  const Names header = {"time_s",       "x_torque_Nm",   "x_motor_angle_rad",
+                        "x_position_m", "y_torque_Nm",   "y_motor_angle_rad",
+                        "y_position_m", "y_drive_state", "y_feedback_fresh"};
+  const LogColumns c = FindColumns("f", header, "y", {});
+  EXPECT_EQ(c.command, 4U);
+  EXPECT_EQ(c.position, 5U);
+  EXPECT_EQ(c.axis2_position, 3U);
+  EXPECT_EQ(c.drive_state, 7U);
+  EXPECT_EQ(c.fresh, 8U);
+  EXPECT_NE(Error(header).find("--axis"), std::string::npos);
+}
+
+TEST(LogColumns, NamesThatAreGivenComeFirst) {
+  const Names header = {"t", "time_s", "u", "force_N", "q"};
+  const LogColumns c = FindColumns("f", header, "", ParseColumnNames("time_s=t,force_N=u,position_m=q"));
+  EXPECT_EQ(c.time, 0U);
+  EXPECT_EQ(c.command, 2U);
+  EXPECT_EQ(c.position, 4U);
+  EXPECT_NE(Error(header, "", ParseColumnNames("time_s=nowhere")).find("time_s=nowhere: no such column"),
+            std::string::npos);
+}
+
+TEST(LogColumns, WhatIsMissingIsNamedWithWhatThereIs) {
+  EXPECT_NE(Error({"time_s", "foo"}).find("neither torque_Nm nor force_N; there are time_s, foo"),
+            std::string::npos);
+  EXPECT_NE(Error({"torque_Nm", "motor_angle_rad"}).find("no column time_s"), std::string::npos);
+  EXPECT_NE(Error({"time_s", "torque_Nm"}).find("no column motor_angle_rad"), std::string::npos);
+}
+
+TEST(ParseColumnNames, KnowsItsQuantitiesAndRefusesTheRest) {
+  const ColumnNames names = ParseColumnNames("time_s=t_s,temperature_c=T");
+  EXPECT_EQ(names.at("time_s"), "t_s");
+  EXPECT_EQ(names.at("temperature_degC"), "T");
+  for (const char* wrong : {"time_s", "=t", "time_s=", "foo=a", "time_s=a,time_s=b"})
+    EXPECT_THROW(ParseColumnNames(wrong), ConfigError) << wrong;
+  try {
+    ParseColumnNames("torqe_Nm=u");
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("did you mean torque_Nm?"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace contour::diagnosis
