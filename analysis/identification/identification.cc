@@ -19,7 +19,7 @@ constexpr double kLeastWindUpSigma = 0.003;
 constexpr double kRigidBeyondLeast = 2.0;
 constexpr double kRigidSigma = 0.5;
 
-std::vector<Instant> AllInstants(const std::vector<Measured>& records, const AxisModel& axis,
+std::vector<Instant> AllInstants(const std::vector<Measured>& records, const TableAxis& axis,
                                  std::size_t stride) {
   std::vector<Instant> all;
   double offset_s = 0.0;
@@ -62,36 +62,36 @@ EncoderFindings LookAtEncoder(const std::vector<Measured>& records) {
   return e;
 }
 
-void SetMass(AxisModel& axis, double mass_kg) {
+void SetMass(TableAxis& axis, double mass_kg) {
   const double factor = mass_kg / axis.mass_kg();
-  axis.motor_mass_kg *= factor;
-  axis.table_mass_kg *= factor;
+  axis.motor_inertia *= factor;
+  axis.load_inertia *= factor;
 }
 
 /// The screw, from shaking while sliding and from a linear scale.
 void TakeScrew(Identification& id, const std::vector<Measured>& records) {
-  AxisModel& axis = id.stepwise;
+  TableAxis& axis = id.stepwise;
   id.shaken = FitShakenScrew(axis, records);
   const ShakenScrew& s = id.shaken;
   if (s.verdict == ShakenScrew::Verdict::kFound) {
-    axis.motor_mass_kg = s.axis.motor_mass_kg;
-    axis.table_mass_kg = s.axis.table_mass_kg;
-    axis.stiffness_N_m = s.axis.stiffness_N_m;
-    axis.damping_Ns_m = s.axis.damping_Ns_m;
+    axis.motor_inertia = s.axis.motor_inertia;
+    axis.load_inertia = s.axis.load_inertia;
+    axis.stiffness = s.axis.stiffness;
+    axis.damping = s.axis.damping;
     axis.delay_s = s.axis.delay_s;
     axis.lag_s = s.axis.lag_s;
     // The bristle, too: sliding and shaken, it is a spring and a relaxation of some 100 Hz.
-    axis.friction.sigma0_N_m = s.axis.friction.sigma0_N_m;
+    axis.friction.s0 = s.axis.friction.s0;
   }
   id.wind_up = FitWindUp(records, axis);
   if (s.verdict == ShakenScrew::Verdict::kRigid && !id.wind_up.found) {
-    axis.motor_mass_kg = axis.mass_kg();
-    axis.table_mass_kg = 0.0;
-    axis.rigid = axis.friction_at_motor = true;
+    axis.motor_inertia = axis.mass_kg();
+    axis.load_inertia = 0.0;
+    axis.two_inertia = axis.friction_on_load = false;
     axis.delay_s = s.axis.delay_s;
     axis.lag_s = s.axis.lag_s;
   }
-  if (id.wind_up.found) axis.stiffness_N_m = id.wind_up.stiffness_N_m;
+  if (id.wind_up.found) axis.stiffness = id.wind_up.stiffness_N_m;
   if (s.verdict == ShakenScrew::Verdict::kNotSeen) {
     id.notes.push_back("motor and table inertia are split as stated: " + s.why_not);
     if (!id.wind_up.found)
@@ -101,26 +101,26 @@ void TakeScrew(Identification& id, const std::vector<Measured>& records) {
 
 /// The steps one after the other; each sees what those before have found.
 void TakeSteps(Identification& id, const std::vector<Measured>& records) {
-  AxisModel& axis = id.stepwise;
+  TableAxis& axis = id.stepwise;
   const std::vector<Instant> coarse = AllInstants(records, axis, kStride);
-  id.sliding = FitSliding(coarse, axis.friction.stribeck_exponent, axis.radius_m_rad);
+  id.sliding = FitSliding(coarse, axis.friction.exponent, axis.radius_m_rad);
   if (!id.sliding.found) throw std::runtime_error("cannot identify friction: " + id.sliding.why_not);
-  Friction& f = axis.friction;
+  diagnosis::StatedFriction& f = axis.friction;
   SetMass(axis, id.sliding.mass_kg);
-  f.Fc_plus_N = id.sliding.Fc_plus_N;
-  f.Fc_minus_N = id.sliding.Fc_minus_N;
-  f.Fs_plus_N = id.sliding.Fs_plus_N;
-  f.Fs_minus_N = id.sliding.Fs_minus_N;
-  f.vs_m_s = id.sliding.vs_m_s;
-  f.sigma2_Ns_m = std::max(id.sliding.sigma2_Ns_m, 1e-3 * f.Fc_plus_N);
+  f.Fc_plus = id.sliding.Fc_plus_N;
+  f.Fc_minus = id.sliding.Fc_minus_N;
+  f.Fs_plus = id.sliding.Fs_plus_N;
+  f.Fs_minus = id.sliding.Fs_minus_N;
+  f.vs = id.sliding.vs_m_s;
+  f.s2 = std::max(id.sliding.sigma2_Ns_m, 1e-3 * f.Fc_plus);
 
-  if (!axis.rigid) TakeScrew(id, records);
+  if (axis.two_inertia) TakeScrew(id, records);
   const std::vector<Instant> fine = AllInstants(records, axis, 1);
   const bool shaken = id.shaken.verdict == ShakenScrew::Verdict::kFound;
   for (int pass = 0; pass < 4; ++pass) {
     id.presliding = FitPresliding(fine, axis);
     if (!id.presliding.found || shaken) break;
-    f.sigma0_N_m = id.presliding.sigma0_N_m;
+    f.s0 = id.presliding.sigma0_N_m;
   }
   if (!id.presliding.found && !shaken)
     id.notes.push_back("few slow reversals: the bristle's stiffness begins from the stated value");
@@ -149,22 +149,22 @@ void WidenByShaken(JointFit& fit, const ShakenScrew& shaken) {
 /// A rigid axis as a model with a screw, which all models have: the masses split as stated, and a screw that
 /// does not show.
 void StateRigid(Identification& id) {
-  AxisModel& axis = id.fit.axis;
-  const AxisModel& stated = id.stated;
+  TableAxis& axis = id.fit.axis;
+  const TableAxis& stated = id.stated;
   const double mass = axis.mass_kg();
-  axis.table_mass_kg = mass * stated.table_mass_kg / stated.mass_kg();
-  axis.motor_mass_kg = mass - axis.table_mass_kg;
+  axis.load_inertia = mass * stated.load_inertia / stated.mass_kg();
+  axis.motor_inertia = mass - axis.load_inertia;
   const double least_N_m =
-      std::pow(2.0 * std::numbers::pi * kRigidFrom_Hz, 2) * axis.table_mass_kg * axis.motor_mass_kg / mass;
-  axis.stiffness_N_m = std::max(stated.stiffness_N_m, kRigidBeyondLeast * least_N_m);
-  axis.rigid = false;
-  axis.friction_at_motor = stated.friction_at_motor;
-  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness_N_m, kRigidSigma, true});
+      std::pow(2.0 * std::numbers::pi * kRigidFrom_Hz, 2) * axis.load_inertia * axis.motor_inertia / mass;
+  axis.stiffness = std::max(stated.stiffness, kRigidBeyondLeast * least_N_m);
+  axis.two_inertia = true;
+  axis.friction_on_load = stated.friction_on_load;
+  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness, kRigidSigma, true});
   id.notes.push_back(
       FormatText("the axis is rigid: shaken up to %.0f Hz, it shows no screw with a resonance below %.0f Hz. "
                  "The masses are "
                  "split as stated; the screw's stiffness is at least %.0f N/um and written as %.0f",
-                 id.shaken.highest_Hz, kRigidFrom_Hz, least_N_m * 1e-6, axis.stiffness_N_m * 1e-6));
+                 id.shaken.highest_Hz, kRigidFrom_Hz, least_N_m * 1e-6, axis.stiffness * 1e-6));
 }
 
 /// All parameters at once; the screw is held first, and joins in when friction has found its place.
@@ -197,7 +197,7 @@ void FitAll(Identification& id, const std::vector<Measured>& records,
 
 /// Measured and simulated friction of the same instants.
 void LookAgain(Identification& id, const std::vector<Measured>& records) {
-  const AxisModel& axis = id.fit.axis;
+  const TableAxis& axis = id.fit.axis;
   id.stribeck = StribeckPoints(AllInstants(records, axis, kStride), axis);
   const FollowGain gain = MakeFollowGain(axis, records.front().period_s, 60.0);
   double offset_s = 0.0;
@@ -216,7 +216,7 @@ void LookAgain(Identification& id, const std::vector<Measured>& records) {
         mean += friction[j] / (2 * kHalfWidth + 1);
       if (i.row % 2 == 0)
         id.overlay.push_back({offset_s + i.time_s, i.position_m, i.velocity_m_s,
-                              i.force_N + axis.offset_N - axis.mass_kg() * i.acceleration_m_s2, mean});
+                              i.force_N + axis.offset - axis.mass_kg() * i.acceleration_m_s2, mean});
     }
     const std::vector<LoopPoint> loops = PreslidingLoops(instants, axis, kLargestLoop_m);
     for (LoopPoint p : loops) {
@@ -231,7 +231,7 @@ void LookAgain(Identification& id, const std::vector<Measured>& records) {
 
 }  // namespace
 
-Measured ToMeasured(const diagnosis::AxisLog& log, const AxisModel& axis, double position_step) {
+Measured ToMeasured(const diagnosis::AxisLog& log, const TableAxis& axis, double position_step) {
   Measured m;
   const double r = axis.radius_m_rad;
   m.period_s = log.period_s;
@@ -285,7 +285,7 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
   FitAll(id, records, report);
   report("report", 0.97);
   LookAgain(id, records);
-  if (id.fit.axis.rigid && !id.stated.rigid) StateRigid(id);
+  if (!id.fit.axis.two_inertia && id.stated.two_inertia) StateRigid(id);
   report("done", 1.0);
   return id;
 }

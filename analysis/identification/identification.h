@@ -27,8 +27,8 @@ struct OverlayPoint {
 };
 
 struct Identification {
-  AxisModel stated;
-  AxisModel stepwise;  ///< where the joint fit began
+  TableAxis stated;
+  TableAxis stepwise;  ///< where the joint fit began
   JointFit fit;
   bool screw_identified = false;
   std::vector<std::string> notes;  ///< in plain words: what could not be found, and why
@@ -54,7 +54,7 @@ struct IdentifyOptions {
 };
 
 /// The record in table units.
-Measured ToMeasured(const diagnosis::AxisLog& log, const AxisModel& axis, double position_step);
+Measured ToMeasured(const diagnosis::AxisLog& log, const TableAxis& axis, double position_step);
 
 /// Steps first (sliding, screw, presliding), then all parameters at once on the time series. Throws
 /// std::runtime_error when the records do not hold what it takes.

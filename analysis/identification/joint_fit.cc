@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
-#include "analysis/identification/whitening.h"
+#include "analysis/prediction_error/block_whitening.h"
+#include "analysis/prediction_error/marquardt_fit.h"
 
 namespace contour::identify {
 namespace {
@@ -14,6 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFollow_Hz = 60.0;
+constexpr int kThreads = 2;
 
 /// What two ways of stepping the same axis, this simulation and the emulated machine, were found to differ by
 /// in these parameters (docs/commissioning.md): nothing is known better than that. Relative.
@@ -28,69 +29,69 @@ double Stepping(const std::string& key) {
 /// What the fit moves, with its scale.
 std::vector<FreeParameter> FreeParameters(const FitOptions& options) {
   std::vector<FreeParameter> p;
-  const auto log = [&](std::string key, double* (*at)(AxisModel&), double prior, double step) {
+  const auto log = [&](std::string key, double* (*at)(TableAxis&), double prior, double step) {
     p.push_back({std::move(key), at, true, prior, step});
   };
-  const auto linear = [&](std::string key, double* (*at)(AxisModel&), double prior, double step) {
+  const auto linear = [&](std::string key, double* (*at)(TableAxis&), double prior, double step) {
     p.push_back({std::move(key), at, false, prior, step});
   };
   log(
-      "motor_inertia_kgm2", [](AxisModel& a) { return &a.motor_mass_kg; }, 1.0, 5e-4);
+      "motor_inertia_kgm2", [](TableAxis& a) { return &a.motor_inertia; }, 1.0, 5e-4);
   if (options.screw) {
     log(
-        "table_mass_kg", [](AxisModel& a) { return &a.table_mass_kg; }, 0.5, 1e-3);
+        "table_mass_kg", [](TableAxis& a) { return &a.load_inertia; }, 0.5, 1e-3);
     log(
-        "screw_damping_Ns_m", [](AxisModel& a) { return &a.damping_Ns_m; }, 1.0, 5e-3);
+        "screw_damping_Ns_m", [](TableAxis& a) { return &a.damping; }, 1.0, 5e-3);
     linear(
-        "lag_s", [](AxisModel& a) { return &a.lag_s; }, 2e-4, 1e-6);
+        "lag_s", [](TableAxis& a) { return &a.lag_s; }, 2e-4, 1e-6);
     linear(
-        "delay_s", [](AxisModel& a) { return &a.delay_s; }, 5e-5, 1e-6);
+        "delay_s", [](TableAxis& a) { return &a.delay_s; }, 5e-5, 1e-6);
   }
   if (options.stiffness)
     log(
-        "screw_stiffness_N_um", [](AxisModel& a) { return &a.stiffness_N_m; }, options.stiffness_prior, 5e-4);
+        "screw_stiffness_N_um", [](TableAxis& a) { return &a.stiffness; }, options.stiffness_prior, 5e-4);
   log(
-      "Fs_plus_N", [](AxisModel& a) { return &a.friction.Fs_plus_N; }, 1.0, 2e-3);
+      "Fs_plus_N", [](TableAxis& a) { return &a.friction.Fs_plus; }, 1.0, 2e-3);
   log(
-      "Fs_minus_N", [](AxisModel& a) { return &a.friction.Fs_minus_N; }, 1.0, 2e-3);
+      "Fs_minus_N", [](TableAxis& a) { return &a.friction.Fs_minus; }, 1.0, 2e-3);
   log(
-      "Fc_plus_N", [](AxisModel& a) { return &a.friction.Fc_plus_N; }, 1.0, 1e-3);
+      "Fc_plus_N", [](TableAxis& a) { return &a.friction.Fc_plus; }, 1.0, 1e-3);
   log(
-      "Fc_minus_N", [](AxisModel& a) { return &a.friction.Fc_minus_N; }, 1.0, 1e-3);
+      "Fc_minus_N", [](TableAxis& a) { return &a.friction.Fc_minus; }, 1.0, 1e-3);
   log(
-      "vs_mm_s", [](AxisModel& a) { return &a.friction.vs_m_s; }, 1.0, 5e-3);
+      "vs_mm_s", [](TableAxis& a) { return &a.friction.vs; }, 1.0, 5e-3);
   log(
-      "sigma0_N_m", [](AxisModel& a) { return &a.friction.sigma0_N_m; }, 1.0, 3e-3);
+      "sigma0_N_m", [](TableAxis& a) { return &a.friction.s0; }, 1.0, 3e-3);
   log(
-      "sigma1_Ns_m", [](AxisModel& a) { return &a.friction.sigma1_Ns_m; }, 1.0, 1e-2);
+      "sigma1_Ns_m", [](TableAxis& a) { return &a.friction.s1; }, 1.0, 1e-2);
   log(
-      "sigma1_decay_mm_s", [](AxisModel& a) { return &a.friction.sigma1_decay_m_s; }, 0.7, 1e-2);
+      "sigma1_decay_mm_s", [](TableAxis& a) { return &a.friction.vd; }, 0.7, 1e-2);
   log(
-      "sigma2_Ns_m", [](AxisModel& a) { return &a.friction.sigma2_Ns_m; }, 1.0, 2e-3);
+      "sigma2_Ns_m", [](TableAxis& a) { return &a.friction.s2; }, 1.0, 2e-3);
   linear(
-      "offset_N", [](AxisModel& a) { return &a.offset_N; }, 10.0, 0.02);
+      "offset_N", [](TableAxis& a) { return &a.offset; }, 10.0, 0.02);
   linear(
-      "place_1", [](AxisModel& a) { return &a.variation.place[0]; }, 0.2, 1e-3);
+      "place_1", [](TableAxis& a) { return &a.variation.place[0]; }, 0.2, 1e-3);
   linear(
-      "place_2", [](AxisModel& a) { return &a.variation.place[1]; }, 0.2, 1e-3);
+      "place_2", [](TableAxis& a) { return &a.variation.place[1]; }, 0.2, 1e-3);
   linear(
-      "place_3", [](AxisModel& a) { return &a.variation.place[2]; }, 0.2, 1e-3);
+      "place_3", [](TableAxis& a) { return &a.variation.place[2]; }, 0.2, 1e-3);
   linear(
-      "turn_plus_cos1", [](AxisModel& a) { return &a.variation.turn_plus[0]; }, 0.2, 1e-3);
+      "turn_plus_cos1", [](TableAxis& a) { return &a.variation.turn_plus[0]; }, 0.2, 1e-3);
   linear(
-      "turn_plus_sin1", [](AxisModel& a) { return &a.variation.turn_plus[1]; }, 0.2, 1e-3);
+      "turn_plus_sin1", [](TableAxis& a) { return &a.variation.turn_plus[1]; }, 0.2, 1e-3);
   linear(
-      "turn_plus_cos2", [](AxisModel& a) { return &a.variation.turn_plus[2]; }, 0.1, 1e-3);
+      "turn_plus_cos2", [](TableAxis& a) { return &a.variation.turn_plus[2]; }, 0.1, 1e-3);
   linear(
-      "turn_plus_sin2", [](AxisModel& a) { return &a.variation.turn_plus[3]; }, 0.1, 1e-3);
+      "turn_plus_sin2", [](TableAxis& a) { return &a.variation.turn_plus[3]; }, 0.1, 1e-3);
   linear(
-      "turn_minus_cos1", [](AxisModel& a) { return &a.variation.turn_minus[0]; }, 0.2, 1e-3);
+      "turn_minus_cos1", [](TableAxis& a) { return &a.variation.turn_minus[0]; }, 0.2, 1e-3);
   linear(
-      "turn_minus_sin1", [](AxisModel& a) { return &a.variation.turn_minus[1]; }, 0.2, 1e-3);
+      "turn_minus_sin1", [](TableAxis& a) { return &a.variation.turn_minus[1]; }, 0.2, 1e-3);
   linear(
-      "turn_minus_cos2", [](AxisModel& a) { return &a.variation.turn_minus[2]; }, 0.1, 1e-3);
+      "turn_minus_cos2", [](TableAxis& a) { return &a.variation.turn_minus[2]; }, 0.1, 1e-3);
   linear(
-      "turn_minus_sin2", [](AxisModel& a) { return &a.variation.turn_minus[3]; }, 0.1, 1e-3);
+      "turn_minus_sin2", [](TableAxis& a) { return &a.variation.turn_minus[3]; }, 0.1, 1e-3);
   const auto in = [](const std::vector<std::string>& keys, const std::string& key) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   };
@@ -102,7 +103,7 @@ std::vector<FreeParameter> FreeParameters(const FitOptions& options) {
 
 class Fit {
  public:
-  Fit(const AxisModel& start, const std::vector<Measured>& records, const FitOptions& options)
+  Fit(const TableAxis& start, const std::vector<Measured>& records, const FitOptions& options)
       : start_(start), records_(records), options_(options), free_(FreeParameters(options)) {
     for (const Measured& r : records_) size_ += r.size();
     block_ = static_cast<std::size_t>(std::max(1.0, options.block_s / records_.front().period_s));
@@ -111,21 +112,21 @@ class Fit {
   JointFit Run();
 
  private:
-  [[nodiscard]] AxisModel At(const VectorXd& x) const {
-    AxisModel axis = start_;
+  [[nodiscard]] TableAxis At(const VectorXd& x) const {
+    TableAxis axis = start_;
     for (std::size_t i = 0; i < free_.size(); ++i) {
       double& value = *free_[i].at(axis);
       const double step = x(static_cast<Eigen::Index>(i));
       value = free_[i].logarithmic ? value * std::exp(step) : value + step;
     }
-    if (!options_.screw) axis.table_mass_kg *= axis.motor_mass_kg / start_.motor_mass_kg;
+    if (!options_.screw) axis.load_inertia *= axis.motor_inertia / start_.motor_inertia;
     axis.lag_s = std::max(0.0, axis.lag_s);
-    axis.friction.Fs_plus_N = std::max(axis.friction.Fs_plus_N, axis.friction.Fc_plus_N);
-    axis.friction.Fs_minus_N = std::max(axis.friction.Fs_minus_N, axis.friction.Fc_minus_N);
+    axis.friction.Fs_plus = std::max(axis.friction.Fs_plus, axis.friction.Fc_plus);
+    axis.friction.Fs_minus = std::max(axis.friction.Fs_minus, axis.friction.Fc_minus);
     return axis;
   }
   [[nodiscard]] VectorXd Raw(const VectorXd& x) const {
-    const AxisModel axis = At(x);
+    const TableAxis axis = At(x);
     VectorXd all(static_cast<Eigen::Index>(size_));
     Eigen::Index at = 0;
     for (const Measured& r : records_) {
@@ -134,91 +135,36 @@ class Fit {
     }
     return all;
   }
-  [[nodiscard]] double Prior(const VectorXd& x) const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < free_.size(); ++i)
-      sum += std::pow(x(static_cast<Eigen::Index>(i)) / free_[i].prior, 2);
-    return sum;
-  }
-  /// Columns of derivatives of the whitened errors, on two threads.
-  void Derivatives(const VectorXd& x, const VectorXd& at_x, MatrixXd& jacobian);
-  /// Until a step gains less than this share.
-  void Iterate(VectorXd& x, double enough);
+  [[nodiscard]] diagnosis::LeastSquares WhiteErrors() const;
   VectorXd StepFrom(const VectorXd& x);
 
-  AxisModel start_;
+  TableAxis start_;
   const std::vector<Measured>& records_;
   FitOptions options_;
   std::vector<FreeParameter> free_;
   FollowGain gain_ = FollowGain::Zero();
-  Whitening whitening_;
+  diagnosis::BlockWhitening whitening_;
   std::size_t size_ = 0;
   std::size_t block_ = 1000;
   int evaluations_ = 0;
 };
 
-void Fit::Derivatives(const VectorXd& x, const VectorXd& at_x, MatrixXd& jacobian) {
-  jacobian.resize(at_x.size(), x.size());
-  std::vector<std::thread> workers;
-  const Eigen::Index n = x.size();
-  const int count = 2;
-  for (int w = 0; w < count; ++w) {
-    workers.emplace_back([&, w] {
-      for (Eigen::Index i = w; i < n; i += count) {
-        VectorXd moved = x;
-        const double step = free_[static_cast<std::size_t>(i)].step;
-        moved(i) += step;
-        jacobian.col(i) = (whitening_.Apply(Raw(moved)) - at_x) / step;
-      }
-    });
+/// The whitened errors over the free parameters. No factor moves by more than 2 at once.
+diagnosis::LeastSquares Fit::WhiteErrors() const {
+  diagnosis::LeastSquares p;
+  const auto n = static_cast<Eigen::Index>(free_.size());
+  p.residual = [this](const VectorXd& x) { return whitening_.Apply(Raw(x)); };
+  p.threads = kThreads;
+  p.sigma.resize(n);
+  p.step.resize(n);
+  p.longest.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const FreeParameter& f = free_[static_cast<std::size_t>(i)];
+    p.sigma(i) = f.prior;
+    p.step(i) = f.step;
+    p.longest(i) = f.logarithmic ? 0.7 : 2.0 * f.prior;
   }
-  for (std::thread& w : workers) w.join();
-  evaluations_ += static_cast<int>(n);
-}
-
-void Fit::Iterate(VectorXd& x, double enough) {
-  VectorXd r = whitening_.Apply(Raw(x));
-  double cost = r.squaredNorm() + Prior(x);
-  double damping = 1e-3;
-  MatrixXd jacobian;
-  VectorXd prior_weight(x.size());
-  for (std::size_t i = 0; i < free_.size(); ++i)
-    prior_weight(static_cast<Eigen::Index>(i)) = 1.0 / (free_[i].prior * free_[i].prior);
-  for (int it = 0; it < options_.iterations; ++it) {
-    Derivatives(x, r, jacobian);
-    MatrixXd h = jacobian.transpose() * jacobian;
-    h.diagonal() += prior_weight;
-    const VectorXd g = jacobian.transpose() * r + prior_weight.cwiseProduct(x);
-    bool better = false;
-    double gained = 0.0;
-    for (int attempt = 0; attempt < 8 && !better; ++attempt) {
-      MatrixXd damped = h;
-      damped.diagonal() += damping * h.diagonal();
-      VectorXd dx = -damped.ldlt().solve(g);
-      // No factor moves by more than 2 at once.
-      double most = 0.0;
-      for (std::size_t i = 0; i < free_.size(); ++i) {
-        const double d = std::fabs(dx(static_cast<Eigen::Index>(i)));
-        most = std::max(most, free_[i].logarithmic ? d / 0.7 : d / (2.0 * free_[i].prior));
-      }
-      if (most > 1.0) dx /= most;
-      const VectorXd tried = x + dx;
-      const VectorXd r_tried = whitening_.Apply(Raw(tried));
-      ++evaluations_;
-      const double cost_tried = r_tried.squaredNorm() + Prior(tried);
-      if (cost_tried < cost) {
-        gained = cost - cost_tried;
-        x = tried;
-        r = r_tried;
-        cost = cost_tried;
-        damping = std::max(1e-7, damping * 0.2);
-        better = true;
-      } else {
-        damping *= 8.0;
-      }
-    }
-    if (!better || gained < enough * cost) return;
-  }
+  return p;
 }
 
 /// The step that the errors of another follow gain ask for.
@@ -226,12 +172,10 @@ VectorXd Fit::StepFrom(const VectorXd& x) {
   const VectorXd raw = Raw(x);
   whitening_.Learn(raw, block_, 12, records_.front().position_step_m);
   const VectorXd r = whitening_.Apply(raw);
-  MatrixXd jacobian;
-  Derivatives(x, r, jacobian);
-  MatrixXd h = jacobian.transpose() * jacobian;
-  for (std::size_t i = 0; i < free_.size(); ++i)
-    h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += 1.0 / (free_[i].prior * free_[i].prior);
-  return -h.ldlt().solve(jacobian.transpose() * r);
+  const diagnosis::LeastSquares problem = WhiteErrors();
+  const MatrixXd jacobian = problem.Jacobian(x, r);
+  evaluations_ += static_cast<int>(x.size());
+  return -problem.Normal(jacobian).ldlt().solve(jacobian.transpose() * r);
 }
 
 JointFit Fit::Run() {
@@ -242,7 +186,8 @@ JointFit Fit::Run() {
     const VectorXd raw = Raw(x);
     if (round == 0) result.error_rms_before_m = std::sqrt(raw.squaredNorm() / static_cast<double>(size_));
     whitening_.Learn(raw, block_, round == 0 && !options_.refine ? 0 : 12, records_.front().position_step_m);
-    Iterate(x, round + 1 < options_.rounds ? 2e-3 : 5e-5);
+    evaluations_ += diagnosis::FitByMarquardt(
+        WhiteErrors(), {options_.iterations, round + 1 < options_.rounds ? 2e-3 : 5e-5}, x);
     if (options_.progress) options_.progress((round + 1.0) / options_.rounds);
   }
   const VectorXd raw = Raw(x);
@@ -257,11 +202,10 @@ JointFit Fit::Run() {
   // Spread: the sandwich of curvature and the blocks' gradients.
   whitening_.Learn(raw, block_, 12, records_.front().position_step_m);
   const VectorXd r = whitening_.Apply(raw);
-  MatrixXd jacobian;
-  Derivatives(x, r, jacobian);
-  MatrixXd h = jacobian.transpose() * jacobian;
-  for (std::size_t i = 0; i < free_.size(); ++i)
-    h(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) += 1.0 / (free_[i].prior * free_[i].prior);
+  const diagnosis::LeastSquares problem = WhiteErrors();
+  const MatrixXd jacobian = problem.Jacobian(x, r);
+  evaluations_ += static_cast<int>(x.size());
+  const MatrixXd h = problem.Normal(jacobian);
   MatrixXd scatter = MatrixXd::Zero(x.size(), x.size());
   int blocks = 0;
   for (Eigen::Index b = 0; b < r.size(); b += static_cast<Eigen::Index>(2 * block_)) {
@@ -301,7 +245,7 @@ double Sigma(const std::vector<FittedParameter>& parameters, const std::string& 
   return 0.0;
 }
 
-JointFit FitJointly(const AxisModel& start, const std::vector<Measured>& records, const FitOptions& options) {
+JointFit FitJointly(const TableAxis& start, const std::vector<Measured>& records, const FitOptions& options) {
   return Fit(start, records, options).Run();
 }
 

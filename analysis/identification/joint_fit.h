@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "analysis/identification/axis_model.h"
 #include "analysis/identification/simulation.h"
+#include "analysis/identification/table_axis.h"
 
 namespace contour::identify {
 
 /// A number of the model that the fit may move.
 struct FreeParameter {
   std::string key;            ///< of the model's uncertainty, or a name of its own
-  double* (*at)(AxisModel&);  ///< where it is; null: see index
+  double* (*at)(TableAxis&);  ///< where it is; null: see index
   bool logarithmic = true;    ///< moves by a factor
   double prior = 1.0;         ///< standard deviation about the start, in the parameter's own step
   double step = 1e-3;         ///< for derivatives
@@ -44,7 +44,7 @@ struct FittedParameter {
 double Sigma(const std::vector<FittedParameter>& parameters, const std::string& key);
 
 struct JointFit {
-  AxisModel axis;
+  TableAxis axis;
   std::vector<FittedParameter> parameters;
   Eigen::MatrixXd covariance;  ///< in steps of the parameters
   double error_rms_m = 0.0;    ///< of the prediction
@@ -55,6 +55,6 @@ struct JointFit {
 /// Fits the model to all records at once: least squares of whitened prediction errors, by Levenberg and
 /// Marquardt with finite differences. Standard deviations come from the scatter of the gradient over blocks
 /// of time (a sandwich estimate), so they hold what the model leaves unexplained, not only noise.
-JointFit FitJointly(const AxisModel& start, const std::vector<Measured>& records, const FitOptions& options);
+JointFit FitJointly(const TableAxis& start, const std::vector<Measured>& records, const FitOptions& options);
 
 }  // namespace contour::identify

@@ -11,11 +11,11 @@ constexpr std::size_t kFewestSamples = 4;  ///< of a slope
 constexpr double kLeastLoop_m = 1.5e-6;    ///< what shaking at rest stays below
 constexpr double kShareOfLength = 0.12;    ///< of Fc / sigma0: how far a slope is looked at
 
-double Friction_N(const Instant& i, const AxisModel& axis) {
-  return i.force_N + axis.offset_N - axis.mass_kg() * i.acceleration_m_s2;
+double Friction_N(const Instant& i, const TableAxis& axis) {
+  return i.force_N + axis.offset - axis.mass_kg() * i.acceleration_m_s2;
 }
-double Table_m(const Instant& i, const AxisModel& axis) {
-  return i.position_m - (i.force_N - axis.motor_mass_kg * i.acceleration_m_s2) / axis.stiffness_N_m;
+double Table_m(const Instant& i, const TableAxis& axis) {
+  return i.position_m - (i.force_N - axis.motor_inertia * i.acceleration_m_s2) / axis.stiffness;
 }
 
 /// Stretches of one direction: [first, last] of the instants.
@@ -45,13 +45,13 @@ double Quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-PreslidingFit FitPresliding(const std::vector<Instant>& instants, const AxisModel& axis) {
+PreslidingFit FitPresliding(const std::vector<Instant>& instants, const TableAxis& axis) {
   PreslidingFit fit;
   std::vector<double> found;
-  const Friction& f = axis.friction;
-  const double length = kShareOfLength * std::min(f.Fc_plus_N, f.Fc_minus_N) / f.sigma0_N_m;
+  const diagnosis::StatedFriction& f = axis.friction;
+  const double length = kShareOfLength * std::min(f.Fc_plus, f.Fc_minus) / f.s0;
   for (const Stroke& s : Strokes(instants)) {
-    const double g = s.up ? f.Fs_plus_N : f.Fs_minus_N;
+    const double g = s.up ? f.Fs_plus : f.Fs_minus;
     const Instant& turn = instants[s.first];
     const double turn_m = Table_m(turn, axis);
     // Least squares of force on way over the first piece; its slope is that of about its middle.
@@ -84,10 +84,9 @@ PreslidingFit FitPresliding(const std::vector<Instant>& instants, const AxisMode
   return fit;
 }
 
-std::vector<BreakAway> BreakAways(const std::vector<Instant>& instants, const AxisModel& axis) {
+std::vector<BreakAway> BreakAways(const std::vector<Instant>& instants, const TableAxis& axis) {
   std::vector<BreakAway> levels;
-  const double length =
-      std::max(axis.friction.Fs_plus_N, axis.friction.Fs_minus_N) / axis.friction.sigma0_N_m;
+  const double length = std::max(axis.friction.Fs_plus, axis.friction.Fs_minus) / axis.friction.s0;
   for (const Stroke& s : Strokes(instants)) {
     if (instants[s.last].since_reversal_m < 8.0 * length) continue;
     BreakAway b;
@@ -101,7 +100,7 @@ std::vector<BreakAway> BreakAways(const std::vector<Instant>& instants, const Ax
   return levels;
 }
 
-std::vector<LoopPoint> PreslidingLoops(const std::vector<Instant>& instants, const AxisModel& axis,
+std::vector<LoopPoint> PreslidingLoops(const std::vector<Instant>& instants, const TableAxis& axis,
                                        double largest_m) {
   std::vector<LoopPoint> points;
   for (const Stroke& s : Strokes(instants)) {

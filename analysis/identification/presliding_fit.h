@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "analysis/identification/axis_model.h"
 #include "analysis/identification/kinematics.h"
+#include "analysis/identification/table_axis.h"
 
 namespace contour::identify {
 
@@ -17,7 +17,7 @@ struct PreslidingFit {
   double spread_N_m = 0.0;  ///< half the distance of the quartiles
   std::size_t reversals = 0;
 };
-PreslidingFit FitPresliding(const std::vector<Instant>& instants, const AxisModel& axis);
+PreslidingFit FitPresliding(const std::vector<Instant>& instants, const TableAxis& axis);
 
 /// Break-away and Coulomb levels of single motions, as one reads them off: the largest friction within a few
 /// bristle lengths after a reversal, and the mean beyond.
@@ -25,13 +25,13 @@ struct BreakAway {
   double force_N = 0.0;  ///< signed as the motion
   double velocity_m_s = 0.0;
 };
-std::vector<BreakAway> BreakAways(const std::vector<Instant>& instants, const AxisModel& axis);
+std::vector<BreakAway> BreakAways(const std::vector<Instant>& instants, const TableAxis& axis);
 
 /// Friction over the table's way, for pictures: motions that reverse within `largest_m`.
 struct LoopPoint {
   double time_s = 0.0, way_m = 0.0, friction_N = 0.0;
 };
-std::vector<LoopPoint> PreslidingLoops(const std::vector<Instant>& instants, const AxisModel& axis,
+std::vector<LoopPoint> PreslidingLoops(const std::vector<Instant>& instants, const TableAxis& axis,
                                        double largest_m);
 
 }  // namespace contour::identify

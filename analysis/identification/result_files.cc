@@ -83,24 +83,24 @@ json Points(const std::vector<LoopPoint>& points) {
   return {{"time_s", t}, {"way_m", x}, {"friction_N", f}};
 }
 
-json Values(const AxisModel& a) {
-  const Friction& f = a.friction;
-  return {{"motor_mass_kg", a.motor_mass_kg},
-          {"table_mass_kg", a.table_mass_kg},
+json Values(const TableAxis& a) {
+  const diagnosis::StatedFriction& f = a.friction;
+  return {{"motor_mass_kg", a.motor_inertia},
+          {"table_mass_kg", a.load_inertia},
           {"mass_kg", a.mass_kg()},
-          {"stiffness_N_m", a.stiffness_N_m},
-          {"damping_Ns_m", a.damping_Ns_m},
-          {"Fs_plus_N", f.Fs_plus_N},
-          {"Fs_minus_N", f.Fs_minus_N},
-          {"Fc_plus_N", f.Fc_plus_N},
-          {"Fc_minus_N", f.Fc_minus_N},
-          {"vs_m_s", f.vs_m_s},
-          {"stribeck_exponent", f.stribeck_exponent},
-          {"sigma0_N_m", f.sigma0_N_m},
-          {"sigma1_Ns_m", f.sigma1_Ns_m},
-          {"sigma1_decay_m_s", f.sigma1_decay_m_s},
-          {"sigma2_Ns_m", f.sigma2_Ns_m},
-          {"offset_N", a.offset_N},
+          {"stiffness_N_m", a.stiffness},
+          {"damping_Ns_m", a.damping},
+          {"Fs_plus_N", f.Fs_plus},
+          {"Fs_minus_N", f.Fs_minus},
+          {"Fc_plus_N", f.Fc_plus},
+          {"Fc_minus_N", f.Fc_minus},
+          {"vs_m_s", f.vs},
+          {"stribeck_exponent", f.exponent},
+          {"sigma0_N_m", f.s0},
+          {"sigma1_Ns_m", f.s1},
+          {"sigma1_decay_m_s", f.vd},
+          {"sigma2_Ns_m", f.s2},
+          {"offset_N", a.offset},
           {"delay_s", a.delay_s},
           {"lag_s", a.lag_s}};
 }
@@ -114,7 +114,7 @@ ModelConfig ToModel(const Identification& id, ModelConfig model) {
     if (p.relative && IsModelKey(p.key))
       model.uncertainty[ModelKey(p.key, model.friction.acts_on)] = std::min(10.0, Rounded(p.sigma));
   // The table goes with the motor when only the sum could be seen.
-  if (Find(id, "table_mass_kg") == nullptr && !id.fit.axis.rigid) {
+  if (Find(id, "table_mass_kg") == nullptr && id.fit.axis.two_inertia) {
     double& table = model.uncertainty["table_mass_kg"];
     table = std::max(table, model.uncertainty["motor_inertia_kgm2"]);
   }
@@ -126,7 +126,7 @@ void WriteModelFile(const std::filesystem::path& file, const ModelConfig& model,
   std::string text =
       "# Written by contour identify from " + FormatText("%.0f s of record", id.seconds) + ":\n";
   for (const std::string& s : sources) text += "#   " + s + "\n";
-  const AxisModel& a = id.fit.axis;
+  const TableAxis& a = id.fit.axis;
   text += FormatText("# Friction levels are averages from %.1f to %.1f mm.\n", a.variation.low_m * 1e3,
                      a.variation.high_m * 1e3);
   if (const FittedParameter* lag = Find(id, "lag_s"))
@@ -134,7 +134,7 @@ void WriteModelFile(const std::filesystem::path& file, const ModelConfig& model,
                        a.delay_s * 1e3, a.lag_s * 1e3, lag->sigma * 1e3);
   if (const FittedParameter* offset = Find(id, "offset_N"))
     text += FormatText("# Constant torque: %.5f +- %.5f Nm, no key of the model.\n",
-                       a.offset_N * a.radius_m_rad, offset->sigma * a.radius_m_rad);
+                       a.offset * a.radius_m_rad, offset->sigma * a.radius_m_rad);
   text += FormatText("# Encoder: one step is %.4g um of travel, noise of a reading %.4g um.\n",
                      id.encoder.step_m * 1e6, id.encoder.noise_m * 1e6);
   for (const std::string& n : id.notes) text += "# Note: " + n + "\n";

@@ -6,7 +6,7 @@
 
 namespace contour::identify {
 
-ScrewWindUp FitWindUp(const std::vector<Measured>& records, const AxisModel& axis) {
+ScrewWindUp FitWindUp(const std::vector<Measured>& records, const TableAxis& axis) {
   // motor - table = S / K + constant, S the force through the screw; blocks of a second have a constant each,
   // so that the lead's error does not matter.
   ScrewWindUp fit;
@@ -24,7 +24,7 @@ ScrewWindUp FitWindUp(const std::vector<Measured>& records, const AxisModel& axi
       for (; i < instants.size() && instants[i].time_s < begin + 1.0; ++i) {
         const double table = d.table_m[instants[i].row];
         if (!std::isfinite(table)) continue;
-        const double force = instants[i].force_N - axis.motor_mass_kg * instants[i].acceleration_m_s2;
+        const double force = instants[i].force_N - axis.motor_inertia * instants[i].acceleration_m_s2;
         const double wind_up = instants[i].position_m - table;
         n += 1.0;
         s1 += force;

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "analysis/identification/axis_model.h"
 #include "analysis/identification/simulation.h"
+#include "analysis/identification/table_axis.h"
 
 namespace contour::identify {
 
@@ -13,6 +13,6 @@ struct ScrewWindUp {
   double stiffness_N_m = 0.0;
   double sigma_rel = 0.0;  ///< from the scatter over blocks of a second
 };
-ScrewWindUp FitWindUp(const std::vector<Measured>& records, const AxisModel& axis);
+ScrewWindUp FitWindUp(const std::vector<Measured>& records, const TableAxis& axis);
 
 }  // namespace contour::identify

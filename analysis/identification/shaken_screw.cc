@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/identification/whitening.h"
+#include "analysis/prediction_error/block_whitening.h"
 
 namespace contour::identify {
 namespace {
@@ -52,7 +52,7 @@ Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
 }
 
 /// Log of the prediction error that is left when each error is foreseen from those before it.
-double LogError(const AxisModel& axis, const std::vector<Measured>& stretches) {
+double LogError(const TableAxis& axis, const std::vector<Measured>& stretches) {
   const FollowGain gain = MakeFollowGain(axis, stretches.front().period_s, kFollow_Hz);
   std::vector<double> all;
   for (const Measured& s : stretches) {
@@ -61,7 +61,7 @@ double LogError(const AxisModel& axis, const std::vector<Measured>& stretches) {
   }
   const Eigen::Map<const Eigen::VectorXd> errors(all.data(), static_cast<Eigen::Index>(all.size()));
   if (!errors.allFinite()) return 1e300;
-  Whitening whitening;
+  diagnosis::BlockWhitening whitening;
   whitening.Learn(errors, all.size(), 12, 1e-12);
   return whitening.log_error();
 }
@@ -96,20 +96,19 @@ FitOptions Options(bool screw, bool spread) {
   return o;
 }
 
-AxisModel Rigid(AxisModel axis) {
-  axis.motor_mass_kg = axis.mass_kg();
-  axis.table_mass_kg = 0.0;
-  axis.rigid = true;
-  axis.friction_at_motor = true;
+TableAxis Rigid(TableAxis axis) {
+  axis.motor_inertia = axis.mass_kg();
+  axis.load_inertia = 0.0;
+  axis.two_inertia = axis.friction_on_load = false;
   return axis;
 }
 
 /// On from a fit until it foresees no better: the valley is long and bent.
-std::pair<double, AxisModel> FollowValley(AxisModel axis, const std::vector<Measured>& stretches) {
+std::pair<double, TableAxis> FollowValley(TableAxis axis, const std::vector<Measured>& stretches) {
   FitOptions on = Options(true, false);
   double error = LogError(axis, stretches);
   for (int i = 0; i < kLongestValley; ++i) {
-    const AxisModel next = FitJointly(axis, stretches, on).axis;
+    const TableAxis next = FitJointly(axis, stretches, on).axis;
     on.refine = true;
     on.rounds = 1;
     const double e = LogError(next, stretches);
@@ -142,30 +141,30 @@ double HighestGood_Hz(const std::vector<ResponsePoint>& response) {
 }
 
 /// The best of each antiresonance, the best first.
-std::vector<AxisModel> Starts(const AxisModel& start, const std::vector<Measured>& stretches,
+std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured>& stretches,
                               double highest_Hz) {
   const double mass = start.mass_kg();
-  std::vector<std::pair<double, AxisModel>> starts;
+  std::vector<std::pair<double, TableAxis>> starts;
   for (double f = kLowest_Hz; f < 1.5 * highest_Hz; f *= kNextStart) {
-    std::pair<double, AxisModel> best{std::numeric_limits<double>::max(), start};
+    std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
     for (const double share : kShares) {
-      AxisModel a = start;
-      a.table_mass_kg = share * mass;
-      a.motor_mass_kg = mass - a.table_mass_kg;
-      a.stiffness_N_m = a.table_mass_kg * std::pow(2.0 * std::numbers::pi * f, 2);
+      TableAxis a = start;
+      a.load_inertia = share * mass;
+      a.motor_inertia = mass - a.load_inertia;
+      a.stiffness = a.load_inertia * std::pow(2.0 * std::numbers::pi * f, 2);
       // Damping ratio of the resonance: 0.03.
-      a.damping_Ns_m = 0.06 * std::sqrt(a.stiffness_N_m * a.table_mass_kg * a.motor_mass_kg / mass);
+      a.damping = 0.06 * std::sqrt(a.stiffness * a.load_inertia * a.motor_inertia / mass);
       const double e = LogError(a, stretches);
       if (e < best.first) best = {e, a};
     }
     starts.push_back(best);
   }
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<AxisModel> chosen;
+  std::vector<TableAxis> chosen;
   for (const auto& [e, axis] : starts) {
-    const double f = Hz(axis.stiffness_N_m, axis.table_mass_kg);
-    const bool near = std::any_of(chosen.begin(), chosen.end(), [&](const AxisModel& c) {
-      return std::fabs(std::log(f / Hz(c.stiffness_N_m, c.table_mass_kg))) < kFarApart;
+    const double f = Hz(axis.stiffness, axis.load_inertia);
+    const bool near = std::any_of(chosen.begin(), chosen.end(), [&](const TableAxis& c) {
+      return std::fabs(std::log(f / Hz(c.stiffness, c.load_inertia))) < kFarApart;
     });
     if (!near) chosen.push_back(axis);
     if (chosen.size() == kRefined) break;
@@ -175,8 +174,8 @@ std::vector<AxisModel> Starts(const AxisModel& start, const std::vector<Measured
 
 }  // namespace
 
-std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const AxisModel& axis) {
-  const double least_N = kLeastShaking * 0.5 * (axis.friction.Fc_plus_N + axis.friction.Fc_minus_N);
+std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const TableAxis& axis) {
+  const double least_N = kLeastShaking * 0.5 * (axis.friction.Fc_plus + axis.friction.Fc_minus);
   std::vector<Measured> stretches;
   for (const Measured& d : records) {
     const auto window = static_cast<std::size_t>(kWindow_s / d.period_s);
@@ -206,7 +205,7 @@ std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, cons
   return stretches;
 }
 
-ShakenScrew FitShakenScrew(const AxisModel& start, const std::vector<Measured>& records) {
+ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records) {
   ShakenScrew s;
   const std::vector<Measured> stretches = ShakenStretches(records, start);
   for (const Measured& d : stretches) s.seconds += static_cast<double>(d.size()) * d.period_s;
@@ -216,10 +215,10 @@ ShakenScrew FitShakenScrew(const AxisModel& start, const std::vector<Measured>& 
     s.why_not = "nothing shakes the axis above 100 Hz while it slides: the screw needs a chirp";
     return s;
   }
-  const AxisModel rigid = FitJointly(Rigid(start), stretches, Options(false, false)).axis;
+  const TableAxis rigid = FitJointly(Rigid(start), stretches, Options(false, false)).axis;
   const double rigid_error = LogError(rigid, stretches);
-  std::pair<double, AxisModel> best{std::numeric_limits<double>::max(), start};
-  for (const AxisModel& from : Starts(start, stretches, s.highest_Hz)) {
+  std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
+  for (const TableAxis& from : Starts(start, stretches, s.highest_Hz)) {
     const auto found = FollowValley(from, stretches);
     const bool same = std::fabs(found.first - best.first) < kFoundAgain;
     if (found.first < best.first) best = found;
@@ -230,8 +229,8 @@ ShakenScrew FitShakenScrew(const AxisModel& start, const std::vector<Measured>& 
   last.rounds = 1;
   JointFit fit = FitJointly(best.second, stretches, last);
   s.axis = fit.axis;
-  s.antiresonance_Hz = Hz(s.axis.stiffness_N_m, s.axis.table_mass_kg);
-  s.resonance_Hz = s.antiresonance_Hz * std::sqrt(s.axis.mass_kg() / s.axis.motor_mass_kg);
+  s.antiresonance_Hz = Hz(s.axis.stiffness, s.axis.load_inertia);
+  s.resonance_Hz = s.antiresonance_Hz * std::sqrt(s.axis.mass_kg() / s.axis.motor_inertia);
   s.parameters = std::move(fit.parameters);
   const bool screw = rigid_error - best.first > kLeastGain_log && s.resonance_Hz < kRigidFrom_Hz &&
                      Sigma(s.parameters, "screw_stiffness_N_um") < kKnownStiffness;

@@ -12,7 +12,7 @@ namespace contour::identify {
 inline constexpr double kRigidFrom_Hz = 900.0;
 
 /// The stretches in which the axis slides at a steady speed while torque shakes it quickly.
-std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const AxisModel& axis);
+std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const TableAxis& axis);
 
 /// What shaking the sliding axis tells of its screw, on the time series: there the bristle is saturated, and
 /// nothing depends on when exactly the axis came to rest.
@@ -24,7 +24,7 @@ struct ShakenScrew {
   };
   Verdict verdict = Verdict::kNotSeen;
   std::string why_not;
-  AxisModel axis;        ///< as found; kRigid: one mass
+  TableAxis axis;        ///< as found; kRigid: one mass
   double seconds = 0.0;  ///< of shaken sliding
   double highest_Hz = 0.0;
   double antiresonance_Hz = 0.0,
@@ -35,6 +35,6 @@ struct ShakenScrew {
 
 /// Two masses from every antiresonance that the shaking could show and several shares of the table, the best
 /// of them refined with delay, lag and friction; against one mass.
-ShakenScrew FitShakenScrew(const AxisModel& start, const std::vector<Measured>& records);
+ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records);
 
 }  // namespace contour::identify

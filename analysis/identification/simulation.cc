@@ -6,6 +6,9 @@
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
 
+#include "analysis/axis_model/linear_axis.h"
+#include "analysis/prediction_error/steady_gain.h"
+
 namespace contour::identify {
 namespace {
 
@@ -20,31 +23,6 @@ constexpr int kLongestGap = 5;
 constexpr double kMoving_m_s = 50e-6;
 constexpr double kBristleCorrection = 0.05;
 
-/// d/dt [x_m v_m x_t v_t] = A s + b F.
-struct Linear {
-  Eigen::Matrix4d a = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d b = Eigen::Vector4d::Zero();
-};
-
-Linear ScrewDynamics(const AxisModel& p, double viscous_Ns_m) {
-  Linear l;
-  l.a(0, 1) = 1.0;
-  l.b(1) = 1.0 / p.motor_mass_kg;
-  if (p.rigid) {
-    l.a(1, 1) = -viscous_Ns_m / p.motor_mass_kg;
-    return l;
-  }
-  const double k = p.stiffness_N_m;
-  const double c = p.damping_Ns_m;
-  l.a.row(1) << -k, -c, k, c;
-  l.a(2, 3) = 1.0;
-  l.a.row(3) << k, c, -k, -c;
-  l.a(p.friction_at_motor ? 1 : 3, p.friction_at_motor ? 1 : 3) -= viscous_Ns_m;
-  l.a.row(1) /= p.motor_mass_kg;
-  l.a.row(3) /= p.table_mass_kg;
-  return l;
-}
-
 struct Discrete {
   Eigen::Matrix4d a;
   Eigen::Vector4d table;    ///< per N at the mass that rubs
@@ -54,13 +32,13 @@ struct Discrete {
 };
 
 /// Everything linear over a step, with the current loop df/dt = (command - f) / lag in it: exact.
-Discrete Over(const AxisModel& p, double viscous_Ns_m, double step_s) {
-  const Linear l = ScrewDynamics(p, viscous_Ns_m);
+Discrete Over(const TableAxis& p, double viscous_Ns_m, double step_s) {
+  const diagnosis::LinearAxis linear = diagnosis::MakeLinearAxis(p, viscous_Ns_m);
   const double lag = std::max(p.lag_s, kShortestLag_s);
   Eigen::Matrix<double, 7, 7> all = Eigen::Matrix<double, 7, 7>::Zero();
-  all.topLeftCorner<4, 4>() = l.a;
-  all(p.rigid ? 1 : 3, 4) = 1.0 / (p.rigid ? p.motor_mass_kg : p.table_mass_kg);
-  all.block<4, 1>(0, 5) = l.b;
+  all.topLeftCorner<4, 4>() = linear.dynamics;
+  all.block<4, 1>(0, 4) = p.two_inertia ? linear.load : linear.motor;
+  all.block<4, 1>(0, 5) = linear.motor;
   all(5, 5) = -1.0 / lag;
   all(5, 6) = 1.0 / lag;
   const Eigen::Matrix<double, 7, 7> e = (all * step_s).exp();
@@ -88,7 +66,7 @@ double Place(const LevelVariation& v, double x_m) {
 
 }  // namespace
 
-FollowGain MakeFollowGain(const AxisModel& axis, double period_s, double bandwidth_Hz) {
+FollowGain MakeFollowGain(const TableAxis& axis, double period_s, double bandwidth_Hz) {
   const Discrete d = Over(axis, 0.0, period_s);
   // A disturbance of 1 N for a period; the noise then sets the bandwidth: omega^2 T^2 = ratio of the two.
   const double omega_t = std::min(1.0, 2.0 * std::numbers::pi * bandwidth_Hz * period_s);
@@ -96,24 +74,20 @@ FollowGain MakeFollowGain(const AxisModel& axis, double period_s, double bandwid
   const double noise_m = move_m / (omega_t * omega_t);
   const Eigen::Vector4d motor = d.command + d.delayed;
   const Eigen::Matrix4d q = d.table * d.table.transpose() + 0.1 * motor * motor.transpose();
-  Eigen::Matrix4d p = q * 1e6;
+  const int n = axis.two_inertia ? 4 : 2;
   FollowGain gain = FollowGain::Zero();
-  for (int i = 0; i < 3000; ++i) {
-    gain = p.col(0) / (p(0, 0) + noise_m * noise_m);
-    const Eigen::Matrix4d after = p - gain * p.row(0);
-    p = d.a * after * d.a.transpose() + q;
-    p = (0.5 * (p + p.transpose())).eval();
-  }
+  gain.head(n) = diagnosis::SteadyGain(d.a.topLeftCorner(n, n), q.topLeftCorner(n, n), noise_m * noise_m,
+                                       1e6 * q.topLeftCorner(n, n));
   return gain;
 }
 
-Simulation::Simulation(const AxisModel& axis, const Measured& data, const FollowGain& gain)
+Simulation::Simulation(const TableAxis& axis, const Measured& data, const FollowGain& gain)
     : axis_(axis),
       data_(data),
       gain_(gain),
-      place_(axis.friction_at_motor ? 0 : 2),
+      place_(axis.friction_on_load ? 2 : 0),
       speed_(place_ + 1),
-      rubbing_mass_kg_(axis.friction_at_motor ? axis.motor_mass_kg : axis.table_mass_kg) {
+      rubbing_mass_kg_(axis.friction_on_load ? axis.load_inertia : axis.motor_inertia) {
   const double delay = std::max(0.0, axis.delay_s);
   whole_delay_ = static_cast<std::size_t>(delay / data.period_s + 1e-9);
   const double edge_s = delay - static_cast<double>(whole_delay_) * data.period_s;
@@ -121,7 +95,7 @@ Simulation::Simulation(const AxisModel& axis, const Measured& data, const Follow
   const double h = data.period_s / kSubSteps;
   const auto add = [&](double step_s, bool older) {
     if (step_s < kNoStep_s) return;
-    const Discrete d = Over(axis, axis.friction.sigma2_Ns_m, step_s);
+    const Discrete d = Over(axis, axis.friction.s2, step_s);
     // Behind the lag the offset is a torque like any other.
     pieces_.push_back({step_s, d.a, d.delayed, d.command, d.lag_left, older});
   };
@@ -134,31 +108,30 @@ Simulation::Simulation(const AxisModel& axis, const Measured& data, const Follow
 
 void Simulation::Start() {
   const double here = data_.position_m[k_];
-  force_N_ = data_.force_N[k_] + axis_.offset_N;
-  state_ << here, 0.0, axis_.rigid ? here : here - force_N_ / axis_.stiffness_N_m, 0.0;
+  force_N_ = data_.force_N[k_] + axis_.offset;
+  state_ << here, 0.0, !axis_.two_inertia ? here : here - force_N_ / axis_.stiffness, 0.0;
   if (k_ > 0 && data_.present[k_ - 1] != 0)
     state_(1) = state_(3) = (here - data_.position_m[k_ - 1]) / data_.period_s;
-  z_m_ = force_N_ / axis_.friction.sigma0_N_m;
-  const double most =
-      std::min(axis_.friction.Fc_plus_N, axis_.friction.Fc_minus_N) / axis_.friction.sigma0_N_m;
+  z_m_ = force_N_ / axis_.friction.s0;
+  const double most = std::min(axis_.friction.Fc_plus, axis_.friction.Fc_minus) / axis_.friction.s0;
   z_m_ = std::clamp(z_m_, -most, most);
   running_ = true;
   to_settle_ = static_cast<int>(kSettle_s / data_.period_s);
 }
 
 double Simulation::Level_N(double v) const {
-  const Friction& f = axis_.friction;
+  const diagnosis::StatedFriction& f = axis_.friction;
   const bool down = v < 0.0;
-  const double fc = down ? f.Fc_minus_N : f.Fc_plus_N;
-  const double fs = down ? f.Fs_minus_N : f.Fs_plus_N;
-  const double speed = std::fabs(v) / f.vs_m_s;
-  const double x = f.stribeck_exponent == 1.0 ? speed : std::pow(speed, f.stribeck_exponent);
+  const double fc = down ? f.Fc_minus : f.Fc_plus;
+  const double fs = down ? f.Fs_minus : f.Fs_plus;
+  const double speed = std::fabs(v) / f.vs;
+  const double x = f.exponent == 1.0 ? speed : std::pow(speed, f.exponent);
   const double g = x > kGone ? fc : fc + (fs - fc) * std::exp(-x);
   return std::max(1e-3, g * (down ? factor_minus_ : factor_plus_));
 }
 
 void Simulation::MoveBristle(double from_z, double travel_m, double step_s) {
-  const double x = axis_.friction.sigma0_N_m * std::fabs(travel_m) / Level_N(travel_m / step_s);
+  const double x = axis_.friction.s0 * std::fabs(travel_m) / Level_N(travel_m / step_s);
   if (x < 1e-9) {
     z_m_ = from_z + travel_m;
   } else if (x > kGone) {
@@ -170,20 +143,18 @@ void Simulation::MoveBristle(double from_z, double travel_m, double step_s) {
 }
 
 double Simulation::BristleDamping_Ns_m(double v) const {
-  const Friction& f = axis_.friction;
-  const double x = v / f.sigma1_decay_m_s;
-  if (x * x > kGone || f.sigma1_Ns_m <= 0.0) return 0.0;
-  const double against = (v < 0.0 ? -1.0 : 1.0) * f.sigma0_N_m * z_m_ / Level_N(v);
-  return f.sigma1_Ns_m * std::exp(-x * x) * (1.0 - against);
+  const diagnosis::StatedFriction& f = axis_.friction;
+  const double x = v / f.vd;
+  if (x * x > kGone || f.s1 <= 0.0) return 0.0;
+  const double against = (v < 0.0 ? -1.0 : 1.0) * f.s0 * z_m_ / Level_N(v);
+  return f.s1 * std::exp(-x * x) * (1.0 - against);
 }
 
 double Simulation::BristleForce_N() const {
-  return axis_.friction.sigma0_N_m * z_m_ + BristleDamping_Ns_m(state_(speed_)) * state_(speed_);
+  return axis_.friction.s0 * z_m_ + BristleDamping_Ns_m(state_(speed_)) * state_(speed_);
 }
 
-double Simulation::friction_N() const {
-  return BristleForce_N() + axis_.friction.sigma2_Ns_m * state_(speed_);
-}
+double Simulation::friction_N() const { return BristleForce_N() + axis_.friction.s2 * state_(speed_); }
 
 void Simulation::Prepare() {
   factor_plus_ = LevelFactor(axis_, state_(0), state_(place_), true);
@@ -203,8 +174,8 @@ double Simulation::Next() {
   const double z_before = z_m_;
   const double x_before = state_(place_);
   const std::size_t now = k >= whole_delay_ ? k - whole_delay_ : 0;
-  const double newer = data_.force_N[now] + axis_.offset_N;
-  const double older = data_.force_N[now > 0 ? now - 1 : 0] + axis_.offset_N;
+  const double newer = data_.force_N[now] + axis_.offset;
+  const double older = data_.force_N[now > 0 ? now - 1 : 0] + axis_.offset;
   double rubbing = BristleForce_N();
   for (const Piece& p : pieces_) {
     const double kick = 0.5 * p.step_s / rubbing_mass_kg_;
@@ -215,7 +186,7 @@ double Simulation::Next() {
     force_N_ = command + (force_N_ - command) * p.lag_left;
     MoveBristle(z_m_, state_(place_) - x_from, p.step_s);
     // Damping takes the velocity after the kick, or the scheme would be of first order in it.
-    const double elastic = axis_.friction.sigma0_N_m * z_m_;
+    const double elastic = axis_.friction.s0 * z_m_;
     const double before = state_(speed_);
     const double damping = BristleDamping_Ns_m(before - kick * elastic);
     state_(speed_) = (before - kick * elastic) / (1.0 + kick * damping);
@@ -233,7 +204,7 @@ double Simulation::Next() {
   state_ += gain_ * error;
   if (std::fabs(travel_m) > kMoving_m_s * data_.period_s) {
     // The correction is a little more, or less, of the travel just made.
-    const double spent = axis_.friction.sigma0_N_m * z_m_ / Level_N(travel_m / data_.period_s);
+    const double spent = axis_.friction.s0 * z_m_ / Level_N(travel_m / data_.period_s);
     z_m_ += gain_(place_) * error * (1.0 - (travel_m < 0.0 ? -spent : spent));
   } else {
     // Standing: the period's travel once more, to where the correction puts the mass. As a travel of its own
@@ -250,14 +221,14 @@ double Simulation::Next() {
   return error;
 }
 
-double LevelFactor(const AxisModel& axis, double motor_m, double table_m, bool up) {
+double LevelFactor(const TableAxis& axis, double motor_m, double table_m, bool up) {
   const LevelVariation& v = axis.variation;
   const double angle = axis.turn_m > 0.0 ? 2.0 * std::numbers::pi * motor_m / axis.turn_m : 0.0;
   const double turn = Harmonics(up ? v.turn_plus : v.turn_minus, std::cos(angle), std::sin(angle));
   return std::max(0.1, (1.0 + Place(v, table_m)) * (1.0 + turn));
 }
 
-std::vector<double> PredictionErrors_m(const AxisModel& axis, const Measured& data, const FollowGain& gain) {
+std::vector<double> PredictionErrors_m(const TableAxis& axis, const Measured& data, const FollowGain& gain) {
   std::vector<double> errors(data.size(), 0.0);
   Simulation simulation(axis, data, gain);
   for (std::size_t k = 0; k + 1 < data.size(); ++k) {

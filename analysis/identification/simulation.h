@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "analysis/identification/axis_model.h"
+#include "analysis/identification/table_axis.h"
 
 namespace contour::identify {
 
@@ -24,7 +24,7 @@ using FollowGain = Eigen::Vector4d;
 
 /// Steady-state Kalman gain of the axis without friction, for a disturbance that makes the prediction follow
 /// the measurement at about `bandwidth_Hz`.
-FollowGain MakeFollowGain(const AxisModel& axis, double period_s, double bandwidth_Hz);
+FollowGain MakeFollowGain(const TableAxis& axis, double period_s, double bandwidth_Hz);
 
 /// The axis's own motion one period after the other, led by the torque that was sent and corrected by the
 /// position that was measured. The screw and viscous friction are stepped exactly (matrix exponential), the
@@ -33,7 +33,7 @@ class Simulation {
  public:
   static constexpr int kSubSteps = 5;
 
-  Simulation(const AxisModel& axis, const Measured& data, const FollowGain& gain);
+  Simulation(const TableAxis& axis, const Measured& data, const FollowGain& gain);
 
   /// Goes on to the next grid point; returns measured minus predicted position, NaN where there is nothing
   /// to compare (no sample, or the first ones after a gap).
@@ -53,7 +53,7 @@ class Simulation {
   [[nodiscard]] double BristleDamping_Ns_m(double velocity_m_s) const;
   void Prepare();
 
-  const AxisModel& axis_;
+  const TableAxis& axis_;
   const Measured& data_;
   const FollowGain gain_;
   const Eigen::Index place_, speed_;  ///< of the mass that rubs, in state_
@@ -79,9 +79,9 @@ class Simulation {
 };
 
 /// Factor of the levels at a place, about 1.
-double LevelFactor(const AxisModel& axis, double motor_m, double table_m, bool up);
+double LevelFactor(const TableAxis& axis, double motor_m, double table_m, bool up);
 
 /// All prediction errors of a record, zero where there is nothing to compare.
-std::vector<double> PredictionErrors_m(const AxisModel& axis, const Measured& data, const FollowGain& gain);
+std::vector<double> PredictionErrors_m(const TableAxis& axis, const Measured& data, const FollowGain& gain);
 
 }  // namespace contour::identify

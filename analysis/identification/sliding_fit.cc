@@ -95,7 +95,7 @@ SlidingFit FitSliding(const std::vector<Instant>& instants, double exponent, dou
   return fit;
 }
 
-std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, const AxisModel& axis) {
+std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, const TableAxis& axis) {
   struct Sum {
     double n = 0.0, speed = 0.0, force = 0.0, square = 0.0, way = 0.0;
   };
@@ -110,8 +110,8 @@ std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, 
     if (std::fabs(i.acceleration_m_s2) > kConstantSpeed_1_s * speed + kConstantSpeed_m_s2) continue;
     const int bin = static_cast<int>(std::lround(5.0 * std::log2(speed / kSlowest_m_s))) + 1;
     Sum& s = sums[i.velocity_m_s > 0.0 ? bin : -bin];
-    const double viscous = axis.friction.sigma2_Ns_m * i.velocity_m_s;
-    const double level = i.force_N + axis.offset_N - axis.mass_kg() * i.acceleration_m_s2 - viscous;
+    const double viscous = axis.friction.s2 * i.velocity_m_s;
+    const double level = i.force_N + axis.offset - axis.mass_kg() * i.acceleration_m_s2 - viscous;
     const double friction =
         level / LevelFactor(axis, i.position_m, i.position_m, i.velocity_m_s > 0.0) + viscous;
     s.n += 1.0;

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/identification/axis_model.h"
 #include "analysis/identification/kinematics.h"
+#include "analysis/identification/table_axis.h"
 
 namespace contour::identify {
 
@@ -30,6 +30,6 @@ struct StribeckPoint {
   double spread_N = 0.0;  ///< standard deviation over the way: ripple and place
   double way_m = 0.0;
 };
-std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, const AxisModel& axis);
+std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, const TableAxis& axis);
 
 }  // namespace contour::identify

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "analysis/prediction_error/levinson.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -123,22 +126,10 @@ Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint
     re[(length - i) % length] = re[i];
   }
   FourierTransform(re, im, true);
-  // Levinson.
   const std::size_t order = std::min(kOrder, length / 8);
-  std::vector<double> a(order + 1, 0.0), before(order + 1, 0.0);
-  a[0] = 1.0;
-  double error = re[0] * (1.0 + 1e-9);
-  for (std::size_t m = 1; m <= order; ++m) {
-    double sum = re[m];
-    for (std::size_t i = 1; i < m; ++i) sum += a[i] * re[m - i];
-    const double k = -sum / error;
-    before = a;
-    for (std::size_t i = 1; i < m; ++i) a[i] = before[i] + k * before[m - i];
-    a[m] = k;
-    error *= 1.0 - k * k;
-  }
-  error /= static_cast<double>(length);
-  taps_.assign(a.begin(), a.end());
+  ErrorFilter filter = MakeErrorFilter(std::span(re).first(order + 1));
+  const double error = filter.left / static_cast<double>(length);
+  taps_ = std::move(filter.taps);
   for (double& t : taps_) t /= std::sqrt(error);
 }
 

@@ -64,16 +64,17 @@ plant::AxisParameters PlainAxis() {
   return p;
 }
 
-identify::AxisModel Exactly(const plant::AxisParameters& p) {
-  identify::AxisModel a;
+identify::TableAxis Exactly(const plant::AxisParameters& p) {
+  identify::TableAxis a;
+  a.two_inertia = a.friction_on_load = true;
   a.radius_m_rad = p.radius_m_rad;
   a.turn_m = kTwoPi * p.radius_m_rad;
-  a.motor_mass_kg = p.motor_inertia_kgm2 / (p.radius_m_rad * p.radius_m_rad);
-  a.table_mass_kg = p.table_mass_kg;
-  a.stiffness_N_m = p.stiffness_N_m;
-  a.damping_Ns_m = p.damping_Ns_m;
+  a.motor_inertia = p.motor_inertia_kgm2 / (p.radius_m_rad * p.radius_m_rad);
+  a.load_inertia = p.table_mass_kg;
+  a.stiffness = p.stiffness_N_m;
+  a.damping = p.damping_Ns_m;
   const plant::FrictionParameters& f = p.friction.base;
-  a.friction = {f.plus.Fs_N, f.minus.Fs_N, f.plus.Fc_N,   f.minus.Fc_N,       f.vs_m_s,
+  a.friction = {f.plus.Fc_N, f.minus.Fc_N, f.plus.Fs_N,   f.minus.Fs_N,       f.vs_m_s,
                 1.0,         f.sigma0_N_m, f.sigma1_Ns_m, f.sigma1_decay_m_s, f.sigma2_Ns_m};
   a.delay_s = kPeriod_s;
   a.lag_s = p.lag_s;
@@ -139,6 +140,40 @@ GeneratedAxis::Path Strokes(double stroke_m, std::vector<double> speeds_m_s) {
     }
     return 0.0;
   };
+}
+
+const identify::Measured& SlidingRecord() {
+  static const identify::Measured record = [] {
+    const std::vector<double> speeds = {0.5e-3, 1e-3, 2e-3, 5e-3, 10e-3, 20e-3, 50e-3};
+    GeneratedAxis axis{PlainAxis()};
+    return axis.Drive(StrokesDuration_s(5e-3, speeds), Strokes(5e-3, speeds), [](double) { return 0.0; });
+  }();
+  return record;
+}
+
+const identify::Measured& Everything() {
+  static const identify::Measured record = [] {
+    const std::vector<double> speeds = {1e-3, 3e-3, 10e-3, 50e-3};
+    const double strokes_s = StrokesDuration_s(5e-3, speeds);
+    const auto strokes = Strokes(5e-3, speeds);
+    GeneratedAxis axis{PlainAxis()};
+    return axis.Drive(
+        strokes_s + 14.0,
+        [=](double t) {
+          if (t < strokes_s) return strokes(t);
+          const double s = t - strokes_s;
+          if (s < 6.0) return (s < 2.0 ? 4e-6 : s < 4.0 ? 15e-6 : 0.2e-3) * std::sin(kTwoPi * s);
+          return s < 9.0 ? 0.0 : 5e-3 * (s - 9.0);
+        },
+        [=](double t) {
+          const double s = t - strokes_s;
+          if (s < 6.0) return 0.0;
+          if (s < 9.0) return 8.0 * std::sin(kTwoPi * (10.0 * (s - 6.0) + 15.0 * (s - 6.0) * (s - 6.0)));
+          const double c = std::fmod(s - 9.0, 2.5);
+          return 60.0 * std::sin(kTwoPi * (100.0 * c + 76.0 * c * c));
+        });
+  }();
+  return record;
 }
 
 }  // namespace contour::test

@@ -22,10 +22,15 @@ struct GeneratedAxis {
 
 /// The nominal axis without variation over place and turn, and the model that states it exactly.
 plant::AxisParameters PlainAxis();
-identify::AxisModel Exactly(const plant::AxisParameters& truth);
+identify::TableAxis Exactly(const plant::AxisParameters& truth);
 
 /// A path of strokes at each speed, forth and back, with smooth ends.
 GeneratedAxis::Path Strokes(double stroke_m, std::vector<double> speeds_m_s);
 double StrokesDuration_s(double stroke_m, const std::vector<double>& speeds_m_s);
+
+/// Strokes at speeds from 0.5 to 50 mm/s.
+const identify::Measured& SlidingRecord();
+/// Half a minute of everything: strokes, loops, shaking at rest, a chirp while sliding.
+const identify::Measured& Everything();
 
 }  // namespace contour::test

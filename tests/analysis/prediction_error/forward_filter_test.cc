@@ -181,21 +181,5 @@ TEST(ForwardFilter, AGapIsCrossedWithoutWaitingForTheSubstepsEnd) {
   }
 }
 
-TEST(DeliveredMeans, HoldDelayAndLagAreExact) {
-  AxisLog log;
-  log.period_s = 1e-3;
-  log.command.assign(40, 0.0);
-  for (std::size_t k = 10; k < 40; ++k) log.command[k] = 1.0;
-  const double delay_s = 1.3e-3, lag_s = 0.4e-3;
-  const Delivered d = DeliveredMeans(log, delay_s, lag_s, 4);
-  for (std::size_t k = 10; k < 20; ++k)
-    for (std::size_t j = 0; j < 4; ++j) {
-      // Mean over the sub-step of 1 - e^(-(t - t0) / lag), by its integral.
-      const auto integral = [&](double t) { return t <= 0.0 ? 0.0 : t + lag_s * std::expm1(-t / lag_s); };
-      const double t = (static_cast<double>(k) - 10.0) * 1e-3 + 0.25e-3 * static_cast<double>(j) - delay_s;
-      EXPECT_NEAR(d.mean[4 * k + j], (integral(t + 0.25e-3) - integral(t)) / 0.25e-3, 1e-9);
-    }
-}
-
 }  // namespace
 }  // namespace contour::diagnosis

@@ -4,11 +4,12 @@
 #include <cstddef>
 #include <vector>
 
-namespace contour::identify {
+namespace contour::diagnosis {
 
 /// Makes prediction errors alike: each block of time is divided by its own level, then an autoregressive
-/// filter takes out what one error says of the next.
-class Whitening {
+/// filter takes out what one error says of the next. Whitener is for noise that keeps its level; this is for
+/// records whose strokes are of different speeds.
+class BlockWhitening {
  public:
   /// From errors (0: no value). `order` 0: levels only. No block counts as quieter than `floor`.
   void Learn(const Eigen::VectorXd& errors, std::size_t block, int order, double floor);
@@ -19,9 +20,9 @@ class Whitening {
  private:
   std::size_t block_ = 1;
   std::vector<double> weight_;  ///< per block
-  std::vector<double> filter_;  ///< of the errors before
+  std::vector<double> taps_;    ///< of the level's error filter; empty: none
   double scale_ = 1.0;
   double log_error_ = 0.0;
 };
 
-}  // namespace contour::identify
+}  // namespace contour::diagnosis

@@ -1,5 +1,8 @@
+#include "analysis/axis_model/loose_axis.h"
+
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "analysis/axis_model/read_stated_axis.h"
@@ -20,30 +23,7 @@ std::string Error(const std::string& text) {
   return "";
 }
 
-TEST(StatedAxisTest, MachineFile) {
-  const StatedAxis a = ReadStatedAxis(ExampleMachine("xy_emulated.yaml"), "x");
-  const double r = 5e-3 / kTwoPi;
-  EXPECT_EQ(a.axis, "x");
-  EXPECT_TRUE(a.two_inertia);
-  EXPECT_TRUE(a.friction_on_load);
-  EXPECT_DOUBLE_EQ(a.motor_inertia, 4.65e-5);
-  EXPECT_DOUBLE_EQ(a.load_inertia, r * r * 10.6);
-  EXPECT_DOUBLE_EQ(a.stiffness, r * r * 44.5e6);
-  EXPECT_DOUBLE_EQ(a.friction.Fc_plus, 36.5 * r);
-  EXPECT_DOUBLE_EQ(a.friction.vs, 2.4e-3 / r);
-  EXPECT_DOUBLE_EQ(a.friction.s0, 4.2e6 * r * r);
-  EXPECT_DOUBLE_EQ(a.friction.s2, 440 * r * r);
-  EXPECT_DOUBLE_EQ(a.delay_s, 1e-3);
-  EXPECT_DOUBLE_EQ(a.lag_s, 0.2e-3);
-  EXPECT_DOUBLE_EQ(a.command_step, 0.637e-3);
-  EXPECT_DOUBLE_EQ(a.stroke_max_m, 0.2);
-  EXPECT_DOUBLE_EQ(a.sigma.at("Fc"), 0.1);
-  EXPECT_DOUBLE_EQ(a.sigma.at("inertia"), 0.05);
-  EXPECT_DOUBLE_EQ(a.sigma.at("s0"), 0.2);
-  EXPECT_THROW(ReadStatedAxis(ExampleMachine("xy_emulated.yaml"), ""), ConfigError);
-}
-
-TEST(StatedAxisTest, RigidRotaryModelAlone) {
+TEST(LooseAxis, RigidRotaryModelAlone) {
   const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml", R"(
 model:
   lead_mm: 5
@@ -70,7 +50,7 @@ drive: {delay_ms: 1, lag_ms: 0.2, encoder_counts_per_rev: 1048576, torque_step_N
   EXPECT_NEAR(a.sigma.at("inertia"), std::hypot(0.05 * 5e-5, 0.1 * 10 * r * r) / (5e-5 + 10 * r * r), 1e-12);
 }
 
-TEST(StatedAxisTest, LinearModelOfAFewKeys) {
+TEST(LooseAxis, LinearModelOfAFewKeys) {
   const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml", R"(
 mass_kg: 95.1089
 lead_mm: 2.5
@@ -88,7 +68,7 @@ friction: {Fc_plus_N: 20.3935, Fc_minus_N: 20.3935, sigma2_Ns_m: 203.5034}
   EXPECT_DOUBLE_EQ(a.lead_m, 2.5e-3);
 }
 
-TEST(StatedAxisTest, ExtensionsOfALinearAxisAreRefusedAndNotPassedOver) {
+TEST(LooseAxis, ExtensionsOfALinearAxisAreRefusedAndNotPassedOver) {
   const std::string linear = "mass_kg: 95\nfriction: {Fc_plus_N: 20, Fc_minus_N: 20, sigma2_Ns_m: 200}\n";
   EXPECT_EQ(Error(linear), "");
   EXPECT_NE(Error(linear + "extensions: {constant_torque: {torque_Nm: 0.1}}\n")
@@ -96,7 +76,7 @@ TEST(StatedAxisTest, ExtensionsOfALinearAxisAreRefusedAndNotPassedOver) {
             std::string::npos);
 }
 
-TEST(StatedAxisTest, TwoInertiasSeenAtTheMotor) {
+TEST(LooseAxis, TwoInertiasSeenAtTheMotor) {
   const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml", R"(
 motor_inertia_kgm2: 5e-5
 load_inertia_kgm2: 4e-5
@@ -111,7 +91,7 @@ friction: {acts_on: motor, Fc_plus_Nm: 0.03, Fc_minus_Nm: 0.03, sigma2_Nms_rad: 
   EXPECT_DOUBLE_EQ(a.load_inertia, 4e-5);
 }
 
-TEST(StatedAxisTest, StrictAboutKeysAndWhatFitsTogether) {
+TEST(LooseAxis, StrictAboutKeysAndWhatFitsTogether) {
   const std::string friction =
       "friction: {acts_on: motor, Fc_plus_Nm: 1, Fc_minus_Nm: 1, sigma2_Nms_rad: 1}\n";
   EXPECT_EQ(Error("motor_inertia_kgm2: 1e-4\n" + friction), "");

@@ -1,14 +1,16 @@
-#include "analysis/identification/whitening.h"
+#include "analysis/prediction_error/block_whitening.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace contour::identify {
+#include "analysis/prediction_error/levinson.h"
 
-void Whitening::Learn(const Eigen::VectorXd& errors, std::size_t block, int order, double floor) {
+namespace contour::diagnosis {
+
+void BlockWhitening::Learn(const Eigen::VectorXd& errors, std::size_t block, int order, double floor) {
   block_ = block;
   weight_.clear();
-  filter_.clear();
+  taps_.clear();
   scale_ = 1.0;
   log_error_ = 0.0;
   const auto n = static_cast<std::size_t>(errors.size());
@@ -21,45 +23,32 @@ void Whitening::Learn(const Eigen::VectorXd& errors, std::size_t block, int orde
   }
   if (order <= 0) return;
   const Eigen::VectorXd level = Apply(errors);
-  // Yule and Walker, solved by Levinson and Durbin.
   std::vector<double> c(static_cast<std::size_t>(order) + 1, 0.0);
   for (std::size_t lag = 0; lag < c.size(); ++lag) {
     const auto shift = static_cast<Eigen::Index>(lag);
     c[lag] = level.head(level.size() - shift).dot(level.tail(level.size() - shift));
   }
   if (!(c[0] > 0.0)) return;
-  c[0] *= 1.0 + 1e-9;
-  std::vector<double> a;
-  double left = c[0];
-  for (std::size_t m = 1; m < c.size(); ++m) {
-    double sum = c[m];
-    for (std::size_t i = 0; i < a.size(); ++i) sum -= a[i] * c[m - 1 - i];
-    const double reflection = sum / left;
-    std::vector<double> next = a;
-    next.push_back(reflection);
-    for (std::size_t i = 0; i < a.size(); ++i) next[i] -= reflection * a[a.size() - 1 - i];
-    a = std::move(next);
-    left *= 1.0 - reflection * reflection;
-  }
-  filter_ = std::move(a);
-  scale_ = 1.0 / std::sqrt(std::max(left / static_cast<double>(n), 1e-30));
+  ErrorFilter filter = MakeErrorFilter(c);
+  taps_ = std::move(filter.taps);
+  scale_ = 1.0 / std::sqrt(std::max(filter.left / static_cast<double>(n), 1e-30));
   log_error_ -= std::log(scale_);
 }
 
-Eigen::VectorXd Whitening::Apply(const Eigen::VectorXd& errors) const {
+Eigen::VectorXd BlockWhitening::Apply(const Eigen::VectorXd& errors) const {
   Eigen::VectorXd level(errors.size());
   for (Eigen::Index i = 0; i < errors.size(); ++i)
     level(i) = errors(i) * weight_[static_cast<std::size_t>(i) / block_];
-  if (filter_.empty()) return level;
+  if (taps_.empty()) return level;
   Eigen::VectorXd out(errors.size());
-  const auto order = static_cast<Eigen::Index>(filter_.size());
+  const auto order = static_cast<Eigen::Index>(taps_.size()) - 1;
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
-    double predicted = 0.0;
-    for (Eigen::Index j = 0; j < std::min(order, i); ++j)
-      predicted += filter_[static_cast<std::size_t>(j)] * level(i - 1 - j);
-    out(i) = scale_ * (level(i) - predicted);
+    double left = level(i);
+    for (Eigen::Index j = 1; j <= std::min(order, i); ++j)
+      left += taps_[static_cast<std::size_t>(j)] * level(i - j);
+    out(i) = scale_ * left;
   }
   return out;
 }
 
-}  // namespace contour::identify
+}  // namespace contour::diagnosis

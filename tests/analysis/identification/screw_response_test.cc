@@ -1,0 +1,55 @@
+#include "analysis/identification/screw_response.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace contour::identify {
+namespace {
+
+constexpr double kMass = 40.0;
+
+/// A free mass under a held random force, one period late; solved by hand.
+Measured FreeMass(std::size_t rows, double noise_m = 0.0) {
+  Measured d;
+  d.period_s = 1e-3;
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  double x = 0.0, v = 0.0, acting = 0.0;
+  for (std::size_t k = 0; k < rows; ++k) {
+    d.position_m.push_back(x + noise_m * normal(random));
+    d.force_N.push_back(60.0 * normal(random));
+    d.present.push_back(1);
+    x += v * 1e-3 + 0.5 * acting / kMass * 1e-6;
+    v += acting / kMass * 1e-3;
+    acting = d.force_N.back();
+  }
+  return d;
+}
+
+TEST(ScrewResponse, OfAFreeMassIsOneOverItsMass) {
+  const auto response = MotorResponse({FreeMass(20000)});
+  ASSERT_GT(response.size(), 100U);
+  for (const ResponsePoint& p : response) {
+    EXPECT_GE(p.frequency_Hz, 100.0);
+    EXPECT_LE(p.frequency_Hz, 480.0);
+    EXPECT_NEAR(p.accelerance_1_kg * kMass, 1.0, 0.05) << p.frequency_Hz;
+    EXPECT_GT(p.coherence, 0.98) << p.frequency_Hz;
+  }
+}
+
+TEST(ScrewResponse, ReadingsThatAreNoiseAreNotCoherent) {
+  for (const ResponsePoint& p : MotorResponse({FreeMass(20000, 1e-3)}))
+    EXPECT_LT(p.coherence, kGoodCoherence);
+}
+
+TEST(ScrewResponse, AShortRecordOrOneWithHolesSaysNothing) {
+  EXPECT_TRUE(MotorResponse({FreeMass(600)}).empty());
+  Measured holes = FreeMass(5000);
+  for (std::size_t k = 0; k < holes.size(); k += 100) holes.present[k] = 0;
+  EXPECT_TRUE(MotorResponse({holes}).empty());
+}
+
+}  // namespace
+}  // namespace contour::identify

@@ -1,0 +1,101 @@
+#include "analysis/identification/simulation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/analysis/identification/generated_axis.h"
+
+namespace contour::test {
+namespace {
+
+using identify::Measured;
+using identify::TableAxis;
+
+double Rms_m(const std::vector<double>& errors) {
+  double sum = 0.0;
+  for (const double e : errors) sum += e * e;
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+TEST(SimulationTest, TheTrueModelForeseesAnIndependentAxisToItsNoise) {
+  // A reading's noise: quantisation and 0.3 counts, 1.9 nm. The prediction adds its own.
+  const TableAxis truth = Exactly(PlainAxis());
+  const auto gain = identify::MakeFollowGain(truth, 1e-3, 60.0);
+  const double rms = Rms_m(identify::PredictionErrors_m(truth, Everything(), gain));
+  EXPECT_LT(rms, 4.5e-9);
+  EXPECT_GT(rms, 1.5e-9);
+}
+
+TEST(SimulationTest, EveryPartOfTheModelMatters) {
+  const TableAxis truth = Exactly(PlainAxis());
+  const auto gain = identify::MakeFollowGain(truth, 1e-3, 60.0);
+  const double best = Rms_m(identify::PredictionErrors_m(truth, Everything(), gain));
+  const std::vector<std::function<void(TableAxis&)>> wrongs = {
+      [](TableAxis& a) { a.motor_inertia *= 1.05; },
+      [](TableAxis& a) { a.load_inertia *= 1.2; },
+      [](TableAxis& a) { a.stiffness *= 1.1; },
+      [](TableAxis& a) { a.friction.Fc_plus *= 1.05; },
+      [](TableAxis& a) { a.friction.Fs_minus *= 1.05; },
+      [](TableAxis& a) { a.friction.vs *= 1.3; },
+      [](TableAxis& a) { a.friction.s0 *= 1.1; },
+      [](TableAxis& a) { a.friction.s1 *= 1.5; },
+      [](TableAxis& a) { a.friction.s2 *= 1.1; },
+      [](TableAxis& a) { a.delay_s += 0.1e-3; },
+      [](TableAxis& a) { a.offset += 1.0; },
+  };
+  for (std::size_t i = 0; i < wrongs.size(); ++i) {
+    TableAxis wrong = truth;
+    wrongs[i](wrong);
+    EXPECT_GT(Rms_m(identify::PredictionErrors_m(wrong, Everything(), gain)), 1.1 * best) << "number " << i;
+  }
+}
+
+TEST(SimulationTest, MissingRowsLeaveAGapAndNothingElse) {
+  Measured record = Everything();
+  for (std::size_t k = 5000; k < 5040; ++k) {
+    record.present[k] = 0;
+    record.position_m[k] = std::nan("");
+  }
+  const TableAxis truth = Exactly(PlainAxis());
+  const auto errors =
+      identify::PredictionErrors_m(truth, record, identify::MakeFollowGain(truth, 1e-3, 60.0));
+  for (std::size_t k = 5000; k < 5040; ++k) EXPECT_EQ(errors[k], 0.0);
+  EXPECT_LT(Rms_m(errors), 6e-9);
+}
+
+// One mass without friction under a constant force: x = F t^2 / 2 m from the first command on.
+TEST(SimulationTest, AFreeMassMovesAsByHand) {
+  TableAxis axis;
+  axis.motor_inertia = 20.0;
+  axis.friction = {1e-6, 1e-6, 1e-6, 1e-6, 1e-3, 1.0, 1.0, 0.0, 1e-3, 0.0};
+  axis.delay_s = 1e-3;
+  Measured d;
+  d.period_s = 1e-3;
+  for (int k = 0; k < 300; ++k) {
+    d.force_N.push_back(k >= 100 ? 40.0 : 0.0);
+    d.present.push_back(1);
+    const double t = std::max(0, k - 101) * 1e-3;
+    d.position_m.push_back(0.5 * 2.0 * t * t);
+  }
+  const auto errors = identify::PredictionErrors_m(axis, d, identify::MakeFollowGain(axis, d.period_s, 60.0));
+  // The lag of 5 us that every axis has, and friction of a micronewton, are left.
+  for (std::size_t k = 0; k < errors.size(); ++k) EXPECT_NEAR(errors[k], 0.0, 2e-8) << k;
+}
+
+TEST(SimulationTest, LevelsVaryWithPlaceAndTurnAsStated) {
+  TableAxis axis;
+  axis.turn_m = 5e-3;
+  axis.variation.low_m = 0.0;
+  axis.variation.high_m = 0.1;
+  axis.variation.place = {0.2, 0.0, 0.0};
+  axis.variation.turn_plus = {0.1, 0.0, 0.0, 0.0};
+  EXPECT_NEAR(identify::LevelFactor(axis, 0.0, 0.05, true), 1.1, 1e-12);
+  EXPECT_NEAR(identify::LevelFactor(axis, 0.0, 0.05, false), 1.0, 1e-12);
+  EXPECT_NEAR(identify::LevelFactor(axis, 2.5e-3, 0.1, true), 1.2 * 0.9, 1e-12);
+  EXPECT_NEAR(identify::LevelFactor(axis, 0.0, 5.0, false), 1.2, 1e-12);
+}
+
+}  // namespace
+}  // namespace contour::test

@@ -1,0 +1,93 @@
+#include "analysis/prediction_error/noise_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/analysis/support/learnt_problem.h"
+
+namespace contour::diagnosis {
+namespace {
+
+test::HiddenOptions Options() {
+  test::HiddenOptions o;
+  o.seed = 3;
+  o.duration_s = 30.0;
+  o.parameter_spread = 0.0;
+  o.scale = false;
+  return o;
+}
+
+const test::LearntProblem& Made() {
+  static const test::LearntProblem made(test::MakeHiddenAxis(Options()));
+  return made;
+}
+
+double MeanProduct(const std::vector<double>& x, const std::vector<std::uint8_t>& counted, std::size_t lag) {
+  double sum = 0.0, count = 0.0;
+  for (std::size_t k = 0; k + lag < x.size(); ++k)
+    if (counted[k] != 0 && counted[k + lag] != 0) {
+      sum += x[k] * x[k + lag];
+      count += 1.0;
+    }
+  return sum / count;
+}
+
+// With the true numbers what is left is noise: white, of unit variance.
+TEST(NoiseFilter, TheTrueModelLeavesWhiteNoiseOfUnitVariance) {
+  const Problem& problem = Made().problem;
+  const std::vector<double> white = problem.Residuals(std::span(&Made().point, 1))[0];
+  const double power = MeanProduct(white, problem.counted_, 0);
+  EXPECT_NEAR(power, 1.0, 0.2);
+  for (const std::size_t lag : {1U, 2U, 10U})
+    EXPECT_LT(std::fabs(MeanProduct(white, problem.counted_, lag)), 0.1 * power) << lag;
+}
+
+// The noise that nobody commanded: 0.5 % of the rated torque, white per row.
+TEST(NoiseFilter, FindsTheNoiseOfTheTorque) {
+  EXPECT_NEAR(Made().problem.noise_.torque_noise() / (0.005 * Made().axis.stated.rated), 1.0, 0.3);
+}
+
+TEST(NoiseFilter, WhitensInProportion) {
+  const Problem& problem = Made().problem;
+  const std::vector<double> weight(problem.rows(), 1.0);
+  std::vector<double> x(problem.rows()), y(problem.rows()), white_x(problem.rows()), white_y(problem.rows());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    x[k] = std::sin(0.05 * static_cast<double>(k));
+    y[k] = -2.5 * x[k];
+  }
+  const double* in[] = {x.data(), y.data()};
+  double* out[] = {white_x.data(), white_y.data()};
+  problem.noise_.Apply(in, out, problem.counted_, weight.data());
+  for (std::size_t k = 0; k < x.size(); k += 31)
+    EXPECT_NEAR(white_y[k], -2.5 * white_x[k], 1e-9 * (1.0 + std::fabs(white_y[k])));
+}
+
+// Back() is the gradient: a little more force changes |white|^2 / 2 by it.
+TEST(NoiseFilter, BackIsTheGradientOfTheSquaresWithRespectToSignals) {
+  const Problem& problem = Made().problem;
+  const std::vector<double> white = problem.Residuals(std::span(&Made().point, 1))[0];
+  const NoiseFilter::Gradient gradient =
+      problem.noise_.Back(white, problem.counted_, problem.root_weight_.data());
+  const std::size_t row = 12000, length = 400;
+  std::vector<double> pulse = problem.noise_.Pulse(row, false, length, problem.counted_);
+  double along = 0.0;
+  for (std::size_t i = 0; i < pulse.size(); ++i)
+    along += pulse[i] * white[row + 1 + i] * problem.root_weight_[row + 1 + i];
+  ASSERT_NE(along, 0.0);
+  EXPECT_NEAR(gradient.motor[row] / along, 1.0, 0.05);
+}
+
+TEST(ColourFilter, TakesTheWhitenersTaps) {
+  const std::vector<double> x = {1.0, 0.0, 0.0, 2.0};
+  const std::vector<std::uint8_t> counted = {1, 1, 1, 0};
+  const std::vector<double> weight = {1.0, 1.0, 1.0, 1.0};
+  std::vector<double> out(4);
+  const double* in[] = {x.data()};
+  double* to[] = {out.data()};
+  ApplyColourFilter(Whitener(), in, to, counted, weight.data());
+  EXPECT_EQ(out, (std::vector<double>{1.0, 0.0, 0.0, 0.0}));
+}
+
+}  // namespace
+}  // namespace contour::diagnosis
