@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-FOLDERS = ["core", "drivers", "estimator", "control", "config", "daemon", "tools", "tests"]
+FOLDERS = ["core", "drivers", "estimator", "control", "config", "daemon", "analysis", "design", "tools", "tests"]
 
 
 def sources(root):
