@@ -69,9 +69,9 @@ void SetMass(TableAxis& axis, double mass_kg) {
 }
 
 /// The screw, from shaking while sliding and from a linear scale.
-void TakeScrew(Identification& id, const std::vector<Measured>& records) {
+void TakeScrew(Identification& id, const std::vector<Measured>& records, int threads) {
   TableAxis& axis = id.stepwise;
-  id.shaken = FitShakenScrew(axis, records);
+  id.shaken = FitShakenScrew(axis, records, threads);
   const ShakenScrew& s = id.shaken;
   if (s.verdict == ShakenScrew::Verdict::kFound) {
     axis.motor_inertia = s.axis.motor_inertia;
@@ -100,7 +100,7 @@ void TakeScrew(Identification& id, const std::vector<Measured>& records) {
 }
 
 /// The steps one after the other; each sees what those before have found.
-void TakeSteps(Identification& id, const std::vector<Measured>& records) {
+void TakeSteps(Identification& id, const std::vector<Measured>& records, int threads) {
   TableAxis& axis = id.stepwise;
   const std::vector<Instant> coarse = AllInstants(records, axis, kStride);
   id.sliding = FitSliding(coarse, axis.friction.exponent, axis.radius_m_rad);
@@ -114,7 +114,7 @@ void TakeSteps(Identification& id, const std::vector<Measured>& records) {
   f.vs = id.sliding.vs_m_s;
   f.s2 = std::max(id.sliding.sigma2_Ns_m, 1e-3 * f.Fc_plus);
 
-  if (axis.two_inertia) TakeScrew(id, records);
+  if (axis.two_inertia) TakeScrew(id, records, threads);
   const std::vector<Instant> fine = AllInstants(records, axis, 1);
   const bool shaken = id.shaken.verdict == ShakenScrew::Verdict::kFound;
   for (int pass = 0; pass < 4; ++pass) {
@@ -168,10 +168,11 @@ void StateRigid(Identification& id) {
 }
 
 /// All parameters at once; the screw is held first, and joins in when friction has found its place.
-void FitAll(Identification& id, const std::vector<Measured>& records,
+void FitAll(Identification& id, const std::vector<Measured>& records, int threads,
             const std::function<void(const char*, double)>& report) {
   const bool shaken = id.shaken.verdict == ShakenScrew::Verdict::kFound;
   FitOptions fit;
+  fit.threads = threads;
   fit.screw = shaken;
   fit.stiffness = shaken || id.wind_up.found;
   fit.stiffness_prior = id.wind_up.found ? std::max(kLeastWindUpSigma, id.wind_up.sigma_rel) : 1.0;
@@ -276,13 +277,13 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
   id.stepwise.variation.high_m = high;
 
   report("friction over speed, screw, presliding", 0.0);
-  TakeSteps(id, records);
+  TakeSteps(id, records, options.threads);
   if (options.steps_only) {
     id.fit.axis = id.stepwise;
     return id;
   }
 
-  FitAll(id, records, report);
+  FitAll(id, records, options.threads, report);
   report("report", 0.97);
   LookAgain(id, records);
   if (!id.fit.axis.two_inertia && id.stated.two_inertia) StateRigid(id);

@@ -50,6 +50,7 @@ struct Identification {
 
 struct IdentifyOptions {
   bool steps_only = false;  ///< without the joint fit
+  int threads = 1;          ///< the result does not depend on it
   std::function<void(const std::string& doing, double share)> progress;
 };
 

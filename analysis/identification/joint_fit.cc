@@ -14,7 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFollow_Hz = 60.0;
-constexpr int kThreads = 2;
 
 /// What two ways of stepping the same axis, this simulation and the emulated machine, were found to differ by
 /// in these parameters (docs/commissioning.md): nothing is known better than that. Relative.
@@ -154,7 +153,7 @@ diagnosis::LeastSquares Fit::WhiteErrors() const {
   diagnosis::LeastSquares p;
   const auto n = static_cast<Eigen::Index>(free_.size());
   p.residual = [this](const VectorXd& x) { return whitening_.Apply(Raw(x)); };
-  p.threads = kThreads;
+  p.threads = options_.threads;
   p.sigma.resize(n);
   p.step.resize(n);
   p.longest.resize(n);

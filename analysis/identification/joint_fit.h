@@ -30,6 +30,7 @@ struct FitOptions {
   int iterations = 12;            ///< of a round, at most
   double block_s = 1.0;           ///< for weights and for the spread
   bool spread = true;             ///< standard deviations are wanted
+  int threads = 1;
   std::function<void(double share)> progress;
 };
 

@@ -66,8 +66,9 @@ double LogError(const TableAxis& axis, const std::vector<Measured>& stretches) {
   return whitening.log_error();
 }
 
-FitOptions Options(bool screw, bool spread) {
+FitOptions Options(bool screw, bool spread, int threads) {
   FitOptions o;
+  o.threads = threads;
   o.screw = screw;
   o.stiffness = screw;
   o.spread = spread;
@@ -104,8 +105,9 @@ TableAxis Rigid(TableAxis axis) {
 }
 
 /// On from a fit until it foresees no better: the valley is long and bent.
-std::pair<double, TableAxis> FollowValley(TableAxis axis, const std::vector<Measured>& stretches) {
-  FitOptions on = Options(true, false);
+std::pair<double, TableAxis> FollowValley(TableAxis axis, const std::vector<Measured>& stretches,
+                                          int threads) {
+  FitOptions on = Options(true, false, threads);
   double error = LogError(axis, stretches);
   for (int i = 0; i < kLongestValley; ++i) {
     const TableAxis next = FitJointly(axis, stretches, on).axis;
@@ -205,7 +207,7 @@ std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, cons
   return stretches;
 }
 
-ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records) {
+ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records, int threads) {
   ShakenScrew s;
   const std::vector<Measured> stretches = ShakenStretches(records, start);
   for (const Measured& d : stretches) s.seconds += static_cast<double>(d.size()) * d.period_s;
@@ -215,16 +217,16 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
     s.why_not = "nothing shakes the axis above 100 Hz while it slides: the screw needs a chirp";
     return s;
   }
-  const TableAxis rigid = FitJointly(Rigid(start), stretches, Options(false, false)).axis;
+  const TableAxis rigid = FitJointly(Rigid(start), stretches, Options(false, false, threads)).axis;
   const double rigid_error = LogError(rigid, stretches);
   std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
   for (const TableAxis& from : Starts(start, stretches, s.highest_Hz)) {
-    const auto found = FollowValley(from, stretches);
+    const auto found = FollowValley(from, stretches, threads);
     const bool same = std::fabs(found.first - best.first) < kFoundAgain;
     if (found.first < best.first) best = found;
     if (same) break;
   }
-  FitOptions last = Options(true, true);
+  FitOptions last = Options(true, true, threads);
   last.refine = true;
   last.rounds = 1;
   JointFit fit = FitJointly(best.second, stretches, last);

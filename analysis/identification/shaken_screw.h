@@ -35,6 +35,6 @@ struct ShakenScrew {
 
 /// Two masses from every antiresonance that the shaking could show and several shares of the table, the best
 /// of them refined with delay, lag and friction; against one mass.
-ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records);
+ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records, int threads = 1);
 
 }  // namespace contour::identify

@@ -1,16 +1,15 @@
 #include "analysis/prediction_error/forward_filter.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <tuple>
 #include <utility>
 
+#include "analysis/parallel/parallel_for.h"
 #include "analysis/prediction_error/lane_bundle.h"
 #include "analysis/prediction_error/simd/lane_loops.h"
 
@@ -163,14 +162,7 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
   for (const auto& [shape, alike] : bundles)
     for (std::size_t i = 0; i < alike.size(); i += 2)
       work.push_back(std::span(alike).subspan(i, std::min<std::size_t>(2, alike.size() - i)));
-  std::atomic<std::size_t> next{0};
-  const auto run = [&] {
-    for (std::size_t i = next++; i < work.size(); i = next++) RunBundles(in, work[i]);
-  };
-  std::vector<std::thread> pool;
-  for (int t = 1; t < threads && static_cast<std::size_t>(t) < work.size(); ++t) pool.emplace_back(run);
-  run();
-  for (std::thread& t : pool) t.join();
+  ParallelFor(work.size(), threads, [&](std::size_t i) { RunBundles(in, work[i]); });
   for (auto& [key, means] : in.means) setup.store->Give(std::move(means));
   return runs;
 }

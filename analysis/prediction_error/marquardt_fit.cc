@@ -2,8 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <thread>
-#include <vector>
+
+#include "analysis/parallel/parallel_for.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -28,17 +28,12 @@ double LeastSquares::PriorAt(const Eigen::VectorXd& x) const { return x.cwiseQuo
 
 Eigen::MatrixXd LeastSquares::Jacobian(const Eigen::VectorXd& x, const Eigen::VectorXd& at_x) const {
   Eigen::MatrixXd jacobian(at_x.size(), x.size());
-  std::vector<std::thread> workers;
-  for (int w = 0; w < threads; ++w) {
-    workers.emplace_back([&, w] {
-      for (Eigen::Index i = w; i < x.size(); i += threads) {
-        Eigen::VectorXd moved = x;
-        moved(i) += step(i);
-        jacobian.col(i) = (residual(moved) - at_x) / step(i);
-      }
-    });
-  }
-  for (std::thread& w : workers) w.join();
+  ParallelFor(static_cast<std::size_t>(x.size()), threads, [&](std::size_t column) {
+    const auto i = static_cast<Eigen::Index>(column);
+    Eigen::VectorXd moved = x;
+    moved(i) += step(i);
+    jacobian.col(i) = (residual(moved) - at_x) / step(i);
+  });
   return jacobian;
 }
 

@@ -26,11 +26,12 @@ def diagnosis_floors(names):
 
 ANALYSIS = {
     "analysis/text": [],
+    "analysis/parallel": [],
     "analysis/recording": BELOW_ANALYSIS,
     "analysis/metrics": BELOW_ANALYSIS,
     "analysis/axis_model": ["core", "estimator", "config"],
     "analysis/prediction_error/simd": [],
-    "analysis/prediction_error": PREDICTION,
+    "analysis/prediction_error": ["analysis/parallel", *PREDICTION],
     "analysis/identification": ["core", "config", "analysis/text", *PREDICTION],
     "analysis/diagnosis/result": ["analysis/recording"],
     "analysis/diagnosis/tuning": ["analysis/diagnosis/result"],
@@ -65,7 +66,7 @@ MAY_INCLUDE = {
     "tools/doctor": ["core"],
     "tools/replay": BELOW_ANALYSIS,
     "tools/simulate": [*BELOW_ANALYSIS, "analysis/metrics", "tools/plant_emulator", "tools/machine"],
-    "tools/faults": [*BELOW_ANALYSIS, *SIMULATED],
+    "tools/faults": [*BELOW_ANALYSIS, "analysis/parallel", *SIMULATED],
     # Each way of validation is blind to the others.
     "tools/validation/contest": [*BELOW_ANALYSIS, "analysis/metrics", "design", *SIMULATED],
     "tools/validation/emps": [*BELOW_ANALYSIS, "analysis"],

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -11,8 +10,8 @@
 #include <iostream>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 
+#include "analysis/parallel/parallel_for.h"
 #include "core/exit_status.h"
 #include "tools/validation/contest/contest_plan.h"
 #include "tools/validation/contest/contest_report.h"
@@ -124,8 +123,7 @@ int RunContest(const Options& options) {
   CheckControllers(config, options.again, "--again");
   const std::vector<ContestCell> cells = PlanCells(config, choice, options.config, options.set);
   std::filesystem::create_directories(options.out);
-  const unsigned workers =
-      options.workers > 0 ? options.workers : std::max(1u, std::thread::hardware_concurrency());
+  const auto workers = static_cast<unsigned>(ThreadsOf(static_cast<int>(options.workers)));
   KeptCells kept(std::filesystem::path(options.out) / "cells.tsv", options.resume, options.again);
   const std::vector<CellResult> results = RunOrRecall(cells, kept, workers);
   const std::vector<Heat> heats = Heats(cells, results);
@@ -156,7 +154,7 @@ void AddContestCommand(CLI::App& app, Action& action) {
                   "KEY=VALUE: override a key of the machine file in every run; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  sub->add_option("--workers", options->workers, "Runs at a time; default: one per processor");
+  sub->add_option("--threads,--workers", options->workers, "Runs at a time; default: one per processor");
   sub->add_flag("--check", options->check, "Exit status 1 when an aim is missed");
   auto* resume =
       sub->add_flag("--resume", options->resume, "Runs that are in the directory already are not made again");

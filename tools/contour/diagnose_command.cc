@@ -1,6 +1,5 @@
 #include "tools/contour/diagnose_command.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -8,7 +7,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "analysis/axis_model/read_stated_axis.h"
@@ -18,6 +16,7 @@
 #include "analysis/diagnosis/report/diagnosis_text.h"
 #include "analysis/diagnosis/report/extended_file.h"
 #include "analysis/diagnosis/report/report.h"
+#include "analysis/parallel/parallel_for.h"
 #include "analysis/prediction_error/keep_memory.h"
 #include "analysis/recording/read_log.h"
 #include "config/config_error.h"
@@ -102,8 +101,7 @@ int RunDiagnose(const Options& options) {
   how.false_alarm_rate = options.false_alarm_rate;
   how.bootstrap_runs = options.bootstrap_runs;
   how.seed = options.seed;
-  how.threads = options.threads > 0 ? options.threads
-                                    : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  how.threads = ThreadsOf(options.threads);
   Diagnosis found;
   std::optional<ContourGain> contour;
   {

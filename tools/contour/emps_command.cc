@@ -1,13 +1,12 @@
 #include "tools/contour/emps_command.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "analysis/diagnosis/report/draw.h"
+#include "analysis/parallel/parallel_for.h"
 #include "tools/contour/terminal_progress.h"
 #include "tools/validation/emps/emps_report.h"
 
@@ -17,6 +16,7 @@ namespace {
 struct Options {
   std::string emps;
   std::string out = "docs/laboratory";
+  int threads = 0;
 };
 
 int RunEmps(const Options& options) {
@@ -30,7 +30,7 @@ int RunEmps(const Options& options) {
   emps::ReportOptions report;
   report.emps = options.emps;
   report.out = out;
-  report.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  report.threads = ThreadsOf(options.threads);
   report.progress = [&](std::string_view doing, double share) { progress.Show(doing, share); };
   emps::WriteEmpsReport(report);
   const std::filesystem::path data = out / "emps_data.csv";
@@ -48,6 +48,7 @@ void AddEmpsCommand(CLI::App& app, Action& action) {
       app.add_subcommand("emps", "Diagnosis of the EMPS recordings, a real axis, as docs/laboratory/emps.md");
   sub->add_option("--emps", options->emps, "Directory with emps_train.csv and emps_pulses.csv")->required();
   sub->add_option("--out", options->out, "Directory for emps.md and its pictures");
+  sub->add_option("--threads", options->threads, "Cores to use; 0: all")->check(CLI::Range(0, 256));
   sub->callback([options, &action] { action = [options] { return RunEmps(*options); }; });
 }
 

@@ -9,6 +9,7 @@
 
 #include "analysis/identification/identification.h"
 #include "analysis/identification/result_files.h"
+#include "analysis/parallel/parallel_for.h"
 
 namespace contour {
 namespace {
@@ -51,6 +52,7 @@ void Draw(const std::filesystem::path& directory) {
 void IdentifyAndReport(const IdentificationJob& job) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   identify::IdentifyOptions options;
+  options.threads = ThreadsOf(job.threads);
   options.progress = [&](const std::string& doing, double share) {
     if (terminal) std::fprintf(stderr, "\r\x1b[Kidentifying  %3.0f %%  %s", 100.0 * share, doing.c_str());
   };

@@ -18,6 +18,7 @@ struct IdentificationJob {
   std::vector<std::string> sources;  ///< named in the files
   std::filesystem::path out;         ///< the model
   std::filesystem::path report;      ///< directory; empty: none
+  int threads = 0;                   ///< 0: one per processor
 };
 
 /// Identifies, with progress on a terminal; writes the model, and with a report directory identification.json

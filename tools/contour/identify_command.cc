@@ -21,6 +21,7 @@ struct Options {
   std::string columns;
   std::string out;
   std::string report;
+  int threads = 0;
 };
 
 int RunIdentify(const Options& options) {
@@ -47,6 +48,7 @@ int RunIdentify(const Options& options) {
   job.sources = options.logs;
   job.out = options.out;
   job.report = options.report;
+  job.threads = options.threads;
   IdentifyAndReport(job);
   return kExitDone;
 }
@@ -66,6 +68,7 @@ void AddIdentifyCommand(CLI::App& app, Action& action) {
   sub->add_option("--columns", options->columns, "Headers of a table: time_s=t_s,torque_Nm=tau,...");
   sub->add_option("--out", options->out, "Model file to write")->required();
   sub->add_option("--report", options->report, "Directory for identification.json and pictures");
+  sub->add_option("--threads", options->threads, "Cores to use; 0: all")->check(CLI::Range(0, 256));
   sub->callback([options, &action] { action = [options] { return RunIdentify(*options); }; });
 }
 

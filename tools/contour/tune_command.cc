@@ -9,8 +9,8 @@
 #include <iostream>
 #include <memory>
 #include <stdexcept>
-#include <thread>
 
+#include "analysis/parallel/parallel_for.h"
 #include "config/config_error.h"
 #include "core/exit_status.h"
 #include "tools/validation/contest/contest_plan.h"
@@ -53,8 +53,7 @@ int RunTune(const Options& options) {
     throw ConfigError({options.contest + ": tune: missing, expected what is to be tuned"});
   const int evaluations =
       options.evaluations > 0 ? options.evaluations : static_cast<int>(config.tune.evaluations);
-  const unsigned workers =
-      options.workers > 0 ? options.workers : std::max(1u, std::thread::hardware_concurrency());
+  const auto workers = static_cast<unsigned>(ThreadsOf(static_cast<int>(options.workers)));
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   std::vector<TunedResult> results;
   for (const TunedController& c : Chosen(config.tune, options.controllers)) {
@@ -88,7 +87,7 @@ void AddTuneCommand(CLI::App& app, Action& action) {
   sub->add_option("--contest", options->contest, "What is tuned, and on what")->capture_default_str();
   sub->add_option("--controllers", options->controllers, "Only these controllers");
   sub->add_option("--evaluations", options->evaluations, "Budget of each; default: the contest file's");
-  sub->add_option("--workers", options->workers, "Runs at a time; default: one per processor");
+  sub->add_option("--threads,--workers", options->workers, "Runs at a time; default: one per processor");
   sub->add_option("--out", options->out, "YAML file for the tuned keys")->required();
   sub->callback([options, &action] { action = [options] { return RunTune(*options); }; });
 }

@@ -1,10 +1,9 @@
 #include "tools/faults/campaign.h"
 
-#include <algorithm>
-#include <atomic>
 #include <exception>
 #include <mutex>
-#include <thread>
+
+#include "analysis/parallel/parallel_for.h"
 
 namespace contour::faults {
 namespace {
@@ -25,21 +24,14 @@ RunResult RunOne(const FaultCase& c, const RunRequest& request) {
 std::vector<RunResult> RunCampaign(const std::vector<FaultCase>& cases, const RunRequest& request,
                                    unsigned threads, const std::function<void(std::size_t)>& progress) {
   std::vector<RunResult> results(cases.size());
-  std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::size_t done = 0;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < cases.size(); i = next++) {
-      results[i] = RunOne(cases[i], request);
-      const std::scoped_lock lock(mutex);
-      ++done;
-      if (progress) progress(done);
-    }
-  };
-  std::vector<std::jthread> pool;
-  for (unsigned t = 1; t < std::max(1U, threads); ++t) pool.emplace_back(work);
-  work();
-  pool.clear();
+  ParallelFor(cases.size(), static_cast<int>(threads), [&](std::size_t i) {
+    results[i] = RunOne(cases[i], request);
+    const std::scoped_lock lock(mutex);
+    ++done;
+    if (progress) progress(done);
+  });
   return results;
 }
 

@@ -11,10 +11,10 @@
 #include <mutex>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "analysis/diagnosis/diagnose.h"
+#include "analysis/parallel/parallel_for.h"
 #include "analysis/prediction_error/keep_memory.h"
 #include "analysis/text/format_text.h"
 #include "core/exit_status.h"
@@ -31,29 +31,14 @@ using Path = std::filesystem::path;
 
 /// Does work(i) for each i below `count` on so many threads, with progress on a terminal.
 void OnThreads(unsigned threads, std::size_t count, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next{0}, finished{0};
+  std::atomic<std::size_t> finished{0};
   const bool terminal = isatty(2) != 0;
-  std::exception_ptr failure;
-  std::mutex mutex;
-  const auto run = [&] {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        work(i);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        failure = std::current_exception();
-        next = count;
-      }
-      const std::size_t n = ++finished;
-      if (terminal) std::fprintf(stderr, "\r%zu of %zu", n, count);
-    }
-  };
-  std::vector<std::thread> others;
-  for (unsigned t = 1; t < threads; ++t) others.emplace_back(run);
-  run();
-  for (std::thread& t : others) t.join();
+  ParallelFor(count, static_cast<int>(threads), [&](std::size_t i) {
+    work(i);
+    const std::size_t n = ++finished;
+    if (terminal) std::fprintf(stderr, "\r%zu of %zu", n, count);
+  });
   if (terminal) std::fprintf(stderr, "\n");
-  if (failure) std::rethrow_exception(failure);
 }
 
 void PrintRecorded(const KnownCase& known) {
