@@ -8,6 +8,11 @@
 namespace contour {
 namespace {
 
+/// An emergency message waits its turn on the bus and for the drive's slow task,
+constexpr std::uint32_t kOnItsWay_cycles = 20;
+/// and for those before it: of a fault that was just reset, and of its end.
+constexpr double kMessages = 3.0;
+
 PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
   PerAxis<ControlledAxis> axes;
   for (const CycleAxisConfig& a : config.axes) {
@@ -70,12 +75,15 @@ Transitions::Config TransitionTimes(const CycleConfig& config) {
   const auto cycles = [&](double ms) { return static_cast<std::uint32_t>(ms * 1e3 / config.cycle_us) + 1; };
   double walk_ms = 0.0;
   double quick_stop_ms = 0.0;
+  double explain_ms = 0.0;
   for (const AxisDriveConfig& a : config.master.axes) {
     walk_ms = std::max(walk_ms, a.drive.transition_ms);
     quick_stop_ms = std::max(quick_stop_ms, a.drive.quick_stop_ms);
+    explain_ms = std::max(explain_ms, a.drive.notice_ms + kMessages * a.drive.emergency_inhibit_ms);
   }
   // From Switch On Disabled to Operation Enabled there are three transitions.
-  return {cycles(3.0 * walk_ms), cycles(1000.0 * StopOnPathTime_s(config) + quick_stop_ms), cycles(5000.0)};
+  return {cycles(3.0 * walk_ms), cycles(1000.0 * StopOnPathTime_s(config) + quick_stop_ms), cycles(5000.0),
+          cycles(explain_ms) + kOnItsWay_cycles};
 }
 
 ContourController MakeController(const CycleConfig& config) {

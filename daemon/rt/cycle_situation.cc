@@ -25,6 +25,8 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
   now.lost = FindLost(in);
   now.stop = FindStop();
   now.stuck = FindStuck();
+  if (const std::uint8_t where = transitions_.reason_where(); where < axes_.size())
+    now.says_lost_master = master_.status()[where].lost_master && Acts(Reason::kDriveLostMaster);
   if (const std::uint8_t bus = master_.second_master(); bus != DriveMaster::kNoBus)
     now.second_master = {Reason::kSecondMaster, bus};
   now.not_referenced = NotReferenced();
@@ -52,6 +54,9 @@ FaultSeen Cycle::FindFault() const noexcept {
       return {Reason::kDriveLeftEnabled, where};
     if (status.mode_changed && Acts(Reason::kModeChanged)) return {Reason::kModeChanged, where};
     if (status.not_following && Acts(Reason::kDriveNotFollowing)) return {Reason::kDriveNotFollowing, where};
+    // Before the torque is allowed the guard does not look, and the drives hold already.
+    if (state == MachineState::kEnabling && master_.feedback()[i].age_cycles >= most_skipped_)
+      return {Reason::kStaleFeedback, where};
     if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
   }
   return watch_.Fault();

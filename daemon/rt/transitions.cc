@@ -22,15 +22,16 @@ bool AllEnabled(const Situation& now) noexcept {
   return true;
 }
 
-bool AnyUnknown(const Situation& now) noexcept {
-  for (const DriveState s : now.drives)
-    if (s == DriveState::kUnknown) return true;
-  return false;
-}
-
 constexpr std::uint8_t kNone = 0xFF;
 /// Drives that gave no torque when the other master was seen are told "disable voltage" so often.
 constexpr std::uint32_t kCyclesToSilence = 10;
+
+/// Index of a drive that has not shown its state, or kNone.
+std::uint8_t UnknownDrive(const Situation& now) noexcept {
+  for (std::size_t i = 0; i < now.drives.size(); ++i)
+    if (now.drives[i] == DriveState::kUnknown) return static_cast<std::uint8_t>(i);
+  return kNone;
+}
 
 /// Index of a drive in Fault, or kNone.
 std::uint8_t FaultedDrive(const Situation& now) noexcept {
@@ -59,6 +60,7 @@ void Transitions::Enter(MachineState next) noexcept {
   state_ = next;
   stayed_ = since_;
   since_ = 0;
+  operational_ = 0;
   run_pending_ = false;
   reset_pending_ = false;
 }
@@ -80,6 +82,7 @@ Orders Transitions::Step(const Situation& now) noexcept {
   Orders orders;
   ++since_;
   drives_off_ = AllOff(now);
+  Explain(now);
   if (state_ == MachineState::kOff && !terminating_ && now.request.kind != RequestKind::kTerminate) {
     // The first bring-up begins by itself: finding and configuring drives moves nothing.
     orders.start_bring_up = true;
@@ -103,6 +106,22 @@ Orders Transitions::Step(const Situation& now) noexcept {
   SetGoals(orders);
   orders.fall_silent = SilentNow(now);
   return orders;
+}
+
+// What is seen of a drive that gets no set-points any more depends on speed and chance; it says itself why,
+// only later: it waits for its watchdog, and for the inhibit time of its emergency messages.
+void Transitions::Explain(const Situation& now) noexcept {
+  if (state_ != MachineState::kFaulted || !now.says_lost_master || since_ > config_.explain_cycles) return;
+  switch (reason_) {
+    case Reason::kFollowingError:
+    case Reason::kDriveFault:
+    case Reason::kDriveLeftEnabled:
+    case Reason::kDriveLeftOperational:
+      reason_ = Reason::kDriveLostMaster;
+      return;
+    default:
+      return;
+  }
 }
 
 // Two masters must not go on commanding one machine. The drives are brought to rest by their own ramp first,
@@ -270,25 +289,7 @@ void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
     case MachineState::kOff:
       break;
     case MachineState::kStarting:
-      if (orders.start_bring_up) break;
-      if (now.bring_up_failed) {
-        Fault(now.second_master.reason != Reason::kNone ? now.second_master
-                                                        : FaultSeen{Reason::kBringUpFailed, kNone});
-      } else if (now.operational && !now.bring_up_active && AnyUnknown(now) &&
-                 since_ <= config_.stop_timeout_cycles) {
-        break;  // what state a drive is in is not known before its first statusword
-      } else if (now.operational && !now.bring_up_active && FaultedDrive(now) != kNone) {
-        // A reset clears the drives' faults too; at the first start that is left to the operator.
-        if (!resetting_ || since_ > config_.stop_timeout_cycles)
-          Fault({Reason::kDriveFault, FaultedDrive(now)});
-      } else if (now.operational && !now.bring_up_active) {
-        reason_ = Reason::kNone;
-        where_ = 0xFF;
-        Enter(MachineState::kIdle);
-      } else if (!now.bring_up_active) {
-        // Lost again before all was well: nothing is under way any more, so nothing is waited for.
-        Fault(now.lost.reason != Reason::kNone ? now.lost : FaultSeen{Reason::kHeartbeatLost, kNone});
-      }
+      ProgressStarting(now, orders);
       break;
     case MachineState::kIdle:
       break;
@@ -317,6 +318,30 @@ void Transitions::Progress(const Situation& now, Orders& orders) noexcept {
   }
   if (terminating_ && !HoldsTorque(state_) && state_ != MachineState::kEnabling)
     orders.finished = drives_off_ || since_ > config_.stop_timeout_cycles;
+}
+
+// A reset clears the drives' faults too; at the first start that is left to the operator. The time for that,
+// and for the first statuswords, begins with the SYNCs that the drives answer: finding them may take long.
+void Transitions::ProgressStarting(const Situation& now, Orders& orders) noexcept {
+  if (orders.start_bring_up) return;
+  if (now.bring_up_failed) {
+    return Fault(now.second_master.reason != Reason::kNone ? now.second_master
+                                                           : FaultSeen{Reason::kBringUpFailed, kNone});
+  }
+  if (now.bring_up_active) return;
+  // Lost again before all was well: nothing is under way any more, so nothing is waited for.
+  if (!now.operational)
+    return Fault(now.lost.reason != Reason::kNone ? now.lost : FaultSeen{Reason::kHeartbeatLost, kNone});
+  const bool waits = ++operational_ <= config_.stop_timeout_cycles;
+  if (const std::uint8_t unknown = UnknownDrive(now); unknown != kNone) {
+    if (!waits) Fault({Reason::kStaleFeedback, unknown});
+  } else if (const std::uint8_t faulted = FaultedDrive(now); faulted != kNone) {
+    if (!resetting_ || !waits) Fault({Reason::kDriveFault, faulted});
+  } else {
+    reason_ = Reason::kNone;
+    where_ = kNone;
+    Enter(MachineState::kIdle);
+  }
 }
 
 void Transitions::ProgressReady(const Situation& now, Orders& orders) noexcept {

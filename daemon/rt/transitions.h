@@ -25,9 +25,11 @@ struct Situation {
   bool bring_up_failed = false;
   bool operational = false;  ///< all drives configured and Operational
   PerAxis<DriveState> drives;
-  FaultSeen fault;            ///< acts whenever drives are or may be enabled
-  FaultSeen lost;             ///< bus or drive lost: acts in every state but Off and Starting
-  FaultSeen stop;             ///< leaves time for a stop on the path, which then ends in Faulted
+  FaultSeen fault;  ///< acts whenever drives are or may be enabled
+  FaultSeen lost;   ///< bus or drive lost: acts in every state but Off and Starting
+  FaultSeen stop;   ///< leaves time for a stop on the path, which then ends in Faulted
+  /// The drive of the machine's reason says that it lost its master.
+  bool says_lost_master = false;
   std::uint8_t stuck = 0xFF;  ///< first drive whose transition has missed its deadline; 0xFF none
   FaultSeen second_master;  ///< another master on a bus: acts in every state but Off; a Faulted machine only
                             ///< falls silent
@@ -65,6 +67,8 @@ class Transitions {
     std::uint32_t stop_timeout_cycles =
         2000;  ///< for a stop on the path and for drives to leave Operation Enabled
     std::uint32_t prefetch_timeout_cycles = 5000;  ///< from a run request to enough path points
+    /// A drive takes so long to notice that its master is gone, and to be allowed to say so.
+    std::uint32_t explain_cycles = 130;
   };
   explicit Transitions(const Config& config) : config_(config) {}
 
@@ -106,7 +110,9 @@ class Transitions {
   void ProgressReady(const Situation& now, Orders& orders) noexcept;
   void ProgressRunning(const Situation& now, Orders& orders) noexcept;
   void ProgressStopping(const Situation& now, Orders& orders) noexcept;
+  void ProgressStarting(const Situation& now, Orders& orders) noexcept;
   void WatchIo(const Situation& now, Orders& orders) noexcept;
+  void Explain(const Situation& now) noexcept;
   [[nodiscard]] DriveGoal Goal() const noexcept;
   [[nodiscard]] bool SilentNow(const Situation& now) const noexcept;
 
@@ -117,6 +123,7 @@ class Transitions {
   MachineState after_stop_ = MachineState::kReady;
   std::uint32_t since_ = 0;
   std::uint32_t stayed_ = 0;
+  std::uint32_t operational_ = 0;  ///< cycles in Starting since the drives are operational
   std::uint32_t acknowledged_ = 0;
   bool acknowledged_ok_ = false;
   std::uint32_t program_id_ = 0;

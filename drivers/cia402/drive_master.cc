@@ -154,6 +154,7 @@ CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoi
 
   const std::uint16_t word = a.walk.Step(f.drive_state, setpoint.goal, elapsed_);
   goal_[axis] = setpoint.goal;
+  a.let_go_cycles = setpoint.goal == DriveGoal::kEnabled ? 0 : a.let_go_cycles + elapsed_;
   s.at_goal = a.walk.at_goal();
   s.transition_late = a.walk.late();
   s.stuck_in = a.walk.stuck_in();
@@ -178,6 +179,17 @@ CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoi
                                 a.torque_offset, torque);
 }
 
+// Of two controlwords before one SYNC the drive acts upon the last, and ours may never be that. A stopped
+// node takes no PDO at all, and by its abort connection option (0x6007, CiA 402) it leaves Operation Enabled;
+// only the next bring-up wakes it. Asked for again as long as it goes on answering: the other may start it
+// anew.
+bool DriveMaster::ObeysAnother(std::size_t axis) const noexcept {
+  const Axis& a = axes_[axis];
+  const AxisFeedback& f = feedback_[axis];
+  return buses_[a.bus].bring_up.second_master() && a.let_go_cycles > a.obeys_cycles && f.fresh &&
+         f.drive_state == DriveState::kOperationEnabled;
+}
+
 void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noexcept {
   const bool pdos = pdos_run_;
   for (std::size_t b = 0; b < buses_.size(); ++b) {
@@ -189,6 +201,9 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
         const AxisSetpoint setpoint = i < setpoints.size() ? setpoints[i] : AxisSetpoint{};
         out.push_back({SetpointFrame(i, setpoint), index, 0});
       }
+      for (std::size_t i = 0; i < axes_.size(); ++i)
+        if (axes_[i].bus == b && ObeysAnother(i))
+          out.push_back({NmtFrame(NmtCommand::kStop, axes_[i].node_id), index, 0});
       out.push_back({SyncFrame(), index, 0});
     }
     BringUp::Frames frames;

@@ -155,9 +155,9 @@ class DriveMaster {
   struct Axis {
     /// What is configured stays as constructed.
     void Keep(StateKeeper& keep) noexcept {
-      keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, reported, reported_cycle, alive_cycle,
-           answer_cycle, behind, earliest_answer_ns, reference, was_enabled, boot_up_due, seen_before,
-           last_seen_rad, offset_rad);
+      keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, let_go_cycles, reported,
+           reported_cycle, alive_cycle, answer_cycle, behind, earliest_answer_ns, reference, was_enabled,
+           boot_up_due, seen_before, last_seen_rad, offset_rad);
     }
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;
@@ -176,6 +176,8 @@ class DriveMaster {
     std::size_t patrolled = 0;               ///< its place in the patrol of its bus
     std::uint64_t follow_cycles = 0;         ///< bit 12 may be missing that long; 0: not watched
     std::uint64_t not_following_cycles = 0;
+    std::uint64_t obeys_cycles = 0;   ///< from a controlword to the statusword that shows it
+    std::uint64_t let_go_cycles = 0;  ///< since the goal is not kEnabled any more
     EmergencyReaction reported = EmergencyReaction::kNone;
     std::uint64_t reported_cycle = 0;  ///< when `reported` last grew
     std::uint64_t heartbeat_timeout_cycles = 0;
@@ -213,6 +215,7 @@ class DriveMaster {
   void StartPdos() noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
   [[nodiscard]] bool Healthy(std::size_t axis) const noexcept;
+  [[nodiscard]] bool ObeysAnother(std::size_t axis) const noexcept;
 
   std::vector<Axis> axes_;
   std::vector<Bus> buses_;

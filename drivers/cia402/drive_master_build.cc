@@ -105,6 +105,8 @@ DriveMaster::DriveMaster(const MasterConfig& config)
     axis.patrolled = patrols[a.bus].size();
     patrols[a.bus].push_back({axis.node_id, ModeOfOperation(d.mode), CyclesOf(d.sdo_ms, config.cycle_us)});
     if (d.follows_target_bit) axis.follow_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
+    // The statusword in which a controlword shows was latched a SYNC later, and comes another cycle later.
+    axis.obeys_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
     axis.heartbeat_timeout_cycles = CyclesOf(d.heartbeat_timeout_ms, config.cycle_us);
     if (!d.absolute_encoder && config.start_up != StartUp::kOfLogFormat4)
       axis.reference = ReferenceState::kNeverTold;

@@ -54,6 +54,50 @@ TEST(FaultRun, ALostFrameStopsNothingInEitherMode) {
   }
 }
 
+/// Cases of the long campaign that once failed, with their feeds: the run follows from both.
+struct OnceFailed {
+  Fault fault;
+  Phase phase;
+  DriveMode mode;
+  double feed_mm_s;
+  const char* axis;
+  const char* machine;
+};
+
+EmulatedMachineFile Machine(const char* name) {
+  const std::string folder = std::string(name) == "xy_emulated" ? CONTOUR_CONFIG_DIR : CONTOUR_FAULT_MACHINES;
+  return LoadEmulatedMachine(folder + "/" + name + ".yaml");
+}
+
+TEST(FaultRun, DrivesAndResetOnceFailed) {
+  using enum Phase;
+  using enum DriveMode;
+  const OnceFailed cases[] = {
+      // Another master's set-point comes last before SYNC: the drive never sees ours.
+      {Fault::kForeignSetpoint, kReversal, kCst, 4.83, "x", "xy_emulated"},
+      {Fault::kForeignSetpoint, kReversal, kCsp, 0.614, "x", "xy_emulated"},
+      // After a long bring-up the machine was Idle before the drive's fault was gone.
+      {Fault::kForeignSetpoint, kReset, kCst, 2.4, "y", "xy_emulated"},
+      {Fault::kForeignSync, kReset, kCsp, 45.5, "y", "xy_emulated"},
+      {Fault::kBusDown, kReset, kCsp, 0.105, "y", "heavy_table"},
+      {Fault::kForeignNmt, kReset, kCsp, 0.642, "z", "light_axis"},
+      // The drive says why only after what is seen of it.
+      {Fault::kSetpointsLost, kReset, kCst, 2.69, "y", "xy_emulated"},
+      {Fault::kSetpointsLost, kReset, kCst, 3.95, "z", "light_axis"},
+      {Fault::kSetpointsLost, kAcceleration, kCsp, 338.0, "z", "light_axis"},
+      // Nobody looked at the age of feedback before the torque was allowed.
+      {Fault::kFeedbackFramesLate, kEnabling, kCst, 1.78, "x", "heavy_table"},
+  };
+  for (const OnceFailed& once : cases) {
+    const EmulatedMachineFile file = Machine(once.machine);
+    FaultCase c = Case(once.fault, once.phase, once.feed_mm_s, once.mode);
+    c.axis_name = once.axis;
+    c.axis =
+        static_cast<std::size_t>(std::distance(file.machine.axes.begin(), file.machine.axes.find(once.axis)));
+    EXPECT_EQ(All(RunFault(c, {&file, 1, ""})), "") << Key(c);
+  }
+}
+
 class WithoutSupervisor : public ::testing::TestWithParam<Supervisor> {};
 
 /// The campaign on the fault that the supervisor is there for: holds with it, fails without it.

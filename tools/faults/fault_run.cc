@@ -288,10 +288,27 @@ class Run {
         result_.where = record().reason_axis;
         faulted_s_ = watch_.since_fault_s();
       }
+      SeeExplained();
       quiet_s = Quiet() ? quiet_s + period_s_ : 0.0;
-      if (result_.stopped && quiet_s > kSettle_s) break;
+      if (result_.stopped && quiet_s > kSettle_s + Explaining_s()) break;
     }
     if (result_.stopped && !Quiet()) Violated("still under torque and moving at the end");
+  }
+
+  /// A drive that gets no set-points says so itself, after what is seen of it; no other reason may change.
+  void SeeExplained() {
+    if (!result_.stopped || record().reason == result_.reason) return;
+    if (record().reason != Reason::kDriveLostMaster)
+      Violated("reason " + std::string(Name(result_.reason)) + " became " +
+               std::string(Name(record().reason)));
+    result_.reason = record().reason;
+  }
+  [[nodiscard]] double Explaining_s() const {
+    if (expected_.Allows(result_.reason) || !expected_.Allows(Reason::kDriveLostMaster)) return 0.0;
+    const DriveConfig& drive =
+        std::next(file_.machine.axes.begin(), static_cast<std::ptrdiff_t>(c_.axis))->second.drive;
+    constexpr double kMessages = 3.0;  // a fault's, that of its end, and the one that tells of the master
+    return 1e-3 * (drive.notice_ms + kMessages * drive.emergency_inhibit_ms);
   }
 
   void Judge() {

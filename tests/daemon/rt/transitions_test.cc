@@ -350,6 +350,65 @@ TEST_F(TransitionsTest, ResetClearsDriveFaultsTheFirstStartDoesNot) {
   EXPECT_EQ(machine_.state(), MachineState::kIdle);
 }
 
+TEST_F(TransitionsTest, TheTimeForADrivesFaultToGoBeginsWhenItIsFound) {
+  ToIdle();
+  SetDrives(DriveState::kFault);
+  Step(RequestKind::kReset);
+  now_.operational = false;
+  now_.bring_up_active = true;
+  for (int i = 0; i < 1000; ++i) Step();  // listening, booting: far longer than a stop may take
+  now_.operational = true;
+  now_.bring_up_active = false;
+  SetDrives(DriveState::kUnknown);
+  for (int i = 0; i < 3; ++i) Step();
+  EXPECT_EQ(machine_.state(), MachineState::kStarting) << "no statusword yet";
+  SetDrives(DriveState::kFault);
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kStarting) << "its reset is under way";
+  SetDrives(DriveState::kSwitchOnDisabled);
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+}
+
+TEST_F(TransitionsTest, ADriveThatNeverShowsItsStateIsNotMadeIdle) {
+  SetDrives(DriveState::kSwitchedOn);
+  now_.drives[1] = DriveState::kUnknown;
+  for (int i = 0; i < 100; ++i) Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kStaleFeedback);
+  EXPECT_EQ(machine_.reason_where(), 1);
+}
+
+TEST_F(TransitionsTest, ADriveThatLaterSaysThatItLostItsMasterExplainsWhatWasSeenOfIt) {
+  ToRunning();
+  now_.fault = {Reason::kFollowingError, 1};
+  Step();
+  now_.fault = {};
+  EXPECT_EQ(machine_.reason(), Reason::kFollowingError);
+  now_.says_lost_master = true;
+  Step();
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kDriveLostMaster);
+  EXPECT_EQ(machine_.reason_where(), 1);
+}
+
+TEST_F(TransitionsTest, WhatADriveSaysMuchLaterOrOfAnotherCauseExplainsNothing) {
+  for (const bool late : {false, true}) {
+    machine_ = Transitions({10, 20, 30, 50});
+    now_.path_prefetched = now_.says_lost_master = false;
+    SetDrives(DriveState::kSwitchedOn);
+    ToReady();
+    now_.fault = {late ? Reason::kFollowingError : Reason::kFeedbackJump, 0};
+    Step();
+    const Reason reason = now_.fault.reason;
+    now_.fault = {};
+    for (int i = 0; i < (late ? 60 : 1); ++i) Step();
+    now_.says_lost_master = true;
+    Step();
+    EXPECT_EQ(machine_.reason(), reason);
+  }
+}
+
 TEST_F(TransitionsTest, APathThatBeginsElsewhereIsRefused) {
   ToReady();
   Step(RequestKind::kRun, 4);

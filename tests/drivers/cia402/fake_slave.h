@@ -35,6 +35,7 @@ class FakeSlave : public BusNode {
     std::int64_t tpdo_ns = 20'000;  ///< from SYNC to its TPDO
     bool unanswered = false;        ///< no TPDO
     bool follows = true;            ///< bit 12 while enabled
+    bool obeys_another = false;     ///< another master's RPDO comes last before each SYNC, unless stopped
   };
 
   explicit FakeSlave(std::uint8_t node_id) : node_id_(node_id) {
@@ -211,7 +212,7 @@ class FakeSlave : public BusNode {
     const std::uint32_t type = Value({0x1800, 2});
     if ((cob_id & 0x80000000) == 0 && type >= 1 && type <= 240)
       if (!behaviour.unanswered) out.push_back({Feedback(cob_id), time_ns + behaviour.tpdo_ns});
-    if (rpdo_waiting_) Apply();
+    if (rpdo_waiting_ && !behaviour.obeys_another) Apply();
     if (state_ == DriveState::kOperationEnabled) velocity_ += torque_;
     if (state_ != DriveState::kOperationEnabled) velocity_ = 0;
   }

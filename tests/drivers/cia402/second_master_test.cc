@@ -125,6 +125,42 @@ TEST(SecondMaster, SeenInOperationItIsNamedAndTheDrivesStayInHand) {
   }
 }
 
+TEST(SecondMaster, ADriveThatObeysTheOtherOneIsStoppedByNmt) {
+  Machine m(Listening());
+  m.BringUp();
+  m.Reach(DriveGoal::kEnabled);
+  m.slave[0].behaviour.obeys_another = true;
+  m.Inject(NmtFrame(NmtCommand::kStart, 0));
+  m.Cycles(2);
+  ASSERT_NE(m.master.second_master(), DriveMaster::kNoBus);
+  EXPECT_EQ(m.slave[0].nmt(), NmtState::kOperational) << "still enabled, as it shall be";
+  m.Goal(DriveGoal::kQuickStop);
+  m.Cycles(8);
+  EXPECT_EQ(m.slave[0].nmt(), NmtState::kStopped);
+  EXPECT_EQ(m.slave[1].nmt(), NmtState::kOperational) << "it obeys";
+  EXPECT_EQ(m.slave[1].state(), DriveState::kSwitchOnDisabled);
+
+  m.Inject(NmtFrame(NmtCommand::kStart, 0));
+  m.Cycles(8);
+  EXPECT_EQ(m.slave[0].nmt(), NmtState::kStopped) << "as often as the other one starts it";
+
+  m.slave[0].behaviour.obeys_another = false;
+  m.master.FallSilent();
+  m.Cycles(kListen_cycles + 10);
+  m.BringUp();
+  EXPECT_TRUE(m.master.operational()) << "a bring-up wakes it";
+}
+
+TEST(SecondMaster, NoOtherDriveThatDoesNotObeyIsStoppedByNmt) {
+  Machine m(Listening());
+  m.BringUp();
+  m.Reach(DriveGoal::kEnabled);
+  m.slave[0].behaviour.obeys_another = true;  // slow to act, for all we know
+  m.Goal(DriveGoal::kQuickStop);
+  m.Cycles(50);
+  EXPECT_EQ(m.slave[0].nmt(), NmtState::kOperational);
+}
+
 TEST(SecondMaster, AServiceToolBesideUsIsNone) {
   Machine m(Listening());
   m.BringUp();
