@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/quantification/detectable.h"
@@ -85,8 +86,8 @@ Seen Look(Rounds& r) {
   seen.jitter = TestJitter(r.problem, r.accepted.fit);
   if (r.first) {
     KeepFirst(seen.scored, r.out);
-    r.out.candidates.push_back(
-        {"sample_jitter", ScoreOf(seen.jitter), std::numeric_limits<double>::quiet_NaN(), false});
+    r.out.candidates.push_back({std::string(*CauseInScatter().name), ScoreOf(seen.jitter),
+                                std::numeric_limits<double>::quiet_NaN(), false});
     r.out.gate = Threshold(r.problem, seen.gate);
     r.first = false;
   }

@@ -50,7 +50,7 @@ void MakeConsistent(const Problem& problem, const Point& point, Eigen::MatrixXd&
       const double a = point.amplitudes[e][i];
       if (!effect.force.empty() && effect.force[i] != 0 && a != 0.0)
         all -= effect.force[i] * a * jacobian.col(column);
-      if (effect.kind == "torque_constant") factors.emplace_back(column, 1.0 + a);
+      if (effect.common_factor) factors.emplace_back(column, 1.0 + a);
     }
   }
   if (term >= 0) jacobian.col(term) = all;

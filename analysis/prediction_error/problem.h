@@ -48,10 +48,11 @@ struct Effect {
   /// Acts as this base term does from a row on, which saves the runs of the test; empty: runs.
   std::string as_term;
   std::size_t from_row = 0;
-  double order = 0.0;      ///< of a wave: per turn, or Hz; of other shapes: an exponent, a knee, a time
-  bool wave = false;       ///< several orders of one kind may be there
-  double middle = 0.0;     ///< of a wave with free order: rad about which the order turns
-  std::vector<int> force;  ///< power of a torque (a force) in each amplitude's unit; empty: none in any
+  double order = 0.0;          ///< of a wave: per turn, or Hz; of other shapes: an exponent, a knee, a time
+  bool wave = false;           ///< several orders of one kind may be there
+  double middle = 0.0;         ///< of a wave with free order: rad about which the order turns
+  bool common_factor = false;  ///< its one amplitude a: 1 + a times the torque
+  std::vector<int> force;      ///< power of a torque (a force) in each amplitude's unit; empty: none in any
   std::function<void(const std::vector<double>&, AxisModel&)> apply;
 };
 using SharedEffect = std::shared_ptr<const Effect>;

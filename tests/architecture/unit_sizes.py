@@ -17,14 +17,6 @@ MOST_LINES_OF_FUNCTION = 60
 MOST_PARAMETERS = 6
 # What is still larger: "file", "file:Function" (lines), "file:Function()" (parameters), "file:member_".
 LARGER = {
-    "analysis/diagnosis/causes/effects.cc": 503,
-    "analysis/diagnosis/causes/effects.cc:Custom()": 8,
-    "analysis/diagnosis/causes/effects.cc:AddFriction": 113,
-    "analysis/diagnosis/causes/effects.cc:ShapedEffect()": 8,
-    "analysis/diagnosis/causes/effects.cc:AddMechanics": 80,
-    "analysis/diagnosis/causes/effects.cc:WaveEffect": 83,
-    "analysis/diagnosis/causes/experiments.cc:DecidingExperiment": 67,
-    "analysis/diagnosis/causes/parameters.cc:Evaluate": 84,
     "analysis/diagnosis/decision/rivals.cc": 413,
     "analysis/diagnosis/quantification/detectable.cc:KeepDetectable()": 7,
     "analysis/diagnosis/screening/jitter.cc:TestJitter": 85,

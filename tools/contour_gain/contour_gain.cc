@@ -4,12 +4,14 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/extensions_of.h"
-#include "config/extended_model.h"
 #include "config/number_text.h"
+#include "tools/machine/assigned_axis.h"
 #include "tools/validation/contest/contest_cell.h"
 
 namespace contour::diagnosis {
@@ -67,63 +69,28 @@ StatedAxis Fitted(StatedAxis a, const Diagnosis& found) {
   return a;
 }
 
-RippleEffect Ripple(const RippleExtension& r) {
-  RippleEffect e = {{r.amplitude_rel, r.order_per_rev, r.phase_rad}, {}};
-  for (const RippleWave& w : r.further) e.further.push_back({w.amplitude_rel, w.order_per_rev, w.phase_rad});
-  return e;
-}
-
-CoggingEffect Cogging(const CoggingExtension& c) {
-  CoggingEffect e = {{c.amplitude_Nm, c.order_per_rev, c.phase_rad}, {}};
-  for (const CoggingWave& w : c.further) e.further.push_back({w.amplitude_Nm, w.order_per_rev, w.phase_rad});
-  return e;
-}
-
-ViscousTerm Curve(const ViscousCurve& c) {
-  return {c.torque_at_max_speed_Nm, c.max_speed_rad_s, std::clamp(c.exponent, 1.0, 4.0), c.knee_rad_s};
-}
-
-ViscousNonlinearEffect Viscous(const ViscousNonlinearExtension& x) {
-  ViscousNonlinearEffect e = {Curve(x), {}};
-  for (const ViscousCurve& c : x.further) e.further.push_back(Curve(c));
-  return e;
-}
-
-/// Causes as effects of the emulated machine, from the extensions they are.
-EffectsConfig Effects(const ExtensionsConfig& x) {
-  EffectsConfig e;
-  if (x.asymmetric_coulomb)
-    e.asymmetric_coulomb = AsymmetricCoulombEffect{x.asymmetric_coulomb->difference_rel};
-  if (x.constant_torque) e.constant_torque = ConstantTorqueEffect{x.constant_torque->torque_Nm};
-  if (x.stribeck) e.stribeck = StribeckEffect{x.stribeck->Fs_over_Fc, x.stribeck->vs_rad_s};
-  if (x.position_friction)
-    e.friction_map = FrictionMapEffect{x.position_friction->position_mm, x.position_friction->friction_rel};
-  if (x.friction_ripple) e.friction_ripple = Ripple(*x.friction_ripple);
-  if (x.ball_ripple) e.ball_ripple = Ripple(*x.ball_ripple);
-  if (x.cogging) e.cogging = Cogging(*x.cogging);
-  if (x.viscous_nonlinear) e.viscous_nonlinear = Viscous(*x.viscous_nonlinear);
-  if (x.temperature_viscosity)
-    e.temperature_viscosity = TemperatureViscosityEffect{x.temperature_viscosity->rate_1_K};
-  if (x.torque_constant) e.torque_constant = TorqueConstantEffect{x.torque_constant->ratio};
-  if (x.input_delay) e.input_delay = InputDelayEffect{std::max(0.0, x.input_delay->delay_us)};
-  if (x.current_lag) e.current_lag = CurrentLagEffect{std::max(0.0, x.current_lag->time_constant_us)};
-  if (x.pitch_error) e.pitch_map = PitchMapEffect{x.pitch_error->position_mm, x.pitch_error->error_um};
-  return e;
+/// Causes as changes of the emulated machine, from the extensions they are.
+EmulatedAxisConfig WithCauses(EmulatedAxisConfig axis, const ModelConfig& stated,
+                              const ExtensionsConfig& all) {
+  Assignments changes;
+  for (const CauseDefinition* cause : AllCauses()) {
+    const ExtensionRule* rule = cause->extension;
+    if (rule == nullptr || rule->simulation == nullptr) continue;
+    for (std::string& change : (*rule->simulation)(stated, all)) changes.push_back(std::move(change));
+  }
+  return Assigned(axis, changes);
 }
 
 /// What the stated numbers of a model have in them already.
 ExtensionsConfig WithoutNumbers(ExtensionsConfig x) {
-  x.asymmetric_coulomb.reset();
-  x.stribeck.reset();
-  x.torque_constant.reset();
-  x.compliance.reset();
-  x.input_delay.reset();
-  x.current_lag.reset();
+  for (const CauseDefinition* cause : AllCauses())
+    if (cause->extension != nullptr && cause->extension->number_of_the_model) (*cause->extension->remove)(x);
   return x;
 }
 
-/// Kinds that Effects() knows, and stiffness, which is in the fitted numbers.
-bool Simulated(const std::string& kind) { return CanExtend(kind) && kind != "cable_spring"; }
+bool Simulated(const std::string& kind) {
+  return CanExtend(kind) && CauseNamed(kind).extension->simulation != nullptr;
+}
 
 double Peak_um(const MachineConfig& machine, const EmulatorConfig& emulator, const Program& program) {
   ContestCell cell;
@@ -170,18 +137,8 @@ std::optional<ContourGain> PredictContourGain(const MachineConfig& machine, cons
     const StatedAxis stated = ToStatedAxis(machine, name);
     EmulatedAxisConfig& e = emulator.axes[name];
     e = Emulated(name == axis ? Fitted(stated, found) : stated, config);
-    const ExtensionsConfig there = name == axis ? all : WithoutNumbers(config.model.extensions);
-    e.effects = Effects(there);
     e.temperature.start_degC = e.temperature.ambient_degC = temperature.farthest_degC;
-    if (there.temperature_viscosity)
-      e.temperature.reference_degC = there.temperature_viscosity->reference_degC;
-  }
-  EmulatedAxisConfig& diagnosed = emulator.axes.at(axis);
-  if (all.compliance) {
-    ModelConfig with = machine.axes.at(axis).model;
-    with.extensions.compliance = all.compliance;
-    diagnosed.screw_stiffness_N_um = Extended(with).mechanics.screw_stiffness_N_um;
-    diagnosed.screw_damping_Ns_m = Extended(with).mechanics.screw_damping_Ns_m;
+    e = WithCauses(e, config.model, name == axis ? all : WithoutNumbers(config.model.extensions));
   }
   ContourGain gain;
   gain.program = program.name;

@@ -85,7 +85,7 @@ Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<d
   }
   Leftover out;
   out.over = rows.over;
-  out.like = rows.like;
+  out.quantity = rows.quantity;
   out.series = rows.series;
   out.margin = rows.margin;
   double most = 0.0;

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/tuning/margins.h"
 #include "analysis/prediction_error/fit.h"
 
@@ -17,7 +18,7 @@ struct BinnedRows {
   std::vector<double> size;  ///< per row: what a unit in the bin does there; empty: 1 everywhere
   int count = 0;
   std::function<std::string(int)> place;  ///< of a bin, in plain words
-  std::string like;                       ///< a kind whose experiment shows more of it
+  Quantity quantity = Quantity::kTime;
   /// Causes of it come as a series, order by order: what is left are further orders, which make no name
   /// wrong.
   bool series = false;
@@ -27,7 +28,8 @@ struct BinnedRows {
 /// What a residual still has of one quantity, whatever its shape: the drop of chi^2 by a torque (or a level
 /// of friction) that is free in every bin.
 struct Leftover {
-  std::string over, like;
+  std::string over;
+  Quantity quantity = Quantity::kTime;
   bool series = false;
   std::string_view margin = kUnexplainedAll;
   double asked = 0.0;  ///< the score that something unknown must exceed

@@ -49,22 +49,22 @@ class Maps {
   std::vector<BinnedRows> All() {
     const Range x = RangeOf(s_.table_m);
     BothWays(
-        "the position", "position_friction", kPlaces,
+        "the position", Quantity::kPosition, kPlaces,
         [&](std::size_t k) { return x.Bin(s_.table_m[k], kPlaces); },
         [x, middle_m = s_.middle_m](int b) { return Text(1e3 * (x.Middle(b, kPlaces) + middle_m), "mm"); });
     BothWays(
-        "the speed", "viscous_nonlinear", kSpeeds, [&](std::size_t k) { return SpeedBin(s_, k); },
+        "the speed", Quantity::kSpeed, kSpeeds, [&](std::size_t k) { return SpeedBin(s_, k); },
         [fastest_m_s = s_.max_speed * p_.stated_.table_per_q](int b) {
           return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kSpeeds), 2), "mm/s");
         });
     const std::vector<double> way = WaySinceReversal(s_);
     const Range log_way{std::log(kShortestWay_m), std::log(2.0 * s_.half_stroke_m + kShortestWay_m)};
     BothWays(
-        "the way since the last reversal", "stribeck", kWays,
+        "the way since the last reversal", Quantity::kTravelSinceReversal, kWays,
         [&](std::size_t k) { return log_way.Bin(std::log(way[k] + kShortestWay_m), kWays); },
         [log_way](int b) { return Text(1e3 * std::exp(log_way.Middle(b, kWays)), "mm after a reversal"); });
     BothWays(
-        "the angle of the motor", "cogging", kAngles,
+        "the angle of the motor", Quantity::kAngle, kAngles,
         [&](std::size_t k) {
           const double turns = s_.angle_rad[k] / kTurn;
           return Range{}.Bin(turns - std::floor(turns), kAngles);
@@ -74,7 +74,7 @@ class Maps {
     if (!s_.temperature_K.empty()) {
       const Range t = RangeOf(s_.temperature_K);
       BothWays(
-          "the temperature", "temperature_viscosity", kTemperatures,
+          "the temperature", Quantity::kTemperature, kTemperatures,
           [&](std::size_t k) { return t.Bin(s_.temperature_K[k], kTemperatures); },
           [t, mean_degC = s_.mean_degC](int b) {
             return Text(t.Middle(b, kTemperatures) + mean_degC, "degC");
@@ -87,10 +87,10 @@ class Maps {
 
  private:
   template <class BinOf, class PlaceOf>
-  void BothWays(const char* over, const char* like, int count, BinOf&& bin_of, PlaceOf place) {
+  void BothWays(const char* over, Quantity quantity, int count, BinOf&& bin_of, PlaceOf place) {
     BinnedRows rows;
     rows.over = std::string(over) + " and the direction";
-    rows.like = like;
+    rows.quantity = quantity;
     rows.bin.assign(n_, -1);
     rows.count = 2 * count;
     for (std::size_t k = 0; k < n_; ++k)
@@ -106,7 +106,7 @@ class Maps {
     const int count = std::max(1, static_cast<int>(time.high / each_s));
     BinnedRows rows;
     rows.over = over;
-    rows.like = "friction_drift";
+    rows.quantity = Quantity::kTime;
     rows.bin.assign(n_, -1);
     rows.size = size;
     rows.margin = margin;

@@ -12,7 +12,4 @@ void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, C
 void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, const Eigen::MatrixXd& draws,
                     Cause& cause);
 
-/// Main parameter of a kind, the one that `smallest_detectable` is stated in.
-std::string MainParameter(const std::string& kind);
-
 }  // namespace contour::diagnosis

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
@@ -68,13 +69,13 @@ void AcceptFirst(const Problem& problem, const std::vector<Rival>& rivals, const
   cause.deciding_program = experiment.program;
   accepted.scatter.push_back(ExcessOfLast(problem, best.fit) * kFewStrokes * kFewStrokes);
   std::vector<BlockGain> blocks;
-  HeldOutGain(problem, accepted.fit, best.fit, cause.kind == "pitch_error", cause, blocks);
+  HeldOutGain(problem, accepted.fit, best.fit, CauseNamed(cause.kind).judged_at_scale, cause, blocks);
   if (out.causes.empty()) out.blocks = blocks;
   out.causes.push_back(std::move(cause));
   accepted.places.push_back(best.fit.point.effects.size() - 1);
   const std::string& kind = best.effect().kind;
   accepted.explained += best.score;
-  if (kind == "presliding_hysteresis") accepted.in_presliding = best.score;
+  if (CauseNamed(kind).takes_up_another_law) accepted.in_presliding = best.score;
   accepted.left += UnlikeShare(kind) * best.score;
   accepted.left_of_kind[kind] += LikeShare(kind) * best.score;
   accepted.fit = best.fit;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/screening/firm_slides.h"
 
@@ -25,7 +26,7 @@ bool Holds(const Problem& problem, const Fit& current, const Rival& r, double te
   Cause cause;
   std::vector<BlockGain> blocks;
   if (gate.accepted > 0) {
-    HeldOutGain(problem, current, r.fit, r.effect().kind == "pitch_error", cause, blocks);
+    HeldOutGain(problem, current, r.fit, CauseNamed(r.effect().kind).judged_at_scale, cause, blocks);
     if (cause.heldout_gain_high < 0.0) return false;
   }
   if (Consistency(problem, current, r.fit, true) > kConsistent) return true;

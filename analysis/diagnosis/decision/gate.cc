@@ -5,6 +5,7 @@
 #include <random>
 #include <string_view>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/chi_square.h"
 #include "analysis/diagnosis/tuning/margins.h"
 
@@ -70,7 +71,7 @@ namespace {
 /// `covariance`: of what the log says about the numbers that the kind frees.
 double VagueBy(const Problem& problem, const std::string& kind, const Eigen::MatrixXd& covariance) {
   // All forces at once: what the log leaves of each of them counts.
-  if (kind == "torque_constant" || !InBase(problem, kind)) return 1.0;
+  if (CauseNamed(kind).common_factor || !InBase(problem, kind)) return 1.0;
   const std::vector<std::size_t> terms = FreedTerms(problem, kind);
   double most = 0.0;
   for (std::size_t i = 0; i < terms.size(); ++i) {
@@ -102,7 +103,7 @@ Showing ShowingOf(const Problem& problem, const Fit& fit) {
   }
   const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
   // The base's term goes on having its prior; what is free scatters by as much more.
-  showing.vague = kind == "torque_constant"
+  showing.vague = CauseNamed(kind).common_factor
                       ? 1.0
                       : std::max(0.0, VagueBy(problem, kind, fit.covariance.bottomRightCorner(n, n)) - 1.0);
   return showing;

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/screening/firm_slides.h"
 #include "analysis/diagnosis/screening/full_size.h"
 #include "analysis/prediction_error/common_factor.h"
@@ -16,9 +16,6 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kMostDamped = 1.0,
-                 kLeastShare = 0.1;  // logarithm of the damping ratio over 0.04; of the inertia
-constexpr double kNothingBehind = 0.01, kMostBent = 4.0;  // of the inertia; power of the speed
 constexpr double kNever = -1e300;
 constexpr double kSmall = 60.0, kNoLuck = 300.0;  // drops
 constexpr std::size_t kMostKinds = 4, kMostTried = 6;
@@ -48,19 +45,14 @@ void Sort(std::vector<Rival>& rivals) {
 }
 
 bool AddsCoupling(const Problem& problem, const Rival& r) {
-  return r.effect().kind == "compliance" && !problem.nominal_.two_inertia;
+  return CauseNamed(r.effect().kind).coupling && !problem.nominal_.two_inertia;
 }
 
-/// Damped as no coupling is, or with next to nothing behind it: it stands for something else.
-bool NoCoupling(const Rival& r) {
-  const std::vector<double>& a = r.fit.point.amplitudes.back();
-  return (a[2] > kMostDamped && a[0] < kLeastShare) || a[0] < kNothingBehind;
-}
-
-/// Bent as no drag is: it stands for what happens at the highest speed.
-bool NoDrag(const Rival& r) {
-  const Effect& e = r.effect();
-  return e.kind == "viscous_nonlinear" && e.order * std::exp(r.fit.point.amplitudes.back()[1]) > kMostBent;
+/// Where the fit has gone the cause is not what its name says.
+bool Implausible(const Problem& problem, const Rival& r) {
+  const CauseDefinition& cause = CauseNamed(r.effect().kind);
+  return cause.implausible != nullptr &&
+         (*cause.implausible)(problem, r.effect(), r.fit.point.amplitudes.back());
 }
 
 /// A coupling that every screw has.
@@ -72,7 +64,7 @@ bool NoFault(const Problem& problem, const Rival& r) {
 void Judge(const Problem& problem, const Fit& current, Rival& r) {
   // A start may be no machine at all.
   const bool coupling = AddsCoupling(problem, r);
-  const bool out = !std::isfinite(r.fit.cost) || (coupling && NoCoupling(r)) || NoDrag(r);
+  const bool out = !std::isfinite(r.fit.cost) || Implausible(problem, r);
   r.no_fault = !out && coupling && NoFault(problem, r);
   r.score = out ? kNever : DropOf(problem, current, r.fit) - Penalty(r.effect());
 }
@@ -101,8 +93,7 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
   const std::vector<std::size_t> freed = FreedTerms(problem, s.effect->kind);
   for (std::size_t i = 0; i < freed.size() && i < a.size(); ++i) start.base[freed[i]] -= a[i];
   start.amplitudes.push_back(std::move(a));
-  if (s.effect->kind == "torque_constant")
-    ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
+  if (s.effect->common_factor) ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
   return {std::move(start),
           {.most_steps = 3,
            .most_refreshes = 1,
@@ -113,11 +104,10 @@ Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
           &current};
 }
 
-/// Of a kind, what no fit leads from one to the other: a drag that bends with a power of the speed and one
-/// with a knee differ in how much of it is linear.
+/// Of a kind, what no fit leads from one to the other.
 std::string FamilyOf(const Effect& effect) {
-  const bool knee = effect.kind == "viscous_nonlinear" && effect.order < 1.0;
-  return effect.kind + (knee ? " with a knee" : "");
+  const CauseDefinition& cause = CauseNamed(effect.kind);
+  return effect.kind + (cause.family == nullptr ? "" : std::string((*cause.family)(effect)));
 }
 
 bool Among(const std::vector<std::string>& families, const Scored& s) {
@@ -140,7 +130,7 @@ void OneOfEach(std::vector<Rival>& rivals) {
 std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
                            const std::vector<Scored>& scored) {
   Place best, stiff;
-  const bool coupling = kind == "compliance" && !problem.nominal_.two_inertia;
+  const bool coupling = CauseNamed(kind).coupling && !problem.nominal_.two_inertia;
   for (Place& p : FullSize(problem, current, kind, scored)) {
     Place& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
     if (p.cost < of.cost) of = std::move(p);

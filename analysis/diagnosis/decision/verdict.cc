@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
 #include "analysis/diagnosis/decision/rivals.h"
 
@@ -25,7 +25,7 @@ std::string LeftoverText(const Problem& problem, const Leftover& left) {
                 left.drop, left.bins, left.at.c_str(), linear ? left.amount : 1e3 * left.amount,
                 linear ? "N" : "mN m");
   return "What is left depends on " + left.over + " (" + size.data() +
-         "). To see more of it: " + DecidingExperiment(problem, left.like, {}).text;
+         "). To see more of it: " + ExperimentOn(problem, left.quantity);
 }
 
 std::string NearestText(const std::vector<Cause>& causes) {
@@ -44,12 +44,12 @@ void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnos
       beyond = std::max(beyond, one.drop - one.bins);
   // A shape that was fitted, but is none of the catalogue, is no explanation either.
   for (const Cause& c : out.causes) (Outside(c.kind) ? beyond : named) += 2.0 * c.log_evidence_gain;
-  const bool scale = !out.causes.empty() && out.causes[0].kind == "pitch_error";
+  const bool scale = !out.causes.empty() && CauseNamed(out.causes[0].kind).judged_at_scale;
   const bool unexplained = beyond > (scale ? kLargeBesideScale : kLargeShare) * (named + beyond);
   for (const Cause& c : out.causes)
     if (Outside(c.kind))
       out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
-                          c.kind.substr(std::string_view(kOutside).size()) + ".");
+                          c.kind.substr(kOutside.size()) + ".");
   std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind); });
   if (something) out.notes.push_back(LeftoverText(problem, left[0]));
   if (unexplained) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/screening/full_size.h"
 #include "analysis/prediction_error/products.h"
@@ -14,29 +14,6 @@
 
 namespace contour::diagnosis {
 namespace {
-
-// Beyond this, the first amplitude of a kind is no small flaw any more but another machine.
-double Largest(const Problem& p, const std::string& kind) {
-  const Signals& s = *p.signals_;
-  const double Fc = s.coulomb;
-  if (kind == "constant_torque" || kind == "cogging" || kind == "periodic_force") return 0.7 * Fc;
-  if (kind == "cable_spring" || kind == "viscous_nonlinear") return 1.5 * Fc;
-  if (kind == "temperature_viscosity") return 0.15;
-  if (kind == "torque_saturation") return 0.3;
-  if (kind == "torque_constant") return 0.35;
-  if (kind == "payload_step") return 1.0;
-  if (kind == "input_delay" || kind == "current_lag") return 3.0 * p.log_.period_s;
-  if (kind == "backlash") return 200e-6 / p.stated_.table_per_q;
-  if (kind == "encoder_eccentricity" || kind == "encoder_subdivision") return 0.02 / s.angle_per_q;
-  if (kind == "pitch_error") return 1e-3;
-  if (kind == "cross_coupling") {
-    double top = 0.0;
-    for (const double a : s.axis2_m_s2) top = std::max(top, std::fabs(a));
-    return top > 0.01 ? Fc / top : 0.0;
-  }
-  if (kind == "stribeck" || kind == "compliance") return 1.5;
-  return 0.7;
-}
 
 // A cause must also hold in several blocks, in unseen halves and against its rivals, and the rest of the fit
 // takes a part of it over: by recorded machines (docs/diagnosis_results.md).
@@ -178,7 +155,8 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   std::vector<Point> points;
   std::vector<const Scored*> places;
   for (const Scored& s : scored) {
-    if (s.effect->kind != "compliance" || s.effect->start.empty() || s.effect->order > kNoFault_Hz) continue;
+    if (!CauseNamed(s.effect->kind).coupling || s.effect->start.empty() || s.effect->order > kNoFault_Hz)
+      continue;
     places.push_back(&s);
     points.push_back(Beside(base, s.effect, s.effect->start[0]));
   }
@@ -200,7 +178,7 @@ std::optional<Detectable> Smallest(const Problem& problem, const Fit& base, cons
                                    std::span<const Scored> scored, const std::string& kind) {
   std::optional<Detectable> d = Middle(problem, gate, scored, kind);
   if (!d || InBase(problem, kind) || d->effect->start.empty()) return d;
-  if (kind == "compliance") return Stiffest(problem, base, gate, scored);
+  if (CauseNamed(kind).coupling) return Stiffest(problem, base, gate, scored);
   return ByRuns(problem, base, gate, scored, *d);
 }
 
@@ -209,33 +187,36 @@ std::optional<Detectable> Smallest(const Problem& problem, const Fit& base, cons
 void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
                     const Jitter& jitter, const Gate& gate, std::span<const std::string> only,
                     Diagnosis& out) {
-  for (const std::string_view kind_view : kKinds) {
-    const std::string kind(kind_view);
+  for (const CauseDefinition* cause : AllCauses()) {
+    if (cause->in_scatter_only) continue;
+    const std::string kind(*cause->name);
     if (!only.empty() && std::find(only.begin(), only.end(), kind) == only.end()) continue;
     const std::optional<Detectable> d = Smallest(problem, base, gate, scored, kind);
-    if (!d || d->gate > kHopeless * Largest(problem, kind)) continue;
+    if (!d || d->gate > kHopeless * (*cause->largest)(problem)) continue;
     Fit at;
     at.point = base.point;
     // Numbers of the model deviate from what is stated.
     if (InBase(problem, kind)) std::fill(at.point.base.begin(), at.point.base.end(), 0.0);
     // Softer is the fault.
-    const bool stiffness = kind == "compliance" && InBase(problem, kind);
+    const bool stiffness = cause->coupling && InBase(problem, kind);
     at.point = Beside(at, d->effect, stiffness ? -d->size : d->size);
     const auto count = static_cast<Eigen::Index>(ParameterCount(at.point));
     at.covariance = Eigen::MatrixXd::Zero(count, count);
     Cause described;
     described.kind = kind;
     DescribeEffect(problem, at, at.point.effects.size() - 1, described);
-    const std::string name = MainParameter(kind);
+    const std::string name(*cause->main_parameter);
     out.smallest_detectable[kind][name] = std::fabs(described.parameters[name].value);
   }
   if (jitter.tested) {
-    out.smallest_detectable["sample_jitter"]["rms_us"] =
+    const CauseDefinition& cause = CauseInScatter();
+    out.smallest_detectable[std::string(*cause.name)][std::string(*cause.main_parameter)] =
         1e6 * std::sqrt(kBeyondTheGate * Needed(Threshold(problem, gate) + 3.0) * jitter.sigma_s2);
   }
   out.not_excited.clear();
-  for (const std::string_view kind : kKinds)
-    if (!out.smallest_detectable.contains(std::string(kind))) out.not_excited.emplace_back(kind);
+  for (const CauseDefinition* cause : AllCauses())
+    if (!out.smallest_detectable.contains(std::string(*cause->name)))
+      out.not_excited.emplace_back(*cause->name);
 }
 
 }  // namespace contour::diagnosis

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
 #include "analysis/diagnosis/quantification/widen.h"
 
@@ -17,10 +18,11 @@ double ScoreOf(const Jitter& jitter) { return jitter.drop - kJitterPenalty; }
 
 void AcceptJitter(const Problem& problem, const Fit& nominal, const Jitter& jitter, Diagnosis& out) {
   Cause cause;
-  cause.kind = "sample_jitter";
+  cause.kind = *CauseInScatter().name;
   cause.log_evidence_gain = 0.5 * ScoreOf(jitter);
-  cause.parameters["rms_us"] = {1e6 * jitter.rms_s, 1e6 * std::max(0.0, jitter.rms_s - 1.96 * jitter.sigma_s),
-                                1e6 * (jitter.rms_s + 1.96 * jitter.sigma_s)};
+  cause.parameters[std::string(*CauseInScatter().main_parameter)] = {
+      1e6 * jitter.rms_s, 1e6 * std::max(0.0, jitter.rms_s - 1.96 * jitter.sigma_s),
+      1e6 * (jitter.rms_s + 1.96 * jitter.sigma_s)};
   WidenIntervals(problem, nominal.point, cause);
   cause.unit = problem.log_.linear ? "N" : "Nm";
   cause.deciding_experiment = DecidingExperiment(problem, cause.kind, {}).text;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/quantification/widen.h"
@@ -23,7 +24,7 @@ void Bootstrap(const Problem& problem, const Accepted& accepted, Fit fit, const 
   fit.covariance = about * about.transpose() / static_cast<double>(draws.cols() - 1);
   std::size_t index = 0;
   for (Cause& cause : out.causes) {
-    if (cause.kind == "sample_jitter") continue;  // not in the fit
+    if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
     DescribeEffect(problem, fit, accepted.places[index++], draws, cause);
     WidenIntervals(problem, fit.point, cause);
   }
@@ -43,7 +44,7 @@ Fit Together(const Problem& problem, Fit accepted) {
 void Describe(const Problem& problem, const Accepted& accepted, const Fit& fit, Diagnosis& out) {
   std::size_t index = 0;
   for (Cause& cause : out.causes) {
-    if (cause.kind == "sample_jitter") continue;  // not in the fit
+    if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
     Fit scattered = fit;
     scattered.covariance *= accepted.scatter[index];
     DescribeEffect(problem, scattered, accepted.places[index++], cause);

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <vector>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/kind_words.h"
 #include "config/number_text.h"
 
@@ -86,7 +87,8 @@ std::string VerdictText(const Diagnosis& d) {
              "is as stated raises an alarm in " +
              rate + " of all cases.)";
     case Verdict::kUnexplained:
-      return "Something is missing from the model, and none of the 26 known causes fits it.";
+      return "Something is missing from the model, and none of the " + std::to_string(AllCauses().size()) +
+             " known causes fits it.";
     case Verdict::kInsufficientData:
       break;
   }

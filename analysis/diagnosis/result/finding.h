@@ -1,25 +1,13 @@
 #pragma once
 
-#include <array>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "analysis/recording/data_quality.h"
 
 // What diagnosis says. The JSON file, the text and the report are written from this and nothing else.
 namespace contour::diagnosis {
-
-/// The kinds of cause, in the words of the result file.
-inline constexpr std::array<std::string_view, 26> kKinds = {
-    "asymmetric_coulomb",    "constant_torque",       "stribeck",       "position_friction",
-    "cable_spring",          "friction_ripple",       "ball_ripple",    "cogging",
-    "viscous_nonlinear",     "temperature_viscosity", "friction_drift", "torque_constant",
-    "torque_saturation",     "payload_step",          "compliance",     "backlash",
-    "presliding_hysteresis", "input_delay",           "current_lag",    "encoder_eccentricity",
-    "encoder_subdivision",   "pitch_error",           "cross_coupling", "load_friction",
-    "periodic_force",        "sample_jitter"};
 
 enum class Verdict { kCauseFound, kAmbiguous, kNothingFound, kUnexplained, kInsufficientData };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/screening/score.h"
 
 namespace contour::diagnosis {
@@ -13,10 +14,6 @@ constexpr double kLengths = 20.0;
 // Of a mean square, in stated deviations: with friction of the law and a soft element it ends above zero, on
 // Maxwell-slip friction well below.
 constexpr double kBelowZero = 0.5;
-
-bool ShowsAtReversals(const std::string& kind) {
-  return kind == "presliding_hysteresis" || kind == "backlash" || kind == "compliance";
-}
 
 }  // namespace
 
@@ -40,7 +37,7 @@ std::vector<double> WaySinceReversal(const Signals& s) {
 bool OfAnotherLaw(const Problem& problem, const Fit& fit) {
   const std::vector<SharedEffect>& effects = fit.point.effects;
   if (std::none_of(effects.begin(), effects.end(),
-                   [](const SharedEffect& e) { return e->kind == "presliding_hysteresis"; }))
+                   [](const SharedEffect& e) { return *CauseNamed(e->kind).takes_up_another_law; }))
     return false;
   for (std::size_t i = 0; i < problem.terms_.size(); ++i) {
     const BaseTerm& t = problem.terms_[i];
@@ -62,7 +59,7 @@ std::vector<bool> FirmSlides(const Problem& problem) {
 
 double DropOf(const Problem& problem, const Fit& without, const Fit& with) {
   const std::string& kind = with.point.effects.back()->kind;
-  if (!OfAnotherLaw(problem, without) || ShowsAtReversals(kind) || InBase(problem, kind))
+  if (!OfAnotherLaw(problem, without) || CauseNamed(kind).acts_at_reversals || InBase(problem, kind))
     return without.cost - with.cost;
   const std::vector<bool> firm = FirmSlides(problem);
   double drop = 0.0;

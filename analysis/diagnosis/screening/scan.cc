@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/waves.h"
 #include "analysis/diagnosis/screening/score.h"
 
 // Waves of the motor's angle and of time by matched filters: the response of the white innovation to a pulse

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/prediction_error/common_factor.h"
 #include "analysis/prediction_error/products.h"
 
@@ -25,20 +26,15 @@ double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covarianc
 }  // namespace
 
 std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& kind) {
-  std::vector<std::string> names;
-  if (kind == "stribeck") names = {"Fs", "vs"};
-  if (kind == "input_delay") names = {"delay"};
-  if (kind == "current_lag") names = {"lag"};
-  if (kind == "compliance") names = {"stiffness", "damping"};
   std::vector<std::size_t> out;
-  for (const std::string& name : names)
+  for (const std::string_view name : *CauseNamed(kind).freed_terms)
     for (std::size_t i = 0; i < problem.terms_.size(); ++i)
       if (problem.terms_[i].name == name) out.push_back(i);
   return out;
 }
 
 bool InBase(const Problem& problem, const std::string& kind) {
-  return kind == "torque_constant" || !FreedTerms(problem, kind).empty();
+  return CauseNamed(kind).common_factor || !FreedTerms(problem, kind).empty();
 }
 
 double ExcessOfLast(const Problem& problem, const Fit& fit) {
@@ -146,7 +142,7 @@ class Scorer {
   /// What the cost falls by when the prior P of the terms that the kind frees is taken away: with x their
   /// deviations and C their covariance, x'Px + x'P (C^-1 - P)^-1 Px.
   void Free(Scored& s) const {
-    if (s.effect->kind == "torque_constant") {
+    if (s.effect->common_factor) {
       const CommonFactor common = FindCommonFactor(problem_, fit_.point);
       s.amplitude(0) = std::expm1(common.log_ratio);
       s.covariance(0, 0) = common.sigma * common.sigma;

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/screening/firm_slides.h"
 
 namespace contour::diagnosis {
@@ -23,7 +23,7 @@ std::vector<Scored> Screen(const Problem& problem, const Fit& fit, std::span<con
   // friction is not what the law says is no matter of time.
   const bool another_law = OfAnotherLaw(problem, fit);
   std::erase_if(effects, [&](const SharedEffect& e) {
-    if (another_law && (e->kind == "stribeck" || e->kind == kFrictionOfTime)) return true;
+    if (another_law && CauseNamed(e->kind).refuted_by_another_law) return true;
     return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
       // A wave may have further orders.
       const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kOrdersApart;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/prediction_error/fit.h"
 #include "tests/analysis/support/distance.h"
 #include "tests/analysis/support/hidden_axis.h"

@@ -8,6 +8,7 @@
 #include "tools/plant_emulator/random.h"
 #include "tools/validation/hidden/excitation.h"
 #include "tools/validation/hidden/machine_text.h"
+#include "tools/validation/hidden/specimens.h"
 
 namespace contour::hidden {
 namespace {
@@ -29,12 +30,6 @@ double Near(plant::Random& r, double stated, double sigma_rel) {
   double n = r.Normal();
   while (std::abs(n) > kTruncation) n = r.Normal();
   return stated * (1.0 + sigma_rel * n);
-}
-
-/// Periods over the emulated stroke that are one or two over the travel of the program: the shape then has no
-/// mean there, which would be part of the friction level (or of the scale's zero) and not of the shape.
-double WholePeriods(plant::Random& r, const Setting& s) {
-  return (r.Uniform() < 0.5 ? 1.0 : 2.0) * EmulatedStroke_mm(s.truth) / (2.0 * s.truth.half_stroke_mm);
 }
 
 }  // namespace
@@ -78,10 +73,12 @@ double TrueAxis::vs_rad_s() const { return vs_mm_s * 1e-3 / radius_m_rad(); }
 
 namespace {
 
-Needs NeedsOf(const std::vector<std::string>& kinds) {
-  Needs all;
+diagnosis::SpecimenNeeds NeedsOf(const std::vector<std::string>& kinds) {
+  diagnosis::SpecimenNeeds all;
   for (const std::string& kind : kinds) {
-    const Needs n = hidden::NeedsOf(kind);
+    const diagnosis::Specimen* specimen = SpecimenOf(kind);
+    if (specimen == nullptr) continue;
+    const diagnosis::SpecimenNeeds& n = specimen->needs;
     all.scale |= n.scale;
     all.temperature |= n.temperature;
     all.second_axis |= n.second_axis;
@@ -96,20 +93,9 @@ Needs NeedsOf(const std::vector<std::string>& kinds) {
 
 }  // namespace
 
-Needs NeedsOf(const std::string& kind) {
-  Needs n;
-  n.scale = kind == "pitch_error";
-  n.temperature = kind == "temperature_viscosity";
-  n.second_axis = kind == "cross_coupling";
-  n.no_stribeck = kind == "stribeck";
-  n.rigid = kind == "compliance";
-  n.two_inertia = kind == "backlash";
-  return n;
-}
-
 Setting DrawSetting(std::uint64_t seed, const std::vector<std::string>& kinds, Misfit misfit, Length length) {
   plant::Random r(seed, kSettingStream);
-  const Needs needs = NeedsOf(kinds);
+  const diagnosis::SpecimenNeeds needs = NeedsOf(kinds);
   Setting s;
   s.seed = seed;
   s.misfit = misfit;
@@ -161,86 +147,25 @@ Setting DrawSetting(std::uint64_t seed, const std::vector<std::string>& kinds, M
 
 Hidden DrawEffect(std::uint64_t seed, const std::string& kind, const Setting& s) {
   plant::Random r(seed, kEffectStream);
-  const double friction_Nm = s.truth.Fc_N * s.truth.radius_m_rad();
+  const diagnosis::SpecimenMachine machine = MachineOf(s);
   Hidden h;
   h.kind = kind;
   h.phase_rad = r.Uniform(0.0, kTwoPi);
   const double sign = r.Uniform() < 0.5 ? -1.0 : 1.0;
-  if (kind == "asymmetric_coulomb") h.size = sign * 0.05;
-  if (kind == "constant_torque") h.size = sign * 0.05 * friction_Nm;
-  if (kind == "stribeck") {
-    h.size = 0.2;  // Fs / Fc - 1
-    h.second = s.truth.vs_rad_s();
+  if (const diagnosis::Specimen* specimen = SpecimenOf(kind)) {
+    const diagnosis::Drawn drawn = (*specimen->draw)(machine, sign, [&] { return r.Uniform(); });
+    h.size = drawn.size;
+    h.order = drawn.order;
+    h.second = drawn.second;
+    return h;
   }
-  if (kind == "position_friction") {
-    h.size = 0.1;
-    h.order = WholePeriods(r, s);
-  }
-  if (kind == "cable_spring") h.size = 0.1 * friction_Nm;
-  if (kind == "friction_ripple") {
-    h.size = 0.05;
-    h.order = 1.0 + std::floor(4.0 * r.Uniform());
-  }
-  if (kind == "ball_ripple") {
-    h.size = 0.05;
-    h.order = 0.3 + 0.15 * r.Uniform() + std::floor(3.0 * r.Uniform());
-  }
-  if (kind == "cogging") {
-    h.size = 0.05 * friction_Nm;
-    const double orders[] = {4.0, 6.0, 8.0, 12.0, 24.0};
-    h.order = orders[static_cast<std::size_t>(5.0 * r.Uniform())];
-  }
-  if (kind == "viscous_nonlinear") {
-    h.size = sign * 0.1 * friction_Nm;
-    h.order = r.Uniform(1.7, 2.3);
-  }
-  if (kind == "temperature_viscosity") h.size = -0.01;
-  if (kind == "friction_drift") {
-    h.size = sign * 0.1;
-    h.second = r.Uniform() < 0.5 ? 0.0 : r.Uniform(10.0, 30.0);  // time constant
-  }
-  if (kind == "torque_constant") h.size = sign;  // the strength decides
-  if (kind == "torque_saturation") h.size = 0.02;
-  if (kind == "payload_step") {
-    h.size = sign * 0.05;
-    h.second = r.Uniform(0.35, 0.65);  // of the log
-  }
-  if (kind == "compliance") {
-    h.size = 1.0 / 300.0;  // 1 / antiresonance
-    h.second = r.Uniform(0.02, 0.05);
-  }
-  if (kind == "backlash") h.size = 2.0;
-  if (kind == "presliding_hysteresis") {
-    h.size = 0.1;
-    h.second = r.Uniform(0.05, 0.2);
-  }
-  if (kind == "input_delay") h.size = 100.0;
-  if (kind == "current_lag") h.size = 100.0;
-  if (kind == "encoder_eccentricity") h.size = 1e-3;
-  if (kind == "encoder_subdivision") {
-    h.size = 1e-5;
-    const double orders[] = {32.0, 64.0, 128.0, 256.0};
-    h.order = orders[static_cast<std::size_t>(4.0 * r.Uniform())];
-  }
-  if (kind == "pitch_error") {
-    h.size = 1.0;
-    h.order = WholePeriods(r, s);
-  }
-  if (kind == "cross_coupling") h.size = sign * 1e-3;
-  if (kind == "load_friction") h.size = 0.05;
-  if (kind == "periodic_force") {
-    h.size = 0.05 * friction_Nm;
-    h.order = LogUniform(r, 7.0, 70.0);
-  }
-  if (kind == "sample_jitter") h.size = 2.0;
-  // Outside the catalogue.
   if (kind == "stick_spot") {
     h.size = 0.5;
     h.order = r.Uniform(-0.5, 0.5);  // place, of the half stroke
     h.second = sign;                 // direction
   }
   if (kind == "cable_hysteresis" || kind == "telegraph_torque" || kind == "speed_band_torque")
-    h.size = 0.1 * friction_Nm;
+    h.size = 0.1 * machine.friction_Nm;
   if (kind == "speed_band_torque") h.second = r.Uniform(0.2, 0.5);
   if (kind == "lubrication") h.size = 0.2;
   return h;

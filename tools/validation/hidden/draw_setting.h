@@ -7,17 +7,6 @@
 
 namespace contour::hidden {
 
-/// What the kind needs of a machine to be visible at all.
-struct Needs {
-  bool scale = false;
-  bool temperature = false;
-  bool second_axis = false;
-  bool no_stribeck = false;  ///< the model states none
-  bool rigid = false;
-  bool two_inertia = false;
-};
-Needs NeedsOf(const std::string& kind);
-
 /// Draws machine, model and excitation from the seed; `kinds` decide only what must be there for them to
 /// show. No kind: a clean machine. Throws std::runtime_error when the kinds cannot stand together on one
 /// machine.

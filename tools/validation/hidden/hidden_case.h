@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/axis_model/stated_axis.h"
+#include "analysis/diagnosis/causes/specimen.h"
 #include "analysis/recording/axis_log.h"
 #include "tools/plant_emulator/effects_config.h"
 
@@ -72,7 +73,7 @@ struct Setting {
 
 /// A hidden effect with its size: the main parameter of its kind.
 struct Hidden {
-  std::string kind;  ///< of diagnosis::kKinds, or of OutsideKinds()
+  std::string kind;  ///< a cause of diagnosis, or of OutsideKinds()
   double size = 0.0;
   double order = 0.0;
   double phase_rad = 0.0;
@@ -81,13 +82,7 @@ struct Hidden {
   std::map<std::string, double> truth;
 };
 
-/// What the parameters of some kinds refer to.
-struct LogSpan {
-  double begin_s = 0.0, end_s = 0.0;  ///< of the log, by the machine's own time
-  double planned_end_s = 0.0;         ///< of the program: a linear drift is complete then
-  double largest_speed_rad_s = 0.0;   ///< of the motor, within the log
-  double speed_limit_rad_s = 0.0;     ///< at which a nonlinear viscous torque has its stated size
-};
+using diagnosis::LogSpan;
 
 /// A recorded log as the user's files would give it.
 struct Recorded {

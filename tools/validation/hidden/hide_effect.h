@@ -12,7 +12,7 @@ namespace contour::hidden {
 /// Puts the effect into the emulated axis x. `duration_s`: of the log, `begin_s`: the machine's time at which
 /// it begins (bring-up and enabling lie before).
 void HideEffect(const Hidden& hidden, const Setting& setting, double begin_s, double duration_s,
-                EffectsConfig& effects);
+                EmulatedAxisConfig& axis);
 
 /// The parameters that an answer must hold within its intervals, by the catalogue's names. Over the log means
 /// against its beginning, the largest speed is that within the log.

@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <limits>
 
+#include "analysis/diagnosis/causes/catalogue.h"
+
 namespace contour::hidden {
 namespace {
 
 using diagnosis::Cause;
+using diagnosis::CauseNamed;
 using diagnosis::Diagnosis;
 using diagnosis::Verdict;
 
@@ -84,9 +87,9 @@ bool NamesMisfit(const Cause& cause, const std::vector<Hidden>& hidden, Misfit m
   switch (misfit) {
     case Misfit::kTimingError:
     case Misfit::kDelayAndLag:
-      return cause.kind == "input_delay" || cause.kind == "current_lag";
+      return CauseNamed(cause.kind).about_timing;
     case Misfit::kMaxwellSlip:
-      return cause.kind == "presliding_hysteresis";
+      return CauseNamed(cause.kind).takes_up_another_law;
     case Misfit::kNone:
     case Misfit::kNoiseLevel:
       break;
@@ -96,9 +99,7 @@ bool NamesMisfit(const Cause& cause, const std::vector<Hidden>& hidden, Misfit m
 
 }  // namespace
 
-bool OutsideCatalogue(const std::string& kind) {
-  return std::find(diagnosis::kKinds.begin(), diagnosis::kKinds.end(), kind) == diagnosis::kKinds.end();
-}
+bool OutsideCatalogue(const std::string& kind) { return diagnosis::FindCause(kind) == nullptr; }
 
 std::set<std::string> SetOf(const Cause& cause) {
   std::set<std::string> set(cause.indistinguishable_from.begin(), cause.indistinguishable_from.end());

@@ -6,9 +6,9 @@
 #include <sstream>
 #include <thread>
 
-#include "analysis/diagnosis/result/finding.h"
 #include "core/exit_status.h"
 #include "tools/validation/hidden/hide_effect.h"
+#include "tools/validation/hidden/specimens.h"
 
 namespace contour::hidden {
 namespace {
@@ -80,7 +80,7 @@ double Rate(const std::string& option, const std::string& text) {
 
 std::vector<std::string> KindsOf(const std::string& list) {
   std::vector<std::string> kinds;
-  const auto& all = diagnosis::kKinds;
+  const std::vector<std::string> all = CatalogueKinds();
   const auto& outside = OutsideKinds();
   for (const std::string& k : Split(list)) {
     if (k == "outside") {
@@ -164,7 +164,7 @@ bool Take(const std::string& option, const std::string& value, Options& o) {
 
 Options ParseOptions(int argc, char** argv) {
   Options o;
-  o.plan.kinds.assign(diagnosis::kKinds.begin(), diagnosis::kKinds.end());
+  o.plan.kinds = CatalogueKinds();
   o.threads = std::max(1U, std::thread::hardware_concurrency());
   for (int i = 1; i < argc; ++i) {
     const std::string option = argv[i];

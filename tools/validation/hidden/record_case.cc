@@ -65,7 +65,7 @@ double RunMachine(const Setting& s, const std::vector<Hidden>& hidden, const std
   for (std::size_t i = 0; i < file.machine.axes.size(); ++i) start_m.push_back(0.0);
   const double duration_s = PlanMotion(program, start_m, ProgramLimits(file.machine))->duration_s();
   EmulatedAxisConfig& axis = file.emulator.axes.at("x");
-  for (const Hidden& h : hidden) HideEffect(h, s, kBeforeProgram_s, duration_s, axis.effects);
+  for (const Hidden& h : hidden) HideEffect(h, s, kBeforeProgram_s, duration_s, axis);
   if (s.misfit == Misfit::kTimingError || s.misfit == Misfit::kDelayAndLag) {
     InputDelayEffect delay = axis.effects.input_delay.value_or(InputDelayEffect{});
     delay.delay_us += s.misfit == Misfit::kTimingError ? kTimingError_us : 200.0;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/diagnose.h"
 #include "tools/validation/hidden/draw_setting.h"
 #include "tools/validation/hidden/hide_effect.h"
@@ -20,26 +22,13 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kTruthFile = "truth.json";
 constexpr double kBeyondDetectable = 1.5;
 
-/// Of a kind's parameters the one that stands for its size, in the units of Hidden::size.
+/// The size at a factor times what would just be found; false where that is none.
 bool SizeFrom(const std::map<std::string, double>& smallest, double factor, Hidden& hidden) {
-  const auto truth = TruthOf(hidden, {});
-  for (const auto& [name, value] : smallest) {
-    if (truth.count(name) == 0 || name == "order_per_rev" || name == "frequency_Hz" || name == "vs_rad_s")
-      continue;
-    if (hidden.kind == "compliance") {
-      hidden.size = factor / value;  // softer is larger
-    } else if (hidden.kind == "torque_constant") {
-      // Stated as a change of the ratio, or as the ratio itself.
-      const double change = value > 0.5 ? value - 1.0 : value;
-      hidden.size = (hidden.size < 0.0 ? -factor : factor) * std::abs(change);
-    } else if (hidden.kind == "stribeck") {
-      hidden.size = factor * (value > 1.0 ? value - 1.0 : value);
-    } else {
-      hidden.size = (hidden.size < 0.0 ? -factor : factor) * std::abs(value);
-    }
-    return std::abs(hidden.size) > 0.0;
-  }
-  return false;
+  const diagnosis::CauseDefinition& cause = diagnosis::CauseNamed(hidden.kind);
+  const auto at = smallest.find(std::string(*cause.main_parameter));
+  if (at == smallest.end()) return false;
+  hidden.size = std::copysign((*cause.specimen->size_at)(factor, at->second), hidden.size);
+  return std::abs(hidden.size) > 0.0;
 }
 
 /// The size at which diagnosis says that it would just be seen, times one and a half.

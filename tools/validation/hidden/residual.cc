@@ -1,4 +1,5 @@
 #include "tools/validation/hidden/residual.h"
+#include "tools/validation/hidden/specimens.h"
 
 #include <Eigen/Dense>
 #include <array>
@@ -217,10 +218,13 @@ Residuals ResidualsOf(const diagnosis::AxisLog& log, const Setting& setting) {
   return out;
 }
 
+using diagnosis::StrengthIn;
+
 double Relevant(const Residuals& r, const std::string& kind) {
-  if (kind == "sample_jitter") return r.second_difference;
-  const bool scale =
-      kind == "pitch_error" || ((kind == "backlash" || kind == "compliance") && r.scale_m2 > 0.0);
+  const diagnosis::Specimen* specimen = SpecimenOf(kind);
+  const StrengthIn in = specimen == nullptr ? StrengthIn::kTorque : *specimen->strength_in;
+  if (in == StrengthIn::kSecondDifference) return r.second_difference;
+  const bool scale = in == StrengthIn::kScale || (in == StrengthIn::kScaleWhereFitted && r.scale_m2 > 0.0);
   return scale ? r.scale_m2 : r.torque_Nm2;
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "analysis/text/format_text.h"
+#include "tools/validation/hidden/specimens.h"
 
 namespace contour::hidden {
 namespace {
@@ -152,10 +153,10 @@ void AddFailures(std::string& text, const std::vector<Outcome>& outcomes) {
 
 bool Undecidable(const Outcome& o) {
   if (o.known.question.type != Question::Type::kEffect || o.known.hidden.empty()) return false;
-  const std::string& kind = o.known.question.kinds.front();
-  if (kind == "torque_constant") return o.known.question.strength == Strength::kBarely;
-  if (kind == "pitch_error") return std::abs(o.known.hidden.front().size) <= 0.1;
-  return false;
+  const diagnosis::Specimen* specimen = SpecimenOf(o.known.question.kinds.front());
+  if (specimen == nullptr || specimen->undecidable == nullptr) return false;
+  return (*specimen->undecidable)(DrawnOf(o.known.hidden.front()),
+                                  o.known.question.strength == Strength::kBarely);
 }
 
 std::string ResultTable(const std::vector<Outcome>& outcomes, const std::string& command) {

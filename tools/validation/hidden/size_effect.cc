@@ -7,6 +7,7 @@
 #include "tools/validation/hidden/hide_effect.h"
 #include "tools/validation/hidden/record_case.h"
 #include "tools/validation/hidden/residual.h"
+#include "tools/validation/hidden/specimens.h"
 
 namespace contour::hidden {
 namespace {
@@ -24,9 +25,9 @@ constexpr int kTries = 7;
 
 std::optional<Hidden> SizeEffect(const Setting& setting, Hidden effect, Strength strength,
                                  const std::filesystem::path& directory) {
-  if (effect.kind == "torque_constant") {
-    const double ratio = strength == Strength::kClear ? 0.25 : strength == Strength::kModerate ? 0.15 : 0.09;
-    effect.size = std::copysign(ratio, effect.size);
+  if (const diagnosis::Specimen* specimen = SpecimenOf(effect.kind);
+      specimen != nullptr && *specimen->sizes) {
+    effect.size = std::copysign((**specimen->sizes)[static_cast<std::size_t>(strength)], effect.size);
     return effect;
   }
   const double clean = Relevant(ResidualsOf(Simulate(setting, {}, directory), setting), effect.kind);

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "analysis/diagnosis/result/finding.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "tests/analysis/support/hidden_axis.h"
 
 namespace contour::diagnosis {
@@ -20,7 +20,8 @@ TEST(DecidingExperiment, MovesTheAxisOfTheLog) {
   options.duration_s = 5.0;
   test::HiddenAxis axis = test::MakeHiddenAxis(options);
   axis.stated.axis = "feed";
-  for (const std::string_view kind : kKinds) {
+  for (const CauseDefinition* cause : AllCauses()) {
+    const std::string_view kind = cause->name;
     const std::string program = ProgramFor(axis, kind);
     EXPECT_EQ(program.find("axis: x"), std::string::npos) << kind;
     EXPECT_TRUE(program.empty() || program.find("axis: feed") != std::string::npos) << kind << '\n'

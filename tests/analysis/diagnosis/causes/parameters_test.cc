@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/prediction_error/fit.h"
 #include "tests/analysis/support/hidden_axis.h"
 #include "tests/analysis/support/learnt_problem.h"

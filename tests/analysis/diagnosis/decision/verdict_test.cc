@@ -23,7 +23,7 @@ class VerdictTest : public testing::Test {
   static Leftover Of(const std::string& over, double beyond) {
     Leftover one;
     one.over = over;
-    one.like = "position_friction";
+    one.quantity = Quantity::kPosition;
     one.bins = 90.0;
     one.drop = 90.0 + beyond;
     one.score = beyond;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/gate.h"
 #include "analysis/diagnosis/diagnose.h"
 #include "tests/analysis/support/hidden_axis.h"

@@ -3,6 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/kind_words.h"
 #include "analysis/diagnosis/report/diagnosis_json.h"
 #include "analysis/diagnosis/report/diagnosis_text.h"
@@ -67,7 +68,8 @@ TEST(DiagnosisOutputTest, TextSaysWhatHowSureAndWhatNext) {
 }
 
 TEST(DiagnosisOutputTest, EveryKindHasWords) {
-  for (const std::string_view kind : kKinds) {
+  for (const CauseDefinition* cause : AllCauses()) {
+    const std::string_view kind = cause->name;
     EXPECT_GT(KindWords(kind).size(), kind.size() + 5) << kind;
     EXPECT_FALSE(KindAdvice(kind).empty()) << kind;
   }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "tests/analysis/support/learnt_problem.h"
 
 namespace contour::diagnosis {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "analysis/diagnosis/causes/effects.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "tests/analysis/support/hidden_axis.h"
 #include "tests/analysis/support/learnt_problem.h"
 

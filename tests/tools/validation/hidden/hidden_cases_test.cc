@@ -16,6 +16,7 @@
 #include "tools/validation/hidden/recorded_case.h"
 #include "tools/validation/hidden/residual.h"
 #include "tools/validation/hidden/size_effect.h"
+#include "tools/validation/hidden/specimens.h"
 
 namespace contour::hidden {
 namespace {
@@ -62,10 +63,10 @@ TEST(HiddenSettings, EveryMachineFileIsAccepted) {
 }
 
 TEST(HiddenSettings, NothingOfTheEffectStandsInTheFiles) {
-  for (const std::string_view kind : diagnosis::kKinds) {
-    const Setting s = DrawSetting(3, {std::string(kind)});
+  for (const std::string& kind : CatalogueKinds()) {
+    const Setting s = DrawSetting(3, {kind});
     EXPECT_EQ(MachineText(s).find("effects"), std::string::npos);
-    EXPECT_EQ(ModelText(s).find(std::string(kind) + ":"), std::string::npos) << kind;
+    EXPECT_EQ(ModelText(s).find(kind + ":"), std::string::npos) << kind;
   }
 }
 

@@ -18,6 +18,7 @@
 #include "analysis/diagnosis/diagnose.h"
 #include "tools/validation/hidden/draw_setting.h"
 #include "tools/validation/hidden/outcome.h"
+#include "tools/validation/hidden/specimens.h"
 
 namespace contour::hidden {
 namespace {
@@ -64,7 +65,7 @@ class Exams {
     for (std::size_t i = 0; i < kCleanMachines; ++i)
       clean_.push_back(
           {Question::Type::kClean, {}, Strength::kClear, seed + 50 + i, Misfit::kNone, Length::kShort});
-    std::vector<std::string> kinds(diagnosis::kKinds.begin(), diagnosis::kKinds.end());
+    std::vector<std::string> kinds = CatalogueKinds();
     std::shuffle(kinds.begin(), kinds.end(), std::mt19937_64(seed));
     for (std::size_t i = 0; i < kinds.size(); ++i)
       effects_.push_back(

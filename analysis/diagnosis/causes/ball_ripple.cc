@@ -1,0 +1,76 @@
+#include <cmath>
+
+#include "analysis/diagnosis/causes/cause_definition.h"
+#include "analysis/diagnosis/causes/experiments.h"
+#include "analysis/diagnosis/causes/extension_parts.h"
+#include "analysis/diagnosis/causes/waves.h"
+
+namespace contour::diagnosis::causes {
+namespace {
+
+constexpr std::string_view kName = "ball_ripple";
+
+constexpr WaveSource kWave = {.wave = Wave::kFrictionOfAngle,
+                              .has_order = [](double order) { return !IsWholeOrder(order); },
+                              .free_order = true};
+
+constexpr ExtensionRule kExtension = {
+    .add = [](const Cause& cause, double, ExtensionsConfig& e) { AddRipple(cause, e.ball_ripple); },
+    .remove = RemoveExtension<&ExtensionsConfig::ball_ripple>,
+    .number_of_the_model = false,
+    .simulation = [](const ModelConfig&,
+                     const ExtensionsConfig& all) { return RippleInSimulation(kName, all.ball_ripple); }};
+
+constexpr Specimen kSpecimen = {
+    .needs = SpecimenNeeds{},
+    .draw =
+        [](const SpecimenMachine&, double, const UniformNumbers& uniform) {
+          const double part = 0.3 + 0.15 * uniform();
+          return Drawn{.size = 0.05, .order = part + std::floor(3.0 * uniform())};
+        },
+    .effect = [](const Drawn& d, const SpecimenMachine&,
+                 const RecordedTime&) { return DrawnRipple(kName, d); },
+    .truth =
+        [](const Drawn& d, const LogSpan&) {
+          return NamedValues{{"amplitude_rel", std::abs(d.size)}, {"order_per_rev", d.order}};
+        },
+    .largest_size = 0.8,
+    .size_at = SizeAsStated,
+    .strength_in = StrengthIn::kTorque,
+    .sizes = std::nullopt,
+    .undecidable = nullptr};
+
+}  // namespace
+
+extern const CauseDefinition ball_ripple;
+constexpr CauseDefinition ball_ripple = {
+    .name = kName,
+    .words = "friction changes with the circulation of the balls, not a whole number of times per turn",
+    .advice = "Feed the ripple forward; look at the nut's ball returns and its preload.",
+    .grid = nullptr,
+    .wave = &kWave,
+    .family = nullptr,
+    .implausible = nullptr,
+    .parameters =
+        [](const FittedEffect& fitted) {
+          return WaveParameters(fitted, "amplitude_rel", "order_per_rev", 1.0);
+        },
+    .main_parameter = "amplitude_rel",
+    .model_errors = kNoModelErrors,
+    .shape = nullptr,
+    .largest = [](const Problem&) { return 0.7; },
+    .freed_terms = kFreesNothing,
+    .extension = &kExtension,
+    .experiment = SameStretchAtThreeSpeeds,
+    .shows_more_of = std::nullopt,
+    .specimen = &kSpecimen,
+    .common_factor = false,
+    .in_scatter_only = false,
+    .coupling = false,
+    .takes_up_another_law = false,
+    .refuted_by_another_law = false,
+    .acts_at_reversals = false,
+    .judged_at_scale = false,
+    .about_timing = false};
+
+}  // namespace contour::diagnosis::causes

@@ -1,0 +1,79 @@
+#include <algorithm>
+
+#include "analysis/diagnosis/causes/cause_definition.h"
+#include "analysis/diagnosis/causes/effect_parts.h"
+#include "analysis/diagnosis/causes/experiments.h"
+#include "analysis/diagnosis/causes/extension_parts.h"
+
+namespace contour::diagnosis::causes {
+namespace {
+
+constexpr std::string_view kName = "input_delay";
+
+constexpr std::string_view kFrees[] = {"delay"};
+
+constexpr ExtensionRule kExtension = {
+    .add = [](const Cause& cause, double,
+              ExtensionsConfig& e) { Existing(e.input_delay).delay_us += ValueOf(cause, "delay_us"); },
+    .remove = RemoveExtension<&ExtensionsConfig::input_delay>,
+    .number_of_the_model = true,
+    .simulation = [](const ModelConfig&, const ExtensionsConfig& all) -> Assignments {
+      if (!all.input_delay) return {};
+      return {SetEffect(kName, {{"delay_us", std::max(0.0, all.input_delay->delay_us)}})};
+    }};
+
+constexpr Specimen kSpecimen = {
+    .needs = SpecimenNeeds{},
+    .draw = [](const SpecimenMachine&, double, const UniformNumbers&) { return Drawn{.size = 100.0}; },
+    .effect =
+        [](const Drawn& d, const SpecimenMachine&, const RecordedTime&) {
+          return Assignments{SetEffect(kName, {{"delay_us", d.size}})};
+        },
+    .truth =
+        [](const Drawn& d, const LogSpan&) {
+          return NamedValues{{"delay_us", d.size}};
+        },
+    .largest_size = 2000.0,
+    .size_at = SizeAsStated,
+    .strength_in = StrengthIn::kTorque,
+    .sizes = std::nullopt,
+    .undecidable = nullptr};
+
+}  // namespace
+
+extern const CauseDefinition input_delay;
+constexpr CauseDefinition input_delay = {
+    .name = kName,
+    .words = "commands begin to act later than stated",
+    .advice = "State the delay; look for a filter or a cycle of delay in the drive.",
+    .grid =
+        [](const Problem&, std::vector<SharedEffect>& out) {
+          out.push_back(Custom({std::string(kName), "", 1}, {.steps = {2e-6}},
+                               [](const auto& a, AxisModel& m) { m.delay_s += a[0]; }));
+        },
+    .wave = nullptr,
+    .family = nullptr,
+    .implausible = nullptr,
+    .parameters =
+        [](const FittedEffect& fitted) {
+          return NamedValues{{"delay_us", fitted.amplitudes()[0] * 1e6}};
+        },
+    .main_parameter = "delay_us",
+    .model_errors = kNoModelErrors,
+    .shape = nullptr,
+    .largest = [](const Problem& p) { return 3.0 * p.log_.period_s; },
+    .freed_terms = kFrees,
+    .extension = &kExtension,
+    .experiment = ChirpWhileCreeping,
+    .shows_more_of = std::nullopt,
+    .specimen = &kSpecimen,
+    .common_factor = false,
+    .in_scatter_only = false,
+    .coupling = false,
+    .takes_up_another_law = false,
+    .refuted_by_another_law = false,
+    .acts_at_reversals = false,
+    .judged_at_scale = false,
+    .about_timing = true};
+
+}  // namespace contour::diagnosis::causes

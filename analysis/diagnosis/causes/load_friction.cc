@@ -1,0 +1,74 @@
+#include <cmath>
+
+#include "analysis/diagnosis/causes/cause_definition.h"
+#include "analysis/diagnosis/causes/effect_parts.h"
+#include "analysis/diagnosis/causes/experiments.h"
+
+namespace contour::diagnosis::causes {
+namespace {
+
+constexpr std::string_view kName = "load_friction";
+
+/// Over the whole band, which the smoothed acceleration does not have; constant over each row.
+void Grid(const Problem& p, std::vector<SharedEffect>& out) {
+  const Signals& s = *p.signals_;
+  const std::size_t n = p.rows();
+  out.push_back(LinearEffect(
+      {std::string(kName), "", 1}, Input::kLevel,
+      {Make(2 * n, [&](std::size_t k) { return std::fabs(s.net_force[k < n ? k : k - n]) / s.coulomb; })},
+      5e-3));
+}
+
+constexpr ModelError kErrors[] = {{"friction_per_torque_rel", 0.02}};
+
+constexpr Specimen kSpecimen = {
+    .needs = SpecimenNeeds{},
+    .draw = [](const SpecimenMachine&, double, const UniformNumbers&) { return Drawn{.size = 0.05}; },
+    .effect =
+        [](const Drawn& d, const SpecimenMachine&, const RecordedTime&) {
+          return Assignments{SetEffect(kName, {{"friction_per_torque_rel", d.size}})};
+        },
+    .truth =
+        [](const Drawn& d, const LogSpan&) {
+          return NamedValues{{"friction_per_torque_rel", d.size}};
+        },
+    .largest_size = 0.5,
+    .size_at = SizeAsStated,
+    .strength_in = StrengthIn::kTorque,
+    .sizes = std::nullopt,
+    .undecidable = nullptr};
+
+}  // namespace
+
+extern const CauseDefinition load_friction;
+constexpr CauseDefinition load_friction = {
+    .name = kName,
+    .words = "friction grows with the force that the screw carries",
+    .advice = "Expect more friction under load and acceleration; check nut and bearing load.",
+    .grid = Grid,
+    .wave = nullptr,
+    .family = nullptr,
+    .implausible = nullptr,
+    .parameters =
+        [](const FittedEffect& fitted) {
+          return NamedValues{{"friction_per_torque_rel", fitted.amplitudes()[0]}};
+        },
+    .main_parameter = "friction_per_torque_rel",
+    .model_errors = kErrors,
+    .shape = nullptr,
+    .largest = [](const Problem&) { return 0.7; },
+    .freed_terms = kFreesNothing,
+    .extension = nullptr,
+    .experiment = FiveSpeedsAndPulses,
+    .shows_more_of = std::nullopt,
+    .specimen = &kSpecimen,
+    .common_factor = false,
+    .in_scatter_only = false,
+    .coupling = false,
+    .takes_up_another_law = false,
+    .refuted_by_another_law = false,
+    .acts_at_reversals = false,
+    .judged_at_scale = false,
+    .about_timing = false};
+
+}  // namespace contour::diagnosis::causes

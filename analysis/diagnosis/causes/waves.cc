@@ -1,0 +1,129 @@
+#include "analysis/diagnosis/causes/waves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/causes/effect_parts.h"
+#include "analysis/prediction_error/wave_signals.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+
+const CauseDefinition& CauseOf(Wave wave, double order) {
+  for (const CauseDefinition* c : AllCandidates()) {
+    const WaveSource* source = c->wave;
+    if (source != nullptr && *source->wave == wave && (*source->has_order)(order)) return *c;
+  }
+  throw std::logic_error("no cause is a wave of this kind and order");
+}
+
+struct Entrance {
+  Input input = Input::kMotorForce;
+  double step = 0.0;
+};
+
+Entrance EntranceOf(Wave wave, const Problem& p) {
+  const double torque = 0.01 * p.signals_->coulomb;
+  switch (wave) {
+    case Wave::kFrictionOfAngle:
+      return {Input::kLevel, 5e-3};
+    case Wave::kReadingOfAngle:
+      return {Input::kReading, p.stated_.position_step > 0.0 ? p.stated_.position_step : 1e-6};
+    case Wave::kForceOfTime:
+      return {Input::kLoadForce, torque};
+    case Wave::kTorqueOfAngle:
+    case Wave::kGainOfAngle:
+      break;
+  }
+  return {Input::kMotorForce, torque};
+}
+
+/// At an order that stays.
+SharedEffect FixedOrder(const Problem& p, Wave wave, double order, double grid, std::string kind) {
+  const Signals& s = *p.signals_;
+  const std::size_t n = p.rows();
+  std::vector<double> phases(n);
+  for (std::size_t k = 0; k < n; ++k) phases[k] = order * s.angle_rad[k];
+  std::vector<SharedSignal> basis;
+  if (wave == Wave::kReadingOfAngle)
+    basis = {Make(n, [&](std::size_t k) { return std::sin(phases[k]); }),
+             Make(n, [&](std::size_t k) { return std::cos(phases[k]); })};
+  else
+    basis = WaveSignals(phases, wave == Wave::kGainOfAngle ? s.model_torque : std::vector<double>());
+  const Entrance at = EntranceOf(wave, p);
+  auto e = std::make_shared<Effect>(
+      *LinearEffect({std::move(kind), std::to_string(order), grid}, at.input, std::move(basis), at.step));
+  e->order = order;
+  e->wave = true;
+  return e;
+}
+
+SharedEffect FreeOrder(const Problem& p, Wave wave, double order, double grid, std::string kind) {
+  const Signals& s = *p.signals_;
+  const std::size_t n = p.rows();
+  const auto x = wave == Wave::kForceOfTime
+                     ? Make(n,
+                            [&](std::size_t k) {
+                              return 2.0 * std::numbers::pi * static_cast<double>(k) * p.log_.period_s;
+                            })
+                     : std::make_shared<const Signal>(s.angle_rad);
+  const auto [least, most] = std::minmax_element(x->begin(), x->end());
+  const double middle = 0.5 * (*least + *most), span = *most - *least;
+  const auto [input, step] = EntranceOf(wave, p);
+  auto e = std::make_shared<Effect>();
+  e->kind = std::move(kind);
+  e->label = std::to_string(order);
+  e->grid = grid;
+  e->order = order;
+  e->wave = true;
+  e->steps = {step, step, 0.05 / span};
+  if (IsForce(input)) e->force = {1, 1, 0};
+  e->tested = 2;
+  e->signals = true;
+  e->low = {-1e30, -1e30, -6.0 / span};
+  e->high = {1e30, 1e30, 6.0 / span};
+  // About the middle, so that order and phase are not the same direction; the phase is reported at zero.
+  e->apply = [x, order, middle, into = input, n, made = p.made_, owner = p.made_->NewOwner()](
+                 const std::vector<double>& a, AxisModel& m) {
+    if (a[0] == 0.0 && a[1] == 0.0) return;
+    const auto make = [&] {
+      std::vector<double> at(n);
+      for (std::size_t k = 0; k < n; ++k) at[k] = order * (*x)[k] + a[2] * ((*x)[k] - middle);
+      return WaveSignals(at, {});
+    };
+    Enter(m, into, made->For(owner, a[2], make), {a[0], a[1]});
+  };
+  e->middle = middle;
+  return e;
+}
+
+}  // namespace
+
+bool IsWholeOrder(double order) { return std::fabs(order - std::round(order)) < 1e-6; }
+bool AnyOrder(double) { return true; }
+
+SharedEffect WaveEffect(const Problem& problem, Wave wave, double order, double grid) {
+  const CauseDefinition& cause = CauseOf(wave, order);
+  std::string kind(*cause.name);
+  return cause.wave->free_order ? FreeOrder(problem, wave, order, grid, std::move(kind))
+                                : FixedOrder(problem, wave, order, grid, std::move(kind));
+}
+
+NamedValues WaveParameters(const FittedEffect& fitted, const char* amplitude, const char* order,
+                           double scale) {
+  const std::vector<double>& a = fitted.amplitudes();
+  NamedValues v{{amplitude, std::hypot(a[0], a[1]) * scale}};
+  const double shift = a.size() > 2 ? a[2] : 0.0;
+  if (order != nullptr) v[order] = fitted.effect().order + shift;
+  const double phase = std::atan2(a[1], a[0]) - shift * fitted.effect().middle;
+  v["phase_rad"] = std::remainder(phase, kTwoPi);
+  return v;
+}
+
+}  // namespace contour::diagnosis
