@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every link of our pages to a file, and to a heading of one, leads somewhere.
+"""Every link of our pages to a file, and to a heading of one, leads somewhere; so does every source named by a page about the code.
 
     document_links.py ROOT
 """
@@ -30,10 +30,22 @@ def broken_links(pages):
                 yield f"{page}: {link}: no such heading"
 
 
+# Pages that say where in the code a thing is, and the folders that their paths may begin in.
+NAMING_SOURCES = ["docs/glossary.md", "docs/diagnosis_method.md"]
+FOLDERS = ["", "analysis/diagnosis", "analysis/diagnosis/adequacy", "analysis/prediction_error"]
+
+
+def missing_sources(root):
+    for page in NAMING_SOURCES:
+        for source in re.findall(r"`([\w/]+\.(?:cc|h|inc))`", (root / page).read_text(encoding="utf-8")):
+            if not any((root / folder / source).exists() for folder in FOLDERS):
+                yield f"{page}: {source}: no such file"
+
+
 def main():
     root = Path(sys.argv[1])
     pages = sorted(root.glob("*.md")) + sorted((root / "docs").rglob("*.md"))
-    broken = list(broken_links(pages))
+    broken = list(broken_links(pages)) + list(missing_sources(root))
     print("\n".join(broken) or f"{len(pages)} pages, all links lead somewhere")
     return 1 if broken or not pages else 0
 
