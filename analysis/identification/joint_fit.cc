@@ -25,72 +25,91 @@ double Stepping(const std::string& key) {
   return 0.0;
 }
 
+using Parameters = std::vector<FreeParameter>;
+
+FreeParameter Factor(const char* key, double* (*at)(TableAxis&), double prior, double step) {
+  return {key, at, true, prior, step};
+}
+FreeParameter Number(const char* key, double* (*at)(TableAxis&), double prior, double step) {
+  return {key, at, false, prior, step};
+}
+
+Parameters ScrewParameters() {
+  return {
+      Factor(
+          "table_mass_kg", [](TableAxis& a) { return &a.load_inertia; }, 0.5, 1e-3),
+      Factor(
+          "screw_damping_Ns_m", [](TableAxis& a) { return &a.damping; }, 1.0, 5e-3),
+      Number(
+          "lag_s", [](TableAxis& a) { return &a.lag_s; }, 2e-4, 1e-6),
+      Number(
+          "delay_s", [](TableAxis& a) { return &a.delay_s; }, 5e-5, 1e-6),
+  };
+}
+
+Parameters FrictionParameters() {
+  return {
+      Factor(
+          "Fs_plus_N", [](TableAxis& a) { return &a.friction.Fs_plus; }, 1.0, 2e-3),
+      Factor(
+          "Fs_minus_N", [](TableAxis& a) { return &a.friction.Fs_minus; }, 1.0, 2e-3),
+      Factor(
+          "Fc_plus_N", [](TableAxis& a) { return &a.friction.Fc_plus; }, 1.0, 1e-3),
+      Factor(
+          "Fc_minus_N", [](TableAxis& a) { return &a.friction.Fc_minus; }, 1.0, 1e-3),
+      Factor(
+          "vs_mm_s", [](TableAxis& a) { return &a.friction.vs; }, 1.0, 5e-3),
+      Factor(
+          "sigma0_N_m", [](TableAxis& a) { return &a.friction.s0; }, 1.0, 3e-3),
+      Factor(
+          "sigma1_Ns_m", [](TableAxis& a) { return &a.friction.s1; }, 1.0, 1e-2),
+      Factor(
+          "sigma1_decay_mm_s", [](TableAxis& a) { return &a.friction.vd; }, 0.7, 1e-2),
+      Factor(
+          "sigma2_Ns_m", [](TableAxis& a) { return &a.friction.s2; }, 1.0, 2e-3),
+      Number(
+          "offset_N", [](TableAxis& a) { return &a.offset; }, 10.0, 0.02),
+  };
+}
+
+Parameters VariationParameters() {
+  return {
+      Number(
+          "place_1", [](TableAxis& a) { return &a.variation.place[0]; }, 0.2, 1e-3),
+      Number(
+          "place_2", [](TableAxis& a) { return &a.variation.place[1]; }, 0.2, 1e-3),
+      Number(
+          "place_3", [](TableAxis& a) { return &a.variation.place[2]; }, 0.2, 1e-3),
+      Number(
+          "turn_plus_cos1", [](TableAxis& a) { return &a.variation.turn_plus[0]; }, 0.2, 1e-3),
+      Number(
+          "turn_plus_sin1", [](TableAxis& a) { return &a.variation.turn_plus[1]; }, 0.2, 1e-3),
+      Number(
+          "turn_plus_cos2", [](TableAxis& a) { return &a.variation.turn_plus[2]; }, 0.1, 1e-3),
+      Number(
+          "turn_plus_sin2", [](TableAxis& a) { return &a.variation.turn_plus[3]; }, 0.1, 1e-3),
+      Number(
+          "turn_minus_cos1", [](TableAxis& a) { return &a.variation.turn_minus[0]; }, 0.2, 1e-3),
+      Number(
+          "turn_minus_sin1", [](TableAxis& a) { return &a.variation.turn_minus[1]; }, 0.2, 1e-3),
+      Number(
+          "turn_minus_cos2", [](TableAxis& a) { return &a.variation.turn_minus[2]; }, 0.1, 1e-3),
+      Number(
+          "turn_minus_sin2", [](TableAxis& a) { return &a.variation.turn_minus[3]; }, 0.1, 1e-3),
+  };
+}
+
 /// What the fit moves, with its scale.
-std::vector<FreeParameter> FreeParameters(const FitOptions& options) {
-  std::vector<FreeParameter> p;
-  const auto log = [&](std::string key, double* (*at)(TableAxis&), double prior, double step) {
-    p.push_back({std::move(key), at, true, prior, step});
-  };
-  const auto linear = [&](std::string key, double* (*at)(TableAxis&), double prior, double step) {
-    p.push_back({std::move(key), at, false, prior, step});
-  };
-  log(
-      "motor_inertia_kgm2", [](TableAxis& a) { return &a.motor_inertia; }, 1.0, 5e-4);
-  if (options.screw) {
-    log(
-        "table_mass_kg", [](TableAxis& a) { return &a.load_inertia; }, 0.5, 1e-3);
-    log(
-        "screw_damping_Ns_m", [](TableAxis& a) { return &a.damping; }, 1.0, 5e-3);
-    linear(
-        "lag_s", [](TableAxis& a) { return &a.lag_s; }, 2e-4, 1e-6);
-    linear(
-        "delay_s", [](TableAxis& a) { return &a.delay_s; }, 5e-5, 1e-6);
-  }
+Parameters FreeParameters(const FitOptions& options) {
+  Parameters p = {Factor(
+      "motor_inertia_kgm2", [](TableAxis& a) { return &a.motor_inertia; }, 1.0, 5e-4)};
+  const auto add = [&](const Parameters& more) { p.insert(p.end(), more.begin(), more.end()); };
+  if (options.screw) add(ScrewParameters());
   if (options.stiffness)
-    log(
-        "screw_stiffness_N_um", [](TableAxis& a) { return &a.stiffness; }, options.stiffness_prior, 5e-4);
-  log(
-      "Fs_plus_N", [](TableAxis& a) { return &a.friction.Fs_plus; }, 1.0, 2e-3);
-  log(
-      "Fs_minus_N", [](TableAxis& a) { return &a.friction.Fs_minus; }, 1.0, 2e-3);
-  log(
-      "Fc_plus_N", [](TableAxis& a) { return &a.friction.Fc_plus; }, 1.0, 1e-3);
-  log(
-      "Fc_minus_N", [](TableAxis& a) { return &a.friction.Fc_minus; }, 1.0, 1e-3);
-  log(
-      "vs_mm_s", [](TableAxis& a) { return &a.friction.vs; }, 1.0, 5e-3);
-  log(
-      "sigma0_N_m", [](TableAxis& a) { return &a.friction.s0; }, 1.0, 3e-3);
-  log(
-      "sigma1_Ns_m", [](TableAxis& a) { return &a.friction.s1; }, 1.0, 1e-2);
-  log(
-      "sigma1_decay_mm_s", [](TableAxis& a) { return &a.friction.vd; }, 0.7, 1e-2);
-  log(
-      "sigma2_Ns_m", [](TableAxis& a) { return &a.friction.s2; }, 1.0, 2e-3);
-  linear(
-      "offset_N", [](TableAxis& a) { return &a.offset; }, 10.0, 0.02);
-  linear(
-      "place_1", [](TableAxis& a) { return &a.variation.place[0]; }, 0.2, 1e-3);
-  linear(
-      "place_2", [](TableAxis& a) { return &a.variation.place[1]; }, 0.2, 1e-3);
-  linear(
-      "place_3", [](TableAxis& a) { return &a.variation.place[2]; }, 0.2, 1e-3);
-  linear(
-      "turn_plus_cos1", [](TableAxis& a) { return &a.variation.turn_plus[0]; }, 0.2, 1e-3);
-  linear(
-      "turn_plus_sin1", [](TableAxis& a) { return &a.variation.turn_plus[1]; }, 0.2, 1e-3);
-  linear(
-      "turn_plus_cos2", [](TableAxis& a) { return &a.variation.turn_plus[2]; }, 0.1, 1e-3);
-  linear(
-      "turn_plus_sin2", [](TableAxis& a) { return &a.variation.turn_plus[3]; }, 0.1, 1e-3);
-  linear(
-      "turn_minus_cos1", [](TableAxis& a) { return &a.variation.turn_minus[0]; }, 0.2, 1e-3);
-  linear(
-      "turn_minus_sin1", [](TableAxis& a) { return &a.variation.turn_minus[1]; }, 0.2, 1e-3);
-  linear(
-      "turn_minus_cos2", [](TableAxis& a) { return &a.variation.turn_minus[2]; }, 0.1, 1e-3);
-  linear(
-      "turn_minus_sin2", [](TableAxis& a) { return &a.variation.turn_minus[3]; }, 0.1, 1e-3);
+    add({Factor(
+        "screw_stiffness_N_um", [](TableAxis& a) { return &a.stiffness; }, options.stiffness_prior, 5e-4)});
+  add(FrictionParameters());
+  add(VariationParameters());
   const auto in = [](const std::vector<std::string>& keys, const std::string& key) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   };

@@ -105,6 +105,37 @@ json Values(const TableAxis& a) {
           {"lag_s", a.lag_s}};
 }
 
+json Screw(const Identification& id) {
+  json response = json::array();
+  for (const ResponsePoint& p : id.shaken.response)
+    response.push_back({{"frequency_Hz", p.frequency_Hz},
+                        {"accelerance_1_kg", p.accelerance_1_kg},
+                        {"coherence", p.coherence}});
+  return {{"found", id.shaken.verdict == ShakenScrew::Verdict::kFound},
+          {"antiresonance_Hz", id.shaken.antiresonance_Hz},
+          {"resonance_Hz", id.shaken.resonance_Hz},
+          {"period_s", id.period_s},
+          {"wind_up_stiffness_N_m", id.wind_up.found ? json(id.wind_up.stiffness_N_m) : json(nullptr)},
+          {"response", response}};
+}
+
+json Overlay(const Identification& id) {
+  json time = json::array(), velocity = json::array(), measured = json::array(), simulated = json::array(),
+       position = json::array();
+  for (const OverlayPoint& p : id.overlay) {
+    time.push_back(p.time_s);
+    position.push_back(p.position_m);
+    velocity.push_back(p.velocity_m_s);
+    measured.push_back(p.friction_measured_N);
+    simulated.push_back(p.friction_simulated_N);
+  }
+  return {{"time_s", time},
+          {"position_m", position},
+          {"velocity_m_s", velocity},
+          {"measured_N", measured},
+          {"simulated_N", simulated}};
+}
+
 }  // namespace
 
 ModelConfig ToModel(const Identification& id, ModelConfig model) {
@@ -157,20 +188,6 @@ void WriteIdentificationJson(const std::filesystem::path& file, const Identifica
   json break_aways = json::array();
   for (const BreakAway& b : id.break_aways)
     break_aways.push_back({{"force_N", b.force_N}, {"velocity_m_s", b.velocity_m_s}});
-  json response = json::array();
-  for (const ResponsePoint& p : id.shaken.response)
-    response.push_back({{"frequency_Hz", p.frequency_Hz},
-                        {"accelerance_1_kg", p.accelerance_1_kg},
-                        {"coherence", p.coherence}});
-  json time = json::array(), velocity = json::array(), measured = json::array(), simulated = json::array(),
-       position = json::array();
-  for (const OverlayPoint& p : id.overlay) {
-    time.push_back(p.time_s);
-    position.push_back(p.position_m);
-    velocity.push_back(p.velocity_m_s);
-    measured.push_back(p.friction_measured_N);
-    simulated.push_back(p.friction_simulated_N);
-  }
   const json all = {
       {"sources", sources},
       {"seconds", id.seconds},
@@ -189,20 +206,9 @@ void WriteIdentificationJson(const std::filesystem::path& file, const Identifica
         {"spread_N_m", id.presliding.spread_N_m},
         {"measured", Points(id.loops)},
         {"simulated", Points(id.loops_simulated)}}},
-      {"screw",
-       {{"found", id.shaken.verdict == ShakenScrew::Verdict::kFound},
-        {"antiresonance_Hz", id.shaken.antiresonance_Hz},
-        {"resonance_Hz", id.shaken.resonance_Hz},
-        {"period_s", id.period_s},
-        {"wind_up_stiffness_N_m", id.wind_up.found ? json(id.wind_up.stiffness_N_m) : json(nullptr)},
-        {"response", response}}},
+      {"screw", Screw(id)},
       {"encoder", {{"step_m", id.encoder.step_m}, {"noise_m", id.encoder.noise_m}}},
-      {"overlay",
-       {{"time_s", time},
-        {"position_m", position},
-        {"velocity_m_s", velocity},
-        {"measured_N", measured},
-        {"simulated_N", simulated}}},
+      {"overlay", Overlay(id)},
   };
   WriteText(file, all.dump() + "\n");
 }

@@ -20,8 +20,6 @@ LARGER = {
     "analysis/diagnosis/decision/rivals.cc": 413,
     "analysis/diagnosis/quantification/detectable.cc:KeepDetectable()": 7,
     "analysis/diagnosis/screening/jitter.cc:TestJitter": 85,
-    "analysis/identification/joint_fit.cc:FreeParameters": 73,
-    "analysis/identification/result_files.cc:WriteIdentificationJson": 63,
     "analysis/prediction_error/fit.cc": 431,
     "analysis/prediction_error/lane_bundle.cc:MakeLanes": 79,
     "analysis/prediction_error/linear_model.cc:Linearise": 79,
