@@ -218,6 +218,121 @@ TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryFusedInstructionSet) 
   }
 }
 
+constexpr std::size_t kN = 4, kTransition = kN * kN + 2 * kN + kLinearInputs * (kN + 1);
+
+/// x' = A x + B u + G r, e = valid r - c x - d u, one column in plain numbers: motor force and level u,
+/// reading r.
+std::vector<double> ScalarColumn(const std::vector<float>& step, const double* u, const double* level,
+                                 const double* reading) {
+  std::vector<double> e(kRows, 0.0), x(kN, 0.0);
+  for (std::size_t k = 0; k + 1 < kRows; ++k) {
+    const float* p = &step[k * kTransition];
+    const auto at = [&](std::size_t i) { return static_cast<double>(p[i]); };
+    std::vector<double> next(kN, 0.0);
+    for (std::size_t i = 0; i < kN; ++i) {
+      e[k + 1] -= at(kN * kN + i) * x[i];
+      for (std::size_t j = 0; j < kN; ++j) next[i] += at(i * kN + j) * x[j];
+    }
+    const auto act = [&](std::size_t input, double value) {
+      const std::size_t b = kN * kN + 2 * kN + input * (kN + 1);
+      e[k + 1] -= at(b) * value;
+      for (std::size_t i = 0; i < kN; ++i) next[i] += at(b + 1 + i) * value;
+    };
+    act(0, u[k]);
+    act(1, u[k + 1]);
+    act(4, level[k]);
+    act(5, level[k + 1]);
+    e[k + 1] -= reading[k + 1];
+    for (std::size_t i = 0; i < kN; ++i) next[i] -= at(kN * kN + kN + i) * reading[k + 1];
+    x = next;
+  }
+  return e;
+}
+
+TEST(LaneLoops, ColumnsAreTheRecursionOfTheLinearModel) {
+  const std::vector<double> numbers = Noise(kRows * kTransition, 0.2, 17);
+  const std::vector<float> step(numbers.begin(), numbers.end());
+  const std::vector<double> signals = Noise(3 * kLanes * (kRows + 1), 1.0, 18);
+  const std::vector<std::uint8_t> valid(kRows, 1);
+  const auto signal = [&](std::size_t which, std::size_t lane) {
+    return &signals[(which * kLanes + lane) * (kRows + 1)];
+  };
+  std::vector<double> out(kLanes * kRows);
+  LaneColumns c;
+  c.rows = kRows;
+  c.stride = kTransition;
+  c.states = kN;
+  c.step = step.data();
+  c.valid = valid.data();
+  c.has_motor = c.has_level = c.has_reading = true;
+  const std::vector<double> zeros(kRows + 1, 0.0);
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    c.motor.from.at[i] = signal(0, i);
+    c.motor.to.at[i] = signal(0, i) + 1;
+    c.level.from.at[i] = signal(1, i);
+    c.level.to.at[i] = signal(1, i) + 1;
+    c.load.from.at[i] = c.load.to.at[i] = zeros.data();
+    c.reading[i] = signal(2, i);
+    c.innovation[i] = &out[i * kRows];
+  }
+  BestLoops().columns(c);
+  for (std::size_t i = 0; i < kLanes; ++i)
+    ExpectNear(std::vector<double>(c.innovation[i], c.innovation[i] + kRows),
+               ScalarColumn(step, signal(0, i), signal(1, i), signal(2, i)));
+}
+
+/// nu = (r + c x) / sqrt(S), x' = A x + kappa (r + c x); then the taps over the rows that count, times the
+/// weight.
+std::vector<double> ScalarWhite(const std::vector<float>& step, const std::vector<float>& gain,
+                                const std::vector<double>& taps, const std::vector<std::uint8_t>& counted,
+                                const double* weight, const double* in) {
+  std::vector<double> nu(kRows, 0.0), out(kRows, 0.0), x(kN, 0.0);
+  for (std::size_t k = 1; k < kRows; ++k) {
+    const float* p = &step[(k - 1) * kTransition];
+    const float* g = &gain[(k - 1) * (kN + 1)];
+    double v = in[k];
+    for (std::size_t j = 0; j < kN; ++j) v += static_cast<double>(p[kN * kN + j]) * x[j];
+    std::vector<double> next(kN);
+    for (std::size_t i = 0; i < kN; ++i) {
+      next[i] = static_cast<double>(g[i]) * v;
+      for (std::size_t j = 0; j < kN; ++j) next[i] += static_cast<double>(p[i * kN + j]) * x[j];
+    }
+    x = next;
+    nu[k] = counted[k] != 0 ? v * static_cast<double>(g[kN]) : 0.0;
+  }
+  for (std::size_t k = 0; k < kRows; ++k)
+    for (std::size_t t = 0; t < std::min(taps.size(), k + 1); ++t) out[k] += taps[t] * nu[k - t] * weight[k];
+  return out;
+}
+
+TEST(LaneLoops, WhiteningIsTheRecursionOfTheKalmanFilterAndTheTaps) {
+  const std::vector<double> numbers = Noise(kRows * kTransition, 0.2, 19),
+                            gains = Noise(kRows * (kN + 1), 0.2, 20);
+  const std::vector<float> step(numbers.begin(), numbers.end()), gain(gains.begin(), gains.end());
+  const std::vector<double> signals = Noise(kLanes * kRows, 1.0, 21), weight = Noise(kRows, 1.0, 22);
+  const std::vector<double> taps = Noise(kWhitenTaps, 0.3, 23);
+  std::vector<std::uint8_t> counted(kRows, 1);
+  counted[200] = 0;
+  std::vector<double> out(kLanes * kRows);
+  LaneWhiten w;
+  w.rows = kRows;
+  w.stride = kTransition;
+  w.states = kN;
+  w.step = step.data();
+  w.gain = gain.data();
+  w.taps = taps.data();
+  w.counted = counted.data();
+  w.weight = weight.data();
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    w.in[0][i] = &signals[i * kRows];
+    w.out[0][i] = &out[i * kRows];
+  }
+  BestLoops().whiten(w);
+  for (std::size_t i = 0; i < kLanes; ++i)
+    ExpectNear(std::vector<double>(w.out[0][i], w.out[0][i] + kRows),
+               ScalarWhite(step, gain, taps, counted, weight.data(), w.in[0][i]));
+}
+
 TEST(LaneLoops, ProductsGiveTheSameBitsWithEveryFusedInstructionSetAndTheRightSums) {
   constexpr std::size_t kSize = 1237, kA = 7, kB = 5;
   const std::vector<double> numbers = Noise((kA + kB) * kSize, 1.0, 10);
