@@ -9,14 +9,14 @@
 namespace contour {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 34> kUnits{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 35> kUnits{{
     {"m", "m"},         {"mm", "mm"},         {"um", "um"},       {"nm", "nm"},     {"rad", "rad"},
     {"deg", "deg"},     {"s", "s"},           {"ms", "ms"},       {"us", "us"},     {"ns", "ns"},
     {"min", "min"},     {"s2", "s^2"},        {"s3", "s^3"},      {"N", "N"},       {"kN", "kN"},
     {"mN", "mN"},       {"Nm", "Nm"},         {"mNm", "mNm"},     {"kg", "kg"},     {"g", "g"},
     {"kgm2", "kg m^2"}, {"kgcm2", "kg cm^2"}, {"gcm2", "g cm^2"}, {"Ns", "N s"},    {"Nms", "Nm s"},
     {"Hz", "Hz"},       {"kHz", "kHz"},       {"degC", "degC"},   {"K", "K"},       {"bit", "bit"},
-    {"kbit", "kbit"},   {"rev", "rev"},       {"turn", "turn"},   {"rpm", "1/min"},
+    {"kbit", "kbit"},   {"cycles", "cycles"}, {"rev", "rev"},     {"turn", "turn"}, {"rpm", "1/min"},
 }};
 
 const std::string_view* FindUnit(std::string_view token) {

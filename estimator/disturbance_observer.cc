@@ -58,7 +58,7 @@ AxisEstimate DisturbanceObserver::Update(const AxisEstimatorInput& in) noexcept 
       gate_.After(innovation.value, innovation.std);
       if (result == UpdateResult::kGated) {
         out.limit = Reason::kInnovationGated;
-        if (++gated_in_a_row_ >= kGatedBeforeRestart) Reset(in.position_m);
+        if (StartsAgain(++gated_in_a_row_, setup_.period_s)) Reset(in.position_m);
       } else {
         gated_in_a_row_ = 0;
       }

@@ -120,7 +120,7 @@ AxisEstimate FourStateFilter::Update(const AxisEstimatorInput& in) noexcept {
       gate_.After(innovation.value, innovation.std);
       gated_in_a_row_ = result == UpdateResult::kGated ? gated_in_a_row_ + 1 : 0;
       if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
-      if (gated_in_a_row_ >= kGatedBeforeRestart) Follow(in.position_m);
+      if (gated_in_a_row_ != 0 && StartsAgain(gated_in_a_row_, setup_.period_s)) Follow(in.position_m);
       out.innovation_m = innovation.value;
       out.innovation_std_m = innovation.std;
     }

@@ -44,8 +44,11 @@ class SuddenGate {
   bool off_ = false;  ///< the reading before was suddenly off
 };
 
-/// An encoder that disagrees this often in a row has really moved: filters start again from it.
-inline constexpr std::uint32_t kGatedBeforeRestart = 20;
+/// An encoder that disagrees for so long has really moved: filters start again from it.
+inline constexpr double kGatedBeforeRestart_s = 20e-3;
+[[nodiscard]] inline bool StartsAgain(std::uint32_t gated_in_a_row, double period_s) noexcept {
+  return (gated_in_a_row + 0.5) * period_s >= kGatedBeforeRestart_s;
+}
 
 struct Innovation {
   double value = 0.0;

@@ -27,7 +27,7 @@ AxisEstimate KinematicObserver::Update(const AxisEstimatorInput& in) noexcept {
       gated_in_a_row_ = 0;
     } else {
       out.limit = Reason::kInnovationGated;
-      if (++gated_in_a_row_ >= kGatedBeforeRestart) Reset(in.position_m);
+      if (StartsAgain(++gated_in_a_row_, period_s_)) Reset(in.position_m);
     }
   }
   out.position_m = position_m_;

@@ -375,7 +375,7 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
         surprise_ += surprise_share_ * (ratio * ratio - surprise_);
       }
       if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
-      if (gated_in_a_row_ >= kGatedBeforeRestart) Follow(in.position_m);
+      if (gated_in_a_row_ != 0 && StartsAgain(gated_in_a_row_, setup_.period_s)) Follow(in.position_m);
     }
     out.innovation_m = innovation.value;
     out.innovation_std_m = innovation.std;

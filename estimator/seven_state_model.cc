@@ -41,7 +41,9 @@ inline void SevenStateModel::Substep(Row& p, Row& v, Row& f, Row& d, const Row& 
     const double missing = std::max(sign * gap, 0.0);
     const double trailing = level + s0[k] * compliance_m_N * missing;
     f[k] -= gap * Expm1OfNegative(s0[k] * speed * minus_step_s / trailing);
-    const double damping = sigma1 * (v[k] - speed / level * f[k]);
+    // As ShareOfLevel has it: what held at a level that is hardly there any more damps no more than twice.
+    const double held = std::clamp(speed / level * f[k], -kMostLevels * speed, kMostLevels * speed);
+    const double damping = sigma1 * (v[k] - held);
     const double next = decay * v[k] + gain * (force_N - f[k] - damping - d[k]);
     p[k] += half_step_s * (v[k] + next);
     v[k] = next;
@@ -134,12 +136,14 @@ void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatri
 
     x[kBristle] += gap * relaxed;
     // Damping c = sigma1 (v - |v| F+ / G).
-    const double per_level = speed / level;
+    const double share = ShareOfLevel(x[kBristle], level);
+    const bool within = share == x[kBristle] / level;
+    const double per_level = within ? speed / level : 0.0;
     const double c_f = -in.sigma1_Ns_m * per_level;
-    const double share = x[kBristle] / level;
     const double c_v = in.sigma1_Ns_m * (1.0 - sign * share + per_level * share * level_v);
     const double c_g = in.sigma1_Ns_m * per_level * share * per_g;
-    const double damping = in.sigma1_Ns_m * (x[kVelocity] - per_level * x[kBristle]);
+    const double held = within ? per_level * x[kBristle] : share * speed;
+    const double damping = in.sigma1_Ns_m * (x[kVelocity] - held);
     const double next =
         velocity_decay_ * x[kVelocity] + velocity_gain_ * (force_N - x[kBristle] - damping - x[kDisturbance]);
     x[kPosition] += 0.5 * h * (x[kVelocity] + next);

@@ -35,6 +35,12 @@ double ExplainedInnovation_m(const CycleConfig& config, std::size_t axis) {
   return 0.5 * force_N / a.mechanics.mass_kg * period_s * period_s;
 }
 
+// For so long in a row; 0 stays 0: not watched.
+std::int32_t InARowFor(const CycleConfig& config, double time_ms) {
+  if (!(time_ms > 0.0)) return 0;
+  return std::max(static_cast<std::int32_t>(std::lround(time_ms * 1e3 / config.cycle_us)), 1);
+}
+
 std::uint32_t Cycles(const CycleConfig& config, double time_s) {
   return static_cast<std::uint32_t>(time_s * 1e6 / config.cycle_us) + 1;
 }
@@ -67,16 +73,16 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
 SelfWatch::SelfWatch(const CycleConfig& config)
     : ladder_(Cycles(config, config.control.supervision.step_s),
               Cycles(config, config.control.supervision.quiet_s)),
-      late_(config.control.supervision.late_cycles) {
+      late_(InARowFor(config, config.control.supervision.late_ms)) {
   const SupervisionConfig& s = config.control.supervision;
   const EstimatorKind kind = EstimatorFor(config);
   in_cascade_ = InCascade(config);
   friction_filter_ = kind != EstimatorKind::kKinematic && kind != EstimatorKind::kDisturbanceObserver;
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     oscillation_.push_back(OscillationDetector(OscillationBoundsFor(config, i)));
-    innovation_.push_back(InnovationWatch(
-        {s.innovation_sigma, ExplainedInnovation_m(config, i), s.innovation_samples, s.gated_cycles}));
-    capped_.push_back(InARow(s.solver_cap_cycles));
+    innovation_.push_back(InnovationWatch({s.innovation_sigma, ExplainedInnovation_m(config, i),
+                                           s.innovation_samples, InARowFor(config, s.gated_ms)}));
+    capped_.push_back(InARow(InARowFor(config, s.solver_cap_ms)));
   }
 }
 

@@ -25,18 +25,21 @@ struct SoundMachine {
   std::vector<std::string> axes;
   double cogging_Nm;
   double force_N;
+  double hour_force_N;  ///< in the nightly form
   double fastest_mm_s;
   double creep_mm;  ///< in which the fastest is reached
 };
 
+// 12 N are more than the Coulomb friction of the light axis. In an hour of them its loop does swing once, for
+// half a second, and is noticed, rightly; so the hour has less.
 const std::vector<SoundMachine> kMachines{
-    {"xy_emulated", "config/xy_emulated.yaml", {"x", "y"}, 0.01, 60.0, 240.0, 60.0},
-    {"heavy_table", "tests/faults/machines/heavy_table.yaml", {"x", "y"}, 0.08, 60.0, 290.0, 120.0},
-    {"light_axis", "tests/faults/machines/light_axis.yaml", {"z"}, 0.005, 6.0, 480.0, 100.0}};
+    {"xy_emulated", "config/xy_emulated.yaml", {"x", "y"}, 0.01, 60.0, 60.0, 240.0, 60.0},
+    {"heavy_table", "tests/faults/machines/heavy_table.yaml", {"x", "y"}, 0.08, 60.0, 60.0, 290.0, 120.0},
+    {"light_axis", "tests/faults/machines/light_axis.yaml", {"z"}, 0.005, 12.0, 6.0, 480.0, 100.0}};
 
 /// Every effect, of a size that a machine in order has: cogging, torque ripple, steps of an outside force,
 /// counts misread by one, stick-slip, warm-up, a lead that wobbles, friction along the stroke and per turn.
-std::vector<std::string> Overrides(const SoundMachine& machine, bool csp) {
+std::vector<std::string> Overrides(const SoundMachine& machine, bool csp, bool is_long) {
   std::vector<std::string> all;
   for (const std::string& axis : machine.axes) {
     const std::string emulated = "emulator.axes." + axis;
@@ -46,7 +49,8 @@ std::vector<std::string> Overrides(const SoundMachine& machine, bool csp) {
     all.push_back(effect + "cogging={amplitude_Nm: " + std::to_string(machine.cogging_Nm) +
                   ", order_per_rev: 12}");
     all.push_back(effect + "torque_ripple={amplitude_rel: 0.02, order_per_rev: 6}");
-    all.push_back(effect + "cutting_force={force_N: " + std::to_string(machine.force_N) +
+    all.push_back(effect + "cutting_force={force_N: " +
+                  std::to_string(is_long ? machine.hour_force_N : machine.force_N) +
                   ", start_s: 3, end_s: 5.3, every_s: 7.9}");
     all.push_back(effect + "stribeck={Fs_over_Fc: 1.6, vs_rad_s: 2}");
     all.push_back(effect + "friction_drift={change_rel: -0.3, over_s: 1800}");
@@ -91,13 +95,8 @@ std::vector<std::string> Round(const SoundMachine& machine, int round, bool is_l
   return parts;
 }
 
-/// What an axis of a machine in order never shows. In csp the emulated drives' own cascade does swing at 60
-/// Hz at 5 to 10 mm/s, with 140 N: the ladder that says so is right, and must not stop the machine.
-bool IsAlarm(Reason limit, bool csp) {
-  const bool of_ladder =
-      limit == Reason::kOscillationNoticed || limit == Reason::kSoftened || limit == Reason::kFallenBack;
-  return limit >= Reason::kTorqueConstantChanged && !(csp && of_ladder);
-}
+/// What an axis of a machine in order never shows.
+bool IsAlarm(Reason limit) { return limit >= Reason::kTorqueConstantChanged; }
 
 struct Case {
   SoundMachine machine;
@@ -112,9 +111,8 @@ class NoFalseTrip : public ::testing::TestWithParam<Case> {};
 TEST_P(NoFalseTrip, WithEveryEffectOn) {
   const bool is_long = std::getenv("CONTOUR_LONG_TESTS") != nullptr;
   const auto& [sound, csp, controller] = GetParam();
-  const bool csp_mode = csp;
   VirtualMachine machine(
-      LoadEmulatedMachine(std::string(CONTOUR_SOURCE_DIR) + "/" + sound.file, Overrides(sound, csp)),
+      LoadEmulatedMachine(std::string(CONTOUR_SOURCE_DIR) + "/" + sound.file, Overrides(sound, csp, is_long)),
       controller);
   machine.BringUp();
   std::string part = "enable";
@@ -125,7 +123,7 @@ TEST_P(NoFalseTrip, WithEveryEffectOn) {
     const CycleRecord& r = entry.output.record;
     if (cycles++ == 0) seconds = -1e-9 * static_cast<double>(r.grid_time_ns);
     for (std::size_t i = 0; i < r.axes.size(); ++i)
-      if (IsAlarm(r.axes[i].limit, csp_mode) &&
+      if (IsAlarm(r.axes[i].limit) &&
           alarms[std::string(Name(r.axes[i].limit)) + " of " + sound.axes[i] + " in " + part]++ == 0)
         std::printf("cycle %llu, %.3f s into the part: %s\n", static_cast<unsigned long long>(r.cycle),
                     r.path_time_s, std::string(Name(r.axes[i].limit)).c_str());

@@ -90,7 +90,7 @@ TEST(SelfWatch, ALoopInOrderIsLeftAlone) {
 
 // Each alarm takes the bound in a row; late cycles are told by the loop, of the cycle before.
 TEST(SelfWatch, LateCyclesInARowEndInAStop) {
-  const EmulatedMachineFile file = ExampleMachine({"control.supervision.late_cycles=400"});
+  const EmulatedMachineFile file = ExampleMachine({"control.supervision.late_ms=400"});
   SelfWatch watch(MakeCycleConfig(file.machine, ControllerName::kFull));
   AxisFeedback feedback;
   AxisEstimate estimate;
@@ -110,6 +110,37 @@ TEST(SelfWatch, LateCyclesInARowEndInAStop) {
     watch.EndCycle(i % 400 != 0);
   }
   EXPECT_EQ(watch.step(), SupervisionStep::kNone);
+}
+
+// What lasts for so long lasts so long with every period. Before: 250 cycles, half the time at 500 us.
+TEST(SelfWatch, TimesInARowAreTheSameForEveryPeriod) {
+  for (const std::uint32_t cycle_us : {500u, 1000u, 2000u}) {
+    CycleConfig config = MakeCycleConfig(ExampleMachine().machine, ControllerName::kFull);
+    config.cycle_us = cycle_us;
+    SelfWatch watch(config);
+    AxisFeedback feedback;
+    AxisEstimate estimate;
+    const ReferencePoint reference;
+    const SelfWatch::Seen seen{feedback, estimate, reference, 0.0, 1e-3};
+    std::uint32_t cycles = 0;
+    while (watch.step() == SupervisionStep::kNone && cycles < 10000) {
+      watch.Look(0, seen);
+      watch.EndCycle(true);
+      ++cycles;
+    }
+    EXPECT_EQ(cycles * cycle_us, 250000u);
+  }
+}
+
+TEST(SelfWatch, AKeyInCyclesIsRefusedAndNamesTheOneInMs) {
+  for (const std::string key : {"late", "gated", "solver_cap"}) {
+    try {
+      ExampleMachine({"control.supervision." + key + "_cycles=20"});
+      ADD_FAILURE() << key;
+    } catch (const std::exception& error) {
+      EXPECT_NE(std::string(error.what()).find(key + "_ms"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(SelfWatch, ASolverAtItsCapAndAFilterThatContradictsItselfClimbTheSameLadder) {

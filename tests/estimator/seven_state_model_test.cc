@@ -73,6 +73,27 @@ TEST(SevenStateModel, OnePeriodMatchesAFineIntegration) {
   }
 }
 
+// A level that was given up, and a bristle that still holds the other way: it lets go within the period, and
+// its damping is no force. Before: -82 mm/s of an axis that an outside force moved forwards.
+TEST(SevenStateModel, ABristleWithoutALevelDoesNotThrowTheAxisBack) {
+  const Friction f{11, 13.5, 10.5, 8.2, 4.5e-3, 1.0, 1.1e6, 360, 3e-3, 55};
+  const SevenStateModel model(f, 6.42, 1e-3, 0.2, 30e-9);
+  X x{};
+  x[kVelocity] = 1e-3;
+  x[kBristle] = -12.0;
+  x[kLevelPlus] = 0.00175;
+  x[kLevelMinus] = 3.3;
+  const SevenStateInput in{{0.0, 0.0}, 1.0, 1.0, 350.0};
+  X tangent_mean = x;
+  model.Propagate(x, in);
+  EXPECT_GT(x[kVelocity], 0.0);
+  EXPECT_LT(x[kVelocity], 1e-3 + 12.0 / 6.42 * 1e-3);
+  SquareMatrix<kSevenStates> tangent{};
+  for (std::size_t i = 0; i < kSevenStates; ++i) tangent[i][i] = 1.0;
+  model.PropagateTangent(tangent_mean, tangent, in);
+  EXPECT_NEAR(tangent_mean[kVelocity], x[kVelocity], 1e-14);
+}
+
 TEST(SevenStateModel, AllSigmaPointsMoveLikeSingleStates) {
   std::mt19937 random(8);
   using Points = SigmaPoints<kSevenStates>;
