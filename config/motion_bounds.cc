@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "config/extended_model.h"
@@ -78,15 +79,21 @@ double JumpSeen_m(const Axis& a, double feed_m_s) {
   return a.t.Jump_m(feed_m_s, a.limits.force_N, a.period_s, 1.0, 1.0);
 }
 
+// From a path that begins to go on without the axis to the answer of the loop.
+double Answer_s(const Axis& a) { return (a.t.loop_periods + 1.0 + a.t.begin_periods) * a.period_s; }
+
 // `begins`: how often the reading that stands may be taken for a new one.
 FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double feed_m_s) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  // A drive's own loop may add up what flickers as slowly as it likes: at rest nothing tells it from a load.
+  if (feed_m_s <= 0.0 && begins > 1.0 && a.monitored.in_cascade) return {infinity, infinity};
   if (feed_m_s <= 0.0) {
     // At rest nothing asks for another force; what the force may change by moves presliding at its softest.
     const double soft_N_m = a.monitored.sigma0_N_m / kSofter;
     // In the time that the force is judged late, and after, it may break away.
     return {1e3 * a.t.rest_force_N / soft_N_m + 1e3 * Slam_m(a, 0.0), Off_s(a)};
   }
-  // What the loop makes of the standing reading counts as settling, too, by its share.
+  // What the loop made of the motion before may still be settling, by its share.
   // Seen by the reading's step to rest at once, or by the path going on for as long as the loop takes to
   // answer.
   const bool at_once = feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s);
@@ -119,10 +126,12 @@ FaultBound ByFollowingError(const Axis& a, double feed_m_s, bool runs_away) {
   double seen_s = 0.0;
   if (feed_m_s > 0.0) seen_s = fe_m / feed_m_s;
   if (runs_away) {
-    // An unstable loop leaves its first count by e^(w t).
+    // Nothing moves before the loop's force breaks the axis away, along the path; then an unstable loop
+    // leaves its first count by e^(w t).
     const double rate_1_s = std::sqrt(a.t.loop_N_m / (a.t.mass_kg * 2.0));
+    const double break_away_s = feed_m_s > 0.0 ? a.monitored.Fs_N / (a.t.loop_N_m * feed_m_s) : 0.0;
     seen_s = std::min(feed_m_s > 0.0 ? seen_s + 1.0 / rate_1_s : 1e9,
-                      std::log(1.0 + fe_m / a.monitored.count_m) / rate_1_s);
+                      break_away_s + std::log(1.0 + fe_m / a.monitored.count_m) / rate_1_s);
   }
   return {1e3 * (fe_m + open_m), seen_s + a.period_s + Off_s(a)};
 }
@@ -188,6 +197,12 @@ double PromisedFeed_mm_s(const MachineConfig& config, const AxisConfig& axis) {
   if (axis.limits.slowest_feed_mm_s > 0.0) return axis.limits.slowest_feed_mm_s;
   const Axis a = Known(config, axis);
   return std::max(kSlowestFeed_mm_s, 1e3 * a.t.frozen.Path_m(a.t.loop_N_m) / kShows_s);
+}
+
+double TellingFeed_mm_s(const MachineConfig& config, const AxisConfig& axis) {
+  const Axis a = Known(config, axis);
+  const double held_N = a.t.friction_N + a.t.external_N - a.monitored.Fc_N;
+  return 1e3 * held_N / (a.t.loop_N_m * Answer_s(a));
 }
 
 WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& axis) {

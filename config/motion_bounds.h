@@ -28,8 +28,9 @@ inline constexpr MotionFault kMotionFaults[] = {
 std::string_view Name(MotionFault fault);
 
 struct FaultBound {
-  double departure_mm = 0.0;  ///< of the table from the commanded path, until the torque is off
-  double time_s = 0.0;        ///< from the fault, or from the motion that shows it, until the torque is off
+  /// Of the table from the commanded path, until the torque is off. Infinite: it is not promised to show.
+  double departure_mm = 0.0;
+  double time_s = 0.0;  ///< from the fault, or from the motion that shows it, until the torque is off
 };
 
 /// At this feed of the axis; 0 is at rest.
@@ -43,6 +44,10 @@ std::vector<double> BoundFeeds_mm_s(const AxisConfig& axis);
 /// kShows_s; never below kSlowestFeed_mm_s.
 inline constexpr double kShows_s = 0.03;
 double PromisedFeed_mm_s(const MachineConfig& config, const AxisConfig& axis);
+
+/// Below this feed an axis that stands shows by its path, before its torque could show what holds it: there
+/// lost torque that nothing tells of and an encoder that stands are the same, without a scale.
+double TellingFeed_mm_s(const MachineConfig& config, const AxisConfig& axis);
 
 /// The worst of all faults at rest and at feeds from PromisedFeed_mm_s on, and where; without kFlickers,
 /// which is told only.

@@ -20,6 +20,8 @@ constexpr std::uint32_t kBeyondAtLeast = 2;
 // A report is low-passed over so many periods, and must differ for as many more: drives filter it.
 constexpr double kReport_periods = 10.0;
 constexpr std::uint32_t kUndelivered_periods = 20;
+// Of a report's error, what it must have shown to be one.
+constexpr double kReportShows = 0.1;
 // Drives know their torque to that share of it.
 constexpr double kReportGain = 0.3;
 constexpr std::uint32_t kLearnEvery_readings = 8;
@@ -62,6 +64,9 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   near_ = false;
   same_ = near_periods_ = same_gone_ = near_gone_ = beyond_ = undelivered_ = 0;
   report_seen_ = scale_seen_ = tells_none_ = false;
+  doubt_ = Reason::kNone;
+  doubt_lasts_ = false;
+  astray_m_ = 0.0;
   scale_apart_ = 0;
 }
 
@@ -77,13 +82,19 @@ void MotionMonitor::SeePeak(double force_N, double spread_N) noexcept {
   peak_N_ = std::max(peak_N_ * t_.peak_decay, std::abs(force_N) + spread_N);
 }
 
-// A drive that tells of no torque says why its axis stands or falls behind.
-Reason MotionMonitor::Named(Reason found, double reported_N, double force_N) noexcept {
+// A drive that tells of no torque says why its axis stands or falls behind. Where torque is wanted, that is;
+// and where its report has not been seen to be one, a reading that stands may be either.
+Reason MotionMonitor::Named(Reason found, const MotionSample& s, double force_N) noexcept {
   const double wanted_N = axis_.in_cascade ? axis_.Fc_N : std::abs(force_N);
-  tells_none_ = report_seen_ && std::abs(reported_N) <= kNoTorque * wanted_N;
+  tells_none_ = report_seen_ && std::abs(s.reported_force_N) <= kNoTorque * wanted_N;
   const bool torque = found == Reason::kFeedbackFrozen || found == Reason::kTorqueWithoutMotion ||
                       found == Reason::kFeedbackReversed;
-  return torque && tells_none_ ? Reason::kTorqueNotDelivered : found;
+  if (!torque || !config_.delivery) return found;
+  const bool wants = axis_.in_cascade ? t_.loop_N_m * std::abs(s.reference_m - s.position_m) > axis_.Fc_N
+                                      : wanted_N > kReportShows * t_.delivery_N;
+  if (tells_none_ && wants) return Reason::kTorqueNotDelivered;
+  const bool either = found == Reason::kFeedbackFrozen && (tells_none_ || !report_seen_);
+  return either ? Reason::kTorqueWithoutMotion : found;
 }
 
 Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
@@ -94,20 +105,23 @@ Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
   const double predicted_m = position_m_ + velocity_m_s_ * n * period_s_ +
                              0.5 * acceleration_m_s2 * period_s_ * period_s_ * n * (n + before);
   const double off_m = std::abs(s.position_m - predicted_m);
-  believed_ = off_m <= t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
+  const double forced_m = t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
+  believed_ = off_m <= forced_m;
   // To momentum a SYNC that came late is a push that is taken back at once; only what goes on counts.
+  if (believed_ && late_readings_ == 0) return Reason::kNone;
   const double jitter_m = std::min(off_m, t_.jitter_s * std::abs(velocity_m_s_));
   if (!believed_)
     jitter_N_ = std::max(jitter_N_, t_.filter * t_.mass_kg * jitter_m / (period_s_ * period_s_));
-  double allowed_m = t_.Jump_m(velocity_m_s_, peak_N_, period_s_, n, before);
+  double allowed_m = forced_m + t_.Jitter_m(velocity_m_s_, n, before);
   // A cycle that was late sent its SYNC late, by less than a period.
   if (late_readings_ > 0) {
     --late_readings_;
     allowed_m += 2.0 * period_s_ * std::abs(velocity_m_s_);
   }
   if (off_m <= allowed_m) return Reason::kNone;
-  return std::abs(s.position_m - position_m_) <= t_.flicker_m ? Reason::kFeedbackFrozen
-                                                              : Reason::kFeedbackJump;
+  // The first reading under torque may follow one that jumped before.
+  return near_ && std::abs(s.position_m - position_m_) <= t_.flicker_m ? Reason::kFeedbackFrozen
+                                                                       : Reason::kFeedbackJump;
 }
 
 Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
@@ -115,7 +129,6 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   const double settled_N = axis_.in_cascade ? s.reported_force_N : forces_N_[axis_.delay_cycles + 1];
   slow_force_N_ += t_.frozen_filter * (settled_N - slow_force_N_);
   slower_force_N_ += t_.settling_filter * (slow_force_N_ - slower_force_N_);
-  settling_N_ = std::max(settling_N_ * t_.settling_decay, std::abs(slow_force_N_ - slower_force_N_));
   // A reading that is exactly the same, under another force or along a path that goes on.
   if (readings_ == 0 || s.position_m != position_m_) {
     least_N_ = most_N_ = slow_force_N_;
@@ -147,14 +160,22 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   const std::uint32_t rest_periods = axis_.in_cascade ? t_.rest_periods : kSameForForce_periods;
   const bool at_rest =
       s.spring_N_m == 0.0 && same_ >= rest_periods && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
-  // A reading that only flickers, along a path that goes on.
+  // A reading that only flickers, along a path that goes on. A disturbance moves the axis, and only then may
+  // its torque be on its way back: what a loop makes of a reading that stands is none.
+  settling_N_ *= t_.settling_decay;
   if (!near_ || std::abs(s.position_m - near_position_m_) > t_.flicker_m) {
     near_ = true;
     near_position_m_ = s.position_m;
     near_reference_m_ = s.reference_m;
     near_periods_ = 0;
+    near_least_N_ = near_most_N_ = slow_force_N_;
+    settling_N_ = std::max(settling_N_, std::abs(slow_force_N_ - slower_force_N_));
   } else {
     near_periods_ += waited_periods_;
+    if (axis_.in_cascade) {
+      near_least_N_ = std::min(near_least_N_, slow_force_N_);
+      near_most_N_ = std::max(near_most_N_, slow_force_N_);
+    }
   }
   const double settling_N = kSettlingShare * settling_N_;
   double loop_N_m = t_.loop_N_m;
@@ -165,7 +186,9 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
                          std::min(std::sqrt(t_.mass_kg / s.spring_N_m) / period_s_, kLongest_periods)) +
                      1;
   }
-  const bool by_force = same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N;
+  const bool by_force =
+      (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N) ||
+      (near_periods_ >= kSameForForce_periods && near_most_N_ - near_least_N_ > t_.flickering_force_N);
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
   const auto gone = [&](std::uint32_t& periods, double from_m, const Standing& standing) {
     const bool beyond = std::abs(s.reference_m - from_m) > standing.Path_m(loop_N_m, settling_N);
@@ -179,15 +202,15 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   return Reason::kFeedbackFrozen;
 }
 
-Reason MotionMonitor::Momentum(double velocity_m_s, bool stands) noexcept {
+Reason MotionMonitor::Momentum(double velocity_m_s, double explained_N, bool stands) noexcept {
   const double won_N = force_N_ - unexplained_N_;
   // What slides and gains speed against its torque has friction on the side of the torque, and no heavier
   // mass explains it.
   const bool driven =
       won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0 && std::abs(velocity_m_s) > axis_.slide_m_s;
-  const double allowed_N = (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N
-                                   : t_.Unexplained_N(velocity_m_s, force_N_)) +
-                           jitter_N_ + std::abs(on_its_way_N_);
+  const double allowed_N =
+      (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N : explained_N) +
+      jitter_N_ + std::abs(on_its_way_N_);
   jitter_N_ *= 1.0 - t_.filter;
   beyond_ = std::abs(unexplained_N_) > allowed_N ? beyond_ + 1 : 0;
   if (beyond_ < kBeyondAtLeast) return Reason::kNone;
@@ -215,14 +238,27 @@ void MotionMonitor::Learn(double velocity_m_s) noexcept {
   watch_.Learn(force_N_, inertial_N, velocity_m_s);
 }
 
+// Momentum that was won or lost by nothing, in a reading that no force explains, is soon forgotten by the
+// filter; but an axis that strays from then on does so because of it.
+void MotionMonitor::KeepDoubt(const MotionSample& s, double velocity_m_s, double explained_N) noexcept {
+  const double astray_m = std::abs(s.reference_m - s.position_m);
+  if (std::abs(unexplained_N_) > kInDoubt * explained_N) {
+    const double won_N = force_N_ - unexplained_N_;
+    // Without torque an axis falls behind, with a reversed encoder it seems to gain speed the other way.
+    const bool gains = won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0;
+    doubt_ =
+        unexplained_N_ * force_N_ > 0.0 && !gains ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
+    doubt_lasts_ = doubt_lasts_ || !believed_;
+  } else if (!doubt_lasts_ || astray_m <= astray_m_) {
+    doubt_ = Reason::kNone;
+    doubt_lasts_ = false;
+  }
+  astray_m_ = astray_m;
+}
+
 Reason MotionMonitor::Doubt() const noexcept {
   if (held_ && config_.delivery && tells_none_) return Reason::kTorqueNotDelivered;
-  const double allowed_N = t_.Unexplained_N(velocity_m_s_, force_N_);
-  if (!held_ || std::abs(unexplained_N_) <= kInDoubt * allowed_N) return Reason::kNone;
-  const double won_N = force_N_ - unexplained_N_;
-  // Without torque an axis falls behind, with a reversed encoder it seems to gain speed the other way.
-  const bool gains = won_N * force_N_ < 0.0 && velocity_m_s_ * force_N_ < 0.0;
-  return unexplained_N_ * force_N_ > 0.0 && !gains ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
+  return held_ ? doubt_ : Reason::kNone;
 }
 
 // A report that has never shown the torque is none: some drives leave 0x6077 at zero.
@@ -232,7 +268,8 @@ Reason MotionMonitor::Delivery(const MotionSample& s) noexcept {
   sent_N_ += share * (Acting_N() - sent_N_);
   reported_N_ += share * (s.reported_force_N - reported_N_);
   const double allowed_N = t_.delivery_N + kReportGain * std::abs(sent_N_);
-  if (sent_N_ * reported_N_ > 0.0 && std::abs(reported_N_) > 0.1 * t_.delivery_N) report_seen_ = true;
+  if (sent_N_ * reported_N_ > 0.0 && std::abs(reported_N_) > kReportShows * t_.delivery_N)
+    report_seen_ = true;
   undelivered_ = std::abs(sent_N_ - reported_N_) > allowed_N ? undelivered_ + waited_periods_ : 0;
   return report_seen_ && undelivered_ > kUndelivered_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
 }
@@ -289,12 +326,15 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
     // What it would be with a drive that answers a cycle later than stated.
     const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
     on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
-    keep(config_.momentum, Momentum(velocity_m_s, std::abs(s.position_m - position_m_) <= t_.flicker_m));
+    const double explained_N = t_.Unexplained_N(velocity_m_s, force_N_);
+    keep(config_.momentum,
+         Momentum(velocity_m_s, explained_N, std::abs(s.position_m - position_m_) <= t_.flicker_m));
+    if (config_.momentum) KeepDoubt(s, velocity_m_s, explained_N);
     Learn(velocity_m_s);
   }
   keep(config_.delivery, Delivery(s));
   keep(config_.scale, Scale(s));
-  return Named(found, s.reported_force_N, force_N);
+  return Named(found, s, force_N);
 }
 
 Reason MotionMonitor::Step(const MotionSample& s) noexcept {

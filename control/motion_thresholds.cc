@@ -77,6 +77,7 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.flickering = standing(2.0 * t.flicker_m);
   // Outside forces and friction that settles on the table are answered by torque while the motor stands.
   t.frozen_force_N = t.friction_N + t.external_N + t.frozen.force_N;
+  t.flickering_force_N = t.friction_N + t.external_N + t.flickering.force_N;
   UseLoop(a.loop_Hz, a, period_s, t);
   t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
   t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));

@@ -52,6 +52,7 @@ struct MotionThresholds {
   double reading_m = 0.0;           ///< by which readings may be off, in an acceleration
   double peak_decay = 0.0;          ///< per period, of a force that may still ring in the screw
   double frozen_force_N = 0.0;      ///< change of force that must move the encoder
+  double flickering_force_N = 0.0;  ///< the same for a reading that stays within flicker_m
   double flicker_m = 0.0;           ///< by which a reading may change and still be the same
   Standing frozen;                  ///< a reading that is exactly the same
   Standing flickering;              ///< one that stays within flicker_m
@@ -81,9 +82,11 @@ struct MotionThresholds {
   /// The same where the SYNCs came as late and early as they may: beyond this the reading is wrong.
   [[nodiscard]] double Jump_m(double velocity_m_s, double peak_force_N, double period_s, double n,
                               double before) const noexcept {
-    const double speed_m_s = velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s;
-    return Forced_m(velocity_m_s, peak_force_N, period_s, n, before) +
-           jitter_s * Weight(n, before) * speed_m_s;
+    return Forced_m(velocity_m_s, peak_force_N, period_s, n, before) + Jitter_m(velocity_m_s, n, before);
+  }
+  /// Of it, what the SYNCs make.
+  [[nodiscard]] double Jitter_m(double velocity_m_s, double n, double before) const noexcept {
+    return jitter_s * Weight(n, before) * (velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s);
   }
   /// How much the middle one of three readings counts, over how much it does when they are evenly apart.
   [[nodiscard]] static double Weight(double n, double before) noexcept {

@@ -344,5 +344,140 @@ TEST(MotionMonitor, AScrewThatWarmsIsNoSlip) {
   EXPECT_EQ(found, Reason::kScaleDisagrees);
 }
 
+// A drive's own loop adds up what a standing reading leaves: that is no disturbance that settles.
+TEST(MotionMonitor, WhatADrivesLoopMakesOfAStandingReadingDoesNotPutTheAlarmOff) {
+  MonitoredAxis axis = Axis();
+  axis.in_cascade = true;
+  axis.external_force_N = 400.0;
+  MotionMonitor monitor(axis, {}, kPeriod_s);
+  MotionSample s;
+  s.enabled = s.fresh = true;
+  for (int k = 0; k < 300; ++k) {
+    s.reference_m = 1e-8 * k;
+    s.position_m = axis.count_m * std::floor(s.reference_m / axis.count_m);
+    s.reported_force_N = 0.1 * k;
+    ASSERT_EQ(monitor.Step(s), Reason::kNone) << "period " << k;
+  }
+  const double begin_m = s.reference_m;
+  const double begin_N = s.reported_force_N;
+  double lag_m = 0.0, added_m_s = 0.0;
+  Reason reason = Reason::kNone;
+  for (int k = 0; k < 2000 && reason == Reason::kNone; ++k) {
+    s.reference_m += 1e-8;
+    lag_m = s.reference_m - begin_m;
+    added_m_s += lag_m * kPeriod_s;
+    s.reported_force_N = begin_N + monitor.thresholds().loop_N_m * (lag_m + 1000.0 * added_m_s);
+    reason = monitor.Step(s);
+  }
+  EXPECT_EQ(reason, Reason::kFeedbackFrozen);
+  EXPECT_LT(s.reported_force_N - begin_N, axis.Fs_N) << "it has broken away before";
+}
+
+// A sign that changes between two readings is no jump, and its momentum is forgotten before the following
+// error is exceeded. No ramp may go by that encoder then.
+TEST(MotionMonitor, AnEncoderThatTurnedRoundIsInDoubtAsLongAsTheAxisStrays) {
+  MonitoredAxis light = Axis();
+  light.motor_mass_kg = 4.2;
+  light.table_mass_kg = 2.2;
+  light.Fs_N = 13.5;
+  light.Fc_N = 8.2;
+  light.sigma0_N_m = 1.1e6;
+  light.sigma2_Ns_m = 55.0;
+  light.force_limit_N = 500.0;
+  light.external_force_N = 50.0;
+  light.count_m = 9.5e-9;
+  light.sample_jitter_s = 135e-6;
+  constexpr double kSpeed_m_s = 0.021;
+  for (const bool turns : {true, false}) {
+    MotionMonitor monitor(light, {}, kPeriod_s);
+    MotionSample s;
+    s.enabled = s.fresh = true;
+    const auto step = [&](double told_m_s, double reference_m_s) {
+      s.position_m += told_m_s * kPeriod_s;
+      s.reference_m += reference_m_s * kPeriod_s;
+      ASSERT_EQ(monitor.Step(s), Reason::kNone);
+    };
+    for (int k = 0; k <= 200; ++k) {
+      s.sent_force_N = s.reported_force_N = std::min(8.0, 0.2 * k);
+      step(kSpeed_m_s * k / 200, kSpeed_m_s * k / 200);
+    }
+    EXPECT_EQ(monitor.Doubt(), Reason::kNone);
+    if (turns) step(0.5 * kSpeed_m_s, kSpeed_m_s);
+    for (int k = 0; k < 40; ++k) step(turns ? -kSpeed_m_s : kSpeed_m_s, kSpeed_m_s);
+    EXPECT_EQ(monitor.Doubt(), turns ? Reason::kFeedbackReversed : Reason::kNone);
+    // It comes back.
+    for (int k = 0; k <= 300; ++k) step((turns ? 0.01 * k - 1.0 : 1.0) * kSpeed_m_s, kSpeed_m_s);
+    EXPECT_EQ(monitor.Doubt(), Reason::kNone);
+  }
+}
+
+// The reading before was another one, of an axis without torque: it stands where it jumped to.
+TEST(MotionMonitor, AJumpJustBeforeTheTorqueIsNoFrozenReading) {
+  MotionMonitor monitor(Axis(), {}, kPeriod_s);
+  MotionSample s;
+  s.fresh = true;
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(monitor.Step(s), Reason::kNone);
+  s.position_m = s.reference_m = 0.2e-3;
+  EXPECT_EQ(monitor.Step(s), Reason::kNone);
+  s.enabled = true;
+  EXPECT_EQ(monitor.Step(s), Reason::kFeedbackJump);
+}
+
+// As long as the report of the torque was none, nobody knows which of the two it is.
+TEST(MotionMonitor, AStandingReadingUnderATorqueThatWasNeverReportedMayBeEither) {
+  for (const bool reports : {false, true}) {
+    MotionMonitor monitor(Axis(), {}, kPeriod_s);
+    MotionSample s;
+    s.enabled = s.fresh = true;
+    Reason reason = Reason::kNone;
+    for (int k = 0; k < 2000 && reason == Reason::kNone; ++k) {
+      s.reference_m += 1e-8;
+      s.sent_force_N = 10.0 * k;
+      s.reported_force_N = reports ? s.sent_force_N : 0.0;
+      reason = monitor.Step(s);
+    }
+    EXPECT_EQ(reason, reports ? Reason::kFeedbackFrozen : Reason::kTorqueWithoutMotion);
+  }
+}
+
+// A drive's own torque goes through zero where the axis turns; that is no torque which is not delivered.
+TEST(MotionMonitor, ATorqueThatGoesThroughZeroIsNotTakenForNone) {
+  MonitoredAxis axis = Axis();
+  axis.in_cascade = true;
+  MotionMonitor monitor(axis, {}, kPeriod_s);
+  MotionSample s;
+  s.enabled = s.fresh = true;
+  s.reported_force_N = 45.0;
+  for (int k = 0; k < 200; ++k) {
+    s.position_m = s.reference_m = 1e-7 * k;
+    ASSERT_EQ(monitor.Step(s), Reason::kNone);
+  }
+  Reason reason = Reason::kNone;
+  s.reported_force_N = 0.0;
+  for (int k = 0; k < 2000 && reason == Reason::kNone; ++k) {
+    s.reference_m -= 1e-8;
+    reason = monitor.Step(s);
+  }
+  EXPECT_EQ(reason, Reason::kTorqueWithoutMotion);
+}
+
+// What friction and outside forces do not explain has moved the axis, whatever flickers.
+TEST(MotionMonitor, ATorqueThatGrowsUnderAReadingThatFlickersIsSeenAtRest) {
+  MonitoredAxis axis = Axis();
+  axis.in_cascade = true;
+  MotionMonitor monitor(axis, {}, kPeriod_s);
+  const double most_N = monitor.thresholds().flickering_force_N;
+  MotionSample s;
+  s.enabled = s.fresh = true;
+  Reason reason = Reason::kNone;
+  for (int k = 0; k < 20000 && reason == Reason::kNone; ++k) {
+    s.position_m = k % 2 * axis.count_m;
+    s.reported_force_N = 1e-4 * most_N * k;
+    reason = monitor.Step(s);
+  }
+  EXPECT_EQ(reason, Reason::kFeedbackFrozen);
+  EXPECT_LT(s.reported_force_N, 1.05 * most_N);
+}
+
 }  // namespace
 }  // namespace contour

@@ -36,6 +36,14 @@ TEST(ExpectedReasons, NoReasonMeansNothingIsAllowed) {
   EXPECT_FALSE(here.Allows(Reason::kFollowingError));
 }
 
+TEST(ExpectedReasons, AtACrawlTorqueThatIsLostSilentlyIsNotToldFromAnEncoderThatStands) {
+  EXPECT_FALSE(ExpectedIn(Fault::kTorqueLostSilently, Phase::kConstant).Allows(Reason::kFeedbackFrozen));
+  const ExpectedHere crawl = ExpectedIn(Fault::kTorqueLostSilently, Phase::kConstant, true);
+  EXPECT_TRUE(crawl.Allows(Reason::kFeedbackFrozen));
+  EXPECT_FALSE(crawl.Allows(Reason::kFollowingError));
+  EXPECT_FALSE(ExpectedIn(Fault::kTorqueLost, Phase::kConstant, true).Allows(Reason::kFeedbackFrozen));
+}
+
 TEST(ExpectedReasons, WithoutTorqueNothingHasToStop) {
   for (const FaultName& f : kFaults)
     for (const Phase p : kPhases)

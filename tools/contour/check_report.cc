@@ -1,6 +1,7 @@
 #include "tools/contour/check_report.h"
 
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 
@@ -125,8 +126,9 @@ std::string Departures(const MachineConfig& c) {
       std::vector<std::string> time{"  within"};
       for (const double feed : feeds) {
         const FaultBound b = BoundOf(c, axis, fault, feed);
-        departure.push_back(Fixed(b.departure_mm, b.departure_mm < 0.1 ? 4 : 3, "mm"));
-        time.push_back(Fixed(1e3 * b.time_s, 1, "ms"));
+        const bool shows = std::isfinite(b.departure_mm);
+        departure.push_back(shows ? Fixed(b.departure_mm, b.departure_mm < 0.1 ? 4 : 3, "mm") : "not seen");
+        time.push_back(shows ? Fixed(1e3 * b.time_s, 1, "ms") : "-");
       }
       table.Add(departure);
       if (fault != MotionFault::kSmallJump) table.Add(time);

@@ -68,8 +68,9 @@ static_assert(kRows.size() == kFaultCount && InOrder(), "a row for each fault, i
 
 const Expectation& ExpectationOf(Fault fault) noexcept { return kRows[static_cast<std::size_t>(fault)]; }
 
-ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept {
-  const Expectation& row = ExpectationOf(fault);
+ExpectedHere ExpectedIn(Fault fault, Phase phase, bool crawls) noexcept {
+  Expectation row = ExpectationOf(fault);
+  if (crawls && fault == F::kTorqueLostSilently) row.reasons = {R::kTorqueWithoutMotion, R::kFeedbackFrozen};
   // A stop on the path may be over before its motion shows what shows at rest only by chance.
   if (phase == Phase::kStopping) return {row.at_rest == kMayStop ? kMayStop : row.moving, row.reasons};
   if (Holds(phase)) return {Moves(phase) ? row.moving : row.at_rest, row.reasons};

@@ -37,6 +37,7 @@ struct ExpectedHere {
     return reason != Reason::kNone && (reason == reasons[0] || reason == reasons[1] || reason == of_phase);
   }
 };
-ExpectedHere ExpectedIn(Fault fault, Phase phase) noexcept;
+/// `crawls`: so slow that an axis without torque and an encoder that stands look the same, without a scale.
+ExpectedHere ExpectedIn(Fault fault, Phase phase, bool crawls = false) noexcept;
 
 }  // namespace contour::faults

@@ -178,6 +178,11 @@ RunBound MotionBound(const MachineConfig& machine, const FaultCase& c) {
 
 bool ShownByMotion(Fault fault) { return PromiseOf(fault) == Promise::kMotion; }
 
+bool Crawls(const MachineConfig& machine, const FaultCase& c) {
+  const RunMachine run(machine, c);
+  return !Moves(c.phase) || c.feed_mm_s < TellingFeed_mm_s(run.machine, run.axis);
+}
+
 double JumpSize_mm(const MachineConfig& machine, const FaultCase& c) {
   const double safe_mm = AxisOf(machine, c.axis).limits.safe_travel_mm;
   if (c.fault == Fault::kEncoderJump) return 0.1 * safe_mm;

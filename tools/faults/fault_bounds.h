@@ -13,6 +13,8 @@ struct RunBound {
 
 /// Encoder and motor faults, which only what the axis does can show.
 bool ShownByMotion(Fault fault);
+/// The axis stands, or moves so slowly that its torque cannot tell what stands.
+bool Crawls(const MachineConfig& machine, const FaultCase& c);
 /// How far the encoder jumps in this case.
 double JumpSize_mm(const MachineConfig& machine, const FaultCase& c);
 /// Whether that is more than is promised to be seen, at every speed that the axis may have.

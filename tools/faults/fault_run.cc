@@ -34,7 +34,7 @@ class Run {
       : c_(c),
         file_(Prepared(c, request)),
         random_(SeedOf(c, request.campaign_seed), 1),
-        expected_(ExpectedIn(c.fault, c.phase)),
+        expected_(ExpectedIn(c.fault, c.phase, Crawls(file_.machine, c))),
         period_s_(file_.machine.machine.cycle_us * 1e-6),
         injection_(c, file_.machine, random_),
         machine_(file_, ControllerName::kFull, EmulatedClock::kWall, Around(request)),
@@ -242,9 +242,9 @@ class Run {
   /// there.
   void WaitForTheMotionThatShowsIt() {
     if (!ShownByMotion(c_.fault)) return;
-    if (c_.phase == Phase::kAcceleration || c_.phase == Phase::kStopping)
-      result_.time_bound_s += path_->ramp_s();
-    if (c_.phase == Phase::kReversal) result_.time_bound_s += 2.0 * path_->ramp_s();
+    if (c_.phase == Phase::kAcceleration || c_.phase == Phase::kStopping) until_it_shows_s_ = path_->ramp_s();
+    if (c_.phase == Phase::kReversal) until_it_shows_s_ = 2.0 * path_->ramp_s();
+    result_.time_bound_s += until_it_shows_s_;
   }
 
   [[nodiscard]] double HighestFeed_mm_s() const {
@@ -315,7 +315,11 @@ class Run {
     const double slack_s = kResolution_cycles * period_s_;
     for (std::size_t i = 0; i < file_.machine.axes.size(); ++i) {
       RunBound bound{result_.departure_bound_m, result_.time_bound_s};
-      if (i != c_.axis) bound = BoundOfOthers(file_.machine, c_, i);
+      if (i != c_.axis) {
+        // They stop when the broken one is seen to be.
+        bound = BoundOfOthers(file_.machine, c_, i);
+        bound.time_s += until_it_shows_s_;
+      }
       const double departure_m = watch_.departure_m(i);
       double time_s = watch_.moving_until_s(i);
       if (Holds(c_.phase)) time_s = std::max(time_s, faulted_s_);
@@ -407,6 +411,7 @@ class Run {
   int under_way_ = 0;
   std::vector<char> was_enabled_;
   double faulted_s_ = 0.0;
+  double until_it_shows_s_ = 0.0;
 };
 
 }  // namespace

@@ -30,6 +30,8 @@ class PrintedBounds:
     def _number(cell):
         if cell == "rest":
             return 0.0
+        if cell in ("not seen", "-"):
+            return float("inf")
         match = re.match(r"(\d[\d.]*(?:e-?\d+)?)( m|$)", cell)
         return float(match.group(1)) if match else None
 
