@@ -74,7 +74,7 @@ class Bootstrap {
     at_ = ValuesOf(fit.point);
     precision_ = Eigen::VectorXd::Zero(at_.size());
     for (std::size_t i = 0; i < fit.point.base.size(); ++i)
-      precision_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
+      precision_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms[i].sigma, -2);
     pulls_ = PullsOf(problem, fit, precision_);
     Eigen::MatrixXd whole = fit.normal;
     whole.diagonal() += precision_;
@@ -130,13 +130,13 @@ class Bootstrap {
 }  // namespace
 
 std::vector<std::size_t> StrokeEnds(const Problem& problem) {
-  const std::vector<double>& q = problem.signals_->position;
+  const std::vector<double>& q = problem.signals->position;
   const std::size_t n = problem.rows();
   const auto shortest =
-      std::max<std::size_t>(1, static_cast<std::size_t>(kShortest_s / problem.log_.period_s));
+      std::max<std::size_t>(1, static_cast<std::size_t>(kShortest_s / problem.log.period_s));
   const std::size_t longest = std::max(shortest, n / kFewestBlocks);
   const auto [low, high] = std::minmax_element(q.begin(), q.end());
-  const double turn = std::max(kTurn * (*high - *low), 4.0 * problem.stated_.position_step);
+  const double turn = std::max(kTurn * (*high - *low), 4.0 * problem.stated.position_step);
   std::vector<std::size_t> ends;
   std::size_t from = 0, extreme = 0;
   double way = 0.0;  // +1 upwards, -1 downwards, 0 not known yet

@@ -19,7 +19,7 @@ bool StatesForces(const AxisModel& m) { return m.motor_force || m.load_force || 
 CommonFactor FindCommonFactor(const Problem& problem, const Point& point) {
   double sum = 0.0, weight = 0.0;
   for (std::size_t i = 0; i < point.base.size(); ++i) {
-    const BaseTerm& t = problem.terms_[i];
+    const BaseTerm& t = problem.terms[i];
     if (!IsForce(t)) continue;
     const double w = std::pow(t.sigma, -2);
     sum += w * point.base[i];
@@ -30,15 +30,15 @@ CommonFactor FindCommonFactor(const Problem& problem, const Point& point) {
 
 void ShiftForces(const Problem& problem, double log_ratio, Point& point) {
   for (std::size_t i = 0; i < point.base.size(); ++i)
-    if (IsForce(problem.terms_[i])) point.base[i] += log_ratio;
+    if (IsForce(problem.terms[i])) point.base[i] += log_ratio;
 }
 
 void MakeConsistent(const Problem& problem, const Point& point, Eigen::MatrixXd& jacobian) {
-  if (StatesForces(problem.nominal_)) return;
+  if (StatesForces(problem.nominal)) return;
   Eigen::VectorXd all = Eigen::VectorXd::Zero(jacobian.rows());
   Eigen::Index column = 0;
   Eigen::Index term = -1;
-  for (const BaseTerm& t : problem.terms_) {
+  for (const BaseTerm& t : problem.terms) {
     if (t.name == "torque_constant") term = column;
     if (IsForce(t)) all -= jacobian.col(column);
     ++column;

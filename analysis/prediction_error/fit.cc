@@ -17,7 +17,7 @@ using Column = Eigen::Map<const Eigen::VectorXd>;
 Column ColumnOf(const std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
 
 double StepOf(const Problem& problem, const Point& p, std::size_t i) {
-  if (i < p.base.size()) return problem.terms_[i].step;
+  if (i < p.base.size()) return problem.terms[i].step;
   i -= p.base.size();
   for (std::size_t e = 0; e < p.effects.size(); ++e) {
     if (i < p.amplitudes[e].size()) return p.effects[e]->steps[i];
@@ -28,7 +28,7 @@ double StepOf(const Problem& problem, const Point& p, std::size_t i) {
 
 double PriorOf(const Problem& problem, const Point& p) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms_[i].sigma, 2);
+  for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms[i].sigma, 2);
   return sum;
 }
 
@@ -46,7 +46,7 @@ class Descent {
     const auto columns = static_cast<Eigen::Index>(count_);
     weight_ = Eigen::VectorXd::Zero(columns);
     for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
-      weight_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms_[i].sigma, -2);
+      weight_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms[i].sigma, -2);
     if (beginning.continued != nullptr) {
       known_ = columns;
       fit_ = std::move(*beginning.continued);
@@ -373,7 +373,7 @@ constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
 constexpr double kLower = 2.0;  // of chi^2
 
 bool Implausible(const Problem& problem, const Fit& fit) {
-  const auto terms = static_cast<double>(problem.terms_.size());
+  const auto terms = static_cast<double>(problem.terms.size());
   return fit.prior > kHardlyEver * terms;
 }
 
@@ -383,10 +383,10 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, do
   if (!Implausible(problem, fit)) return false;
   Point back = fit.point;
   for (std::size_t i = 0; i < back.base.size(); ++i) {
-    const BaseTerm& t = problem.terms_[i];
+    const BaseTerm& t = problem.terms[i];
     if (!t.nuisance && std::fabs(back.base[i]) > kFarOff * t.sigma) back.base[i] = 0.0;
   }
-  if (!problem.excerpt_.empty()) {
+  if (!problem.excerpt.empty()) {
     // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
     const Fit here = FitPoint(problem, fit.point, kToTheValley, Extent::kExcerpt);
     Fit there = FitPoint(problem, std::move(back), kToTheValley, Extent::kExcerpt);

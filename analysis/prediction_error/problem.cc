@@ -45,23 +45,25 @@ double StatedSigma(const StatedAxis& stated, const std::string& name) {
   return kDefaultSigma.at(name);
 }
 
-Problem::Problem(const AxisLog& log, const StatedAxis& stated, int threads)
-    : log_(log), stated_(stated), threads_(std::max(1, threads)), nominal_(ModelOf(stated)) {
-  signals_ = std::make_shared<Signals>(MakeSignals(log, stated));
-  nominal_.rows = log.size();
-  AddExtras(stated.extras, *signals_, nominal_);
-  setup_.log = &log_;
-  setup_.full = has_scale();
-  setup_.valid = ValidRows(log, *signals_, stated, quality_);
+Problem::Problem(const AxisLog& axis_log, const StatedAxis& stated_axis, int most_threads)
+    : log(axis_log),
+      stated(stated_axis),
+      threads(std::max(1, most_threads)),
+      nominal(ModelOf(stated_axis)),
+      signals(std::make_shared<Signals>(MakeSignals(axis_log, stated_axis))) {
+  nominal.rows = log.size();
+  AddExtras(stated.extras, *signals, nominal);
+  setup.log = &log;
+  setup.full = has_scale();
+  setup.valid = ValidRows(log, *signals, stated, quality);
   const std::size_t n = std::min<std::size_t>(10, rows() - 1);
-  setup_.start = {signals_->position[0],
-                  (signals_->position[n] - signals_->position[0]) / (static_cast<double>(n) * log.period_s)};
-  setup_.gain_two = SteadyObserverGain(nominal_, log.period_s, kObserverBandwidth_Hz);
-  AxisModel rigid = nominal_;
+  setup.start = {signals->position[0],
+                 (signals->position[n] - signals->position[0]) / (static_cast<double>(n) * log.period_s)};
+  setup.gain_two = SteadyObserverGain(nominal, log.period_s, kObserverBandwidth_Hz);
+  AxisModel rigid = nominal;
   rigid.two_inertia = false;
-  setup_.gain = SteadyObserverGain(rigid, log.period_s, kObserverBandwidth_Hz);
-  if (!nominal_.two_inertia)
-    setup_.gain_two = {setup_.gain[0], setup_.gain[1], setup_.gain[0], setup_.gain[1]};
+  setup.gain = SteadyObserverGain(rigid, log.period_s, kObserverBandwidth_Hz);
+  if (!nominal.two_inertia) setup.gain_two = {setup.gain[0], setup.gain[1], setup.gain[0], setup.gain[1]};
   ChooseSubsteps();
   MakeTerms();
   CountRows();
@@ -70,76 +72,76 @@ Problem::Problem(const AxisLog& log, const StatedAxis& stated, int threads)
 void Problem::ChooseSubsteps() {
   // The leapfrog is off by (w h)^2 / 24 in the frequency of what moves on the bristles alone. A coupling
   // moves exactly, under forces that are held.
-  const StatedFriction& f = nominal_.friction;
+  const StatedFriction& f = nominal.friction;
   const double carried =
-      nominal_.two_inertia && nominal_.friction_on_load ? nominal_.load_inertia : nominal_.motor_inertia;
+      nominal.two_inertia && nominal.friction_on_load ? nominal.load_inertia : nominal.motor_inertia;
   const double presliding = std::sqrt(2.0 * f.s0 / carried);
   const double damped = 2.0 * f.s1 / carried;
   // What is fitted to a rigid axis is compared with runs of the rigid one's sub-steps.
   double coupling = 0.0;
-  if (nominal_.two_inertia)
-    coupling = std::sqrt(nominal_.stiffness * (1.0 / nominal_.motor_inertia + 1.0 / nominal_.load_inertia));
+  if (nominal.two_inertia)
+    coupling = std::sqrt(nominal.stiffness * (1.0 / nominal.motor_inertia + 1.0 / nominal.load_inertia));
   const auto steps = [&](double mode) {
     int s = 4;
-    while (s < kMostSubsteps && (presliding * log_.period_s / s > 0.36 || damped * log_.period_s / s > 0.3 ||
-                                 mode * log_.period_s / s > 0.65))
+    while (s < kMostSubsteps && (presliding * log.period_s / s > 0.36 || damped * log.period_s / s > 0.3 ||
+                                 mode * log.period_s / s > 0.65))
       s *= 2;
     return s;
   };
-  setup_.substeps_rigid = steps(0.0);
-  setup_.substeps_two = steps(coupling);
+  setup.substeps_rigid = steps(0.0);
+  setup.substeps_two = steps(coupling);
 }
 
 void Problem::MakeTerms() {
   const auto add = [&](const char* name, double sigma, double step, double* (*field)(AxisModel&)) {
     BaseTerm t;
     t.name = name;
-    t.stated = *field(nominal_);
+    t.stated = *field(nominal);
     t.sigma = sigma;
     t.step = step;
     t.field = field;
-    if (t.stated > 0.0 && sigma > 0.0) terms_.push_back(t);
+    if (t.stated > 0.0 && sigma > 0.0) terms.push_back(t);
   };
-  const auto stated = [&](const char* name) { return StatedSigma(stated_, name); };
-  add("inertia", stated("inertia"), 5e-4, [](AxisModel& m) { return &m.motor_inertia; });
-  if (nominal_.two_inertia) {
-    add("load_inertia", stated("load_inertia"), 5e-4, [](AxisModel& m) { return &m.load_inertia; });
-    add("stiffness", stated("stiffness"), 5e-4, [](AxisModel& m) { return &m.stiffness; });
-    add("damping", stated("damping"), 5e-3, [](AxisModel& m) { return &m.damping; });
+  const auto sigma_of = [&](const char* name) { return StatedSigma(stated, name); };
+  add("inertia", sigma_of("inertia"), 5e-4, [](AxisModel& m) { return &m.motor_inertia; });
+  if (nominal.two_inertia) {
+    add("load_inertia", sigma_of("load_inertia"), 5e-4, [](AxisModel& m) { return &m.load_inertia; });
+    add("stiffness", sigma_of("stiffness"), 5e-4, [](AxisModel& m) { return &m.stiffness; });
+    add("damping", sigma_of("damping"), 5e-3, [](AxisModel& m) { return &m.damping; });
   }
-  const StatedFriction& f = nominal_.friction;
+  const StatedFriction& f = nominal.friction;
   const bool stribeck = f.Fs_plus + f.Fs_minus > 1.05 * (f.Fc_plus + f.Fc_minus);
-  add("Fc", stated("Fc"), 1e-3, [](AxisModel& m) { return &m.friction.Fc_plus; });
+  add("Fc", sigma_of("Fc"), 1e-3, [](AxisModel& m) { return &m.friction.Fc_plus; });
   if (stribeck) {
-    add("Fs", stated("Fs"), 2e-3, [](AxisModel& m) { return &m.friction.Fs_plus; });
-    add("vs", stated("vs"), 5e-3, [](AxisModel& m) { return &m.friction.vs; });
+    add("Fs", sigma_of("Fs"), 2e-3, [](AxisModel& m) { return &m.friction.Fs_plus; });
+    add("vs", sigma_of("vs"), 5e-3, [](AxisModel& m) { return &m.friction.vs; });
   }
-  add("s0", stated("s0"), 3e-3, [](AxisModel& m) { return &m.friction.s0; });
-  add("s1", stated("s1"), 1e-2, [](AxisModel& m) { return &m.friction.s1; });
-  add("s2", stated("s2"), 2e-3, [](AxisModel& m) { return &m.friction.s2; });
-  add("torque_constant", stated("torque_constant"), 5e-4, [](AxisModel& m) { return &m.torque_gain; });
+  add("s0", sigma_of("s0"), 3e-3, [](AxisModel& m) { return &m.friction.s0; });
+  add("s1", sigma_of("s1"), 1e-2, [](AxisModel& m) { return &m.friction.s1; });
+  add("s2", sigma_of("s2"), 2e-3, [](AxisModel& m) { return &m.friction.s2; });
+  add("torque_constant", sigma_of("torque_constant"), 5e-4, [](AxisModel& m) { return &m.torque_gain; });
   const auto timed = [&](const char* name, double* (*field)(AxisModel&)) {
     BaseTerm t;
     t.name = name;
-    t.stated = *field(nominal_);
-    t.sigma = stated(name) * t.stated;
+    t.stated = *field(nominal);
+    t.sigma = sigma_of(name) * t.stated;
     t.step = 2e-6;
     t.additive = true;
     t.field = field;
-    if (t.sigma > 0.0) terms_.push_back(t);
+    if (t.sigma > 0.0) terms.push_back(t);
   };
   timed("delay", [](AxisModel& m) { return &m.delay_s; });
   timed("lag", [](AxisModel& m) { return &m.lag_s; });
   // No axis is quite rigid: below its antiresonance a coupling acts as a lag does that came with less delay
   // (both leave the sum alone; 1 + s^2 / w_ar^2 ... against s^2 lag^2 / 2).
-  if (!nominal_.two_inertia && nominal_.delay_s > 2.0 * kLagForDelay_s) {
+  if (!nominal.two_inertia && nominal.delay_s > 2.0 * kLagForDelay_s) {
     BaseTerm exchange;
     exchange.name = "lag_for_delay";
     exchange.sigma = kLagForDelay_s;
     exchange.step = 2e-6;
     exchange.additive = exchange.nuisance = true;
     exchange.field = [](AxisModel& m) { return &m.lag_for_delay_s; };
-    terms_.push_back(exchange);
+    terms.push_back(exchange);
   }
   BaseTerm rough;
   rough.name = "rough";
@@ -148,31 +150,31 @@ void Problem::MakeTerms() {
   rough.step = 0.002 * rough.sigma;
   rough.additive = rough.nuisance = true;
   rough.field = [](AxisModel& m) { return &m.rough; };
-  terms_.push_back(rough);
+  terms.push_back(rough);
   BaseTerm z;
   z.name = "start_bristle";
   z.sigma = 0.7 * f.Fc_plus / f.s0;
   z.step = 0.01 * f.Fc_plus / f.s0;
   z.additive = z.nuisance = true;
   z.field = [](AxisModel& m) { return &m.start_bristle; };
-  terms_.push_back(z);
+  terms.push_back(z);
 }
 
 void Problem::CountRows() {
   const std::size_t n = rows();
-  counted_.assign(n, 1);
-  const auto settled = std::min(n, static_cast<std::size_t>(kSettling_s / log_.period_s));
-  std::fill(counted_.begin(), counted_.begin() + static_cast<std::ptrdiff_t>(settled), std::uint8_t{0});
+  counted.assign(n, 1);
+  const auto settled = std::min(n, static_cast<std::size_t>(kSettling_s / log.period_s));
+  std::fill(counted.begin(), counted.begin() + static_cast<std::ptrdiff_t>(settled), std::uint8_t{0});
   for (std::size_t k = 0; k < n; ++k) {
-    if (setup_.valid[k] != 0) continue;
-    for (std::size_t i = k > 2 ? k - 2 : 0; i < std::min(n, k + 3); ++i) counted_[i] = 0;
+    if (setup.valid[k] != 0) continue;
+    for (std::size_t i = k > 2 ? k - 2 : 0; i < std::min(n, k + 3); ++i) counted[i] = 0;
   }
 }
 
 AxisModel Problem::Build(const Point& point) const {
-  AxisModel m = nominal_;
-  for (std::size_t i = 0; i < terms_.size(); ++i) {
-    const BaseTerm& t = terms_[i];
+  AxisModel m = nominal;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const BaseTerm& t = terms[i];
     const double x = point.base[i];
     if (t.additive) {
       *t.field(m) += x;
@@ -185,11 +187,11 @@ AxisModel Problem::Build(const Point& point) const {
   }
   // Without a Stribeck term of its own, the break-away level goes with the Coulomb level.
   const bool has_stribeck =
-      std::any_of(terms_.begin(), terms_.end(), [](const BaseTerm& t) { return t.name == "Fs"; });
+      std::any_of(terms.begin(), terms.end(), [](const BaseTerm& t) { return t.name == "Fs"; });
   if (!has_stribeck) {
-    const double factor = m.friction.Fc_plus / nominal_.friction.Fc_plus;
-    m.friction.Fs_plus = nominal_.friction.Fs_plus * factor;
-    m.friction.Fs_minus = nominal_.friction.Fs_minus * factor;
+    const double factor = m.friction.Fc_plus / nominal.friction.Fc_plus;
+    m.friction.Fs_plus = nominal.friction.Fs_plus * factor;
+    m.friction.Fs_minus = nominal.friction.Fs_minus * factor;
   }
   for (std::size_t i = 0; i < point.effects.size(); ++i) point.effects[i]->apply(point.amplitudes[i], m);
   return m;
@@ -203,16 +205,16 @@ std::vector<std::vector<double>> Problem::Raw(std::span<const Point> points, Ext
 }
 
 std::vector<std::vector<double>> Problem::Raw(std::span<const AxisModel> models, Extent extent) const {
-  FilterSetup setup = setup_;
-  if (extent == Extent::kExcerpt) setup.stretches = excerpt_.stretches;
-  std::vector<FilterRun> runs = RunFilter(setup, models, threads_);
+  FilterSetup partly = setup;
+  if (extent == Extent::kExcerpt) partly.stretches = excerpt.stretches;
+  std::vector<FilterRun> runs = RunFilter(partly, models, threads);
   std::vector<std::vector<double>> raw(models.size());
   for (std::size_t i = 0; i < models.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
     if (!has_scale()) continue;
     AddScale(runs[i].table_position, models[i].two_inertia,
-             models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr,
-             log_.table_position_m.data(), raw[i], extent);
+             models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr, log.table_position_m.data(),
+             raw[i], extent);
   }
   return raw;
 }
@@ -235,14 +237,14 @@ void Problem::AddScale(const std::vector<double>& table, bool two, const double*
                        const double* measured, std::vector<double>& raw, Extent extent) const {
   const std::size_t n = table.size();
   // The correction goes only part of the way to the encoder's reading.
-  const double rest = 1.0 - (two ? setup_.gain_two : setup_.gain)[0];
+  const double rest = 1.0 - (two ? setup.gain_two : setup.gain)[0];
   raw.resize(2 * n);
-  const auto row = [&](std::size_t i) { return extent == Extent::kWhole ? i : excerpt_.row[i]; };
+  const auto row = [&](std::size_t i) { return extent == Extent::kWhole ? i : excerpt.row[i]; };
   double sum = 0.0, count = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const std::size_t k = row(i);
     const double e = (measured != nullptr ? measured[k] : 0.0) -
-                     stated_.table_per_q * (table[i] + rest * raw[i]) - (error != nullptr ? error[k] : 0.0);
+                     stated.table_per_q * (table[i] + rest * raw[i]) - (error != nullptr ? error[k] : 0.0);
     raw[n + i] = e;
     if (ScaleCounts(k)) {
       sum += e;
@@ -270,21 +272,21 @@ std::vector<std::vector<double>> Problem::White(std::span<const std::vector<doub
 void Problem::WhitenInto(std::span<const std::span<const double>> raw,
                          std::span<const std::span<double>> white, Extent extent) const {
   const bool whole = extent == Extent::kWhole;
-  const std::size_t n = whole ? rows() : excerpt_.row.size();
-  const std::vector<double>& weight = whole ? root_weight_ : excerpt_weight_;
+  const std::size_t n = whole ? rows() : excerpt.row.size();
+  const std::vector<double>& weight = whole ? root_weight : excerpt_weight_;
   const std::span<const Stretch> stretches =
-      whole ? std::span<const Stretch>() : std::span<const Stretch>(excerpt_.stretches);
+      whole ? std::span<const Stretch>() : std::span<const Stretch>(excerpt.stretches);
   std::vector<const double*> in;
   std::vector<double*> out;
   for (std::size_t i = 0; i < raw.size(); ++i) {
     in.push_back(raw[i].data());
     out.push_back(white[i].data());
   }
-  noise_.Apply(in, out, counted_, weight.data(), stretches);
+  noise.Apply(in, out, counted, weight.data(), stretches);
   if (!has_scale()) return;
   for (const double*& p : in) p += n;
   for (double*& p : out) p += n;
-  ApplyColourFilter(scale_noise_, in, out, counted_, weight.data() + n, stretches);
+  ApplyColourFilter(scale_noise, in, out, counted, weight.data() + n, stretches);
 }
 
 std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points, Extent extent) const {
@@ -304,13 +306,13 @@ std::vector<std::vector<double>> Problem::LinearResponses(const Point& point,
       e->apply(amplitudes, with);
       LinearInput input;
       SharedSignal error;
-      if (!SignalsOnly(noise_.linear(), without, with, 1.0 / e->steps[i], input, error))
+      if (!SignalsOnly(noise.linear(), without, with, 1.0 / e->steps[i], input, error))
         throw std::logic_error(e->kind + ": more than a signal");
       inputs.push_back(std::move(input));
       errors.push_back(std::move(error));
     }
   }
-  std::vector<FilterRun> runs = LinearColumns(noise_.linear(), inputs, has_scale());
+  std::vector<FilterRun> runs = LinearColumns(noise.linear(), inputs, has_scale());
   std::vector<std::vector<double>> raw(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
@@ -322,21 +324,21 @@ std::vector<std::vector<double>> Problem::LinearResponses(const Point& point,
 }
 
 FilterRun Problem::Trace(const Point& point) const {
-  FilterSetup setup = setup_;
-  setup.full = setup.trace = true;
+  FilterSetup traced = setup;
+  traced.full = traced.trace = true;
   const AxisModel m = Build(point);
-  return std::move(RunFilter(setup, std::span(&m, 1), 1)[0]);
+  return std::move(RunFilter(traced, std::span(&m, 1), 1)[0]);
 }
 
 void Problem::Lower(const double* r, std::size_t half, double largest_by_chance, double* w) const {
   const std::size_t n = rows();
   double sum = 0.0, count = 0.0;
   for (std::size_t k = 0; k < n + half; ++k) {
-    if (k < n && counted_[k] != 0) {
+    if (k < n && counted[k] != 0) {
       sum += r[k] * r[k];
       count += 1.0;
     }
-    if (k >= 2 * half + 1 && counted_[k - 2 * half - 1] != 0) {
+    if (k >= 2 * half + 1 && counted[k - 2 * half - 1] != 0) {
       sum -= r[k - 2 * half - 1] * r[k - 2 * half - 1];
       count -= 1.0;
     }
@@ -349,22 +351,22 @@ void Problem::Lower(const double* r, std::size_t half, double largest_by_chance,
 void Problem::LearnNoise(const Point& point) {
   const std::size_t n = rows();
   const AxisModel model = Build(point);
-  noise_ = NoiseFilter(std::make_shared<const LinearModel>(Linearise(setup_, model)), counted_,
-                       model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0), log_.period_s,
-                       stated_.position_step, noise_.learnt() ? &noise_ : nullptr);
-  std::vector<double> raw = noise_.linear().innovation;
+  noise = NoiseFilter(std::make_shared<const LinearModel>(Linearise(setup, model)), counted,
+                      model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0), log.period_s,
+                      stated.position_step, noise.learnt() ? &noise : nullptr);
+  std::vector<double> raw = noise.linear().innovation;
   if (has_scale()) {
-    AddScale(noise_.linear().table, model.two_inertia,
-             model.scale_error_m ? model.scale_error_m->data() : nullptr, log_.table_position_m.data(), raw);
-    const std::vector<double> noise = WithoutShape(std::span(raw).subspan(n), counted_, *signals_);
-    std::copy(noise.begin(), noise.end(), raw.begin() + static_cast<std::ptrdiff_t>(n));
-    scale_noise_ = Whitener(std::span(raw).subspan(n), counted_);
+    AddScale(noise.linear().table, model.two_inertia,
+             model.scale_error_m ? model.scale_error_m->data() : nullptr, log.table_position_m.data(), raw);
+    const std::vector<double> shapeless = WithoutShape(std::span(raw).subspan(n), counted, *signals);
+    std::copy(shapeless.begin(), shapeless.end(), raw.begin() + static_cast<std::ptrdiff_t>(n));
+    scale_noise = Whitener(std::span(raw).subspan(n), counted);
   }
-  root_weight_.assign(data_size(), 1.0);
+  root_weight.assign(data_size(), 1.0);
   const std::vector<double> white = White(std::span(&raw, 1))[0];
   for (std::size_t base = 0; base < data_size(); base += n) {
     const double* r = &white[base];
-    double* w = &root_weight_[base];
+    double* w = &root_weight[base];
     // Level of the noise over short and longer windows, and of its slow part: stuck, the axis answers to
     // torque with another spectrum than sliding. Where any stands out, the largest counts.
     std::vector<double> slow(n, 0.0);
@@ -378,25 +380,24 @@ void Problem::LearnNoise(const Point& point) {
     Lower(r, 150, 1.25, w);
     Lower(slow.data(), 400, 2.0, w);
   }
-  if (has_scale()) LowerWhereScaleRests(&root_weight_[n]);
+  if (has_scale()) LowerWhereScaleRests(&root_weight[n]);
   for (std::size_t k = 0; k < data_size(); ++k)
-    if (counted_[k % n] == 0) root_weight_[k] = 0.0;
+    if (counted[k % n] == 0) root_weight[k] = 0.0;
   WeighExcerpt();
 }
 
 void Problem::WeighExcerpt() {
-  const std::size_t m = excerpt_.row.size(), n = rows();
+  const std::size_t m = excerpt.row.size(), n = rows();
   excerpt_weight_.assign(data_size(Extent::kExcerpt), 0.0);
-  const double root = std::sqrt(excerpt_.per_row);
+  const double root = std::sqrt(excerpt.per_row);
   for (std::size_t i = 0; i < excerpt_weight_.size(); ++i)
-    if (excerpt_.counts[i % m] != 0)
-      excerpt_weight_[i] = root * root_weight_[i / m * n + excerpt_.row[i % m]];
+    if (excerpt.counts[i % m] != 0) excerpt_weight_[i] = root * root_weight[i / m * n + excerpt.row[i % m]];
 }
 
 void Problem::LowerWhereScaleRests(double* w) const {
   // Within one count of the scale its rounding error is the same from row to row: no more is known than after
   // the first.
-  const std::vector<double>& x = log_.table_position_m;
+  const std::vector<double>& x = log.table_position_m;
   const std::size_t n = rows();
   double step = std::numeric_limits<double>::infinity();
   for (std::size_t k = 1; k < n; ++k) {
@@ -405,28 +406,27 @@ void Problem::LowerWhereScaleRests(double* w) const {
   }
   if (!std::isfinite(step)) return;
   for (std::size_t k = 0; k < n; ++k) {
-    const double counts_per_row =
-        std::fabs(signals_->velocity[k]) * log_.period_s * stated_.table_per_q / step;
+    const double counts_per_row = std::fabs(signals->velocity[k]) * log.period_s * stated.table_per_q / step;
     w[k] *= std::sqrt(std::clamp(counts_per_row, kLeastCountsPerRow, 1.0));
   }
 }
 
 void Problem::LearnSignals(const Point& point) {
-  auto renewed = std::make_shared<Signals>(*signals_);
+  auto renewed = std::make_shared<Signals>(*signals);
   const AxisModel m = Build(point);
   const Delivered delivered =
-      DeliveredMeans(log_, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
+      DeliveredMeans(log, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
   UpdateFromTrace(m, Trace(point), delivered.mean, *renewed);
-  signals_ = renewed;
+  signals = renewed;
 }
 
 void Problem::LearnOutliers(const Point& point) {
   const AxisModel m = Build(point);
-  const FilterRun run = std::move(RunFilter(setup_, std::span(&m, 1), 1)[0]);
-  MarkOutliers(run.innovation, stated_.position_step, setup_.valid, quality_);
+  const FilterRun run = std::move(RunFilter(setup, std::span(&m, 1), 1)[0]);
+  MarkOutliers(run.innovation, stated.position_step, setup.valid, quality);
   CountRows();
-  excerpt_ = ChooseExcerpt(signals_->position, signals_->velocity, setup_.valid, counted_, log_.period_s,
-                           nominal_.friction.Fc_plus / nominal_.friction.s0);
+  excerpt = ChooseExcerpt(signals->position, signals->velocity, setup.valid, counted, log.period_s,
+                          nominal.friction.Fc_plus / nominal.friction.s0);
 }
 
 }  // namespace contour::diagnosis

@@ -66,7 +66,7 @@ struct Point {
 /// The log, the stated model and the noise: from parameters to a white residual.
 class Problem {
  public:
-  Problem(const AxisLog& log, const StatedAxis& stated, int threads);
+  Problem(const AxisLog& axis_log, const StatedAxis& stated_axis, int most_threads);
 
   [[nodiscard]] AxisModel Build(const Point& point) const;
   /// Innovations, then scale residuals (0 where they do not count), of every point.
@@ -94,33 +94,31 @@ class Problem {
   void LearnSignals(const Point& point);
   void LearnOutliers(const Point& point);
 
-  [[nodiscard]] std::size_t rows() const { return log_.size(); }
-  [[nodiscard]] bool has_scale() const { return !log_.table_position_m.empty(); }
+  [[nodiscard]] std::size_t rows() const { return log.size(); }
+  [[nodiscard]] bool has_scale() const { return !log.table_position_m.empty(); }
   [[nodiscard]] std::size_t data_size(Extent extent = Extent::kWhole) const {
-    return (extent == Extent::kWhole ? rows() : excerpt_.row.size()) * (has_scale() ? 2 : 1);
+    return (extent == Extent::kWhole ? rows() : excerpt.row.size()) * (has_scale() ? 2 : 1);
   }
 
-  const AxisLog& log_;
-  const StatedAxis& stated_;
-  int threads_ = 1;
-  AxisModel nominal_;
-  std::vector<BaseTerm> terms_;
-  std::shared_ptr<Signals> signals_;
-  std::shared_ptr<SignalCache> made_ = std::make_shared<SignalCache>();
-  FilterSetup setup_;
-  std::vector<std::uint8_t> counted_;  ///< rows whose residual counts
+  const AxisLog& log;
+  const StatedAxis& stated;
+  int threads = 1;
+  AxisModel nominal;
+  std::vector<BaseTerm> terms;
+  std::shared_ptr<Signals> signals;
+  std::shared_ptr<SignalCache> signal_cache = std::make_shared<SignalCache>();
+  FilterSetup setup;
+  std::vector<std::uint8_t> counted;  ///< rows whose residual counts
   /// Per datum: 1 where the noise is as its spectrum says, less where it is locally larger (slip out of
   /// stiction makes noise of torque into larger noise of position; a noise level may change).
-  std::vector<double> root_weight_;
-  DataQuality quality_;
-  Excerpt excerpt_;
-  NoiseFilter noise_;
-  Whitener scale_noise_;
+  std::vector<double> root_weight;
+  DataQuality quality;
+  Excerpt excerpt;
+  NoiseFilter noise;
+  Whitener scale_noise;
 
  private:
-  bool ScaleCounts(std::size_t k) const {
-    return counted_[k] != 0 && std::isfinite(log_.table_position_m[k]);
-  }
+  bool ScaleCounts(std::size_t k) const { return counted[k] != 0 && std::isfinite(log.table_position_m[k]); }
   /// Appends what the scale reads beyond the encoder less the wind-up that the model has, and beyond the
   /// error, less its mean. `raw` holds the innovations: an error of the forces moves the model's own
   /// position, which is no matter of the scale.

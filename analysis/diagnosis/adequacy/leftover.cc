@@ -110,8 +110,8 @@ Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<d
 std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, double false_alarm_rate) {
   const auto n = static_cast<std::ptrdiff_t>(problem.rows());
   const std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + n);
-  const std::vector<double> weight(problem.root_weight_.begin(), problem.root_weight_.begin() + n);
-  const NoiseFilter::Gradient back = problem.noise_.Back(innovation, problem.counted_, weight.data());
+  const std::vector<double> weight(problem.root_weight.begin(), problem.root_weight.begin() + n);
+  const NoiseFilter::Gradient back = problem.noise.Back(innovation, problem.counted, weight.data());
   const std::vector<double> response = PulseResponse(problem, false);
   const bool another_law = OfAnotherLaw(problem, fit);
   const std::vector<bool> slides = another_law ? FirmSlides(problem) : Slides(problem);

@@ -44,7 +44,7 @@ int SpeedBin(const Signals& s, std::size_t k) {
 class Maps {
  public:
   Maps(const Problem& p, const std::vector<bool>& slides)
-      : p_(p), s_(*p.signals_), n_(p.rows()), slides_(slides) {}
+      : p_(p), s_(*p.signals), n_(p.rows()), slides_(slides) {}
 
   std::vector<BinnedRows> All() {
     const Range x = RangeOf(s_.table_m);
@@ -54,7 +54,7 @@ class Maps {
         [x, middle_m = s_.middle_m](int b) { return Text(1e3 * (x.Middle(b, kPlaces) + middle_m), "mm"); });
     BothWays(
         "the speed", Quantity::kSpeed, kSpeeds, [&](std::size_t k) { return SpeedBin(s_, k); },
-        [fastest_m_s = s_.max_speed * p_.stated_.table_per_q](int b) {
+        [fastest_m_s = s_.max_speed * p_.stated.table_per_q](int b) {
           return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kSpeeds), 2), "mm/s");
         });
     const std::vector<double> way = WaySinceReversal(s_);
@@ -102,7 +102,7 @@ class Maps {
   }
 
   void OfTime(const char* over, double each_s, const std::vector<double>& size, std::string_view margin) {
-    const Range time{0.0, static_cast<double>(n_) * p_.log_.period_s};
+    const Range time{0.0, static_cast<double>(n_) * p_.log.period_s};
     const int count = std::max(1, static_cast<int>(time.high / each_s));
     BinnedRows rows;
     rows.over = over;
@@ -112,7 +112,7 @@ class Maps {
     rows.margin = margin;
     rows.count = count;
     for (std::size_t k = 0; k < n_; ++k)
-      if (slides_[k]) rows.bin[k] = time.Bin(static_cast<double>(k) * p_.log_.period_s, count);
+      if (slides_[k]) rows.bin[k] = time.Bin(static_cast<double>(k) * p_.log.period_s, count);
     rows.place = [time, count](int b) { return Text(time.Middle(b, count), "s"); };
     out_.push_back(std::move(rows));
   }
@@ -129,7 +129,7 @@ class Maps {
 std::vector<bool> Slides(const Problem& p) {
   std::vector<bool> out(p.rows());
   for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = p.counted_[k] != 0 && std::fabs(p.signals_->sign[k]) > kFollowsMotion;
+    out[k] = p.counted[k] != 0 && std::fabs(p.signals->sign[k]) > kFollowsMotion;
   return out;
 }
 
@@ -138,7 +138,7 @@ std::vector<BinnedRows> LeftoverMaps(const Problem& problem, const std::vector<b
 }
 
 BinnedRows FrictionCurve(const Problem& problem, const std::vector<bool>& slides) {
-  const Signals& s = *problem.signals_;
+  const Signals& s = *problem.signals;
   BinnedRows rows;
   rows.bin.assign(slides.size(), -1);
   rows.size = s.sign;

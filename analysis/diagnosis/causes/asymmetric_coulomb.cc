@@ -16,7 +16,7 @@ void ScaleLevels(double difference, AxisModel& m) {
 
 /// Guides and wipers that drag one way do so at speed, too: a viscous term that differs with them.
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
-  const Signals& s = *p.signals_;
+  const Signals& s = *p.signals;
   const std::string kind(kName);
   const SharedEffect levels = Custom({kind, "", 1}, {.steps = {2e-3}, .low = {-1.8}, .high = {1.8}},
                                      [](const auto& a, AxisModel& m) { ScaleLevels(a[0], m); });

@@ -25,8 +25,8 @@ void AddPlay(double gap, AxisModel& m) {
 }
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
-  const double R = p.stated_.table_per_q;
-  const bool screw = p.nominal_.two_inertia;
+  const double R = p.stated.table_per_q;
+  const bool screw = p.nominal.two_inertia;
   for (const double gap_um : {2.0, 10.0, 40.0})
     out.push_back(
         Custom({std::string(kName), std::to_string(gap_um) + " um", 3},
@@ -71,12 +71,12 @@ constexpr CauseDefinition backlash = {
     .implausible = nullptr,
     .parameters =
         [](const FittedEffect& fitted) {
-          return NamedValues{{"gap_um", fitted.amplitudes()[0] * fitted.problem.stated_.table_per_q * 1e6}};
+          return NamedValues{{"gap_um", fitted.amplitudes()[0] * fitted.problem.stated.table_per_q * 1e6}};
         },
     .main_parameter = "gap_um",
     .model_errors = kErrors,
     .shape = nullptr,
-    .largest = [](const Problem& p) { return 200e-6 / p.stated_.table_per_q; },
+    .largest = [](const Problem& p) { return 200e-6 / p.stated.table_per_q; },
     .freed_terms = kFreesNothing,
     .extension = nullptr,
     .experiment = GrowingReversalsOrChirp,

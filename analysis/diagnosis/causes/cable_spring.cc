@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kName = "cable_spring";
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
-  const Signals& s = *p.signals_;
+  const Signals& s = *p.signals;
   const std::string kind(kName);
   const double step = 0.01 * s.coulomb;
   out.push_back(
@@ -19,7 +19,7 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
 }
 
 NamedValues Parameters(const FittedEffect& fitted) {
-  const StatedAxis& axis = fitted.problem.stated_;
+  const StatedAxis& axis = fitted.problem.stated;
   const double half = fitted.signals().half_stroke_m;
   const Signal ends = OverStroke(fitted.signals(), fitted.amplitudes(), LegendreAt, {-half, half});
   const double stated = 0.5 * (axis.stroke_max_m - axis.stroke_min_m);
@@ -74,7 +74,7 @@ constexpr CauseDefinition cable_spring = {
     .main_parameter = "torque_at_stroke_end_Nm",
     .model_errors = kNoModelErrors,
     .shape = &kShape,
-    .largest = [](const Problem& p) { return 1.5 * p.signals_->coulomb; },
+    .largest = [](const Problem& p) { return 1.5 * p.signals->coulomb; },
     .freed_terms = kFreesNothing,
     .extension = &kExtension,
     .experiment = FullStrokes,

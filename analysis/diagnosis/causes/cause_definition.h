@@ -26,7 +26,7 @@ struct FittedEffect {
 
   [[nodiscard]] const Effect& effect() const { return *point.effects[index]; }
   [[nodiscard]] const std::vector<double>& amplitudes() const { return point.amplitudes[index]; }
-  [[nodiscard]] const Signals& signals() const { return *problem.signals_; }
+  [[nodiscard]] const Signals& signals() const { return *problem.signals; }
 };
 
 using NamedValues = std::map<std::string, double>;

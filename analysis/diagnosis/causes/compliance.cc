@@ -69,7 +69,7 @@ NamedValues Parameters(const FittedEffect& fitted) {
 }
 
 bool NoCoupling(const Problem& p, const Effect&, const std::vector<double>& a) {
-  if (p.nominal_.two_inertia) return false;
+  if (p.nominal.two_inertia) return false;
   return (a[2] > kMostDamped && a[0] < kLeastShare) || a[0] < kNothingBehind;
 }
 
@@ -128,7 +128,7 @@ constexpr CauseDefinition compliance = {
     .advice = "Take over stiffness and damping; check coupling, nut and bearing for play and preload.",
     .grid =
         [](const Problem& p, std::vector<SharedEffect>& out) {
-          p.nominal_.two_inertia ? GridOfAScrew(out) : GridOfARigidAxis(out);
+          p.nominal.two_inertia ? GridOfAScrew(out) : GridOfARigidAxis(out);
         },
     .wave = nullptr,
     .family = nullptr,

@@ -45,7 +45,7 @@ constexpr CauseDefinition constant_torque = {
     .advice = "State it as a constant torque; check the counterbalance and the drive's current offset.",
     .grid =
         [](const Problem& p, std::vector<SharedEffect>& out) {
-          out.push_back(WithForce(Custom({std::string(kName), "", 1}, {.steps = {0.01 * p.signals_->coulomb}},
+          out.push_back(WithForce(Custom({std::string(kName), "", 1}, {.steps = {0.01 * p.signals->coulomb}},
                                          [](const auto& a, AxisModel& m) { m.offset += a[0]; }),
                                   {1}));
         },
@@ -59,7 +59,7 @@ constexpr CauseDefinition constant_torque = {
     .main_parameter = "torque_Nm",
     .model_errors = kNoModelErrors,
     .shape = nullptr,
-    .largest = [](const Problem& p) { return 0.7 * p.signals_->coulomb; },
+    .largest = [](const Problem& p) { return 0.7 * p.signals->coulomb; },
     .freed_terms = kFreesNothing,
     .extension = &kExtension,
     .experiment = TorqueStepsFromRest,

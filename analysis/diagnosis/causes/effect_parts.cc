@@ -133,7 +133,7 @@ SharedEffect ShapedEffect(const Problem& p, GridPlace place, Input input, double
   e->tested = 1;
   e->signals = true;
   if (IsForce(input)) e->force = {1, 0};
-  e->apply = [shape = std::move(shape), input, made = p.made_, owner = p.made_->NewOwner()](
+  e->apply = [shape = std::move(shape), input, made = p.signal_cache, owner = p.signal_cache->NewOwner()](
                  const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0) return;
     const auto make = [&]() -> std::vector<SharedSignal> {

@@ -21,20 +21,20 @@ struct Sizes {
 
 /// The axis as its files name it; that of a file without names is x.
 std::string NameOf(const Problem& p) {
-  for (const std::string* name : {&p.stated_.axis, &p.log_.axis})
+  for (const std::string* name : {&p.stated.axis, &p.log.axis})
     if (!name->empty()) return *name;
   return "x";
 }
 
 Sizes SizesOf(const Problem& p) {
-  const double stroke_mm = 2e3 * p.signals_->half_stroke_m;
-  const double fast = 1e3 * p.signals_->max_speed * p.stated_.table_per_q;
+  const double stroke_mm = 2e3 * p.signals->half_stroke_m;
+  const double fast = 1e3 * p.signals->max_speed * p.stated.table_per_q;
   // At the motor, whatever the log's coordinate is.
   const double to_motor =
-      p.log_.linear && p.stated_.lead_m > 0.0 ? p.stated_.lead_m / (2.0 * std::numbers::pi) : 1.0;
+      p.log.linear && p.stated.lead_m > 0.0 ? p.stated.lead_m / (2.0 * std::numbers::pi) : 1.0;
   return {NameOf(p),           Number(stroke_mm),
           Number(0.02 * fast), Number(0.3 * fast),
-          Number(0.95 * fast), Number(std::max(0.2 * p.stated_.rated, p.signals_->coulomb) * to_motor)};
+          Number(0.95 * fast), Number(std::max(0.2 * p.stated.rated, p.signals->coulomb) * to_motor)};
 }
 
 std::string Creep(const Sizes& s, const std::string& speeds, int repeats) {

@@ -28,7 +28,7 @@ NamedValues Parameters(const FittedEffect& fitted) {
   const Problem& p = fitted.problem;
   const Effect& e = fitted.effect();
   const std::vector<double>& a = fitted.amplitudes();
-  const double seconds = p.log_.period_s * static_cast<double>(p.rows());
+  const double seconds = p.log.period_s * static_cast<double>(p.rows());
   if (e.order <= 0.0) return {{"change_rel", a[0] / (1.0 - 0.5 * a[0])}};
   const double tau = e.order * std::exp(a[1]);
   return {{"change_rel", a[0] * (1.0 - std::exp(-1.0 / tau)) / (1.0 - 0.5 * a[0])},

@@ -11,7 +11,7 @@ constexpr std::string_view kName = "load_friction";
 
 /// Over the whole band, which the smoothed acceleration does not have; constant over each row.
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
-  const Signals& s = *p.signals_;
+  const Signals& s = *p.signals;
   const std::size_t n = p.rows();
   out.push_back(LinearEffect(
       {std::string(kName), "", 1}, Input::kLevel,

@@ -28,7 +28,7 @@ void AddShape(const Problem& problem, const Fit& fit, std::size_t index, std::si
   t.abscissa = "position_mm";
   t.ordinate = *shape->ordinate;
   const double unit = shape->per_unit;
-  const Signals& s = *problem.signals_;
+  const Signals& s = *problem.signals;
   const std::vector<double> grid = StrokeGrid(s);
   const auto n = static_cast<Eigen::Index>(a.size());
   const Eigen::MatrixXd c =

@@ -11,11 +11,11 @@ constexpr std::string_view kName = "payload_step";
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const std::size_t n = p.rows();
-  const double J = p.nominal_.motor_inertia + p.nominal_.load_inertia;
+  const double J = p.nominal.motor_inertia + p.nominal.load_inertia;
   for (int i = 1; i < 20; ++i) {
     const std::size_t row = n * static_cast<std::size_t>(i) / 20;
     // The instant moves with the rest, by rows.
-    const double reach_s = p.log_.period_s * static_cast<double>(n) / 30.0, period_s = p.log_.period_s;
+    const double reach_s = p.log.period_s * static_cast<double>(n) / 30.0, period_s = p.log.period_s;
     auto step = std::make_shared<Effect>(*Custom(
         {std::string(kName), "row " + std::to_string(row), 20},
         {.steps = {2e-3, 0.05}, .low = {-0.8, -reach_s}, .high = {5.0, reach_s}},
@@ -25,9 +25,9 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
         }));
     step->tested = 1;
     step->force = {1, 0};
-    step->as_term = p.nominal_.two_inertia ? "load_inertia" : "inertia";
+    step->as_term = p.nominal.two_inertia ? "load_inertia" : "inertia";
     step->from_row = row;
-    step->order = p.log_.period_s * static_cast<double>(row);
+    step->order = p.log.period_s * static_cast<double>(row);
     out.push_back(step);
   }
 }
@@ -35,7 +35,7 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
 /// The amplitude is a share of the stated inertia; what is told is one of the fitted.
 NamedValues Parameters(const FittedEffect& fitted) {
   const AxisModel m = fitted.problem.Build(fitted.point);
-  const AxisModel& stated = fitted.problem.nominal_;
+  const AxisModel& stated = fitted.problem.nominal;
   const std::vector<double>& a = fitted.amplitudes();
   const double all = m.motor_inertia + (m.two_inertia ? m.load_inertia : 0.0);
   return {{"inertia_change_rel", a[0] * (stated.motor_inertia + stated.load_inertia) / all},

@@ -13,7 +13,7 @@ constexpr std::string_view kName = "pitch_error";
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   if (p.has_scale())
-    out.push_back(LinearEffect({std::string(kName), "", 1}, Input::kScale, Cosines(*p.signals_, 1, 8), 1e-7));
+    out.push_back(LinearEffect({std::string(kName), "", 1}, Input::kScale, Cosines(*p.signals, 1, 8), 1e-7));
 }
 
 constexpr StrokeShape kShape = {.ordinate = "error_um", .per_unit = 1e6, .basis = CosineAt};

@@ -12,7 +12,7 @@ namespace {
 constexpr std::string_view kName = "position_friction";
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
-  const Signals& s = *p.signals_;
+  const Signals& s = *p.signals;
   const std::string kind(kName);
   out.push_back(WithShorter(LinearEffect({kind, "", 3}, Input::kLevel, Cosines(s, 1, 8), 5e-3),
                             LinearEffect({kind, "smooth", 3}, Input::kLevel, Cosines(s, 1, 3), 5e-3)));

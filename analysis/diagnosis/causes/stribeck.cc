@@ -13,7 +13,7 @@ constexpr std::string_view kName = "stribeck";
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const std::string kind(kName);
-  const StatedFriction& f = p.nominal_.friction;
+  const StatedFriction& f = p.nominal.friction;
   if (f.Fs_plus + f.Fs_minus > 1.05 * (f.Fc_plus + f.Fc_minus)) {
     out.push_back(Custom({kind, "", 1}, {.steps = {2e-3, 5e-3}, .low = {-0.4, -1.5}, .high = {1.0, 1.5}},
                          [](const auto& a, AxisModel& m) {
@@ -24,7 +24,7 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
     return;
   }
   for (const double part : {0.003, 0.012, 0.05}) {
-    const double vs = part * p.signals_->max_speed;
+    const double vs = part * p.signals->max_speed;
     out.push_back(
         Custom({kind, "vs " + std::to_string(vs), 3},
                {.steps = {5e-3, 1e-2}, .start = {0.1, 0.0}, .low = {-0.8, -2.5}, .high = {4.0, 2.5}},

@@ -21,9 +21,9 @@ bool Varies(const Signal& temperature_K) {
 }
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
-  if (!Varies(p.signals_->temperature_K)) return;
+  if (!Varies(p.signals->temperature_K)) return;
   const std::string kind(kName);
-  const auto T = std::make_shared<const Signal>(p.signals_->temperature_K);
+  const auto T = std::make_shared<const Signal>(p.signals->temperature_K);
   out.push_back(WithShorter(AsSignals(Custom({kind, "and level", 2}, {.steps = {2e-3, 1e-3}},
                                              [T](const auto& a, AxisModel& m) {
                                                m.viscous = Add(m.viscous, {T}, {a[0]});

@@ -37,7 +37,7 @@ constexpr CauseDefinition torque_saturation = {
     .advice = "Lower the torque limit or the accelerations, or state the saturation.",
     .grid =
         [](const Problem& p, std::vector<SharedEffect>& out) {
-          const double rated = std::max(p.stated_.rated, 1e-12);
+          const double rated = std::max(p.stated.rated, 1e-12);
           out.push_back(WithForce(
               Custom({std::string(kName), "", 1}, {.steps = {5e-3}, .low = {-0.3}, .high = {0.5}},
                      [rated](const auto& a, AxisModel& m) { m.saturation += a[0] / (rated * rated); }),

@@ -29,12 +29,12 @@ struct Entrance {
 };
 
 Entrance EntranceOf(Wave wave, const Problem& p) {
-  const double torque = 0.01 * p.signals_->coulomb;
+  const double torque = 0.01 * p.signals->coulomb;
   switch (wave) {
     case Wave::kFrictionOfAngle:
       return {Input::kLevel, 5e-3};
     case Wave::kReadingOfAngle:
-      return {Input::kReading, p.stated_.position_step > 0.0 ? p.stated_.position_step : 1e-6};
+      return {Input::kReading, p.stated.position_step > 0.0 ? p.stated.position_step : 1e-6};
     case Wave::kForceOfTime:
       return {Input::kLoadForce, torque};
     case Wave::kTorqueOfAngle:
@@ -46,7 +46,7 @@ Entrance EntranceOf(Wave wave, const Problem& p) {
 
 /// At an order that stays.
 SharedEffect FixedOrder(const Problem& p, Wave wave, double order, double grid, std::string kind) {
-  const Signals& s = *p.signals_;
+  const Signals& s = *p.signals;
   const std::size_t n = p.rows();
   std::vector<double> phases(n);
   for (std::size_t k = 0; k < n; ++k) phases[k] = order * s.angle_rad[k];
@@ -65,12 +65,12 @@ SharedEffect FixedOrder(const Problem& p, Wave wave, double order, double grid, 
 }
 
 SharedEffect FreeOrder(const Problem& p, Wave wave, double order, double grid, std::string kind) {
-  const Signals& s = *p.signals_;
+  const Signals& s = *p.signals;
   const std::size_t n = p.rows();
   const auto x = wave == Wave::kForceOfTime
                      ? Make(n,
                             [&](std::size_t k) {
-                              return 2.0 * std::numbers::pi * static_cast<double>(k) * p.log_.period_s;
+                              return 2.0 * std::numbers::pi * static_cast<double>(k) * p.log.period_s;
                             })
                      : std::make_shared<const Signal>(s.angle_rad);
   const auto [least, most] = std::minmax_element(x->begin(), x->end());
@@ -89,7 +89,7 @@ SharedEffect FreeOrder(const Problem& p, Wave wave, double order, double grid, s
   e->low = {-1e30, -1e30, -6.0 / span};
   e->high = {1e30, 1e30, 6.0 / span};
   // About the middle, so that order and phase are not the same direction; the phase is reported at zero.
-  e->apply = [x, order, middle, into = input, n, made = p.made_, owner = p.made_->NewOwner()](
+  e->apply = [x, order, middle, into = input, n, made = p.signal_cache, owner = p.signal_cache->NewOwner()](
                  const std::vector<double>& a, AxisModel& m) {
     if (a[0] == 0.0 && a[1] == 0.0) return;
     const auto make = [&] {

@@ -77,7 +77,7 @@ double VagueBy(const Problem& problem, const std::string& kind, const Eigen::Mat
   for (std::size_t i = 0; i < terms.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
     if (at < covariance.rows())
-      most = std::max(most, covariance(at, at) * std::pow(problem.terms_[terms[i]].sigma, -2));
+      most = std::max(most, covariance(at, at) * std::pow(problem.terms[terms[i]].sigma, -2));
   }
   return most;
 }

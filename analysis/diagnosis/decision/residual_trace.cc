@@ -14,13 +14,13 @@ constexpr std::size_t kUnseenBlocks = 60;
 
 Signal FromRaw(const Problem& problem, const Point& point, const std::vector<double>& raw) {
   const AxisModel m = problem.Build(point);
-  const ObserverGain& gain = m.two_inertia ? problem.setup_.gain_two : problem.setup_.gain;
+  const ObserverGain& gain = m.two_inertia ? problem.setup.gain_two : problem.setup.gain;
   const double inertia = m.motor_inertia + (m.two_inertia ? m.load_inertia : 0.0);
-  const double T = problem.log_.period_s;
+  const double T = problem.log.period_s;
   const std::size_t n = problem.rows();
   Signal r(n, 0.0);
   for (std::size_t k = 0; k + 1 < n; ++k)
-    if (problem.counted_[k] != 0 && problem.counted_[k + 1] != 0)
+    if (problem.counted[k] != 0 && problem.counted[k + 1] != 0)
       r[k] = -inertia * (gain[1] * raw[k] / T + gain[0] * (raw[k + 1] - raw[k]) / (T * T));
   return Smooth(r, 1.3e-3 / T);
 }
@@ -42,7 +42,7 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
     for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
-      const double w = std::pow(problem.terms_[i].sigma, -2);
+      const double w = std::pow(problem.terms[i].sigma, -2);
       const auto j = static_cast<Eigen::Index>(i);
       normal(j, j) += w;
       gradient(j) += w * fit.point.base[i];
@@ -77,7 +77,7 @@ std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool 
                            : FromRaw(problem, points[fold], raw[fold]);
     for (std::size_t b = fold; b < kHeldOutBlocks; b += 2)
       for (std::size_t k = n * b / kHeldOutBlocks; k < n * (b + 1) / kHeldOutBlocks; ++k)
-        if (problem.counted_[k] != 0) squares[b] += r[k] * r[k];
+        if (problem.counted[k] != 0) squares[b] += r[k] * r[k];
   }
   return squares;
 }
@@ -90,7 +90,7 @@ std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit, bool un
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
   for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
-    const double w = std::pow(problem.terms_[i].sigma, -2);
+    const double w = std::pow(problem.terms[i].sigma, -2);
     const auto j = static_cast<Eigen::Index>(i);
     normal(j, j) = w;
     gradient(j) = w * fit.point.base[i];
@@ -150,11 +150,11 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
     sum_before += before[b];
     sum_after += after[b];
     const double gain = before[b] > 0.0 ? 1.0 - std::sqrt(after[b] / before[b]) : 0.0;
-    blocks.push_back({static_cast<double>(b) * n * problem.log_.period_s,
-                      static_cast<double>(b + 1) * n * problem.log_.period_s, gain});
+    blocks.push_back({static_cast<double>(b) * n * problem.log.period_s,
+                      static_cast<double>(b + 1) * n * problem.log.period_s, gain});
   }
   const double unit = scale ? 1e6 : 1.0;
-  cause.unit = scale ? "um" : (problem.log_.linear ? "N" : "Nm");
+  cause.unit = scale ? "um" : (problem.log.linear ? "N" : "Nm");
   cause.heldout_rms_before = unit * std::sqrt(sum_before / (n * kHeldOutBlocks));
   cause.heldout_rms_after = unit * std::sqrt(sum_after / (n * kHeldOutBlocks));
   cause.heldout_gain = 1.0 - std::sqrt(sum_after / sum_before);
@@ -177,24 +177,24 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
 Traces MakeTraces(const Problem& problem, const Point& before, const Point& after) {
   Traces t;
   const std::size_t n = problem.rows();
-  const Signals& s = *problem.signals_;
+  const Signals& s = *problem.signals;
   const Point points[] = {before, after};
   const auto raw = problem.Raw(points);
   t.residual_before = FromRaw(problem, before, raw[0]);
   t.residual_after = FromRaw(problem, after, raw[1]);
   const AxisModel m = problem.Build(after);
   const Delivered delivered =
-      DeliveredMeans(problem.log_, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
-  t.measured = Smooth(delivered.mean, 1.3e-3 / problem.log_.period_s);
+      DeliveredMeans(problem.log, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
+  t.measured = Smooth(delivered.mean, 1.3e-3 / problem.log.period_s);
   t.position = s.position;
   t.velocity = s.velocity;
   t.acceleration = s.acceleration;
-  t.temperature_degC = problem.log_.temperature_degC;
+  t.temperature_degC = problem.log.temperature_degC;
   t.time_s.resize(n);
   t.simulated_before.resize(n);
   t.simulated_after.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
-    t.time_s[k] = static_cast<double>(k) * problem.log_.period_s;
+    t.time_s[k] = static_cast<double>(k) * problem.log.period_s;
     t.simulated_before[k] = t.measured[k] - t.residual_before[k];
     t.simulated_after[k] = t.measured[k] - t.residual_after[k];
   }

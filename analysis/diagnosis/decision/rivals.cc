@@ -45,7 +45,7 @@ void Sort(std::vector<Rival>& rivals) {
 }
 
 bool AddsCoupling(const Problem& problem, const Rival& r) {
-  return CauseNamed(r.effect().kind).coupling && !problem.nominal_.two_inertia;
+  return CauseNamed(r.effect().kind).coupling && !problem.nominal.two_inertia;
 }
 
 /// Where the fit has gone the cause is not what its name says.
@@ -130,7 +130,7 @@ void OneOfEach(std::vector<Rival>& rivals) {
 std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
                            const std::vector<Scored>& scored) {
   Place best, stiff;
-  const bool coupling = CauseNamed(kind).coupling && !problem.nominal_.two_inertia;
+  const bool coupling = CauseNamed(kind).coupling && !problem.nominal.two_inertia;
   for (Place& p : FullSize(problem, current, kind, scored)) {
     Place& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
     if (p.cost < of.cost) of = std::move(p);

@@ -19,7 +19,7 @@ constexpr double kLargeShare = 0.04;
 constexpr double kLargeBesideScale = 0.3;
 
 std::string LeftoverText(const Problem& problem, const Leftover& left) {
-  const bool linear = problem.log_.linear;
+  const bool linear = problem.log.linear;
   std::array<char, 200> size{};
   std::snprintf(size.data(), size.size(), "chi^2 falls by %.0f where %.0f is chance; most at %s: %+.3g %s",
                 left.drop, left.bins, left.at.c_str(), linear ? left.amount : 1e3 * left.amount,

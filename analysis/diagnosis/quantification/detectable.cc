@@ -45,7 +45,7 @@ double LinearSize(const Problem& problem, const Gate& gate, const Scored& s) {
     // side.
     double variance = s.covariance(0, 0);
     const std::vector<std::size_t> terms = FreedTerms(problem, kind);
-    if (!terms.empty()) variance += std::pow(problem.terms_[terms[0]].sigma, 2);
+    if (!terms.empty()) variance += std::pow(problem.terms[terms[0]].sigma, 2);
     return Needed(problem, gate, s) * std::sqrt(variance);
   }
   // The mean standard error over the amplitudes; a shape may lie along any of them.

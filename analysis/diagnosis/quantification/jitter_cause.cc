@@ -24,7 +24,7 @@ void AcceptJitter(const Problem& problem, const Fit& nominal, const Jitter& jitt
       1e6 * jitter.rms_s, 1e6 * std::max(0.0, jitter.rms_s - 1.96 * jitter.sigma_s),
       1e6 * (jitter.rms_s + 1.96 * jitter.sigma_s)};
   WidenIntervals(problem, nominal.point, cause);
-  cause.unit = problem.log_.linear ? "N" : "Nm";
+  cause.unit = problem.log.linear ? "N" : "Nm";
   cause.deciding_experiment = DecidingExperiment(problem, cause.kind, {}).text;
   for (Candidate& c : out.candidates)
     if (c.kind == cause.kind) c.accepted = true;

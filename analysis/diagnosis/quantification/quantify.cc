@@ -54,8 +54,8 @@ void Describe(const Problem& problem, const Accepted& accepted, const Fit& fit, 
 
 /// The model's own numbers, as they are stated and as the log has them.
 void DescribeBase(const Problem& problem, const Fit& fit, Diagnosis& out) {
-  for (std::size_t i = 0; i < problem.terms_.size(); ++i) {
-    const BaseTerm& t = problem.terms_[i];
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+    const BaseTerm& t = problem.terms[i];
     if (t.nuisance) continue;
     const double x = fit.point.base[i];
     const double sd =
@@ -77,7 +77,7 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
     else
       Describe(problem, accepted, fit, out);
   }
-  out.data_quality = problem.quality_;
+  out.data_quality = problem.quality;
   DescribeBase(problem, fit, out);
   out.traces = MakeTraces(problem, nominal.point, fit.point);
   return fit;

@@ -39,21 +39,21 @@ bool OfAnotherLaw(const Problem& problem, const Fit& fit) {
   if (std::none_of(effects.begin(), effects.end(),
                    [](const SharedEffect& e) { return *CauseNamed(e->kind).takes_up_another_law; }))
     return false;
-  for (std::size_t i = 0; i < problem.terms_.size(); ++i) {
-    const BaseTerm& t = problem.terms_[i];
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+    const BaseTerm& t = problem.terms[i];
     if (t.name == "rough" && fit.point.base[i] < -kBelowZero * t.sigma) return true;
   }
   return false;
 }
 
 std::vector<bool> FirmSlides(const Problem& problem) {
-  const Signals& s = *problem.signals_;
-  const StatedFriction& f = problem.nominal_.friction;
-  const double far_m = kLengths * f.Fc_plus / f.s0 * problem.stated_.table_per_q;
+  const Signals& s = *problem.signals;
+  const StatedFriction& f = problem.nominal.friction;
+  const double far_m = kLengths * f.Fc_plus / f.s0 * problem.stated.table_per_q;
   const std::vector<double> way = WaySinceReversal(s);
   std::vector<bool> out(problem.rows());
   for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = problem.counted_[k] != 0 && way[k] > far_m && std::fabs(s.velocity[k]) > f.vs;
+    out[k] = problem.counted[k] != 0 && way[k] > far_m && std::fabs(s.velocity[k]) > f.vs;
   return out;
 }
 

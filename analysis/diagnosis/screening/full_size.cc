@@ -55,7 +55,7 @@ std::vector<Place> Costs(const Problem& problem, const Fit& around, std::vector<
     for (std::size_t i = 0; i < count; ++i) {
       Eigen::VectorXd gradient = GradientOf(around.jacobian, residuals[i]);
       for (std::size_t t = 0; t < around.point.base.size(); ++t)
-        gradient(static_cast<Eigen::Index>(t)) += around.point.base[t] / std::pow(problem.terms_[t].sigma, 2);
+        gradient(static_cast<Eigen::Index>(t)) += around.point.base[t] / std::pow(problem.terms[t].sigma, 2);
       const Eigen::Map<const Eigen::VectorXd> r(residuals[i].data(),
                                                 static_cast<Eigen::Index>(residuals[i].size()));
       const double cost = r.squaredNorm() + around.prior - gradient.dot(around.covariance * gradient);
@@ -67,7 +67,7 @@ std::vector<Place> Costs(const Problem& problem, const Fit& around, std::vector<
 
 /// What the excerpt has of a fit's sensitivities, with the covariance that they leave.
 Fit OnExcerpt(const Problem& problem, const Fit& fit) {
-  const Excerpt& e = problem.excerpt_;
+  const Excerpt& e = problem.excerpt;
   const std::size_t m = e.row.size(), n = problem.rows(), size = problem.data_size(Extent::kExcerpt);
   Fit out;
   out.point = fit.point;
@@ -84,7 +84,7 @@ Fit OnExcerpt(const Problem& problem, const Fit& fit) {
   Eigen::MatrixXd normal = out.normal;
   for (std::size_t t = 0; t < fit.point.base.size(); ++t) {
     const auto j = static_cast<Eigen::Index>(t);
-    normal(j, j) += std::pow(problem.terms_[t].sigma, -2);
+    normal(j, j) += std::pow(problem.terms[t].sigma, -2);
   }
   normal.diagonal().array() += 1e-18 * normal.diagonal().maxCoeff();
   out.covariance = normal.ldlt().solve(Eigen::MatrixXd::Identity(columns, columns));
@@ -114,7 +114,7 @@ std::vector<Place> FullSize(const Problem& problem, const Fit& current, const st
   std::vector<Point> points = PlacesOf(problem, current, kind, scored);
   const bool strong = std::any_of(scored.begin(), scored.end(),
                                   [&](const Scored& s) { return s.effect->kind == kind && s.drop > kRanks; });
-  if (strong && points.size() > 2 * kShortlist && !problem.excerpt_.empty())
+  if (strong && points.size() > 2 * kShortlist && !problem.excerpt.empty())
     points = Shortlist(problem, current, std::move(points));
   std::vector<Place> out = Costs(problem, current, std::move(points), Extent::kWhole);
   std::erase_if(out, [&](const Place& p) { return p.cost >= current.cost; });

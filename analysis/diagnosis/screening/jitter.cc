@@ -15,10 +15,10 @@ constexpr int kParts = 8;
 
 Jitter TestJitter(const Problem& problem, const Fit& fit) {
   constexpr std::size_t kBlock = 50;
-  const Signals& s = *problem.signals_;
-  const double period_s = problem.log_.period_s;
+  const Signals& s = *problem.signals;
+  const double period_s = problem.log.period_s;
   // Slower than this, quantisation is no noise of constant variance.
-  const double slowest = 2.0 * problem.stated_.position_step / period_s;
+  const double slowest = 2.0 * problem.stated.position_step / period_s;
   // The noise may have another level in each part of the log: a share of the variance per part, of the
   // squared speed, of the squared acceleration.
   using Row = Eigen::Matrix<double, kParts + 2, 1>;
@@ -30,11 +30,11 @@ Jitter TestJitter(const Problem& problem, const Fit& fit) {
     double sum = 0.0, w2 = 0.0, a2 = 0.0;
     bool use = true;
     for (std::size_t k = from; k < from + kBlock && use; ++k) {
-      use = problem.counted_[k] != 0 && problem.counted_[k - 2] != 0 && problem.root_weight_[k] > 0.0 &&
-            problem.root_weight_[k - 1] > 0.0 && problem.root_weight_[k - 2] > 0.0 &&
+      use = problem.counted[k] != 0 && problem.counted[k - 2] != 0 && problem.root_weight[k] > 0.0 &&
+            problem.root_weight[k - 1] > 0.0 && problem.root_weight[k - 2] > 0.0 &&
             std::fabs(s.velocity[k]) > slowest;
       if (!use) break;
-      const auto at = [&](std::size_t i) { return fit.residual[i] / problem.root_weight_[i]; };
+      const auto at = [&](std::size_t i) { return fit.residual[i] / problem.root_weight[i]; };
       const double d = at(k) - 2.0 * at(k - 1) + at(k - 2);
       sum += d * d / 6.0;
       w2 += s.velocity[k] * s.velocity[k];

@@ -10,10 +10,10 @@ namespace contour::diagnosis {
 Nominal FitNominal(Problem& problem) {
   Nominal nominal;
   Point start;
-  for (const BaseTerm& t : problem.terms_) start.base.push_back(t.start);
+  for (const BaseTerm& t : problem.terms) start.base.push_back(t.start);
   problem.LearnOutliers(start);
   problem.LearnNoise(start);
-  const Extent ahead = problem.excerpt_.empty() ? Extent::kWhole : Extent::kExcerpt;
+  const Extent ahead = problem.excerpt.empty() ? Extent::kWhole : Extent::kExcerpt;
   nominal.fit =
       FitPoint(problem, start,
                {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false}, ahead);

@@ -76,7 +76,7 @@ struct Histogram {
 // turn, it has the integer orders and no others.
 std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
                               const std::vector<double>& weight, double highest, bool folded) {
-  const Signals& s = *problem.signals_;
+  const Signals& s = *problem.signals;
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = std::max(1.0, (*high - *low) / kTwoPi);
   const double per_rev = std::exp2(std::ceil(std::log2(4.0 * highest)));
@@ -91,17 +91,17 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   const std::size_t n = problem.rows();
   std::vector<double> speed(n);
   for (std::size_t k = 1; k < n; ++k) {
-    speed[k] = std::fabs(s.velocity[k]) * problem.log_.period_s * s.angle_per_q;
+    speed[k] = std::fabs(s.velocity[k]) * problem.log.period_s * s.angle_per_q;
     fastest = std::max(fastest, speed[k]);
   }
   for (std::size_t i = 0; i < kBins; ++i)
     histogram.speed[i] = fastest * std::pow((static_cast<double>(i) + 0.5) / kBins, 2);
   for (std::size_t k = 0; k < n; ++k) {
-    if (problem.counted_[k] == 0 || weight[k] == 0.0) continue;
+    if (problem.counted[k] == 0 || weight[k] == 0.0) continue;
     const auto bin = static_cast<std::size_t>((s.angle_rad[k] - *low) / kTwoPi * per_rev + 0.5);
     re[bin & (length - 1)] += weight[k] * matched.lambda[k];
     const auto b = std::min(kBins - 1, static_cast<std::size_t>(std::sqrt(speed[k] / fastest) * kBins));
-    histogram.weight[b] += weight[k] * weight[k] * problem.root_weight_[k] * problem.root_weight_[k];
+    histogram.weight[b] += weight[k] * weight[k] * problem.root_weight[k] * problem.root_weight[k];
   }
   FourierTransform(re, im, false);
   std::vector<Peak> out;
@@ -123,12 +123,12 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
 
 std::vector<double> PulseResponse(const Problem& problem, bool reading) {
   // In the middle of the longest slide.
-  const Signals& s = *problem.signals_;
+  const Signals& s = *problem.signals;
   const std::size_t n = problem.rows();
   const double slow = 0.02 * s.max_speed;
   std::size_t row = n / 2, longest = 0, since = 0;
   for (std::size_t k = 1; k <= n; ++k) {
-    const bool slides = k < n && problem.counted_[k] != 0 && std::fabs(s.velocity[k]) > slow &&
+    const bool slides = k < n && problem.counted[k] != 0 && std::fabs(s.velocity[k]) > slow &&
                         (s.velocity[k] > 0.0) == (s.velocity[k - 1] > 0.0);
     if (slides) continue;
     if (k - since > longest) {
@@ -137,12 +137,12 @@ std::vector<double> PulseResponse(const Problem& problem, bool reading) {
     }
     since = k;
   }
-  return problem.noise_.Pulse(std::min(row, n > kResponse + 2 ? n - kResponse - 2 : 0), reading, kResponse,
-                              problem.counted_);
+  return problem.noise.Pulse(std::min(row, n > kResponse + 2 ? n - kResponse - 2 : 0), reading, kResponse,
+                             problem.counted);
 }
 
 std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
-  const Signals& s = *problem.signals_;
+  const Signals& s = *problem.signals;
   const std::size_t n = problem.rows();
   std::vector<SharedEffect> out;
   // The grid is what was looked at: every order up to the highest, every frequency that the log resolves.
@@ -150,7 +150,7 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
     for (const double o : orders) out.push_back(WaveEffect(problem, wave, o, grid));
   };
   std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + static_cast<std::ptrdiff_t>(n));
-  NoiseFilter::Gradient back = problem.noise_.Back(innovation, problem.counted_, problem.root_weight_.data());
+  NoiseFilter::Gradient back = problem.noise.Back(innovation, problem.counted, problem.root_weight.data());
   for (double& x : back.level) x /= s.coulomb;
   const Matched torque = Match(problem, false, std::move(back.motor));
   const Matched level{std::move(back.level), torque.transfer};
@@ -187,17 +187,17 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   double moving = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     re[k] = sliding[k] * torque.lambda[k];
-    moving += sliding[k] * problem.root_weight_[k] * problem.root_weight_[k];
+    moving += sliding[k] * problem.root_weight[k] * problem.root_weight[k];
   }
   FourierTransform(re, im, false);
   std::vector<Peak> time;
   for (std::size_t i = 1; i < length / 2; ++i) {
     const double f = static_cast<double>(i) / static_cast<double>(length);
     if (f * static_cast<double>(n) < 6.0 || f > kHighestPerRow) continue;
-    time.push_back({f / problem.log_.period_s,
-                    2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
+    time.push_back(
+        {f / problem.log.period_s, 2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
   }
-  add(Wave::kForceOfTime, Best(time, 2, 2.0 / (static_cast<double>(n) * problem.log_.period_s)),
+  add(Wave::kForceOfTime, Best(time, 2, 2.0 / (static_cast<double>(n) * problem.log.period_s)),
       0.5 * static_cast<double>(n));
   return out;
 }

@@ -28,8 +28,8 @@ double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covarianc
 std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& kind) {
   std::vector<std::size_t> out;
   for (const std::string_view name : *CauseNamed(kind).freed_terms)
-    for (std::size_t i = 0; i < problem.terms_.size(); ++i)
-      if (problem.terms_[i].name == name) out.push_back(i);
+    for (std::size_t i = 0; i < problem.terms.size(); ++i)
+      if (problem.terms[i].name == name) out.push_back(i);
   return out;
 }
 
@@ -45,7 +45,7 @@ double ExcessOfLast(const Problem& problem, const Fit& fit) {
   Eigen::MatrixXd normal = fit.normal;
   for (std::size_t i = 0; i < fit.point.base.size(); ++i)
     normal(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) +=
-        std::pow(problem.terms_[i].sigma, -2);
+        std::pow(problem.terms[i].sigma, -2);
   const Eigen::MatrixXd onto =
       normal.topLeftCorner(others, others).ldlt().solve(normal.topRightCorner(others, n));
   const Eigen::MatrixXd information =
@@ -91,17 +91,17 @@ std::vector<std::vector<double>> RunColumns(const Problem& problem, const Fit& f
 std::vector<std::vector<double>> TermColumns(const Problem& problem, const Fit& fit,
                                              std::span<const SharedEffect> effects) {
   const AxisModel m = problem.Build(fit.point);
-  const AxisModel& stated = problem.nominal_;
+  const AxisModel& stated = problem.nominal;
   // The term moves the logarithm of its own inertia, the effect a share of the whole stated one.
   const double factor =
       (stated.motor_inertia + stated.load_inertia) / (m.two_inertia ? m.load_inertia : m.motor_inertia);
   std::vector<std::vector<double>> columns;
   for (const SharedEffect& e : effects) {
-    const auto term = std::find_if(problem.terms_.begin(), problem.terms_.end(),
+    const auto term = std::find_if(problem.terms.begin(), problem.terms.end(),
                                    [&](const BaseTerm& t) { return t.name == e->as_term; });
     std::vector<double> column(problem.data_size(), 0.0);
-    if (term != problem.terms_.end()) {
-      const double* from = fit.jacobian.col(term - problem.terms_.begin()).data();
+    if (term != problem.terms.end()) {
+      const double* from = fit.jacobian.col(term - problem.terms.begin()).data();
       for (std::size_t base = 0; base < column.size(); base += problem.rows())
         for (std::size_t k = base + e->from_row; k < base + problem.rows(); ++k) column[k] = factor * from[k];
     }
@@ -156,7 +156,7 @@ class Scorer {
     for (Eigen::Index i = 0; i < n; ++i) {
       const std::size_t t = terms[static_cast<std::size_t>(i)];
       x(i) = fit_.point.base[t];
-      prior(i) = std::pow(problem_.terms_[t].sigma, -2);
+      prior(i) = std::pow(problem_.terms[t].sigma, -2);
       for (Eigen::Index j = 0; j < n; ++j)
         c(i, j) = fit_.covariance(static_cast<Eigen::Index>(t),
                                   static_cast<Eigen::Index>(terms[static_cast<std::size_t>(j)]));

@@ -27,7 +27,7 @@ test::HiddenAxis AxisWithAWeight() { return Axis({{"constant_torque", 0.05, 0.0,
 
 Fit FittedBase(Problem& problem) {
   Point start;
-  for (const BaseTerm& t : problem.terms_) start.base.push_back(t.start);
+  for (const BaseTerm& t : problem.terms) start.base.push_back(t.start);
   problem.LearnNoise(start);
   const Fit first = FitPoint(problem, start, {.most_steps = 4, .most_refreshes = 2});
   problem.LearnNoise(first.point);
@@ -42,7 +42,7 @@ TEST(StrokeEnds, CoverTheLogAndFollowItsTurns) {
   EXPECT_TRUE(std::is_sorted(ends.begin(), ends.end()));
   EXPECT_EQ(ends.back(), problem.rows());
   // Where the axis turns after a long stroke, there is an end.
-  const std::vector<double>& q = problem.signals_->position;
+  const std::vector<double>& q = problem.signals->position;
   const auto highest = static_cast<std::ptrdiff_t>(std::max_element(q.begin(), q.end()) - q.begin());
   std::ptrdiff_t nearest = highest;
   for (const std::size_t end : ends)
@@ -60,7 +60,7 @@ double ScatterOverCovariance(const test::HiddenAxis& axis) {
   for (Eigen::Index i = 0; i < about.rows(); ++i) {
     const double sd = about.row(i).norm() / std::sqrt(kRuns - 1.0);
     const double ratio = sd / std::sqrt(fit.covariance(i, i));
-    EXPECT_GE(ratio, 0.999) << problem.terms_[static_cast<std::size_t>(i)].name;
+    EXPECT_GE(ratio, 0.999) << problem.terms[static_cast<std::size_t>(i)].name;
     sum += std::log(ratio);
   }
   return std::exp(sum / static_cast<double>(about.rows()));

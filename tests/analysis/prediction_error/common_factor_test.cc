@@ -30,7 +30,7 @@ bool IsForce(const BaseTerm& t) { return !t.additive && t.name != "vs" && t.name
 
 Point TimesAllForces(const Problem& problem, Point p, double factor) {
   for (std::size_t i = 0; i < p.base.size(); ++i)
-    if (IsForce(problem.terms_[i]) || problem.terms_[i].name == "torque_constant")
+    if (IsForce(problem.terms[i]) || problem.terms[i].name == "torque_constant")
       p.base[i] += std::log(factor);
   for (std::size_t e = 0; e < p.effects.size(); ++e)
     for (std::size_t i = 0; i < p.effects[e]->force.size(); ++i)
@@ -67,8 +67,8 @@ TEST(CommonFactor, OfAllForcesAndTheTorqueConstantMovesNoResidual) {
   const Fit fit = FitPoint(l.problem, l.point, {.most_steps = 2, .most_refreshes = 1});
   Eigen::VectorXd all = Eigen::VectorXd::Zero(fit.jacobian.rows());
   double size = 0.0;
-  for (std::size_t i = 0; i < l.problem.terms_.size(); ++i) {
-    const BaseTerm& t = l.problem.terms_[i];
+  for (std::size_t i = 0; i < l.problem.terms.size(); ++i) {
+    const BaseTerm& t = l.problem.terms[i];
     if (!IsForce(t) && t.name != "torque_constant") continue;
     const auto column = fit.jacobian.col(static_cast<Eigen::Index>(i));
     all += column;

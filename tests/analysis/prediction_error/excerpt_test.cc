@@ -23,7 +23,7 @@ test::HiddenAxis Made(bool two_inertia) {
 // Rows of an excerpt, where they count, are those of a run of the whole log.
 void ExpectRowsOfTheWhole(bool two_inertia) {
   const test::LearntProblem l(Made(two_inertia));
-  const Excerpt& e = l.problem.excerpt_;
+  const Excerpt& e = l.problem.excerpt;
   ASSERT_FALSE(e.empty());
   const std::size_t n = l.problem.rows(), m = e.row.size();
   EXPECT_LT(m, 0.4 * static_cast<double>(n));
@@ -62,9 +62,9 @@ TEST(Excerpt, ThereIsNoneOfAShortLog) {
   const test::HiddenAxis axis = test::MakeHiddenAxis(o);
   Problem problem(axis.log, axis.stated, 1);
   Point start;
-  for (const BaseTerm& t : problem.terms_) start.base.push_back(t.start);
+  for (const BaseTerm& t : problem.terms) start.base.push_back(t.start);
   problem.LearnOutliers(start);
-  EXPECT_TRUE(problem.excerpt_.empty());
+  EXPECT_TRUE(problem.excerpt.empty());
 }
 
 }  // namespace

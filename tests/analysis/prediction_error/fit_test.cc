@@ -25,7 +25,7 @@ const test::LearntProblem& Made() {
 }
 
 std::size_t IndexOf(const std::string& name) {
-  const auto& terms = Made().problem.terms_;
+  const auto& terms = Made().problem.terms;
   for (std::size_t i = 0; i < terms.size(); ++i)
     if (terms[i].name == name) return i;
   return terms.size();
@@ -41,7 +41,7 @@ TEST(Fit, FindsTheTruthFromAPointBesideIt) {
     const std::size_t i = IndexOf(name);
     const auto k = static_cast<Eigen::Index>(i);
     EXPECT_LT(std::fabs(fit.point.base[i]), 5.0 * std::sqrt(fit.covariance(k, k)) + 0.005) << name;
-    EXPECT_LT(std::sqrt(fit.covariance(k, k)), Made().problem.terms_[i].sigma) << name;
+    EXPECT_LT(std::sqrt(fit.covariance(k, k)), Made().problem.terms[i].sigma) << name;
   }
   EXPECT_LT(fit.cost, CostAt(Made().problem, start));
   EXPECT_NEAR(fit.cost, CostAt(Made().problem, fit.point), 1e-6 * fit.cost);
@@ -54,7 +54,7 @@ TEST(Fit, EndsWhereTheGradientOfResidualAndPriorsVanishes) {
       fit.jacobian.transpose() *
       Eigen::Map<const Eigen::VectorXd>(fit.residual.data(), static_cast<Eigen::Index>(fit.residual.size()));
   for (std::size_t i = 0; i < fit.point.base.size(); ++i)
-    gradient(static_cast<Eigen::Index>(i)) += fit.point.base[i] / std::pow(Made().problem.terms_[i].sigma, 2);
+    gradient(static_cast<Eigen::Index>(i)) += fit.point.base[i] / std::pow(Made().problem.terms[i].sigma, 2);
   EXPECT_LT(gradient.dot(fit.covariance * gradient), 0.1);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 Point Stated(const Problem& problem) {
   Point p;
-  p.base.assign(problem.terms_.size(), 0.0);
+  p.base.assign(problem.terms.size(), 0.0);
   return p;
 }
 
@@ -63,9 +63,9 @@ TEST(ForwardFilter, LanesAndThreadsDoNotChangeARun) {
     p.base[0] = 0.01 * i;
     models.push_back(problem.Build(p));
   }
-  const auto together = RunFilter(problem.setup_, models, 3);
+  const auto together = RunFilter(problem.setup, models, 3);
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const auto alone = RunFilter(problem.setup_, std::span(&models[i], 1), 1);
+    const auto alone = RunFilter(problem.setup, std::span(&models[i], 1), 1);
     EXPECT_EQ(alone[0].innovation, together[i].innovation);
   }
 }
@@ -85,9 +85,9 @@ TEST(ForwardFilter, WhatIsNoMachineHasNoResidualAndDisturbsNone) {
   no_number.delay_s = no_number_two.lag_s = std::nan("");
   negative.payload = -2.0 * rigid.motor_inertia;
   const std::vector<AxisModel> models = {no_number, rigid, no_number_two, two, negative};
-  const auto runs = RunFilter(problem.setup_, models, 1);
+  const auto runs = RunFilter(problem.setup, models, 1);
   for (const std::size_t i : {1U, 3U})
-    EXPECT_EQ(runs[i].innovation, RunFilter(problem.setup_, std::span(&models[i], 1), 1)[0].innovation);
+    EXPECT_EQ(runs[i].innovation, RunFilter(problem.setup, std::span(&models[i], 1), 1)[0].innovation);
   for (const std::size_t i : {0U, 2U, 4U}) {
     ASSERT_EQ(runs[i].innovation.size(), problem.rows());
     EXPECT_TRUE(std::isnan(runs[i].innovation.back())) << i;
@@ -103,11 +103,11 @@ TEST(ForwardFilter, ABristleThatCreepingDoesNotWearChangesSmoothly) {
   const Problem problem(axis.log, axis.stated, 1);
   const AxisModel wears = problem.Build(Stated(problem));
   std::vector<AxisModel> models(3, wears);
-  const double vs = problem.nominal_.friction.vs;
+  const double vs = problem.nominal.friction.vs;
   models[0].rough = 0.0;
   models[1].rough = -0.01 * vs * vs;
   models[2].rough = 1.01 * models[1].rough;
-  const auto runs = RunFilter(problem.setup_, models, 1);
+  const auto runs = RunFilter(problem.setup, models, 1);
   const double all = test::Distance(runs[0].innovation, runs[1].innovation);
   EXPECT_GT(all, 0.0);
   EXPECT_LT(test::Distance(runs[1].innovation, runs[2].innovation), 0.1 * all);
@@ -120,8 +120,8 @@ TEST(ForwardFilter, ErrorsOfTheForcesLeaveTheScaleOfARigidAxisAlone) {
   const test::HiddenAxis axis = test::MakeHiddenAxis(o);
   const Problem problem(axis.log, axis.stated, 1);
   std::vector<Point> points(2, Stated(problem));
-  for (std::size_t t = 0; t < problem.terms_.size(); ++t)
-    if (problem.terms_[t].name == "Fc") points[1].base[t] = 0.3;
+  for (std::size_t t = 0; t < problem.terms.size(); ++t)
+    if (problem.terms[t].name == "Fc") points[1].base[t] = 0.3;
   const auto raw = problem.Raw(points);
   const auto rows = static_cast<std::ptrdiff_t>(problem.rows());
   const double moved =
@@ -133,7 +133,7 @@ TEST(ForwardFilter, ErrorsOfTheForcesLeaveTheScaleOfARigidAxisAlone) {
 
 /// One model's innovation with so many sub-steps.
 std::vector<double> InnovationWith(const Problem& problem, const AxisModel& model, int substeps) {
-  FilterSetup setup = problem.setup_;
+  FilterSetup setup = problem.setup;
   setup.substeps_rigid = setup.substeps_two = substeps;
   return RunFilter(setup, std::span(&model, 1), 1)[0].innovation;
 }

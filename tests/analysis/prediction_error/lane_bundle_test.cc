@@ -80,9 +80,9 @@ TEST(LaneBundle, EveryShapeRunsAsTheScalarPredictor) {
     o.friction_on_load = shape.on_load;
     const test::HiddenAxis axis = test::MakeHiddenAxis(o);
     Problem problem(axis.log, axis.stated, 1);
-    problem.setup_.valid[2000] = 0;
+    problem.setup.valid[2000] = 0;
     Point stated;
-    stated.base.assign(problem.terms_.size(), 0.0);
+    stated.base.assign(problem.terms.size(), 0.0);
     const AxisModel without = problem.Build(stated);
     // Every lane with parameters of its own, and what is compared last among them.
     std::vector<AxisModel> models(5, without);
@@ -91,10 +91,10 @@ TEST(LaneBundle, EveryShapeRunsAsTheScalarPredictor) {
       models[i].friction.Fc_plus *= 1.0 + 0.02 * static_cast<double>(i);
       models[i].motor_inertia *= 1.0 - 0.01 * static_cast<double>(i);
     }
-    const auto batched = RunFilter(problem.setup_, models, 1);
-    const std::vector<double> scalar = test::ScalarInnovation(problem.setup_, models.back());
+    const auto batched = RunFilter(problem.setup, models, 1);
+    const std::vector<double> scalar = test::ScalarInnovation(problem.setup, models.back());
     const double effect =
-        test::Distance(scalar, RunFilter(problem.setup_, std::span(&without, 1), 1)[0].innovation);
+        test::Distance(scalar, RunFilter(problem.setup, std::span(&without, 1), 1)[0].innovation);
     EXPECT_GT(effect, 0.0) << shape.name;
     EXPECT_LT(test::Distance(batched.back().innovation, scalar), 1e-6 * effect) << shape.name;
   }
@@ -105,13 +105,13 @@ TEST(LaneBundle, ModelsThatAreMissingRepeatTheLast) {
   o.duration_s = 5.0;
   const test::HiddenAxis axis = test::MakeHiddenAxis(o);
   const Problem problem(axis.log, axis.stated, 1);
-  AxisModel a = problem.nominal_, b = a;
+  AxisModel a = problem.nominal, b = a;
   b.friction.Fc_plus *= 2.0;
-  const Delivered means = DeliveredMeans(axis.log, a.delay_s, a.lag_s, problem.setup_.substeps_rigid);
+  const Delivered means = DeliveredMeans(axis.log, a.delay_s, a.lag_s, problem.setup.substeps_rigid);
   const AxisModel* models[] = {&a, &b};
   const Delivered* delivered[] = {&means, &means};
   const std::vector<double> zeros(axis.log.size(), 0.0);
-  const Lanes lanes = MakeLanes(problem.setup_, models, delivered, axis.log.position.data(), zeros.data());
+  const Lanes lanes = MakeLanes(problem.setup, models, delivered, axis.log.position.data(), zeros.data());
   EXPECT_EQ(lanes.Fc_plus[0], a.friction.Fc_plus);
   for (int i = 1; i < kLanes; ++i) EXPECT_EQ(lanes.Fc_plus[i], b.friction.Fc_plus);
   EXPECT_TRUE(lanes.torque.alike);
@@ -123,12 +123,12 @@ TEST(LaneBundle, AStretchBeginsWhereItIsKept) {
   o.duration_s = 5.0;
   const test::HiddenAxis axis = test::MakeHiddenAxis(o);
   const Problem problem(axis.log, axis.stated, 1);
-  const AxisModel* models[] = {&problem.nominal_};
-  const Delivered means = DeliveredMeans(axis.log, 1e-3, 2e-4, problem.setup_.substeps_rigid);
+  const AxisModel* models[] = {&problem.nominal};
+  const Delivered means = DeliveredMeans(axis.log, 1e-3, 2e-4, problem.setup.substeps_rigid);
   const Delivered* delivered[] = {&means};
   const std::vector<double> zeros(axis.log.size(), 0.0);
   std::vector<double> out(100);
-  Lanes lanes = MakeLanes(problem.setup_, models, delivered, axis.log.position.data(), zeros.data());
+  Lanes lanes = MakeLanes(problem.setup, models, delivered, axis.log.position.data(), zeros.data());
   lanes.innovation[0] = out.data();
   const Lanes part = Over(lanes, {.from = 1000, .rows = 50, .at = 20, .start_q = 1.5, .start_w = 2.5});
   EXPECT_EQ(part.rows, 50U);

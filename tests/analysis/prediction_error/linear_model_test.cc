@@ -31,15 +31,15 @@ struct Made {
 };
 
 std::vector<double> Innovation(const Problem& problem, const AxisModel& m) {
-  return RunFilter(problem.setup_, std::span(&m, 1), 1)[0].innovation;
+  return RunFilter(problem.setup, std::span(&m, 1), 1)[0].innovation;
 }
 
 TEST(LinearModel, TheRunItselfIsThatOfTheFilter) {
   const Made made(false);
-  const LinearModel linear = Linearise(made.problem.setup_, made.problem.nominal_);
+  const LinearModel linear = Linearise(made.problem.setup, made.problem.nominal);
   EXPECT_EQ(linear.states, 4);
   EXPECT_EQ(linear.rows, made.problem.rows());
-  const std::vector<double> run = Innovation(made.problem, made.problem.nominal_);
+  const std::vector<double> run = Innovation(made.problem, made.problem.nominal);
   EXPECT_LT(test::Distance(linear.innovation, run),
             1e-9 * test::Distance(run, std::vector<double>(run.size(), 0.0)));
 }
@@ -48,9 +48,9 @@ TEST(LinearModel, TheRunItselfIsThatOfTheFilter) {
 TEST(LinearModel, SmallSignalsDoWhatDifferencesOfRunsSay) {
   for (const bool two : {false, true}) {
     const Made made(two);
-    const AxisModel& without = made.problem.nominal_;
+    const AxisModel& without = made.problem.nominal;
     const std::size_t rows = made.problem.rows();
-    const LinearModel linear = Linearise(made.problem.setup_, without);
+    const LinearModel linear = Linearise(made.problem.setup, without);
     std::vector<std::pair<SharedSignal AxisModel::*, double>> signals = {
         {&AxisModel::motor_force, 1e-4 * without.friction.Fc_plus},
         {&AxisModel::level, 1e-4},
@@ -75,7 +75,7 @@ TEST(LinearModel, SmallSignalsDoWhatDifferencesOfRunsSay) {
 
 TEST(LinearModel, ColumnsAreProportionalToTheirSignals) {
   const Made made(false);
-  const LinearModel linear = Linearise(made.problem.setup_, made.problem.nominal_);
+  const LinearModel linear = Linearise(made.problem.setup, made.problem.nominal);
   LinearInput one, three;
   one.motor_force = Wave(made.problem.rows(), 1.0);
   three.motor_force = Wave(made.problem.rows(), 3.0);
@@ -89,8 +89,8 @@ TEST(LinearModel, ColumnsAreProportionalToTheirSignals) {
 
 TEST(LinearModel, ADifferenceThatIsMoreThanSignalsIsToldApart) {
   const Made made(false);
-  const AxisModel& without = made.problem.nominal_;
-  const LinearModel linear = Linearise(made.problem.setup_, without);
+  const AxisModel& without = made.problem.nominal;
+  const LinearModel linear = Linearise(made.problem.setup, without);
   AxisModel with = without;
   with.friction.Fc_plus *= 1.01;
   LinearInput input;
@@ -105,12 +105,12 @@ TEST(LinearModel, ADifferenceThatIsMoreThanSignalsIsToldApart) {
 
 TEST(LinearModel, MoreViscousFrictionIsAForceAgainstTheMotion) {
   const Made made(false);
-  const LinearModel linear = Linearise(made.problem.setup_, made.problem.nominal_);
-  AxisModel with = made.problem.nominal_;
+  const LinearModel linear = Linearise(made.problem.setup, made.problem.nominal);
+  AxisModel with = made.problem.nominal;
   with.viscous = Wave(made.problem.rows(), 0.1);
   LinearInput input;
   SharedSignal scale;
-  ASSERT_TRUE(SignalsOnly(linear, made.problem.nominal_, with, 1.0, input, scale));
+  ASSERT_TRUE(SignalsOnly(linear, made.problem.nominal, with, 1.0, input, scale));
   ASSERT_TRUE(input.motor_force);
   EXPECT_NEAR((*input.motor_force)[500], -linear.viscous * linear.velocity[500] * 0.1 * std::sin(10.0),
               1e-15);

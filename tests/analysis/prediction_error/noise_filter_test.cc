@@ -37,15 +37,15 @@ double MeanProduct(const std::vector<double>& x, const std::vector<std::uint8_t>
 TEST(NoiseFilter, TheTrueModelLeavesWhiteNoiseOfUnitVariance) {
   const Problem& problem = Made().problem;
   const std::vector<double> white = problem.Residuals(std::span(&Made().point, 1))[0];
-  const double power = MeanProduct(white, problem.counted_, 0);
+  const double power = MeanProduct(white, problem.counted, 0);
   EXPECT_NEAR(power, 1.0, 0.2);
   for (const std::size_t lag : {1U, 2U, 10U})
-    EXPECT_LT(std::fabs(MeanProduct(white, problem.counted_, lag)), 0.1 * power) << lag;
+    EXPECT_LT(std::fabs(MeanProduct(white, problem.counted, lag)), 0.1 * power) << lag;
 }
 
 // The noise that nobody commanded: 0.5 % of the rated torque, white per row.
 TEST(NoiseFilter, FindsTheNoiseOfTheTorque) {
-  EXPECT_NEAR(Made().problem.noise_.torque_noise() / (0.005 * Made().axis.stated.rated), 1.0, 0.3);
+  EXPECT_NEAR(Made().problem.noise.torque_noise() / (0.005 * Made().axis.stated.rated), 1.0, 0.3);
 }
 
 TEST(NoiseFilter, WhitensInProportion) {
@@ -58,7 +58,7 @@ TEST(NoiseFilter, WhitensInProportion) {
   }
   const double* in[] = {x.data(), y.data()};
   double* out[] = {white_x.data(), white_y.data()};
-  problem.noise_.Apply(in, out, problem.counted_, weight.data());
+  problem.noise.Apply(in, out, problem.counted, weight.data());
   for (std::size_t k = 0; k < x.size(); k += 31)
     EXPECT_NEAR(white_y[k], -2.5 * white_x[k], 1e-9 * (1.0 + std::fabs(white_y[k])));
 }
@@ -68,12 +68,12 @@ TEST(NoiseFilter, BackIsTheGradientOfTheSquaresWithRespectToSignals) {
   const Problem& problem = Made().problem;
   const std::vector<double> white = problem.Residuals(std::span(&Made().point, 1))[0];
   const NoiseFilter::Gradient gradient =
-      problem.noise_.Back(white, problem.counted_, problem.root_weight_.data());
+      problem.noise.Back(white, problem.counted, problem.root_weight.data());
   const std::size_t row = 12000, length = 400;
-  std::vector<double> pulse = problem.noise_.Pulse(row, false, length, problem.counted_);
+  std::vector<double> pulse = problem.noise.Pulse(row, false, length, problem.counted);
   double along = 0.0;
   for (std::size_t i = 0; i < pulse.size(); ++i)
-    along += pulse[i] * white[row + 1 + i] * problem.root_weight_[row + 1 + i];
+    along += pulse[i] * white[row + 1 + i] * problem.root_weight[row + 1 + i];
   ASSERT_NE(along, 0.0);
   EXPECT_NEAR(gradient.motor[row] / along, 1.0, 0.05);
 }

@@ -17,15 +17,15 @@ test::HiddenOptions Short() {
 }
 
 std::size_t IndexOf(const Problem& problem, const std::string& name) {
-  for (std::size_t i = 0; i < problem.terms_.size(); ++i)
-    if (problem.terms_[i].name == name) return i;
+  for (std::size_t i = 0; i < problem.terms.size(); ++i)
+    if (problem.terms[i].name == name) return i;
   ADD_FAILURE() << name;
   return 0;
 }
 
 Point Zero(const Problem& problem) {
   Point p;
-  p.base.assign(problem.terms_.size(), 0.0);
+  p.base.assign(problem.terms.size(), 0.0);
   return p;
 }
 
@@ -35,7 +35,7 @@ TEST(Problem, TermsAreFactorsOfStatedNumbersWithTheirStatedSigma) {
   axis.stated.sigma.erase("s0");
   const Problem problem(axis.log, axis.stated, 1);
   const std::size_t fc = IndexOf(problem, "Fc");
-  EXPECT_EQ(problem.terms_[fc].sigma, 0.07);
+  EXPECT_EQ(problem.terms[fc].sigma, 0.07);
   EXPECT_EQ(StatedSigma(axis.stated, "s0"), 0.20);
   Point p = Zero(problem);
   p.base[fc] = std::log(1.5);
@@ -71,10 +71,10 @@ TEST(Problem, RowsAfterAMissingOneAndAtTheBeginningDoNotCount) {
   axis.log.position[5000] = std::nan("");
   axis.log.present[5000] = 0;
   const Problem problem(axis.log, axis.stated, 1);
-  EXPECT_EQ(problem.counted_[299], 0);
-  EXPECT_EQ(problem.counted_[300], 1);
-  for (std::size_t k = 4998; k < 5003; ++k) EXPECT_EQ(problem.counted_[k], 0) << k;
-  EXPECT_EQ(problem.counted_[5003], 1);
+  EXPECT_EQ(problem.counted[299], 0);
+  EXPECT_EQ(problem.counted[300], 1);
+  for (std::size_t k = 4998; k < 5003; ++k) EXPECT_EQ(problem.counted[k], 0) << k;
+  EXPECT_EQ(problem.counted[5003], 1);
 }
 
 TEST(Problem, AnEffectEntersTheModelAndItsResidual) {

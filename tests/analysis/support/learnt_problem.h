@@ -8,7 +8,7 @@ namespace contour::diagnosis::test {
 /// A made axis as diagnosis sees it, with the noise learnt at the stated numbers.
 struct LearntProblem {
   explicit LearntProblem(const HiddenAxis& made) : axis(made), problem(axis.log, axis.stated, 1) {
-    for (const BaseTerm& t : problem.terms_) point.base.push_back(t.start);
+    for (const BaseTerm& t : problem.terms) point.base.push_back(t.start);
     problem.LearnOutliers(point);
     problem.LearnNoise(point);
     problem.LearnSignals(point);

@@ -31,8 +31,8 @@ class FirmSlidesTest : public testing::Test {
   Fit With(const std::vector<std::string>& kinds, double rough_deviations) const {
     Fit fit;
     fit.point = made_.point;
-    for (std::size_t i = 0; i < problem_.terms_.size(); ++i)
-      if (problem_.terms_[i].name == "rough") fit.point.base[i] = rough_deviations * problem_.terms_[i].sigma;
+    for (std::size_t i = 0; i < problem_.terms.size(); ++i)
+      if (problem_.terms[i].name == "rough") fit.point.base[i] = rough_deviations * problem_.terms[i].sigma;
     for (const std::string& kind : kinds) {
       fit.point.effects.push_back(Of(kind));
       fit.point.amplitudes.emplace_back(fit.point.effects.back()->steps.size(), 0.0);
@@ -48,14 +48,14 @@ class FirmSlidesTest : public testing::Test {
 
 TEST_F(FirmSlidesTest, AreFarFromReversalsAndFast) {
   const std::vector<bool> firm = FirmSlides(problem_);
-  const std::vector<double> way = WaySinceReversal(*problem_.signals_);
-  const StatedFriction& f = problem_.nominal_.friction;
+  const std::vector<double> way = WaySinceReversal(*problem_.signals);
+  const StatedFriction& f = problem_.nominal.friction;
   std::size_t count = 0;
   for (std::size_t k = 0; k < firm.size(); ++k) {
     if (!firm[k]) continue;
     ++count;
-    EXPECT_GT(way[k], 5.0 * f.Fc_plus / f.s0 * problem_.stated_.table_per_q);
-    EXPECT_GT(std::fabs(problem_.signals_->velocity[k]), f.vs);
+    EXPECT_GT(way[k], 5.0 * f.Fc_plus / f.s0 * problem_.stated.table_per_q);
+    EXPECT_GT(std::fabs(problem_.signals->velocity[k]), f.vs);
   }
   EXPECT_GT(count, firm.size() / 10);
   EXPECT_LT(count, firm.size());

@@ -22,13 +22,13 @@ TEST(FullSize, TheExcerptLeavesThePlaceThatTheWholeLogLikesBest) {
   o.seed = 21;
   o.effects = {{"compliance", 0.5}};
   test::LearntProblem l(test::MakeHiddenAxis(o));
-  ASSERT_FALSE(l.problem.excerpt_.empty());
+  ASSERT_FALSE(l.problem.excerpt.empty());
   const Fit base = FitPoint(l.problem, l.point, {.most_steps = 4, .most_refreshes = 2});
   std::vector<SharedEffect> couplings = CatalogueEffects(l.problem);
   std::erase_if(couplings, [](const SharedEffect& e) { return e->kind != "compliance"; });
   const std::vector<Scored> scored = ScoreEffects(l.problem, base, couplings);
   const std::vector<Place> ahead = FullSize(l.problem, base, "compliance", scored);
-  l.problem.excerpt_ = {};
+  l.problem.excerpt = {};
   const std::vector<Place> whole = FullSize(l.problem, base, "compliance", scored);
   ASSERT_FALSE(ahead.empty());
   // The whole grid has more places below the base than the shortlist has at all.
