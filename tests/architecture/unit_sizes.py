@@ -28,7 +28,6 @@ LARGER = {
     "analysis/prediction_error/problem.cc": 432,
     "analysis/prediction_error/problem.cc:Problem::MakeTerms": 67,
     "analysis/prediction_error/whitener.cc:Whitener::Whitener": 96,
-    "design/commission_plan.cc:PlanCommissioning": 112,
 }
 
 NO_FUNCTION = re.compile(

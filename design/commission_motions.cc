@@ -1,0 +1,127 @@
+#include "design/commission_motions.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "analysis/text/format_text.h"
+
+namespace contour {
+namespace {
+
+/// Strokes and speeds stay this far inside what is allowed: a controller with a wrong model overshoots.
+constexpr double kMargin_mm = 0.15;
+constexpr double kShareOfTop = 0.95;
+/// Force of each line of the multisine, at the table.
+constexpr double kLine_N = 2.0;
+constexpr int kLines = 12;
+
+/// Torques in steps up to beyond break-away, both ways: shares of the stated level.
+std::string TorqueSteps(double level_Nm, double most_Nm) {
+  std::string list;
+  for (const double share : {0.3, 0.6, 0.9, 1.3, 1.8})
+    for (const double sign : {1.0, -1.0})
+      list += (list.empty() ? "" : ", ") + FormatText("%.5f", sign * std::min(share * level_Nm, most_Nm));
+  return list;
+}
+
+/// What the motions are made of, and where they have room.
+class Motions {
+ public:
+  Motions(const CommissionPlan& plan, const AxisConfig& axis, double position_mm)
+      : axis_(axis),
+        name_(plan.axis),
+        limits_(plan.limits),
+        mechanics_(ToSi(axis.model.mechanics)),
+        friction_(ToSi(axis.model.friction, mechanics_.radius_m_rad)),
+        top_mm_s_(kShareOfTop * plan.limits.max_speed_mm_s),
+        // Every program ends where it began, so the axis goes up from its place and down from it.
+        up_mm_(plan.high_mm - kMargin_mm - position_mm),
+        down_mm_(plan.low_mm + kMargin_mm - position_mm) {}
+
+  void Slide() {
+    // The shorter strokes go where there is room.
+    const double turn = std::min(axis_.model.mechanics.lead_mm, limits_.travel_mm);
+    const double sign = up_mm_ >= -down_mm_ ? 1.0 : -1.0;
+    const double one_turn = sign * std::min(turn, std::max(up_mm_, -down_mm_));
+    std::vector<double> fast;
+    for (const double v : {10.0, 20.0, 50.0, 100.0})
+      if (v < 0.8 * top_mm_s_) fast.push_back(v);
+    fast.push_back(top_mm_s_);
+    Add("slow strokes over a turn", Creep(one_turn, {2, 5}));
+    BothWays("strokes over the whole way", fast, "");
+    Add("slower than the Stribeck velocity", Creep(one_turn, {1}));
+    Add("creeping", Creep(0.5 * one_turn, {0.5}));
+    Add("creeping", Creep(0.2 * one_turn, {0.2}));
+    Add("creeping", Creep(0.06 * one_turn, {0.1}));
+  }
+
+  void BreakAway() {
+    Add("reversals, from sticking to sliding",
+        FormatText("shape: reversals\naxis: %s\namplitudes_mm: [0.002, 0.005, "
+                   "0.015, 0.05, 0.2, %g]\nfrequency_hz: 1\ncycles: 2\n",
+                   name_.c_str(), std::clamp(std::min(up_mm_, -down_mm_), 0.05, 1.0)));
+    const double level_Nm = mechanics_.radius_m_rad * 0.5 * (friction_.Fs_plus_N + friction_.Fs_minus_N);
+    const double travel_mm = std::min(0.3, 0.6 * axis_.limits.following_error_mm);
+    Add("steps of torque at rest",
+        FormatText(
+            "shape: torque_steps\naxis: %s\ntravel_mm: %g\ntorques_Nm: [%s]\nhold_s: 0.1\nrest_s: 0.1\n",
+            name_.c_str(), travel_mm, TorqueSteps(level_Nm, limits_.max_torque_Nm).c_str()));
+  }
+
+  void Shake(double cycle_us) {
+    Add("shaking at rest, 8 to 120 Hz",
+        FormatText("shape: hold\nseconds: 4\ntorque: {axis: %s, kind: multisine, "
+                   "amplitude_Nm: %.6f, frequency_min_hz: 8, "
+                   "frequency_max_hz: 120, lines: %d}\n",
+                   name_.c_str(), kLine_N * mechanics_.radius_m_rad, kLines));
+    const double top_Hz = std::min(480.0, 0.48e6 / cycle_us);
+    // Fast enough that a controller which swings, its mass being wrong, does not turn the axis back.
+    const double travel = limits_.travel_mm;
+    std::vector<double> slides;
+    for (const double speed : {std::max(3.0, travel / 4.0), 0.75 * travel, travel})
+      slides.push_back(std::min(speed, 0.8 * top_mm_s_));
+    BothWays(FormatText("chirp while sliding, 100 to %.0f Hz", top_Hz), slides,
+             FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: 100, "
+                        "frequency_max_hz: %.0f, "
+                        "period_s: 0.5}\n",
+                        name_.c_str(), kCommissionChirp_N * mechanics_.radius_m_rad, top_Hz));
+  }
+
+  std::vector<CommissionMotion> Take() { return std::move(motions_); }
+
+ private:
+  std::string Creep(double stroke_mm, const std::vector<double>& speeds) const {
+    std::string list;
+    for (const double v : speeds) list += (list.empty() ? "" : ", ") + FormatText("%g", v);
+    return FormatText("shape: creep\naxis: %s\nstroke_mm: %.6f\nvelocities_mm_s: [%s]\ndwell_s: 0.1\n",
+                      name_.c_str(), stroke_mm, list.c_str());
+  }
+
+  void Add(std::string what, std::string yaml) { motions_.push_back({std::move(what), std::move(yaml)}); }
+
+  void BothWays(const std::string& what, const std::vector<double>& speeds, const std::string& torque) {
+    if (up_mm_ > kLeastCommissionStroke_mm) Add(what + ", upwards", Creep(up_mm_, speeds) + torque);
+    if (-down_mm_ > kLeastCommissionStroke_mm) Add(what + ", downwards", Creep(down_mm_, speeds) + torque);
+  }
+
+  const AxisConfig& axis_;
+  const std::string& name_;
+  const CommissionLimits& limits_;
+  const Mechanics mechanics_;
+  const Friction friction_;
+  const double top_mm_s_, up_mm_, down_mm_;
+  std::vector<CommissionMotion> motions_;
+};
+
+}  // namespace
+
+std::vector<CommissionMotion> CommissionMotions(const CommissionPlan& plan, const AxisConfig& axis,
+                                                double position_mm, double cycle_us) {
+  Motions motions(plan, axis, position_mm);
+  motions.Slide();
+  motions.BreakAway();
+  motions.Shake(cycle_us);
+  return motions.Take();
+}
+
+}  // namespace contour

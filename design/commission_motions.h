@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "design/commission_plan.h"
+
+namespace contour {
+
+/// Force of the chirp at the table.
+inline constexpr double kCommissionChirp_N = 60.0;
+/// Less room than this on one side is none.
+inline constexpr double kLeastCommissionStroke_mm = 1.0;
+
+/// The motions of a plan whose limits and ends are known, from the slowest on, for an axis that stands at
+/// `position_mm`.
+std::vector<CommissionMotion> CommissionMotions(const CommissionPlan& plan, const AxisConfig& axis,
+                                                double position_mm, double cycle_us);
+
+}  // namespace contour
