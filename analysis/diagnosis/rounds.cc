@@ -12,6 +12,7 @@
 #include "analysis/diagnosis/quantification/detectable.h"
 #include "analysis/diagnosis/quantification/jitter_cause.h"
 #include "analysis/diagnosis/screening/screen.h"
+#include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -95,11 +96,19 @@ Seen Look(Rounds& r) {
   return seen;
 }
 
+/// Beside causes that are accepted: once more, for the others.
+void KeepDetectable(const Problem& problem, const Fit& base, const Screened& screened,
+                    const std::vector<std::string>& only, Diagnosis& out) {
+  for (const auto& [kind, smallest] : SmallestDetectable(problem, base, screened, only))
+    for (const auto& [name, size] : smallest) out.smallest_detectable[kind][name] = size;
+  out.not_excited = NotExcited(out.smallest_detectable);
+}
+
 /// A cause that is there hides the others; once it is in the model they would be seen by less.
 void StateDetectable(const Seen& seen, const std::vector<std::string>& only, Rounds& r) {
   if (r.stated_beside == r.accepted.places.size()) return;
   if (only.empty()) r.stated_beside = r.accepted.places.size();
-  KeepDetectable(r.problem, r.accepted.fit, seen.scored, seen.jitter, seen.gate, only, r.out);
+  KeepDetectable(r.problem, r.accepted.fit, {seen.scored, seen.jitter, seen.gate}, only, r.out);
 }
 
 Next EndWithJitter(const Seen& seen, Rounds& r) {
@@ -174,8 +183,9 @@ RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const Diag
   // Beside all that is in the model now, a shape from outside the catalogue among it.
   if (r.stated_beside != r.accepted.places.size()) {
     const std::vector<Scored> scored = Screen(problem, r.accepted.fit, nominal.catalogue);
-    KeepDetectable(problem, r.accepted.fit, scored, TestJitter(problem, r.accepted.fit),
-                   GateOf(problem, r.accepted, scored, nominal.by_extras, options), {}, out);
+    const Jitter jitter = TestJitter(problem, r.accepted.fit);
+    const Gate gate = GateOf(problem, r.accepted, scored, nominal.by_extras, options);
+    KeepDetectable(problem, r.accepted.fit, {scored, jitter, gate}, {}, out);
   }
   return {std::move(r.accepted), round >= options.most_effects};
 }

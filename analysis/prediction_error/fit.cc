@@ -26,12 +26,6 @@ double StepOf(const Problem& problem, const Point& p, std::size_t i) {
   return 0.0;
 }
 
-double PriorOf(const Problem& problem, const Point& p) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms[i].sigma, 2);
-  return sum;
-}
-
 constexpr double kWorthWhile = 3.0, kKept = 0.1;
 
 /// One fit, which says what runs it needs next and goes on when it has them.
@@ -304,6 +298,12 @@ class Descent {
 
 }  // namespace
 
+double PriorOf(const Problem& problem, const Point& p) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms[i].sigma, 2);
+  return sum;
+}
+
 Point Moved(Point p, const Eigen::VectorXd& by) {
   Eigen::Index j = 0;
   for (double& x : p.base) x += by(j++);
@@ -364,68 +364,6 @@ Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort, Exten
 
 Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort) {
   return std::move(FitPoints(problem, {{fit.point, effort, nullptr, &fit}})[0]);
-}
-
-namespace {
-
-// Of chi^2 in excess of twice its degrees; standard deviations.
-constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
-constexpr double kLower = 2.0;  // of chi^2
-
-bool Implausible(const Problem& problem, const Fit& fit) {
-  const auto terms = static_cast<double>(problem.terms.size());
-  return fit.prior > kHardlyEver * terms;
-}
-
-}  // namespace
-
-bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, double worth) {
-  if (!Implausible(problem, fit)) return false;
-  Point back = fit.point;
-  for (std::size_t i = 0; i < back.base.size(); ++i) {
-    const BaseTerm& t = problem.terms[i];
-    if (!t.nuisance && std::fabs(back.base[i]) > kFarOff * t.sigma) back.base[i] = 0.0;
-  }
-  if (!problem.excerpt.empty()) {
-    // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
-    const Fit here = FitPoint(problem, fit.point, kToTheValley, Extent::kExcerpt);
-    Fit there = FitPoint(problem, std::move(back), kToTheValley, Extent::kExcerpt);
-    if (there.cost > here.cost - kLower || fit.cost + there.cost - here.cost > worth) return false;
-    back = std::move(there.point);
-  }
-  Fit other = FitPoint(problem, std::move(back), effort);
-  if (!(other.cost < fit.cost)) return false;
-  fit = std::move(other);
-  return true;
-}
-
-double CostAt(const Problem& problem, const Point& point, Extent extent) {
-  return ColumnOf(problem.Residuals(std::span(&point, 1), extent)[0]).squaredNorm() + PriorOf(problem, point);
-}
-
-void RewhitenResidual(const Problem& problem, Fit& fit) {
-  const std::span<const double> in(fit.raw);
-  const std::span<double> out(fit.residual);
-  problem.WhitenInto(std::span(&in, 1), std::span(&out, 1));
-  fit.prior = PriorOf(problem, fit.point);
-  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
-}
-
-void RewhitenSensitivities(const Problem& problem, Fit& fit) {
-  const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
-  std::vector<std::span<const double>> in;
-  std::vector<std::span<double>> out;
-  for (Eigen::Index i = 0; i < fit.raw_jacobian.cols(); ++i) {
-    in.emplace_back(fit.raw_jacobian.col(i).data(), size);
-    out.emplace_back(fit.jacobian.col(i).data(), size);
-  }
-  problem.WhitenInto(in, out);
-  AddProducts(fit.jacobian, 0, fit.normal);
-}
-
-void Rewhiten(const Problem& problem, Fit& fit) {
-  RewhitenResidual(problem, fit);
-  RewhitenSensitivities(problem, fit);
 }
 
 }  // namespace contour::diagnosis

@@ -47,6 +47,33 @@ void Compare(LaneRow& row) {
   row.alike = std::all_of(row.at, row.at + kLanes, [&](const double* p) { return p == row.at[0]; });
 }
 
+void SetFriction(Lanes& m, std::size_t i, const AxisModel& a) {
+  const StatedFriction& f = a.friction;
+  const double stiff = 1.0 - a.soft_share;
+  m.Fc_plus[i] = f.Fc_plus;
+  m.Fc_minus[i] = f.Fc_minus;
+  m.dF_plus[i] = f.Fs_plus - f.Fc_plus;
+  m.dF_minus[i] = f.Fs_minus - f.Fc_minus;
+  m.inv_vs[i] = 1.0 / f.vs;
+  m.s0[i] = f.s0;
+  m.s1[i] = f.s1;
+  m.inv_vd[i] = f.vd > 0.0 ? 1.0 / f.vd : 0.0;
+  m.s2[i] = f.s2;
+  m.smallest[i] = 1e-3 * 0.5 * (f.Fc_plus + f.Fc_minus) + 1e-30;
+  if (a.soft_share > 0.0) {
+    m.Fc_plus[i] *= stiff;
+    m.Fc_minus[i] *= stiff;
+    m.dF_plus[i] *= stiff;
+    m.dF_minus[i] *= stiff;
+    m.s0[i] *= stiff;
+    m.soft_level[i] = a.soft_share / stiff;
+    m.soft_s0[i] = f.s0 * a.soft_share * a.soft_ratio;
+  } else {
+    m.soft_level[i] = 1.0;
+    m.soft_s0[i] = 0.0;
+  }
+}
+
 }  // namespace
 
 Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> models,
@@ -75,7 +102,6 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
   for (std::size_t i = 0; i < kLanes; ++i) {
     const std::size_t from = std::min(i, models.size() - 1);
     const AxisModel& a = *models[from];
-    const StatedFriction& f = a.friction;
     m.torque.at[i] = delivered[from]->mean.data();
     m.late.at[i] = delivered[from]->late.data();
     SetSignal(m.motor, i, a.motor_force, m.rows, zeros);
@@ -94,34 +120,12 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
     }
     m.payload = m.payload || a.payload != 0.0;
     m.half_gap[i] = 0.5 * a.gap;
-    const double stiff = 1.0 - a.soft_share;
-    m.Fc_plus[i] = f.Fc_plus;
-    m.Fc_minus[i] = f.Fc_minus;
-    m.dF_plus[i] = f.Fs_plus - f.Fc_plus;
-    m.dF_minus[i] = f.Fs_minus - f.Fc_minus;
-    m.inv_vs[i] = 1.0 / f.vs;
-    m.s0[i] = f.s0;
-    m.s1[i] = f.s1;
-    m.inv_vd[i] = f.vd > 0.0 ? 1.0 / f.vd : 0.0;
-    m.s2[i] = f.s2;
-    m.smallest[i] = 1e-3 * 0.5 * (f.Fc_plus + f.Fc_minus) + 1e-30;
+    SetFriction(m, i, a);
     m.offset[i] = a.offset;
     m.gain[i] = a.torque_gain;
     m.saturation[i] = a.saturation;
     m.start_z[i] = a.start_bristle;
     m.rough[i] = a.rough;
-    if (a.soft_share > 0.0) {
-      m.Fc_plus[i] *= stiff;
-      m.Fc_minus[i] *= stiff;
-      m.dF_plus[i] *= stiff;
-      m.dF_minus[i] *= stiff;
-      m.s0[i] *= stiff;
-      m.soft_level[i] = a.soft_share / stiff;
-      m.soft_s0[i] = f.s0 * a.soft_share * a.soft_ratio;
-    } else {
-      m.soft_level[i] = 1.0;
-      m.soft_s0[i] = 0.0;
-    }
   }
   for (LaneRow* row : {&m.torque, &m.late, &m.motor.from, &m.motor.to, &m.load.from, &m.load.to,
                        &m.level.from, &m.level.to, &m.viscous, &m.reading})

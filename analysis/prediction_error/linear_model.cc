@@ -54,14 +54,14 @@ struct Place {
   std::size_t e, x, step;
 };
 
-}  // namespace
+/// Places of the blocks in one transition: A, c, G, then the inputs.
+struct Layout {
+  std::size_t n = 0, c = 0, g = 0, inputs = 0;
+};
 
-LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
-  LinearModel out;
+LinearModel EmptyModel(const FilterSetup& setup, const AxisModel& model, std::size_t n) {
   const std::size_t rows = setup.log->size();
-  const int substeps = SubstepsOf(setup, model);
-  const Directions d = DirectionsOf(model);
-  const std::size_t n = d.states.size();
+  LinearModel out;
   out.rows = rows;
   out.states = static_cast<int>(n);
   out.table_state = model.two_inertia ? 4 : 0;
@@ -73,21 +73,32 @@ LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
   out.innovation.resize(rows);
   out.velocity.resize(rows);
   out.table.resize(rows);
-  const std::size_t c = n * n, g = c + n, inputs = g + n;
+  return out;
+}
+
+std::vector<Place> PlacesOf(const Directions& d, const Layout& at, bool two_inertia) {
   std::vector<Place> places;
-  for (std::size_t j = 1; j < n; ++j) places.push_back({c + j, j, n});
-  places.push_back({g, g, 1});  // the reading: its innovation is `valid`, written over by G
-  for (std::size_t i = 0; i + n < d.columns.size(); ++i) {
+  for (std::size_t j = 1; j < at.n; ++j) places.push_back({at.c + j, j, at.n});
+  places.push_back({at.g, at.g, 1});  // the reading: its innovation is `valid`, written over by G
+  for (std::size_t i = 0; i + at.n < d.columns.size(); ++i) {
     // Rigid axes have one force; it serves as the load's too.
-    const std::size_t which = model.two_inertia || i < 2 ? i : i + 2;
-    const std::size_t at = inputs + which * (n + 1);
-    places.push_back({at, at + 1, 1});
+    const std::size_t which = two_inertia || i < 2 ? i : i + 2;
+    const std::size_t input = at.inputs + which * (at.n + 1);
+    places.push_back({input, input + 1, 1});
   }
+  return places;
+}
+
+/// Runs the model with each direction pushed in a lane of its own, and keeps what the push made of each
+/// transition.
+void RunDirections(const FilterSetup& setup, const AxisModel& model, const Directions& d,
+                   const std::vector<Place>& places, LinearModel& out) {
+  const std::size_t rows = out.rows;
   FilterSetup traced = setup;
   traced.full = true;
   traced.trace = true;
   const Delivered delivered = DeliveredMeans(*setup.log, model.delay_s - model.lag_for_delay_s,
-                                             model.lag_s + model.lag_for_delay_s, substeps);
+                                             model.lag_s + model.lag_for_delay_s, SubstepsOf(setup, model));
   std::vector<double> measured = setup.log->position, zeros(rows, 0.0), spare(rows);
   for (std::size_t k = 0; k < rows; ++k)
     if (setup.valid[k] == 0) measured[k] = 0.0;
@@ -117,22 +128,38 @@ LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
         const float* from = &tangent[(k * kAtOnce + i) * kTangentStates];
         const Place& place = places[first + i];
         to[place.e] = -from[kInnovation];
-        for (std::size_t s = 0; s < n; ++s) to[place.x + s * place.step] = from[d.states[s]];
+        for (std::size_t s = 0; s < d.states.size(); ++s) to[place.x + s * place.step] = from[d.states[s]];
       }
     }
   }
-  for (std::size_t k = 0; k + 1 < rows; ++k) {
+}
+
+/// Everything moved together, the reading too, changes nothing: the motor's position is that less the
+/// reading, less the load's.
+void CompleteFrames(const FilterSetup& setup, const Directions& d, const Layout& at, bool two_inertia,
+                    LinearModel& out) {
+  const auto [n, c, g, inputs] = at;
+  for (std::size_t k = 0; k + 1 < out.rows; ++k) {
     float* p = &out.step[k * out.stride];
     const float valid = setup.valid[k + 1] != 0 ? 1.0F : 0.0F;
-    // Everything moved together, the reading too, changes nothing: the motor's position is that less the
-    // reading, less the load's.
     for (std::size_t s = 0; s < n; ++s) {
       const bool frame = d.states[s] == kTh || d.states[s] == kThl;
-      p[s * n] = (frame ? 1.0F : 0.0F) - p[g + s] - (model.two_inertia ? p[s * n + 4] : 0.0F);
+      p[s * n] = (frame ? 1.0F : 0.0F) - p[g + s] - (two_inertia ? p[s * n + 4] : 0.0F);
     }
-    p[c] = valid - (model.two_inertia ? p[c + 4] : 0.0F);
-    if (!model.two_inertia) std::copy_n(p + inputs, 2 * (n + 1), p + inputs + 2 * (n + 1));
+    p[c] = valid - (two_inertia ? p[c + 4] : 0.0F);
+    if (!two_inertia) std::copy_n(p + inputs, 2 * (n + 1), p + inputs + 2 * (n + 1));
   }
+}
+
+}  // namespace
+
+LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
+  const Directions d = DirectionsOf(model);
+  const std::size_t n = d.states.size();
+  const Layout at{n, n * n, n * n + n, n * n + 2 * n};
+  LinearModel out = EmptyModel(setup, model, n);
+  RunDirections(setup, model, d, PlacesOf(d, at, model.two_inertia), out);
+  CompleteFrames(setup, d, at, model.two_inertia, out);
   return out;
 }
 

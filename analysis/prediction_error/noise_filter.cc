@@ -20,24 +20,36 @@ struct Noise {
   double reading = 0.0;  // variance
 };
 
-// What -2 log likelihood is made of, over rows from..to; writes the gains of all transitions when asked to.
+// The rows that a pass of the filter goes over.
+struct Rows {
+  const LinearModel& model;
+  const std::vector<std::uint8_t>& counted;
+  double period_s;
+  std::size_t from, to;
+};
+
+// What -2 log likelihood is made of.
+struct Sums {
+  double squares = 0.0, logs = 0.0, count = 0.0;
+};
+
+// Adds to the sums; writes the gains of all transitions when asked to.
 template <int n>
-void Likelihood(const LinearModel& m, const std::vector<std::uint8_t>& counted, const Noise& noise,
-                double period_s, std::size_t from, std::size_t to, double& sum_squares, double& sum_logs,
-                double& count, float* gains) {
+void Likelihood(const Rows& rows, const Noise& noise, Sums& sums, float* gains) {
+  const LinearModel& m = rows.model;
   using Matrix = Eigen::Matrix<double, n, n>;
   using Vector = Eigen::Matrix<double, n, 1>;
   using FloatMatrix = Eigen::Matrix<float, n, n, Eigen::RowMajor>;
   using FloatVector = Eigen::Matrix<float, n, 1>;
   Matrix p = Matrix::Zero();
   p(0, 0) = noise.reading;
-  p(1, 1) = noise.reading / (period_s * period_s);
+  p(1, 1) = noise.reading / (rows.period_s * rows.period_s);
   if (n >= 6) {
     p(4, 4) = p(0, 0);
     p(5, 5) = p(1, 1);
   }
   Vector x = Vector::Zero();
-  for (std::size_t k = from; k + 1 < to; ++k) {
+  for (std::size_t k = rows.from; k + 1 < rows.to; ++k) {
     const float* at = &m.step[k * m.stride];
     const Matrix a = Eigen::Map<const FloatMatrix>(at).template cast<double>();
     const Vector c = Eigen::Map<const FloatVector>(at + n * n).template cast<double>();
@@ -60,10 +72,10 @@ void Likelihood(const LinearModel& m, const std::vector<std::uint8_t>& counted, 
       for (int i = 0; i < n; ++i) out[i] = static_cast<float>(kappa(i));
       out[n] = static_cast<float>(1.0 / std::sqrt(s));
     }
-    if (counted[k + 1] != 0 && k >= from + kSettling) {
-      sum_squares += std::min(nu * nu / s, 100.0 * (sum_squares + 1.0) / (count + 1.0));
-      sum_logs += std::log(s);
-      count += 1.0;
+    if (rows.counted[k + 1] != 0 && k >= rows.from + kSettling) {
+      sums.squares += std::min(nu * nu / s, 100.0 * (sums.squares + 1.0) / (sums.count + 1.0));
+      sums.logs += std::log(s);
+      sums.count += 1.0;
     }
     x = a * x + kappa * nu;
     const Matrix f = a + kappa * c.transpose();
@@ -75,20 +87,16 @@ void Likelihood(const LinearModel& m, const std::vector<std::uint8_t>& counted, 
   }
 }
 
-void Pass(const LinearModel& m, const std::vector<std::uint8_t>& counted, const Noise& noise, double period_s,
-          std::size_t from, std::size_t to, double& squares, double& logs, double& count, float* gains) {
-  switch (m.states) {
+void Pass(const Rows& rows, const Noise& noise, Sums& sums, float* gains) {
+  switch (rows.model.states) {
     case 4:
-      Likelihood<4>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
-      break;
+      return Likelihood<4>(rows, noise, sums, gains);
     case 5:
-      Likelihood<5>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
-      break;
+      return Likelihood<5>(rows, noise, sums, gains);
     case 6:
-      Likelihood<6>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
-      break;
+      return Likelihood<6>(rows, noise, sums, gains);
     default:
-      Likelihood<7>(m, counted, noise, period_s, from, to, squares, logs, count, gains);
+      return Likelihood<7>(rows, noise, sums, gains);
   }
 }
 
@@ -138,12 +146,12 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
   constexpr std::size_t kStretches = 12;
   const std::size_t length = std::min(n / kStretches, std::max<std::size_t>(n / 60, 1200));
   const auto badness = [&](double x) {
-    double squares = 0.0, logs = 0.0, count = 0.0;
+    Sums sums;
     for (std::size_t i = 0; i < kStretches; ++i) {
       const std::size_t from = (n - length) * i / (kStretches - 1);
-      Pass(m, counted, noise_at(x), period_s, from, from + length, squares, logs, count, nullptr);
+      Pass({m, counted, period_s, from, from + length}, noise_at(x), sums, nullptr);
     }
-    return count > 0.0 ? count * std::log(squares / count + 1e-300) + logs : 0.0;
+    return sums.count > 0.0 ? sums.count * std::log(sums.squares / sums.count + 1e-300) + sums.logs : 0.0;
   };
   double best = before != nullptr ? before->ratio_ : 0.0, lowest = std::numeric_limits<double>::infinity();
   const auto look = [&](double x) {
@@ -160,9 +168,9 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
     for (const double x : {best - step, best + step}) look(x);
   ratio_ = best;
   gain_.resize((n - 1) * static_cast<std::size_t>(m.states + 1));
-  double squares = 0.0, logs = 0.0, count = 0.0;
-  Pass(m, counted, noise_at(best), period_s, 0, n, squares, logs, count, gain_.data());
-  torque_noise_ = std::sqrt(noise_at(best).torque * squares / std::max(count, 1.0));
+  Sums sums;
+  Pass({m, counted, period_s, 0, n}, noise_at(best), sums, gain_.data());
+  torque_noise_ = std::sqrt(noise_at(best).torque * sums.squares / std::max(sums.count, 1.0));
   taps_.assign(kWhitenTaps, 0.0);
   taps_[0] = 1.0;
   std::vector<double> white(n), weight(n, 1.0);

@@ -9,6 +9,7 @@
 
 #include "analysis/axis_model/axis_model.h"
 #include "analysis/axis_model/stated_axis.h"
+#include "analysis/prediction_error/base_terms.h"
 #include "analysis/prediction_error/excerpt.h"
 #include "analysis/prediction_error/forward_filter.h"
 #include "analysis/prediction_error/linear_model.h"
@@ -20,18 +21,6 @@
 #include "analysis/recording/data_quality.h"
 
 namespace contour::diagnosis {
-
-/// A number of the stated model, with how far it may be off: value = stated * exp(x), x ~ N(0, sigma).
-struct BaseTerm {
-  std::string name;
-  double stated = 0.0;
-  double sigma = 0.0;
-  double step = 0.0;      ///< of x, for differences of runs
-  double start = 0.0;     ///< of x, of the first fit
-  bool additive = false;  ///< value = stated + x instead
-  bool nuisance = false;  ///< not a number of the stated model
-  double* (*field)(AxisModel&) = nullptr;
-};
 
 /// A cause in the model: amplitudes, zero when absent, and how they enter.
 struct Effect {
@@ -126,7 +115,6 @@ class Problem {
                 std::vector<double>& raw, Extent extent = Extent::kWhole) const;
   /// The weights of the excerpt from those of the log.
   void WeighExcerpt();
-  void MakeTerms();
   void ChooseSubsteps();
   void CountRows();
   void LowerWhereScaleRests(double* w) const;
@@ -135,7 +123,5 @@ class Problem {
 
   std::vector<double> excerpt_weight_;
 };
-
-double StatedSigma(const StatedAxis& stated, const std::string& name);
 
 }  // namespace contour::diagnosis

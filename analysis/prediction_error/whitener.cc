@@ -48,11 +48,25 @@ void FourierTransform(std::vector<double>& re, std::vector<double>& im, bool inv
   }
 }
 
-Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint8_t>& valid) {
-  const std::size_t n = residual.size();
-  std::size_t length = kSegment;
-  while (length > n / 8 && length > 256) length /= 2;
-  std::vector<std::vector<double>> spectra;
+namespace {
+
+using Spectra = std::vector<std::vector<double>>;
+
+/// Starts of half overlapping segments in which nearly every row is valid.
+std::vector<std::size_t> ValidSegments(const std::vector<std::uint8_t>& valid, std::size_t n,
+                                       std::size_t length) {
+  std::vector<std::size_t> starts;
+  for (std::size_t at = 0; at + length <= n; at += length / 2) {
+    std::size_t good = 0;
+    for (std::size_t i = 0; i < length; ++i) good += valid[at + i] != 0 ? 1U : 0U;
+    if (good * 10 > length * 9) starts.push_back(at);
+  }
+  return starts;
+}
+
+/// Power of each segment under a Hann window, two segments per transform.
+Spectra SpectraOf(std::span<const double> residual, const std::vector<std::size_t>& starts,
+                  std::size_t length) {
   std::vector<double> window(length), re(length), im(length);
   double power = 0.0;
   for (std::size_t i = 0; i < length; ++i) {
@@ -61,13 +75,7 @@ Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint
     power += window[i] * window[i];
   }
   const std::size_t bins = length / 2 + 1;
-  // Two segments per transform.
-  std::vector<std::size_t> starts;
-  for (std::size_t at = 0; at + length <= n; at += length / 2) {
-    std::size_t good = 0;
-    for (std::size_t i = 0; i < length; ++i) good += valid[at + i] != 0 ? 1U : 0U;
-    if (good * 10 > length * 9) starts.push_back(at);
-  }
+  Spectra spectra;
   for (std::size_t p = 0; p < starts.size(); p += 2) {
     const bool both = p + 1 < starts.size();
     for (std::size_t i = 0; i < length; ++i) {
@@ -86,26 +94,41 @@ Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint
     spectra.push_back(std::move(first));
     if (both) spectra.push_back(std::move(second));
   }
-  if (spectra.empty()) return;
-  std::vector<double> density(bins), column(spectra.size());
-  for (std::size_t i = 0; i < bins; ++i) {
+  return spectra;
+}
+
+double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The mean power by its median over the segments: exponentially distributed.
+std::vector<double> DensityOf(const Spectra& spectra) {
+  std::vector<double> density(spectra[0].size()), column(spectra.size());
+  for (std::size_t i = 0; i < density.size(); ++i) {
     for (std::size_t j = 0; j < spectra.size(); ++j) column[j] = spectra[j][i];
-    const auto middle = column.begin() + static_cast<std::ptrdiff_t>(column.size() / 2);
-    std::nth_element(column.begin(), middle, column.end());
-    density[i] = *middle / std::numbers::ln2;
+    density[i] = Median(column) / std::numbers::ln2;
   }
-  // A line is no noise: a force of one frequency stays for the candidates to explain.
+  return density;
+}
+
+/// A line is no noise: a force of one frequency stays for the candidates to explain.
+std::vector<double> WithoutLines(const std::vector<double>& density) {
+  const std::size_t bins = density.size();
   std::vector<double> level(bins), near;
   for (std::size_t i = 0; i < bins; ++i) {
     near.clear();
     const std::size_t from = i > kLineBins ? i - kLineBins : 1, to = std::min(bins - 1, i + kLineBins);
     for (std::size_t j = from; j <= to; ++j) near.push_back(density[j]);
-    const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-    std::nth_element(near.begin(), middle, near.end());
-    level[i] = *middle;
+    level[i] = Median(near);
   }
+  return level;
+}
+
+std::vector<double> SmoothOverBins(const std::vector<double>& level) {
+  const std::size_t bins = level.size();
   std::vector<double> smooth(bins);
-  double largest = 0.0;
   for (std::size_t i = 0; i < bins; ++i) {
     double sum = 0.0;
     int count = 0;
@@ -117,11 +140,24 @@ Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint
       ++count;
     }
     smooth[i] = sum / std::max(1, count);
-    largest = std::max(largest, smooth[i]);
   }
-  re.assign(length, 0.0);
-  im.assign(length, 0.0);
-  for (std::size_t i = 0; i < bins; ++i) {
+  return smooth;
+}
+
+}  // namespace
+
+Whitener::Whitener(std::span<const double> residual, const std::vector<std::uint8_t>& valid) {
+  const std::size_t n = residual.size();
+  std::size_t length = kSegment;
+  while (length > n / 8 && length > 256) length /= 2;
+  const Spectra spectra = SpectraOf(residual, ValidSegments(valid, n, length), length);
+  if (spectra.empty()) return;
+  const std::vector<double> smooth = SmoothOverBins(WithoutLines(DensityOf(spectra)));
+  double largest = 0.0;
+  for (const double power : smooth) largest = std::max(largest, power);
+  // Its autocorrelation.
+  std::vector<double> re(length, 0.0), im(length, 0.0);
+  for (std::size_t i = 0; i < smooth.size(); ++i) {
     re[i] = std::max(smooth[i], 1e-9 * largest + 1e-300);
     re[(length - i) % length] = re[i];
   }

@@ -12,6 +12,7 @@
 #include "analysis/diagnosis/screening/firm_slides.h"
 #include "analysis/diagnosis/screening/full_size.h"
 #include "analysis/prediction_error/common_factor.h"
+#include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 namespace {

@@ -184,20 +184,22 @@ std::optional<Detectable> Smallest(const Problem& problem, const Fit& base, cons
 
 }  // namespace
 
-void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
-                    const Jitter& jitter, const Gate& gate, std::span<const std::string> only,
-                    Diagnosis& out) {
+std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Problem& problem,
+                                                                        const Fit& base,
+                                                                        const Screened& screened,
+                                                                        std::span<const std::string> only) {
+  std::map<std::string, std::map<std::string, double>> out;
   for (const CauseDefinition* cause : AllCauses()) {
     if (cause->in_scatter_only) continue;
     const std::string kind(*cause->name);
     if (!only.empty() && std::find(only.begin(), only.end(), kind) == only.end()) continue;
-    const std::optional<Detectable> d = Smallest(problem, base, gate, scored, kind);
+    const std::optional<Detectable> d = Smallest(problem, base, screened.gate, screened.scored, kind);
     if (!d || d->gate > kHopeless * (*cause->largest)(problem)) continue;
     Fit at;
     at.point = base.point;
     // Numbers of the model deviate from what is stated.
     if (InBase(problem, kind)) std::fill(at.point.base.begin(), at.point.base.end(), 0.0);
-    // Softer is the fault.
+    // A fault makes the coupling softer.
     const bool stiffness = cause->coupling && InBase(problem, kind);
     at.point = Beside(at, d->effect, stiffness ? -d->size : d->size);
     const auto count = static_cast<Eigen::Index>(ParameterCount(at.point));
@@ -206,17 +208,22 @@ void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Sco
     described.kind = kind;
     DescribeEffect(problem, at, at.point.effects.size() - 1, described);
     const std::string name(*cause->main_parameter);
-    out.smallest_detectable[kind][name] = std::fabs(described.parameters[name].value);
+    out[kind][name] = std::fabs(described.parameters[name].value);
   }
-  if (jitter.tested) {
+  if (screened.jitter.tested) {
     const CauseDefinition& cause = CauseInScatter();
-    out.smallest_detectable[std::string(*cause.name)][std::string(*cause.main_parameter)] =
-        1e6 * std::sqrt(kBeyondTheGate * Needed(Threshold(problem, gate) + 3.0) * jitter.sigma_s2);
+    out[std::string(*cause.name)][std::string(*cause.main_parameter)] =
+        1e6 * std::sqrt(kBeyondTheGate * Needed(Threshold(problem, screened.gate) + 3.0) *
+                        screened.jitter.sigma_s2);
   }
-  out.not_excited.clear();
+  return out;
+}
+
+std::vector<std::string> NotExcited(const std::map<std::string, std::map<std::string, double>>& detectable) {
+  std::vector<std::string> out;
   for (const CauseDefinition* cause : AllCauses())
-    if (!out.smallest_detectable.contains(std::string(*cause->name)))
-      out.not_excited.emplace_back(*cause->name);
+    if (!detectable.contains(std::string(*cause->name))) out.emplace_back(*cause->name);
+  return out;
 }
 
 }  // namespace contour::diagnosis

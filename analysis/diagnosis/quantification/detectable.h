@@ -1,7 +1,9 @@
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "analysis/diagnosis/decision/gate.h"
 #include "analysis/diagnosis/result/finding.h"
@@ -10,14 +12,24 @@
 
 namespace contour::diagnosis {
 
-/// Fills smallest_detectable and not_excited: what exceeds the gate in 90 % of cases, by the candidates'
-/// standard errors, by the stated uncertainties where these decide, or by runs where a kind is far from
-/// linear, times what it takes to pass the other tests as well. A kind for which the gate alone asks for more
-/// than such an axis can have, or whose signal the log lacks, is not excited.
-/// Beside causes that are accepted: once more, for the others.
-/// `only`: of these kinds; empty: of all.
-void KeepDetectable(const Problem& problem, const Fit& base, std::span<const Scored> scored,
-                    const Jitter& jitter, const Gate& gate, std::span<const std::string> only,
-                    Diagnosis& out);
+/// What screening saw beside the causes that are accepted.
+struct Screened {
+  std::span<const Scored> scored;
+  const Jitter& jitter;
+  const Gate& gate;
+};
+
+/// Of each kind that the log would show: its main parameter, and the smallest that is found in 90 % of cases.
+/// What exceeds the gate by the candidates' standard errors, by the stated uncertainties where these decide,
+/// or by runs where a kind is far from linear, times what it takes to pass the other tests as well. A kind
+/// for which the gate alone asks for more than such an axis can have, or whose signal the log lacks, is
+/// missing. `only`: of these kinds; empty: of all.
+std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Problem& problem,
+                                                                        const Fit& base,
+                                                                        const Screened& screened,
+                                                                        std::span<const std::string> only);
+
+/// The kinds that are not in there.
+std::vector<std::string> NotExcited(const std::map<std::string, std::map<std::string, double>>& detectable);
 
 }  // namespace contour::diagnosis

@@ -10,6 +10,7 @@
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/quantification/widen.h"
 #include "analysis/prediction_error/bootstrap.h"
+#include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 namespace {

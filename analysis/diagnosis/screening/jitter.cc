@@ -10,22 +10,24 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr int kParts = 8;
+constexpr std::size_t kBlock = 50;
+constexpr int kSpeed = kParts;
 
-}  // namespace
+using Row = Eigen::Matrix<double, kParts + 2, 1>;
+using Square = Eigen::Matrix<double, kParts + 2, kParts + 2>;
 
-Jitter TestJitter(const Problem& problem, const Fit& fit) {
-  constexpr std::size_t kBlock = 50;
-  const Signals& s = *problem.signals;
-  const double period_s = problem.log.period_s;
-  // Slower than this, quantisation is no noise of constant variance.
-  const double slowest = 2.0 * problem.stated.position_step / period_s;
-  // The noise may have another level in each part of the log: a share of the variance per part, of the
-  // squared speed, of the squared acceleration.
-  using Row = Eigen::Matrix<double, kParts + 2, 1>;
-  using Square = Eigen::Matrix<double, kParts + 2, kParts + 2>;
-  constexpr int kSpeed = kParts;
+/// The variance of the noise, block by block, and what it may go with. The noise may have another level in
+/// each part of the log: a share of the variance per part, of the squared speed, of the squared acceleration.
+struct Variances {
   std::vector<Row> rows;
   std::vector<double> variance;
+};
+
+Variances BlockVariances(const Problem& problem, const Fit& fit) {
+  const Signals& s = *problem.signals;
+  // Slower than this, quantisation is no noise of constant variance.
+  const double slowest = 2.0 * problem.stated.position_step / problem.log.period_s;
+  Variances out;
   for (std::size_t from = 2; from + kBlock <= problem.rows(); from += kBlock) {
     double sum = 0.0, w2 = 0.0, a2 = 0.0;
     bool use = true;
@@ -46,20 +48,19 @@ Jitter TestJitter(const Problem& problem, const Fit& fit) {
     row(static_cast<Eigen::Index>(from * kParts / problem.rows())) = 1.0;
     row(kSpeed) = w2 / n;
     row(kSpeed + 1) = a2 / n;
-    rows.push_back(row);
-    variance.push_back(sum / n);
+    out.rows.push_back(row);
+    out.variance.push_back(sum / n);
   }
-  Jitter out;
-  if (rows.size() < 100) return out;
-  Row top = Row::Constant(1e-300);
-  for (const auto& r : rows) top = top.cwiseMax(r);
-  double low = 1.0;
-  for (auto& r : rows) {
-    r = r.cwiseQuotient(top).eval();
-    low = std::min(low, r(kSpeed));
-  }
-  if (low > 0.25) return out;
-  out.tested = true;
+  return out;
+}
+
+struct WeightedFit {
+  Row c;
+  Square covariance;
+};
+
+/// Least squares with weights that follow the variance; the covariance as the blocks scatter.
+WeightedFit FitVariances(const std::vector<Row>& rows, const std::vector<double>& variance) {
   Row c = Row::Zero();
   c.head<kParts>().setOnes();
   Square inverse = Square::Identity(), scatter = Square::Zero();
@@ -83,16 +84,39 @@ Jitter TestJitter(const Problem& problem, const Fit& fit) {
     inverse = normal.inverse();
     c = inverse * right;
   }
-  const Square covariance = inverse * scatter * inverse;
-  const double sigma = std::sqrt(std::max(covariance(kSpeed, kSpeed), 1e-300));
-  out.drop = c(kSpeed) > 0.0 ? std::pow(c(kSpeed) / sigma, 2) : 0.0;
+  return {c, inverse * scatter * inverse};
+}
+
+/// Variance of the second differences of the residual that a white error of the reading makes.
+double GainOfReading(const Problem& problem) {
   const std::vector<double> h = PulseResponse(problem, true);
   double gain = 0.0;
   for (std::size_t k = 0; k < h.size(); ++k) {
     const double d = h[k] - 2.0 * (k > 0 ? h[k - 1] : 0.0) + (k > 1 ? h[k - 2] : 0.0);
     gain += d * d / 6.0;
   }
-  const double per = gain * top(kSpeed);
+  return gain;
+}
+
+}  // namespace
+
+Jitter TestJitter(const Problem& problem, const Fit& fit) {
+  auto [rows, variance] = BlockVariances(problem, fit);
+  Jitter out;
+  if (rows.size() < 100) return out;
+  Row top = Row::Constant(1e-300);
+  for (const auto& r : rows) top = top.cwiseMax(r);
+  double low = 1.0;
+  for (auto& r : rows) {
+    r = r.cwiseQuotient(top).eval();
+    low = std::min(low, r(kSpeed));
+  }
+  if (low > 0.25) return out;
+  out.tested = true;
+  const auto [c, covariance] = FitVariances(rows, variance);
+  const double sigma = std::sqrt(std::max(covariance(kSpeed, kSpeed), 1e-300));
+  out.drop = c(kSpeed) > 0.0 ? std::pow(c(kSpeed) / sigma, 2) : 0.0;
+  const double per = GainOfReading(problem) * top(kSpeed);
   out.sigma_s2 = sigma / per;
   out.rms_s = std::sqrt(std::max(c(kSpeed), 0.0) / per);
   out.sigma_s = 0.5 * sigma / per / std::max(out.rms_s, std::sqrt(sigma / per));

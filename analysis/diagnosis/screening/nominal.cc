@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/prediction_error/fit.h"
+#include "analysis/prediction_error/refit.h"
 #include "tests/analysis/support/hidden_axis.h"
 #include "tests/analysis/support/learnt_problem.h"
 

@@ -85,19 +85,5 @@ TEST(Fit, AmplitudesStayInsideTheirBounds) {
   EXPECT_NEAR(Moved(p, by).base[0], p.base[0] + 0.3, 1e-15);
 }
 
-TEST(Fit, RewhitenedUnderTheSameNoiseItIsTheSame) {
-  Fit fit = FitPoint(Made().problem, Made().point);
-  const double cost = fit.cost;
-  const Eigen::MatrixXd normal = fit.normal;
-  Rewhiten(Made().problem, fit);
-  EXPECT_NEAR(fit.cost, cost, 1e-9 * cost);
-  EXPECT_LT((fit.normal - normal).norm(), 0.01 * normal.norm());
-}
-
-TEST(Fit, AFitNearItsStatedNumbersIsNotBegunAgain) {
-  Fit fit = FitPoint(Made().problem, Made().point);
-  EXPECT_FALSE(FitFromStated(Made().problem, fit, {}));
-}
-
 }  // namespace
 }  // namespace contour::diagnosis

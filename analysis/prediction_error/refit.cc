@@ -1,0 +1,78 @@
+#include "analysis/prediction_error/refit.h"
+
+#include <Eigen/Core>
+#include <cmath>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "analysis/prediction_error/products.h"
+
+namespace contour::diagnosis {
+namespace {
+
+using Column = Eigen::Map<const Eigen::VectorXd>;
+
+Column ColumnOf(const std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
+
+// Of chi^2 in excess of twice its degrees; standard deviations.
+constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
+constexpr double kLower = 2.0;  // of chi^2
+
+bool Implausible(const Problem& problem, const Fit& fit) {
+  const auto terms = static_cast<double>(problem.terms.size());
+  return fit.prior > kHardlyEver * terms;
+}
+
+}  // namespace
+
+bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, double worth) {
+  if (!Implausible(problem, fit)) return false;
+  Point back = fit.point;
+  for (std::size_t i = 0; i < back.base.size(); ++i) {
+    const BaseTerm& t = problem.terms[i];
+    if (!t.nuisance && std::fabs(back.base[i]) > kFarOff * t.sigma) back.base[i] = 0.0;
+  }
+  if (!problem.excerpt.empty()) {
+    // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
+    const Fit here = FitPoint(problem, fit.point, kToTheValley, Extent::kExcerpt);
+    Fit there = FitPoint(problem, std::move(back), kToTheValley, Extent::kExcerpt);
+    if (there.cost > here.cost - kLower || fit.cost + there.cost - here.cost > worth) return false;
+    back = std::move(there.point);
+  }
+  Fit other = FitPoint(problem, std::move(back), effort);
+  if (!(other.cost < fit.cost)) return false;
+  fit = std::move(other);
+  return true;
+}
+
+double CostAt(const Problem& problem, const Point& point, Extent extent) {
+  return ColumnOf(problem.Residuals(std::span(&point, 1), extent)[0]).squaredNorm() + PriorOf(problem, point);
+}
+
+void RewhitenResidual(const Problem& problem, Fit& fit) {
+  const std::span<const double> in(fit.raw);
+  const std::span<double> out(fit.residual);
+  problem.WhitenInto(std::span(&in, 1), std::span(&out, 1));
+  fit.prior = PriorOf(problem, fit.point);
+  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
+}
+
+void RewhitenSensitivities(const Problem& problem, Fit& fit) {
+  const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
+  std::vector<std::span<const double>> in;
+  std::vector<std::span<double>> out;
+  for (Eigen::Index i = 0; i < fit.raw_jacobian.cols(); ++i) {
+    in.emplace_back(fit.raw_jacobian.col(i).data(), size);
+    out.emplace_back(fit.jacobian.col(i).data(), size);
+  }
+  problem.WhitenInto(in, out);
+  AddProducts(fit.jacobian, 0, fit.normal);
+}
+
+void Rewhiten(const Problem& problem, Fit& fit) {
+  RewhitenResidual(problem, fit);
+  RewhitenSensitivities(problem, fit);
+}
+
+}  // namespace contour::diagnosis
