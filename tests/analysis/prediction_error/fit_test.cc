@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/prediction_error/refit.h"
 #include "tests/analysis/support/learnt_problem.h"
 
 namespace contour::diagnosis {

@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""The same four machines in every run: what diagnosis says of them stays what it was.
+
+    fixed_seed_test.py CONTOUR_HIDDEN
+
+Beside it hidden.effects_short draws others each time and can only be judged by counts.
+"""
+import csv
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SEED = 4711
+# Case: verdict and answer. The truth is inside the interval of each cause.
+EXPECTED = {
+    f"clean_short_{SEED}": ("nothing_found", "nothing_found"),
+    f"clean_short_{SEED + 1}": ("nothing_found", "nothing_found"),
+    f"clear_backlash_short_{SEED}": ("cause_found", "backlash"),
+    f"clear_cogging_short_{SEED}": ("cause_found", "cogging"),
+}
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.argv[1], "--short", "--compact", "--strengths", "clear", "--kinds", "backlash,cogging", "--seeds", "1",
+                        "--first-seed", str(SEED), "--clean", "2", "--out", folder], check=True, stdout=subprocess.DEVNULL)
+        with open(Path(folder) / "results.csv", newline="", encoding="utf-8") as file:
+            rows = {r["case"]: r for r in csv.DictReader(file)}
+    wrong = [f"{name}: not there" for name in EXPECTED.keys() - rows.keys()]
+    for name, row in rows.items():
+        if (row["verdict"], row["answer"]) != EXPECTED.get(name):
+            wrong.append(f"{name}: {row['verdict']}, {row['answer']}; expected {EXPECTED.get(name)}")
+        elif row["hidden"] and (row["inside"] != "1" or float(row["gain"]) <= 0.0):
+            wrong.append(f"{name}: truth outside of its interval ({row['outside']}) or no gain ({row['gain']})")
+    print("\n".join(wrong) or f"{len(rows)} cases are as they were")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()
