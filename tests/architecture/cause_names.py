@@ -28,7 +28,7 @@ OTHERWISE = {
     "analysis/axis_model/stated_parameters.cc": {"torque_constant"},
     "analysis/prediction_error/common_factor.cc": {"torque_constant"},
     "analysis/prediction_error/model_terms.cc": {"torque_constant"},
-    "analysis/prediction_error/problem.cc": {"torque_constant"},
+    "analysis/prediction_error/base_terms.cc": {"torque_constant"},
     # The picture of a curve that identification fits.
     "tools/plots/plot_identification.py": {"stribeck"},
 }
