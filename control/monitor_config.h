@@ -18,13 +18,6 @@ struct MonitorConfig {
   double drive_loop_Hz = 30.0;
   double reported_torque_error_rel = 0.1;
 
-  /// Which checks act; for tests that show what each is good for. No key of a machine file.
-  bool frozen = true;
-  bool jump = true;
-  bool momentum = true;
-  bool delivery = true;
-  bool scale = true;
-
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Optional("friction_factor", friction_factor, Range{1.0, 20.0},

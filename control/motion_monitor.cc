@@ -40,9 +40,11 @@ constexpr double kWarms_s = 600.0;
 
 }  // namespace
 
-MotionMonitor::MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& config, double period_s) noexcept
+MotionMonitor::MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& config, double period_s,
+                             WatchesOff off) noexcept
     : axis_(axis),
       config_(config),
+      off_(off),
       t_(ThresholdsOf(axis, config, period_s)),
       period_s_(period_s),
       watch_(axis.Fs_N, axis.slide_m_s, config.torque_constant_error_rel) {
@@ -86,10 +88,11 @@ void MotionMonitor::SeePeak(double force_N, double spread_N) noexcept {
 // and where its report has not been seen to be one, a reading that stands may be either.
 Reason MotionMonitor::Named(Reason found, const MotionSample& s, double force_N) noexcept {
   const double wanted_N = axis_.in_cascade ? axis_.Fc_N : std::abs(force_N);
-  tells_none_ = report_seen_ && std::abs(s.reported_force_N) <= kNoTorque * wanted_N;
+  tells_none_ =
+      off_.Acts(Watch::kDelivery) && report_seen_ && std::abs(s.reported_force_N) <= kNoTorque * wanted_N;
   const bool torque = found == Reason::kFeedbackFrozen || found == Reason::kTorqueWithoutMotion ||
                       found == Reason::kFeedbackReversed;
-  if (!torque || !config_.delivery) return found;
+  if (!torque || !off_.Acts(Watch::kDelivery)) return found;
   const bool wants = axis_.in_cascade ? t_.loop_N_m * std::abs(s.reference_m - s.position_m) > axis_.Fc_N
                                       : wanted_N > kReportShows * t_.delivery_N;
   if (tells_none_ && wants) return Reason::kTorqueNotDelivered;
@@ -257,7 +260,7 @@ void MotionMonitor::KeepDoubt(const MotionSample& s, double velocity_m_s, double
 }
 
 Reason MotionMonitor::Doubt() const noexcept {
-  if (held_ && config_.delivery && tells_none_) return Reason::kTorqueNotDelivered;
+  if (held_ && tells_none_) return Reason::kTorqueNotDelivered;
   return held_ ? doubt_ : Reason::kNone;
 }
 
@@ -314,8 +317,8 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
   const auto keep = [&](bool acts, Reason r) {
     if (acts && found == Reason::kNone) found = r;
   };
-  keep(config_.jump, Jump(s, force_N));
-  keep(config_.frozen, Frozen(s));
+  keep(off_.Acts(Watch::kJump), Jump(s, force_N));
+  keep(off_.Acts(Watch::kFrozen), Frozen(s));
   if (readings_ > 1) {
     const double gap_s = waited_periods_ * period_s_;
     const double velocity_m_s = (s.position_m - position_m_) / gap_s;
@@ -327,13 +330,13 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
     const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
     on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
     const double explained_N = t_.Unexplained_N(velocity_m_s, force_N_);
-    keep(config_.momentum,
+    keep(off_.Acts(Watch::kMomentum),
          Momentum(velocity_m_s, explained_N, std::abs(s.position_m - position_m_) <= t_.flicker_m));
-    if (config_.momentum) KeepDoubt(s, velocity_m_s, explained_N);
+    if (off_.Acts(Watch::kMomentum)) KeepDoubt(s, velocity_m_s, explained_N);
     Learn(velocity_m_s);
   }
-  keep(config_.delivery, Delivery(s));
-  keep(config_.scale, Scale(s));
+  keep(off_.Acts(Watch::kDelivery), Delivery(s));
+  keep(off_.Acts(Watch::kScale), Scale(s));
   return Named(found, s, force_N);
 }
 

@@ -7,6 +7,7 @@
 #include "control/torque_constant_watch.h"
 #include "core/reason.h"
 #include "core/state_keeper.h"
+#include "core/watch.h"
 
 namespace contour {
 
@@ -40,7 +41,8 @@ struct MotionSample {
 /// - scale: table and motor are further apart than the screw can wind up.
 class MotionMonitor {
  public:
-  MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& config, double period_s) noexcept;
+  MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& config, double period_s,
+                WatchesOff off = {}) noexcept;
 
   /// Once per cycle. kNone, or what cannot be.
   Reason Step(const MotionSample& sample) noexcept;
@@ -91,6 +93,7 @@ class MotionMonitor {
 
   MonitoredAxis axis_;
   MonitorConfig config_;
+  WatchesOff off_;
   MotionThresholds t_;
   double period_s_;
   TorqueConstantWatch watch_;

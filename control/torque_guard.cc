@@ -6,8 +6,9 @@
 
 namespace contour {
 
-TorqueGuard::TorqueGuard(const GuardConfig& config, const PerAxis<GuardedAxis>& axes, double period_s)
-    : config_(config), axes_(axes), memory_(axes.size()), period_s_(period_s) {
+TorqueGuard::TorqueGuard(const GuardConfig& config, const PerAxis<GuardedAxis>& axes, double period_s,
+                         WatchesOff off)
+    : config_(config), off_(off), axes_(axes), memory_(axes.size()), period_s_(period_s) {
   if (!(period_s > 0.0)) throw std::invalid_argument("torque guard: the period must be positive");
   for (const GuardedAxis& axis : axes_) {
     if (!(axis.limits.torque_Nm > 0.0) || !(axis.radius_m_rad > 0.0)) {
@@ -77,15 +78,17 @@ Reason TorqueGuard::FindFault(std::size_t axis, double wanted_torque_Nm, const A
       memory.allowed_max_m = position + memory.confined_to_m;
     }
   }
-  if (!feedback.valid || feedback.age_cycles >= static_cast<std::uint32_t>(config_.stale_cycles)) {
-    return Reason::kStaleFeedback;
-  }
-  if (std::abs(velocity) > config_.overspeed_factor * limits.velocity_m_s) return Reason::kVelocityLimit;
-  if (position < memory.allowed_min_m || position > memory.allowed_max_m) return Reason::kPositionLimit;
+  const bool stale =
+      !feedback.valid || feedback.age_cycles >= static_cast<std::uint32_t>(config_.stale_cycles);
+  if (stale && off_.Acts(Watch::kStaleFeedback)) return Reason::kStaleFeedback;
+  const bool too_fast = std::abs(velocity) > config_.overspeed_factor * limits.velocity_m_s;
+  if (too_fast && off_.Acts(Watch::kVelocityLimit)) return Reason::kVelocityLimit;
+  const bool beyond = position < memory.allowed_min_m || position > memory.allowed_max_m;
+  if (beyond && off_.Acts(Watch::kPositionLimit)) return Reason::kPositionLimit;
   // Without new feedback the distance to a moving reference grows by itself.
-  if (feedback.fresh && std::abs(reference_position_m - position) > limits.following_error_m) {
-    return Reason::kFollowingError;
-  }
+  const bool off_path =
+      feedback.fresh && std::abs(reference_position_m - position) > limits.following_error_m;
+  if (off_path && off_.Acts(Watch::kFollowingError)) return Reason::kFollowingError;
   return Reason::kNone;
 }
 

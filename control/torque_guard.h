@@ -6,6 +6,7 @@
 #include "control/control_config.h"
 #include "core/axis.h"
 #include "core/reason.h"
+#include "core/watch.h"
 
 namespace contour {
 
@@ -30,7 +31,8 @@ struct GuardedTorque {
 /// While an axis is not enabled the torque is zero and nothing is a fault but numbers that are none.
 class TorqueGuard {
  public:
-  TorqueGuard(const GuardConfig& config, const PerAxis<GuardedAxis>& axes, double period_s);
+  TorqueGuard(const GuardConfig& config, const PerAxis<GuardedAxis>& axes, double period_s,
+              WatchesOff off = {});
 
   /// Forgets the last torque and position of every axis.
   void Reset() noexcept;
@@ -63,6 +65,7 @@ class TorqueGuard {
                    double reference_position_m, bool enabled) noexcept;
 
   GuardConfig config_;
+  WatchesOff off_;
   PerAxis<GuardedAxis> axes_;
   PerAxis<Memory> memory_;
   double period_s_;

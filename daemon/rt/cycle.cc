@@ -24,7 +24,7 @@ PerAxis<double> Zeros(std::size_t n) {
 }  // namespace
 
 Cycle::Axis::Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored,
-                  const MonitorConfig& monitoring, EstimatorKind kind, double period_s)
+                  const MonitorConfig& monitoring, WatchesOff off, EstimatorKind kind, double period_s)
     : radius_m_rad(config.mechanics.radius_m_rad),
       estimator(kind, config.mechanics, config.friction, config.estimator, period_s, config.lag_s,
                 2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev,
@@ -32,7 +32,7 @@ Cycle::Axis::Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored,
       observer(EstimatorKind::kDisturbanceObserver, config.mechanics, config.friction, config.estimator,
                period_s, config.lag_s,
                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev),
-      monitor(monitored, monitoring, period_s),
+      monitor(monitored, monitoring, period_s, off),
       mass_kg(config.mechanics.mass_kg),
       unreferenced_travel_m(1e-3 * config.limits.unreferenced_travel_mm),
       following_error_m(1e-3 * config.limits.following_error_mm),
@@ -49,9 +49,10 @@ Cycle::Cycle(const CycleConfig& config)
       fallback_(MakeFallback(config)),
       watch_(config),
       blend_kept_(std::exp(-period_s_ / kBlend_s)),
-      guard_(config.control.guard, GuardedAxes(config), period_s_),
+      guard_(config.control.guard, GuardedAxes(config), period_s_, config.off),
       csp_(InCascade(config)),
       by_reported_torque_(csp_ && config.controller == ControllerName::kFull),
+      off_(config.off),
       most_skipped_(static_cast<std::uint32_t>(config.control.guard.stale_cycles)),
       estimates_(config.axes.size()),
       guarded_(config.axes.size()),
@@ -60,7 +61,8 @@ Cycle::Cycle(const CycleConfig& config)
       near_path_(config.axes.size()) {
   const PerAxis<MonitoredAxis> monitored = MonitoredAxes(config);
   for (std::size_t i = 0; i < config.axes.size(); ++i)
-    axes_.emplace_back(config.axes[i], monitored[i], config.control.monitor, EstimatorFor(config), period_s_);
+    axes_.emplace_back(config.axes[i], monitored[i], config.control.monitor, config.off, EstimatorFor(config),
+                       period_s_);
   for (const AxisDriveConfig& a : config.master.axes)
     answers_.push_back({{static_cast<std::uint16_t>(cob::kTpdo1 + a.drive.node_id), 0, {}}, a.bus, 0});
   for (const BusConfig& b : config.master.buses) {
@@ -70,7 +72,6 @@ Cycle::Cycle(const CycleConfig& config)
   }
   bus_nodes_.resize(config.master.buses.size());
   for (const AxisDriveConfig& a : config.master.axes) bus_nodes_[a.bus].Add(a.drive.node_id);
-  for (const Reason r : config.unsupervised) unsupervised_[static_cast<std::size_t>(r)] = true;
   const std::size_t n = axes_.size();
   control_in_.estimate.resize(n);
   control_in_.reference.resize(n);

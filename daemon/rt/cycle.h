@@ -75,7 +75,7 @@ class Cycle {
  private:
   struct Axis {
     Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored, const MonitorConfig& monitoring,
-         EstimatorKind kind, double period_s);
+         WatchesOff off, EstimatorKind kind, double period_s);
     double radius_m_rad;
     AxisEstimator estimator;
     AxisEstimator observer;  ///< to fall back to
@@ -104,9 +104,7 @@ class Cycle {
   [[nodiscard]] FaultSeen FindLost(const CycleInput& in) const noexcept;
   [[nodiscard]] FaultSeen FindStop() const noexcept;
   [[nodiscard]] std::uint8_t FindStuck() const noexcept;
-  [[nodiscard]] bool Acts(Reason fault) const noexcept {
-    return !unsupervised_[static_cast<std::size_t>(fault)];
-  }
+  [[nodiscard]] bool Acts(Watch watch) const noexcept { return off_.Acts(watch); }
   [[nodiscard]] bool PathBeginsHere() const noexcept;
   [[nodiscard]] bool CanReference(const Request& request) const noexcept;
   [[nodiscard]] std::uint8_t NotReferenced() const noexcept;
@@ -154,7 +152,7 @@ class Cycle {
   TorqueGuard guard_;
   bool csp_;
   bool by_reported_torque_;  // the estimators are told what the drives report instead of what they were sent
-  std::array<bool, 128> unsupervised_{};  ///< by reason; all false but in tests
+  WatchesOff off_;           ///< none, but in tests
   std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 

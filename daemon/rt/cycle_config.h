@@ -8,7 +8,7 @@
 #include "core/axis.h"
 #include "core/controller_name.h"
 #include "core/mechanics.h"
-#include "core/reason.h"
+#include "core/watch.h"
 #include "drivers/cia402/drive_master.h"
 #include "estimator/estimator_config.h"
 #include "estimator/friction_config.h"
@@ -35,9 +35,7 @@ struct CycleConfig {
   ControllerConfig control;
   MasterConfig master;
   std::vector<CycleAxisConfig> axes;
-  /// Faults that drives and buses tell of and that are not acted upon: for tests that show what each
-  /// supervisor is good for. No key of a machine file sets it.
-  std::vector<Reason> unsupervised;
+  WatchesOff off;  ///< for tests alone
 };
 
 }  // namespace contour

@@ -22,7 +22,7 @@ bool ChangesPath(const Orders& o) noexcept {
 // The ladder's step of this cycle, and what controllers and estimators have to do with it.
 void Cycle::WatchItself() noexcept {
   const bool had_fallen_back = fallen_back();
-  if (transitions_.holds_torque()) {
+  if (transitions_.holds_torque() && Acts(Watch::kSelfWatch)) {
     for (std::size_t i = 0; i < axes_.size(); ++i)
       watch_.Look(i, {master_.feedback()[i], estimates_[i], AtSample(i), axes_[i].position_m,
                       axes_[i].radius_m_rad, control_out_.limit[i] == Reason::kSolverCap});

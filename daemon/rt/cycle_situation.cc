@@ -26,8 +26,9 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
   now.stop = FindStop();
   now.stuck = FindStuck();
   if (const std::uint8_t where = transitions_.reason_where(); where < axes_.size())
-    now.says_lost_master = master_.status()[where].lost_master && Acts(Reason::kDriveLostMaster);
-  if (const std::uint8_t bus = master_.second_master(); bus != DriveMaster::kNoBus)
+    now.says_lost_master = master_.status()[where].lost_master && Acts(Watch::kDriveLostMaster);
+  if (const std::uint8_t bus = master_.second_master();
+      bus != DriveMaster::kNoBus && Acts(Watch::kSecondMaster))
     now.second_master = {Reason::kSecondMaster, bus};
   now.not_referenced = NotReferenced();
   now.can_reference = CanReference(in.request);
@@ -41,21 +42,23 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
 
 FaultSeen Cycle::FindFault() const noexcept {
   const MachineState state = transitions_.state();
-  if (skipped_ >= most_skipped_ && follower_.moving()) return {Reason::kGridPointsSkipped, 0xFF};
+  if (skipped_ >= most_skipped_ && follower_.moving() && Acts(Watch::kGridPointsSkipped))
+    return {Reason::kGridPointsSkipped, 0xFF};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& status = master_.status()[i];
     // Why it stopped says more than that it did.
-    if (status.lost_master && Acts(Reason::kDriveLostMaster)) return {Reason::kDriveLostMaster, where};
-    if (status.fault && Acts(Reason::kDriveFault)) return {Reason::kDriveFault, where};
-    if (status.emergency >= EmergencyReaction::kQuickStop && Acts(Reason::kDriveEmergency))
+    if (status.lost_master && Acts(Watch::kDriveLostMaster)) return {Reason::kDriveLostMaster, where};
+    if (status.fault && Acts(Watch::kDriveFault)) return {Reason::kDriveFault, where};
+    if (status.emergency >= EmergencyReaction::kQuickStop && Acts(Watch::kDriveEmergency))
       return {Reason::kDriveEmergency, where, status.emergency == EmergencyReaction::kVoltageOff};
-    if (state != MachineState::kEnabling && status.left_enabled && Acts(Reason::kDriveLeftEnabled))
+    if (state != MachineState::kEnabling && status.left_enabled && Acts(Watch::kDriveLeftEnabled))
       return {Reason::kDriveLeftEnabled, where};
-    if (status.mode_changed && Acts(Reason::kModeChanged)) return {Reason::kModeChanged, where};
-    if (status.not_following && Acts(Reason::kDriveNotFollowing)) return {Reason::kDriveNotFollowing, where};
+    if (status.mode_changed && Acts(Watch::kModeChanged)) return {Reason::kModeChanged, where};
+    if (status.not_following && Acts(Watch::kDriveNotFollowing)) return {Reason::kDriveNotFollowing, where};
     // Before the torque is allowed the guard does not look, and the drives hold already.
-    if (state == MachineState::kEnabling && master_.feedback()[i].age_cycles >= most_skipped_)
+    if (state == MachineState::kEnabling && master_.feedback()[i].age_cycles >= most_skipped_ &&
+        Acts(Watch::kStaleFeedback))
       return {Reason::kStaleFeedback, where};
     if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
   }
@@ -65,27 +68,26 @@ FaultSeen Cycle::FindFault() const noexcept {
 FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
   for (std::size_t b = 0; b < in.buses.size(); ++b) {
     const auto where = static_cast<std::uint8_t>(b);
-    if (in.buses[b].bus_off) return {Reason::kBusOff, where};
-    if (!in.buses[b].up && Acts(Reason::kBusDown)) return {Reason::kBusDown, where};
-    if (in.buses[b].send_failures != 0 && Acts(Reason::kSendFailed)) return {Reason::kSendFailed, where};
+    if (in.buses[b].bus_off && Acts(Watch::kBusDown)) return {Reason::kBusOff, where};
+    if (!in.buses[b].up && Acts(Watch::kBusDown)) return {Reason::kBusDown, where};
+    if (in.buses[b].send_failures != 0 && Acts(Watch::kSendFailed)) return {Reason::kSendFailed, where};
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& s = master_.status()[i];
     const bool left_operational = s.configured && s.nmt != NmtState::kOperational;
-    if (s.restarted && Acts(Reason::kDriveRestarted)) return {Reason::kDriveRestarted, where};
-    if (s.lost_master && left_operational && Acts(Reason::kDriveLostMaster))
+    if (s.restarted && Acts(Watch::kDriveRestarted)) return {Reason::kDriveRestarted, where};
+    if (s.lost_master && left_operational && Acts(Watch::kDriveLostMaster))
       return {Reason::kDriveLostMaster, where};
-    if (s.heartbeat_lost && Acts(Reason::kHeartbeatLost)) return {Reason::kHeartbeatLost, where};
-    if (left_operational && Acts(Reason::kDriveLeftOperational))
-      return {Reason::kDriveLeftOperational, where};
+    if (s.heartbeat_lost && Acts(Watch::kHeartbeatLost)) return {Reason::kHeartbeatLost, where};
+    if (left_operational && Acts(Watch::kDriveLeftOperational)) return {Reason::kDriveLeftOperational, where};
   }
   return {};
 }
 
 FaultSeen Cycle::FindStop() const noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i)
-    if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath && Acts(Reason::kDriveEmergency))
+    if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath && Acts(Watch::kDriveEmergency))
       return {Reason::kDriveEmergency, static_cast<std::uint8_t>(i)};
   return watch_.Stop();
 }

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "tools/faults/campaign.h"
+#include "tools/faults/proof.h"
 #include "tools/faults/report.h"
-#include "tools/faults/supervisor.h"
 
 namespace contour::faults {
 namespace {
@@ -34,8 +34,8 @@ std::string All(const RunResult& r) {
 TEST(FaultRun, TheSameRunGivesTheSameResult) {
   const EmulatedMachineFile file = Example();
   const FaultCase c = Case(Fault::kBusDown, Phase::kConstant, 100.0);
-  const RunResult a = RunFault(c, {&file, 3, ""});
-  const RunResult b = RunFault(c, {&file, 3, ""});
+  const RunResult a = RunFault(c, {&file, 3});
+  const RunResult b = RunFault(c, {&file, 3});
   EXPECT_TRUE(a.stopped);
   EXPECT_EQ(a.reason, Reason::kBusDown);
   EXPECT_GT(a.departure_m, 1e-5) << "a quick stop from 100 mm/s leaves the path's end behind";
@@ -47,8 +47,7 @@ TEST(FaultRun, TheSameRunGivesTheSameResult) {
 TEST(FaultRun, ALostFrameStopsNothingInEitherMode) {
   const EmulatedMachineFile file = Example();
   for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
-    const RunResult r =
-        RunFault(Case(Fault::kFeedbackFrameLost, Phase::kConstant, 50.0, mode), {&file, 1, ""});
+    const RunResult r = RunFault(Case(Fault::kFeedbackFrameLost, Phase::kConstant, 50.0, mode), {&file, 1});
     EXPECT_FALSE(r.stopped);
     EXPECT_EQ(All(r), "");
   }
@@ -94,7 +93,7 @@ TEST(FaultRun, DrivesAndResetOnceFailed) {
     c.axis_name = once.axis;
     c.axis =
         static_cast<std::size_t>(std::distance(file.machine.axes.begin(), file.machine.axes.find(once.axis)));
-    EXPECT_EQ(All(RunFault(c, {&file, 1, ""})), "") << Key(c);
+    EXPECT_EQ(All(RunFault(c, {&file, 1})), "") << Key(c);
   }
 }
 
@@ -102,26 +101,17 @@ class WithoutSupervisor : public ::testing::TestWithParam<Supervisor> {};
 
 /// The campaign on the fault that the supervisor is there for: holds with it, fails without it.
 TEST_P(WithoutSupervisor, TheCampaignFails) {
-  const EmulatedMachineFile file = Example();
-  PlanRequest plan;
-  plan.runs = 8;
-  plan.feed_mm_s = GetParam().feed_mm_s;
-  plan.only = {std::string(Name(GetParam().missed)), std::string(Name(GetParam().where)), "cst"};
-  const std::vector<FaultCase> cases = Plan(plan, {{"x", 250.0}, {"y", 250.0}});
-  const auto failed = [&](const std::string& without) {
-    std::size_t count = 0;
-    for (const RunResult& r : RunCampaign(cases, {&file, 1, without}, 2))
-      if (!r.violations.empty()) ++count;
-    return count;
-  };
-  EXPECT_EQ(failed(""), 0U);
-  if (GetParam().alone) {
-    EXPECT_GT(failed(std::string(GetParam().name)), 0U);
-  }
+  const Proof proof = Prove(GetParam(), Example(), 1, 2);
+  EXPECT_TRUE(proof.holds()) << ProofsMarkdown({proof});
+}
+
+TEST(FaultRun, EachSupervisorHasAProof) {
+  for (std::size_t i = 0; i < kWatchCount; ++i)
+    EXPECT_NE(FindSupervisor(Name(static_cast<Watch>(i))), nullptr) << i;
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, WithoutSupervisor, ::testing::ValuesIn(Supervisors()),
-                         [](const auto& one) { return std::string(one.param.name); });
+                         [](const auto& one) { return std::string(Name(one.param.watch)); });
 
 TEST(FaultRun, ThreadsChangeNothing) {
   const EmulatedMachineFile file = Example();
@@ -129,8 +119,8 @@ TEST(FaultRun, ThreadsChangeNothing) {
   plan.runs = 12;
   plan.only = {"feedback_frame_late", "drive_fault", "bus_down"};
   const std::vector<FaultCase> cases = Plan(plan, {{"x", 250.0}, {"y", 250.0}});
-  const std::string one = RunsCsv(RunCampaign(cases, {&file, 1, ""}, 1));
-  EXPECT_EQ(one, RunsCsv(RunCampaign(cases, {&file, 1, ""}, 3)));
+  const std::string one = RunsCsv(RunCampaign(cases, {&file, 1}, 1));
+  EXPECT_EQ(one, RunsCsv(RunCampaign(cases, {&file, 1}, 3)));
   EXPECT_GT(std::count(one.begin(), one.end(), '\n'), 12);
 }
 

@@ -57,6 +57,9 @@ enum class Fault : std::uint8_t {
   kTorqueHalved,
   // The computer.
   kLogBlocked,
+  kGridPointsSkipped,
+  kCyclesLate,
+  kPositionBitTop,
 };
 
 struct FaultName {
@@ -116,8 +119,16 @@ inline constexpr std::array kFaults{
     FaultName{Fault::kTorqueLostSilently, "torque_lost_silently", "no torque, 0x6077 tells the current's"},
     FaultName{Fault::kTorqueHalved, "torque_halved", "half the torque, 0x6077 tells the current's"},
     FaultName{Fault::kLogBlocked, "log_blocked", "nobody empties the telemetry queue"},
+    FaultName{Fault::kGridPointsSkipped, "grid_points_skipped",
+              "the computer sleeps for as many cycles as feedback may be missing"},
+    FaultName{Fault::kCyclesLate, "cycles_late", "the frames of every cycle leave late"},
+    FaultName{Fault::kPositionBitTop, "position_bit_top",
+              "the highest bit but one of one position is flipped"},
 };
 inline constexpr std::size_t kFaultCount = kFaults.size();
+
+/// Those that show what a supervisor is good for are planned only when they are asked for by name.
+constexpr bool IsPlanned(Fault fault) noexcept { return fault < Fault::kGridPointsSkipped; }
 
 constexpr const FaultName& Named(Fault fault) noexcept { return kFaults[static_cast<std::size_t>(fault)]; }
 constexpr std::string_view Name(Fault fault) noexcept { return Named(fault).name; }

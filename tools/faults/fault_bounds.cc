@@ -16,6 +16,7 @@ namespace {
 enum class Promise : std::uint8_t {
   kNothing,       ///< nothing may come of it: the axis stays within its following error
   kQuickStop,     ///< seen in the cycle in which it comes, then the drive's ramp
+  kLadder,        ///< of the cycle's eye on itself, then a stop on the path
   kPathStop,      ///< at the latest by a stop on the path
   kFeedbackLost,  ///< seen after some cycles without feedback
   kSilence,       ///< the drive does not hear the master any more
@@ -41,7 +42,10 @@ Promise PromiseOf(Fault fault) {
     case Fault::kFeedbackFramesLate:
     case Fault::kFloodBurst:
     case Fault::kDriveRestarts:
+    case Fault::kGridPointsSkipped:
       return Promise::kFeedbackLost;
+    case Fault::kCyclesLate:
+      return Promise::kLadder;
     case Fault::kSetpointsLost:
     case Fault::kBusDown:
     case Fault::kFlood:
@@ -90,6 +94,14 @@ RunBound Plus(const StopBound& stop, const AxisConfig& axis, double seen_s = 0.0
   return {1e-3 * (stop.travel_mm + axis.limits.following_error_mm), stop.time_s + seen_s};
 }
 
+/// What lasts is noticed, softened, fallen back from and stopped, each by an alarm of its own; one that comes
+/// sooner than step_s after the one before counts for nothing.
+double Ladder_s(const MachineConfig& machine) {
+  const SupervisionConfig& s = machine.control.supervision;
+  const double alarm_s = 1e-3 * s.late_ms;
+  return alarm_s * (1.0 + 3.0 * std::ceil(s.step_s / alarm_s));
+}
+
 RunBound Bound(const MachineConfig& machine, Promise promise, std::size_t number) {
   const AxisConfig& axis = AxisOf(machine, number);
   const StopBound quick = Way(machine, "fault (quick stop)", number);
@@ -104,9 +116,11 @@ RunBound Bound(const MachineConfig& machine, Promise promise, std::size_t number
       return Plus(quick, axis, 1e-3 * (axis.drive.heartbeat_timeout_ms + axis.drive.heartbeat_ms));
     case Promise::kMode:
       return Plus(quick, axis, kModeRead_s);
+    case Promise::kLadder:
     case Promise::kPathStop: {
       RunBound bound = Plus(quick, axis);
-      bound.time_s = std::max(bound.time_s, Way(machine, "SIGTERM, SIGINT", number).time_s);
+      bound.time_s = std::max(bound.time_s, Way(machine, "SIGTERM, SIGINT", number).time_s) +
+                     (promise == Promise::kLadder ? Ladder_s(machine) : 0.0);
       return bound;
     }
     default:

@@ -49,6 +49,7 @@ class Filter {
   [[nodiscard]] bool Takes(Fault f, Phase p, DriveMode m) const {
     return Takes(faults_, f) && Takes(phases_, p) && Takes(modes_, m);
   }
+  [[nodiscard]] bool Plans(Fault f) const { return IsPlanned(f) || !faults_.empty(); }
   [[nodiscard]] bool TakesAxis(const std::string& name) const { return Takes(axes_, name); }
 
  private:
@@ -91,7 +92,7 @@ std::vector<FaultCase> Plan(const PlanRequest& request, const std::vector<Planne
     for (const Phase p : kPhases)
       for (const DriveMode m : {DriveMode::kCst, DriveMode::kCsp})
         for (std::size_t band = 0; band < (Moves(p) ? kFeedBands : 1); ++band)
-          if (filter.Takes(f.fault, p, m)) all.push_back({f.fault, p, m, band});
+          if (filter.Plans(f.fault) && filter.Takes(f.fault, p, m)) all.push_back({f.fault, p, m, band});
   std::vector<std::size_t> candidates;
   for (std::size_t a = 0; a < axes.size(); ++a)
     if (filter.TakesAxis(axes[a].name)) candidates.push_back(a);

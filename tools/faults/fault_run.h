@@ -6,6 +6,7 @@
 #include "core/reason.h"
 #include "core/states.h"
 #include "tools/faults/fault_case.h"
+#include "tools/faults/supervisor.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour::faults {
@@ -29,7 +30,9 @@ struct RunResult {
 struct RunRequest {
   const EmulatedMachineFile* file = nullptr;
   std::uint64_t campaign_seed = 1;
-  std::string without;  ///< supervisor that is switched off; empty: none
+  /// The supervisor in question: runs of its proof must give its reason. Null: none.
+  const Supervisor* supervisor = nullptr;
+  bool without = false;  ///< it is switched off
 };
 
 /// Bring-up, the machine's life to the phase, the fault, what becomes of it, the fault mended, reset, enable.

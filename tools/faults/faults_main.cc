@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "core/exit_status.h"
 #include "tools/faults/campaign.h"
 #include "tools/faults/options.h"
+#include "tools/faults/proof.h"
 #include "tools/faults/report.h"
 #include "tools/faults/supervisor.h"
 
@@ -24,7 +26,7 @@ void List() {
   for (const Phase p : kPhases) std::printf("  %s\n", std::string(Name(p)).c_str());
   std::puts("supervisors:");
   for (const Supervisor& s : Supervisors())
-    std::printf("  %-26s %s\n", std::string(s.name).c_str(), std::string(s.what).c_str());
+    std::printf("  %-26s %s\n", std::string(Name(s.watch)).c_str(), std::string(s.what).c_str());
 }
 
 void Write(const std::filesystem::path& file, const std::string& text) {
@@ -32,6 +34,13 @@ void Write(const std::filesystem::path& file, const std::string& text) {
   stream << text;
   stream.close();
   if (!stream) throw EnvironmentError("cannot write " + file.string());
+}
+
+int Prove(const EmulatedMachineFile& file, const Options& o) {
+  const std::vector<Proof> proofs = ProveAll(file, o.plan.seed, o.threads);
+  std::fputs(ProofsMarkdown(proofs).c_str(), stdout);
+  const bool all = std::all_of(proofs.begin(), proofs.end(), [](const Proof& p) { return p.holds(); });
+  return all ? kExitDone : kExitFailed;
 }
 
 int Run(const Options& o) {
@@ -42,13 +51,16 @@ int Run(const Options& o) {
     axes.push_back({name, axis.limits.velocity_mm_s});
     highest_mm_s.push_back(axis.limits.velocity_mm_s);
   }
-  const std::vector<FaultCase> cases = Plan(o.plan, axes);
+  if (o.supervisors) return Prove(file, o);
+  const Supervisor* supervisor = FindSupervisor(o.without);
+  const bool its_own = supervisor != nullptr && o.plan.only.empty() && o.plan.feed_mm_s == 0.0;
+  const std::vector<FaultCase> cases = Plan(its_own ? ProofOf(*supervisor) : o.plan, axes);
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto progress = [&](std::size_t done) {
     if (terminal) std::fprintf(stderr, "\r\x1b[K%zu of %zu runs", done, cases.size());
   };
   const std::vector<RunResult> results =
-      RunCampaign(cases, {&file, o.plan.seed, o.without}, o.threads, progress);
+      RunCampaign(cases, {&file, o.plan.seed, supervisor, supervisor != nullptr}, o.threads, progress);
   if (terminal) std::fputs("\r\x1b[K", stderr);
 
   const std::vector<Cell> cells = Cells(results, highest_mm_s);

@@ -61,6 +61,7 @@ double Injection::CountsPerMm() const {
 }
 
 void Injection::AfterCycle(const CycleEntry& entry) {
+  if (c_.fault == Fault::kCyclesLate) machine_->TellLate(broken_);
   if (!queue_) return;
   *queue_->Reserve() = entry;
   queue_->Publish();
@@ -98,6 +99,8 @@ void Injection::BreakBus() {
       const int bit = Draw(8, 31);
       return BreakFrames({What::kFlip, answer, 1, 1, 2 + bit / 8, bit % 8});
     }
+    case Fault::kPositionBitTop:
+      return BreakFrames({What::kFlip, answer, 1, 1, 5, 6});
     case Fault::kStatusBitEnabled:
       return BreakFrames({What::kFlip, answer, 1, 1, 0, 2});
     case Fault::kStatusBitFault:
@@ -110,6 +113,8 @@ void Injection::BreakBus() {
       return BreakFrames({What::kDrop, Id(cob::kHeartbeat)});
     case Fault::kBusDown:
       return machine_->bus(bus_).SetLink(now_ns(), false);
+    case Fault::kGridPointsSkipped:
+      return machine_->SkipGridPoints(static_cast<std::uint64_t>(config_.control.guard.stale_cycles));
     default:
       return;
   }

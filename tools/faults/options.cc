@@ -25,7 +25,9 @@ is gone, and that nothing enables itself.
   --only A,B,...       only these faults, phases, modes and axes, by their names
   --feed MM_S          only at this feed
   --shard I/N          every Nth run, from the Ith on (I from 0)
-  --without NAME       switches one supervisor off: the campaign must then fail
+  --without NAME       switches one supervisor off: the campaign must then fail. Without --only and --feed it
+                       runs the fault that shows what this supervisor is good for
+  --supervisors        does that for each of them, with it and without it, and prints a table
   --threads N          (number of processors)
   --out DIR            table.md, table.csv, runs.csv and failures.txt go there
   --list               names the faults, phases and supervisors
@@ -117,6 +119,8 @@ Options ParseOptions(int argc, char** argv) {
       std::exit(kExitDone);
     } else if (option == "--list") {
       o.list = true;
+    } else if (option == "--supervisors") {
+      o.supervisors = true;
     } else if (option == "--verbose") {
       o.verbose = true;
     } else if (i + 1 >= argc) {

@@ -12,7 +12,8 @@ struct Options {
   std::string without;
   unsigned threads = 1;
   std::string out;
-  bool list = false;  ///< only say what there is
+  bool supervisors = false;  ///< show what each supervisor is good for
+  bool list = false;         ///< only say what there is
   bool verbose = false;
 };
 

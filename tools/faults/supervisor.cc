@@ -1,62 +1,140 @@
 #include "tools/faults/supervisor.h"
 
-#include <limits>
-
 namespace contour::faults {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::max();
-
-void NoFollowingError(CycleConfig& c) {
-  for (CycleAxisConfig& a : c.axes) a.limits.following_error_mm = kNever;
-}
-
-void NoStaleness(CycleConfig& c) { c.control.guard.stale_cycles = std::numeric_limits<std::int32_t>::max(); }
-
-template <Reason... kReasons>
-void Unsupervised(CycleConfig& c) {
-  c.unsupervised.insert(c.unsupervised.end(), {kReasons...});
-}
+constexpr std::size_t kRuns = 8;
 
 }  // namespace
 
 const std::vector<Supervisor>& Supervisors() {
+  using F = Fault;
   using R = Reason;
+  using W = Watch;
+  using enum Phase;
+  constexpr WatchesOff kOfMotion{W::kJump, W::kMomentum, W::kDelivery, W::kFrozen};
+  constexpr WatchesOff kOfReadings{W::kJump, W::kMomentum, W::kDelivery, W::kFrozen, W::kFollowingError};
   static const std::vector<Supervisor> all{
-      {"frozen", "the motion monitor's check of a standing encoder",
-       [](CycleConfig& c) { c.control.monitor.frozen = false; }, Fault::kEncoderFrozen, Phase::kConstant,
-       1.0},
-      {"jump", "its check of a reading against its prediction",
-       [](CycleConfig& c) { c.control.monitor.jump = false; }, Fault::kEncoderJump},
-      {"momentum", "its check of motion against torque",
-       [](CycleConfig& c) { c.control.monitor.momentum = false; }, Fault::kEncoderReversed, Phase::kConstant,
-       1.0},
-      {"delivery", "its check of the reported torque",
-       [](CycleConfig& c) { c.control.monitor.delivery = false; }, Fault::kTorqueLost, Phase::kConstant, 50.0,
-       false},
-      {"following_error", "the guard's distance to the path", NoFollowingError, Fault::kTorqueLostSilently,
-       Phase::kConstant, 50.0, false},
-      {"stale_feedback", "the guard's count of cycles without feedback", NoStaleness,
-       Fault::kFeedbackFramesLost},
-      {"emergencies", "emergency messages of drives that go on", Unsupervised<R::kDriveEmergency>,
-       Fault::kEmergencyTemperature},
-      {"drive_states", "drives in Fault or not enabled any more",
-       Unsupervised<R::kDriveFault, R::kDriveLeftEnabled>, Fault::kDriveDropsOut},
-      {"not_following", "statusword bit 12 and the mode shown (0x6061)",
-       Unsupervised<R::kDriveNotFollowing, R::kModeChanged>, Fault::kDriveWrongMode},
-      {"lost_drives", "boot-up, NMT state, heartbeat, and drives that lost their master",
-       Unsupervised<R::kDriveRestarted, R::kDriveLeftOperational, R::kHeartbeatLost, R::kDriveLostMaster>,
-       Fault::kDriveRestarts, Phase::kIdle, 50.0, false},
-      {"bus", "interfaces that are down or take no frames", Unsupervised<R::kBusDown, R::kSendFailed>,
-       Fault::kBusDown},
+      {W::kFrozen, "a reading that stands", F::kEncoderFrozen, kConstant, 1.0, R::kFeedbackFrozen, {}},
+      {W::kJump, "a reading against its prediction", F::kEncoderJump, kConstant, 50.0, R::kFeedbackJump, {}},
+      {W::kMomentum, "motion against torque", F::kEncoderReversed, kConstant, 1.0, R::kFeedbackReversed, {}},
+      {W::kDelivery,
+       "the torque that the drive reports",
+       F::kTorqueLost,
+       kConstant,
+       50.0,
+       R::kTorqueNotDelivered,
+       {}},
+      {W::kScale,
+       "motor against linear scale",
+       F::kEncoderJump,
+       kConstant,
+       50.0,
+       R::kScaleDisagrees,
+       {W::kJump, W::kMomentum, W::kFollowingError},
+       true},
+      {W::kStaleFeedback,
+       "cycles without feedback",
+       F::kFeedbackFramesLost,
+       kConstant,
+       50.0,
+       R::kStaleFeedback,
+       {}},
+      {W::kVelocityLimit, "speed", F::kPositionBitTop, kConstant, 50.0, R::kVelocityLimit, kOfMotion},
+      {W::kPositionLimit,
+       "travel",
+       F::kPositionBitTop,
+       kConstant,
+       50.0,
+       R::kPositionLimit,
+       {W::kJump, W::kMomentum, W::kDelivery, W::kFrozen, W::kVelocityLimit, W::kFollowingError}},
+      {W::kFollowingError, "distance to the path", F::kTorqueLostSilently, kConstant, 50.0,
+       R::kFollowingError, kOfMotion},
+      {W::kDriveFault, "a drive in Fault", F::kDriveFault, kConstant, 50.0, R::kDriveFault, {}},
+      {W::kDriveLeftEnabled,
+       "a drive that is not enabled any more",
+       F::kDriveDropsOut,
+       kConstant,
+       50.0,
+       R::kDriveLeftEnabled,
+       {}},
+      {W::kDriveNotFollowing,
+       "statusword bit 12",
+       F::kDriveWrongMode,
+       kConstant,
+       50.0,
+       R::kDriveNotFollowing,
+       {}},
+      {W::kModeChanged,
+       "the mode shown (0x6061)",
+       F::kDriveWrongMode,
+       kReady,
+       50.0,
+       R::kModeChanged,
+       {W::kDriveNotFollowing, W::kMomentum, W::kDelivery}},
+      {W::kDriveEmergency,
+       "emergency messages of drives that go on",
+       F::kEmergencyTemperature,
+       kConstant,
+       50.0,
+       R::kDriveEmergency,
+       {}},
+      {W::kDriveLostMaster,
+       "drives that say that they lost their master",
+       F::kSetpointsLost,
+       kConstant,
+       50.0,
+       R::kDriveLostMaster,
+       {}},
+      {W::kDriveRestarted, "boot-up messages", F::kDriveRestarts, kIdle, 50.0, R::kDriveRestarted, {}},
+      {W::kDriveLeftOperational,
+       "NMT states",
+       F::kDriveLeavesOperational,
+       kIdle,
+       50.0,
+       R::kDriveLeftOperational,
+       {}},
+      {W::kHeartbeatLost,
+       "drives that are silent",
+       F::kFlood,
+       kIdle,
+       50.0,
+       R::kHeartbeatLost,
+       {W::kSendFailed}},
+      {W::kBusDown, "interfaces that are down", F::kBusDown, kConstant, 50.0, R::kBusDown, {}},
+      {W::kSendFailed,
+       "interfaces that take no frames",
+       F::kBusDown,
+       kConstant,
+       50.0,
+       R::kSendFailed,
+       {W::kBusDown}},
+      {W::kSecondMaster,
+       "frames that only a master sends",
+       F::kForeignSync,
+       kConstant,
+       50.0,
+       R::kSecondMaster,
+       {}},
+      {W::kGridPointsSkipped, "grid points at which nothing was sent", F::kGridPointsSkipped, kConstant, 50.0,
+       R::kGridPointsSkipped, kOfReadings},
+      {W::kSelfWatch, "the cycle's eye on itself", F::kCyclesLate, kConstant, 2.0, R::kCyclesLate, {}},
   };
   return all;
 }
 
 const Supervisor* FindSupervisor(std::string_view name) {
   for (const Supervisor& s : Supervisors())
-    if (s.name == name) return &s;
+    if (Name(s.watch) == name) return &s;
   return nullptr;
+}
+
+PlanRequest ProofOf(const Supervisor& supervisor) {
+  PlanRequest plan;
+  plan.runs = kRuns;
+  plan.feed_mm_s = supervisor.feed_mm_s;
+  plan.only = {std::string(Name(supervisor.fault)), std::string(Name(supervisor.phase)), "cst"};
+  return plan;
 }
 
 }  // namespace contour::faults

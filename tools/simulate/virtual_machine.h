@@ -66,6 +66,9 @@ class VirtualMachine {
   /// meanwhile is for EmulatedClock::kWall to show; with kSync it stands still.
   void SkipGridPoints(std::uint64_t count) { index_ += count; }
 
+  /// Whether the frames of the last cycle left late, which virtual time never does by itself.
+  void TellLate(bool late) { cycle_.TellLate(late); }
+
   CommandMailbox& mailbox() { return mailbox_; }
   LoopbackBus& bus(std::size_t i) { return *buses_[i]; }
   EmulatedMachine& emulated() { return emulated_; }
