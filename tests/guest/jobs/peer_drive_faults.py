@@ -115,7 +115,13 @@ def inject(bench, case):
         # Steady by then: past its ramp and past pre-sliding.
         bench.peer("past", case.axis, max(min(0.1, case.feed_mm_s), 0.35 * case.feed_mm_s, 0.03), words)
         bench.begin(bench.write_program(case.name, program_of(case)))
-    bench.wait_for("the fault to happen", lambda: len(bench.peer("status")["done"]) > done, pause_s=0.1)
+    def happened():
+        status = bench.status()
+        expect(status["state"] != "Faulted" or len(bench.peer("status")["done"]) > done,
+               f"{case.name}: stopped before anything was broken, {status.get('reason')}")
+        return len(bench.peer("status")["done"]) > done
+
+    bench.wait_for("the fault to happen", happened, pause_s=0.1)
     return bench.peer("status")["done"][-1][0]
 
 
