@@ -12,7 +12,7 @@ CONTOUR, ROOT = sys.argv.pop(1), Path(sys.argv.pop(1))
 
 
 def corner_feeds(*arguments):
-    command = [sys.executable, ROOT / "tools" / "contest" / "corner_feeds.py", CONTOUR, "--config",
+    command = [sys.executable, ROOT / "tools" / "validation" / "contest" / "corner_feeds.py", CONTOUR, "--config",
                ROOT / "config" / "xy_emulated.yaml", "--turns", "2", "--seeds", "1", *arguments]
     return subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
 
