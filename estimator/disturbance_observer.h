@@ -16,7 +16,6 @@ namespace contour {
 /// noise over one period is m w^3 r Ts, r the measurement's standard deviation.
 class DisturbanceObserver {
  public:
-  DisturbanceObserver() noexcept = default;
   explicit DisturbanceObserver(const FilterSetup& setup) noexcept;
 
   void Reset(double position_m) noexcept;

@@ -17,7 +17,6 @@ namespace contour {
 /// rest, bounds) are those of the seven-state filter.
 class FourStateFilter {
  public:
-  FourStateFilter() noexcept = default;
   explicit FourStateFilter(const FilterSetup& setup) noexcept;
 
   void Reset(double position_m) noexcept;
