@@ -13,6 +13,8 @@ constexpr std::uint32_t kSameAtLeast_periods = 3;
 constexpr std::uint32_t kSameForForce_periods = 20;
 // A spring so soft that it answers later than this answers never; whole numbers end somewhere.
 constexpr double kLongest_periods = 1e6;
+// Of the path after which a standing reading is one that stands still: no loop that follows is so far ahead.
+constexpr double kSlipped = 3.0;
 // Held forces that are remembered, at most.
 constexpr std::uint32_t kMostHeld = 8;
 // Readings in a row that momentum must be missing in.
@@ -194,7 +196,11 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
       (near_periods_ >= kSameForForce_periods && near_most_N_ - near_least_N_ > t_.flickering_force_N);
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
   const auto gone = [&](std::uint32_t& periods, double from_m, const Standing& standing) {
-    const bool beyond = std::abs(s.reference_m - from_m) > standing.Path_m(loop_N_m, settling_N);
+    const double path_m = standing.Path_m(loop_N_m, settling_N);
+    const double gone_m = s.reference_m - from_m;
+    // An axis that had slipped far ahead rightly stands until the reference has come up with it.
+    const double ahead_m = std::copysign(1.0, gone_m) * (s.position_m - from_m);
+    const bool beyond = std::abs(gone_m) > path_m + (ahead_m > kSlipped * path_m ? ahead_m : 0.0);
     periods = beyond ? periods + waited_periods_ : 0;
     return periods > t_.begin_periods;
   };

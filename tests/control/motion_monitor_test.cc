@@ -461,6 +461,28 @@ TEST(MotionMonitor, ATorqueThatGoesThroughZeroIsNotTakenForNone) {
   EXPECT_EQ(reason, Reason::kTorqueWithoutMotion);
 }
 
+// What slipped ahead at break-away stands until its path has come up with it.
+TEST(MotionMonitor, AnAxisAheadOfItsPathIsWaitedFor) {
+  MonitoredAxis axis = Axis();
+  axis.in_cascade = true;
+  MotionMonitor monitor(axis, {}, kPeriod_s);
+  const double path_m = monitor.thresholds().frozen.Path_m(monitor.thresholds().loop_N_m);
+  MotionSample s;
+  s.enabled = s.fresh = true;
+  s.reported_force_N = 45.0;
+  for (int k = 0; s.position_m < s.reference_m + 6.0 * path_m; ++k) {
+    s.reference_m = 1e-7 * k;
+    s.position_m = axis.count_m * std::floor(3.0 * s.reference_m / axis.count_m);
+    ASSERT_EQ(monitor.Step(s), Reason::kNone) << "period " << k;
+  }
+  for (; s.reference_m < s.position_m; s.reference_m += 1e-8) ASSERT_EQ(monitor.Step(s), Reason::kNone);
+  Reason reason = Reason::kNone;
+  for (; reason == Reason::kNone && s.reference_m < s.position_m + 10.0 * path_m; s.reference_m += 1e-8)
+    reason = monitor.Step(s);
+  EXPECT_NE(reason, Reason::kNone);
+  EXPECT_LT(s.reference_m - s.position_m, 2.0 * path_m);
+}
+
 // What friction and outside forces do not explain has moved the axis, whatever flickers.
 TEST(MotionMonitor, ATorqueThatGrowsUnderAReadingThatFlickersIsSeenAtRest) {
   MonitoredAxis axis = Axis();
