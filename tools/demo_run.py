@@ -25,6 +25,8 @@ sys.path.insert(0, str(ROOT / "tools" / "plots"))
 from compare_runs import table_text  # noqa: E402  the path comes first
 
 CONFIG = ROOT / "config" / "xy_emulated.yaml"
+# Rivals without compensation hold the axes more softly: a frozen encoder shows later, and takes more room.
+ROOM = [f"axes.{axis}.limits.safe_travel_mm=6" for axis in "xy"]
 # The paper's circle, amplitude 1e-4 m: sin(pi t / 4), and pi/4 Hz. The first turn is not scored.
 PROGRAMS = {
     "circle_100um_slow": "shape: circle\nradius_mm: 0.1\nfrequency_hz: 0.125\nturns: 2\n",
@@ -68,7 +70,7 @@ class Daemon:
         self._folder = tempfile.mkdtemp(prefix="contour_demo_")
         self.socket = str(Path(self._folder) / "control")
         port = free_port()
-        settings = ["realtime.required=false", f"io.modbus.port={port}", f"emulator.io.port={port}"]
+        settings = ["realtime.required=false", f"io.modbus.port={port}", f"emulator.io.port={port}", *ROOM]
         if (os.cpu_count() or 1) < 2:
             settings.append("realtime.cpu=0")
         self._command = [str(binaries / "contourd"), "--config", str(CONFIG), "--controller", controller,
@@ -164,7 +166,8 @@ def run_in_real_time(binaries, programs, out):
 def simulate(binaries, out, controller, program):
     directory = out / "virtual" / f"{program.stem}_{controller}"
     result = subprocess.run([binaries / "contour", "simulate", "--config", CONFIG, "--program", program,
-                             "--controller", controller, "--out", directory],
+                             "--controller", controller, "--out", directory,
+                             *[word for setting in ROOM for word in ("--set", setting)]],
                             capture_output=True, text=True, check=False)
     if result.returncode != 0:
         raise DemoError(f"contour simulate with {controller} failed: {result.stderr.strip()}")
