@@ -41,7 +41,7 @@ enum class Next { kSameRound, kNextRound, kEnd };
 struct Seen {
   std::vector<Scored> scored;
   Gate gate;
-  Gate search;  ///< for the rivals that are to be fitted
+  Gate search;  ///< for the hypotheses that are to be fitted
   Jitter jitter;
   bool jitter_there = false;
 };
@@ -52,20 +52,20 @@ bool Known(const std::string& kind, const Diagnosis& out) {
 
 /// Where one of them will be in the model next time around: their kinds; what could be found of the others
 /// is not asked before. Else none.
-std::vector<std::string> ThoseWithoutDoubt(const std::vector<Rival>& rivals) {
+std::vector<std::string> ThoseWithoutDoubt(const std::vector<Hypothesis>& hypotheses) {
   std::vector<std::string> out;
-  if (rivals.empty() || rivals[0].no_fault || rivals[0].score < kNoDoubt) return out;
-  for (const Rival& r : rivals) out.push_back(r.effect().kind);
+  if (hypotheses.empty() || hypotheses[0].no_fault || hypotheses[0].score < kNoDoubt) return out;
+  for (const Hypothesis& r : hypotheses) out.push_back(r.effect().kind);
   return out;
 }
 
 /// Those that are promised most; where all of them come to nothing in the fit, the next ones.
-std::vector<Rival> RivalsThatMayHold(const Problem& problem, const Fit& current,
+std::vector<Hypothesis> HypothesesThatMayHold(const Problem& problem, const Fit& current,
                                      const std::vector<Scored>& scored, const Gate& gate,
                                      std::vector<std::string>& tried) {
   for (;;) {
-    std::vector<Rival> rivals = FitRivals(problem, current, scored, gate, tried);
-    if (rivals.empty() || MayHold(problem, rivals, gate)) return rivals;
+    std::vector<Hypothesis> hypotheses = FitHypotheses(problem, current, scored, gate, tried);
+    if (hypotheses.empty() || MayHold(problem, hypotheses, gate)) return hypotheses;
     if (!MorePromised(problem, scored, gate, tried)) return {};
   }
 }
@@ -124,13 +124,13 @@ Next TryOthers(const Seen& seen, Rounds& r) {
   return Next::kSameRound;
 }
 
-/// The first of the rivals, once it holds.
-Next Take(const std::vector<Rival>& rivals, const Gate& gate, Rounds& r) {
+/// The first of the hypotheses, once it holds.
+Next Take(const std::vector<Hypothesis>& hypotheses, const Gate& gate, Rounds& r) {
   r.tried.clear();
-  const std::string kind = rivals[0].effect().kind;
+  const std::string kind = hypotheses[0].effect().kind;
   // A further order of what is known takes no other cause's place.
   const bool further = Known(kind, r.out) && r.further_orders++ < r.options.most_effects;
-  AcceptFirst(r.problem, rivals, gate, r.accepted, r.out);
+  AcceptFirst(r.problem, hypotheses, gate, r.accepted, r.out);
   if (Outside(kind)) return Next::kEnd;
   return further ? Next::kSameRound : Next::kNextRound;
 }
@@ -138,27 +138,27 @@ Next Take(const std::vector<Rival>& rivals, const Gate& gate, Rounds& r) {
 Next OneRound(int round, Rounds& r) {
   Say(r.options, "candidates", 0.2 + 0.25 * round);
   const Seen seen = Look(r);
-  Say(r.options, "rivals", 0.3 + 0.25 * round);
-  std::vector<Rival> rivals = RivalsThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.search, r.tried);
-  StateDetectable(seen, ThoseWithoutDoubt(rivals), r);
-  if (rivals.empty()) return EndWithJitter(seen, r);
+  Say(r.options, "candidate hypotheses", 0.3 + 0.25 * round);
+  std::vector<Hypothesis> hypotheses = HypothesesThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.search, r.tried);
+  StateDetectable(seen, ThoseWithoutDoubt(hypotheses), r);
+  if (hypotheses.empty()) return EndWithJitter(seen, r);
   // Noise as the best candidate leaves it.
-  r.problem.LearnNoise(rivals[0].fit.point);
-  Say(r.options, "rivals under the noise that is left", 0.35 + 0.25 * round);
-  FitAgain(r.problem, r.accepted.fit, rivals);
-  if (rivals[0].no_fault && rivals[0].score > Asked(r.problem, rivals[0], seen.gate)) {
+  r.problem.LearnNoise(hypotheses[0].fit.point);
+  Say(r.options, "candidate hypotheses under the noise that is left", 0.35 + 0.25 * round);
+  FitAgain(r.problem, r.accepted.fit, hypotheses);
+  if (hypotheses[0].no_fault && hypotheses[0].score > Asked(r.problem, hypotheses[0], seen.gate)) {
     // No cause of a deviation, but there; unless the model has it, others stand for it.
-    r.accepted.fit = std::move(rivals[0].fit);
+    r.accepted.fit = std::move(hypotheses[0].fit);
     r.tried.clear();
     return Next::kSameRound;
   }
-  std::erase_if(rivals, [](const Rival& rival) { return rival.no_fault; });
-  if (rivals.empty() || rivals[0].given_up) return EndWithJitter(seen, r);
-  TellEvidence(r.problem, r.accepted, seen.scored, rivals, seen.gate, r.options);
-  const Choice choice = ChooseFirst(r.problem, r.accepted.fit, seen.gate, rivals);
+  std::erase_if(hypotheses, [](const Hypothesis& hypothesis) { return hypothesis.no_fault; });
+  if (hypotheses.empty() || hypotheses[0].given_up) return EndWithJitter(seen, r);
+  TellEvidence(r.problem, r.accepted, seen.scored, hypotheses, seen.gate, r.options);
+  const Choice choice = ChooseFirst(r.problem, r.accepted.fit, seen.gate, hypotheses);
   if (seen.jitter_there) {
     // A mean effect that the variance was about leaves none behind.
-    const Jitter left = TestJitter(r.problem, rivals[0].fit);
+    const Jitter left = TestJitter(r.problem, hypotheses[0].fit);
     if (left.drop > kJitterLeft * seen.jitter.drop && (!choice.found || left.drop > choice.tested)) {
       AcceptJitter(r.problem, r.nominal.fit, left, r.out);
       r.jitter_known = true;
@@ -166,7 +166,7 @@ Next OneRound(int round, Rounds& r) {
       return choice.found ? Next::kNextRound : Next::kEnd;
     }
   }
-  return choice.found ? Take(rivals, seen.gate, r) : TryOthers(seen, r);
+  return choice.found ? Take(hypotheses, seen.gate, r) : TryOthers(seen, r);
 }
 
 }  // namespace

@@ -130,11 +130,11 @@ Experiment GrowingReversalsOrChirp(const Problem& problem, bool among_couplings)
 }
 
 Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
-                              const std::vector<std::string>& rivals) {
+                              const std::vector<std::string>& hypotheses) {
   const CauseDefinition& cause = CauseNamed(kind);
   if (cause.experiment == nullptr) return {};
   const bool among_couplings = std::any_of(
-      rivals.begin(), rivals.end(), [](const std::string& rival) { return *CauseNamed(rival).coupling; });
+      hypotheses.begin(), hypotheses.end(), [](const std::string& hypothesis) { return *CauseNamed(hypothesis).coupling; });
   return (*cause.experiment)(problem, among_couplings);
 }
 

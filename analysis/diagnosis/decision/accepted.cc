@@ -25,12 +25,12 @@ constexpr double kAlike = 0.03, kAlikeByAnotherLaw = 0.1;
 // An element in presliding is a neighbour's name for another law, and leaves more than a right name does.
 constexpr double kLeftByAnotherLaw = 0.05;
 
-/// What the rivals scored, and which of them cannot be told from the first.
-void NoteRivals(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate,
+/// What the hypotheses scored, and which of them cannot be told from the first.
+void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate,
                 const Accepted& accepted, Cause& cause, Diagnosis& out) {
-  const Rival& best = rivals[0];
+  const Hypothesis& best = hypotheses[0];
   const double alike = OfAnotherLaw(problem, accepted.fit) ? kAlikeByAnotherLaw : kAlike;
-  for (const Rival& r : rivals) {
+  for (const Hypothesis& r : hypotheses) {
     const std::string& kind = r.effect().kind;
     for (Candidate& c : out.candidates)
       if (c.kind == kind && std::isnan(c.refitted)) {
@@ -57,13 +57,13 @@ Gate GateOf(const Problem& problem, const Accepted& accepted, std::span<const Sc
   return gate;
 }
 
-void AcceptFirst(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate,
+void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate,
                  Accepted& accepted, Diagnosis& out) {
-  const Rival& best = rivals[0];
+  const Hypothesis& best = hypotheses[0];
   Cause cause;
   cause.kind = best.effect().kind;
   cause.log_evidence_gain = 0.5 * best.score;
-  NoteRivals(problem, rivals, gate, accepted, cause, out);
+  NoteHypotheses(problem, hypotheses, gate, accepted, cause, out);
   const Experiment experiment = DecidingExperiment(problem, cause.kind, cause.indistinguishable_from);
   cause.deciding_experiment = experiment.text;
   cause.deciding_program = experiment.program;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/diagnosis/decision/gate.h"
-#include "analysis/diagnosis/decision/rivals.h"
+#include "analysis/diagnosis/decision/hypotheses.h"
 #include "analysis/diagnosis/result/diagnose_options.h"
 #include "analysis/diagnosis/result/finding.h"
 
@@ -27,9 +27,9 @@ struct Accepted {
 Gate GateOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
             double by_extras, const DiagnoseOptions& options);
 
-/// Takes the first of the rivals into the model and says so in `out`: its cause, what cannot be told from it,
+/// Takes the first of the hypotheses into the model and says so in `out`: its cause, what cannot be told from it,
 /// the experiment that would decide.
-void AcceptFirst(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate,
+void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate,
                  Accepted& accepted, Diagnosis& out);
 
 }  // namespace contour::diagnosis

@@ -16,7 +16,7 @@ constexpr double kConsistent = 1.2;
 constexpr double kStillThere = 0.6;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
-bool Holds(const Problem& problem, const Fit& current, const Rival& r, double tested, const Gate& gate) {
+bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested, const Gate& gate) {
   // From outside the catalogue only what is beyond doubt.
   const double least = Asked(problem, r, gate);
   if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
@@ -35,16 +35,16 @@ bool Holds(const Problem& problem, const Fit& current, const Rival& r, double te
   return tested > kNoChance && Consistency(problem, current, r.fit, false) > kNotOneEvent;
 }
 
-/// The rival itself, or a number of the base behind it that the log says more about, where that is not for
+/// The hypothesis itself, or a number of the base behind it that the log says more about, where that is not for
 /// the same reason: a score is worth what its scatter from block to block leaves of it.
-std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::vector<Rival>& rivals,
+std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::vector<Hypothesis>& hypotheses,
                         std::size_t holds, const Gate& gate, double& tested) {
   std::size_t surest = holds;
-  for (std::size_t i = holds + 1; i < rivals.size(); ++i) {
-    if (!InBase(problem, rivals[i].effect().kind)) continue;
-    const double score = TestedScore(problem, current, rivals[i]);
-    if (score <= tested || !Holds(problem, current, rivals[i], score, gate) ||
-        !StandsBeside(problem, rivals[holds].fit, rivals[i]))
+  for (std::size_t i = holds + 1; i < hypotheses.size(); ++i) {
+    if (!InBase(problem, hypotheses[i].effect().kind)) continue;
+    const double score = TestedScore(problem, current, hypotheses[i]);
+    if (score <= tested || !Holds(problem, current, hypotheses[i], score, gate) ||
+        !StandsBeside(problem, hypotheses[holds].fit, hypotheses[i]))
       continue;
     surest = i;
     tested = score;
@@ -54,36 +54,36 @@ std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::v
 
 }  // namespace
 
-double Asked(const Problem& problem, const Rival& r, const Gate& gate) {
+double Asked(const Problem& problem, const Hypothesis& r, const Gate& gate) {
   // Nothing is left of what nobody has found yet.
   const Showing showing = gate.accepted > 0 ? ShowingOf(problem, r.fit) : Showing{};
   return Threshold(problem, gate, r.effect(), showing);
 }
 
-bool StandsBeside(const Problem& problem, const Fit& other, const Rival& r) {
+bool StandsBeside(const Problem& problem, const Fit& other, const Hypothesis& r) {
   const SharedEffect& effect = r.fit.point.effects.back();
   if (!effect->signals && !InBase(problem, effect->kind)) return false;
   return ScoreEffects(problem, other, {effect})[0].drop > kStillThere * (r.score + Penalty(*effect));
 }
 
-Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Rival>& rivals) {
+Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Hypothesis>& hypotheses) {
   Choice choice;
-  for (std::size_t i = 0; i < rivals.size() && !choice.found; ++i) {
-    if (rivals[i].given_up) continue;
-    if (i > 0 && rivals[i].score < 0.3 * rivals[0].score && !InBase(problem, rivals[i].effect().kind))
+  for (std::size_t i = 0; i < hypotheses.size() && !choice.found; ++i) {
+    if (hypotheses[i].given_up) continue;
+    if (i > 0 && hypotheses[i].score < 0.3 * hypotheses[0].score && !InBase(problem, hypotheses[i].effect().kind))
       continue;
-    const double score = TestedScore(problem, current, rivals[i]);
+    const double score = TestedScore(problem, current, hypotheses[i]);
     if (i == 0) choice.tested = score;
-    rivals[i].refused = !Holds(problem, current, rivals[i], score, gate);
-    if (rivals[i].refused) continue;
+    hypotheses[i].refused = !Holds(problem, current, hypotheses[i], score, gate);
+    if (hypotheses[i].refused) continue;
     choice.found = true;
     choice.tested = score;
-    const std::size_t chosen = SurerNumber(problem, current, rivals, i, gate, choice.tested);
+    const std::size_t chosen = SurerNumber(problem, current, hypotheses, i, gate, choice.tested);
     if (chosen == 0) continue;
-    std::rotate(rivals.begin(), rivals.begin() + static_cast<std::ptrdiff_t>(chosen),
-                rivals.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
-    rivals[0].fit = FitOn(problem, std::move(rivals[0].fit), {.most_steps = 4, .most_refreshes = 2});
-    rivals[0].score = DropOf(problem, current, rivals[0].fit) - Penalty(rivals[0].effect());
+    std::rotate(hypotheses.begin(), hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen),
+                hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
+    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), {.most_steps = 4, .most_refreshes = 2});
+    hypotheses[0].score = DropOf(problem, current, hypotheses[0].fit) - Penalty(hypotheses[0].effect());
   }
   return choice;
 }

@@ -3,24 +3,24 @@
 #include <vector>
 
 #include "analysis/diagnosis/decision/gate.h"
-#include "analysis/diagnosis/decision/rivals.h"
+#include "analysis/diagnosis/decision/hypotheses.h"
 
 namespace contour::diagnosis {
 
-/// What a rival's score must exceed.
-double Asked(const Problem& problem, const Rival& r, const Gate& gate);
+/// What a hypothesis's score must exceed.
+double Asked(const Problem& problem, const Hypothesis& r, const Gate& gate);
 
 /// Whether what speaks for an effect goes on doing so when another one is in the model: these two do not
 /// explain the same. Of what a test for small sizes says something about.
-bool StandsBeside(const Problem& problem, const Fit& other, const Rival& r);
+bool StandsBeside(const Problem& problem, const Fit& other, const Hypothesis& r);
 
 struct Choice {
-  bool found = false;   ///< the first of the rivals holds
+  bool found = false;   ///< the first of the hypotheses holds
   double tested = 0.0;  ///< its tested score; of the best where none holds
 };
 
-/// The best of the rivals, or the next that holds where the best does not, goes to their front. Those that do
+/// The best of the hypotheses, or the next that holds where the best does not, goes to their front. Those that do
 /// not hold are marked as refused.
-Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Rival>& rivals);
+Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Hypothesis>& hypotheses);
 
 }  // namespace contour::diagnosis

@@ -18,7 +18,7 @@ constexpr double kFarOut = -1e6;
 }  // namespace
 
 void TellEvidence(const Problem& problem, const Accepted& accepted, const std::vector<Scored>& scored,
-                  const std::vector<Rival>& rivals, const Gate& gate, const DiagnoseOptions& options) {
+                  const std::vector<Hypothesis>& hypotheses, const Gate& gate, const DiagnoseOptions& options) {
   if (!options.evidence) return;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> told;
@@ -37,7 +37,7 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
     e.refitted = e.tested = e.unseen = kNone;
     e.flips = gate.calibrated;
     e.asked = Threshold(problem, gate, *s.effect, ShowingOf(problem, s));
-    for (const Rival& r : rivals) {
+    for (const Hypothesis& r : hypotheses) {
       if (r.effect().kind != kind || r.score < kFarOut || r.given_up) continue;
       e.penalty = Penalty(r.effect());
       e.refitted = r.score + e.penalty;

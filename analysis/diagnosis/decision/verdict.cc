@@ -7,7 +7,7 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
-#include "analysis/diagnosis/decision/rivals.h"
+#include "analysis/diagnosis/decision/hypotheses.h"
 
 namespace contour::diagnosis {
 namespace {

@@ -15,7 +15,7 @@
 namespace contour::diagnosis {
 namespace {
 
-// A cause must also hold in several blocks, in unseen halves and against its rivals, and the rest of the fit
+// A cause must also hold in several blocks, in unseen halves and against its hypotheses, and the rest of the fit
 // takes a part of it over: by recorded machines (docs/diagnosis_results.md).
 constexpr double kBeyondTheGate = 1.6;
 // The same where the size comes from runs at that size.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/decision/rivals.h"
+#include "analysis/diagnosis/decision/hypotheses.h"
 #include "tests/analysis/support/learnt_problem.h"
 
 namespace contour::diagnosis {
@@ -33,13 +33,13 @@ class TestedScoreTest : public testing::Test {
     Point with = base_.point;
     with.effects.push_back(effect_);
     with.amplitudes.emplace_back(effect_->steps.size(), 0.0);
-    rival_.fit = FitPoint(problem_, with);
-    rival_.score = kDrop - Penalty(*effect_);
+    hypothesis_.fit = FitPoint(problem_, with);
+    hypothesis_.score = kDrop - Penalty(*effect_);
   }
 
-  /// Of the rival, where a constant torque that lowers chi^2 by kDrop acts in rows `from` to `to`.
+  /// Of the hypothesis, where a constant torque that lowers chi^2 by kDrop acts in rows `from` to `to`.
   double TestedWith(std::size_t from, std::size_t to) const {
-    const Eigen::VectorXd column = rival_.fit.jacobian.rightCols(1);
+    const Eigen::VectorXd column = hypothesis_.fit.jacobian.rightCols(1);
     const auto first = static_cast<Eigen::Index>(from), count = static_cast<Eigen::Index>(to - from);
     const double all = column.squaredNorm(), own = column.segment(first, count).squaredNorm();
     const double amplitude =
@@ -47,23 +47,23 @@ class TestedScoreTest : public testing::Test {
     Fit current = base_;
     for (std::size_t k = from; k < to; ++k)
       current.residual[k] += amplitude * column(static_cast<Eigen::Index>(k));
-    return TestedScore(problem_, current, rival_);
+    return TestedScore(problem_, current, hypothesis_);
   }
 
   test::LearntProblem made_{test::MakeHiddenAxis(Short())};
   const Problem& problem_ = made_.problem;
   SharedEffect effect_;
   Fit base_;
-  Rival rival_;
+  Hypothesis hypothesis_;
 };
 
 TEST_F(TestedScoreTest, IsTheJointFitsWhereTheEffectIsThereAllTheTime) {
-  EXPECT_GT(TestedWith(0, problem_.rows()), 0.5 * rival_.score);
+  EXPECT_GT(TestedWith(0, problem_.rows()), 0.5 * hypothesis_.score);
 }
 
 TEST_F(TestedScoreTest, IsLittleWhereOneEventMakesIt) {
   const std::size_t block = problem_.rows() / static_cast<std::size_t>(kBlocks);
-  EXPECT_LT(TestedWith(20 * block, 21 * block), 0.1 * rival_.score);
+  EXPECT_LT(TestedWith(20 * block, 21 * block), 0.1 * hypothesis_.score);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace contour::diagnosis {
 
 /// A candidate fitted jointly with the base and with what is accepted already.
-struct Rival {
+struct Hypothesis {
   Fit fit;
   double score = 0.0;    ///< what it lowers chi^2 and prior by, less its penalty
   bool refused = false;  ///< did not hold
@@ -27,7 +27,7 @@ bool Outside(const std::string& kind);
 /// The best of each kind: some of the catalogue, and the best from outside it. The best of them first. None
 /// where the score test promises nothing beyond the gate. What was fitted is added to `tried`; what stands
 /// there is not fitted again.
-std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
                              const Gate& gate, std::vector<std::string>& tried);
 
 /// Whether the score test promises something beyond the gate that has not been tried.
@@ -35,13 +35,13 @@ bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, con
                   const std::vector<std::string>& tried);
 
 /// Whether one of them comes near its gate, or might after a few steps more.
-bool MayHold(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate);
+bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate);
 
-/// Under noise learnt since: the base, and the rivals, those that may still win fitted anew.
-void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals);
+/// Under noise learnt since: the base, and the hypotheses, those that may still win fitted anew.
+void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses);
 
-/// Of a rival, what the gate asks about: the drop of the joint fit, but not more than the score test at its
+/// Of a hypothesis, what the gate asks about: the drop of the joint fit, but not more than the score test at its
 /// own place promises (a cost that is a little rough has lucky points), over the excess of what is left.
-double TestedScore(const Problem& problem, const Fit& current, const Rival& rival);
+double TestedScore(const Problem& problem, const Fit& current, const Hypothesis& hypothesis);
 
 }  // namespace contour::diagnosis

@@ -1,4 +1,4 @@
-#include "analysis/diagnosis/decision/rivals.h"
+#include "analysis/diagnosis/decision/hypotheses.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr std::size_t kMostKinds = 4, kMostTried = 6;
 constexpr double kFewOfMost = 0.1;
 constexpr int kMostTurns = 3;
 constexpr std::size_t kMostKept = 6;
-// Of the best score: rivals below are given up at first, and what is no more than this is no reason to go on.
+// Of the best score: hypotheses below are given up at first, and what is no more than this is no reason to go on.
 constexpr double kGivenUp = 0.02, kAllTheSame = 1e-3;
 constexpr double kMayMatter = 0.3;    // the least share of the best one's score that is tested at all
 constexpr double kMayWin = 0.4;       // the same before the last steps
@@ -32,37 +32,37 @@ constexpr double kNearGate = 0.5;
 
 /// Catalogue first, the best first, those given up at the end; what lies outside it comes first only where it
 /// explains far more.
-void Sort(std::vector<Rival>& rivals) {
-  std::stable_sort(rivals.begin(), rivals.end(), [](const Rival& a, const Rival& b) {
+void Sort(std::vector<Hypothesis>& hypotheses) {
+  std::stable_sort(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& a, const Hypothesis& b) {
     if (a.given_up != b.given_up) return b.given_up;
     const bool x = Outside(a.effect().kind), y = Outside(b.effect().kind);
     return x != y ? y : a.score > b.score;
   });
-  const auto outside = std::find_if(rivals.begin(), rivals.end(),
-                                    [](const Rival& r) { return !r.given_up && Outside(r.effect().kind); });
-  if (outside == rivals.end() || outside == rivals.begin()) return;
-  if (outside->score > 1.3 * std::max(0.0, rivals[0].score) + 25.0)
-    std::rotate(rivals.begin(), outside, outside + 1);
+  const auto outside = std::find_if(hypotheses.begin(), hypotheses.end(),
+                                    [](const Hypothesis& r) { return !r.given_up && Outside(r.effect().kind); });
+  if (outside == hypotheses.end() || outside == hypotheses.begin()) return;
+  if (outside->score > 1.3 * std::max(0.0, hypotheses[0].score) + 25.0)
+    std::rotate(hypotheses.begin(), outside, outside + 1);
 }
 
-bool AddsCoupling(const Problem& problem, const Rival& r) {
+bool AddsCoupling(const Problem& problem, const Hypothesis& r) {
   return CauseNamed(r.effect().kind).coupling && !problem.nominal.two_inertia;
 }
 
 /// Where the fit has gone the cause is not what its name says.
-bool Implausible(const Problem& problem, const Rival& r) {
+bool Implausible(const Problem& problem, const Hypothesis& r) {
   const CauseDefinition& cause = CauseNamed(r.effect().kind);
   return cause.implausible != nullptr &&
          (*cause.implausible)(problem, r.effect(), r.fit.point.amplitudes.back());
 }
 
 /// A coupling that every screw has.
-bool NoFault(const Problem& problem, const Rival& r) {
+bool NoFault(const Problem& problem, const Hypothesis& r) {
   const AxisModel m = problem.Build(r.fit.point);
   return m.two_inertia && m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kNoFault_Hz, 2);
 }
 
-void Judge(const Problem& problem, const Fit& current, Rival& r) {
+void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
   // A start may be no machine at all.
   const bool coupling = AddsCoupling(problem, r);
   const bool out = !std::isfinite(r.fit.cost) || Implausible(problem, r);
@@ -116,14 +116,14 @@ bool Among(const std::vector<std::string>& families, const Scored& s) {
 }
 
 /// Of each kind the best only; sorted before.
-void OneOfEach(std::vector<Rival>& rivals) {
-  std::vector<Rival> out;
-  for (Rival& r : rivals)
-    if (std::none_of(out.begin(), out.end(), [&](const Rival& o) {
+void OneOfEach(std::vector<Hypothesis>& hypotheses) {
+  std::vector<Hypothesis> out;
+  for (Hypothesis& r : hypotheses)
+    if (std::none_of(out.begin(), out.end(), [&](const Hypothesis& o) {
           return o.effect().kind == r.effect().kind && o.no_fault == r.no_fault;
         }))
       out.push_back(std::move(r));
-  rivals = std::move(out);
+  hypotheses = std::move(out);
 }
 
 /// Far from linear: the kind's whole grid at full size shows where to begin. A coupling that every screw has
@@ -210,7 +210,7 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
 
 /// Whether the score test promises enough to be tested beside the best; it says nothing about what is far
 /// from linear.
-bool MayMatter(const std::vector<Scored>& scored, const Rival& r, double best) {
+bool MayMatter(const std::vector<Scored>& scored, const Hypothesis& r, double best) {
   if (!r.effect().start.empty()) return true;
   return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
     return s.effect->kind == r.effect().kind && s.drop > kMayMatter * best - kSmallStill;
@@ -220,10 +220,10 @@ bool MayMatter(const std::vector<Scored>& scored, const Rival& r, double best) {
 /// Where the stated numbers went too far, the fit may be in a wrong place: once more from where they are
 /// stated. One after the other, for the memory.
 void FitAllFromStated(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                      std::vector<Rival>& rivals) {
+                      std::vector<Hypothesis>& hypotheses) {
   const FitEffort effort{.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false};
   double best = 0.0;
-  for (Rival& r : rivals) {
+  for (Hypothesis& r : hypotheses) {
     if (Outside(r.effect().kind)) continue;
     if (!InBase(problem, r.effect().kind) && !MayMatter(scored, r, best)) continue;
     double worth = std::numeric_limits<double>::infinity();
@@ -234,10 +234,10 @@ void FitAllFromStated(const Problem& problem, const Fit& current, const std::vec
 }
 
 /// Those below a share of the best one's score, never the first; sorted before and after.
-void GiveUpFarBehind(const Problem& problem, double share, std::vector<Rival>& rivals) {
-  for (Rival& r : rivals) {
-    if (&r == rivals.data() || r.given_up || InBase(problem, r.effect().kind)) continue;
-    r.given_up = r.score < share * std::max(0.0, rivals[0].score) - kSmallStill;
+void GiveUpFarBehind(const Problem& problem, double share, std::vector<Hypothesis>& hypotheses) {
+  for (Hypothesis& r : hypotheses) {
+    if (&r == hypotheses.data() || r.given_up || InBase(problem, r.effect().kind)) continue;
+    r.given_up = r.score < share * std::max(0.0, hypotheses[0].score) - kSmallStill;
     if (!r.given_up) continue;
     Fit left;
     left.point = std::move(r.fit.point);
@@ -245,22 +245,22 @@ void GiveUpFarBehind(const Problem& problem, double share, std::vector<Rival>& r
     left.promised = r.fit.promised;
     r.fit = std::move(left);
   }
-  Sort(rivals);
+  Sort(hypotheses);
 }
 
 /// The worst of too many go, for the memory; sorted before.
-void KeepBest(const Problem& problem, std::vector<Rival>& rivals) {
+void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
   std::size_t kept = 0;
-  std::erase_if(rivals, [&](const Rival& r) {
+  std::erase_if(hypotheses, [&](const Hypothesis& r) {
     return !InBase(problem, r.effect().kind) && !Outside(r.effect().kind) && kept++ >= kMostKept;
   });
 }
 
 }  // namespace
 
-std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
                              const Gate& gate, std::vector<std::string>& tried) {
-  std::vector<Rival> out;
+  std::vector<Hypothesis> out;
   double best = kNever;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     double most = 0.0;
@@ -280,8 +280,8 @@ std::vector<Rival> FitRivals(const Problem& problem, const Fit& current, const s
   return out;
 }
 
-bool MayHold(const Problem& problem, const std::vector<Rival>& rivals, const Gate& gate) {
-  return std::any_of(rivals.begin(), rivals.end(), [&](const Rival& r) {
+bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate) {
+  return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& r) {
     if (r.given_up) return false;
     const Showing showing = gate.accepted > 0 ? ShowingOf(problem, r.fit) : Showing{};
     return r.score + r.fit.promised > kNearGate * Threshold(problem, gate, r.effect(), showing);
@@ -291,13 +291,13 @@ bool MayHold(const Problem& problem, const std::vector<Rival>& rivals, const Gat
 namespace {
 
 /// The base may lie in another valley since: from there anew, where the score test promises far more than a
-/// rival has, and enough to matter.
-void FitAnew(const Problem& problem, const Fit& current, std::vector<Rival>& rivals) {
-  const double matters = kMayMatter * rivals[0].score;
+/// hypothesis has, and enough to matter.
+void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>& hypotheses) {
+  const double matters = kMayMatter * hypotheses[0].score;
   std::vector<std::size_t> again;
   std::vector<Beginning> beginnings;
-  for (std::size_t i = 0; i < rivals.size(); ++i) {
-    Rival& r = rivals[i];
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    Hypothesis& r = hypotheses[i];
     const bool by_priors = InBase(problem, r.effect().kind);
     if (!by_priors && (!r.effect().signals || OfAnotherLaw(problem, current))) continue;
     const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
@@ -312,8 +312,8 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Rival>& riv
   std::vector<std::size_t> on;
   beginnings.clear();
   for (std::size_t i = 0; i < again.size(); ++i) {
-    Rival& r = rivals[again[i]];
-    Rival anew{std::move(fits[i])};
+    Hypothesis& r = hypotheses[again[i]];
+    Hypothesis anew{std::move(fits[i])};
     Judge(problem, current, anew);
     // Where three steps have not led below the base, more of them do not win.
     const double least = InBase(problem, r.effect().kind) ? r.score : std::max(r.score, matters);
@@ -326,32 +326,32 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Rival>& riv
         {fits[i].point, {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3}, nullptr, &fits[i]});
   fits = FitPoints(problem, std::move(beginnings));
   for (std::size_t i = 0; i < on.size(); ++i) {
-    Rival anew{std::move(fits[i])};
+    Hypothesis anew{std::move(fits[i])};
     Judge(problem, current, anew);
-    if (anew.score > rivals[on[i]].score) rivals[on[i]] = std::move(anew);
+    if (anew.score > hypotheses[on[i]].score) hypotheses[on[i]] = std::move(anew);
   }
 }
 
 }  // namespace
 
-void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) {
+void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses) {
   Rewhiten(problem, current);
-  for (Rival& r : rivals) {
+  for (Hypothesis& r : hypotheses) {
     if (r.given_up) continue;
     RewhitenResidual(problem, r.fit);
     Judge(problem, current, r);
   }
-  Sort(rivals);
+  Sort(hypotheses);
   // What will not be tested needs no sensitivities.
-  GiveUpFarBehind(problem, kMayMatter, rivals);
-  for (Rival& r : rivals)
+  GiveUpFarBehind(problem, kMayMatter, hypotheses);
+  for (Hypothesis& r : hypotheses)
     if (!r.given_up) RewhitenSensitivities(problem, r.fit);
-  // A valley may end in two places: the base goes on from where the best rival's lies, where that is lower.
-  Point other = rivals[0].fit.point;
+  // A valley may end in two places: the base goes on from where the best hypothesis's lies, where that is lower.
+  Point other = hypotheses[0].fit.point;
   other.effects.pop_back();
   other.amplitudes.pop_back();
   const bool there = CostAt(problem, other) < current.cost;
-  const double best = rivals[0].score;
+  const double best = hypotheses[0].score;
   // A base is as well known as the scores need it.
   std::vector<Beginning> beginnings = {
       {there ? std::move(other) : current.point,
@@ -359,8 +359,8 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
        nullptr,
        there ? nullptr : &current}};
   std::vector<std::size_t> again;
-  for (std::size_t i = 0; i < rivals.size(); ++i) {
-    const Rival& r = rivals[i];
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const Hypothesis& r = hypotheses[i];
     if (r.given_up) continue;
     if (i > 0 && r.score < kMayWin * best - kSmallStill) continue;
     again.push_back(i);
@@ -372,24 +372,24 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Rival>& rivals) 
                            .share_enough = i == 0 ? 0.02 * kAllTheSame : kAllTheSame,
                            .from = current.cost},
                           nullptr,
-                          &rivals[i].fit});
+                          &hypotheses[i].fit});
   }
   std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
   current = std::move(fits[0]);
-  for (std::size_t i = 0; i < again.size(); ++i) rivals[again[i]].fit = std::move(fits[i + 1]);
-  for (Rival& r : rivals)
+  for (std::size_t i = 0; i < again.size(); ++i) hypotheses[again[i]].fit = std::move(fits[i + 1]);
+  for (Hypothesis& r : hypotheses)
     if (!r.given_up) Judge(problem, current, r);
-  const Effect* const first = &rivals[0].effect();
-  if (!rivals[0].no_fault) FitAnew(problem, current, rivals);
-  Sort(rivals);
-  OneOfEach(rivals);
-  if (&rivals[0].effect() != first)
-    rivals[0].fit = FitOn(problem, std::move(rivals[0].fit), {.most_steps = 3, .most_refreshes = 2});
+  const Effect* const first = &hypotheses[0].effect();
+  if (!hypotheses[0].no_fault) FitAnew(problem, current, hypotheses);
+  Sort(hypotheses);
+  OneOfEach(hypotheses);
+  if (&hypotheses[0].effect() != first)
+    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), {.most_steps = 3, .most_refreshes = 2});
 }
 
-double TestedScore(const Problem& problem, const Fit& current, const Rival& rival) {
-  const SharedEffect& effect = rival.fit.point.effects.back();
-  double drop = rival.score + Penalty(*effect);
+double TestedScore(const Problem& problem, const Fit& current, const Hypothesis& hypothesis) {
+  const SharedEffect& effect = hypothesis.fit.point.effects.back();
+  double drop = hypothesis.score + Penalty(*effect);
   double most = std::numeric_limits<double>::infinity();
   // Luck does not go that far; a base that lies elsewhere without the effect does.
   if (drop < kNoLuck && effect->start.empty() && !InBase(problem, effect->kind)) {
@@ -398,7 +398,7 @@ double TestedScore(const Problem& problem, const Fit& current, const Rival& riva
     // An effect that is there makes its score scatter from block to block, but not as a single event does.
     most = kMostExcess * again.drop / again.excess;
   }
-  return std::min(drop / ExcessOfLast(problem, rival.fit), most) - Penalty(*effect);
+  return std::min(drop / ExcessOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
 }
 
 }  // namespace contour::diagnosis
