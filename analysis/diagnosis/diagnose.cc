@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/diagnosis/adequacy/leftover.h"
+#include "analysis/diagnosis/adequacy/remaining_structure.h"
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
 #include "analysis/diagnosis/decision/verdict.h"
@@ -55,9 +55,9 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   // 4. Quantification: how large it is, by one fit of all of it.
   const Fit fit = Quantify(problem, nominal.fit, rounds.accepted, options, out);
   // 5. Adequacy: whether something is left that none of it explains.
-  const std::vector<Leftover> left = FindLeftovers(problem, fit, options.false_alarm_rate);
+  const std::vector<RemainingStructure> left = FindStructure(problem, fit, options.false_alarm_rate);
   std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
-  TellLeftovers(rounds.accepted, left, options);
+  TellStructure(rounds.accepted, left, options);
   Conclude(problem, left, out);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)
     out.notes.push_back("No more than " + std::to_string(options.most_effects) +

@@ -49,12 +49,12 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
   }
 }
 
-void TellLeftovers(const Accepted& accepted, const std::vector<Leftover>& left,
+void TellStructure(const Accepted& accepted, const std::vector<RemainingStructure>& left,
                    const DiagnoseOptions& options) {
   if (!options.evidence) return;
-  for (const std::string_view margin : kLeftovers) {
+  for (const std::string_view margin : kStructureClasses) {
     const auto best =
-        std::find_if(left.begin(), left.end(), [&](const Leftover& l) { return l.margin == margin; });
+        std::find_if(left.begin(), left.end(), [&](const RemainingStructure& l) { return l.margin == margin; });
     if (best == left.end()) continue;
     Evidence e;
     e.accepted = static_cast<int>(accepted.places.size());

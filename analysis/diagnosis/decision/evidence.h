@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "analysis/diagnosis/adequacy/leftover.h"
+#include "analysis/diagnosis/adequacy/remaining_structure.h"
 #include "analysis/diagnosis/decision/accepted.h"
 
 namespace contour::diagnosis {
@@ -14,7 +14,7 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
                   const std::vector<Hypothesis>& hypotheses, const Gate& gate, const DiagnoseOptions& options);
 
 /// Of what is left at the end, the best of each margin.
-void TellLeftovers(const Accepted& accepted, const std::vector<Leftover>& left,
+void TellStructure(const Accepted& accepted, const std::vector<RemainingStructure>& left,
                    const DiagnoseOptions& options);
 
 }  // namespace contour::diagnosis

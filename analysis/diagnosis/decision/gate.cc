@@ -12,7 +12,7 @@
 namespace contour::diagnosis {
 namespace {
 
-// Of numbers of the base beside accepted causes, whose left-overs they may take up; per row.
+// Of numbers of the base beside accepted causes, whose residual leakage they may take up; per row.
 constexpr double kBesidePerRow = 3e-5;
 // Each kind that is a number of the base has this share of the false alarms.
 constexpr double kShareInBase = 0.2;
@@ -121,7 +121,7 @@ double Threshold(const Problem& problem, const Gate& gate, const Effect& effect,
   const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * gate.rate, kBeyondStated));
   if (gate.accepted == 0) return by_chance - Penalty(effect);
   left += kBesidePerRow * static_cast<double>(problem.rows());
-  // At its worst a left-over of chi^2 moves the number by its root, in standard errors of the log.
+  // At its worst residual leakage of chi^2 moves the number by its root, in standard errors of the log.
   const double moved = showing.vague * left;
   left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));
   return std::max(by_chance - Penalty(effect), gate.flips) + left;

@@ -29,10 +29,10 @@ struct Gate {
 /// margins are read off is measured against it.
 Gate WithoutMargins(Gate gate);
 
-/// How a left-over shows in a kind's score.
+/// How residual leakage shows in a kind's score.
 struct Showing {
   double excess = 1.0;  ///< of chance, which scores are divided by
-  /// Of a number of the base: the variance that the log leaves it, over its stated variance. A left-over
+  /// Of a number of the base: the variance that the log leaves it, over its stated variance. Residual leakage
   /// moves the number by so much, and only there lies the evidence.
   double vague = 1.0;
 };

@@ -18,7 +18,7 @@ constexpr double kLargeShare = 0.04;
 // A torque that is left says little about an error of the lead, which shows on the scale alone.
 constexpr double kLargeBesideScale = 0.3;
 
-std::string LeftoverText(const Problem& problem, const Leftover& left) {
+std::string StructureText(const Problem& problem, const RemainingStructure& left) {
   const bool linear = problem.log.linear;
   std::array<char, 200> size{};
   std::snprintf(size.data(), size.size(), "chi^2 falls by %.0f where %.0f is chance; most at %s: %+.3g %s",
@@ -36,10 +36,10 @@ std::string NearestText(const std::vector<Cause>& causes) {
 
 }  // namespace
 
-void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnosis& out) {
+void Conclude(const Problem& problem, const std::vector<RemainingStructure>& left, Diagnosis& out) {
   const bool something = left[0].score > left[0].asked;
   double beyond = 0.0, named = 0.0;
-  for (const Leftover& one : left)
+  for (const RemainingStructure& one : left)
     if (one.score > one.asked && !(one.series && !out.causes.empty()))
       beyond = std::max(beyond, one.drop - one.bins);
   // A shape that was fitted, but is none of the catalogue, is no explanation either.
@@ -51,7 +51,7 @@ void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnos
       out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
                           c.kind.substr(kOutside.size()) + ".");
   std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind); });
-  if (something) out.notes.push_back(LeftoverText(problem, left[0]));
+  if (something) out.notes.push_back(StructureText(problem, left[0]));
   if (unexplained) {
     if (!out.causes.empty()) out.notes.push_back(NearestText(out.causes));
     out.verdict = Verdict::kUnexplained;

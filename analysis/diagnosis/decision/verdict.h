@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "analysis/diagnosis/adequacy/leftover.h"
+#include "analysis/diagnosis/adequacy/remaining_structure.h"
 #include "analysis/diagnosis/result/finding.h"
 
 namespace contour::diagnosis {
@@ -10,6 +10,6 @@ namespace contour::diagnosis {
 /// From the causes that were accepted and from what they leave, the largest first: the verdict, and notes in
 /// plain words. Where what is left exceeds what is asked of it and is a large part of all there is to
 /// explain, no cause keeps its name.
-void Conclude(const Problem& problem, const std::vector<Leftover>& left, Diagnosis& out);
+void Conclude(const Problem& problem, const std::vector<RemainingStructure>& left, Diagnosis& out);
 
 }  // namespace contour::diagnosis

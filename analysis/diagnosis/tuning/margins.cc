@@ -23,7 +23,7 @@ const ErrorScore& Of(std::string_view kind) {
 double AllShares() {
   double sum = 0.0;
   for (const ErrorScore& e : kTable)
-    if (!IsLeftover(e.kind)) sum += e.share;
+    if (!IsStructureClass(e.kind)) sum += e.share;
   return sum;
 }
 
@@ -31,7 +31,7 @@ double AllShares() {
 
 double MarginPerRow(std::string_view kind, double false_alarm_rate) {
   // Have parts of the rate for themselves.
-  if (IsLeftover(kind))
+  if (IsStructureClass(kind))
     return 1e-5 * Of(kind).scale * std::max(0.0, std::log(Of(kind).share / false_alarm_rate));
   // Each kind alarms in proportion to how often it exceeds: exp(-margin / scale) is the same for all.
   static const double all = AllShares();

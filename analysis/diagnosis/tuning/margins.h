@@ -13,9 +13,9 @@ inline constexpr double kCalibratedRate = 0.05;
 inline constexpr std::string_view kUnexplainedAll = "unexplained";
 inline constexpr std::string_view kUnexplainedTorque = "unexplained:torque of time";
 inline constexpr std::string_view kUnexplainedFriction = "unexplained:friction of time";
-inline constexpr std::array kLeftovers = {kUnexplainedAll, kUnexplainedTorque, kUnexplainedFriction};
+inline constexpr std::array kStructureClasses = {kUnexplainedAll, kUnexplainedTorque, kUnexplainedFriction};
 
-constexpr bool IsLeftover(std::string_view kind) { return kind.starts_with(kUnexplainedAll); }
+constexpr bool IsStructureClass(std::string_view kind) { return kind.starts_with(kUnexplainedAll); }
 
 /// How a kind's scores exceed the sign flips on machines without any effect: in a share of the logs, by
 /// `scale` per 100 000 rows on the average there, exponentially distributed.

@@ -91,9 +91,9 @@ std::string MarginTable(std::istream& evidence) {
       kinds[l.kind].count += 1.0;
       kinds[l.kind].sum += by;
       // A score of another kind, with a part of the rate for itself.
-      if (!diagnosis::IsLeftover(l.kind)) all.push_back(by);
+      if (!diagnosis::IsStructureClass(l.kind)) all.push_back(by);
     } else if (l.log.starts_with("clear_") && l.accepted == 1 && WouldHold(l) &&
-               !diagnosis::IsLeftover(l.kind)) {
+               !diagnosis::IsStructureClass(l.kind)) {
       beside.push_back(l);
     }
   }

@@ -20,8 +20,8 @@ class VerdictTest : public testing::Test {
     return o;
   }
 
-  static Leftover Of(const std::string& over, double beyond) {
-    Leftover one;
+  static RemainingStructure Of(const std::string& over, double beyond) {
+    RemainingStructure one;
     one.over = over;
     one.quantity = Quantity::kPosition;
     one.bins = 90.0;
@@ -44,7 +44,7 @@ class VerdictTest : public testing::Test {
     return d;
   }
 
-  Diagnosis Concluded(Diagnosis d, const std::vector<Leftover>& left) const {
+  Diagnosis Concluded(Diagnosis d, const std::vector<RemainingStructure>& left) const {
     Conclude(problem_, left, d);
     return d;
   }
@@ -94,7 +94,7 @@ TEST_F(VerdictTest, ATorqueMakesAnErrorOfTheLeadNoLessTrueUnlessItIsLarge) {
 }
 
 TEST_F(VerdictTest, FurtherOrdersOfATurnMakeNoNameWrong) {
-  Leftover angle = Of("the angle of the motor and the direction", 1200.0);
+  RemainingStructure angle = Of("the angle of the motor and the direction", 1200.0);
   angle.series = true;
   EXPECT_EQ(Concluded(Named({{"cogging", 8000.0}}), {angle, Of("time", 80.0)}).verdict, Verdict::kCauseFound);
   EXPECT_EQ(Concluded({}, {angle}).verdict, Verdict::kUnexplained);

@@ -1,10 +1,10 @@
-#include "analysis/diagnosis/adequacy/leftover.h"
+#include "analysis/diagnosis/adequacy/remaining_structure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "analysis/diagnosis/adequacy/leftover_maps.h"
+#include "analysis/diagnosis/adequacy/structure_maps.h"
 #include "analysis/diagnosis/screening/firm_slides.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/margins.h"
@@ -49,7 +49,7 @@ double ChiSquareScore(double x, double degrees) {
 
 /// The score that something unknown must exceed.
 double Threshold(const Problem& problem, std::string_view margin, double false_alarm_rate) {
-  const double own = kShare / static_cast<double>(kLeftovers.size()) * false_alarm_rate;
+  const double own = kShare / static_cast<double>(kStructureClasses.size()) * false_alarm_rate;
   const double errors = MarginPerRow(margin, own) * static_cast<double>(problem.rows());
   return std::max(-2.0 * std::log(own), -2.0 * std::log(kCalibratedRate) + errors);
 }
@@ -63,7 +63,7 @@ std::vector<double> Autocorrelation(const std::vector<double>& response) {
 
 }  // namespace
 
-Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<double> gradient,
+RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<double> gradient,
                   const std::vector<double>& response, const std::vector<double>& weight) {
   const std::vector<double> all = TakeOut(known, weight, gradient), correlation = Autocorrelation(response);
   const auto count = static_cast<std::size_t>(rows.count), others = static_cast<std::size_t>(known.count);
@@ -83,7 +83,7 @@ Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<d
     if (known.bin[k] >= 0)
       shared[b * others + static_cast<std::size_t>(known.bin[k])] += size * weight[k] * SizeAt(known, k);
   }
-  Leftover out;
+  RemainingStructure out;
   out.over = rows.over;
   out.quantity = rows.quantity;
   out.series = rows.series;
@@ -107,7 +107,7 @@ Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<d
   return out;
 }
 
-std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, double false_alarm_rate) {
+std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit& fit, double false_alarm_rate) {
   const auto n = static_cast<std::ptrdiff_t>(problem.rows());
   const std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + n);
   const std::vector<double> weight(problem.root_weight.begin(), problem.root_weight.begin() + n);
@@ -116,8 +116,8 @@ std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, doub
   const bool another_law = OfAnotherLaw(problem, fit);
   const std::vector<bool> slides = another_law ? FirmSlides(problem) : Slides(problem);
   const BinnedRows known = FrictionCurve(problem, slides);
-  const std::vector<BinnedRows> maps = LeftoverMaps(problem, slides);
-  std::vector<Leftover> out;
+  const std::vector<BinnedRows> maps = StructureMaps(problem, slides);
+  std::vector<RemainingStructure> out;
   for (const BinnedRows& rows : maps) {
     // Motions take turns over the time, and a law of friction that does not hold is wrong in some of them.
     if (another_law && rows.margin == kUnexplainedFriction) continue;
@@ -126,7 +126,7 @@ std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, doub
     out.back().score = std::max(0.0, out.back().score - 2.0 * std::log(static_cast<double>(maps.size())));
     out.back().asked = Threshold(problem, rows.margin, false_alarm_rate);
   }
-  std::stable_sort(out.begin(), out.end(), [](const Leftover& a, const Leftover& b) {
+  std::stable_sort(out.begin(), out.end(), [](const RemainingStructure& a, const RemainingStructure& b) {
     return a.score - a.asked > b.score - b.asked;
   });
   return out;

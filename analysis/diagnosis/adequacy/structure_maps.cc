@@ -1,4 +1,4 @@
-#include "analysis/diagnosis/adequacy/leftover_maps.h"
+#include "analysis/diagnosis/adequacy/structure_maps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -133,7 +133,7 @@ std::vector<bool> Slides(const Problem& p) {
   return out;
 }
 
-std::vector<BinnedRows> LeftoverMaps(const Problem& problem, const std::vector<bool>& slides) {
+std::vector<BinnedRows> StructureMaps(const Problem& problem, const std::vector<bool>& slides) {
   return Maps(problem, slides).All();
 }
 

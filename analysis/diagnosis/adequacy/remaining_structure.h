@@ -27,7 +27,7 @@ struct BinnedRows {
 
 /// What a residual still has of one quantity, whatever its shape: the drop of chi^2 by a torque (or a level
 /// of friction) that is free in every bin.
-struct Leftover {
+struct RemainingStructure {
   std::string over;
   Quantity quantity = Quantity::kTime;
   bool series = false;
@@ -42,12 +42,12 @@ struct Leftover {
 
 /// `gradient` of |r|^2 / 2 by a torque at each row, `response` of the white residual to a pulse of one,
 /// `weight` per row of that residual. What is constant in each bin of `known` is taken out first.
-Leftover TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<double> gradient,
+RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<double> gradient,
                   const std::vector<double>& response, const std::vector<double>& weight);
 
 /// Of the residual of a fit, for every quantity, the one that is furthest beyond what is asked of it first.
 /// To first order and of slides only; base and effects are not fitted again beside the bins, which makes the
 /// drop a little less than it could be.
-std::vector<Leftover> FindLeftovers(const Problem& problem, const Fit& fit, double false_alarm_rate);
+std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit& fit, double false_alarm_rate);
 
 }  // namespace contour::diagnosis

@@ -1,6 +1,6 @@
 // The statistic on residuals that are made here, so that what is in them is known.
 
-#include "analysis/diagnosis/adequacy/leftover.h"
+#include "analysis/diagnosis/adequacy/remaining_structure.h"
 
 #include <gtest/gtest.h>
 
@@ -72,12 +72,12 @@ void Add(const std::vector<double>& torque, const std::vector<double>& response,
 const std::vector<double> kPulse = {1.0, 0.7, 0.3, -0.2};
 const std::vector<double> kEqual(kRows, 1.0);
 
-TEST(Leftover, OfWhiteNoiseIsAsProbableAsItSays) {
+TEST(RemainingStructure, OfWhiteNoiseIsAsProbableAsItSays) {
   constexpr int kDraws = 200;
   int beyond = 0;
   double bins = 0.0, drop = 0.0;
   for (unsigned seed = 1; seed <= kDraws; ++seed) {
-    const Leftover one = TestBins(Places(), Nothing(), GradientOf(White(seed), kPulse), kPulse, kEqual);
+    const RemainingStructure one = TestBins(Places(), Nothing(), GradientOf(White(seed), kPulse), kPulse, kEqual);
     beyond += one.score > -2.0 * std::log(0.05);
     drop += one.drop;
     bins += one.bins;
@@ -87,20 +87,20 @@ TEST(Leftover, OfWhiteNoiseIsAsProbableAsItSays) {
   EXPECT_LE(beyond, 20);  // 10 are expected
 }
 
-TEST(Leftover, SaysWhereAndHowMuch) {
+TEST(RemainingStructure, SaysWhereAndHowMuch) {
   std::vector<double> residual = White(3), torque(kRows, 0.0);
   const BinnedRows places = Places();
   for (std::size_t k = 0; k < kRows; ++k)
     if (places.bin[k] == 31) torque[k] = -0.5;  // the model lacks +0.5 there
   Add(torque, kPulse, residual);
-  const Leftover one = TestBins(places, Nothing(), GradientOf(residual, kPulse), kPulse, kEqual);
+  const RemainingStructure one = TestBins(places, Nothing(), GradientOf(residual, kPulse), kPulse, kEqual);
   EXPECT_GT(one.score, 100.0);
   EXPECT_EQ(one.over, "the position");
   EXPECT_EQ(one.at, "place 31");
   EXPECT_NEAR(one.amount, 0.5, 0.1);
 }
 
-TEST(Leftover, WhatIsKnownIsTakenOutAndDoesNotCount) {
+TEST(RemainingStructure, WhatIsKnownIsTakenOutAndDoesNotCount) {
   // A friction level that is off shows at every place in both directions.
   std::vector<double> residual = White(5);
   Add(
@@ -116,12 +116,12 @@ TEST(Leftover, WhatIsKnownIsTakenOutAndDoesNotCount) {
   for (std::size_t k = 0; k < kRows; ++k) ways.bin[k] += friction.size[k] > 0.0 ? kBins : 0;
   const std::vector<double> gradient = GradientOf(residual, kPulse);
   EXPECT_GT(TestBins(ways, Nothing(), gradient, kPulse, kEqual).score, 200.0);
-  const Leftover without = TestBins(ways, friction, gradient, kPulse, kEqual);
+  const RemainingStructure without = TestBins(ways, friction, gradient, kPulse, kEqual);
   EXPECT_LT(without.score, 12.0);
   EXPECT_NEAR(without.bins, 2.0 * kBins - 1.0, 0.1);
 }
 
-TEST(Leftover, RowsThatWeighLittleSayLittle) {
+TEST(RemainingStructure, RowsThatWeighLittleSayLittle) {
   const BinnedRows places = Places();
   std::vector<double> weight(kRows), torque(kRows, 0.0), residual = White(7);
   for (std::size_t k = 0; k < kRows; ++k) {
