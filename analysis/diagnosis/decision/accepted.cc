@@ -23,7 +23,7 @@ constexpr double kOffStated = 1e-4;
 // part in the difference, and constant torque and asymmetry differ at reversals only, which do not count.
 constexpr double kAlike = 0.03, kAlikeByAnotherLaw = 0.1;
 // An element in presliding is a neighbour's name for another law, and leaves more than a right name does.
-constexpr double kLeftByAnotherLaw = 0.05;
+constexpr double kLeakageByAnotherLaw = 0.05;
 
 /// What the hypotheses scored, and which of them cannot be told from the first.
 void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate,
@@ -51,9 +51,9 @@ Gate GateOf(const Problem& problem, const Accepted& accepted, std::span<const Sc
             double by_extras, const DiagnoseOptions& options) {
   Gate gate = SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
   gate.accepted = static_cast<int>(accepted.places.size());
-  gate.left = accepted.left +
-              (OfAnotherLaw(problem, accepted.fit) ? kLeftByAnotherLaw * accepted.in_presliding : 0.0);
-  gate.left_of_kind = accepted.left_of_kind;
+  gate.leakage = accepted.leakage +
+              (OfAnotherLaw(problem, accepted.fit) ? kLeakageByAnotherLaw * accepted.in_presliding : 0.0);
+  gate.leakage_of_kind = accepted.leakage_of_kind;
   return gate;
 }
 
@@ -67,7 +67,7 @@ void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypothes
   const Experiment experiment = DecidingExperiment(problem, cause.kind, cause.indistinguishable_from);
   cause.deciding_experiment = experiment.text;
   cause.deciding_program = experiment.program;
-  accepted.scatter.push_back(ExcessOfLast(problem, best.fit) * kFewStrokes * kFewStrokes);
+  accepted.scatter.push_back(OverdispersionOfLast(problem, best.fit) * kFewStrokes * kFewStrokes);
   std::vector<BlockGain> blocks;
   HeldOutGain(problem, accepted.fit, best.fit, CauseNamed(cause.kind).judged_at_scale, cause, blocks);
   if (out.causes.empty()) out.blocks = blocks;
@@ -76,8 +76,8 @@ void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypothes
   const std::string& kind = best.effect().kind;
   accepted.explained += best.score;
   if (CauseNamed(kind).takes_up_another_law) accepted.in_presliding = best.score;
-  accepted.left += UnlikeShare(kind) * best.score;
-  accepted.left_of_kind[kind] += LikeShare(kind) * best.score;
+  accepted.leakage += LeakageShare(kind) * best.score;
+  accepted.leakage_of_kind[kind] += LeakageShareOfItsKind(kind) * best.score;
   accepted.fit = best.fit;
 }
 

@@ -19,8 +19,8 @@ struct Accepted {
   std::vector<double> scatter;      ///< of their residuals from block to block, over white noise's
   double explained = 0.0;           ///< drop by what is accepted
   double in_presliding = 0.0;       ///< by an element in presliding
-  double left = 0.0;                ///< what of their scores may look like other causes
-  std::map<std::string, double> left_of_kind;
+  double leakage = 0.0;                ///< what of their scores may look like other causes
+  std::map<std::string, double> leakage_of_kind;
 };
 
 /// What a score must exceed beside what is accepted.

@@ -56,8 +56,8 @@ std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::v
 
 double Asked(const Problem& problem, const Hypothesis& r, const Gate& gate) {
   // Nothing is left of what nobody has found yet.
-  const Showing showing = gate.accepted > 0 ? ShowingOf(problem, r.fit) : Showing{};
-  return Threshold(problem, gate, r.effect(), showing);
+  const ScoreScale score_scale = gate.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
+  return Threshold(problem, gate, r.effect(), score_scale);
 }
 
 bool StandsBeside(const Problem& problem, const Fit& other, const Hypothesis& r) {

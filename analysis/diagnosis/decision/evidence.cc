@@ -33,10 +33,10 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
     e.kind = kind;
     e.screened = s.drop;
     e.penalty = Penalty(*s.effect);
-    e.excess = s.excess;
+    e.overdispersion = s.overdispersion;
     e.refitted = e.tested = e.unseen = kNone;
     e.flips = gate.calibrated;
-    e.asked = Threshold(problem, gate, *s.effect, ShowingOf(problem, s));
+    e.asked = Threshold(problem, gate, *s.effect, ScoreScaleOf(problem, s));
     for (const Hypothesis& r : hypotheses) {
       if (r.effect().kind != kind || r.score < kFarOut || r.given_up) continue;
       e.penalty = Penalty(r.effect());

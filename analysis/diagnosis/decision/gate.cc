@@ -36,7 +36,7 @@ Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uin
     for (const Scored& s : scored) {
       if (s.effect->wave && s.effect->grid >= 12.0) continue;  // a scan's
       const Eigen::VectorXd h = s.per_block * signs;
-      best = std::max(best, h.dot(s.covariance * h) / s.excess - Penalty(*s.effect));
+      best = std::max(best, h.dot(s.covariance * h) / s.overdispersion - Penalty(*s.effect));
     }
     largest.push_back(best);
   }
@@ -56,20 +56,20 @@ Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uin
 
 Gate WithoutMargins(Gate gate) {
   gate.margins = false;
-  gate.left = 0.0;
-  gate.left_of_kind.clear();
+  gate.leakage = 0.0;
+  gate.leakage_of_kind.clear();
   return gate;
 }
 
-double Gate::LeftAs(const std::string& kind) const {
-  const auto same = left_of_kind.find(kind);
-  return left + (same == left_of_kind.end() ? 0.0 : same->second);
+double Gate::LeakageAs(const std::string& kind) const {
+  const auto same = leakage_of_kind.find(kind);
+  return leakage + (same == leakage_of_kind.end() ? 0.0 : same->second);
 }
 
 namespace {
 
 /// `covariance`: of what the log says about the numbers that the kind frees.
-double VagueBy(const Problem& problem, const std::string& kind, const Eigen::MatrixXd& covariance) {
+double VarianceRatio(const Problem& problem, const std::string& kind, const Eigen::MatrixXd& covariance) {
   // All forces at once: what the log leaves of each of them counts.
   if (CauseNamed(kind).common_factor || !InBase(problem, kind)) return 1.0;
   const std::vector<std::size_t> terms = FreedTerms(problem, kind);
@@ -90,39 +90,39 @@ double Threshold(const Problem& problem, const Gate& gate, std::string_view kind
 
 }  // namespace
 
-Showing ShowingOf(const Problem& problem, const Scored& scored) {
-  return {scored.excess, VagueBy(problem, scored.effect->kind, scored.covariance)};
+ScoreScale ScoreScaleOf(const Problem& problem, const Scored& scored) {
+  return {scored.overdispersion, VarianceRatio(problem, scored.effect->kind, scored.covariance)};
 }
 
-Showing ShowingOf(const Problem& problem, const Fit& fit) {
-  Showing showing;
+ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit) {
+  ScoreScale score_scale;
   const std::string& kind = fit.point.effects.back()->kind;
   if (!InBase(problem, kind)) {
-    showing.excess = ExcessOfLast(problem, fit);
-    return showing;
+    score_scale.overdispersion = OverdispersionOfLast(problem, fit);
+    return score_scale;
   }
   const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
   // The base's term goes on having its prior; what is free scatters by as much more.
-  showing.vague = CauseNamed(kind).common_factor
+  score_scale.variance_ratio = CauseNamed(kind).common_factor
                       ? 1.0
-                      : std::max(0.0, VagueBy(problem, kind, fit.covariance.bottomRightCorner(n, n)) - 1.0);
-  return showing;
+                      : std::max(0.0, VarianceRatio(problem, kind, fit.covariance.bottomRightCorner(n, n)) - 1.0);
+  return score_scale;
 }
 
 double Threshold(const Problem& problem, const Gate& gate) {
-  return Threshold(problem, gate, "") + gate.left;
+  return Threshold(problem, gate, "") + gate.leakage;
 }
 
-double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const Showing& showing) {
-  double left = gate.LeftAs(effect.kind);
-  if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind) + left / showing.excess;
+double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const ScoreScale& score_scale) {
+  double left = gate.LeakageAs(effect.kind);
+  if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind) + left / score_scale.overdispersion;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
   const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * gate.rate, kBeyondStated));
   if (gate.accepted == 0) return by_chance - Penalty(effect);
   left += kBesidePerRow * static_cast<double>(problem.rows());
   // At its worst residual leakage of chi^2 moves the number by its root, in standard errors of the log.
-  const double moved = showing.vague * left;
+  const double moved = score_scale.variance_ratio * left;
   left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));
   return std::max(by_chance - Penalty(effect), gate.flips) + left;
 }

@@ -16,13 +16,13 @@ struct Gate {
   double calibrated = 0.0;  ///< the same at the rate of the calibration
   double rate = 0.05;       ///< of false alarms
   int accepted = 0;         ///< causes that are accepted already
-  double left = 0.0;        ///< what of their scores may look like other causes
+  double leakage = 0.0;        ///< what of their scores may look like other causes
   /// The same, as another cause of a kind that is among them: harmonics, neighbouring orders.
-  std::map<std::string, double> left_of_kind = {};
+  std::map<std::string, double> leakage_of_kind = {};
 
   bool margins = true;  ///< for the model's own errors
 
-  [[nodiscard]] double LeftAs(const std::string& kind) const;
+  [[nodiscard]] double LeakageAs(const std::string& kind) const;
 };
 
 /// By chance alone, but for numbers of the base: no margins, and nothing left of accepted causes. What the
@@ -30,23 +30,23 @@ struct Gate {
 Gate WithoutMargins(Gate gate);
 
 /// How residual leakage shows in a kind's score.
-struct Showing {
-  double excess = 1.0;  ///< of chance, which scores are divided by
+struct ScoreScale {
+  double overdispersion = 1.0;  ///< of chance, which scores are divided by
   /// Of a number of the base: the variance that the log leaves it, over its stated variance. Residual leakage
   /// moves the number by so much, and only there lies the evidence.
-  double vague = 1.0;
+  double variance_ratio = 1.0;
 };
 
-Showing ShowingOf(const Problem& problem, const Scored& scored);
+ScoreScale ScoreScaleOf(const Problem& problem, const Scored& scored);
 /// Of the last effect of a fit.
-Showing ShowingOf(const Problem& problem, const Fit& fit);
+ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit);
 
 /// The score that the best of all candidates exceeds by chance with a given probability: residual blocks
 /// with random signs against the fixed columns, waves found by a scan as the largest of their grid; beyond
 /// the 2 % quantile along a Gumbel fit. `more` is added to it.
 Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more);
 
-double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const Showing& showing);
+double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const ScoreScale& score_scale);
 /// The same of a kind without a number in the base.
 double Threshold(const Problem& problem, const Gate& gate);
 

@@ -72,14 +72,14 @@ void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
 
 // Beside a large cause the score test falls short by as much: the noise that it was made under has the other
 // one in it.
-constexpr double kShortBeside = 0.1;
+constexpr double kShortByLeakage = 0.1;
 
 bool Promising(const Problem& problem, const Scored& s, Gate gate) {
-  gate.left *= kShortBeside;
-  for (auto& [kind, left] : gate.left_of_kind) left *= kShortBeside;
-  Showing showing = ShowingOf(problem, s);
-  showing.excess = std::min(s.excess, kMostExcess);
-  return s.drop / showing.excess - Penalty(*s.effect) > Threshold(problem, gate, *s.effect, showing);
+  gate.leakage *= kShortByLeakage;
+  for (auto& [kind, left] : gate.leakage_of_kind) left *= kShortByLeakage;
+  ScoreScale score_scale = ScoreScaleOf(problem, s);
+  score_scale.overdispersion = std::min(s.overdispersion, kMostOverdispersion);
+  return s.drop / score_scale.overdispersion - Penalty(*s.effect) > Threshold(problem, gate, *s.effect, score_scale);
 }
 
 /// From the linear estimate.
@@ -283,8 +283,8 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
 bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate) {
   return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& r) {
     if (r.given_up) return false;
-    const Showing showing = gate.accepted > 0 ? ShowingOf(problem, r.fit) : Showing{};
-    return r.score + r.fit.promised > kNearGate * Threshold(problem, gate, r.effect(), showing);
+    const ScoreScale score_scale = gate.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
+    return r.score + r.fit.promised > kNearGate * Threshold(problem, gate, r.effect(), score_scale);
   });
 }
 
@@ -396,9 +396,9 @@ double TestedScore(const Problem& problem, const Fit& current, const Hypothesis&
     const Scored again = ScoreEffects(problem, current, {effect})[0];
     if (again.drop < kSmall) drop = std::min(drop, again.drop);
     // An effect that is there makes its score scatter from block to block, but not as a single event does.
-    most = kMostExcess * again.drop / again.excess;
+    most = kMostOverdispersion * again.drop / again.overdispersion;
   }
-  return std::min(drop / ExcessOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
+  return std::min(drop / OverdispersionOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
 }
 
 }  // namespace contour::diagnosis

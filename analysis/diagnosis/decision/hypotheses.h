@@ -41,7 +41,7 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, 
 void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses);
 
 /// Of a hypothesis, what the gate asks about: the drop of the joint fit, but not more than the score test at its
-/// own place promises (a cost that is a little rough has lucky points), over the excess of what is left.
+/// own place promises (a cost that is a little rough has lucky points), over the overdispersion of what is left.
 double TestedScore(const Problem& problem, const Fit& current, const Hypothesis& hypothesis);
 
 }  // namespace contour::diagnosis

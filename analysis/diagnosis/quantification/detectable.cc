@@ -31,11 +31,11 @@ constexpr double kNinety = 1.2816;
 double Needed(double threshold) { return std::sqrt(std::max(threshold, 1.0)) + kNinety; }
 
 double Needed(const Problem& problem, const Gate& gate, const Scored& s) {
-  return Needed(Threshold(problem, gate, *s.effect, ShowingOf(problem, s)) + Penalty(*s.effect));
+  return Needed(Threshold(problem, gate, *s.effect, ScoreScaleOf(problem, s)) + Penalty(*s.effect));
 }
 
 /// An effect that is there makes every score scatter.
-double ByChance(const Scored& s) { return std::min(s.excess, kMostExcess); }
+double ByChance(const Scored& s) { return std::min(s.overdispersion, kMostOverdispersion); }
 
 /// By the first amplitude: the linear estimate of what exceeds the gate in 90 % of cases.
 double LinearSize(const Problem& problem, const Gate& gate, const Scored& s) {
@@ -126,7 +126,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
     if (s.effect == linear.effect) enough = std::pow(Needed(problem, gate, s), 2) * ByChance(s);
     if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
     points.push_back(Beside(base, s.effect, s.effect->steps[0]));
-    promising.push_back(kMostExcess * std::pow(Needed(problem, gate, s) - kNinety, 2));
+    promising.push_back(kMostOverdispersion * std::pow(Needed(problem, gate, s) - kNinety, 2));
   }
   const Eigen::MatrixXd left = LeftOf(problem, base, points);
   const auto n = static_cast<Eigen::Index>(sizes.size());

@@ -15,7 +15,7 @@ struct Evidence {
   std::string kind;
   double screened = 0.0;  ///< score test: drop of chi^2 and prior
   double penalty = 0.0;
-  double excess = 1.0;
+  double overdispersion = 1.0;
   double refitted = 0.0;  ///< drop of the joint fit; NaN: not fitted
   double tested = 0.0;    ///< score that the gate is asked about; NaN: not fitted
   double unseen = 0.0;    ///< held-out statistic; NaN: not fitted

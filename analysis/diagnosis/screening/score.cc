@@ -18,7 +18,7 @@ ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<cons
                               static_cast<std::size_t>(kBlocks));
 }
 
-double Excess(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
+double Overdispersion(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
   const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
   return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
 }
@@ -37,7 +37,7 @@ bool InBase(const Problem& problem, const std::string& kind) {
   return CauseNamed(kind).common_factor || !FreedTerms(problem, kind).empty();
 }
 
-double ExcessOfLast(const Problem& problem, const Fit& fit) {
+double OverdispersionOfLast(const Problem& problem, const Fit& fit) {
   if (InBase(problem, fit.point.effects.back()->kind)) return 1.0;
   const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
   const Eigen::Index others = fit.jacobian.cols() - n;
@@ -51,7 +51,7 @@ double ExcessOfLast(const Problem& problem, const Fit& fit) {
   const Eigen::MatrixXd information =
       normal.bottomRightCorner(n, n) - normal.topRightCorner(others, n).transpose() * onto;
   const Eigen::MatrixXd projected = blocks.bottomRows(n) - onto.transpose() * blocks.topRows(others);
-  return Excess(projected, information.ldlt().solve(Eigen::MatrixXd::Identity(n, n)));
+  return Overdispersion(projected, information.ldlt().solve(Eigen::MatrixXd::Identity(n, n)));
 }
 
 double Penalty(const Effect& effect) {
@@ -196,16 +196,16 @@ class Scorer {
     s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
     s.amplitude = -solver.solve(gradient);
     s.drop = -gradient.dot(s.amplitude);
-    s.excess = Excess(s.per_block, s.covariance);
+    s.overdispersion = Overdispersion(s.per_block, s.covariance);
     // What the base can nearly do itself frees it from its priors and no more.
     if (nearly_base) s.drop = std::min(s.drop, 1.5 * fit_.prior + 5.0);
     if (InBase(problem_, effect->kind)) {
       // A number of the base already: the evidence is in the prior and not in the blocks.
       s.per_block.setZero();
-      s.excess = 1.0;
+      s.overdispersion = 1.0;
       Free(s);
     }
-    s.score = s.drop / s.excess - Penalty(*effect);
+    s.score = s.drop / s.overdispersion - Penalty(*effect);
     const Eigen::RowVectorXd gain = -s.amplitude.transpose() * s.per_block;
     s.consistency = gain.sum() / (gain.norm() + 1e-300);
     return s;

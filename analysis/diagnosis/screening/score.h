@@ -23,12 +23,12 @@ struct Scored {
   Eigen::MatrixXd per_block;   ///< projected gradient, amplitudes x blocks
   /// How much larger than white noise would make them the drops are when blocks get random signs; at least 1.
   /// A residual that is not quite white, or not quite stationary, shows here.
-  double excess = 1.0;
+  double overdispersion = 1.0;
 };
 
 /// An effect that is there makes its own score scatter from block to block, too: beyond this, scatter says no
 /// more about chance.
-inline constexpr double kMostExcess = 3.0;
+inline constexpr double kMostOverdispersion = 3.0;
 
 double Penalty(const Effect& effect);
 
@@ -42,7 +42,7 @@ std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& k
 std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects);
 
 /// Of the last effect of a fit, from the fit's own residual: free of what the effect explains.
-double ExcessOfLast(const Problem& problem, const Fit& fit);
+double OverdispersionOfLast(const Problem& problem, const Fit& fit);
 
 /// White innovation after a pulse of one row of motor torque (or of the reading) while the axis slides.
 std::vector<double> PulseResponse(const Problem& problem, bool reading);

@@ -38,8 +38,8 @@ double MarginPerRow(std::string_view kind, double false_alarm_rate) {
   return 1e-5 * Of(kind).scale * std::max(0.0, std::log(all / false_alarm_rate));
 }
 
-double UnlikeShare(std::string_view kind) { return Of(kind).unlike; }
+double LeakageShare(std::string_view kind) { return Of(kind).leakage; }
 
-double LikeShare(std::string_view kind) { return Of(kind).of_its_kind; }
+double LeakageShareOfItsKind(std::string_view kind) { return Of(kind).leakage_of_its_kind; }
 
 }  // namespace contour::diagnosis

@@ -24,14 +24,14 @@ struct ErrorScore {
   double share = 0.0, scale = 0.0;
   /// Of a score, once a cause of this kind is accepted: what is left of it may look like others by so much,
   /// and like another one of its kind by so much more.
-  double unlike = 0.0, of_its_kind = 0.0;
+  double leakage = 0.0, leakage_of_its_kind = 0.0;
 };
 
 /// What the model's own errors may add to a score above the gate of kCalibratedRate before all kinds together
 /// alarm more often than asked; per row. They look like effects, the more the longer the log.
 double MarginPerRow(std::string_view kind, double false_alarm_rate);
 
-double UnlikeShare(std::string_view kind);
-double LikeShare(std::string_view kind);
+double LeakageShare(std::string_view kind);
+double LeakageShareOfItsKind(std::string_view kind);
 
 }  // namespace contour::diagnosis

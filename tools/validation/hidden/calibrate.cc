@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kHolds = 1.2, kNoChance = 100.0;  // as diagnosis has it
 // What one case says about how much of a cause is left may be a third of what the next one says.
-constexpr double kUnlikeReserve = 3.0;
-constexpr double kLeastUnlike = 2e-4;
+constexpr double kLeakageReserve = 3.0;
+constexpr double kLeastLeakage = 2e-4;
 
 struct Line {
   std::string log, kind;
@@ -69,8 +69,8 @@ double CommonScale(std::vector<double> exceeding) {
   return 0.5 * (exceeding[(n - 1) / 2] + exceeding[n / 2]) / std::numbers::ln2;
 }
 
-std::string Entry(const std::string& kind, double share, double scale, double unlike, double like) {
-  return FormatText("{\"%s\", %.4f, %.2f, %.1e, %.1e},\n", kind.c_str(), share, scale, unlike, like);
+std::string Entry(const std::string& kind, double share, double scale, double leakage, double like) {
+  return FormatText("{\"%s\", %.4f, %.2f, %.1e, %.1e},\n", kind.c_str(), share, scale, leakage, like);
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ std::string MarginTable(std::istream& evidence) {
   std::set<std::string> clean;
   std::map<std::string, Exceeding> kinds;
   std::vector<double> all;
-  std::map<std::string, double> unlike, of_its_kind;
+  std::map<std::string, double> leakage, leakage_of_its_kind;
   std::vector<Line> beside;
   for (std::string text; std::getline(evidence, text);) {
     const Line l = LineFrom(text);
@@ -104,17 +104,17 @@ std::string MarginTable(std::istream& evidence) {
   for (const Line& l : beside) {
     const std::string kind = l.log.substr(6, l.log.rfind('_') - 6);
     // A further order of the kind is another cause, and takes more of what is left than others do.
-    const double share = kUnlikeReserve * (l.tested - l.flips) / l.explained;
-    double& most = l.kind == kind ? of_its_kind[kind] : unlike[kind];
+    const double share = kLeakageReserve * (l.tested - l.flips) / l.explained;
+    double& most = l.kind == kind ? leakage_of_its_kind[kind] : leakage[kind];
     most = std::max(most, share);
     kinds.try_emplace(kind);
   }
   // What no log has shown yet, half a log may have.
-  std::string out = Entry("", 0.5 / logs, scale, kLeastUnlike, 0.0);
+  std::string out = Entry("", 0.5 / logs, scale, kLeastLeakage, 0.0);
   for (const auto& [kind, e] : kinds) {
-    const double others = std::max(kLeastUnlike, unlike[kind]);
+    const double others = std::max(kLeastLeakage, leakage[kind]);
     out += Entry(kind, e.count / logs, (e.sum + scale) / (e.count + 1.0), others,
-                 std::max(0.0, of_its_kind[kind] - others));
+                 std::max(0.0, leakage_of_its_kind[kind] - others));
   }
   return out;
 }

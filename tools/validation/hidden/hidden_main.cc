@@ -76,7 +76,7 @@ Diagnoser Ours(const Options& o, const std::string& name) {
         table +=
             FormatText("%s,%zu,%g,%d,%.3f,%d,%s,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(),
                        log.size(), rate, e.accepted, e.explained, e.in_base ? 1 : 0, e.kind.c_str(),
-                       e.screened, e.penalty, e.excess, e.refitted, e.tested, e.unseen, e.flips, e.asked);
+                       e.screened, e.penalty, e.overdispersion, e.refitted, e.tested, e.unseen, e.flips, e.asked);
       };
     const diagnosis::Diagnosis answer = diagnosis::Diagnose(log, stated, options);
     if (!table.empty()) std::ofstream(o.evidence, std::ios::app) << table;

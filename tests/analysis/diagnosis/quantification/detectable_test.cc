@@ -61,10 +61,10 @@ TEST(Gate, ALeftOverMovesANumberOfTheModelByWhatTheLogDoesNotKnowOfIt) {
   Gate gate;
   gate.rate = 0.05;
   gate.accepted = 1;
-  gate.left = 1000.0;
-  const double known = Threshold(l.problem, gate, *delay, {.vague = 0.0}),
-               fairly = Threshold(l.problem, gate, *delay, {.vague = 0.01}),
-               unknown = Threshold(l.problem, gate, *delay, {.vague = 1.0});
+  gate.leakage = 1000.0;
+  const double known = Threshold(l.problem, gate, *delay, {.variance_ratio = 0.0}),
+               fairly = Threshold(l.problem, gate, *delay, {.variance_ratio = 0.01}),
+               unknown = Threshold(l.problem, gate, *delay, {.variance_ratio = 1.0});
   EXPECT_LT(known, 7.0);  // chi^2 of one degree of freedom in 0.2 % less the penalty
   EXPECT_GT(fairly, known + 10.0);
   EXPECT_LT(fairly, known + 40.0);
@@ -79,13 +79,13 @@ TEST(Gate, WhatIsLeftOfAWaveIsMostlyFurtherOrdersOfIt) {
   gate.rate = 0.05;
   gate.accepted = 1;
   const double none = Threshold(l.problem, gate, *drift, {});
-  gate.left_of_kind["cogging"] = 500.0;
-  EXPECT_EQ(gate.LeftAs("cogging"), 500.0);
+  gate.leakage_of_kind["cogging"] = 500.0;
+  EXPECT_EQ(gate.LeakageAs("cogging"), 500.0);
   EXPECT_EQ(Threshold(l.problem, gate, *drift, {}), none);
-  gate.left = 60.0;
+  gate.leakage = 60.0;
   EXPECT_NEAR(Threshold(l.problem, gate, *drift, {}), none + 60.0, 1e-9);
-  // Scores are over the excess of chance; so is what is left.
-  EXPECT_NEAR(Threshold(l.problem, gate, *drift, {.excess = 3.0}), none + 20.0, 1e-9);
+  // Scores are over the overdispersion of chance; so is what is left.
+  EXPECT_NEAR(Threshold(l.problem, gate, *drift, {.overdispersion = 3.0}), none + 20.0, 1e-9);
 }
 
 TEST(ViscousNonlinear, WithAKneeGivesWay) {
