@@ -83,7 +83,7 @@ Seen Look(Rounds& r) {
   Seen seen;
   seen.scored = Screen(r.problem, r.accepted.fit, r.nominal.catalogue);
   seen.gate = GateOf(r.problem, r.accepted, seen.scored, r.nominal.by_extras, r.options);
-  seen.search = r.options.fit_above_chance ? WithoutMargins(seen.gate) : seen.gate;
+  seen.search = r.options.fit_above_chance ? ByChanceAlone(seen.gate) : seen.gate;
   seen.jitter = TestJitter(r.problem, r.accepted.fit);
   if (r.first) {
     KeepFirst(seen.scored, r.out);

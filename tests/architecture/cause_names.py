@@ -15,7 +15,7 @@ CAUSES = "analysis/diagnosis/causes"
 LIST = f"{CAUSES}/cause_list.inc"
 FOLDERS = ["analysis", "tools"]
 SUFFIXES = (".h", ".cc", ".inc", ".py")
-MARGINS = "analysis/diagnosis/tuning/margin_table.inc"
+MARGINS = "analysis/diagnosis/tuning/model_error_table.inc"
 # Pages that name every cause.
 PAGES = ["docs/diagnosis.md", "docs/emulator.md"]
 # Names that mean something else there.

@@ -7,14 +7,14 @@
 #include "analysis/diagnosis/adequacy/structure_maps.h"
 #include "analysis/diagnosis/screening/firm_slides.h"
 #include "analysis/diagnosis/screening/score.h"
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {
 
 constexpr std::size_t kReach = 64;  // rows that a pulse is followed for
 constexpr double kFewestRows = 20.0, kLeastFree = 0.05;
-// Of the asked false alarms, this share may be `unexplained`, in equal parts by each of its margins.
+// Of the asked false alarms, this share may be `unexplained`, in equal parts by each class of structure.
 constexpr double kShare = 0.1;
 
 double SizeAt(const BinnedRows& rows, std::size_t k) { return rows.size.empty() ? 1.0 : rows.size[k]; }
@@ -48,9 +48,9 @@ double ChiSquareScore(double x, double degrees) {
 }
 
 /// The score that something unknown must exceed.
-double Threshold(const Problem& problem, std::string_view margin, double false_alarm_rate) {
+double Threshold(const Problem& problem, std::string_view structure_class, double false_alarm_rate) {
   const double own = kShare / static_cast<double>(kStructureClasses.size()) * false_alarm_rate;
-  const double errors = MarginPerRow(margin, own) * static_cast<double>(problem.rows());
+  const double errors = AllowancePerRow(structure_class, own) * static_cast<double>(problem.rows());
   return std::max(-2.0 * std::log(own), -2.0 * std::log(kCalibratedRate) + errors);
 }
 
@@ -87,7 +87,7 @@ RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std
   out.over = rows.over;
   out.quantity = rows.quantity;
   out.series = rows.series;
-  out.margin = rows.margin;
+  out.structure_class = rows.structure_class;
   double most = 0.0;
   for (std::size_t b = 0; b < count; ++b) {
     if (seen[b] < kFewestRows || !(information[b] > 0.0)) continue;
@@ -120,11 +120,11 @@ std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit&
   std::vector<RemainingStructure> out;
   for (const BinnedRows& rows : maps) {
     // Motions take turns over the time, and a law of friction that does not hold is wrong in some of them.
-    if (another_law && rows.margin == kUnexplainedFriction) continue;
+    if (another_law && rows.structure_class == kUnexplainedFriction) continue;
     out.push_back(TestBins(rows, known, back.motor, response, weight));
     // The best of so many.
     out.back().score = std::max(0.0, out.back().score - 2.0 * std::log(static_cast<double>(maps.size())));
-    out.back().asked = Threshold(problem, rows.margin, false_alarm_rate);
+    out.back().asked = Threshold(problem, rows.structure_class, false_alarm_rate);
   }
   std::stable_sort(out.begin(), out.end(), [](const RemainingStructure& a, const RemainingStructure& b) {
     return a.score - a.asked > b.score - b.asked;

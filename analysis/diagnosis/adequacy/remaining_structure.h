@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/diagnosis/causes/cause_definition.h"
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 #include "analysis/prediction_error/fit.h"
 
 namespace contour::diagnosis {
@@ -22,7 +22,7 @@ struct BinnedRows {
   /// Causes of it come as a series, order by order: what is left are further orders, which make no name
   /// wrong.
   bool series = false;
-  std::string_view margin = kUnexplainedAll;  ///< whose margins it has
+  std::string_view structure_class = kUnexplainedAll;  ///< whose model-error allowance it has
 };
 
 /// What a residual still has of one quantity, whatever its shape: the drop of chi^2 by a torque (or a level
@@ -31,7 +31,7 @@ struct RemainingStructure {
   std::string over;
   Quantity quantity = Quantity::kTime;
   bool series = false;
-  std::string_view margin = kUnexplainedAll;
+  std::string_view structure_class = kUnexplainedAll;
   double asked = 0.0;  ///< the score that something unknown must exceed
   double drop = 0.0;
   double bins = 0.0;    ///< that the drop is of by chance: those that what was taken out left free

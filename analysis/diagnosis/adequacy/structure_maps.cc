@@ -101,7 +101,7 @@ class Maps {
     out_.push_back(std::move(rows));
   }
 
-  void OfTime(const char* over, double each_s, const std::vector<double>& size, std::string_view margin) {
+  void OfTime(const char* over, double each_s, const std::vector<double>& size, std::string_view structure_class) {
     const Range time{0.0, static_cast<double>(n_) * p_.log.period_s};
     const int count = std::max(1, static_cast<int>(time.high / each_s));
     BinnedRows rows;
@@ -109,7 +109,7 @@ class Maps {
     rows.quantity = Quantity::kTime;
     rows.bin.assign(n_, -1);
     rows.size = size;
-    rows.margin = margin;
+    rows.structure_class = structure_class;
     rows.count = count;
     for (std::size_t k = 0; k < n_; ++k)
       if (slides_[k]) rows.bin[k] = time.Bin(static_cast<double>(k) * p_.log.period_s, count);

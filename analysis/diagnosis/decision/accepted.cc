@@ -9,7 +9,7 @@
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/screening/firm_slides.h"
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {

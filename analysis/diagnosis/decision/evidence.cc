@@ -7,7 +7,7 @@
 
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -52,14 +52,14 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
 void TellStructure(const Accepted& accepted, const std::vector<RemainingStructure>& left,
                    const DiagnoseOptions& options) {
   if (!options.evidence) return;
-  for (const std::string_view margin : kStructureClasses) {
+  for (const std::string_view structure_class : kStructureClasses) {
     const auto best =
-        std::find_if(left.begin(), left.end(), [&](const RemainingStructure& l) { return l.margin == margin; });
+        std::find_if(left.begin(), left.end(), [&](const RemainingStructure& l) { return l.structure_class == structure_class; });
     if (best == left.end()) continue;
     Evidence e;
     e.accepted = static_cast<int>(accepted.places.size());
     e.explained = accepted.explained;
-    e.kind = margin;
+    e.kind = structure_class;
     e.screened = best->drop;
     e.penalty = best->bins;
     e.refitted = e.tested = best->score;

@@ -13,7 +13,7 @@ namespace contour::diagnosis {
 void TellEvidence(const Problem& problem, const Accepted& accepted, const std::vector<Scored>& scored,
                   const std::vector<Hypothesis>& hypotheses, const Gate& gate, const DiagnoseOptions& options);
 
-/// Of what is left at the end, the best of each margin.
+/// Of what is left at the end, the best of each class.
 void TellStructure(const Accepted& accepted, const std::vector<RemainingStructure>& left,
                    const DiagnoseOptions& options);
 

@@ -7,7 +7,7 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/chi_square.h"
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -54,8 +54,8 @@ Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uin
   return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
 }
 
-Gate WithoutMargins(Gate gate) {
-  gate.margins = false;
+Gate ByChanceAlone(Gate gate) {
+  gate.model_error = false;
   gate.leakage = 0.0;
   gate.leakage_of_kind.clear();
   return gate;
@@ -83,8 +83,8 @@ double VarianceRatio(const Problem& problem, const std::string& kind, const Eige
 }
 
 double Threshold(const Problem& problem, const Gate& gate, std::string_view kind) {
-  if (!gate.margins) return gate.flips;
-  const double errors = MarginPerRow(kind, gate.rate) * static_cast<double>(problem.rows());
+  if (!gate.model_error) return gate.flips;
+  const double errors = AllowancePerRow(kind, gate.rate) * static_cast<double>(problem.rows());
   return std::max(gate.flips, gate.calibrated + errors);
 }
 

@@ -20,14 +20,14 @@ struct Gate {
   /// The same, as another cause of a kind that is among them: harmonics, neighbouring orders.
   std::map<std::string, double> leakage_of_kind = {};
 
-  bool margins = true;  ///< for the model's own errors
+  bool model_error = true;  ///< for the model's own errors
 
   [[nodiscard]] double LeakageAs(const std::string& kind) const;
 };
 
-/// By chance alone, but for numbers of the base: no margins, and nothing left of accepted causes. What the
-/// margins are read off is measured against it.
-Gate WithoutMargins(Gate gate);
+/// By chance alone, but for numbers of the base: no model-error allowance, and nothing left of accepted causes. What the
+/// allowances are read off is measured against it.
+Gate ByChanceAlone(Gate gate);
 
 /// How residual leakage shows in a kind's score.
 struct ScoreScale {

@@ -9,13 +9,13 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 #include "analysis/text/format_text.h"
 
 // A kind's scores exceed the flips in few of the clean logs one has, so that no quantile can be read off: the
 // exceedances are taken as exponential (Pickands, Annals of Statistics 3(1), 1975, without the shape), their
 // scale drawn towards that of all kinds by one log. That one comes from the median, so that a log which one
-// kind goes far wrong in does not raise the margins of the others.
+// kind goes far wrong in does not raise the allowances of the others.
 namespace contour::hidden {
 namespace {
 
@@ -75,7 +75,7 @@ std::string Entry(const std::string& kind, double share, double scale, double le
 
 }  // namespace
 
-std::string MarginTable(std::istream& evidence) {
+std::string ModelErrorTable(std::istream& evidence) {
   std::set<std::string> clean;
   std::map<std::string, Exceeding> kinds;
   std::vector<double> all;

@@ -210,7 +210,7 @@ int main(int argc, char** argv) {
     if (!options.calibrate.empty()) {
       std::ifstream evidence(options.calibrate);
       if (!evidence) throw std::runtime_error("cannot read " + options.calibrate);
-      std::fputs(MarginTable(evidence).c_str(), stdout);
+      std::fputs(ModelErrorTable(evidence).c_str(), stdout);
     } else if (!options.record.empty()) {
       RecordAll(options);
     } else if (!options.judge.empty()) {

@@ -1,4 +1,4 @@
-// The gate's margins are what the rule makes of recorded machines, and nothing else.
+// The model-error allowances are what the rule makes of recorded machines, and nothing else.
 
 #include "tools/validation/hidden/calibrate.h"
 
@@ -10,7 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 #include "analysis/text/format_text.h"
 
 namespace contour::hidden {
@@ -29,7 +29,7 @@ std::string Line(const std::string& log, int accepted, double explained, bool in
 
 std::string TableOf(const std::string& evidence) {
   std::istringstream stream(evidence);
-  return MarginTable(stream);
+  return ModelErrorTable(stream);
 }
 
 double Scale(const std::string& table, const std::string& kind) {
@@ -40,13 +40,13 @@ double Scale(const std::string& table, const std::string& kind) {
   return scale;
 }
 
-TEST(MarginTable, InTheSourceIsWhatTheStoredEvidenceGives) {
+TEST(ModelErrorTable, InTheSourceIsWhatTheStoredEvidenceGives) {
   const std::string evidence = TextOf(SOURCE_DIR "/tests/tools/validation/hidden/evidence.csv");
   ASSERT_FALSE(evidence.empty());
-  EXPECT_EQ(TableOf(evidence), TextOf(SOURCE_DIR "/analysis/diagnosis/tuning/margin_table.inc"));
+  EXPECT_EQ(TableOf(evidence), TextOf(SOURCE_DIR "/analysis/diagnosis/tuning/model_error_table.inc"));
 }
 
-TEST(MarginTable, AKindWhoseScoresExceedTheFlipsGetsAMarginOfItsOwn) {
+TEST(ModelErrorTable, AKindWhoseScoresExceedTheFlipsGetsAnAllowanceOfItsOwn) {
   std::string evidence;
   for (int i = 0; i < 20; ++i) {
     const std::string log = FormatText("clean_%04d", i);
@@ -61,7 +61,7 @@ TEST(MarginTable, AKindWhoseScoresExceedTheFlipsGetsAMarginOfItsOwn) {
   EXPECT_EQ(table.find("stribeck"), std::string::npos);
 }
 
-TEST(MarginTable, ALogThatOneKindGoesFarWrongInLeavesTheOthersAlone) {
+TEST(ModelErrorTable, ALogThatOneKindGoesFarWrongInLeavesTheOthersAlone) {
   std::string evidence;
   for (int i = 0; i < 20; ++i)
     evidence +=
@@ -72,7 +72,7 @@ TEST(MarginTable, ALogThatOneKindGoesFarWrongInLeavesTheOthersAlone) {
   EXPECT_GT(Scale(TableOf(evidence + wrong), "viscous_nonlinear"), 50.0);
 }
 
-TEST(MarginTable, WhatIsLeftOfACauseIsASingleEffectsSecondRound) {
+TEST(ModelErrorTable, WhatIsLeftOfACauseIsASingleEffectsSecondRound) {
   const std::string evidence = Line("clean_0001", 0, 0.0, false, "cogging", 1.0) +
                                Line("clear_backlash_0001", 1, 10000.0, false, "compliance", 54.0) +
                                Line("clear_cogging_0001", 1, 10000.0, false, "compliance", 3.0);
@@ -82,7 +82,7 @@ TEST(MarginTable, WhatIsLeftOfACauseIsASingleEffectsSecondRound) {
   EXPECT_EQ(table.find("{\"cogging\""), std::string::npos);
 }
 
-TEST(MarginTable, WhatIsLeftAsAnotherOfTheKindIsNotLeftAsOthers) {
+TEST(ModelErrorTable, WhatIsLeftAsAnotherOfTheKindIsNotLeftAsOthers) {
   const std::string table = TableOf(Line("clean_0001", 0, 0.0, false, "cogging", 1.0) +
                                     Line("clear_cogging_0001", 1, 10000.0, false, "cogging", 54.0) +
                                     Line("clear_cogging_0001", 1, 10000.0, false, "backlash", 14.0));
@@ -90,7 +90,7 @@ TEST(MarginTable, WhatIsLeftAsAnotherOfTheKindIsNotLeftAsOthers) {
   EXPECT_NE(table.find("3.0e-03, 1.2e-02}"), std::string::npos) << table;
 }
 
-TEST(MarginTable, WhatIsUnexplainedHasAPartOfTheRateForItself) {
+TEST(ModelErrorTable, WhatIsUnexplainedHasAPartOfTheRateForItself) {
   std::string evidence;
   for (int i = 0; i < 20; ++i) {
     const std::string log = FormatText("clean_%04d", i);
@@ -104,7 +104,7 @@ TEST(MarginTable, WhatIsUnexplainedHasAPartOfTheRateForItself) {
   EXPECT_EQ(TableOf(evidence + Line("clear_backlash_0001", 1, 10000.0, false, "unexplained", 54.0)), table);
 }
 
-TEST(MarginTable, RefusesWhatIsNoEvidence) {
+TEST(ModelErrorTable, RefusesWhatIsNoEvidence) {
   EXPECT_THROW(TableOf(""), std::runtime_error);
   EXPECT_THROW(TableOf("clean_0001,2,3\n"), std::runtime_error);
   EXPECT_THROW(TableOf(Line("clean_0001", 0, 0.0, false, "cogging", 1.0).replace(11, 6, "x00000")),
@@ -112,13 +112,13 @@ TEST(MarginTable, RefusesWhatIsNoEvidence) {
   EXPECT_THROW(TableOf(Line("clear_cogging_0001", 0, 0.0, false, "cogging", 1.0)), std::runtime_error);
 }
 
-TEST(Margins, GrowAsTheRateFalls) {
-  const double at_5 = diagnosis::MarginPerRow("cogging", 0.05),
-               at_1 = diagnosis::MarginPerRow("cogging", 0.01);
+TEST(ModelErrorAllowance, GrowAsTheRateFalls) {
+  const double at_5 = diagnosis::AllowancePerRow("cogging", 0.05),
+               at_1 = diagnosis::AllowancePerRow("cogging", 0.01);
   EXPECT_GT(at_5, 0.0);
   EXPECT_GT(at_1, at_5);
-  EXPECT_EQ(diagnosis::MarginPerRow("cogging", 0.999), 0.0);
-  EXPECT_EQ(at_5, diagnosis::MarginPerRow("no kind of its own", 0.05));
+  EXPECT_EQ(diagnosis::AllowancePerRow("cogging", 0.999), 0.0);
+  EXPECT_EQ(at_5, diagnosis::AllowancePerRow("no kind of its own", 0.05));
 }
 
 }  // namespace

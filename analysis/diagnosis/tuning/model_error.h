@@ -5,11 +5,11 @@
 
 namespace contour::diagnosis {
 
-/// The rate at which margins were read off clean logs.
+/// The rate at which model-error allowances were read off clean logs.
 inline constexpr double kCalibratedRate = 0.05;
 
 /// Beside the kinds of cause: that something is left which none of them fits. Over the time the model's own
-/// errors show, motion by motion, and nowhere else; each has margins of its own.
+/// errors show, motion by motion, and nowhere else; each has an allowance of its own.
 inline constexpr std::string_view kUnexplainedAll = "unexplained";
 inline constexpr std::string_view kUnexplainedTorque = "unexplained:torque of time";
 inline constexpr std::string_view kUnexplainedFriction = "unexplained:friction of time";
@@ -29,7 +29,7 @@ struct ErrorScore {
 
 /// What the model's own errors may add to a score above the gate of kCalibratedRate before all kinds together
 /// alarm more often than asked; per row. They look like effects, the more the longer the log.
-double MarginPerRow(std::string_view kind, double false_alarm_rate);
+double AllowancePerRow(std::string_view kind, double false_alarm_rate);
 
 double LeakageShare(std::string_view kind);
 double LeakageShareOfItsKind(std::string_view kind);

@@ -1,4 +1,4 @@
-#include "analysis/diagnosis/tuning/margins.h"
+#include "analysis/diagnosis/tuning/model_error.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@ namespace {
 
 // The first line is that of all kinds that have none of their own, together. Made by
 //   contour_hidden --judge cases --only clean,clear --fit-above-chance --evidence scores.csv
-//   contour_hidden --calibrate scores.csv > analysis/diagnosis/tuning/margin_table.inc
+//   contour_hidden --calibrate scores.csv > analysis/diagnosis/tuning/model_error_table.inc
 constexpr ErrorScore kTable[] = {
-#include "analysis/diagnosis/tuning/margin_table.inc"
+#include "analysis/diagnosis/tuning/model_error_table.inc"
 };
 
 const ErrorScore& Of(std::string_view kind) {
@@ -29,11 +29,11 @@ double AllShares() {
 
 }  // namespace
 
-double MarginPerRow(std::string_view kind, double false_alarm_rate) {
+double AllowancePerRow(std::string_view kind, double false_alarm_rate) {
   // Have parts of the rate for themselves.
   if (IsStructureClass(kind))
     return 1e-5 * Of(kind).scale * std::max(0.0, std::log(Of(kind).share / false_alarm_rate));
-  // Each kind alarms in proportion to how often it exceeds: exp(-margin / scale) is the same for all.
+  // Each kind alarms in proportion to how often it exceeds: exp(-allowance / scale) is the same for all.
   static const double all = AllShares();
   return 1e-5 * Of(kind).scale * std::max(0.0, std::log(all / false_alarm_rate));
 }
