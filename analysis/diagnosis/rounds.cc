@@ -40,8 +40,8 @@ enum class Next { kSameRound, kNextRound, kEnd };
 /// What screening sees beside the accepted causes.
 struct Seen {
   std::vector<Scored> scored;
-  Gate gate;
-  Gate search;  ///< for the hypotheses that are to be fitted
+  ScoreThreshold threshold;
+  ScoreThreshold search;  ///< for the hypotheses that are to be fitted
   Jitter jitter;
   bool jitter_there = false;
 };
@@ -61,12 +61,12 @@ std::vector<std::string> ThoseWithoutDoubt(const std::vector<Hypothesis>& hypoth
 
 /// Those that are promised most; where all of them come to nothing in the fit, the next ones.
 std::vector<Hypothesis> HypothesesThatMayHold(const Problem& problem, const Fit& current,
-                                     const std::vector<Scored>& scored, const Gate& gate,
+                                     const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                                      std::vector<std::string>& tried) {
   for (;;) {
-    std::vector<Hypothesis> hypotheses = FitHypotheses(problem, current, scored, gate, tried);
-    if (hypotheses.empty() || MayHold(problem, hypotheses, gate)) return hypotheses;
-    if (!MorePromised(problem, scored, gate, tried)) return {};
+    std::vector<Hypothesis> hypotheses = FitHypotheses(problem, current, scored, threshold, tried);
+    if (hypotheses.empty() || MayHold(problem, hypotheses, threshold)) return hypotheses;
+    if (!MorePromised(problem, scored, threshold, tried)) return {};
   }
 }
 
@@ -82,17 +82,17 @@ void KeepFirst(const std::vector<Scored>& scored, Diagnosis& out) {
 Seen Look(Rounds& r) {
   Seen seen;
   seen.scored = Screen(r.problem, r.accepted.fit, r.nominal.catalogue);
-  seen.gate = GateOf(r.problem, r.accepted, seen.scored, r.nominal.by_extras, r.options);
-  seen.search = r.options.fit_above_chance ? ByChanceAlone(seen.gate) : seen.gate;
+  seen.threshold = ScoreThresholdOf(r.problem, r.accepted, seen.scored, r.nominal.by_extras, r.options);
+  seen.search = r.options.fit_above_chance ? ByChanceAlone(seen.threshold) : seen.threshold;
   seen.jitter = TestJitter(r.problem, r.accepted.fit);
   if (r.first) {
     KeepFirst(seen.scored, r.out);
     r.out.candidates.push_back({std::string(*CauseInScatter().name), ScoreOf(seen.jitter),
                                 std::numeric_limits<double>::quiet_NaN(), false});
-    r.out.gate = Threshold(r.problem, seen.gate);
+    r.out.threshold = Threshold(r.problem, seen.threshold);
     r.first = false;
   }
-  seen.jitter_there = !r.jitter_known && ScoreOf(seen.jitter) > Threshold(r.problem, seen.gate);
+  seen.jitter_there = !r.jitter_known && ScoreOf(seen.jitter) > Threshold(r.problem, seen.threshold);
   return seen;
 }
 
@@ -108,7 +108,7 @@ void KeepDetectable(const Problem& problem, const Fit& base, const Screened& scr
 void StateDetectable(const Seen& seen, const std::vector<std::string>& only, Rounds& r) {
   if (r.stated_beside == r.accepted.places.size()) return;
   if (only.empty()) r.stated_beside = r.accepted.places.size();
-  KeepDetectable(r.problem, r.accepted.fit, {seen.scored, seen.jitter, seen.gate}, only, r.out);
+  KeepDetectable(r.problem, r.accepted.fit, {seen.scored, seen.jitter, seen.threshold}, only, r.out);
 }
 
 Next EndWithJitter(const Seen& seen, Rounds& r) {
@@ -125,12 +125,12 @@ Next TryOthers(const Seen& seen, Rounds& r) {
 }
 
 /// The first of the hypotheses, once it holds.
-Next Take(const std::vector<Hypothesis>& hypotheses, const Gate& gate, Rounds& r) {
+Next Take(const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold, Rounds& r) {
   r.tried.clear();
   const std::string kind = hypotheses[0].effect().kind;
   // A further order of what is known takes no other cause's place.
   const bool further = Known(kind, r.out) && r.further_orders++ < r.options.most_effects;
-  AcceptFirst(r.problem, hypotheses, gate, r.accepted, r.out);
+  AcceptFirst(r.problem, hypotheses, threshold, r.accepted, r.out);
   if (Outside(kind)) return Next::kEnd;
   return further ? Next::kSameRound : Next::kNextRound;
 }
@@ -146,7 +146,7 @@ Next OneRound(int round, Rounds& r) {
   r.problem.LearnNoise(hypotheses[0].fit.point);
   Say(r.options, "candidate hypotheses under the noise that is left", 0.35 + 0.25 * round);
   FitAgain(r.problem, r.accepted.fit, hypotheses);
-  if (hypotheses[0].no_fault && hypotheses[0].score > Asked(r.problem, hypotheses[0], seen.gate)) {
+  if (hypotheses[0].no_fault && hypotheses[0].score > Asked(r.problem, hypotheses[0], seen.threshold)) {
     // No cause of a deviation, but there; unless the model has it, others stand for it.
     r.accepted.fit = std::move(hypotheses[0].fit);
     r.tried.clear();
@@ -154,8 +154,8 @@ Next OneRound(int round, Rounds& r) {
   }
   std::erase_if(hypotheses, [](const Hypothesis& hypothesis) { return hypothesis.no_fault; });
   if (hypotheses.empty() || hypotheses[0].given_up) return EndWithJitter(seen, r);
-  TellEvidence(r.problem, r.accepted, seen.scored, hypotheses, seen.gate, r.options);
-  const Choice choice = ChooseFirst(r.problem, r.accepted.fit, seen.gate, hypotheses);
+  TellEvidence(r.problem, r.accepted, seen.scored, hypotheses, seen.threshold, r.options);
+  const Choice choice = ChooseFirst(r.problem, r.accepted.fit, seen.threshold, hypotheses);
   if (seen.jitter_there) {
     // A mean effect that the variance was about leaves none behind.
     const Jitter left = TestJitter(r.problem, hypotheses[0].fit);
@@ -166,7 +166,7 @@ Next OneRound(int round, Rounds& r) {
       return choice.found ? Next::kNextRound : Next::kEnd;
     }
   }
-  return choice.found ? Take(hypotheses, seen.gate, r) : TryOthers(seen, r);
+  return choice.found ? Take(hypotheses, seen.threshold, r) : TryOthers(seen, r);
 }
 
 }  // namespace
@@ -184,8 +184,8 @@ RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const Diag
   if (r.stated_beside != r.accepted.places.size()) {
     const std::vector<Scored> scored = Screen(problem, r.accepted.fit, nominal.catalogue);
     const Jitter jitter = TestJitter(problem, r.accepted.fit);
-    const Gate gate = GateOf(problem, r.accepted, scored, nominal.by_extras, options);
-    KeepDetectable(problem, r.accepted.fit, {scored, jitter, gate}, {}, out);
+    const ScoreThreshold threshold = ScoreThresholdOf(problem, r.accepted, scored, nominal.by_extras, options);
+    KeepDetectable(problem, r.accepted.fit, {scored, jitter, threshold}, {}, out);
   }
   return {std::move(r.accepted), round >= options.most_effects};
 }

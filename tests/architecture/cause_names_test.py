@@ -37,7 +37,7 @@ class CauseNames(unittest.TestCase):
     def test_a_literal_elsewhere_is_caught_with_file_and_line(self):
         offences = found(analysis__diagnosis__decision__gate_cc='int a;\nif (kind == "cogging") return 1.0;\n')
         self.assertEqual(len(offences), 1, offences)
-        self.assertIn("analysis/diagnosis/decision/gate.cc:2", offences[0])
+        self.assertIn("analysis/diagnosis/decision/score_threshold.cc:2", offences[0])
 
     def test_as_part_of_a_key_it_is_one_too(self):
         self.assertEqual(len(found(tools__validation__hidden__a_cc='Set("effects.cogging.amplitude_Nm=1");\n')), 1)

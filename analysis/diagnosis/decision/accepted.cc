@@ -26,7 +26,7 @@ constexpr double kAlike = 0.03, kAlikeByAnotherLaw = 0.1;
 constexpr double kLeakageByAnotherLaw = 0.05;
 
 /// What the hypotheses scored, and which of them cannot be told from the first.
-void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate,
+void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
                 const Accepted& accepted, Cause& cause, Diagnosis& out) {
   const Hypothesis& best = hypotheses[0];
   const double alike = OfAnotherLaw(problem, accepted.fit) ? kAlikeByAnotherLaw : kAlike;
@@ -38,7 +38,7 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
         c.accepted = &r == &best;
       }
     // What would not have been accepted alone explains too little to be the cause.
-    if (&r != &best && !r.refused && !r.given_up && !Outside(kind) && r.score > Asked(problem, r, gate) &&
+    if (&r != &best && !r.refused && !r.given_up && !Outside(kind) && r.score > Asked(problem, r, threshold) &&
         r.score > best.score - std::max(12.0, alike * best.score) && !StandsBeside(problem, best.fit, r) &&
         !StandsBeside(problem, r.fit, best))
       cause.indistinguishable_from.push_back(kind);
@@ -47,23 +47,23 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
 
 }  // namespace
 
-Gate GateOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
+ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
             double by_extras, const DiagnoseOptions& options) {
-  Gate gate = SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
-  gate.accepted = static_cast<int>(accepted.places.size());
-  gate.leakage = accepted.leakage +
+  ScoreThreshold threshold = SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
+  threshold.accepted = static_cast<int>(accepted.places.size());
+  threshold.leakage = accepted.leakage +
               (OfAnotherLaw(problem, accepted.fit) ? kLeakageByAnotherLaw * accepted.in_presliding : 0.0);
-  gate.leakage_of_kind = accepted.leakage_of_kind;
-  return gate;
+  threshold.leakage_of_kind = accepted.leakage_of_kind;
+  return threshold;
 }
 
-void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate,
+void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
                  Accepted& accepted, Diagnosis& out) {
   const Hypothesis& best = hypotheses[0];
   Cause cause;
   cause.kind = best.effect().kind;
   cause.log_evidence_gain = 0.5 * best.score;
-  NoteHypotheses(problem, hypotheses, gate, accepted, cause, out);
+  NoteHypotheses(problem, hypotheses, threshold, accepted, cause, out);
   const Experiment experiment = DecidingExperiment(problem, cause.kind, cause.indistinguishable_from);
   cause.deciding_experiment = experiment.text;
   cause.deciding_program = experiment.program;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnosis/decision/gate.h"
+#include "analysis/diagnosis/decision/score_threshold.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
 #include "analysis/diagnosis/result/diagnose_options.h"
 #include "analysis/diagnosis/result/finding.h"
@@ -24,12 +24,12 @@ struct Accepted {
 };
 
 /// What a score must exceed beside what is accepted.
-Gate GateOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
+ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
             double by_extras, const DiagnoseOptions& options);
 
 /// Takes the first of the hypotheses into the model and says so in `out`: its cause, what cannot be told from it,
 /// the experiment that would decide.
-void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate,
+void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
                  Accepted& accepted, Diagnosis& out);
 
 }  // namespace contour::diagnosis

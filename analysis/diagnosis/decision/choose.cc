@@ -16,16 +16,16 @@ constexpr double kConsistent = 1.2;
 constexpr double kStillThere = 0.6;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
-bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested, const Gate& gate) {
+bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested, const ScoreThreshold& threshold) {
   // From outside the catalogue only what is beyond doubt.
-  const double least = Asked(problem, r, gate);
+  const double least = Asked(problem, r, threshold);
   if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
   // A further effect that does harm in the half of the log that it was not fitted on is none.
   Cause cause;
   std::vector<BlockGain> blocks;
-  if (gate.accepted > 0) {
+  if (threshold.accepted > 0) {
     HeldOutGain(problem, current, r.fit, CauseNamed(r.effect().kind).judged_at_scale, cause, blocks);
     if (cause.heldout_gain_high < 0.0) return false;
   }
@@ -38,12 +38,12 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
 /// The hypothesis itself, or a number of the base behind it that the log says more about, where that is not for
 /// the same reason: a score is worth what its scatter from block to block leaves of it.
 std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::vector<Hypothesis>& hypotheses,
-                        std::size_t holds, const Gate& gate, double& tested) {
+                        std::size_t holds, const ScoreThreshold& threshold, double& tested) {
   std::size_t surest = holds;
   for (std::size_t i = holds + 1; i < hypotheses.size(); ++i) {
     if (!InBase(problem, hypotheses[i].effect().kind)) continue;
     const double score = TestedScore(problem, current, hypotheses[i]);
-    if (score <= tested || !Holds(problem, current, hypotheses[i], score, gate) ||
+    if (score <= tested || !Holds(problem, current, hypotheses[i], score, threshold) ||
         !StandsBeside(problem, hypotheses[holds].fit, hypotheses[i]))
       continue;
     surest = i;
@@ -54,10 +54,10 @@ std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::v
 
 }  // namespace
 
-double Asked(const Problem& problem, const Hypothesis& r, const Gate& gate) {
+double Asked(const Problem& problem, const Hypothesis& r, const ScoreThreshold& threshold) {
   // Nothing is left of what nobody has found yet.
-  const ScoreScale score_scale = gate.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
-  return Threshold(problem, gate, r.effect(), score_scale);
+  const ScoreScale score_scale = threshold.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
+  return Threshold(problem, threshold, r.effect(), score_scale);
 }
 
 bool StandsBeside(const Problem& problem, const Fit& other, const Hypothesis& r) {
@@ -66,7 +66,7 @@ bool StandsBeside(const Problem& problem, const Fit& other, const Hypothesis& r)
   return ScoreEffects(problem, other, {effect})[0].drop > kStillThere * (r.score + Penalty(*effect));
 }
 
-Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Hypothesis>& hypotheses) {
+Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThreshold& threshold, std::vector<Hypothesis>& hypotheses) {
   Choice choice;
   for (std::size_t i = 0; i < hypotheses.size() && !choice.found; ++i) {
     if (hypotheses[i].given_up) continue;
@@ -74,11 +74,11 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate,
       continue;
     const double score = TestedScore(problem, current, hypotheses[i]);
     if (i == 0) choice.tested = score;
-    hypotheses[i].refused = !Holds(problem, current, hypotheses[i], score, gate);
+    hypotheses[i].refused = !Holds(problem, current, hypotheses[i], score, threshold);
     if (hypotheses[i].refused) continue;
     choice.found = true;
     choice.tested = score;
-    const std::size_t chosen = SurerNumber(problem, current, hypotheses, i, gate, choice.tested);
+    const std::size_t chosen = SurerNumber(problem, current, hypotheses, i, threshold, choice.tested);
     if (chosen == 0) continue;
     std::rotate(hypotheses.begin(), hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen),
                 hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);

@@ -2,13 +2,13 @@
 
 #include <vector>
 
-#include "analysis/diagnosis/decision/gate.h"
+#include "analysis/diagnosis/decision/score_threshold.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
 
 namespace contour::diagnosis {
 
 /// What a hypothesis's score must exceed.
-double Asked(const Problem& problem, const Hypothesis& r, const Gate& gate);
+double Asked(const Problem& problem, const Hypothesis& r, const ScoreThreshold& threshold);
 
 /// Whether what speaks for an effect goes on doing so when another one is in the model: these two do not
 /// explain the same. Of what a test for small sizes says something about.
@@ -21,6 +21,6 @@ struct Choice {
 
 /// The best of the hypotheses, or the next that holds where the best does not, goes to their front. Those that do
 /// not hold are marked as refused.
-Choice ChooseFirst(const Problem& problem, const Fit& current, const Gate& gate, std::vector<Hypothesis>& hypotheses);
+Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThreshold& threshold, std::vector<Hypothesis>& hypotheses);
 
 }  // namespace contour::diagnosis

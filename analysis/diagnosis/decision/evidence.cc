@@ -18,7 +18,7 @@ constexpr double kFarOut = -1e6;
 }  // namespace
 
 void TellEvidence(const Problem& problem, const Accepted& accepted, const std::vector<Scored>& scored,
-                  const std::vector<Hypothesis>& hypotheses, const Gate& gate, const DiagnoseOptions& options) {
+                  const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold, const DiagnoseOptions& options) {
   if (!options.evidence) return;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> told;
@@ -27,7 +27,7 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
     if (std::find(told.begin(), told.end(), kind) != told.end()) continue;
     told.push_back(kind);
     Evidence e;
-    e.accepted = gate.accepted;
+    e.accepted = threshold.accepted;
     e.explained = accepted.explained;
     e.in_base = InBase(problem, kind);
     e.kind = kind;
@@ -35,13 +35,13 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
     e.penalty = Penalty(*s.effect);
     e.overdispersion = s.overdispersion;
     e.refitted = e.tested = e.unseen = kNone;
-    e.flips = gate.calibrated;
-    e.asked = Threshold(problem, gate, *s.effect, ScoreScaleOf(problem, s));
+    e.flips = threshold.calibrated;
+    e.asked = Threshold(problem, threshold, *s.effect, ScoreScaleOf(problem, s));
     for (const Hypothesis& r : hypotheses) {
       if (r.effect().kind != kind || r.score < kFarOut || r.given_up) continue;
       e.penalty = Penalty(r.effect());
       e.refitted = r.score + e.penalty;
-      e.asked = Asked(problem, r, gate);
+      e.asked = Asked(problem, r, threshold);
       e.tested = TestedScore(problem, accepted.fit, r);
       e.unseen = Consistency(problem, accepted.fit, r.fit, true);
     }

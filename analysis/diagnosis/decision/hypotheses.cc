@@ -28,7 +28,7 @@ constexpr double kGivenUp = 0.02, kAllTheSame = 1e-3;
 constexpr double kMayMatter = 0.3;    // the least share of the best one's score that is tested at all
 constexpr double kMayWin = 0.4;       // the same before the last steps
 constexpr double kSmallStill = 30.0;  // of a score, which new noise may bring
-constexpr double kNearGate = 0.5;
+constexpr double kNearThreshold = 0.5;
 
 /// Catalogue first, the best first, those given up at the end; what lies outside it comes first only where it
 /// explains far more.
@@ -74,12 +74,12 @@ void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
 // one in it.
 constexpr double kShortByLeakage = 0.1;
 
-bool Promising(const Problem& problem, const Scored& s, Gate gate) {
-  gate.leakage *= kShortByLeakage;
-  for (auto& [kind, left] : gate.leakage_of_kind) left *= kShortByLeakage;
+bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold) {
+  threshold.leakage *= kShortByLeakage;
+  for (auto& [kind, left] : threshold.leakage_of_kind) left *= kShortByLeakage;
   ScoreScale score_scale = ScoreScaleOf(problem, s);
   score_scale.overdispersion = std::min(s.overdispersion, kMostOverdispersion);
-  return s.drop / score_scale.overdispersion - Penalty(*s.effect) > Threshold(problem, gate, *s.effect, score_scale);
+  return s.drop / score_scale.overdispersion - Penalty(*s.effect) > Threshold(problem, threshold, *s.effect, score_scale);
 }
 
 /// From the linear estimate.
@@ -156,19 +156,19 @@ std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std
 
 bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
 
-bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const Gate& gate,
+bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                   const std::vector<std::string>& tried) {
   return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
-    return !Outside(s.effect->kind) && !Among(tried, s) && Promising(problem, s, gate);
+    return !Outside(s.effect->kind) && !Among(tried, s) && Promising(problem, s, threshold);
   });
 }
 
 namespace {
 
-/// Where fits of the best candidates begin that have not been tried; none where nothing beyond the gate is
+/// Where fits of the best candidates begin that have not been tried; none where nothing beyond the threshold is
 /// promised. `most`: the drop that the best of them is promised.
 std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current,
-                                      const std::vector<Scored>& scored, const Gate& gate,
+                                      const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                                       std::vector<std::string>& tried, double& most) {
   std::vector<Beginning> beginnings;
   const std::vector<std::string> before = tried;
@@ -183,14 +183,14 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
       outside = true;
     } else {
       // Evidence in the priors is small beside what lies in the residual, and as good.
-      const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, gate);
+      const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, threshold);
       if (!by_priors && (fitted >= kMostKinds || looked_at >= kMostTried || s.drop < kFewOfMost * most))
         continue;
       if (Among(tried, s)) continue;
       tried.push_back(FamilyOf(*s.effect));
       ++looked_at;
       if (!s.effect->start.empty()) {
-        if (!Promising(problem, s, gate)) continue;
+        if (!Promising(problem, s, threshold)) continue;
         std::vector<Beginning> far = Far(problem, current, s.effect->kind, scored);
         if (far.empty() && by_priors) far.push_back(Near(problem, current, s));
         if (far.empty()) continue;
@@ -202,7 +202,7 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
       beginnings.push_back(Near(problem, current, s));
       if (!by_priors) ++fitted;
     }
-    promising = promising || Promising(problem, s, gate);
+    promising = promising || Promising(problem, s, threshold);
   }
   if (!promising) beginnings.clear();
   return beginnings;
@@ -259,18 +259,18 @@ void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
 }  // namespace
 
 std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                             const Gate& gate, std::vector<std::string>& tried) {
+                             const ScoreThreshold& threshold, std::vector<std::string>& tried) {
   std::vector<Hypothesis> out;
   double best = kNever;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     double most = 0.0;
-    for (Fit& fit : FitPoints(problem, NextBeginnings(problem, current, scored, gate, tried, most))) {
+    for (Fit& fit : FitPoints(problem, NextBeginnings(problem, current, scored, threshold, tried, most))) {
       out.push_back({std::move(fit)});
       Judge(problem, current, out.back());
       best = std::max(best, out.back().score);
     }
     // Where the best came to nothing, those far behind it have their turn.
-    if (best > kFewOfMost * most || !MorePromised(problem, scored, gate, tried)) break;
+    if (best > kFewOfMost * most || !MorePromised(problem, scored, threshold, tried)) break;
   }
   Sort(out);
   KeepBest(problem, out);
@@ -280,11 +280,11 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
   return out;
 }
 
-bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const Gate& gate) {
+bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold) {
   return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& r) {
     if (r.given_up) return false;
-    const ScoreScale score_scale = gate.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
-    return r.score + r.fit.promised > kNearGate * Threshold(problem, gate, r.effect(), score_scale);
+    const ScoreScale score_scale = threshold.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
+    return r.score + r.fit.promised > kNearThreshold * Threshold(problem, threshold, r.effect(), score_scale);
   });
 }
 

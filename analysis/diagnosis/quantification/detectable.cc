@@ -17,7 +17,7 @@ namespace {
 
 // A cause must also hold in several blocks, in unseen halves and against its hypotheses, and the rest of the fit
 // takes a part of it over: by recorded machines (docs/diagnosis_results.md).
-constexpr double kBeyondTheGate = 1.6;
+constexpr double kBeyondTheThreshold = 1.6;
 // The same where the size comes from runs at that size.
 constexpr double kBeyondRuns = 1.5;
 
@@ -30,15 +30,15 @@ constexpr double kNinety = 1.2816;
 /// Standard errors that exceed a threshold of the squared score in 90 % of cases.
 double Needed(double threshold) { return std::sqrt(std::max(threshold, 1.0)) + kNinety; }
 
-double Needed(const Problem& problem, const Gate& gate, const Scored& s) {
-  return Needed(Threshold(problem, gate, *s.effect, ScoreScaleOf(problem, s)) + Penalty(*s.effect));
+double Needed(const Problem& problem, const ScoreThreshold& threshold, const Scored& s) {
+  return Needed(Threshold(problem, threshold, *s.effect, ScoreScaleOf(problem, s)) + Penalty(*s.effect));
 }
 
 /// An effect that is there makes every score scatter.
 double ByChance(const Scored& s) { return std::min(s.overdispersion, kMostOverdispersion); }
 
-/// By the first amplitude: the linear estimate of what exceeds the gate in 90 % of cases.
-double LinearSize(const Problem& problem, const Gate& gate, const Scored& s) {
+/// By the first amplitude: the linear estimate of what exceeds the threshold in 90 % of cases.
+double LinearSize(const Problem& problem, const ScoreThreshold& threshold, const Scored& s) {
   const std::string& kind = s.effect->kind;
   if (InBase(problem, kind)) {
     // What is stated is as far off as its uncertainty says, and an effect may have to begin on the other
@@ -46,33 +46,33 @@ double LinearSize(const Problem& problem, const Gate& gate, const Scored& s) {
     double variance = s.covariance(0, 0);
     const std::vector<std::size_t> terms = FreedTerms(problem, kind);
     if (!terms.empty()) variance += std::pow(problem.terms[terms[0]].sigma, 2);
-    return Needed(problem, gate, s) * std::sqrt(variance);
+    return Needed(problem, threshold, s) * std::sqrt(variance);
   }
   // The mean standard error over the amplitudes; a shape may lie along any of them.
   const double n = static_cast<double>(s.covariance.rows());
-  return Needed(problem, gate, s) * std::sqrt(std::max(0.0, s.covariance.trace() / n) * ByChance(s));
+  return Needed(problem, threshold, s) * std::sqrt(std::max(0.0, s.covariance.trace() / n) * ByChance(s));
 }
 
 /// An effect and the first amplitude that is found in 90 % of cases.
 struct Detectable {
   SharedEffect effect;
-  double gate = 0.0;  ///< exceeds the gate
+  double threshold = 0.0;  ///< exceeds the threshold
   double size = 0.0;  ///< passes everything
 };
 
 /// Of a shape that is not known (an exponent, an instant, a ratio) the one in the middle; of several lengths
 /// of one shape the best, as the score test has it.
-std::optional<Detectable> Middle(const Problem& problem, const Gate& gate, std::span<const Scored> scored,
+std::optional<Detectable> Middle(const Problem& problem, const ScoreThreshold& threshold, std::span<const Scored> scored,
                                  const std::string& kind) {
   std::vector<std::pair<double, const Scored*>> shapes;
   for (const Scored& s : scored) {
     if (s.effect->kind != kind) continue;
     const auto longer = [&](const Scored& other) { return other.effect->shorter == s.effect; };
     if (std::any_of(scored.begin(), scored.end(), longer)) continue;
-    double least = LinearSize(problem, gate, s);
+    double least = LinearSize(problem, threshold, s);
     const Scored* best = &s;
     for (const Scored& other : scored) {
-      const double size = LinearSize(problem, gate, other);
+      const double size = LinearSize(problem, threshold, other);
       if (other.effect != s.effect->shorter || size >= least) continue;
       least = size;
       best = &other;
@@ -82,7 +82,7 @@ std::optional<Detectable> Middle(const Problem& problem, const Gate& gate, std::
   if (shapes.empty()) return std::nullopt;
   std::sort(shapes.begin(), shapes.end());
   const auto& [size, at] = shapes[(shapes.size() - 1) / 2];
-  return Detectable{at->effect, size, (InBase(problem, kind) ? 1.0 : kBeyondTheGate) * size};
+  return Detectable{at->effect, size, (InBase(problem, kind) ? 1.0 : kBeyondTheThreshold) * size};
 }
 
 /// A point beside the base, with a first amplitude.
@@ -111,22 +111,22 @@ Eigen::MatrixXd LeftOf(const Problem& problem, const Fit& base, std::span<const 
 
 /// What begins far from linear shows by runs at several sizes how it grows. Its fit begins where the linear
 /// test promises something, which knows the columns at the grid's places only.
-std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const Gate& gate,
+std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const ScoreThreshold& threshold,
                                  std::span<const Scored> scored, const Detectable& linear) {
   std::vector<double> sizes;
   std::vector<Point> points;
   const double largest = linear.effect->high[0];
-  for (double size = 0.5 * linear.gate; size < largest && points.size() < kLanes; size *= 2.0) {
+  for (double size = 0.5 * linear.threshold; size < largest && points.size() < kLanes; size *= 2.0) {
     sizes.push_back(size);
     points.push_back(Beside(base, linear.effect, size));
   }
   double enough = 0.0;
   std::vector<double> promising;
   for (const Scored& s : scored) {
-    if (s.effect == linear.effect) enough = std::pow(Needed(problem, gate, s), 2) * ByChance(s);
+    if (s.effect == linear.effect) enough = std::pow(Needed(problem, threshold, s), 2) * ByChance(s);
     if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
     points.push_back(Beside(base, s.effect, s.effect->steps[0]));
-    promising.push_back(kMostOverdispersion * std::pow(Needed(problem, gate, s) - kNinety, 2));
+    promising.push_back(kMostOverdispersion * std::pow(Needed(problem, threshold, s) - kNinety, 2));
   }
   const Eigen::MatrixXd left = LeftOf(problem, base, points);
   const auto n = static_cast<Eigen::Index>(sizes.size());
@@ -150,7 +150,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
 }
 
 /// The stiffest coupling that shows at its usual share of the inertia and is a fault: its place in the grid.
-std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, const Gate& gate,
+std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, const ScoreThreshold& threshold,
                                    std::span<const Scored> scored) {
   std::vector<Point> points;
   std::vector<const Scored*> places;
@@ -164,7 +164,7 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   const Eigen::VectorXd promised = LeftOf(problem, base, points).diagonal();
   const Scored* best = nullptr;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double enough = std::pow(kBeyondRuns * Needed(problem, gate, *places[i]), 2) * ByChance(*places[i]);
+    const double enough = std::pow(kBeyondRuns * Needed(problem, threshold, *places[i]), 2) * ByChance(*places[i]);
     if (promised(static_cast<Eigen::Index>(i)) > enough &&
         (best == nullptr || places[i]->effect->order > best->effect->order))
       best = places[i];
@@ -174,12 +174,12 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   return Detectable{best->effect, share, share};
 }
 
-std::optional<Detectable> Smallest(const Problem& problem, const Fit& base, const Gate& gate,
+std::optional<Detectable> Smallest(const Problem& problem, const Fit& base, const ScoreThreshold& threshold,
                                    std::span<const Scored> scored, const std::string& kind) {
-  std::optional<Detectable> d = Middle(problem, gate, scored, kind);
+  std::optional<Detectable> d = Middle(problem, threshold, scored, kind);
   if (!d || InBase(problem, kind) || d->effect->start.empty()) return d;
-  if (CauseNamed(kind).coupling) return Stiffest(problem, base, gate, scored);
-  return ByRuns(problem, base, gate, scored, *d);
+  if (CauseNamed(kind).coupling) return Stiffest(problem, base, threshold, scored);
+  return ByRuns(problem, base, threshold, scored, *d);
 }
 
 }  // namespace
@@ -193,8 +193,8 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
     if (cause->in_scatter_only) continue;
     const std::string kind(*cause->name);
     if (!only.empty() && std::find(only.begin(), only.end(), kind) == only.end()) continue;
-    const std::optional<Detectable> d = Smallest(problem, base, screened.gate, screened.scored, kind);
-    if (!d || d->gate > kHopeless * (*cause->largest)(problem)) continue;
+    const std::optional<Detectable> d = Smallest(problem, base, screened.threshold, screened.scored, kind);
+    if (!d || d->threshold > kHopeless * (*cause->largest)(problem)) continue;
     Fit at;
     at.point = base.point;
     // Numbers of the model deviate from what is stated.
@@ -213,7 +213,7 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
   if (screened.jitter.tested) {
     const CauseDefinition& cause = CauseInScatter();
     out[std::string(*cause.name)][std::string(*cause.main_parameter)] =
-        1e6 * std::sqrt(kBeyondTheGate * Needed(Threshold(problem, screened.gate) + 3.0) *
+        1e6 * std::sqrt(kBeyondTheThreshold * Needed(Threshold(problem, screened.threshold) + 3.0) *
                         screened.jitter.sigma_s2);
   }
   return out;

@@ -143,7 +143,7 @@ void WriteReportData(const std::filesystem::path& dir, const AxisLog& log, const
                      {"contour_gain", gain},
                      {"extended_model", extended_model},
                      {"false_alarm_rate", found.false_alarm_rate},
-                     {"gate", Number(found.gate)},
+                     {"gate", Number(found.threshold)},
                      {"not_excited", found.not_excited},
                      {"detectable", DetectableJson(found)},
                      {"candidates", CandidatesJson(found)},

@@ -17,10 +17,10 @@ struct Evidence {
   double penalty = 0.0;
   double overdispersion = 1.0;
   double refitted = 0.0;  ///< drop of the joint fit; NaN: not fitted
-  double tested = 0.0;    ///< score that the gate is asked about; NaN: not fitted
+  double tested = 0.0;    ///< score that the threshold is asked about; NaN: not fitted
   double unseen = 0.0;    ///< held-out statistic; NaN: not fitted
-  double flips = 0.0;     ///< gate of the sign flips, at the rate of the calibration
-  double asked = 0.0;     ///< by the gate
+  double flips = 0.0;     ///< threshold of the sign flips, at the rate of the calibration
+  double asked = 0.0;     ///< by the threshold
 };
 
 struct DiagnoseOptions {

@@ -27,7 +27,7 @@ struct ErrorScore {
   double leakage = 0.0, leakage_of_its_kind = 0.0;
 };
 
-/// What the model's own errors may add to a score above the gate of kCalibratedRate before all kinds together
+/// What the model's own errors may add to a score above the threshold of kCalibratedRate before all kinds together
 /// alarm more often than asked; per row. They look like effects, the more the longer the log.
 double AllowancePerRow(std::string_view kind, double false_alarm_rate);
 

@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& which) { return which.param.effect.kind; });
 
 TEST(Diagnose, FindsNothingOnACleanAxis) {
-  // At 0.1 % nominal, a sound gate fails this with a chance of a few in a thousand, and the seed is fixed.
+  // At 0.1 % nominal, a sound threshold fails this with a chance of a few in a thousand, and the seed is fixed.
   const test::HiddenAxis axis = test::MakeHiddenAxis(Hidden(102, {}));
   DiagnoseOptions options;
   options.false_alarm_rate = 0.001;
@@ -133,7 +133,7 @@ TEST(Diagnose, GivesTheSameAnswerOnAnyNumberOfThreads) {
   const Diagnosis a = Diagnose(axis.log, axis.stated, one), b = Diagnose(axis.log, axis.stated, three);
   ASSERT_EQ(a.causes.size(), b.causes.size());
   ASSERT_FALSE(a.causes.empty());
-  EXPECT_EQ(a.gate, b.gate);
+  EXPECT_EQ(a.threshold, b.threshold);
   EXPECT_EQ(a.causes[0].kind, "constant_torque");
   EXPECT_EQ(a.causes[0].kind, b.causes[0].kind);
   EXPECT_EQ(a.causes[0].log_evidence_gain, b.causes[0].log_evidence_gain);

@@ -59,7 +59,7 @@ void PrintJudged(const Outcome& o) {
   const bool pair = o.known.question.type == Question::Type::kPair;
   std::printf(" %s %s", (pair ? o.judged.both : o.judged.right) ? "right" : "WRONG", o.judged.answer.c_str());
   if (o.judged.itself) std::printf("  gain %.3f %s", o.judged.gain, o.judged.inside ? "inside" : "OUTSIDE ");
-  std::printf("%s  gate %.1f  %.2f s for %.0f s\n", o.judged.outside.c_str(), o.gate, o.diagnose_s, o.log_s);
+  std::printf("%s  gate %.1f  %.2f s for %.0f s\n", o.judged.outside.c_str(), o.threshold, o.diagnose_s, o.log_s);
   std::fflush(stdout);
 }
 

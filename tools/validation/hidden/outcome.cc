@@ -79,7 +79,7 @@ Outcome FromFields(const std::vector<std::string>& f) {
   o.judged.inside = f[17] == "1";
   (o.known.usable ? o.judged.outside : o.known.why_not) = f[18];
   o.judged.gain = std::stod(f[19]);
-  o.gate = std::stod(f[20]);
+  o.threshold = std::stod(f[20]);
   o.diagnose_s = std::stod(f[21]);
   o.log_s = std::stod(f[22]);
   o.named = o.verdict == diagnosis::Verdict::kCauseFound || o.verdict == diagnosis::Verdict::kAmbiguous;
@@ -101,7 +101,7 @@ Outcome AskCase(const std::filesystem::path& directory, const Diagnoser& diagnos
   outcome.judged = Judge(answer, outcome.known.hidden, outcome.known.question.misfit);
   outcome.verdict = answer.verdict;
   outcome.named = !answer.causes.empty();
-  outcome.gate = answer.gate;
+  outcome.threshold = answer.threshold;
   return outcome;
 }
 
@@ -118,7 +118,7 @@ void AppendCsv(const std::filesystem::path& file, const Outcome& o) {
        << h.size << ',' << h.order << ',' << h.second << ',' << verdict << ',' << o.judged.answer << ','
        << o.judged.right << ',' << o.judged.both << ',' << o.judged.itself << ',' << o.judged.extra << ','
        << o.judged.inside << ',' << WithoutCommas(o.known.usable ? o.judged.outside : o.known.why_not) << ','
-       << o.judged.gain << ',' << o.gate << ',' << o.diagnose_s << ',' << o.log_s << '\n';
+       << o.judged.gain << ',' << o.threshold << ',' << o.diagnose_s << ',' << o.log_s << '\n';
   std::ofstream out(file, std::ios::app);
   if (fresh) out << kHeader << '\n';
   out << line.str() << std::flush;

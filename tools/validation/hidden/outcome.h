@@ -17,7 +17,7 @@ struct Outcome {
   Judged judged;
   diagnosis::Verdict verdict = diagnosis::Verdict::kInsufficientData;
   bool named = false;  ///< some cause was accepted
-  double gate = 0.0;
+  double threshold = 0.0;
   double diagnose_s = 0.0;  ///< processor time of the diagnosis
   double log_s = 0.0;
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/decision/gate.h"
+#include "analysis/diagnosis/decision/score_threshold.h"
 #include "analysis/diagnosis/diagnose.h"
 #include "tests/analysis/support/hidden_axis.h"
 #include "tests/analysis/support/learnt_problem.h"
@@ -54,38 +54,38 @@ SharedEffect Of(const Problem& problem, const std::string& kind) {
   return nullptr;
 }
 
-TEST(Gate, ALeftOverMovesANumberOfTheModelByWhatTheLogDoesNotKnowOfIt) {
+TEST(ScoreThreshold, ALeftOverMovesANumberOfTheModelByWhatTheLogDoesNotKnowOfIt) {
   const test::LearntProblem l(test::MakeHiddenAxis(Options({})));
   const SharedEffect delay = Of(l.problem, "input_delay");
   ASSERT_TRUE(delay);
-  Gate gate;
-  gate.rate = 0.05;
-  gate.accepted = 1;
-  gate.leakage = 1000.0;
-  const double known = Threshold(l.problem, gate, *delay, {.variance_ratio = 0.0}),
-               fairly = Threshold(l.problem, gate, *delay, {.variance_ratio = 0.01}),
-               unknown = Threshold(l.problem, gate, *delay, {.variance_ratio = 1.0});
+  ScoreThreshold threshold;
+  threshold.rate = 0.05;
+  threshold.accepted = 1;
+  threshold.leakage = 1000.0;
+  const double known = Threshold(l.problem, threshold, *delay, {.variance_ratio = 0.0}),
+               fairly = Threshold(l.problem, threshold, *delay, {.variance_ratio = 0.01}),
+               unknown = Threshold(l.problem, threshold, *delay, {.variance_ratio = 1.0});
   EXPECT_LT(known, 7.0);  // chi^2 of one degree of freedom in 0.2 % less the penalty
   EXPECT_GT(fairly, known + 10.0);
   EXPECT_LT(fairly, known + 40.0);
   EXPECT_GT(unknown, 1000.0);
 }
 
-TEST(Gate, WhatIsLeftOfAWaveIsMostlyFurtherOrdersOfIt) {
+TEST(ScoreThreshold, WhatIsLeftOfAWaveIsMostlyFurtherOrdersOfIt) {
   const test::LearntProblem l(test::MakeHiddenAxis(Options({})));
   const SharedEffect drift = Of(l.problem, "friction_drift");
   ASSERT_TRUE(drift);
-  Gate gate;
-  gate.rate = 0.05;
-  gate.accepted = 1;
-  const double none = Threshold(l.problem, gate, *drift, {});
-  gate.leakage_of_kind["cogging"] = 500.0;
-  EXPECT_EQ(gate.LeakageAs("cogging"), 500.0);
-  EXPECT_EQ(Threshold(l.problem, gate, *drift, {}), none);
-  gate.leakage = 60.0;
-  EXPECT_NEAR(Threshold(l.problem, gate, *drift, {}), none + 60.0, 1e-9);
+  ScoreThreshold threshold;
+  threshold.rate = 0.05;
+  threshold.accepted = 1;
+  const double none = Threshold(l.problem, threshold, *drift, {});
+  threshold.leakage_of_kind["cogging"] = 500.0;
+  EXPECT_EQ(threshold.LeakageAs("cogging"), 500.0);
+  EXPECT_EQ(Threshold(l.problem, threshold, *drift, {}), none);
+  threshold.leakage = 60.0;
+  EXPECT_NEAR(Threshold(l.problem, threshold, *drift, {}), none + 60.0, 1e-9);
   // Scores are over the overdispersion of chance; so is what is left.
-  EXPECT_NEAR(Threshold(l.problem, gate, *drift, {.overdispersion = 3.0}), none + 20.0, 1e-9);
+  EXPECT_NEAR(Threshold(l.problem, threshold, *drift, {.overdispersion = 3.0}), none + 20.0, 1e-9);
 }
 
 TEST(ViscousNonlinear, WithAKneeGivesWay) {

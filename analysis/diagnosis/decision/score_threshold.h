@@ -11,7 +11,7 @@
 namespace contour::diagnosis {
 
 /// What a score must exceed for its kind to be named.
-struct Gate {
+struct ScoreThreshold {
   double flips = 0.0;       ///< as SignFlips has it, at the asked rate
   double calibrated = 0.0;  ///< the same at the rate of the calibration
   double rate = 0.05;       ///< of false alarms
@@ -27,7 +27,7 @@ struct Gate {
 
 /// By chance alone, but for numbers of the base: no model-error allowance, and nothing left of accepted causes. What the
 /// allowances are read off is measured against it.
-Gate ByChanceAlone(Gate gate);
+ScoreThreshold ByChanceAlone(ScoreThreshold threshold);
 
 /// How residual leakage shows in a kind's score.
 struct ScoreScale {
@@ -44,10 +44,10 @@ ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit);
 /// The score that the best of all candidates exceeds by chance with a given probability: residual blocks
 /// with random signs against the fixed columns, waves found by a scan as the largest of their grid; beyond
 /// the 2 % quantile along a Gumbel fit. `more` is added to it.
-Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more);
+ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more);
 
-double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const ScoreScale& score_scale);
+double Threshold(const Problem& problem, const ScoreThreshold& threshold, const Effect& effect, const ScoreScale& score_scale);
 /// The same of a kind without a number in the base.
-double Threshold(const Problem& problem, const Gate& gate);
+double Threshold(const Problem& problem, const ScoreThreshold& threshold);
 
 }  // namespace contour::diagnosis

@@ -1,4 +1,4 @@
-#include "analysis/diagnosis/decision/gate.h"
+#include "analysis/diagnosis/decision/score_threshold.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double kBeyondStated = 2e-3;
 
 }  // namespace
 
-Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more) {
+ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more) {
   constexpr int kDraws = 1500;
   constexpr int kScans = 6;
   std::mt19937_64 random(seed * 2654435761U + 99);
@@ -54,14 +54,14 @@ Gate SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uin
   return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
 }
 
-Gate ByChanceAlone(Gate gate) {
-  gate.model_error = false;
-  gate.leakage = 0.0;
-  gate.leakage_of_kind.clear();
-  return gate;
+ScoreThreshold ByChanceAlone(ScoreThreshold threshold) {
+  threshold.model_error = false;
+  threshold.leakage = 0.0;
+  threshold.leakage_of_kind.clear();
+  return threshold;
 }
 
-double Gate::LeakageAs(const std::string& kind) const {
+double ScoreThreshold::LeakageAs(const std::string& kind) const {
   const auto same = leakage_of_kind.find(kind);
   return leakage + (same == leakage_of_kind.end() ? 0.0 : same->second);
 }
@@ -82,10 +82,10 @@ double VarianceRatio(const Problem& problem, const std::string& kind, const Eige
   return most;
 }
 
-double Threshold(const Problem& problem, const Gate& gate, std::string_view kind) {
-  if (!gate.model_error) return gate.flips;
-  const double errors = AllowancePerRow(kind, gate.rate) * static_cast<double>(problem.rows());
-  return std::max(gate.flips, gate.calibrated + errors);
+double Threshold(const Problem& problem, const ScoreThreshold& threshold, std::string_view kind) {
+  if (!threshold.model_error) return threshold.flips;
+  const double errors = AllowancePerRow(kind, threshold.rate) * static_cast<double>(problem.rows());
+  return std::max(threshold.flips, threshold.calibrated + errors);
 }
 
 }  // namespace
@@ -109,22 +109,22 @@ ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit) {
   return score_scale;
 }
 
-double Threshold(const Problem& problem, const Gate& gate) {
-  return Threshold(problem, gate, "") + gate.leakage;
+double Threshold(const Problem& problem, const ScoreThreshold& threshold) {
+  return Threshold(problem, threshold, "") + threshold.leakage;
 }
 
-double Threshold(const Problem& problem, const Gate& gate, const Effect& effect, const ScoreScale& score_scale) {
-  double left = gate.LeakageAs(effect.kind);
-  if (!InBase(problem, effect.kind)) return Threshold(problem, gate, effect.kind) + left / score_scale.overdispersion;
+double Threshold(const Problem& problem, const ScoreThreshold& threshold, const Effect& effect, const ScoreScale& score_scale) {
+  double left = threshold.LeakageAs(effect.kind);
+  if (!InBase(problem, effect.kind)) return Threshold(problem, threshold, effect.kind) + left / score_scale.overdispersion;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
-  const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * gate.rate, kBeyondStated));
-  if (gate.accepted == 0) return by_chance - Penalty(effect);
+  const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * threshold.rate, kBeyondStated));
+  if (threshold.accepted == 0) return by_chance - Penalty(effect);
   left += kBesidePerRow * static_cast<double>(problem.rows());
   // At its worst residual leakage of chi^2 moves the number by its root, in standard errors of the log.
   const double moved = score_scale.variance_ratio * left;
   left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));
-  return std::max(by_chance - Penalty(effect), gate.flips) + left;
+  return std::max(by_chance - Penalty(effect), threshold.flips) + left;
 }
 
 }  // namespace contour::diagnosis
