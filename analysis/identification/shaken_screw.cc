@@ -15,7 +15,7 @@ constexpr double kWindow_s = 0.1;
 constexpr double kFlank_s = 0.003;
 /// What shakes, rms, in shares of the Coulomb level.
 constexpr double kLeastShaking = 0.2;
-constexpr double kLeast_s = 1.0;  ///< of shaken sliding, all stretches together
+constexpr double kLeast_s = 1.0;  ///< of shaken sliding, all segments together
 constexpr double kLowest_Hz = 100.0;
 constexpr double kFollow_Hz = 60.0;
 /// Starts: antiresonances a twentieth apart, shares of the table in the whole mass.
@@ -52,10 +52,10 @@ Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
 }
 
 /// Log of the prediction error that is left when each error is foreseen from those before it.
-double LogError(const TableAxis& axis, const std::vector<Measured>& stretches) {
-  const FollowGain gain = MakeFollowGain(axis, stretches.front().period_s, kFollow_Hz);
+double LogError(const TableAxis& axis, const std::vector<Measured>& segments) {
+  const FollowGain gain = MakeFollowGain(axis, segments.front().period_s, kFollow_Hz);
   std::vector<double> all;
-  for (const Measured& s : stretches) {
+  for (const Measured& s : segments) {
     const std::vector<double> e = PredictionErrors_m(axis, s, gain);
     all.insert(all.end(), e.begin(), e.end());
   }
@@ -104,16 +104,16 @@ TableAxis Rigid(TableAxis axis) {
   return axis;
 }
 
-/// On from a fit until it foresees no better: the valley is long and bent.
-std::pair<double, TableAxis> FollowValley(TableAxis axis, const std::vector<Measured>& stretches,
+/// On from a fit until it foresees no better: the basin is long and bent.
+std::pair<double, TableAxis> FollowValley(TableAxis axis, const std::vector<Measured>& segments,
                                           int threads) {
   FitOptions on = Options(true, false, threads);
-  double error = LogError(axis, stretches);
+  double error = LogError(axis, segments);
   for (int i = 0; i < kLongestValley; ++i) {
-    const TableAxis next = FitJointly(axis, stretches, on).axis;
+    const TableAxis next = FitJointly(axis, segments, on).axis;
     on.refine = true;
     on.rounds = 1;
-    const double e = LogError(next, stretches);
+    const double e = LogError(next, segments);
     const bool on_the_way = i == 0 || error - e > kSamePlace;
     if (e < error || i == 0) {
       error = e;
@@ -143,7 +143,7 @@ double HighestGood_Hz(const std::vector<ResponsePoint>& response) {
 }
 
 /// The best of each antiresonance, the best first.
-std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured>& stretches,
+std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured>& segments,
                               double highest_Hz) {
   const double mass = start.mass_kg();
   std::vector<std::pair<double, TableAxis>> starts;
@@ -156,7 +156,7 @@ std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured
       a.stiffness = a.load_inertia * std::pow(2.0 * std::numbers::pi * f, 2);
       // Damping ratio of the resonance: 0.03.
       a.damping = 0.06 * std::sqrt(a.stiffness * a.load_inertia * a.motor_inertia / mass);
-      const double e = LogError(a, stretches);
+      const double e = LogError(a, segments);
       if (e < best.first) best = {e, a};
     }
     starts.push_back(best);
@@ -178,14 +178,14 @@ std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured
 
 std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const TableAxis& axis) {
   const double least_N = kLeastShaking * 0.5 * (axis.friction.Fc_plus + axis.friction.Fc_minus);
-  std::vector<Measured> stretches;
+  std::vector<Measured> segments;
   for (const Measured& d : records) {
     const auto window = static_cast<std::size_t>(kWindow_s / d.period_s);
     std::size_t begin = 0;
     std::size_t end = 0;
     double before = 0.0;  // way of the window before: the bristle is saturated by then
     const auto close = [&] {
-      if (end > begin + window) stretches.push_back(Slice(d, begin, end));
+      if (end > begin + window) segments.push_back(Slice(d, begin, end));
       begin = end = 0;
     };
     for (std::size_t at = 2; at + window < d.size(); at += window) {
@@ -204,24 +204,24 @@ std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, cons
     }
     close();
   }
-  return stretches;
+  return segments;
 }
 
 ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records, int threads) {
   ShakenScrew s;
-  const std::vector<Measured> stretches = ShakenStretches(records, start);
-  for (const Measured& d : stretches) s.seconds += static_cast<double>(d.size()) * d.period_s;
-  if (!stretches.empty()) s.response = MotorResponse(stretches);
+  const std::vector<Measured> segments = ShakenStretches(records, start);
+  for (const Measured& d : segments) s.seconds += static_cast<double>(d.size()) * d.period_s;
+  if (!segments.empty()) s.response = MotorResponse(segments);
   s.highest_Hz = HighestGood_Hz(s.response);
   if (s.seconds < kLeast_s || s.highest_Hz < 2.0 * kLowest_Hz) {
     s.why_not = "nothing shakes the axis above 100 Hz while it slides: the screw needs a chirp";
     return s;
   }
-  const TableAxis rigid = FitJointly(Rigid(start), stretches, Options(false, false, threads)).axis;
-  const double rigid_error = LogError(rigid, stretches);
+  const TableAxis rigid = FitJointly(Rigid(start), segments, Options(false, false, threads)).axis;
+  const double rigid_error = LogError(rigid, segments);
   std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
-  for (const TableAxis& from : Starts(start, stretches, s.highest_Hz)) {
-    const auto found = FollowValley(from, stretches, threads);
+  for (const TableAxis& from : Starts(start, segments, s.highest_Hz)) {
+    const auto found = FollowValley(from, segments, threads);
     const bool same = std::fabs(found.first - best.first) < kFoundAgain;
     if (found.first < best.first) best = found;
     if (same) break;
@@ -229,7 +229,7 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
   FitOptions last = Options(true, true, threads);
   last.refine = true;
   last.rounds = 1;
-  JointFit fit = FitJointly(best.second, stretches, last);
+  JointFit fit = FitJointly(best.second, segments, last);
   s.axis = fit.axis;
   s.antiresonance_Hz = Hz(s.axis.stiffness, s.axis.load_inertia);
   s.resonance_Hz = s.antiresonance_Hz * std::sqrt(s.axis.mass_kg() / s.axis.motor_inertia);

@@ -11,7 +11,7 @@ namespace contour::identify {
 /// A screw whose resonance is higher is none: the axis counts as rigid.
 inline constexpr double kRigidFrom_Hz = 900.0;
 
-/// The stretches in which the axis slides at a steady speed while torque shakes it quickly.
+/// The segments in which the axis slides at a steady speed while torque shakes it quickly.
 std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const TableAxis& axis);
 
 /// What shaking the sliding axis tells of its screw, on the time series: there the bristle is saturated, and
@@ -30,7 +30,7 @@ struct ShakenScrew {
   double antiresonance_Hz = 0.0,
          resonance_Hz = 0.0;  ///< kFound: K = Mt (2 pi f_ar)^2, (f_r / f_ar)^2 = m / m_motor
   std::vector<ResponsePoint> response;
-  std::vector<FittedParameter> parameters;  ///< as the shaken stretches alone say
+  std::vector<FittedParameter> parameters;  ///< as the shaken segments alone say
 };
 
 /// Two masses from every antiresonance that the shaking could show and several shares of the table, the best

@@ -9,13 +9,13 @@
 
 namespace contour::identify {
 
-/// How a friction level varies about its average over the stretch that was travelled: Legendre polynomials of
+/// How a friction level varies about its average over the segment that was travelled: Legendre polynomials of
 /// the place, and harmonics of the motor's turn for each direction. The polynomials have no mean over the
-/// stretch and the harmonics none over a turn, so the levels themselves are the averages.
+/// segment and the harmonics none over a turn, so the levels themselves are the averages.
 struct LevelVariation {
   static constexpr std::size_t kDegrees = 3;
   static constexpr std::size_t kHarmonics = 2;
-  double low_m = 0.0, high_m = 0.0;  ///< the stretch
+  double low_m = 0.0, high_m = 0.0;  ///< the segment
   std::array<double, kDegrees> place{};
   std::array<double, 2 * kHarmonics> turn_plus{};  ///< cos, sin of each harmonic
   std::array<double, 2 * kHarmonics> turn_minus{};

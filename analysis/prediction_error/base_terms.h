@@ -21,7 +21,7 @@ struct BaseTerm {
 };
 
 /// The numbers of the model that its own uncertainty lets move, then what is no number of it: the roughness
-/// of rest and where the bristles are at the beginning.
+/// of rest and where the bristles are at the guess.
 std::vector<BaseTerm> MakeBaseTerms(const StatedAxis& stated, AxisModel nominal);
 
 /// As the model file states it, or what a careful data sheet is worth.

@@ -34,7 +34,7 @@ Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int s
 }
 
 void DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps,
-                    std::span<const Stretch> stretches, Delivered& out) {
+                    std::span<const Segment> segments, Delivered& out) {
   const auto count = static_cast<std::size_t>(substeps);
   const double h = log.period_s / substeps;
   const double rows = std::max(0.0, delay_s) / log.period_s;
@@ -77,15 +77,15 @@ void DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int subste
     }
     value = now + away * kept_after[rest];
   };
-  const Stretch all{.rows = log.size()};
-  if (stretches.empty()) stretches = std::span(&all, 1);
-  const std::size_t kept = stretches.back().at + stretches.back().rows;
+  const Segment all{.rows = log.size()};
+  if (segments.empty()) segments = std::span(&all, 1);
+  const std::size_t kept = segments.back().at + segments.back().rows;
   out.mean.resize(kept * count);
   out.late.resize(kept * count);
   // A lag forgets within some of its lengths.
   const std::size_t before = 1 + static_cast<std::size_t>(kForgotten * lag / log.period_s);
   std::vector<double> spare(2 * count);
-  for (const Stretch& s : stretches) {
+  for (const Segment& s : segments) {
     const std::size_t begin = s.from > before ? s.from - before : 0;
     value = log.command[begin >= whole + 1 ? begin - whole - 1 : 0];
     for (std::size_t k = begin; k < s.from; ++k) over(k, spare.data(), &spare[count]);

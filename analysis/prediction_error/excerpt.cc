@@ -41,15 +41,15 @@ Excerpt ChooseExcerpt(const std::vector<double>& position, const std::vector<dou
       while (from < end && !slides(from)) ++from;
     }
     if (from >= end ||
-        (p > 0 && !out.stretches.empty() && from < out.stretches.back().from + out.stretches.back().rows))
+        (p > 0 && !out.segments.empty() && from < out.segments.back().from + out.segments.back().rows))
       continue;
-    out.stretches.push_back({from, length, out.row.size(), position[from], velocity[from]});
+    out.segments.push_back({from, length, out.row.size(), position[from], velocity[from]});
     for (std::size_t k = 0; k < length; ++k) {
       out.row.push_back(from + k);
       out.counts.push_back(k >= settling && counted[from + k] != 0 ? 1 : 0);
     }
   }
-  if (out.stretches.size() < kFewest) return {};
+  if (out.segments.size() < kFewest) return {};
   const auto sum = [](const std::vector<std::uint8_t>& v) {
     return static_cast<double>(std::count(v.begin(), v.end(), std::uint8_t{1}));
   };

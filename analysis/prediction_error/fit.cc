@@ -31,25 +31,25 @@ constexpr double kWorthWhile = 3.0, kKept = 0.1;
 /// One fit, which says what runs it needs next and goes on when it has them.
 class Descent {
  public:
-  Descent(const Problem& problem, Beginning beginning, Extent extent)
+  Descent(const Problem& problem, InitialGuess guess, Extent extent)
       : problem_(problem),
-        effort_(beginning.effort),
+        effort_(guess.effort),
         size_(static_cast<Eigen::Index>(problem.data_size(extent))) {
-    fit_.point = std::move(beginning.point);
+    fit_.point = std::move(guess.point);
     count_ = ParameterCount(fit_.point);
     const auto columns = static_cast<Eigen::Index>(count_);
     weight_ = Eigen::VectorXd::Zero(columns);
     for (std::size_t i = 0; i < fit_.point.base.size(); ++i)
       weight_(static_cast<Eigen::Index>(i)) = std::pow(problem.terms[i].sigma, -2);
-    if (beginning.continued != nullptr) {
+    if (guess.continued != nullptr) {
       known_ = columns;
-      fit_ = std::move(*beginning.continued);
+      fit_ = std::move(*guess.continued);
       fit_.converged = false;
       stale_ = false;
       return;
     }
-    if (beginning.known == nullptr) return;
-    const Fit& known = *beginning.known;
+    if (guess.known == nullptr) return;
+    const Fit& known = *guess.known;
     known_ = known.jacobian.cols();
     if (known_ == columns) {
       fit_ = known;
@@ -180,7 +180,7 @@ class Descent {
   }
 
   /// Shorter, longer and damped steps (Marquardt, SIAM Journal 11(2), 1963) ride along in lanes that would be
-  /// empty otherwise. A curved valley lets only small or damped ones pass.
+  /// empty otherwise. A curved basin lets only small or damped ones pass.
   void Try(std::size_t room) {
     tried_.clear();
     const std::size_t most = std::max<std::size_t>(small_ ? 4 : 2, room);
@@ -322,9 +322,9 @@ std::size_t ParameterCount(const Point& p) {
   return n;
 }
 
-std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings, Extent extent) {
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<InitialGuess> guesses, Extent extent) {
   std::vector<Descent> descents;
-  for (Beginning& b : beginnings) descents.emplace_back(problem, std::move(b), extent);
+  for (InitialGuess& b : guesses) descents.emplace_back(problem, std::move(b), extent);
   std::vector<bool> going(descents.size(), true);
   for (;;) {
     const auto left = static_cast<std::size_t>(std::count(going.begin(), going.end(), true));

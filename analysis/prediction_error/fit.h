@@ -32,12 +32,12 @@ struct FitEffort {
   double hopeless_above = std::numeric_limits<double>::infinity();
 };
 
-/// To see in which valley a point lies.
-inline constexpr FitEffort kToTheValley = {
+/// To see in which basin a point lies.
+inline constexpr FitEffort kToTheBasin = {
     .most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
 
 /// Where a fit begins.
-struct Beginning {
+struct InitialGuess {
   Point point;
   FitEffort effort;
   /// Of the same noise: its sensitivities serve for the parameters that it has; its residual too, where it
@@ -50,7 +50,7 @@ struct Beginning {
 /// Gauss-Newton with the sensitivities kept while they serve. Noise is the problem's, held. All fits go step
 /// by step together, so that their runs share the lanes. On an excerpt of the log: what is known of it is of
 /// the excerpt, too.
-std::vector<Fit> FitPoints(const Problem& problem, std::vector<Beginning> beginnings,
+std::vector<Fit> FitPoints(const Problem& problem, std::vector<InitialGuess> guesses,
                            Extent extent = Extent::kWhole);
 Fit FitPoint(const Problem& problem, Point start, const FitEffort& effort = {},
              Extent extent = Extent::kWhole);

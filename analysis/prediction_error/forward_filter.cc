@@ -58,8 +58,8 @@ struct Inputs {
 };
 
 std::size_t RowsOf(const FilterSetup& setup) {
-  if (setup.stretches.empty()) return setup.log->size();
-  return setup.stretches.back().at + setup.stretches.back().rows;
+  if (setup.segments.empty()) return setup.log->size();
+  return setup.segments.back().at + setup.segments.back().rows;
 }
 
 Lanes Prepare(const Inputs& in, const Bundle& bundle, std::vector<double>& spare) {
@@ -99,8 +99,8 @@ void RunBundles(const Inputs& in, std::span<const Bundle> some) {
   };
   std::optional<Lanes> second;
   if (some.size() > 1) second = Prepare(in, some[1], spare);
-  if (in.setup.stretches.empty()) return run(first, second ? &*second : nullptr);
-  for (const Stretch& s : in.setup.stretches) {
+  if (in.setup.segments.empty()) return run(first, second ? &*second : nullptr);
+  for (const Segment& s : in.setup.segments) {
     const Lanes a = Over(first, s);
     if (!second) {
       run(a, nullptr);
@@ -149,7 +149,7 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
     const MeansKey key = KeyOf(setup, m);
     if (!in.means.contains(key)) {
       Delivered means = setup.store->Take();
-      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), setup.stretches,
+      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), setup.segments,
                      means);
       in.means[key] = std::move(means);
     }

@@ -58,7 +58,7 @@ struct FilterSetup {
   bool full = false;  ///< fill table_position; velocity and friction too when `trace`
   bool trace = false;
   /// Only these are run, back to back in what comes out; none: the whole log.
-  std::span<const Stretch> stretches;
+  std::span<const Segment> segments;
   std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
 };
 
@@ -72,8 +72,8 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
 
 /// A delay below 0 counts as 0.
 Delivered DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps);
-/// The same into what is there already; over some stretches only, back to back, where there are any.
+/// The same into what is there already; over some segments only, back to back, where there are any.
 void DeliveredMeans(const AxisLog& log, double delay_s, double lag_s, int substeps,
-                    std::span<const Stretch> stretches, Delivered& out);
+                    std::span<const Segment> segments, Delivered& out);
 
 }  // namespace contour::diagnosis

@@ -133,25 +133,25 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
   return m;
 }
 
-Lanes Over(const Lanes& lanes, const Stretch& stretch) {
+Lanes Over(const Lanes& lanes, const Segment& segment) {
   Lanes m = lanes;
-  const std::size_t from = stretch.from;
-  m.rows = stretch.rows;
+  const std::size_t from = segment.from;
+  m.rows = segment.rows;
   for (LaneRow* row : {&m.motor.from, &m.motor.to, &m.load.from, &m.load.to, &m.level.from, &m.level.to,
                        &m.viscous, &m.reading})
     for (const double*& p : row->at) p += from;
-  // Delivered for the stretches only.
+  // Delivered for the segments only.
   for (LaneRow* row : {&m.torque, &m.late})
-    for (const double*& p : row->at) p += stretch.at * static_cast<std::size_t>(m.substeps);
+    for (const double*& p : row->at) p += segment.at * static_cast<std::size_t>(m.substeps);
   m.measured += from;
   m.valid += from;
   m.payload_row = m.payload_row - static_cast<std::int64_t>(from);
-  m.start_q = stretch.start_q;
-  m.start_w = stretch.start_w;
+  m.start_q = segment.start_q;
+  m.start_w = segment.start_w;
   if (from > 0) m.start_z = m.start_z * 0.0;  // slides
   for (auto* out : {&m.innovation, &m.table, &m.velocity, &m.friction})
     for (double*& p : *out)
-      if (p != nullptr) p += stretch.at;
+      if (p != nullptr) p += segment.at;
   return m;
 }
 

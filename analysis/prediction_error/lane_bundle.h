@@ -13,7 +13,7 @@ namespace contour::diagnosis {
 Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> models,
                 std::span<const Delivered* const> delivered, const double* measured, const double* zeros);
 
-/// The same over one stretch of the log; outputs go where the stretch is kept.
-Lanes Over(const Lanes& lanes, const Stretch& stretch);
+/// The same over one segment of the log; outputs go where the segment is kept.
+Lanes Over(const Lanes& lanes, const Segment& segment);
 
 }  // namespace contour::diagnosis

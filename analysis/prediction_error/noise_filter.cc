@@ -12,7 +12,7 @@
 namespace contour::diagnosis {
 namespace {
 
-// Rows at the beginning of a stretch that let the variance settle.
+// Rows at the beginning of a segment that let the variance settle.
 constexpr std::size_t kSettling = 150;
 
 struct Noise {
@@ -101,7 +101,7 @@ void Pass(const Rows& rows, const Noise& noise, Sums& sums, float* gains) {
 }
 
 void ApplyAll(const LaneWhiten& whole, std::span<const double* const> in, std::span<double* const> out,
-              std::span<const Stretch> stretches) {
+              std::span<const Segment> segments) {
   constexpr std::size_t kAtOnce = kMostGroups * kLanes;
   LaneWhiten m = whole;
   std::vector<double> spare(m.rows);
@@ -112,8 +112,8 @@ void ApplyAll(const LaneWhiten& whole, std::span<const double* const> in, std::s
       m.in[i / kLanes][i % kLanes] = in[used ? first + i : first];
       m.out[i / kLanes][i % kLanes] = used ? out[first + i] : spare.data();
     }
-    if (stretches.empty()) BestLoops().whiten(m);
-    for (const Stretch& s : stretches) {
+    if (segments.empty()) BestLoops().whiten(m);
+    for (const Segment& s : segments) {
       LaneWhiten part = m;
       part.rows = s.rows;
       part.counted += s.from;
@@ -142,7 +142,7 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
   const double unit = inertia / (period_s * period_s);
   const double reading = std::max(reading_step * reading_step / 12.0, 1e-24);
   const auto noise_at = [&](double x) { return Noise{reading * unit * unit * std::pow(10.0, x), reading}; };
-  // A dozen stretches all over the log are enough for one number.
+  // A dozen segments all over the log are enough for one number.
   constexpr std::size_t kStretches = 12;
   const std::size_t length = std::min(n / kStretches, std::max<std::size_t>(n / 60, 1200));
   const auto badness = [&](double x) {
@@ -183,7 +183,7 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
 
 void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* const> out,
                         const std::vector<std::uint8_t>& counted, const double* weight,
-                        std::span<const Stretch> stretches) const {
+                        std::span<const Segment> segments) const {
   LaneWhiten m;
   m.rows = linear_->rows;
   m.stride = linear_->stride;
@@ -193,7 +193,7 @@ void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* con
   m.taps = taps_.data();
   m.counted = counted.data();
   m.weight = weight;
-  ApplyAll(m, in, out, stretches);
+  ApplyAll(m, in, out, segments);
 }
 
 std::vector<double> NoiseFilter::Pulse(std::size_t row, bool reading, std::size_t length,
@@ -270,7 +270,7 @@ NoiseFilter::Gradient NoiseFilter::Back(const std::vector<double>& white,
 
 void ApplyColourFilter(const Whitener& whitener, std::span<const double* const> in,
                        std::span<double* const> out, const std::vector<std::uint8_t>& counted,
-                       const double* weight, std::span<const Stretch> stretches) {
+                       const double* weight, std::span<const Segment> segments) {
   std::vector<double> taps = whitener.taps();
   taps.resize(kWhitenTaps, 0.0);
   LaneWhiten m;
@@ -278,7 +278,7 @@ void ApplyColourFilter(const Whitener& whitener, std::span<const double* const> 
   m.taps = taps.data();
   m.counted = counted.data();
   m.weight = weight;
-  ApplyAll(m, in, out, stretches);
+  ApplyAll(m, in, out, segments);
 }
 
 }  // namespace contour::diagnosis

@@ -25,10 +25,10 @@ class NoiseFilter {
               double inertia, double period_s, double reading_step, const NoiseFilter* before);
 
   /// Whitens each, in place of size rows; rows that do not count come out 0 before the colour filter.
-  /// Of an excerpt's stretches where there are any: in, out and weight are theirs then, back to back.
+  /// Of an excerpt's segments where there are any: in, out and weight are theirs then, back to back.
   void Apply(std::span<const double* const> in, std::span<double* const> out,
              const std::vector<std::uint8_t>& counted, const double* weight,
-             std::span<const Stretch> stretches = {}) const;
+             std::span<const Segment> segments = {}) const;
 
   /// What the filters make of a pulse of motor torque over one row (or of the reading at one), at row k.
   std::vector<double> Pulse(std::size_t row, bool reading, std::size_t length,
@@ -57,6 +57,6 @@ class NoiseFilter {
 /// A colour filter alone.
 void ApplyColourFilter(const Whitener& whitener, std::span<const double* const> in,
                        std::span<double* const> out, const std::vector<std::uint8_t>& counted,
-                       const double* weight, std::span<const Stretch> stretches = {});
+                       const double* weight, std::span<const Segment> segments = {});
 
 }  // namespace contour::diagnosis

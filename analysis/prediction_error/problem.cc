@@ -114,7 +114,7 @@ std::vector<std::vector<double>> Problem::Raw(std::span<const Point> points, Ext
 
 std::vector<std::vector<double>> Problem::Raw(std::span<const AxisModel> models, Extent extent) const {
   FilterSetup partly = setup;
-  if (extent == Extent::kExcerpt) partly.stretches = excerpt.stretches;
+  if (extent == Extent::kExcerpt) partly.segments = excerpt.segments;
   std::vector<FilterRun> runs = RunFilter(partly, models, threads);
   std::vector<std::vector<double>> raw(models.size());
   for (std::size_t i = 0; i < models.size(); ++i) {
@@ -182,19 +182,19 @@ void Problem::WhitenInto(std::span<const std::span<const double>> raw,
   const bool whole = extent == Extent::kWhole;
   const std::size_t n = whole ? rows() : excerpt.row.size();
   const std::vector<double>& weight = whole ? root_weight : excerpt_weight_;
-  const std::span<const Stretch> stretches =
-      whole ? std::span<const Stretch>() : std::span<const Stretch>(excerpt.stretches);
+  const std::span<const Segment> segments =
+      whole ? std::span<const Segment>() : std::span<const Segment>(excerpt.segments);
   std::vector<const double*> in;
   std::vector<double*> out;
   for (std::size_t i = 0; i < raw.size(); ++i) {
     in.push_back(raw[i].data());
     out.push_back(white[i].data());
   }
-  noise.Apply(in, out, counted, weight.data(), stretches);
+  noise.Apply(in, out, counted, weight.data(), segments);
   if (!has_scale()) return;
   for (const double*& p : in) p += n;
   for (double*& p : out) p += n;
-  ApplyColourFilter(scale_noise, in, out, counted, weight.data() + n, stretches);
+  ApplyColourFilter(scale_noise, in, out, counted, weight.data() + n, segments);
 }
 
 std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points, Extent extent) const {

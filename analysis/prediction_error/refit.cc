@@ -35,8 +35,8 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, do
   }
   if (!problem.excerpt.empty()) {
     // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
-    const Fit here = FitPoint(problem, fit.point, kToTheValley, Extent::kExcerpt);
-    Fit there = FitPoint(problem, std::move(back), kToTheValley, Extent::kExcerpt);
+    const Fit here = FitPoint(problem, fit.point, kToTheBasin, Extent::kExcerpt);
+    Fit there = FitPoint(problem, std::move(back), kToTheBasin, Extent::kExcerpt);
     if (there.cost > here.cost - kLower || fit.cost + there.cost - here.cost > worth) return false;
     back = std::move(there.point);
   }

@@ -83,7 +83,7 @@ bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold
 }
 
 /// From the linear estimate.
-Beginning Near(const Problem& problem, const Fit& current, const Scored& s) {
+InitialGuess Near(const Problem& problem, const Fit& current, const Scored& s) {
   Point start = current.point;
   start.effects.push_back(s.effect);
   std::vector<double> a(s.effect->steps.size(), 0.0);
@@ -128,7 +128,7 @@ void OneOfEach(std::vector<Hypothesis>& hypotheses) {
 
 /// Far from linear: the kind's whole grid at full size shows where to begin. A coupling that every screw has
 /// begins beside the best, which may be a softer one that stands for it.
-std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std::string& kind,
+std::vector<InitialGuess> Far(const Problem& problem, const Fit& current, const std::string& kind,
                            const std::vector<Scored>& scored) {
   Place best, stiff;
   const bool coupling = CauseNamed(kind).coupling && !problem.nominal.two_inertia;
@@ -136,7 +136,7 @@ std::vector<Beginning> Far(const Problem& problem, const Fit& current, const std
     Place& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
     if (p.cost < of.cost) of = std::move(p);
   }
-  std::vector<Beginning> out;
+  std::vector<InitialGuess> out;
   // The base's sensitivities serve until they lead astray.
   for (Place* p : {&best, &stiff})
     if (std::isfinite(p->cost))
@@ -167,10 +167,10 @@ namespace {
 
 /// Where fits of the best candidates begin that have not been tried; none where nothing beyond the threshold is
 /// promised. `most`: the drop that the best of them is promised.
-std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current,
+std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current,
                                       const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                                       std::vector<std::string>& tried, double& most) {
-  std::vector<Beginning> beginnings;
+  std::vector<InitialGuess> guesses;
   const std::vector<std::string> before = tried;
   std::size_t fitted = 0, looked_at = 0;
   bool outside = !before.empty(), promising = false;
@@ -179,7 +179,7 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
     if (!Outside(s.effect->kind) && !Among(before, s)) most = std::max(most, s.drop);
   for (const Scored& s : scored) {
     if (Outside(s.effect->kind)) {
-      if (!outside && s.drop > most) beginnings.push_back(Near(problem, current, s));
+      if (!outside && s.drop > most) guesses.push_back(Near(problem, current, s));
       outside = true;
     } else {
       // Evidence in the priors is small beside what lies in the residual, and as good.
@@ -191,21 +191,21 @@ std::vector<Beginning> NextBeginnings(const Problem& problem, const Fit& current
       ++looked_at;
       if (!s.effect->start.empty()) {
         if (!Promising(problem, s, threshold)) continue;
-        std::vector<Beginning> far = Far(problem, current, s.effect->kind, scored);
+        std::vector<InitialGuess> far = Far(problem, current, s.effect->kind, scored);
         if (far.empty() && by_priors) far.push_back(Near(problem, current, s));
         if (far.empty()) continue;
         promising = true;
-        std::move(far.begin(), far.end(), std::back_inserter(beginnings));
+        std::move(far.begin(), far.end(), std::back_inserter(guesses));
         if (!by_priors) ++fitted;
         continue;
       }
-      beginnings.push_back(Near(problem, current, s));
+      guesses.push_back(Near(problem, current, s));
       if (!by_priors) ++fitted;
     }
     promising = promising || Promising(problem, s, threshold);
   }
-  if (!promising) beginnings.clear();
-  return beginnings;
+  if (!promising) guesses.clear();
+  return guesses;
 }
 
 /// Whether the score test promises enough to be tested beside the best; it says nothing about what is far
@@ -264,7 +264,7 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
   double best = kNever;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     double most = 0.0;
-    for (Fit& fit : FitPoints(problem, NextBeginnings(problem, current, scored, threshold, tried, most))) {
+    for (Fit& fit : FitPoints(problem, NextGuesses(problem, current, scored, threshold, tried, most))) {
       out.push_back({std::move(fit)});
       Judge(problem, current, out.back());
       best = std::max(best, out.back().score);
@@ -290,12 +290,12 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, 
 
 namespace {
 
-/// The base may lie in another valley since: from there anew, where the score test promises far more than a
+/// The base may lie in another basin since: from there anew, where the score test promises far more than a
 /// hypothesis has, and enough to matter.
 void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>& hypotheses) {
   const double matters = kMayMatter * hypotheses[0].score;
   std::vector<std::size_t> again;
-  std::vector<Beginning> beginnings;
+  std::vector<InitialGuess> guesses;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     Hypothesis& r = hypotheses[i];
     const bool by_priors = InBase(problem, r.effect().kind);
@@ -305,12 +305,12 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
     if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;
     if (!by_priors && promised < matters) continue;
     again.push_back(i);
-    beginnings.push_back(Near(problem, current, s));
+    guesses.push_back(Near(problem, current, s));
   }
   if (again.empty()) return;
-  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
+  std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
   std::vector<std::size_t> on;
-  beginnings.clear();
+  guesses.clear();
   for (std::size_t i = 0; i < again.size(); ++i) {
     Hypothesis& r = hypotheses[again[i]];
     Hypothesis anew{std::move(fits[i])};
@@ -322,9 +322,9 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
     fits[on.size() - 1] = std::move(anew.fit);
   }
   for (std::size_t i = 0; i < on.size(); ++i)
-    beginnings.push_back(
+    guesses.push_back(
         {fits[i].point, {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3}, nullptr, &fits[i]});
-  fits = FitPoints(problem, std::move(beginnings));
+  fits = FitPoints(problem, std::move(guesses));
   for (std::size_t i = 0; i < on.size(); ++i) {
     Hypothesis anew{std::move(fits[i])};
     Judge(problem, current, anew);
@@ -346,14 +346,14 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   GiveUpFarBehind(problem, kMayMatter, hypotheses);
   for (Hypothesis& r : hypotheses)
     if (!r.given_up) RewhitenSensitivities(problem, r.fit);
-  // A valley may end in two places: the base goes on from where the best hypothesis's lies, where that is lower.
+  // A basin may end in two places: the base goes on from where the best hypothesis's lies, where that is lower.
   Point other = hypotheses[0].fit.point;
   other.effects.pop_back();
   other.amplitudes.pop_back();
   const bool there = CostAt(problem, other) < current.cost;
   const double best = hypotheses[0].score;
   // A base is as well known as the scores need it.
-  std::vector<Beginning> beginnings = {
+  std::vector<InitialGuess> guesses = {
       {there ? std::move(other) : current.point,
        {.most_steps = 10, .most_refreshes = 3, .close_enough = std::max(0.1, kAllTheSame * best)},
        nullptr,
@@ -364,7 +364,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
     if (r.given_up) continue;
     if (i > 0 && r.score < kMayWin * best - kSmallStill) continue;
     again.push_back(i);
-    beginnings.push_back({r.fit.point,
+    guesses.push_back({r.fit.point,
                           {.most_steps = i == 0 ? 10 : 5,
                            .most_refreshes = i == 0 ? 4 : 1,
                            .close_enough = i == 0 ? 0.1 : 0.3,
@@ -374,7 +374,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
                           nullptr,
                           &hypotheses[i].fit});
   }
-  std::vector<Fit> fits = FitPoints(problem, std::move(beginnings));
+  std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
   current = std::move(fits[0]);
   for (std::size_t i = 0; i < again.size(); ++i) hypotheses[again[i]].fit = std::move(fits[i + 1]);
   for (Hypothesis& r : hypotheses)

@@ -21,7 +21,7 @@ Nominal FitNominal(Problem& problem) {
   problem.LearnNoise(nominal.fit.point);
   const FitEffort effort{.most_steps = 12, .most_refreshes = 4, .close_enough = 0.1};
   if (ahead == Extent::kExcerpt) {
-    nominal.fit = FitPoint(problem, FitPoint(problem, nominal.fit.point, kToTheValley, ahead).point, effort);
+    nominal.fit = FitPoint(problem, FitPoint(problem, nominal.fit.point, kToTheBasin, ahead).point, effort);
   } else {
     Rewhiten(problem, nominal.fit);
     nominal.fit = FitOn(problem, std::move(nominal.fit), effort);

@@ -75,9 +75,9 @@ TEST(DeliveredMeans, StretchesAreWhatTheWholeHasThere) {
   log.period_s = 1e-3;
   for (int k = 0; k < 400; ++k) log.command.push_back(std::sin(0.1 * k * k));
   const Delivered whole = DeliveredMeans(log, 1.3e-3, 0.4e-3, 4);
-  const Stretch stretches[] = {{.from = 100, .rows = 20, .at = 0}, {.from = 300, .rows = 30, .at = 20}};
+  const Segment segments[] = {{.from = 100, .rows = 20, .at = 0}, {.from = 300, .rows = 30, .at = 20}};
   Delivered part;
-  DeliveredMeans(log, 1.3e-3, 0.4e-3, 4, stretches, part);
+  DeliveredMeans(log, 1.3e-3, 0.4e-3, 4, segments, part);
   ASSERT_EQ(part.mean.size(), 50U * 4U);
   for (std::size_t i = 0; i < 80; ++i) EXPECT_NEAR(part.mean[i], whole.mean[400 + i], 1e-12);
   for (std::size_t i = 0; i < 120; ++i) EXPECT_NEAR(part.late[80 + i], whole.late[1200 + i], 1e-18);

@@ -50,7 +50,7 @@ diagnosis::StatedAxis AuthorsAxis() {
   return axis;
 }
 
-diagnosis::AxisLog LogOf(const std::filesystem::path& file, const Stretch& rows) {
+diagnosis::AxisLog LogOf(const std::filesystem::path& file, const Segment& rows) {
   diagnosis::ReadOptions read;
   read.columns =
       diagnosis::ParseColumnNames("time_s=t_s,force_N=force_N,position_m=qm_m,reference_position_m=qg_m");

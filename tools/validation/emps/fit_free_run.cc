@@ -66,11 +66,11 @@ class WindowsCost final : public ceres::CostFunction {
 }  // namespace
 
 Parameters FitFreeRun(Parameters start, const std::vector<Free>& free, const Recording& r,
-                      const Stretch& stretch, std::size_t window) {
+                      const Segment& segment, std::size_t window) {
   std::vector<double> x;
   for (const Free& f : free) x.push_back(start.*f.value / f.scale);
   auto* cost =
-      new WindowsCost(start, free, r, stretch.Windows(window, kStartEvery), window);  // the problem's own
+      new WindowsCost(start, free, r, segment.Windows(window, kStartEvery), window);  // the problem's own
   ceres::Problem problem;
   problem.AddResidualBlock(cost, nullptr, x.data());
   ceres::Solver::Options options;

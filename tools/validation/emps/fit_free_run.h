@@ -17,6 +17,6 @@ struct Free {
 /// filtered measurement, miss the raw position least (Levenberg and Marquardt, differences of runs). The sum
 /// of squares is over every 20th row.
 Parameters FitFreeRun(Parameters start, const std::vector<Free>& free, const Recording& r,
-                      const Stretch& stretch, std::size_t window);
+                      const Segment& segment, std::size_t window);
 
 }  // namespace contour::emps

@@ -12,7 +12,7 @@ constexpr double kMiddle_m = 0.12;
 
 }  // namespace
 
-std::vector<std::size_t> Stretch::Windows(std::size_t length, std::size_t step) const {
+std::vector<std::size_t> Segment::Windows(std::size_t length, std::size_t step) const {
   std::vector<std::size_t> starts;
   for (std::size_t at = from; at + length <= to; at += step) starts.push_back(at);
   return starts;
@@ -45,10 +45,10 @@ std::vector<double> FreeRun(const Parameters& p, const Recording& r, std::size_t
   return out;
 }
 
-double FreeRunRmse_m(const Parameters& p, const Recording& r, const Stretch& stretch) {
+double FreeRunRmse_m(const Parameters& p, const Recording& r, const Segment& segment) {
   double square = 0.0;
   std::size_t count = 0;
-  for (const std::size_t start : stretch.Windows(kWindow, kWindow)) {
+  for (const std::size_t start : segment.Windows(kWindow, kWindow)) {
     const std::vector<double> x = FreeRun(p, r, start, kWindow);
     for (std::size_t k = 0; k < kWindow; ++k) square += std::pow(x[k] - r.position_m[start + k], 2);
     count += kWindow;

@@ -38,7 +38,7 @@ inline constexpr double kTurn_m = 2.5e-3;
 inline constexpr std::size_t kWindow = 1000;
 
 /// A range of rows, and the windows of `length` rows that fit into it every `step` rows.
-struct Stretch {
+struct Segment {
   std::size_t from = 0, to = 0;
   [[nodiscard]] std::vector<std::size_t> Windows(std::size_t length, std::size_t step) const;
 };
@@ -48,6 +48,6 @@ struct Stretch {
 std::vector<double> FreeRun(const Parameters& p, const Recording& r, std::size_t start, std::size_t rows);
 
 /// Root mean square of model minus raw position over consecutive windows of a second.
-double FreeRunRmse_m(const Parameters& p, const Recording& r, const Stretch& stretch);
+double FreeRunRmse_m(const Parameters& p, const Recording& r, const Segment& segment);
 
 }  // namespace contour::emps

@@ -15,13 +15,13 @@ bool Counts(const Recording& r, std::size_t k) { return std::abs(r.slow_velocity
 
 }  // namespace
 
-ForceFit::ForceFit(const ForceTerms& terms, const Recording& r, const Stretch& stretch) : terms_(terms) {
+ForceFit::ForceFit(const ForceTerms& terms, const Recording& r, const Segment& segment) : terms_(terms) {
   double best = std::numeric_limits<double>::infinity();
   double best_vs = vs_m_s_;
   for (const double vs : {3e-3, 5e-3, 8e-3, 12e-3, 18e-3, 27e-3}) {
     vs_m_s_ = vs;
-    Solve(r, stretch);
-    const double residual = Residual_N(r, stretch);
+    Solve(r, segment);
+    const double residual = Residual_N(r, segment);
     if (residual < best) {
       best = residual;
       best_vs = vs;
@@ -29,7 +29,7 @@ ForceFit::ForceFit(const ForceTerms& terms, const Recording& r, const Stretch& s
     if (!terms.stribeck) break;
   }
   vs_m_s_ = best_vs;
-  Solve(r, stretch);
+  Solve(r, segment);
 }
 
 void ForceFit::Row(const Recording& r, std::size_t k, std::vector<double>& c) const {
@@ -62,14 +62,14 @@ void ForceFit::Row(const Recording& r, std::size_t k, std::vector<double>& c) co
     }
 }
 
-void ForceFit::Solve(const Recording& r, const Stretch& stretch) {
+void ForceFit::Solve(const Recording& r, const Segment& segment) {
   std::vector<double> row;
-  Row(r, stretch.from, row);
+  Row(r, segment.from, row);
   const auto n = static_cast<Eigen::Index>(row.size());
   ripple_column_ = row.size() - 8;
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
-  for (std::size_t k = stretch.from; k < stretch.to; ++k) {
+  for (std::size_t k = segment.from; k < segment.to; ++k) {
     if (!Counts(r, k)) continue;
     Row(r, k, row);
     const Eigen::Map<const Eigen::VectorXd> x(row.data(), n);
@@ -89,10 +89,10 @@ double ForceFit::ResidualAt_N(const Recording& r, std::size_t k) const {
   return force;
 }
 
-double ForceFit::Residual_N(const Recording& r, const Stretch& stretch) const {
+double ForceFit::Residual_N(const Recording& r, const Segment& segment) const {
   double square = 0.0;
   std::size_t count = 0;
-  for (std::size_t k = stretch.from; k < stretch.to; ++k) {
+  for (std::size_t k = segment.from; k < segment.to; ++k) {
     const double left = ResidualAt_N(r, k);
     if (std::isnan(left)) continue;
     square += left * left;

@@ -18,10 +18,10 @@ struct ForceTerms {
 /// A force model fitted by least squares to F(t) = M a + friction, above 2 mm/s.
 class ForceFit {
  public:
-  ForceFit(const ForceTerms& terms, const Recording& r, const Stretch& stretch);
+  ForceFit(const ForceTerms& terms, const Recording& r, const Segment& segment);
 
-  /// Root mean square of what is left over a stretch, N.
-  [[nodiscard]] double Residual_N(const Recording& r, const Stretch& stretch) const;
+  /// Root mean square of what is left over a segment, N.
+  [[nodiscard]] double Residual_N(const Recording& r, const Segment& segment) const;
   /// What is left in one row; NaN below 2 mm/s.
   [[nodiscard]] double ResidualAt_N(const Recording& r, std::size_t row) const;
   /// Amplitude and phase of the force once per turn, whatever the direction.
@@ -34,7 +34,7 @@ class ForceFit {
 
  private:
   void Row(const Recording& r, std::size_t k, std::vector<double>& columns) const;
-  void Solve(const Recording& r, const Stretch& stretch);
+  void Solve(const Recording& r, const Segment& segment);
 
   ForceTerms terms_;
   double vs_m_s_ = 10e-3;

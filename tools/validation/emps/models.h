@@ -13,9 +13,9 @@ struct ScoredModel {
   double first_m = 0.0, second_m = 0.0, pulses_m = 0.0;  ///< 1 s free-run RMSE
 };
 
-inline constexpr Stretch kFirstHalf{100, 12420};
-inline constexpr Stretch kSecondHalf{12420, 24700};
-inline constexpr Stretch kWhole{100, 24700};
+inline constexpr Segment kFirstHalf{100, 12420};
+inline constexpr Segment kSecondHalf{12420, 24700};
+inline constexpr Segment kWhole{100, 24700};
 
 /// As published: symmetric, and asymmetric.
 Parameters AuthorsSymmetric();
