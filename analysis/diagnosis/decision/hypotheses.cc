@@ -130,15 +130,15 @@ void OneOfEach(std::vector<Hypothesis>& hypotheses) {
 /// begins beside the best, which may be a softer one that stands for it.
 std::vector<InitialGuess> Far(const Problem& problem, const Fit& current, const std::string& kind,
                            const std::vector<Scored>& scored) {
-  Place best, stiff;
+  GridPoint best, stiff;
   const bool coupling = CauseNamed(kind).coupling && !problem.nominal.two_inertia;
-  for (Place& p : FullSize(problem, current, kind, scored)) {
-    Place& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
+  for (GridPoint& p : FullSize(problem, current, kind, scored)) {
+    GridPoint& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
     if (p.cost < of.cost) of = std::move(p);
   }
   std::vector<InitialGuess> out;
   // The base's sensitivities serve until they lead astray.
-  for (Place* p : {&best, &stiff})
+  for (GridPoint* p : {&best, &stiff})
     if (std::isfinite(p->cost))
       out.push_back({std::move(p->point),
                      {.most_steps = 8,

@@ -19,7 +19,7 @@ constexpr std::size_t kSmallStarts = 4;
 constexpr double kRanks = 100.0;
 constexpr std::size_t kShortlist = kLanes;
 
-std::vector<Point> PlacesOf(const Problem& problem, const Fit& current, const std::string& kind,
+std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, const std::string& kind,
                             const std::vector<Scored>& scored) {
   std::vector<Point> points;
   const auto add = [&](const SharedEffect& e, double first) {
@@ -46,9 +46,9 @@ std::vector<Point> PlacesOf(const Problem& problem, const Fit& current, const st
 }
 
 /// Those with a cost that is a number.
-std::vector<Place> Costs(const Problem& problem, const Fit& around, std::vector<Point> points,
+std::vector<GridPoint> Costs(const Problem& problem, const Fit& around, std::vector<Point> points,
                          Extent extent) {
-  std::vector<Place> out;
+  std::vector<GridPoint> out;
   for (std::size_t first = 0; first < points.size(); first += kLanes) {
     const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
     const auto residuals = problem.Residuals(std::span(points).subspan(first, count), extent);
@@ -93,31 +93,31 @@ Fit OnExcerpt(const Problem& problem, const Fit& fit) {
 
 /// The best by the excerpt; of couplings, as many again of those that every screw has.
 std::vector<Point> Shortlist(const Problem& problem, const Fit& current, std::vector<Point> points) {
-  std::vector<Place> places =
+  std::vector<GridPoint> points_of_grid =
       Costs(problem, OnExcerpt(problem, current), std::move(points), Extent::kExcerpt);
-  std::stable_sort(places.begin(), places.end(),
-                   [](const Place& a, const Place& b) { return a.cost < b.cost; });
-  const auto stiff = [](const Place& p) { return p.point.effects.back()->order > kNoFault_Hz; };
-  const bool both = std::any_of(places.begin(), places.end(), stiff);
+  std::stable_sort(points_of_grid.begin(), points_of_grid.end(),
+                   [](const GridPoint& a, const GridPoint& b) { return a.cost < b.cost; });
+  const auto stiff = [](const GridPoint& p) { return p.point.effects.back()->order > kNoFault_Hz; };
+  const bool both = std::any_of(points_of_grid.begin(), points_of_grid.end(), stiff);
   const std::size_t most = both ? kShortlist / 2 : kShortlist;
   std::size_t kept[2] = {0, 0};
   std::vector<Point> out;
-  for (Place& p : places)
+  for (GridPoint& p : points_of_grid)
     if (kept[stiff(p) ? 1 : 0]++ < most) out.push_back(std::move(p.point));
   return out;
 }
 
 }  // namespace
 
-std::vector<Place> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
+std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
                             const std::vector<Scored>& scored) {
-  std::vector<Point> points = PlacesOf(problem, current, kind, scored);
+  std::vector<Point> points = GridPointsOf(problem, current, kind, scored);
   const bool strong = std::any_of(scored.begin(), scored.end(),
                                   [&](const Scored& s) { return s.effect->kind == kind && s.drop > kRanks; });
   if (strong && points.size() > 2 * kShortlist && !problem.excerpt.empty())
     points = Shortlist(problem, current, std::move(points));
-  std::vector<Place> out = Costs(problem, current, std::move(points), Extent::kWhole);
-  std::erase_if(out, [&](const Place& p) { return p.cost >= current.cost; });
+  std::vector<GridPoint> out = Costs(problem, current, std::move(points), Extent::kWhole);
+  std::erase_if(out, [&](const GridPoint& p) { return p.cost >= current.cost; });
   return out;
 }
 

@@ -12,15 +12,15 @@ namespace contour::diagnosis {
 /// A coupling above is one that every screw has.
 inline constexpr double kNoFault_Hz = 700.0;
 
-/// A place of a grid at full size, and what the cost would be there, the base following to first order.
-struct Place {
+/// A grid point at full size, and what the cost would be there, the base following to first order.
+struct GridPoint {
   Point point;
   double cost = std::numeric_limits<double>::infinity();
 };
 
-/// The places of a kind's whole grid, in several sizes, at which the cost would be lower than the fit's.
+/// All grid points of a kind, in several sizes, at which the cost would be lower than the fit's.
 /// Where the score test promises much, an excerpt of the log says first which of them are worth the whole.
-std::vector<Place> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
+std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
                             const std::vector<Scored>& scored);
 
 }  // namespace contour::diagnosis

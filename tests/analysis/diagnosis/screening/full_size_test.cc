@@ -12,9 +12,9 @@
 namespace contour::diagnosis {
 namespace {
 
-const Place& Best(const std::vector<Place>& places) {
-  return *std::min_element(places.begin(), places.end(),
-                           [](const Place& a, const Place& b) { return a.cost < b.cost; });
+const GridPoint& Best(const std::vector<GridPoint>& points_of_grid) {
+  return *std::min_element(points_of_grid.begin(), points_of_grid.end(),
+                           [](const GridPoint& a, const GridPoint& b) { return a.cost < b.cost; });
 }
 
 TEST(FullSize, TheExcerptLeavesThePlaceThatTheWholeLogLikesBest) {
@@ -27,9 +27,9 @@ TEST(FullSize, TheExcerptLeavesThePlaceThatTheWholeLogLikesBest) {
   std::vector<SharedEffect> couplings = CatalogueEffects(l.problem);
   std::erase_if(couplings, [](const SharedEffect& e) { return e->kind != "compliance"; });
   const std::vector<Scored> scored = ScoreEffects(l.problem, base, couplings);
-  const std::vector<Place> ahead = FullSize(l.problem, base, "compliance", scored);
+  const std::vector<GridPoint> ahead = FullSize(l.problem, base, "compliance", scored);
   l.problem.excerpt = {};
-  const std::vector<Place> whole = FullSize(l.problem, base, "compliance", scored);
+  const std::vector<GridPoint> whole = FullSize(l.problem, base, "compliance", scored);
   ASSERT_FALSE(ahead.empty());
   // The whole grid has more places below the base than the shortlist has at all.
   EXPECT_LE(ahead.size(), 8U);
