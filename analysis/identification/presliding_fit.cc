@@ -54,7 +54,7 @@ PreslidingFit FitPresliding(const std::vector<Instant>& instants, const TableAxi
     const double g = s.up ? f.Fs_plus : f.Fs_minus;
     const Instant& turn = instants[s.first];
     const double turn_m = Table_m(turn, axis);
-    // Least squares of force on way over the first piece; its slope is that of about its middle.
+    // Least squares of force on travel over the first piece; its slope is that of about its middle.
     double n = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
     for (std::size_t i = s.first; i <= s.last; ++i) {
       if (std::fabs(instants[i].velocity_m_s) > kSlow_m_s) break;

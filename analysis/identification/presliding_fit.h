@@ -10,7 +10,7 @@ namespace contour::identify {
 
 /// Stiffness of the bristle from what happens right after reversals. A reversal out of full sliding begins
 /// with the slope sigma0 (1 + |F| / g), twice sigma0 when symmetric; out of smaller loops with less. The
-/// screw's own wind-up is taken off the motor's way.
+/// screw's own wind-up is taken off the motor's travel.
 struct PreslidingFit {
   bool found = false;
   double sigma0_N_m = 0.0;  ///< median over the reversals
@@ -27,7 +27,7 @@ struct BreakAway {
 };
 std::vector<BreakAway> BreakAways(const std::vector<Instant>& instants, const TableAxis& axis);
 
-/// Friction over the table's way, for pictures: motions that reverse within `largest_m`.
+/// Friction over the table's travel, for pictures: motions that reverse within `largest_m`.
 struct LoopPoint {
   double time_s = 0.0, way_m = 0.0, friction_N = 0.0;
 };

@@ -125,14 +125,14 @@ std::pair<double, TableAxis> FollowValley(TableAxis axis, const std::vector<Meas
 }
 
 /// Way of a window; 0 where a row is missing or the axis turns back.
-double Way(const Measured& d, std::size_t at, std::size_t window) {
+double Travel(const Measured& d, std::size_t at, std::size_t window) {
   const auto flank = static_cast<std::size_t>(kFlank_s / d.period_s);
-  const double way = d.position_m[at + window - 1] - d.position_m[at];
+  const double travel = d.position_m[at + window - 1] - d.position_m[at];
   for (std::size_t k = at; k < at + window; ++k) {
     if (d.present[k] == 0) return 0.0;
-    if (k >= at + flank && (d.position_m[k] - d.position_m[k - flank]) * way <= 0.0) return 0.0;
+    if (k >= at + flank && (d.position_m[k] - d.position_m[k - flank]) * travel <= 0.0) return 0.0;
   }
-  return way;
+  return travel;
 }
 
 double HighestGood_Hz(const std::vector<ResponsePoint>& response) {
@@ -183,7 +183,7 @@ std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, cons
     const auto window = static_cast<std::size_t>(kWindow_s / d.period_s);
     std::size_t begin = 0;
     std::size_t end = 0;
-    double before = 0.0;  // way of the window before: the bristle is saturated by then
+    double before = 0.0;  // travel of the window before: the bristle is saturated by then
     const auto close = [&] {
       if (end > begin + window) segments.push_back(Slice(d, begin, end));
       begin = end = 0;
@@ -192,9 +192,9 @@ std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, cons
       double quick = 0.0;
       for (std::size_t k = at; k < at + window; ++k)
         quick += std::pow(Quick_N(d, k), 2) / static_cast<double>(window);
-      const double way = Way(d, at, window);
-      const bool slides = way * before > 0.0;
-      before = way;
+      const double travel = Travel(d, at, window);
+      const bool slides = travel * before > 0.0;
+      before = travel;
       if (!slides || std::sqrt(quick) < least_N) {
         close();
         continue;

@@ -18,7 +18,7 @@ constexpr std::size_t kFewest = 300;
 /// What counts as constant speed, and how much of it makes a point.
 constexpr double kConstantSpeed_1_s = 0.2;
 constexpr double kConstantSpeed_m_s2 = 2e-3;
-constexpr double kShortestWay_m = 0.15e-3;
+constexpr double kShortestTravel_m = 0.15e-3;
 
 bool Slides(const Instant& i) {
   return std::fabs(i.velocity_m_s) > kSlowest_m_s && i.since_reversal_m > kBeyondPresliding_m;
@@ -97,7 +97,7 @@ SlidingFit FitSliding(const std::vector<Instant>& instants, double exponent, dou
 
 std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, const TableAxis& axis) {
   struct Sum {
-    double n = 0.0, speed = 0.0, force = 0.0, square = 0.0, way = 0.0;
+    double n = 0.0, speed = 0.0, force = 0.0, square = 0.0, travel = 0.0;
   };
   // Bins of a tenth of an octave: runs at one speed fall into one or two.
   std::map<int, Sum> sums;
@@ -118,13 +118,13 @@ std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, 
     s.speed += i.velocity_m_s;
     s.force += friction;
     s.square += friction * friction;
-    s.way += speed * step_s;
+    s.travel += speed * step_s;
   }
   std::vector<StribeckPoint> points;
   for (const auto& [bin, s] : sums) {
-    if (s.n < 10.0 || s.way < kShortestWay_m) continue;
+    if (s.n < 10.0 || s.travel < kShortestTravel_m) continue;
     const double mean = s.force / s.n;
-    points.push_back({s.speed / s.n, mean, std::sqrt(std::max(0.0, s.square / s.n - mean * mean)), s.way});
+    points.push_back({s.speed / s.n, mean, std::sqrt(std::max(0.0, s.square / s.n - mean * mean)), s.travel});
   }
   return points;
 }

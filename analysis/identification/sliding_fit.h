@@ -27,7 +27,7 @@ SlidingFit FitSliding(const std::vector<Instant>& instants, double stribeck_expo
 struct StribeckPoint {
   double velocity_m_s = 0.0;
   double friction_N = 0.0;
-  double spread_N = 0.0;  ///< standard deviation over the way: ripple and place
+  double spread_N = 0.0;  ///< standard deviation over the travel: ripple and place
   double way_m = 0.0;
 };
 std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, const TableAxis& axis);

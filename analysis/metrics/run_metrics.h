@@ -40,7 +40,7 @@ struct RunMetrics {
 /// An axis's name and resolution.
 struct ScoredAxisFacts {
   std::string name;
-  double encoder_count_m = 0.0;  ///< way of the table per encoder count
+  double encoder_count_m = 0.0;  ///< travel of the table per encoder count
 };
 
 /// Scores a run of a program, row by row: see docs/metrics.md.

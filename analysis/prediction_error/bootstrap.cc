@@ -139,7 +139,7 @@ std::vector<std::size_t> StrokeEnds(const Problem& problem) {
   const double turn = std::max(kTurn * (*high - *low), 4.0 * problem.stated.position_step);
   std::vector<std::size_t> ends;
   std::size_t from = 0, extreme = 0;
-  double way = 0.0;  // +1 upwards, -1 downwards, 0 not known yet
+  double direction = 0.0;  // +1 upwards, -1 downwards, 0 not known yet
   const auto cut = [&](std::size_t end) {
     for (; end - from > 2 * longest; from += longest) ends.push_back(from + longest);
     ends.push_back(end);
@@ -147,12 +147,12 @@ std::vector<std::size_t> StrokeEnds(const Problem& problem) {
   };
   for (std::size_t k = 0; k < n; ++k) {
     const double ahead = q[k] - q[extreme];
-    if (way * ahead > 0.0 || (way == 0.0 && std::fabs(ahead) > turn)) {
-      if (way == 0.0) way = ahead > 0.0 ? 1.0 : -1.0;
+    if (direction * ahead > 0.0 || (direction == 0.0 && std::fabs(ahead) > turn)) {
+      if (direction == 0.0) direction = ahead > 0.0 ? 1.0 : -1.0;
       extreme = k;
-    } else if (way != 0.0 && -way * ahead > turn) {
+    } else if (direction != 0.0 && -direction * ahead > turn) {
       if (extreme - from >= shortest) cut(extreme);
-      way = -way;
+      direction = -direction;
       extreme = k;
     }
   }

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "analysis/diagnosis/adequacy/structure_maps.h"
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/model_error.h"
 
@@ -113,14 +113,14 @@ std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit&
   const std::vector<double> weight(problem.root_weight.begin(), problem.root_weight.begin() + n);
   const NoiseFilter::Gradient back = problem.noise.Back(innovation, problem.counted, weight.data());
   const std::vector<double> response = PulseResponse(problem, false);
-  const bool another_law = OfAnotherLaw(problem, fit);
-  const std::vector<bool> slides = another_law ? FirmSlides(problem) : Slides(problem);
+  const bool mismatch = FrictionModelMismatch(problem, fit);
+  const std::vector<bool> slides = mismatch ? GrossSliding(problem) : Slides(problem);
   const BinnedRows known = FrictionCurve(problem, slides);
   const std::vector<BinnedRows> maps = StructureMaps(problem, slides);
   std::vector<RemainingStructure> out;
   for (const BinnedRows& rows : maps) {
     // Motions take turns over the time, and a law of friction that does not hold is wrong in some of them.
-    if (another_law && rows.structure_class == kUnexplainedFriction) continue;
+    if (mismatch && rows.structure_class == kUnexplainedFriction) continue;
     out.push_back(TestBins(rows, known, back.motor, response, weight));
     // The best of so many.
     out.back().score = std::max(0.0, out.back().score - 2.0 * std::log(static_cast<double>(maps.size())));

@@ -6,14 +6,14 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr int kPlaces = 48, kSpeeds = 16, kWays = 14, kAngles = 48, kTemperatures = 12;
+constexpr int kPlaces = 48, kSpeeds = 16, kTravelBins = 14, kAngles = 48, kTemperatures = 12;
 constexpr double kTorqueEach_s = 0.25, kFrictionEach_s = 1.0;
-constexpr double kShortestWay_m = 1e-6;
+constexpr double kShortestTravel_m = 1e-6;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 struct Range {
@@ -57,12 +57,12 @@ class Maps {
         [fastest_m_s = s_.max_speed * p_.stated.table_per_q](int b) {
           return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kSpeeds), 2), "mm/s");
         });
-    const std::vector<double> way = WaySinceReversal(s_);
-    const Range log_way{std::log(kShortestWay_m), std::log(2.0 * s_.half_stroke_m + kShortestWay_m)};
+    const std::vector<double> travel = TravelSinceReversal(s_);
+    const Range log_travel{std::log(kShortestTravel_m), std::log(2.0 * s_.half_stroke_m + kShortestTravel_m)};
     BothWays(
-        "the way since the last reversal", Quantity::kTravelSinceReversal, kWays,
-        [&](std::size_t k) { return log_way.Bin(std::log(way[k] + kShortestWay_m), kWays); },
-        [log_way](int b) { return Text(1e3 * std::exp(log_way.Middle(b, kWays)), "mm after a reversal"); });
+        "the travel since the last reversal", Quantity::kTravelSinceReversal, kTravelBins,
+        [&](std::size_t k) { return log_travel.Bin(std::log(travel[k] + kShortestTravel_m), kTravelBins); },
+        [log_travel](int b) { return Text(1e3 * std::exp(log_travel.Middle(b, kTravelBins)), "mm after a reversal"); });
     BothWays(
         "the angle of the motor", Quantity::kAngle, kAngles,
         [&](std::size_t k) {

@@ -8,7 +8,7 @@
 #include "analysis/diagnosis/causes/experiments.h"
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
@@ -21,15 +21,15 @@ constexpr double kFewStrokes = 1.25;
 constexpr double kOffStated = 1e-4;
 // Scores that are alike, of the best. Where friction is of another law, what is wrong with the model takes
 // part in the difference, and constant torque and asymmetry differ at reversals only, which do not count.
-constexpr double kAlike = 0.03, kAlikeByAnotherLaw = 0.1;
+constexpr double kAlike = 0.03, kAlikeOnMismatch = 0.1;
 // An element in presliding is a neighbour's name for another law, and leaves more than a right name does.
-constexpr double kLeakageByAnotherLaw = 0.05;
+constexpr double kLeakageOnMismatch = 0.05;
 
 /// What the hypotheses scored, and which of them cannot be told from the first.
 void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
                 const Accepted& accepted, Cause& cause, Diagnosis& out) {
   const Hypothesis& best = hypotheses[0];
-  const double alike = OfAnotherLaw(problem, accepted.fit) ? kAlikeByAnotherLaw : kAlike;
+  const double alike = FrictionModelMismatch(problem, accepted.fit) ? kAlikeOnMismatch : kAlike;
   for (const Hypothesis& r : hypotheses) {
     const std::string& kind = r.effect().kind;
     for (Candidate& c : out.candidates)
@@ -52,7 +52,7 @@ ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted
   ScoreThreshold threshold = SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
   threshold.accepted = static_cast<int>(accepted.places.size());
   threshold.leakage = accepted.leakage +
-              (OfAnotherLaw(problem, accepted.fit) ? kLeakageByAnotherLaw * accepted.in_presliding : 0.0);
+              (FrictionModelMismatch(problem, accepted.fit) ? kLeakageOnMismatch * accepted.in_presliding : 0.0);
   threshold.leakage_of_kind = accepted.leakage_of_kind;
   return threshold;
 }

@@ -5,7 +5,7 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 
 namespace contour::diagnosis {
 namespace {

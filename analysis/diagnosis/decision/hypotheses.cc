@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/screening/full_size.h"
 #include "analysis/prediction_error/common_factor.h"
 #include "analysis/prediction_error/refit.h"
@@ -299,7 +299,7 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     Hypothesis& r = hypotheses[i];
     const bool by_priors = InBase(problem, r.effect().kind);
-    if (!by_priors && (!r.effect().signals || OfAnotherLaw(problem, current))) continue;
+    if (!by_priors && (!r.effect().signals || FrictionModelMismatch(problem, current))) continue;
     const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
     const double promised = s.drop - Penalty(*s.effect);
     if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -21,9 +21,9 @@ std::vector<Scored> Screen(const Problem& problem, const Fit& fit, std::span<con
   for (SharedEffect& e : ScanWaves(problem, fit)) effects.push_back(std::move(e));
   // Numbers of a law of friction that does not hold are no cause when they are not as stated, and where
   // friction is not what the law says is no matter of time.
-  const bool another_law = OfAnotherLaw(problem, fit);
+  const bool mismatch = FrictionModelMismatch(problem, fit);
   std::erase_if(effects, [&](const SharedEffect& e) {
-    if (another_law && CauseNamed(e->kind).refuted_by_another_law) return true;
+    if (mismatch && CauseNamed(e->kind).refuted_by_another_law) return true;
     return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
       // A wave may have further orders.
       const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kOrdersApart;

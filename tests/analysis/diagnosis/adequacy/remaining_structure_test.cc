@@ -110,13 +110,13 @@ TEST(RemainingStructure, WhatIsKnownIsTakenOutAndDoesNotCount) {
         return torque;
       }(),
       kPulse, residual);
-  BinnedRows ways = Places();
-  ways.count *= 2;
+  BinnedRows travels = Places();
+  travels.count *= 2;
   const BinnedRows friction = Friction();
-  for (std::size_t k = 0; k < kRows; ++k) ways.bin[k] += friction.size[k] > 0.0 ? kBins : 0;
+  for (std::size_t k = 0; k < kRows; ++k) travels.bin[k] += friction.size[k] > 0.0 ? kBins : 0;
   const std::vector<double> gradient = GradientOf(residual, kPulse);
-  EXPECT_GT(TestBins(ways, Nothing(), gradient, kPulse, kEqual).score, 200.0);
-  const RemainingStructure without = TestBins(ways, friction, gradient, kPulse, kEqual);
+  EXPECT_GT(TestBins(travels, Nothing(), gradient, kPulse, kEqual).score, 200.0);
+  const RemainingStructure without = TestBins(travels, friction, gradient, kPulse, kEqual);
   EXPECT_LT(without.score, 12.0);
   EXPECT_NEAR(without.bins, 2.0 * kBins - 1.0, 0.1);
 }

@@ -1,4 +1,4 @@
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ test::HiddenOptions Short() {
   return o;
 }
 
-class FirmSlidesTest : public testing::Test {
+class GrossSlidingTest : public testing::Test {
  protected:
   SharedEffect Of(const std::string& kind) const {
     const std::vector<SharedEffect> all = CatalogueEffects(problem_);
@@ -46,42 +46,42 @@ class FirmSlidesTest : public testing::Test {
   const Problem& problem_ = made_.problem;
 };
 
-TEST_F(FirmSlidesTest, AreFarFromReversalsAndFast) {
-  const std::vector<bool> firm = FirmSlides(problem_);
-  const std::vector<double> way = WaySinceReversal(*problem_.signals);
+TEST_F(GrossSlidingTest, AreFarFromReversalsAndFast) {
+  const std::vector<bool> sliding = GrossSliding(problem_);
+  const std::vector<double> way = TravelSinceReversal(*problem_.signals);
   const StatedFriction& f = problem_.nominal.friction;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < firm.size(); ++k) {
-    if (!firm[k]) continue;
+  for (std::size_t k = 0; k < sliding.size(); ++k) {
+    if (!sliding[k]) continue;
     ++count;
     EXPECT_GT(way[k], 5.0 * f.Fc_plus / f.s0 * problem_.stated.table_per_q);
     EXPECT_GT(std::fabs(problem_.signals->velocity[k]), f.vs);
   }
-  EXPECT_GT(count, firm.size() / 10);
-  EXPECT_LT(count, firm.size());
+  EXPECT_GT(count, sliding.size() / 10);
+  EXPECT_LT(count, sliding.size());
 }
 
-TEST_F(FirmSlidesTest, AnotherLawIsAnElementInPreslidingAndABristleThatDoesNotWear) {
-  EXPECT_TRUE(OfAnotherLaw(problem_, With({"presliding_hysteresis"}, -6.0)));
-  EXPECT_TRUE(OfAnotherLaw(problem_, With({"presliding_hysteresis", "cable_spring"}, -6.0)));
-  EXPECT_FALSE(OfAnotherLaw(problem_, With({"presliding_hysteresis"}, -0.2)));
-  EXPECT_FALSE(OfAnotherLaw(problem_, With({"presliding_hysteresis"}, 6.0)));
-  EXPECT_FALSE(OfAnotherLaw(problem_, With({"cable_spring"}, -6.0)));
+TEST_F(GrossSlidingTest, AnotherLawIsAnElementInPreslidingAndABristleThatDoesNotWear) {
+  EXPECT_TRUE(FrictionModelMismatch(problem_, With({"presliding_hysteresis"}, -6.0)));
+  EXPECT_TRUE(FrictionModelMismatch(problem_, With({"presliding_hysteresis", "cable_spring"}, -6.0)));
+  EXPECT_FALSE(FrictionModelMismatch(problem_, With({"presliding_hysteresis"}, -0.2)));
+  EXPECT_FALSE(FrictionModelMismatch(problem_, With({"presliding_hysteresis"}, 6.0)));
+  EXPECT_FALSE(FrictionModelMismatch(problem_, With({"cable_spring"}, -6.0)));
 }
 
-TEST_F(FirmSlidesTest, OtherCausesAreJudgedThereWhereTheLawIsAnother) {
-  const std::vector<bool> firm = FirmSlides(problem_);
-  const auto count = static_cast<double>(std::count(firm.begin(), firm.end(), true));
+TEST_F(GrossSlidingTest, OtherCausesAreJudgedThereWhereTheLawIsAnother) {
+  const std::vector<bool> sliding = GrossSliding(problem_);
+  const auto count = static_cast<double>(std::count(sliding.begin(), sliding.end(), true));
   const auto drop = [&](const std::string& kind, double rough, bool in_slides) {
     const Fit without = With({"presliding_hysteresis"}, rough);
     Fit with = With({"presliding_hysteresis", kind}, rough);
-    for (std::size_t k = 0; k < firm.size(); ++k)
-      if (firm[k] == in_slides) with.residual[k] = 0.0;
+    for (std::size_t k = 0; k < sliding.size(); ++k)
+      if (sliding[k] == in_slides) with.residual[k] = 0.0;
     with.cost = 0.0;
     for (const double r : with.residual) with.cost += r * r;
     return DropOf(problem_, without, with);
   };
-  const double others = static_cast<double>(firm.size()) - count;
+  const double others = static_cast<double>(sliding.size()) - count;
   EXPECT_NEAR(drop("cable_spring", -6.0, true), count, 1e-6);
   EXPECT_NEAR(drop("cable_spring", -6.0, false), 0.0, 1e-6);
   EXPECT_NEAR(drop("backlash", -6.0, false), others, 1e-6);

@@ -1,4 +1,4 @@
-#include "analysis/diagnosis/screening/firm_slides.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +17,9 @@ constexpr double kBelowZero = 0.5;
 
 }  // namespace
 
-std::vector<double> WaySinceReversal(const Signals& s) {
+std::vector<double> TravelSinceReversal(const Signals& s) {
   const Signal& x = s.table_m;
-  std::vector<double> way(x.size(), 0.0);
+  std::vector<double> travel(x.size(), 0.0);
   double turned_at = x[0], furthest = x[0];
   bool up = true;
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -29,12 +29,12 @@ std::vector<double> WaySinceReversal(const Signals& s) {
       turned_at = furthest;
       furthest = x[k];
     }
-    way[k] = std::fabs(x[k] - turned_at);
+    travel[k] = std::fabs(x[k] - turned_at);
   }
-  return way;
+  return travel;
 }
 
-bool OfAnotherLaw(const Problem& problem, const Fit& fit) {
+bool FrictionModelMismatch(const Problem& problem, const Fit& fit) {
   const std::vector<SharedEffect>& effects = fit.point.effects;
   if (std::none_of(effects.begin(), effects.end(),
                    [](const SharedEffect& e) { return *CauseNamed(e->kind).takes_up_another_law; }))
@@ -46,25 +46,25 @@ bool OfAnotherLaw(const Problem& problem, const Fit& fit) {
   return false;
 }
 
-std::vector<bool> FirmSlides(const Problem& problem) {
+std::vector<bool> GrossSliding(const Problem& problem) {
   const Signals& s = *problem.signals;
   const StatedFriction& f = problem.nominal.friction;
   const double far_m = kLengths * f.Fc_plus / f.s0 * problem.stated.table_per_q;
-  const std::vector<double> way = WaySinceReversal(s);
+  const std::vector<double> travel = TravelSinceReversal(s);
   std::vector<bool> out(problem.rows());
   for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = problem.counted[k] != 0 && way[k] > far_m && std::fabs(s.velocity[k]) > f.vs;
+    out[k] = problem.counted[k] != 0 && travel[k] > far_m && std::fabs(s.velocity[k]) > f.vs;
   return out;
 }
 
 double DropOf(const Problem& problem, const Fit& without, const Fit& with) {
   const std::string& kind = with.point.effects.back()->kind;
-  if (!OfAnotherLaw(problem, without) || CauseNamed(kind).acts_at_reversals || InBase(problem, kind))
+  if (!FrictionModelMismatch(problem, without) || CauseNamed(kind).acts_at_reversals || InBase(problem, kind))
     return without.cost - with.cost;
-  const std::vector<bool> firm = FirmSlides(problem);
+  const std::vector<bool> sliding = GrossSliding(problem);
   double drop = 0.0;
   for (std::size_t k = 0; k < with.residual.size(); ++k)
-    if (k >= firm.size() || firm[k])
+    if (k >= sliding.size() || sliding[k])
       drop += without.residual[k] * without.residual[k] - with.residual[k] * with.residual[k];
   return drop;
 }
