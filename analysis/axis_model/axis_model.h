@@ -28,7 +28,7 @@ struct AxisModel {
   double lag_for_delay_s = 0.0;  ///< more of the one, less of the other
   double torque_gain = 1.0;      ///< delivered over commanded
   double saturation = 0.0;       ///< share of the delivered u lost per square of u
-  /// A second, softer friction element beside the main one: its share of the level; its stiffness over the
+  /// A second, softer friction element parallel to the main one: its share of the level; its stiffness over the
   /// main's at equal level.
   double soft_share = 0.0, soft_ratio = 0.1;
   double payload = 0.0;         ///< inertia added (to the load, or to everything when rigid)

@@ -112,9 +112,9 @@ class Converter {
     Only("linear", drive_.force_step_N != 0.0, "drive.force_step_N");
     Only("linear", drive_.rated_force_N != 0.0, "drive.rated_force_N");
     Demand(!model_.load_inertia_kgm2 || model_.table_mass_kg == 0.0, Model("load_inertia_kgm2"),
-           "found beside table_mass_kg, expected one of the two");
+           "found together with table_mass_kg, expected one of the two");
     Demand(!model_.stiffness_Nm_rad || !model_.screw_stiffness_N_um, Model("stiffness_Nm_rad"),
-           "found beside screw_stiffness_N_um, expected one of the two");
+           "found together with screw_stiffness_N_um, expected one of the two");
     if (!errors_.empty()) return;
 
     axis_.lead_m = model_.lead_mm.value_or(0.0) * 1e-3;

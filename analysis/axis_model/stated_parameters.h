@@ -6,7 +6,7 @@
 
 #include "analysis/axis_model/stated_axis.h"
 
-// What machine files and models that stand alone share on their way to a StatedAxis.
+// What machine files and models that stand alone share before they become a StatedAxis.
 namespace contour::diagnosis {
 
 /// Friction stated in another coordinate, x = q * lever (m per rad for table values of a rotary axis).

@@ -18,7 +18,7 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kNoDoubt = 1000.0;  // of a score
-// Of the drop of jitter: beside a mean effect that its variance was about, less is left.
+// Of the drop of jitter: in addition to a mean effect that its variance was about, less is left.
 constexpr double kJitterLeft = 0.6;
 
 /// What goes on from round to round.
@@ -30,14 +30,14 @@ struct Rounds {
   Accepted accepted = {};
   std::vector<std::string> tried = {};  ///< since the last cause was accepted, and refuted
   /// What could be found was stated for all kinds, with so many causes in the model.
-  std::size_t stated_beside = std::numeric_limits<std::size_t>::max();
+  std::size_t stated_with = std::numeric_limits<std::size_t>::max();
   bool first = true, jitter_known = false;
   int further_orders = 0;
 };
 
 enum class Next { kSameRound, kNextRound, kEnd };
 
-/// What screening sees beside the accepted causes.
+/// What screening sees in addition to the accepted causes.
 struct Seen {
   std::vector<Scored> scored;
   ScoreThreshold threshold;
@@ -96,7 +96,7 @@ Seen Look(Rounds& r) {
   return seen;
 }
 
-/// Beside causes that are accepted: once more, for the others.
+/// In addition to causes that are accepted: once more, for the others.
 void KeepDetectable(const Problem& problem, const Fit& base, const Screened& screened,
                     const std::vector<std::string>& only, Diagnosis& out) {
   for (const auto& [kind, smallest] : SmallestDetectable(problem, base, screened, only))
@@ -106,8 +106,8 @@ void KeepDetectable(const Problem& problem, const Fit& base, const Screened& scr
 
 /// A cause that is there hides the others; once it is in the model they would be seen by less.
 void StateDetectable(const Seen& seen, const std::vector<std::string>& only, Rounds& r) {
-  if (r.stated_beside == r.accepted.places.size()) return;
-  if (only.empty()) r.stated_beside = r.accepted.places.size();
+  if (r.stated_with == r.accepted.places.size()) return;
+  if (only.empty()) r.stated_with = r.accepted.places.size();
   KeepDetectable(r.problem, r.accepted.fit, {seen.scored, seen.jitter, seen.threshold}, only, r.out);
 }
 
@@ -180,8 +180,8 @@ RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const Diag
     next = OneRound(round, r);
     if (next == Next::kNextRound) ++round;
   }
-  // Beside all that is in the model now, a shape from outside the catalogue among it.
-  if (r.stated_beside != r.accepted.places.size()) {
+  // In addition to all that is in the model now, a shape from outside the catalogue among it.
+  if (r.stated_with != r.accepted.places.size()) {
     const std::vector<Scored> scored = Screen(problem, r.accepted.fit, nominal.catalogue);
     const Jitter jitter = TestJitter(problem, r.accepted.fit);
     const ScoreThreshold threshold = ScoreThresholdOf(problem, r.accepted, scored, nominal.by_extras, options);

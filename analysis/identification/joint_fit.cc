@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 
 constexpr double kFollow_Hz = 60.0;
 
-/// What two ways of stepping the same axis, this simulation and the emulated machine, were found to differ by
+/// What two methods of stepping the same axis, this simulation and the emulated machine, were found to differ by
 /// in these parameters (docs/commissioning.md): nothing is known better than that. Relative.
 double Stepping(const std::string& key) {
   if (key == "screw_stiffness_N_um") return 2e-3;

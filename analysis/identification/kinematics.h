@@ -16,7 +16,7 @@ struct Instant {
   double velocity_m_s = 0.0;
   double acceleration_m_s2 = 0.0;
   double force_N = 0.0;  ///< at the motor, behind delay and lag
-  /// Way since the velocity last changed its sign (or since the record began).
+  /// Travel since the velocity last changed its sign (or since the record began).
   double since_reversal_m = 0.0;
 };
 

@@ -29,7 +29,7 @@ std::vector<BreakAway> BreakAways(const std::vector<Instant>& instants, const Ta
 
 /// Friction over the table's travel, for pictures: motions that reverse within `largest_m`.
 struct LoopPoint {
-  double time_s = 0.0, way_m = 0.0, friction_N = 0.0;
+  double time_s = 0.0, travel_m = 0.0, friction_N = 0.0;
 };
 std::vector<LoopPoint> PreslidingLoops(const std::vector<Instant>& instants, const TableAxis& axis,
                                        double largest_m);

@@ -77,7 +77,7 @@ json Points(const std::vector<LoopPoint>& points) {
   json t = json::array(), x = json::array(), f = json::array();
   for (const LoopPoint& p : points) {
     t.push_back(p.time_s);
-    x.push_back(p.way_m);
+    x.push_back(p.travel_m);
     f.push_back(p.friction_N);
   }
   return {{"time_s", t}, {"way_m", x}, {"friction_N", f}};
@@ -184,7 +184,7 @@ void WriteIdentificationJson(const std::filesystem::path& file, const Identifica
     points.push_back({{"velocity_m_s", p.velocity_m_s},
                       {"friction_N", p.friction_N},
                       {"spread_N", p.spread_N},
-                      {"way_m", p.way_m}});
+                      {"way_m", p.travel_m}});
   json break_aways = json::array();
   for (const BreakAway& b : id.break_aways)
     break_aways.push_back({{"force_N", b.force_N}, {"velocity_m_s", b.velocity_m_s}});

@@ -9,7 +9,7 @@
 
 namespace contour::identify {
 
-/// The identified model beside what was stated before: values in its own units, relative standard deviations
+/// The identified model next to what was stated before: values in its own units, relative standard deviations
 /// under `uncertainty:` for every key that was identified. Other keys, and extensions, stay.
 ModelConfig ToModel(const Identification& id, ModelConfig stated);
 

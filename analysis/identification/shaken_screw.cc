@@ -26,7 +26,7 @@ constexpr std::size_t kRefined = 4;
 constexpr double kFarApart = 0.08;
 constexpr double kFoundAgain = 0.01;
 constexpr double kSamePlace = 1e-3;
-constexpr int kLongestValley = 5;
+constexpr int kLongestDescent = 5;
 /// A screw is one when its resonance is below this, its stiffness known this well, and its two masses foresee
 /// the motion so much better than one does.
 constexpr double kKnownStiffness = 0.2;
@@ -105,26 +105,26 @@ TableAxis Rigid(TableAxis axis) {
 }
 
 /// On from a fit until it foresees no better: the basin is long and bent.
-std::pair<double, TableAxis> FollowValley(TableAxis axis, const std::vector<Measured>& segments,
+std::pair<double, TableAxis> FollowBasin(TableAxis axis, const std::vector<Measured>& segments,
                                           int threads) {
   FitOptions on = Options(true, false, threads);
   double error = LogError(axis, segments);
-  for (int i = 0; i < kLongestValley; ++i) {
+  for (int i = 0; i < kLongestDescent; ++i) {
     const TableAxis next = FitJointly(axis, segments, on).axis;
     on.refine = true;
     on.rounds = 1;
     const double e = LogError(next, segments);
-    const bool on_the_way = i == 0 || error - e > kSamePlace;
+    const bool descends = i == 0 || error - e > kSamePlace;
     if (e < error || i == 0) {
       error = e;
       axis = next;
     }
-    if (!on_the_way) break;
+    if (!descends) break;
   }
   return {error, axis};
 }
 
-/// Way of a window; 0 where a row is missing or the axis turns back.
+/// Travel in a window; 0 where a row is missing or the axis turns back.
 double Travel(const Measured& d, std::size_t at, std::size_t window) {
   const auto flank = static_cast<std::size_t>(kFlank_s / d.period_s);
   const double travel = d.position_m[at + window - 1] - d.position_m[at];
@@ -221,7 +221,7 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
   const double rigid_error = LogError(rigid, segments);
   std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
   for (const TableAxis& from : Starts(start, segments, s.highest_Hz)) {
-    const auto found = FollowValley(from, segments, threads);
+    const auto found = FollowBasin(from, segments, threads);
     const bool same = std::fabs(found.first - best.first) < kFoundAgain;
     if (found.first < best.first) best = found;
     if (same) break;

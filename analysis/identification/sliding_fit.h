@@ -28,7 +28,7 @@ struct StribeckPoint {
   double velocity_m_s = 0.0;
   double friction_N = 0.0;
   double spread_N = 0.0;  ///< standard deviation over the travel: ripple and place
-  double way_m = 0.0;
+  double travel_m = 0.0;
 };
 std::vector<StribeckPoint> StribeckPoints(const std::vector<Instant>& instants, const TableAxis& axis);
 

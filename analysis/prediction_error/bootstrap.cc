@@ -20,7 +20,7 @@ constexpr double kTurn = 1e-4;
 constexpr double kMostTaken = 5.0;
 
 /// What the strokes pull the parameters by, one column per stroke, in the size that it had before the fit
-/// gave way to it: with G = J'J of the stroke, white noise would make the covariance of the pull G, the fit
+/// yielded to it: with G = J'J of the stroke, white noise would make the covariance of the pull G, the fit
 /// leaves G - G (sum of G and priors)^-1 G of it (the bias-reduced cluster estimate of Bell and McCaffrey,
 /// Survey Methodology 28(2), 2002).
 Eigen::MatrixXd PullsOf(const Problem& problem, const Fit& fit, const Eigen::VectorXd& precision) {
@@ -184,7 +184,7 @@ Eigen::MatrixXd StrokeBootstrap(const Problem& problem, const Fit& fit, int runs
       out.col(first + static_cast<Eigen::Index>(i)) = draws[i].by;
     }
   }
-  // What few strokes show may scatter little by luck: never less than white noise makes it.
+  // What few strokes show may scatter little by chance: never less than white noise makes it.
   const Eigen::VectorXd mean = out.rowwise().mean();
   for (Eigen::Index i = 0; i < out.rows(); ++i) {
     const double scatter = (out.row(i).array() - mean(i)).square().sum() / std::max(1.0, runs - 1.0);

@@ -50,7 +50,7 @@ struct Bundle {
   std::vector<FilterRun*> out;
 };
 
-/// What a bundle reads beside its models.
+/// What a bundle reads besides its models.
 struct Inputs {
   const FilterSetup& setup;
   MeansCache means;

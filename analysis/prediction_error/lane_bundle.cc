@@ -17,7 +17,7 @@ struct Decay {
   double dd, dr, rd, rr;
 };
 Decay DecayOver(double square, double decay, double h) {
-  // cos and sin / w of what is left of the mode beside its damping, or cosh and sinh.
+  // cos and sin / w of what is left of the mode without its damping, or cosh and sinh.
   const double left = square - decay * decay, w = std::sqrt(std::fabs(left)), x = w * h;
   const double c = left > 0.0 ? std::cos(x) : std::cosh(x);
   const double s = x < 1e-6 ? h : (left > 0.0 ? std::sin(x) : std::sinh(x)) / w;

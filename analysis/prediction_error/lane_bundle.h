@@ -8,7 +8,7 @@
 
 namespace contour::diagnosis {
 
-/// Models of one shape as lanes; the last one fills the lanes that are left over. Outputs are for the caller
+/// Models of one shape as lanes; the last one fills the lanes that remain. Outputs are for the caller
 /// to set. Everything given must outlive the lanes.
 Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> models,
                 std::span<const Delivered* const> delivered, const double* measured, const double* zeros);

@@ -144,7 +144,7 @@ double Problem::ExplainedByExtras(const Point& point) const {
 void Problem::AddScale(const std::vector<double>& table, bool two, const double* error,
                        const double* measured, std::vector<double>& raw, Extent extent) const {
   const std::size_t n = table.size();
-  // The correction goes only part of the way to the encoder's reading.
+  // The correction goes only part of the distance to the encoder's reading.
   const double rest = 1.0 - (two ? setup.gain_two : setup.gain)[0];
   raw.resize(2 * n);
   const auto row = [&](std::size_t i) { return extent == Extent::kWhole ? i : excerpt.row[i]; };

@@ -32,7 +32,7 @@ struct Effect {
   std::vector<double> low, high;  ///< bounds; empty: none
   std::size_t tested = 0;         ///< so many amplitudes are tested at zero, the rest is shape; 0: all
   bool signals = false;           ///< the tested amplitudes enter as signals and nothing else, in proportion
-  /// The same with the first amplitudes only, tested beside it at no cost.
+  /// The same with the first amplitudes only, tested in addition to it at no cost.
   std::shared_ptr<const Effect> shorter;
   /// Acts as this base term does from a row on, which saves the runs of the test; empty: runs.
   std::string as_term;
@@ -73,7 +73,7 @@ class Problem {
   /// By how much |r|^2 would be larger without what the stated model has beyond its numbers.
   [[nodiscard]] double ExplainedByExtras(const Point& point) const;
   [[nodiscard]] FilterRun Trace(const Point& point) const;
-  /// White differences of the residual per unit of each effect's amplitude at zero beside the point where the
+  /// White differences of the residual per unit of each effect's amplitude at zero in addition to the point where the
   /// noise was learnt, effects that are signals and nothing else.
   [[nodiscard]] std::vector<std::vector<double>> LinearResponses(const Point& point,
                                                                  std::span<const SharedEffect> effects) const;

@@ -22,7 +22,7 @@ void AxisRecorder::Add(const CycleRecord& record) {
   if (!first_cycle_) first_cycle_ = record.cycle;
   if (record.cycle < *first_cycle_) return;
   const auto row = static_cast<std::size_t>(record.cycle - *first_cycle_);
-  // Cycles that were lost on the way: the drive went on with its last command, as far as is known.
+  // Cycles that were lost: the drive went on with its last command, as far as is known.
   while (log_.command.size() <= row) {
     log_.command.push_back(log_.command.empty() ? 0.0 : log_.command.back());
     log_.position.push_back(kNone);

@@ -46,7 +46,7 @@ RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std
                   const std::vector<double>& response, const std::vector<double>& weight);
 
 /// Of the residual of a fit, for every quantity, the one that is furthest beyond what is asked of it first.
-/// To first order and of slides only; base and effects are not fitted again beside the bins, which makes the
+/// To first order and of slides only; base and effects are not fitted again in addition to the bins, which makes the
 /// drop a little less than it could be.
 std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit& fit, double false_alarm_rate);
 

@@ -48,22 +48,22 @@ class Maps {
 
   std::vector<BinnedRows> All() {
     const Range x = RangeOf(s_.table_m);
-    BothWays(
+    BothDirections(
         "the position", Quantity::kPosition, kPlaces,
         [&](std::size_t k) { return x.Bin(s_.table_m[k], kPlaces); },
         [x, middle_m = s_.middle_m](int b) { return Text(1e3 * (x.Middle(b, kPlaces) + middle_m), "mm"); });
-    BothWays(
+    BothDirections(
         "the speed", Quantity::kSpeed, kSpeeds, [&](std::size_t k) { return SpeedBin(s_, k); },
         [fastest_m_s = s_.max_speed * p_.stated.table_per_q](int b) {
           return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kSpeeds), 2), "mm/s");
         });
     const std::vector<double> travel = TravelSinceReversal(s_);
     const Range log_travel{std::log(kShortestTravel_m), std::log(2.0 * s_.half_stroke_m + kShortestTravel_m)};
-    BothWays(
+    BothDirections(
         "the travel since the last reversal", Quantity::kTravelSinceReversal, kTravelBins,
         [&](std::size_t k) { return log_travel.Bin(std::log(travel[k] + kShortestTravel_m), kTravelBins); },
         [log_travel](int b) { return Text(1e3 * std::exp(log_travel.Middle(b, kTravelBins)), "mm after a reversal"); });
-    BothWays(
+    BothDirections(
         "the angle of the motor", Quantity::kAngle, kAngles,
         [&](std::size_t k) {
           const double turns = s_.angle_rad[k] / kTurn;
@@ -73,7 +73,7 @@ class Maps {
     out_.back().series = true;
     if (!s_.temperature_K.empty()) {
       const Range t = RangeOf(s_.temperature_K);
-      BothWays(
+      BothDirections(
           "the temperature", Quantity::kTemperature, kTemperatures,
           [&](std::size_t k) { return t.Bin(s_.temperature_K[k], kTemperatures); },
           [t, mean_degC = s_.mean_degC](int b) {
@@ -87,7 +87,7 @@ class Maps {
 
  private:
   template <class BinOf, class PlaceOf>
-  void BothWays(const char* over, Quantity quantity, int count, BinOf&& bin_of, PlaceOf place) {
+  void BothDirections(const char* over, Quantity quantity, int count, BinOf&& bin_of, PlaceOf place) {
     BinnedRows rows;
     rows.over = std::string(over) + " and the direction";
     rows.quantity = quantity;

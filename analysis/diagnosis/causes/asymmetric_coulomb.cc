@@ -14,7 +14,7 @@ void ScaleLevels(double difference, AxisModel& m) {
   m.friction.Fs_minus *= 1.0 - 0.5 * difference;
 }
 
-/// Guides and wipers that drag one way do so at speed, too: a viscous term that differs with them.
+/// Guides and wipers that drag in one direction do so at speed, too: a viscous term that differs with them.
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const Signals& s = *p.signals;
   const std::string kind(kName);

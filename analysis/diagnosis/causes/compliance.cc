@@ -21,7 +21,7 @@ constexpr double kDampingReach = 2.0;
 // something else: logarithm of the damping ratio over the usual one, shares of the inertia.
 constexpr double kMostDamped = 1.0, kLeastShare = 0.1, kNothingBehind = 0.01;
 
-/// A resonance far from where it is stated cannot be reached step by step: full-size starts both ways.
+/// A resonance far from where it is stated cannot be reached step by step: full-size initial guesses in both directions.
 void GridOfAScrew(std::vector<SharedEffect>& out) {
   for (const double start : {-0.5, 0.4})
     out.push_back(
@@ -45,7 +45,7 @@ void AddCoupling(double frequency_Hz, const std::vector<double>& a, AxisModel& m
   m.friction_on_load = false;
 }
 
-/// The stiffest are those of any screw, no fault of a model that is stated as rigid: they stand beside the
+/// The stiffest are those of any screw, no fault of a model that is stated as rigid: they join the
 /// others so that these do not have to stand for them.
 void GridOfARigidAxis(std::vector<SharedEffect>& out) {
   for (const double f :

@@ -35,7 +35,7 @@ void RemoveExtension(ExtensionsConfig& e) {
   (e.*member).reset();
 }
 
-/// A wave beside those that are there; of the same order, their sum.
+/// A wave added to those that are there; of the same order, their sum.
 template <class Extension, class Wave>
 void AddWave(std::optional<Extension>& to, double Wave::*amplitude, const Wave& wave) {
   if (!to) {

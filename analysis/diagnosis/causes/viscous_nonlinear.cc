@@ -33,8 +33,8 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
                                  return -std::copysign(std::pow(std::fabs(y), power * std::exp(x)), y);
                                }),
                   power));
-  // Drag that gives way beyond a knee; what grows faster than the speed bends with a power, and so does what
-  // the log cannot tell from it: a knee must show for itself, since its torque is told beside another linear
+  // Drag that yields beyond a knee; what grows faster than the speed bends with a power, and so does what
+  // the log cannot tell from it: a knee must show for itself, since its torque is reported with another linear
   // term.
   for (const double knee : {0.1, 0.3}) {
     auto shape = std::make_shared<Effect>(

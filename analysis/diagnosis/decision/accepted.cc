@@ -19,10 +19,10 @@ namespace {
 constexpr double kFewStrokes = 1.25;
 // An extension that was found in another log may be off by a hundredth of its amplitude.
 constexpr double kOffStated = 1e-4;
-// Scores that are alike, of the best. Where friction is of another law, what is wrong with the model takes
+// Scores that are alike, of the best. On a friction-model mismatch what is wrong with the model takes
 // part in the difference, and constant torque and asymmetry differ at reversals only, which do not count.
 constexpr double kAlike = 0.03, kAlikeOnMismatch = 0.1;
-// An element in presliding is a neighbour's name for another law, and leaves more than a right name does.
+// An element in presliding stands for a friction-model mismatch, and leaves more than a right name does.
 constexpr double kLeakageOnMismatch = 0.05;
 
 /// What the hypotheses scored, and which of them cannot be told from the first.
@@ -39,8 +39,8 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
       }
     // What would not have been accepted alone explains too little to be the cause.
     if (&r != &best && !r.refused && !r.given_up && !Outside(kind) && r.score > Asked(problem, r, threshold) &&
-        r.score > best.score - std::max(12.0, alike * best.score) && !StandsBeside(problem, best.fit, r) &&
-        !StandsBeside(problem, r.fit, best))
+        r.score > best.score - std::max(12.0, alike * best.score) && !ExplainsSomethingElse(problem, best.fit, r) &&
+        !ExplainsSomethingElse(problem, r.fit, best))
       cause.indistinguishable_from.push_back(kind);
   }
 }

@@ -23,7 +23,7 @@ struct Accepted {
   std::map<std::string, double> leakage_of_kind;
 };
 
-/// What a score must exceed beside what is accepted.
+/// What a score must exceed in addition to what is accepted.
 ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
             double by_extras, const DiagnoseOptions& options);
 

@@ -44,7 +44,7 @@ std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::v
     if (!InBase(problem, hypotheses[i].effect().kind)) continue;
     const double score = TestedScore(problem, current, hypotheses[i]);
     if (score <= tested || !Holds(problem, current, hypotheses[i], score, threshold) ||
-        !StandsBeside(problem, hypotheses[holds].fit, hypotheses[i]))
+        !ExplainsSomethingElse(problem, hypotheses[holds].fit, hypotheses[i]))
       continue;
     surest = i;
     tested = score;
@@ -60,7 +60,7 @@ double Asked(const Problem& problem, const Hypothesis& r, const ScoreThreshold& 
   return Threshold(problem, threshold, r.effect(), score_scale);
 }
 
-bool StandsBeside(const Problem& problem, const Fit& other, const Hypothesis& r) {
+bool ExplainsSomethingElse(const Problem& problem, const Fit& other, const Hypothesis& r) {
   const SharedEffect& effect = r.fit.point.effects.back();
   if (!effect->signals && !InBase(problem, effect->kind)) return false;
   return ScoreEffects(problem, other, {effect})[0].drop > kStillThere * (r.score + Penalty(*effect));

@@ -12,7 +12,7 @@ double Asked(const Problem& problem, const Hypothesis& r, const ScoreThreshold& 
 
 /// Whether what speaks for an effect goes on doing so when another one is in the model: these two do not
 /// explain the same. Of what a test for small sizes says something about.
-bool StandsBeside(const Problem& problem, const Fit& other, const Hypothesis& r);
+bool ExplainsSomethingElse(const Problem& problem, const Fit& other, const Hypothesis& r);
 
 struct Choice {
   bool found = false;   ///< the first of the hypotheses holds

@@ -12,8 +12,8 @@
 namespace contour::diagnosis {
 namespace {
 
-// No score of a machine.
-constexpr double kFarOut = -1e6;
+// Below: the hypothesis was refused, there is no score.
+constexpr double kRefused = -1e6;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
     e.flips = threshold.calibrated;
     e.asked = Threshold(problem, threshold, *s.effect, ScoreScaleOf(problem, s));
     for (const Hypothesis& r : hypotheses) {
-      if (r.effect().kind != kind || r.score < kFarOut || r.given_up) continue;
+      if (r.effect().kind != kind || r.score < kRefused || r.given_up) continue;
       e.penalty = Penalty(r.effect());
       e.refitted = r.score + e.penalty;
       e.asked = Asked(problem, r, threshold);

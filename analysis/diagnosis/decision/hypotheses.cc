@@ -17,8 +17,8 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kNever = -1e300;
-constexpr double kSmall = 60.0, kNoLuck = 300.0;  // drops
+constexpr double kNoScore = -1e300;
+constexpr double kSmall = 60.0, kBeyondChance = 300.0;  // drops
 constexpr std::size_t kMostKinds = 4, kMostTried = 6;
 constexpr double kFewOfMost = 0.1;
 constexpr int kMostTurns = 3;
@@ -63,14 +63,14 @@ bool NoFault(const Problem& problem, const Hypothesis& r) {
 }
 
 void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
-  // A start may be no machine at all.
+  // A fit may end at parameters that no machine can have.
   const bool coupling = AddsCoupling(problem, r);
   const bool out = !std::isfinite(r.fit.cost) || Implausible(problem, r);
   r.no_fault = !out && coupling && NoFault(problem, r);
-  r.score = out ? kNever : DropOf(problem, current, r.fit) - Penalty(r.effect());
+  r.score = out ? kNoScore : DropOf(problem, current, r.fit) - Penalty(r.effect());
 }
 
-// Beside a large cause the score test falls short by as much: the noise that it was made under has the other
+// In addition to a large cause the score test falls short by as much: the noise that it was made under has the other
 // one in it.
 constexpr double kShortByLeakage = 0.1;
 
@@ -127,7 +127,7 @@ void OneOfEach(std::vector<Hypothesis>& hypotheses) {
 }
 
 /// Far from linear: the kind's whole grid at full size shows where to begin. A coupling that every screw has
-/// begins beside the best, which may be a softer one that stands for it.
+/// begins next to the best, which may be a softer one that stands for it.
 std::vector<InitialGuess> Far(const Problem& problem, const Fit& current, const std::string& kind,
                            const std::vector<Scored>& scored) {
   GridPoint best, stiff;
@@ -182,7 +182,7 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
       if (!outside && s.drop > most) guesses.push_back(Near(problem, current, s));
       outside = true;
     } else {
-      // Evidence in the priors is small beside what lies in the residual, and as good.
+      // Evidence in the priors is small compared with what lies in the residual, and as good.
       const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, threshold);
       if (!by_priors && (fitted >= kMostKinds || looked_at >= kMostTried || s.drop < kFewOfMost * most))
         continue;
@@ -208,7 +208,7 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
   return guesses;
 }
 
-/// Whether the score test promises enough to be tested beside the best; it says nothing about what is far
+/// Whether the score test promises enough to be tested in addition to the best; it says nothing about what is far
 /// from linear.
 bool MayMatter(const std::vector<Scored>& scored, const Hypothesis& r, double best) {
   if (!r.effect().start.empty()) return true;
@@ -261,7 +261,7 @@ void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
 std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
                              const ScoreThreshold& threshold, std::vector<std::string>& tried) {
   std::vector<Hypothesis> out;
-  double best = kNever;
+  double best = kNoScore;
   for (int turn = 0; turn < kMostTurns; ++turn) {
     double most = 0.0;
     for (Fit& fit : FitPoints(problem, NextGuesses(problem, current, scored, threshold, tried, most))) {
@@ -391,8 +391,8 @@ double TestedScore(const Problem& problem, const Fit& current, const Hypothesis&
   const SharedEffect& effect = hypothesis.fit.point.effects.back();
   double drop = hypothesis.score + Penalty(*effect);
   double most = std::numeric_limits<double>::infinity();
-  // Luck does not go that far; a base that lies elsewhere without the effect does.
-  if (drop < kNoLuck && effect->start.empty() && !InBase(problem, effect->kind)) {
+  // Chance does not lower a cost that far; a base that lies elsewhere without the effect does.
+  if (drop < kBeyondChance && effect->start.empty() && !InBase(problem, effect->kind)) {
     const Scored again = ScoreEffects(problem, current, {effect})[0];
     if (again.drop < kSmall) drop = std::min(drop, again.drop);
     // An effect that is there makes its score scatter from block to block, but not as a single event does.

@@ -9,7 +9,7 @@
 
 namespace contour::diagnosis {
 
-/// A candidate fitted jointly with the base and with what is accepted already.
+/// A candidate hypothesis, fitted jointly with the base and with what is accepted already.
 struct Hypothesis {
   Fit fit;
   double score = 0.0;    ///< what it lowers chi^2 and prior by, less its penalty
@@ -41,7 +41,7 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, 
 void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses);
 
 /// Of a hypothesis, what the threshold asks about: the drop of the joint fit, but not more than the score test at its
-/// own place promises (a cost that is a little rough has lucky points), over the overdispersion of what is left.
+/// own place promises (a cost that is a little rough has low points by chance), over the overdispersion of what is left.
 double TestedScore(const Problem& problem, const Fit& current, const Hypothesis& hypothesis);
 
 }  // namespace contour::diagnosis

@@ -12,8 +12,8 @@
 namespace contour::diagnosis {
 namespace {
 
-// Of numbers of the base beside accepted causes, whose residual leakage they may take up; per row.
-constexpr double kBesidePerRow = 3e-5;
+// Of numbers of the base in addition to accepted causes, whose residual leakage they may take up; per row.
+constexpr double kLeakagePerRow = 3e-5;
 // Each kind that is a number of the base has this share of the false alarms.
 constexpr double kShareInBase = 0.2;
 // A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
@@ -120,7 +120,7 @@ double Threshold(const Problem& problem, const ScoreThreshold& threshold, const 
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
   const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * threshold.rate, kBeyondStated));
   if (threshold.accepted == 0) return by_chance - Penalty(effect);
-  left += kBesidePerRow * static_cast<double>(problem.rows());
+  left += kLeakagePerRow * static_cast<double>(problem.rows());
   // At its worst residual leakage of chi^2 moves the number by its root, in standard errors of the log.
   const double moved = score_scale.variance_ratio * left;
   left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));

@@ -15,7 +15,7 @@
 namespace contour::diagnosis {
 namespace {
 
-// A cause must also hold in several blocks, in unseen halves and against its hypotheses, and the rest of the fit
+// A cause must also hold in several blocks, in unseen halves and against other hypotheses, and the rest of the fit
 // takes a part of it over: by recorded machines (docs/diagnosis_results.md).
 constexpr double kBeyondTheThreshold = 1.6;
 // The same where the size comes from runs at that size.
@@ -85,8 +85,8 @@ std::optional<Detectable> Middle(const Problem& problem, const ScoreThreshold& t
   return Detectable{at->effect, size, (InBase(problem, kind) ? 1.0 : kBeyondTheThreshold) * size};
 }
 
-/// A point beside the base, with a first amplitude.
-Point Beside(const Fit& base, const SharedEffect& effect, double first) {
+/// A point in addition to the base, with a first amplitude.
+Point WithEffect(const Fit& base, const SharedEffect& effect, double first) {
   Point p = base.point;
   p.effects.push_back(effect);
   p.amplitudes.push_back(effect->start.empty() ? std::vector<double>(effect->steps.size(), 0.0)
@@ -118,14 +118,14 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
   const double largest = linear.effect->high[0];
   for (double size = 0.5 * linear.threshold; size < largest && points.size() < kLanes; size *= 2.0) {
     sizes.push_back(size);
-    points.push_back(Beside(base, linear.effect, size));
+    points.push_back(WithEffect(base, linear.effect, size));
   }
   double enough = 0.0;
   std::vector<double> promising;
   for (const Scored& s : scored) {
     if (s.effect == linear.effect) enough = std::pow(Needed(problem, threshold, s), 2) * ByChance(s);
     if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
-    points.push_back(Beside(base, s.effect, s.effect->steps[0]));
+    points.push_back(WithEffect(base, s.effect, s.effect->steps[0]));
     promising.push_back(kMostOverdispersion * std::pow(Needed(problem, threshold, s) - kNinety, 2));
   }
   const Eigen::MatrixXd left = LeftOf(problem, base, points);
@@ -158,7 +158,7 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
     if (!CauseNamed(s.effect->kind).coupling || s.effect->start.empty() || s.effect->order > kNoFault_Hz)
       continue;
     places.push_back(&s);
-    points.push_back(Beside(base, s.effect, s.effect->start[0]));
+    points.push_back(WithEffect(base, s.effect, s.effect->start[0]));
   }
   if (points.empty()) return std::nullopt;
   const Eigen::VectorXd promised = LeftOf(problem, base, points).diagonal();
@@ -201,7 +201,7 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
     if (InBase(problem, kind)) std::fill(at.point.base.begin(), at.point.base.end(), 0.0);
     // A fault makes the coupling softer.
     const bool stiffness = cause->coupling && InBase(problem, kind);
-    at.point = Beside(at, d->effect, stiffness ? -d->size : d->size);
+    at.point = WithEffect(at, d->effect, stiffness ? -d->size : d->size);
     const auto count = static_cast<Eigen::Index>(ParameterCount(at.point));
     at.covariance = Eigen::MatrixXd::Zero(count, count);
     Cause described;

@@ -12,7 +12,7 @@
 
 namespace contour::diagnosis {
 
-/// What screening saw beside the causes that are accepted.
+/// What screening saw in addition to the causes that are accepted.
 struct Screened {
   std::span<const Scored> scored;
   const Jitter& jitter;

@@ -41,14 +41,14 @@ std::vector<std::string> LinesOf(const std::string& file) {
 
 /// The block `extensions:` of a model whose keys begin `indent` columns in.
 std::string Block(const ExtensionsConfig& extensions, std::size_t indent) {
-  const std::string margin(indent, ' ');
-  std::string out = margin + "extensions:              # found by contour diagnose\n";
+  const std::string indentation(indent, ' ');
+  std::string out = indentation + "extensions:              # found by contour diagnose\n";
   std::istringstream body(WriteYaml(extensions));
-  for (std::string line; std::getline(body, line);) out += margin + "  " + line + "\n";
+  for (std::string line; std::getline(body, line);) out += indentation + "  " + line + "\n";
   return out;
 }
 
-/// `model` is a map in block style, its keys on lines of their own; its old extensions make way.
+/// `model` is a map in block style, its keys on lines of their own; its old extensions are removed.
 std::string Inserted(const std::string& file, const YamlValue& model, const ExtensionsConfig& extensions) {
   std::vector<std::string> lines = LinesOf(file);
   const std::size_t first = LineOf(model.entries.front().where);

@@ -11,7 +11,7 @@
 
 namespace contour::diagnosis {
 
-/// Writes `dir`/report.html, one page with everything in it, and the pictures beside it: the data first
+/// Writes `dir`/report.html, one page with everything in it, and the pictures next to it: the data first
 /// (report_data.json, report_traces.bin), then tools/plots/plot_diagnosis.py draws them. Throws
 /// std::runtime_error when a file cannot be written, EnvironmentError when Python cannot draw.
 void WriteReport(const std::filesystem::path& dir, const AxisLog& log, const StatedAxis& stated,

@@ -6,7 +6,7 @@
 
 namespace contour::diagnosis {
 
-/// The stated model as the log has it: its numbers fitted, the noise learnt, and what may be tried beside it.
+/// The stated model as the log has it: its numbers fitted, the noise learnt, and what may be tried in addition to it.
 struct Nominal {
   Fit fit;
   std::vector<SharedEffect> catalogue;

@@ -38,7 +38,7 @@ bool InBase(const Problem& problem, const std::string& kind);
 /// Of such a kind, the base terms that it frees, in the order of its amplitudes.
 std::vector<std::size_t> FreedTerms(const Problem& problem, const std::string& kind);
 
-/// Tests effects at zero amplitude beside whatever `fit` holds.
+/// Tests effects at zero amplitude in addition to whatever `fit` holds.
 std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::vector<SharedEffect> effects);
 
 /// Of the last effect of a fit, from the fit's own residual: free of what the effect explains.

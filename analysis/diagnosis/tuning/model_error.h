@@ -8,7 +8,7 @@ namespace contour::diagnosis {
 /// The rate at which model-error allowances were read off clean logs.
 inline constexpr double kCalibratedRate = 0.05;
 
-/// Beside the kinds of cause: that something is left which none of them fits. Over the time the model's own
+/// In addition to the kinds of cause: that something is left which none of them fits. Over the time the model's own
 /// errors show, motion by motion, and nowhere else; each has an allowance of its own.
 inline constexpr std::string_view kUnexplainedAll = "unexplained";
 inline constexpr std::string_view kUnexplainedTorque = "unexplained:torque of time";

@@ -70,7 +70,7 @@ TEST(ForwardFilter, LanesAndThreadsDoNotChangeARun) {
   }
 }
 
-// What a fit's step may end in leaves the runs beside it alone, whose delivered means have another length.
+// What a fit's step may end in leaves the runs next to it alone, whose delivered means have another length.
 TEST(ForwardFilter, WhatIsNoMachineHasNoResidualAndDisturbsNone) {
   test::HiddenOptions o;
   o.duration_s = 5.0;

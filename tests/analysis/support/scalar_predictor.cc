@@ -138,7 +138,7 @@ class Run {
     double load = At(m_.load_force, k, share);
     const double late = m_.torque_gain * delivered_.late[at] / (m_.two_inertia ? m_.motor_inertia : carried);
     const double known = s0_ * z_ + drag_ + soft_s0_ * soft_;
-    const double v = SpeedHalfWay(motor, load, known, carried);
+    const double v = SpeedHalfStep(motor, load, known, carried);
     const double g = Level(v, 1.0 + At(m_.level, k, share)), speed = WearSpeed(v);
     path_.push_back({v, g / s0_, s0_ * h_ / g});
     const double z = z_, soft = soft_;
@@ -157,7 +157,7 @@ class Run {
     b_.theta += late;
   }
 
-  double SpeedHalfWay(double motor, double load, double friction, double carried) {
+  double SpeedHalfStep(double motor, double load, double friction, double carried) {
     if (!m_.two_inertia) {
       b_.theta += 0.5 * h_ * b_.w;
       return b_.w + 0.5 * h_ * (motor + load - friction) / carried;

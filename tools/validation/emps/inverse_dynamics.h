@@ -7,7 +7,7 @@
 
 namespace contour::emps {
 
-/// What a force model has beside mass, viscous and Coulomb friction and a constant force.
+/// What a force model has in addition to mass, viscous and Coulomb friction and a constant force.
 struct ForceTerms {
   bool direction = false;  ///< viscous and Coulomb friction per direction
   bool stribeck = false;   ///< friction at low speed, per direction

@@ -80,7 +80,7 @@ std::string ModelErrorTable(std::istream& evidence) {
   std::map<std::string, Exceeding> kinds;
   std::vector<double> all;
   std::map<std::string, double> leakage, leakage_of_its_kind;
-  std::vector<Line> beside;
+  std::vector<Line> residual_leakage;
   for (std::string text; std::getline(evidence, text);) {
     const Line l = LineFrom(text);
     if (l.rate != diagnosis::kCalibratedRate) continue;
@@ -94,14 +94,14 @@ std::string ModelErrorTable(std::istream& evidence) {
       if (!diagnosis::IsStructureClass(l.kind)) all.push_back(by);
     } else if (l.log.starts_with("clear_") && l.accepted == 1 && WouldHold(l) &&
                !diagnosis::IsStructureClass(l.kind)) {
-      beside.push_back(l);
+      residual_leakage.push_back(l);
     }
   }
   if (clean.empty()) throw std::runtime_error("no machine without an effect among the evidence");
   const auto logs = static_cast<double>(clean.size());
   const double scale = CommonScale(all);
   // The hidden kind is in the case's name: clear_KIND_0001.
-  for (const Line& l : beside) {
+  for (const Line& l : residual_leakage) {
     const std::string kind = l.log.substr(6, l.log.rfind('_') - 6);
     // A further order of the kind is another cause, and takes more of what is left than others do.
     const double share = kLeakageReserve * (l.tested - l.flips) / l.explained;

@@ -19,7 +19,7 @@ enum class Strength { kClear, kModerate, kBarely };
 double ShareOf(Strength strength);
 const char* Name(Strength strength);
 
-/// How the machine differs from what its model can express, beside the hidden effect.
+/// How the machine differs from what its model can express, in addition to the hidden effect.
 enum class Misfit {
   kNone,
   kMaxwellSlip,  ///< another friction law

@@ -17,7 +17,7 @@ constexpr const char* kUsage =
     R"(usage: contour_hidden [OPTION]...
 Hides effects in the emulated machine, records logs over the bus, diagnoses them, and counts how often the answer is right.
 
-  --record DIR         only record: a directory for each case, with the truth beside the log
+  --record DIR         only record: a directory for each case, with the truth next to the log
   --judge DIR          only diagnose what is recorded there; goes on where an earlier run ended
   (neither)            both, and the logs are not kept
   --calibrate FILE     model-error allowances from what --fit-above-chance --evidence wrote, on standard output
@@ -44,7 +44,7 @@ How to judge:
   --sizes FILE         true sizes and what is told of them, appended to a table
 
   --threads N          (number of processors)
-  --out DIR            results.csv and results.md go there (with --judge: beside the cases)
+  --out DIR            results.csv and results.md go there (with --judge: next to the cases)
   --keep DIR           without --record and --judge: keeps the cases there
   --verbose            one line for each case
   --help

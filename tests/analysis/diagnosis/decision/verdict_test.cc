@@ -67,7 +67,7 @@ TEST_F(VerdictTest, WhatIsLeftWithoutACauseIsUnexplained) {
   EXPECT_NE(d.notes[0].find("12 mm, moving up"), std::string::npos);
 }
 
-TEST_F(VerdictTest, ACauseKeepsItsNameBesideLittle) {
+TEST_F(VerdictTest, ACauseKeepsItsNameWhenLittleIsLeft) {
   const Diagnosis d = Concluded(Named({{"cogging", 20000.0}}), {Of("time", 100.0)});
   EXPECT_EQ(d.verdict, Verdict::kCauseFound);
   ASSERT_EQ(d.causes.size(), 1u);
@@ -85,9 +85,9 @@ TEST_F(VerdictTest, ACauseThatLeavesATenthLosesIt) {
 }
 
 TEST_F(VerdictTest, ATorqueMakesAnErrorOfTheLeadNoLessTrueUnlessItIsLarge) {
-  const Diagnosis beside = Concluded(Named({{"pitch_error", 9000.0}}), {Of("time", 900.0)});
-  EXPECT_EQ(beside.verdict, Verdict::kCauseFound);
-  EXPECT_EQ(beside.causes.size(), 1u);
+  const Diagnosis concluded = Concluded(Named({{"pitch_error", 9000.0}}), {Of("time", 900.0)});
+  EXPECT_EQ(concluded.verdict, Verdict::kCauseFound);
+  EXPECT_EQ(concluded.causes.size(), 1u);
   const Diagnosis large =
       Concluded(Named({{"pitch_error", 3400.0}, {"outside:force of time", 7000.0}}), {Of("time", 180.0)});
   EXPECT_EQ(large.verdict, Verdict::kUnexplained);

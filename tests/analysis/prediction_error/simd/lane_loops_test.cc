@@ -48,12 +48,12 @@ std::vector<double> Noise(std::size_t size, double scale, unsigned seed) {
   return out;
 }
 
-enum class Beside { kNothing, kAfter, kBefore };
+enum class Neighbour { kNothing, kAfter, kBefore };
 
 // Runs of a table axis, every lane with parameters of its own, through rest, slides and reversals; another
-// bundle may run beside it.
+// bundle may run next to it.
 std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool square, bool bare,
-                          Beside beside = Beside::kNothing) {
+                          Neighbour neighbour = Neighbour::kNothing) {
   constexpr int kSubsteps = 4;
   Lanes m{};
   m.rows = kRows;
@@ -134,9 +134,9 @@ std::vector<double> RunOf(const LaneLoops& loops, bool two, bool soft, bool squa
     other.flow.rd[i] = -900.0;
     other.innovation[i] = other.table[i] = other.velocity[i] = other.friction[i] = spare.data();
   }
-  if (beside == Beside::kNothing) loops.run(m);
-  if (beside == Beside::kAfter) loops.run_both(m, other);
-  if (beside == Beside::kBefore) loops.run_both(other, m);
+  if (neighbour == Neighbour::kNothing) loops.run(m);
+  if (neighbour == Neighbour::kAfter) loops.run_both(m, other);
+  if (neighbour == Neighbour::kBefore) loops.run_both(other, m);
   return out;
 }
 
@@ -147,14 +147,14 @@ TEST(LaneLoops, RunsGiveTheSameBitsWithEveryFusedInstructionSet) {
            {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
         const std::vector<double> baseline = RunOf(kBaselineLoops, two, soft, square, bare);
         EXPECT_TRUE(std::isfinite(Largest(baseline)) && Largest(baseline) > 0.1);
-        for (const Beside beside : {Beside::kAfter, Beside::kBefore})
-          EXPECT_EQ(RunOf(kBaselineLoops, two, soft, square, bare, beside), baseline);
+        for (const Neighbour neighbour : {Neighbour::kAfter, Neighbour::kBefore})
+          EXPECT_EQ(RunOf(kBaselineLoops, two, soft, square, bare, neighbour), baseline);
         if (Fused().empty()) continue;
         const std::vector<double> expected = RunOf(*Fused()[0], two, soft, square, bare);
         ExpectNear(baseline, expected);
         for (const LaneLoops* loops : Fused())
-          for (const Beside beside : {Beside::kNothing, Beside::kAfter, Beside::kBefore})
-            EXPECT_EQ(RunOf(*loops, two, soft, square, bare, beside), expected);
+          for (const Neighbour neighbour : {Neighbour::kNothing, Neighbour::kAfter, Neighbour::kBefore})
+            EXPECT_EQ(RunOf(*loops, two, soft, square, bare, neighbour), expected);
       }
 }
 
@@ -198,7 +198,7 @@ TEST(LaneLoops, WhiteningAndColumnsGiveTheSameBitsWithEveryFusedInstructionSet) 
     loops.columns(c);
     w.groups = kMostGroups;
     loops.whiten(w);
-    // One group alone gives what it gives beside another.
+    // One group alone gives what it gives next to another.
     const std::vector<double> both = out;
     std::fill_n(out.begin() + kLanes * kRows, kLanes * kRows, 0.0);
     w.groups = 1;
