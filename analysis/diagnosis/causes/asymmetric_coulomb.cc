@@ -81,8 +81,8 @@ constexpr CauseDefinition asymmetric_coulomb = {
     .name = kName,
     .words = "dry friction differs between the directions",
     .advice =
-        "Give the model a Coulomb level per direction; look for a preloaded cover or wiper that drags one "
-        "way.",
+        "Give the model a Coulomb level per direction; look for a preloaded cover or wiper that drags in "
+        "one direction.",
     .grid = Grid,
     .wave = nullptr,
     .family = nullptr,
@@ -100,8 +100,8 @@ constexpr CauseDefinition asymmetric_coulomb = {
     .common_factor = false,
     .in_scatter_only = false,
     .coupling = false,
-    .takes_up_another_law = false,
-    .refuted_by_another_law = false,
+    .takes_up_mismatch = false,
+    .refuted_by_mismatch = false,
     .acts_at_reversals = false,
     .judged_at_scale = false,
     .about_timing = false};

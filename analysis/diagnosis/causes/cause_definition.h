@@ -106,13 +106,14 @@ struct CauseDefinition {
   /// Shows in the scatter of the residual and has no mean effect that could be fitted.
   Required<bool> in_scatter_only;
   /// An elastic coupling: added to a rigid model, another number of one with a screw. The stiffest that can
-  /// be detected is stated, and softer is the fault.
+  /// be detected is stated; a fault makes it softer.
   Required<bool> coupling;
-  /// Takes up what friction of another law than the model's leaves.
-  Required<bool> takes_up_another_law;
-  /// Is no cause where friction is of another law.
-  Required<bool> refuted_by_another_law;
-  /// Acts where motion turns round, so that rows in presliding count for it even under another law.
+  /// Takes up what a friction-model mismatch leaves.
+  Required<bool> takes_up_mismatch;
+  /// Is no cause on a friction-model mismatch.
+  Required<bool> refuted_by_mismatch;
+  /// Acts where motion turns round, so that rows in presliding count for it even on a friction-model
+  /// mismatch.
   Required<bool> acts_at_reversals;
   /// Shows on the linear scale alone.
   Required<bool> judged_at_scale;

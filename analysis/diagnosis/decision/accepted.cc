@@ -75,7 +75,7 @@ void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypothes
   accepted.places.push_back(best.fit.point.effects.size() - 1);
   const std::string& kind = best.effect().kind;
   accepted.explained += best.score;
-  if (CauseNamed(kind).takes_up_another_law) accepted.in_presliding = best.score;
+  if (CauseNamed(kind).takes_up_mismatch) accepted.in_presliding = best.score;
   accepted.leakage += LeakageShare(kind) * best.score;
   accepted.leakage_of_kind[kind] += LeakageShareOfItsKind(kind) * best.score;
   accepted.fit = best.fit;

@@ -37,7 +37,7 @@ std::vector<double> TravelSinceReversal(const Signals& s) {
 bool FrictionModelMismatch(const Problem& problem, const Fit& fit) {
   const std::vector<SharedEffect>& effects = fit.point.effects;
   if (std::none_of(effects.begin(), effects.end(),
-                   [](const SharedEffect& e) { return *CauseNamed(e->kind).takes_up_another_law; }))
+                   [](const SharedEffect& e) { return *CauseNamed(e->kind).takes_up_mismatch; }))
     return false;
   for (std::size_t i = 0; i < problem.terms.size(); ++i) {
     const BaseTerm& t = problem.terms[i];

@@ -23,7 +23,7 @@ std::vector<Scored> Screen(const Problem& problem, const Fit& fit, std::span<con
   // friction is not what the law says is no matter of time.
   const bool mismatch = FrictionModelMismatch(problem, fit);
   std::erase_if(effects, [&](const SharedEffect& e) {
-    if (mismatch && CauseNamed(e->kind).refuted_by_another_law) return true;
+    if (mismatch && CauseNamed(e->kind).refuted_by_mismatch) return true;
     return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
       // A wave may have further orders.
       const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kOrdersApart;

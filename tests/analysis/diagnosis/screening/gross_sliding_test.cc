@@ -61,7 +61,7 @@ TEST_F(GrossSlidingTest, AreFarFromReversalsAndFast) {
   EXPECT_LT(count, sliding.size());
 }
 
-TEST_F(GrossSlidingTest, AnotherLawIsAnElementInPreslidingAndABristleThatDoesNotWear) {
+TEST_F(GrossSlidingTest, MismatchIsAnElementInPreslidingAndABristleThatDoesNotWear) {
   EXPECT_TRUE(FrictionModelMismatch(problem_, With({"presliding_hysteresis"}, -6.0)));
   EXPECT_TRUE(FrictionModelMismatch(problem_, With({"presliding_hysteresis", "cable_spring"}, -6.0)));
   EXPECT_FALSE(FrictionModelMismatch(problem_, With({"presliding_hysteresis"}, -0.2)));
