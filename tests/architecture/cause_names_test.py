@@ -59,7 +59,7 @@ class CauseNames(unittest.TestCase):
         self.assertEqual(len(found(analysis__diagnosis__causes__cogging_cc='constexpr std::string_view kName = "coging";\n')), 1)
 
     def test_a_margin_of_no_cause_is_caught(self):
-        offences = found(analysis__diagnosis__tuning__margin_table_inc='{"", 1},\n{"cogging", 1},\n{"gone", 1},\n')
+        offences = found(analysis__diagnosis__tuning__model_error_table_inc='{"", 1},\n{"cogging", 1},\n{"gone", 1},\n')
         self.assertEqual(len(offences), 1, offences)
 
     def test_a_page_without_it_is_caught(self):
