@@ -35,7 +35,7 @@ class CauseNames(unittest.TestCase):
             tools__plant_emulator__effects_config_h='v.Optional("cogging", cogging, "detent torque");\n'), [])
 
     def test_a_literal_elsewhere_is_caught_with_file_and_line(self):
-        offences = found(analysis__diagnosis__decision__gate_cc='int a;\nif (kind == "cogging") return 1.0;\n')
+        offences = found(analysis__diagnosis__decision__score_threshold_cc='int a;\nif (kind == "cogging") return 1.0;\n')
         self.assertEqual(len(offences), 1, offences)
         self.assertIn("analysis/diagnosis/decision/score_threshold.cc:2", offences[0])
 
