@@ -28,8 +28,8 @@ struct AxisModel {
   double lag_for_delay_s = 0.0;  ///< more of the one, less of the other
   double torque_gain = 1.0;      ///< delivered over commanded
   double saturation = 0.0;       ///< share of the delivered u lost per square of u
-  /// A second, softer friction element parallel to the main one: its share of the level; its stiffness over the
-  /// main's at equal level.
+  /// A second, softer friction element parallel to the main one: its share of the level; its stiffness over
+  /// the main's at equal level.
   double soft_share = 0.0, soft_ratio = 0.1;
   double payload = 0.0;         ///< inertia added (to the load, or to everything when rigid)
   std::size_t payload_row = 0;  ///< from this row on

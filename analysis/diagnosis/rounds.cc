@@ -61,8 +61,9 @@ std::vector<std::string> ThoseWithoutDoubt(const std::vector<Hypothesis>& hypoth
 
 /// Those that are promised most; where all of them come to nothing in the fit, the next ones.
 std::vector<Hypothesis> HypothesesThatMayHold(const Problem& problem, const Fit& current,
-                                     const std::vector<Scored>& scored, const ScoreThreshold& threshold,
-                                     std::vector<std::string>& tried) {
+                                              const std::vector<Scored>& scored,
+                                              const ScoreThreshold& threshold,
+                                              std::vector<std::string>& tried) {
   for (;;) {
     std::vector<Hypothesis> hypotheses = FitHypotheses(problem, current, scored, threshold, tried);
     if (hypotheses.empty() || MayHold(problem, hypotheses, threshold)) return hypotheses;
@@ -139,7 +140,8 @@ Next OneRound(int round, Rounds& r) {
   Say(r.options, "candidates", 0.2 + 0.25 * round);
   const Seen seen = Look(r);
   Say(r.options, "candidate hypotheses", 0.3 + 0.25 * round);
-  std::vector<Hypothesis> hypotheses = HypothesesThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.search, r.tried);
+  std::vector<Hypothesis> hypotheses =
+      HypothesesThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.search, r.tried);
   StateDetectable(seen, ThoseWithoutDoubt(hypotheses), r);
   if (hypotheses.empty()) return EndWithJitter(seen, r);
   // Noise as the best candidate leaves it.
@@ -184,7 +186,8 @@ RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const Diag
   if (r.stated_with != r.accepted.places.size()) {
     const std::vector<Scored> scored = Screen(problem, r.accepted.fit, nominal.catalogue);
     const Jitter jitter = TestJitter(problem, r.accepted.fit);
-    const ScoreThreshold threshold = ScoreThresholdOf(problem, r.accepted, scored, nominal.by_extras, options);
+    const ScoreThreshold threshold =
+        ScoreThresholdOf(problem, r.accepted, scored, nominal.by_extras, options);
     KeepDetectable(problem, r.accepted.fit, {scored, jitter, threshold}, {}, out);
   }
   return {std::move(r.accepted), round >= options.most_effects};

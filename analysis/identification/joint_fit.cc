@@ -15,8 +15,8 @@ using Eigen::VectorXd;
 
 constexpr double kFollow_Hz = 60.0;
 
-/// What two methods of stepping the same axis, this simulation and the emulated machine, were found to differ by
-/// in these parameters (docs/commissioning.md): nothing is known better than that. Relative.
+/// What two methods of stepping the same axis, this simulation and the emulated machine, were found to differ
+/// by in these parameters (docs/commissioning.md): nothing is known better than that. Relative.
 double Stepping(const std::string& key) {
   if (key == "screw_stiffness_N_um") return 2e-3;
   if (key == "screw_damping_Ns_m") return 8e-3;

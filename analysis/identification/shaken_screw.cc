@@ -105,8 +105,7 @@ TableAxis Rigid(TableAxis axis) {
 }
 
 /// On from a fit until it foresees no better: the basin is long and bent.
-std::pair<double, TableAxis> FollowBasin(TableAxis axis, const std::vector<Measured>& segments,
-                                          int threads) {
+std::pair<double, TableAxis> FollowBasin(TableAxis axis, const std::vector<Measured>& segments, int threads) {
   FitOptions on = Options(true, false, threads);
   double error = LogError(axis, segments);
   for (int i = 0; i < kLongestDescent; ++i) {

@@ -19,7 +19,7 @@ enum class Extent { kWhole, kExcerpt };
 /// and a sliding bristle in its own length, so runs of a segment that begins in a slide are those of the
 /// whole log after a little while; their rows count from there.
 struct Excerpt {
-  std::vector<Segment> segments;    ///< none: the log is too short to leave anything out
+  std::vector<Segment> segments;     ///< none: the log is too short to leave anything out
   std::vector<std::size_t> row;      ///< of the log, of every row that is kept
   std::vector<std::uint8_t> counts;  ///< whether the segment has settled there
   double per_row = 1.0;              ///< counted rows of the log for every one here

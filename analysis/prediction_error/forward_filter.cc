@@ -149,8 +149,7 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
     const MeansKey key = KeyOf(setup, m);
     if (!in.means.contains(key)) {
       Delivered means = setup.store->Take();
-      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), setup.segments,
-                     means);
+      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), setup.segments, means);
       in.means[key] = std::move(means);
     }
     std::vector<Bundle>& alike = bundles[ShapeOf(m)];

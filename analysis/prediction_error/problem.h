@@ -73,8 +73,8 @@ class Problem {
   /// By how much |r|^2 would be larger without what the stated model has beyond its numbers.
   [[nodiscard]] double ExplainedByExtras(const Point& point) const;
   [[nodiscard]] FilterRun Trace(const Point& point) const;
-  /// White differences of the residual per unit of each effect's amplitude at zero in addition to the point where the
-  /// noise was learnt, effects that are signals and nothing else.
+  /// White differences of the residual per unit of each effect's amplitude at zero in addition to the point
+  /// where the noise was learnt, effects that are signals and nothing else.
   [[nodiscard]] std::vector<std::vector<double>> LinearResponses(const Point& point,
                                                                  std::span<const SharedEffect> effects) const;
   /// Ratio of the noises of torque and reading, the colour that is left, then the level from place to place.

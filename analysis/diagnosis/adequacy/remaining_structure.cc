@@ -64,7 +64,7 @@ std::vector<double> Autocorrelation(const std::vector<double>& response) {
 }  // namespace
 
 RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<double> gradient,
-                  const std::vector<double>& response, const std::vector<double>& weight) {
+                            const std::vector<double>& response, const std::vector<double>& weight) {
   const std::vector<double> all = TakeOut(known, weight, gradient), correlation = Autocorrelation(response);
   const auto count = static_cast<std::size_t>(rows.count), others = static_cast<std::size_t>(known.count);
   std::vector<double> g(count, 0.0), information(count, 0.0), seen(count, 0.0), own(count, 1e-300);
@@ -107,7 +107,8 @@ RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std
   return out;
 }
 
-std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit& fit, double false_alarm_rate) {
+std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit& fit,
+                                              double false_alarm_rate) {
   const auto n = static_cast<std::ptrdiff_t>(problem.rows());
   const std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + n);
   const std::vector<double> weight(problem.root_weight.begin(), problem.root_weight.begin() + n);

@@ -43,11 +43,12 @@ struct RemainingStructure {
 /// `gradient` of |r|^2 / 2 by a torque at each row, `response` of the white residual to a pulse of one,
 /// `weight` per row of that residual. What is constant in each bin of `known` is taken out first.
 RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std::vector<double> gradient,
-                  const std::vector<double>& response, const std::vector<double>& weight);
+                            const std::vector<double>& response, const std::vector<double>& weight);
 
 /// Of the residual of a fit, for every quantity, the one that is furthest beyond what is asked of it first.
-/// To first order and of slides only; base and effects are not fitted again in addition to the bins, which makes the
-/// drop a little less than it could be.
-std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit& fit, double false_alarm_rate);
+/// To first order and of slides only; base and effects are not fitted again in addition to the bins, which
+/// makes the drop a little less than it could be.
+std::vector<RemainingStructure> FindStructure(const Problem& problem, const Fit& fit,
+                                              double false_alarm_rate);
 
 }  // namespace contour::diagnosis

@@ -62,7 +62,9 @@ class Maps {
     BothDirections(
         "the travel since the last reversal", Quantity::kTravelSinceReversal, kTravelBins,
         [&](std::size_t k) { return log_travel.Bin(std::log(travel[k] + kShortestTravel_m), kTravelBins); },
-        [log_travel](int b) { return Text(1e3 * std::exp(log_travel.Middle(b, kTravelBins)), "mm after a reversal"); });
+        [log_travel](int b) {
+          return Text(1e3 * std::exp(log_travel.Middle(b, kTravelBins)), "mm after a reversal");
+        });
     BothDirections(
         "the angle of the motor", Quantity::kAngle, kAngles,
         [&](std::size_t k) {
@@ -101,7 +103,8 @@ class Maps {
     out_.push_back(std::move(rows));
   }
 
-  void OfTime(const char* over, double each_s, const std::vector<double>& size, std::string_view structure_class) {
+  void OfTime(const char* over, double each_s, const std::vector<double>& size,
+              std::string_view structure_class) {
     const Range time{0.0, static_cast<double>(n_) * p_.log.period_s};
     const int count = std::max(1, static_cast<int>(time.high / each_s));
     BinnedRows rows;

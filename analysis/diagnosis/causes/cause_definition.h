@@ -93,8 +93,8 @@ struct CauseDefinition {
   Required<std::span<const std::string_view>> freed_terms;
   /// Null: no model is extended by it, something is to be mended (backlash, a payload that changes).
   Required<const ExtensionRule*> extension;
-  /// What would tell it from its hypotheses within the stroke and torque of the log, `among_couplings` where a
-  /// coupling is one of them. Null: none.
+  /// What would tell it from its hypotheses within the stroke and torque of the log, `among_couplings` where
+  /// a coupling is one of them. Null: none.
   Required<Experiment (*)(const Problem&, bool among_couplings)> experiment;
   /// The quantity whose unexplained rest that experiment shows more of.
   Required<std::optional<Quantity>> shows_more_of;

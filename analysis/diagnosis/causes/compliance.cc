@@ -21,7 +21,8 @@ constexpr double kDampingReach = 2.0;
 // something else: logarithm of the damping ratio over the usual one, shares of the inertia.
 constexpr double kMostDamped = 1.0, kLeastShare = 0.1, kNothingBehind = 0.01;
 
-/// A resonance far from where it is stated cannot be reached step by step: full-size initial guesses in both directions.
+/// A resonance far from where it is stated cannot be reached step by step: full-size initial guesses in both
+/// directions.
 void GridOfAScrew(std::vector<SharedEffect>& out) {
   for (const double start : {-0.5, 0.4})
     out.push_back(

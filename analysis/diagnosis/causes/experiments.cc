@@ -68,7 +68,8 @@ Experiment GrowingReversals(const Problem& problem, bool) {
 Experiment FullStrokes(const Problem& problem, bool) {
   const Sizes s = SizesOf(problem);
   return {
-      "Full strokes in both directions at two speeds, twice: friction changes its sign with the direction, a spring "
+      "Full strokes in both directions at two speeds, twice: friction changes its sign with the direction, a "
+      "spring "
       "does not, an error of the lead shows on the scale alone.",
       Creep(s, s.middle + ", " + s.fast, 2)};
 }
@@ -76,7 +77,8 @@ Experiment FullStrokes(const Problem& problem, bool) {
 Experiment SameStretchAtThreeSpeeds(const Problem& problem, bool) {
   const Sizes s = SizesOf(problem);
   return {
-      "The same part of the stroke in both directions at a slow, a middle and the highest speed: friction changes its sign with "
+      "The same part of the stroke in both directions at a slow, a middle and the highest speed: friction "
+      "changes its sign with "
       "the direction, cogging keeps it, an error of the encoder grows with the square of the speed, a force "
       "from outside keeps its frequency.",
       Creep(s, ThreeSpeeds(s), 2)};
@@ -133,8 +135,9 @@ Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
                               const std::vector<std::string>& hypotheses) {
   const CauseDefinition& cause = CauseNamed(kind);
   if (cause.experiment == nullptr) return {};
-  const bool among_couplings = std::any_of(
-      hypotheses.begin(), hypotheses.end(), [](const std::string& hypothesis) { return *CauseNamed(hypothesis).coupling; });
+  const bool among_couplings =
+      std::any_of(hypotheses.begin(), hypotheses.end(),
+                  [](const std::string& hypothesis) { return *CauseNamed(hypothesis).coupling; });
   return (*cause.experiment)(problem, among_couplings);
 }
 

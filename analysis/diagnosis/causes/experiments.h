@@ -22,7 +22,8 @@ Experiment ChirpWhileCreeping(const Problem& problem, bool among_couplings);
 Experiment OtherAxisMoves(const Problem& problem, bool among_couplings);
 Experiment SeveralConstantSpeeds(const Problem& problem, bool among_couplings);
 
-/// What would tell a cause from other candidate hypotheses, or show it better, within the stroke and torque of the log.
+/// What would tell a cause from other candidate hypotheses, or show it better, within the stroke and torque
+/// of the log.
 Experiment DecidingExperiment(const Problem& problem, std::string_view kind,
                               const std::vector<std::string>& hypotheses);
 

@@ -34,8 +34,8 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
                                }),
                   power));
   // Drag that yields beyond a knee; what grows faster than the speed bends with a power, and so does what
-  // the log cannot tell from it: a knee must show for itself, since its torque is reported with another linear
-  // term.
+  // the log cannot tell from it: a knee must show for itself, since its torque is reported with another
+  // linear term.
   for (const double knee : {0.1, 0.3}) {
     auto shape = std::make_shared<Effect>(
         *ShapedEffect(p, {kind, "knee " + std::to_string(knee), kKneeShows}, drag, step, {-1.0, 1.0},

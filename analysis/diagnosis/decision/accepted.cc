@@ -26,8 +26,8 @@ constexpr double kAlike = 0.03, kAlikeOnMismatch = 0.1;
 constexpr double kLeakageOnMismatch = 0.05;
 
 /// What the hypotheses scored, and which of them cannot be told from the first.
-void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
-                const Accepted& accepted, Cause& cause, Diagnosis& out) {
+void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
+                    const ScoreThreshold& threshold, const Accepted& accepted, Cause& cause, Diagnosis& out) {
   const Hypothesis& best = hypotheses[0];
   const double alike = FrictionModelMismatch(problem, accepted.fit) ? kAlikeOnMismatch : kAlike;
   for (const Hypothesis& r : hypotheses) {
@@ -38,27 +38,30 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
         c.accepted = &r == &best;
       }
     // What would not have been accepted alone explains too little to be the cause.
-    if (&r != &best && !r.refused && !r.given_up && !Outside(kind) && r.score > Asked(problem, r, threshold) &&
-        r.score > best.score - std::max(12.0, alike * best.score) && !ExplainsSomethingElse(problem, best.fit, r) &&
-        !ExplainsSomethingElse(problem, r.fit, best))
+    if (&r != &best && !r.refused && !r.given_up && !Outside(kind) &&
+        r.score > Asked(problem, r, threshold) && r.score > best.score - std::max(12.0, alike * best.score) &&
+        !ExplainsSomethingElse(problem, best.fit, r) && !ExplainsSomethingElse(problem, r.fit, best))
       cause.indistinguishable_from.push_back(kind);
   }
 }
 
 }  // namespace
 
-ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
-            double by_extras, const DiagnoseOptions& options) {
-  ScoreThreshold threshold = SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
+ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted,
+                                std::span<const Scored> scored, double by_extras,
+                                const DiagnoseOptions& options) {
+  ScoreThreshold threshold =
+      SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
   threshold.accepted = static_cast<int>(accepted.places.size());
-  threshold.leakage = accepted.leakage +
-              (FrictionModelMismatch(problem, accepted.fit) ? kLeakageOnMismatch * accepted.in_presliding : 0.0);
+  threshold.leakage =
+      accepted.leakage +
+      (FrictionModelMismatch(problem, accepted.fit) ? kLeakageOnMismatch * accepted.in_presliding : 0.0);
   threshold.leakage_of_kind = accepted.leakage_of_kind;
   return threshold;
 }
 
-void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
-                 Accepted& accepted, Diagnosis& out) {
+void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
+                 const ScoreThreshold& threshold, Accepted& accepted, Diagnosis& out) {
   const Hypothesis& best = hypotheses[0];
   Cause cause;
   cause.kind = best.effect().kind;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnosis/decision/score_threshold.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/score_threshold.h"
 #include "analysis/diagnosis/result/diagnose_options.h"
 #include "analysis/diagnosis/result/finding.h"
 
@@ -19,17 +19,18 @@ struct Accepted {
   std::vector<double> scatter;      ///< of their residuals from block to block, over white noise's
   double explained = 0.0;           ///< drop by what is accepted
   double in_presliding = 0.0;       ///< by an element in presliding
-  double leakage = 0.0;                ///< what of their scores may look like other causes
+  double leakage = 0.0;             ///< what of their scores may look like other causes
   std::map<std::string, double> leakage_of_kind;
 };
 
 /// What a score must exceed in addition to what is accepted.
-ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted, std::span<const Scored> scored,
-            double by_extras, const DiagnoseOptions& options);
+ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted,
+                                std::span<const Scored> scored, double by_extras,
+                                const DiagnoseOptions& options);
 
-/// Takes the first of the hypotheses into the model and says so in `out`: its cause, what cannot be told from it,
-/// the experiment that would decide.
-void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
-                 Accepted& accepted, Diagnosis& out);
+/// Takes the first of the hypotheses into the model and says so in `out`: its cause, what cannot be told from
+/// it, the experiment that would decide.
+void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
+                 const ScoreThreshold& threshold, Accepted& accepted, Diagnosis& out);
 
 }  // namespace contour::diagnosis

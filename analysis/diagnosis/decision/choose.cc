@@ -16,7 +16,8 @@ constexpr double kConsistent = 1.2;
 constexpr double kStillThere = 0.6;
 constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
-bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested, const ScoreThreshold& threshold) {
+bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested,
+           const ScoreThreshold& threshold) {
   // From outside the catalogue only what is beyond doubt.
   const double least = Asked(problem, r, threshold);
   if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
@@ -35,8 +36,8 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
   return tested > kNoChance && Consistency(problem, current, r.fit, false) > kNotOneEvent;
 }
 
-/// The hypothesis itself, or a number of the base behind it that the log says more about, where that is not for
-/// the same reason: a score is worth what its scatter from block to block leaves of it.
+/// The hypothesis itself, or a number of the base behind it that the log says more about, where that is not
+/// for the same reason: a score is worth what its scatter from block to block leaves of it.
 std::size_t SurerNumber(const Problem& problem, const Fit& current, const std::vector<Hypothesis>& hypotheses,
                         std::size_t holds, const ScoreThreshold& threshold, double& tested) {
   std::size_t surest = holds;
@@ -66,11 +67,13 @@ bool ExplainsSomethingElse(const Problem& problem, const Fit& other, const Hypot
   return ScoreEffects(problem, other, {effect})[0].drop > kStillThere * (r.score + Penalty(*effect));
 }
 
-Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThreshold& threshold, std::vector<Hypothesis>& hypotheses) {
+Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThreshold& threshold,
+                   std::vector<Hypothesis>& hypotheses) {
   Choice choice;
   for (std::size_t i = 0; i < hypotheses.size() && !choice.found; ++i) {
     if (hypotheses[i].given_up) continue;
-    if (i > 0 && hypotheses[i].score < 0.3 * hypotheses[0].score && !InBase(problem, hypotheses[i].effect().kind))
+    if (i > 0 && hypotheses[i].score < 0.3 * hypotheses[0].score &&
+        !InBase(problem, hypotheses[i].effect().kind))
       continue;
     const double score = TestedScore(problem, current, hypotheses[i]);
     if (i == 0) choice.tested = score;

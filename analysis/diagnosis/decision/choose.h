@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "analysis/diagnosis/decision/score_threshold.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/score_threshold.h"
 
 namespace contour::diagnosis {
 
@@ -19,8 +19,9 @@ struct Choice {
   double tested = 0.0;  ///< its tested score; of the best where none holds
 };
 
-/// The best of the hypotheses, or the next that holds where the best does not, goes to their front. Those that do
-/// not hold are marked as refused.
-Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThreshold& threshold, std::vector<Hypothesis>& hypotheses);
+/// The best of the hypotheses, or the next that holds where the best does not, goes to their front. Those
+/// that do not hold are marked as refused.
+Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThreshold& threshold,
+                   std::vector<Hypothesis>& hypotheses);
 
 }  // namespace contour::diagnosis

@@ -18,7 +18,8 @@ constexpr double kRefused = -1e6;
 }  // namespace
 
 void TellEvidence(const Problem& problem, const Accepted& accepted, const std::vector<Scored>& scored,
-                  const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold, const DiagnoseOptions& options) {
+                  const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
+                  const DiagnoseOptions& options) {
   if (!options.evidence) return;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> told;
@@ -53,8 +54,9 @@ void TellStructure(const Accepted& accepted, const std::vector<RemainingStructur
                    const DiagnoseOptions& options) {
   if (!options.evidence) return;
   for (const std::string_view structure_class : kStructureClasses) {
-    const auto best =
-        std::find_if(left.begin(), left.end(), [&](const RemainingStructure& l) { return l.structure_class == structure_class; });
+    const auto best = std::find_if(left.begin(), left.end(), [&](const RemainingStructure& l) {
+      return l.structure_class == structure_class;
+    });
     if (best == left.end()) continue;
     Evidence e;
     e.accepted = static_cast<int>(accepted.places.size());

@@ -11,7 +11,8 @@ namespace contour::diagnosis {
 
 /// Of every kind, what it scored in one round.
 void TellEvidence(const Problem& problem, const Accepted& accepted, const std::vector<Scored>& scored,
-                  const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold, const DiagnoseOptions& options);
+                  const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold,
+                  const DiagnoseOptions& options);
 
 /// Of what is left at the end, the best of each class.
 void TellStructure(const Accepted& accepted, const std::vector<RemainingStructure>& left,

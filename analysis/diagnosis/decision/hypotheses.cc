@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/screening/full_size.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/prediction_error/common_factor.h"
 #include "analysis/prediction_error/refit.h"
 
@@ -23,7 +23,8 @@ constexpr std::size_t kMostKinds = 4, kMostTried = 6;
 constexpr double kFewOfMost = 0.1;
 constexpr int kMostTurns = 3;
 constexpr std::size_t kMostKept = 6;
-// Of the best score: hypotheses below are given up at first, and what is no more than this is no reason to go on.
+// Of the best score: hypotheses below are given up at first, and what is no more than this is no reason to go
+// on.
 constexpr double kGivenUp = 0.02, kAllTheSame = 1e-3;
 constexpr double kMayMatter = 0.3;    // the least share of the best one's score that is tested at all
 constexpr double kMayWin = 0.4;       // the same before the last steps
@@ -38,8 +39,9 @@ void Sort(std::vector<Hypothesis>& hypotheses) {
     const bool x = Outside(a.effect().kind), y = Outside(b.effect().kind);
     return x != y ? y : a.score > b.score;
   });
-  const auto outside = std::find_if(hypotheses.begin(), hypotheses.end(),
-                                    [](const Hypothesis& r) { return !r.given_up && Outside(r.effect().kind); });
+  const auto outside = std::find_if(hypotheses.begin(), hypotheses.end(), [](const Hypothesis& r) {
+    return !r.given_up && Outside(r.effect().kind);
+  });
   if (outside == hypotheses.end() || outside == hypotheses.begin()) return;
   if (outside->score > 1.3 * std::max(0.0, hypotheses[0].score) + 25.0)
     std::rotate(hypotheses.begin(), outside, outside + 1);
@@ -70,8 +72,8 @@ void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
   r.score = out ? kNoScore : DropOf(problem, current, r.fit) - Penalty(r.effect());
 }
 
-// In addition to a large cause the score test falls short by as much: the noise that it was made under has the other
-// one in it.
+// In addition to a large cause the score test falls short by as much: the noise that it was made under has
+// the other one in it.
 constexpr double kShortByLeakage = 0.1;
 
 bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold) {
@@ -79,7 +81,8 @@ bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold
   for (auto& [kind, left] : threshold.leakage_of_kind) left *= kShortByLeakage;
   ScoreScale score_scale = ScoreScaleOf(problem, s);
   score_scale.overdispersion = std::min(s.overdispersion, kMostOverdispersion);
-  return s.drop / score_scale.overdispersion - Penalty(*s.effect) > Threshold(problem, threshold, *s.effect, score_scale);
+  return s.drop / score_scale.overdispersion - Penalty(*s.effect) >
+         Threshold(problem, threshold, *s.effect, score_scale);
 }
 
 /// From the linear estimate.
@@ -129,7 +132,7 @@ void OneOfEach(std::vector<Hypothesis>& hypotheses) {
 /// Far from linear: the kind's whole grid at full size shows where to begin. A coupling that every screw has
 /// begins next to the best, which may be a softer one that stands for it.
 std::vector<InitialGuess> Far(const Problem& problem, const Fit& current, const std::string& kind,
-                           const std::vector<Scored>& scored) {
+                              const std::vector<Scored>& scored) {
   GridPoint best, stiff;
   const bool coupling = CauseNamed(kind).coupling && !problem.nominal.two_inertia;
   for (GridPoint& p : FullSize(problem, current, kind, scored)) {
@@ -165,8 +168,8 @@ bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, con
 
 namespace {
 
-/// Where fits of the best candidates begin that have not been tried; none where nothing beyond the threshold is
-/// promised. `most`: the drop that the best of them is promised.
+/// Where fits of the best candidates begin that have not been tried; none where nothing beyond the threshold
+/// is promised. `most`: the drop that the best of them is promised.
 std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current,
                                       const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                                       std::vector<std::string>& tried, double& most) {
@@ -208,8 +211,8 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
   return guesses;
 }
 
-/// Whether the score test promises enough to be tested in addition to the best; it says nothing about what is far
-/// from linear.
+/// Whether the score test promises enough to be tested in addition to the best; it says nothing about what is
+/// far from linear.
 bool MayMatter(const std::vector<Scored>& scored, const Hypothesis& r, double best) {
   if (!r.effect().start.empty()) return true;
   return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
@@ -258,8 +261,9 @@ void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
 
 }  // namespace
 
-std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
-                             const ScoreThreshold& threshold, std::vector<std::string>& tried) {
+std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current,
+                                      const std::vector<Scored>& scored, const ScoreThreshold& threshold,
+                                      std::vector<std::string>& tried) {
   std::vector<Hypothesis> out;
   double best = kNoScore;
   for (int turn = 0; turn < kMostTurns; ++turn) {
@@ -280,7 +284,8 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
   return out;
 }
 
-bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold) {
+bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
+             const ScoreThreshold& threshold) {
   return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& r) {
     if (r.given_up) return false;
     const ScoreScale score_scale = threshold.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
@@ -346,7 +351,8 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   GiveUpFarBehind(problem, kMayMatter, hypotheses);
   for (Hypothesis& r : hypotheses)
     if (!r.given_up) RewhitenSensitivities(problem, r.fit);
-  // A basin may end in two places: the base goes on from where the best hypothesis's lies, where that is lower.
+  // A basin may end in two places: the base goes on from where the best hypothesis's lies, where that is
+  // lower.
   Point other = hypotheses[0].fit.point;
   other.effects.pop_back();
   other.amplitudes.pop_back();
@@ -365,14 +371,14 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
     if (i > 0 && r.score < kMayWin * best - kSmallStill) continue;
     again.push_back(i);
     guesses.push_back({r.fit.point,
-                          {.most_steps = i == 0 ? 10 : 5,
-                           .most_refreshes = i == 0 ? 4 : 1,
-                           .close_enough = i == 0 ? 0.1 : 0.3,
-                           .covariance = i == 0,
-                           .share_enough = i == 0 ? 0.02 * kAllTheSame : kAllTheSame,
-                           .from = current.cost},
-                          nullptr,
-                          &hypotheses[i].fit});
+                       {.most_steps = i == 0 ? 10 : 5,
+                        .most_refreshes = i == 0 ? 4 : 1,
+                        .close_enough = i == 0 ? 0.1 : 0.3,
+                        .covariance = i == 0,
+                        .share_enough = i == 0 ? 0.02 * kAllTheSame : kAllTheSame,
+                        .from = current.cost},
+                       nullptr,
+                       &hypotheses[i].fit});
   }
   std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
   current = std::move(fits[0]);

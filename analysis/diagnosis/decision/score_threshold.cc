@@ -22,7 +22,8 @@ constexpr double kBeyondStated = 2e-3;
 
 }  // namespace
 
-ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more) {
+ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed,
+                         double more) {
   constexpr int kDraws = 1500;
   constexpr int kScans = 6;
   std::mt19937_64 random(seed * 2654435761U + 99);
@@ -103,9 +104,10 @@ ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit) {
   }
   const auto n = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
   // The base's term goes on having its prior; what is free scatters by as much more.
-  score_scale.variance_ratio = CauseNamed(kind).common_factor
-                      ? 1.0
-                      : std::max(0.0, VarianceRatio(problem, kind, fit.covariance.bottomRightCorner(n, n)) - 1.0);
+  score_scale.variance_ratio =
+      CauseNamed(kind).common_factor
+          ? 1.0
+          : std::max(0.0, VarianceRatio(problem, kind, fit.covariance.bottomRightCorner(n, n)) - 1.0);
   return score_scale;
 }
 
@@ -113,9 +115,11 @@ double Threshold(const Problem& problem, const ScoreThreshold& threshold) {
   return Threshold(problem, threshold, "") + threshold.leakage;
 }
 
-double Threshold(const Problem& problem, const ScoreThreshold& threshold, const Effect& effect, const ScoreScale& score_scale) {
+double Threshold(const Problem& problem, const ScoreThreshold& threshold, const Effect& effect,
+                 const ScoreScale& score_scale) {
   double left = threshold.LeakageAs(effect.kind);
-  if (!InBase(problem, effect.kind)) return Threshold(problem, threshold, effect.kind) + left / score_scale.overdispersion;
+  if (!InBase(problem, effect.kind))
+    return Threshold(problem, threshold, effect.kind) + left / score_scale.overdispersion;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
   const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * threshold.rate, kBeyondStated));

@@ -16,7 +16,7 @@ struct ScoreThreshold {
   double calibrated = 0.0;  ///< the same at the rate of the calibration
   double rate = 0.05;       ///< of false alarms
   int accepted = 0;         ///< causes that are accepted already
-  double leakage = 0.0;        ///< what of their scores may look like other causes
+  double leakage = 0.0;     ///< what of their scores may look like other causes
   /// The same, as another cause of a kind that is among them: harmonics, neighbouring orders.
   std::map<std::string, double> leakage_of_kind = {};
 
@@ -25,8 +25,8 @@ struct ScoreThreshold {
   [[nodiscard]] double LeakageAs(const std::string& kind) const;
 };
 
-/// By chance alone, but for numbers of the base: no model-error allowance, and nothing left of accepted causes. What the
-/// allowances are read off is measured against it.
+/// By chance alone, but for numbers of the base: no model-error allowance, and nothing left of accepted
+/// causes. What the allowances are read off is measured against it.
 ScoreThreshold ByChanceAlone(ScoreThreshold threshold);
 
 /// How residual leakage shows in a kind's score.
@@ -44,9 +44,11 @@ ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit);
 /// The score that the best of all candidates exceeds by chance with a given probability: residual blocks
 /// with random signs against the fixed columns, waves found by a scan as the largest of their grid; beyond
 /// the 2 % quantile along a Gumbel fit. `more` is added to it.
-ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed, double more);
+ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed,
+                         double more);
 
-double Threshold(const Problem& problem, const ScoreThreshold& threshold, const Effect& effect, const ScoreScale& score_scale);
+double Threshold(const Problem& problem, const ScoreThreshold& threshold, const Effect& effect,
+                 const ScoreScale& score_scale);
 /// The same of a kind without a number in the base.
 double Threshold(const Problem& problem, const ScoreThreshold& threshold);
 

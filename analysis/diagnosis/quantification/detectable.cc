@@ -15,8 +15,8 @@
 namespace contour::diagnosis {
 namespace {
 
-// A cause must also hold in several blocks, in unseen halves and against other hypotheses, and the rest of the fit
-// takes a part of it over: by recorded machines (docs/diagnosis_results.md).
+// A cause must also hold in several blocks, in unseen halves and against other hypotheses, and the rest of
+// the fit takes a part of it over: by recorded machines (docs/diagnosis_results.md).
 constexpr double kBeyondTheThreshold = 1.6;
 // The same where the size comes from runs at that size.
 constexpr double kBeyondRuns = 1.5;
@@ -57,13 +57,13 @@ double LinearSize(const Problem& problem, const ScoreThreshold& threshold, const
 struct Detectable {
   SharedEffect effect;
   double threshold = 0.0;  ///< exceeds the threshold
-  double size = 0.0;  ///< passes everything
+  double size = 0.0;       ///< passes everything
 };
 
 /// Of a shape that is not known (an exponent, an instant, a ratio) the one in the middle; of several lengths
 /// of one shape the best, as the score test has it.
-std::optional<Detectable> Middle(const Problem& problem, const ScoreThreshold& threshold, std::span<const Scored> scored,
-                                 const std::string& kind) {
+std::optional<Detectable> Middle(const Problem& problem, const ScoreThreshold& threshold,
+                                 std::span<const Scored> scored, const std::string& kind) {
   std::vector<std::pair<double, const Scored*>> shapes;
   for (const Scored& s : scored) {
     if (s.effect->kind != kind) continue;
@@ -164,7 +164,8 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   const Eigen::VectorXd promised = LeftOf(problem, base, points).diagonal();
   const Scored* best = nullptr;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double enough = std::pow(kBeyondRuns * Needed(problem, threshold, *places[i]), 2) * ByChance(*places[i]);
+    const double enough =
+        std::pow(kBeyondRuns * Needed(problem, threshold, *places[i]), 2) * ByChance(*places[i]);
     if (promised(static_cast<Eigen::Index>(i)) > enough &&
         (best == nullptr || places[i]->effect->order > best->effect->order))
       best = places[i];

@@ -20,10 +20,10 @@ struct Screened {
 };
 
 /// Of each kind that the log would show: its main parameter, and the smallest that is found in 90 % of cases.
-/// What exceeds the threshold by the candidates' standard errors, by the stated uncertainties where these decide,
-/// or by runs where a kind is far from linear, times what it takes to pass the other tests as well. A kind
-/// for which the threshold alone asks for more than such an axis can have, or whose signal the log lacks, is
-/// missing. `only`: of these kinds; empty: of all.
+/// What exceeds the threshold by the candidates' standard errors, by the stated uncertainties where these
+/// decide, or by runs where a kind is far from linear, times what it takes to pass the other tests as well. A
+/// kind for which the threshold alone asks for more than such an axis can have, or whose signal the log
+/// lacks, is missing. `only`: of these kinds; empty: of all.
 std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Problem& problem,
                                                                         const Fit& base,
                                                                         const Screened& screened,

@@ -70,7 +70,7 @@ struct Diagnosis {
   std::vector<std::string> not_excited;
   std::map<std::string, std::map<std::string, double>> smallest_detectable;
   double false_alarm_rate = 0.05;
-  double threshold = 0.0;       ///< score that the calibrated threshold asked for
+  double threshold = 0.0;  ///< score that the calibrated threshold asked for
   int bootstrap_runs = 0;  ///< that the intervals come from; 0: from the fit's covariance
   DataQuality data_quality;
   std::vector<Candidate> candidates;

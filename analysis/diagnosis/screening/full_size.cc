@@ -20,7 +20,7 @@ constexpr double kRanks = 100.0;
 constexpr std::size_t kShortlist = kLanes;
 
 std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, const std::string& kind,
-                            const std::vector<Scored>& scored) {
+                                const std::vector<Scored>& scored) {
   std::vector<Point> points;
   const auto add = [&](const SharedEffect& e, double first) {
     std::vector<double> a = e->start;
@@ -47,7 +47,7 @@ std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, cons
 
 /// Those with a cost that is a number.
 std::vector<GridPoint> Costs(const Problem& problem, const Fit& around, std::vector<Point> points,
-                         Extent extent) {
+                             Extent extent) {
   std::vector<GridPoint> out;
   for (std::size_t first = 0; first < points.size(); first += kLanes) {
     const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
@@ -110,7 +110,7 @@ std::vector<Point> Shortlist(const Problem& problem, const Fit& current, std::ve
 }  // namespace
 
 std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
-                            const std::vector<Scored>& scored) {
+                                const std::vector<Scored>& scored) {
   std::vector<Point> points = GridPointsOf(problem, current, kind, scored);
   const bool strong = std::any_of(scored.begin(), scored.end(),
                                   [&](const Scored& s) { return s.effect->kind == kind && s.drop > kRanks; });

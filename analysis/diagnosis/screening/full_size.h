@@ -21,6 +21,6 @@ struct GridPoint {
 /// All grid points of a kind, in several sizes, at which the cost would be lower than the fit's.
 /// Where the score test promises much, an excerpt of the log says first which of them are worth the whole.
 std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
-                            const std::vector<Scored>& scored);
+                                const std::vector<Scored>& scored);
 
 }  // namespace contour::diagnosis

@@ -6,7 +6,8 @@
 
 namespace contour::diagnosis {
 
-/// The stated model as the log has it: its numbers fitted, the noise learnt, and what may be tried in addition to it.
+/// The stated model as the log has it: its numbers fitted, the noise learnt, and what may be tried in
+/// addition to it.
 struct Nominal {
   Fit fit;
   std::vector<SharedEffect> catalogue;

@@ -8,8 +8,8 @@ namespace contour::diagnosis {
 /// The rate at which model-error allowances were read off clean logs.
 inline constexpr double kCalibratedRate = 0.05;
 
-/// In addition to the kinds of cause: that something is left which none of them fits. Over the time the model's own
-/// errors show, motion by motion, and nowhere else; each has an allowance of its own.
+/// In addition to the kinds of cause: that something is left which none of them fits. Over the time the
+/// model's own errors show, motion by motion, and nowhere else; each has an allowance of its own.
 inline constexpr std::string_view kUnexplainedAll = "unexplained";
 inline constexpr std::string_view kUnexplainedTorque = "unexplained:torque of time";
 inline constexpr std::string_view kUnexplainedFriction = "unexplained:friction of time";
@@ -27,8 +27,8 @@ struct ErrorScore {
   double leakage = 0.0, leakage_of_its_kind = 0.0;
 };
 
-/// What the model's own errors may add to a score above the threshold of kCalibratedRate before all kinds together
-/// alarm more often than asked; per row. They look like effects, the more the longer the log.
+/// What the model's own errors may add to a score above the threshold of kCalibratedRate before all kinds
+/// together alarm more often than asked; per row. They look like effects, the more the longer the log.
 double AllowancePerRow(std::string_view kind, double false_alarm_rate);
 
 double LeakageShare(std::string_view kind);

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 // Eight runs of the same model side by side: the runs differ in parameters only, so one instruction stream
-// serves all of them and their latencies hide each other. Each lane's result is the same whatever runs next to
-// it.
+// serves all of them and their latencies hide each other. Each lane's result is the same whatever runs next
+// to it.
 namespace contour::diagnosis {
 
 inline constexpr int kLanes = 8;

@@ -54,7 +54,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& which) { return which.param.effect.kind; });
 
 TEST(Diagnose, FindsNothingOnACleanAxis) {
-  // At 0.1 % nominal, a sound threshold fails this with a chance of a few in a thousand, and the seed is fixed.
+  // At 0.1 % nominal, a sound threshold fails this with a chance of a few in a thousand, and the seed is
+  // fixed.
   const test::HiddenAxis axis = test::MakeHiddenAxis(Hidden(102, {}));
   DiagnoseOptions options;
   options.false_alarm_rate = 0.001;

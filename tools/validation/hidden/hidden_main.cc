@@ -59,7 +59,8 @@ void PrintJudged(const Outcome& o) {
   const bool pair = o.known.question.type == Question::Type::kPair;
   std::printf(" %s %s", (pair ? o.judged.both : o.judged.right) ? "right" : "WRONG", o.judged.answer.c_str());
   if (o.judged.itself) std::printf("  gain %.3f %s", o.judged.gain, o.judged.inside ? "inside" : "OUTSIDE ");
-  std::printf("%s  gate %.1f  %.2f s for %.0f s\n", o.judged.outside.c_str(), o.threshold, o.diagnose_s, o.log_s);
+  std::printf("%s  gate %.1f  %.2f s for %.0f s\n", o.judged.outside.c_str(), o.threshold, o.diagnose_s,
+              o.log_s);
   std::fflush(stdout);
 }
 
@@ -73,10 +74,10 @@ Diagnoser Ours(const Options& o, const std::string& name) {
     std::string table;
     if (!o.evidence.empty())
       options.evidence = [&](const diagnosis::Evidence& e) {
-        table +=
-            FormatText("%s,%zu,%g,%d,%.3f,%d,%s,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(),
-                       log.size(), rate, e.accepted, e.explained, e.in_base ? 1 : 0, e.kind.c_str(),
-                       e.screened, e.penalty, e.overdispersion, e.refitted, e.tested, e.unseen, e.flips, e.asked);
+        table += FormatText("%s,%zu,%g,%d,%.3f,%d,%s,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f\n", name.c_str(),
+                            log.size(), rate, e.accepted, e.explained, e.in_base ? 1 : 0, e.kind.c_str(),
+                            e.screened, e.penalty, e.overdispersion, e.refitted, e.tested, e.unseen, e.flips,
+                            e.asked);
       };
     const diagnosis::Diagnosis answer = diagnosis::Diagnose(log, stated, options);
     if (!table.empty()) std::ofstream(o.evidence, std::ios::app) << table;

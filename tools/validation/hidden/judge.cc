@@ -89,7 +89,7 @@ bool NamesMisfit(const Cause& cause, const std::vector<Hidden>& hidden, Misfit m
     case Misfit::kDelayAndLag:
       return CauseNamed(cause.kind).about_timing;
     case Misfit::kMaxwellSlip:
-      return CauseNamed(cause.kind).takes_up_another_law;
+      return CauseNamed(cause.kind).takes_up_mismatch;
     case Misfit::kNone:
     case Misfit::kNoiseLevel:
       break;

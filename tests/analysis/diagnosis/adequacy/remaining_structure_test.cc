@@ -77,7 +77,8 @@ TEST(RemainingStructure, OfWhiteNoiseIsAsProbableAsItSays) {
   int beyond = 0;
   double bins = 0.0, drop = 0.0;
   for (unsigned seed = 1; seed <= kDraws; ++seed) {
-    const RemainingStructure one = TestBins(Places(), Nothing(), GradientOf(White(seed), kPulse), kPulse, kEqual);
+    const RemainingStructure one =
+        TestBins(Places(), Nothing(), GradientOf(White(seed), kPulse), kPulse, kEqual);
     beyond += one.score > -2.0 * std::log(0.05);
     drop += one.drop;
     bins += one.bins;
