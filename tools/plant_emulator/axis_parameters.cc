@@ -11,6 +11,7 @@ namespace contour::plant {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr double kMostSwinging = 0.9;
 
 [[noreturn]] void Refuse(const std::string& axis, const std::string& what) {
   throw std::invalid_argument("emulator.axes." + axis + ": " + what);
@@ -27,6 +28,10 @@ void Check(const EmulatedAxisConfig& c, const std::string& axis) {
   if (f.position_amplitude_rel + f.ripple_amplitude_rel >= 1.0)
     Refuse(axis,
            "position and ripple variation together must stay below 1, or friction would drive the table");
+  double swinging = 0.0;
+  for (const EmulatedSideModeConfig& mode : c.side_modes) swinging += mode.mass_share_rel;
+  if (swinging > kMostSwinging)
+    Refuse(axis, "side_modes: their mass_share_rel together must stay below 0.9; the rest is the table");
   const auto check_table = [&](const std::string& name, const std::vector<double>& position_mm,
                                std::size_t values) {
     if (position_mm.empty() || position_mm.size() != values)
@@ -59,6 +64,14 @@ void SetFriction(AxisParameters& p, const EmulatedFrictionConfig& f, Random& ran
   p.friction.breakaway_max_m = f.breakaway_max_um * 1e-6;
   p.friction.attraction_N_s = f.attraction_N_s;
   p.friction_temperature_rate_1_K = f.temperature_rate_1_K;
+  p.motor_friction_share = f.motor_share_rel;
+}
+
+SideMode MakeSideMode(const EmulatedSideModeConfig& c, double table_mass_kg, Random& random,
+                      double variation) {
+  const double omega = kTwoPi * c.frequency_Hz * (1.0 + random.Uniform(-variation, variation));
+  const double mass_kg = c.mass_share_rel * table_mass_kg;
+  return {mass_kg, mass_kg * omega * omega, 2.0 * c.damping_ratio * mass_kg * omega};
 }
 
 /// Effects that are other values of parameters the axis has anyway.
@@ -129,9 +142,18 @@ AxisParameters MakeAxisParameters(const EmulatedAxisConfig& config, const Emulat
   p.torque_noise_Nm = config.torque_noise_Nm;
   p.torque_noise_change = config.torque_noise_change;
   p.torque_noise_change_s = config.torque_noise_change_s;
+  for (const EmulatedSideModeConfig& mode : config.side_modes)
+    p.side_modes.push_back(MakeSideMode(mode, p.table_mass_kg, random, variation_rel));
+  if (config.counterbalance) {
+    p.counterbalance_mass_kg = config.counterbalance->moving_mass_kg;
+    p.counterbalance_N = config.counterbalance->force_N;
+    p.counterbalance_N_m = config.counterbalance->rate_N_mm * 1e3;
+  }
   p.temperature = config.temperature;
   p.cascade = config.cascade;
   p.effects = config.effects;
+  if (p.cascade.dual_loop_Hz > 0.0 && !(p.scale_counts_per_m > 0.0))
+    Refuse(placement.name, "cascade.dual_loop_Hz needs a linear scale (scale_counts_per_mm)");
   ApplyToParameters(p);
   return p;
 }

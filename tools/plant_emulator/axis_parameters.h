@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "tools/plant_emulator/emulated_machine.h"
 #include "tools/plant_emulator/emulator_config.h"
@@ -16,6 +17,13 @@ struct Wave {
   double phase_rad = 0.0;
 };
 
+/// A mass on a spring on the table.
+struct SideMode {
+  double mass_kg = 0.0;
+  double stiffness_N_m = 0.0;
+  double damping_Ns_m = 0.0;
+};
+
 /// One emulated axis in SI, the seed's variation already in it. Table units unless the name says otherwise.
 struct AxisParameters {
   double radius_m_rad = 0.0;  ///< R
@@ -23,6 +31,10 @@ struct AxisParameters {
   double table_mass_kg = 0.0;
   double stiffness_N_m = 0.0;
   double damping_Ns_m = 0.0;
+  std::vector<SideMode> side_modes;     ///< their masses are part of the table's
+  double counterbalance_mass_kg = 0.0;  ///< beside the table's
+  double counterbalance_N = 0.0;
+  double counterbalance_N_m = 0.0;
   double half_stroke_m = 0.2;
   double start_position_m = 0.0;
   double start_bristle_N = 0.0;
@@ -33,6 +45,7 @@ struct AxisParameters {
   Wave ripple_plus;
   Wave ripple_minus;
   double friction_temperature_rate_1_K = 0.0;
+  double motor_friction_share = 0.0;
 
   double rated_torque_Nm = 0.0;
   double peak_torque_Nm = 0.0;

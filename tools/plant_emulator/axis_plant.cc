@@ -46,39 +46,25 @@ double At(const std::vector<double>& position_mm, const std::vector<double>& val
 }
 double Sign(double x) noexcept { return static_cast<double>((x > 0.0) - (x < 0.0)); }
 
-std::variant<LugreFriction, MaxwellSlipFriction> MakeFriction(const AxisParameters& p, double share) {
-  MaxwellSlipParameters friction = p.friction;
-  FrictionParameters& base = friction.base;
-  for (double* level : {&base.plus.Fs_N, &base.plus.Fc_N, &base.minus.Fs_N, &base.minus.Fc_N})
-    *level *= share;
-  base.sigma0_N_m *= share;
-  if (p.law == EmulatedFrictionLaw::kMaxwellSlip) return MaxwellSlipFriction(friction);
-  return LugreFriction(base);
+double RigidMass_kg(const AxisParameters& p) {
+  double mass_kg = p.table_mass_kg + p.counterbalance_mass_kg;
+  for (const SideMode& mode : p.side_modes) mass_kg -= mode.mass_kg;
+  return mass_kg;
 }
 
 }  // namespace
 
 AxisPlant::AxisPlant(const AxisParameters& parameters)
     : p_(parameters),
-      friction_(MakeFriction(parameters, 1.0 - (parameters.effects.presliding_hysteresis
-                                                    ? parameters.effects.presliding_hysteresis->share_rel
-                                                    : 0.0))),
+      friction_(parameters, 1.0 - parameters.motor_friction_share),
+      side_modes_(parameters.side_modes, parameters.start_position_m),
       motor_mass_kg_(parameters.motor_inertia_kgm2 / (parameters.radius_m_rad * parameters.radius_m_rad)),
-      table_mass_kg_(parameters.table_mass_kg),
+      table_mass_kg_(RigidMass_kg(parameters)),
       motor_m_(parameters.start_position_m),
       table_m_(parameters.start_position_m),
       temperature_degC_(parameters.temperature.start_degC) {
-  if (const auto& e = p_.effects.presliding_hysteresis) {
-    FrictionParameters soft = p_.friction.base;
-    for (double* level : {&soft.plus.Fs_N, &soft.plus.Fc_N, &soft.minus.Fs_N, &soft.minus.Fc_N})
-      *level *= e->share_rel;
-    soft.sigma0_N_m *= e->share_rel * e->stiffness_ratio;
-    soft.sigma1_Ns_m = 0.0;
-    soft.sigma2_Ns_m = 0.0;
-    second_.emplace(soft);
-  }
+  if (p_.motor_friction_share > 0.0) motor_friction_.emplace(p_, p_.motor_friction_share);
   if (p_.effects.outside) outside_.emplace(*p_.effects.outside, p_.radius_m_rad);
-  std::visit([&](auto& friction) { friction.SetElastic_N(p_.start_bristle_N); }, friction_);
   UpdateSlowThings(0.0);
   ChooseStep();
 }
@@ -86,8 +72,11 @@ AxisPlant::AxisPlant(const AxisParameters& parameters)
 void AxisPlant::ChooseStep() noexcept {
   const double screw = p_.stiffness_N_m * (1.0 / motor_mass_kg_ + 1.0 / table_mass_kg_);
   // Right after a reversal the bristle is twice as stiff (erratum to 2.3).
-  const double presliding = 2.0 * p_.friction.base.sigma0_N_m / table_mass_kg_;
-  max_step_s_ = std::min(kLongestStep_s, kPhasePerStep / std::sqrt(screw + presliding));
+  double presliding = 2.0 * p_.friction.base.sigma0_N_m / table_mass_kg_;
+  if (motor_friction_) presliding += 2.0 * p_.friction.base.sigma0_N_m / motor_mass_kg_;
+  double side = 0.0;
+  for (const SideMode& m : p_.side_modes) side += m.stiffness_N_m * (1.0 / m.mass_kg + 1.0 / table_mass_kg_);
+  max_step_s_ = std::min(kLongestStep_s, kPhasePerStep / std::sqrt(screw + presliding + side));
 }
 
 AxisPlant::Contact AxisPlant::ScrewContact(double expected_windup_m) const noexcept {
@@ -142,8 +131,12 @@ double AxisPlant::MotorForce_N(double torque_Nm) const noexcept {
   return torque / p_.radius_m_rad;
 }
 
+double AxisPlant::CounterbalanceForce_N() const noexcept {
+  return p_.counterbalance_N - p_.counterbalance_N_m * table_m_;
+}
+
 double AxisPlant::TableForce_N() const noexcept {
-  double force = coupling_N_;
+  double force = coupling_N_ + CounterbalanceForce_N();
   if (outside_) force += outside_->Force_N(table_m_s_);
   if (const auto& e = p_.effects.cable_spring) {
     const double x = table_m_ / p_.half_stroke_m;
@@ -194,34 +187,32 @@ void AxisPlant::Step(double step_s, double torque_Nm) noexcept {
   // The friction's direction and decay, and the screw's contact, come from the expected velocity. When the
   // solution turns out to move the other way, once more with that.
   for (int pass = 0; pass < 2; ++pass) {
-    const FrictionLine main =
-        std::visit([&](auto& friction) { return friction.Line(expected_table, step_s, scale); }, friction_);
-    FrictionLine line = main;
-    if (second_) {
-      const FrictionLine soft = second_->Line(expected_table, step_s, scale);
-      line.constant_N += soft.constant_N;
-      line.slope_Ns_m += soft.slope_Ns_m;
-    }
+    FrictionLine line = friction_.Line(expected_table, step_s, scale);
     line.constant_N += ExtraFriction_N(expected_table);
+    const FrictionLine before_screw =
+        motor_friction_ ? motor_friction_->Line(expected_motor, step_s, scale) : FrictionLine{};
     const double windup = motor_m_ - table_m_;
     const Contact screw = ScrewContact(windup + half_s * (expected_motor - expected_table));
     // Mean screw force over the step: k0 + k1 (v_m - v_t), v the step's mean velocities.
     const double k0 = screw.stiffness_N_m * (windup - screw.offset_m);
     const double k1 = screw.stiffness_N_m * half_s + screw.damping_Ns_m;
-    const double a11 = motor_mass_kg_ / half_s + k1;
-    const double a22 = table_mass_kg_ / half_s + k1 + line.slope_Ns_m;
-    const double b1 = motor_mass_kg_ / half_s * motor_m_s_ + motor_force - k0;
-    const double b2 = table_mass_kg_ / half_s * table_m_s_ + table_force + k0 - line.constant_N;
+    const double a11 = motor_mass_kg_ / half_s + k1 + before_screw.slope_Ns_m;
+    double a22 = table_mass_kg_ / half_s + k1 + line.slope_Ns_m + p_.counterbalance_N_m * half_s;
+    const double b1 = motor_mass_kg_ / half_s * motor_m_s_ + motor_force - k0 - before_screw.constant_N;
+    double b2 = table_mass_kg_ / half_s * table_m_s_ + table_force + k0 - line.constant_N;
+    side_modes_.AddTo(half_s, table_m_, a22, b2);
     const double determinant = a11 * a22 - k1 * k1;
     motor_mid = (b1 * a22 + k1 * b2) / determinant;
     table_mid = (b2 * a11 + k1 * b1) / determinant;
-    const bool turned = (table_mid < 0.0) != (expected_table < 0.0);
+    const bool turned = (table_mid < 0.0) != (expected_table < 0.0) ||
+                        (motor_friction_ && (motor_mid < 0.0) != (expected_motor < 0.0));
     if (!turned && !p_.effects.backlash) break;
     expected_motor = motor_mid;
     expected_table = table_mid;
   }
-  std::visit([&](auto& friction) { friction.Commit(table_mid); }, friction_);
-  if (second_) second_->Commit(table_mid);
+  friction_.Commit(table_mid);
+  if (motor_friction_) motor_friction_->Commit(motor_mid);
+  side_modes_.Commit(step_s, table_mid);
   motor_m_s2_ = (motor_mid - motor_m_s_) / half_s;
   table_m_s2_ = (table_mid - table_m_s_) / half_s;
   motor_m_ += step_s * motor_mid;
@@ -254,8 +245,9 @@ void AxisPlant::UpdateSlowThings(double step_s) noexcept {
   if (const auto& e = p_.effects.temperature_viscosity)
     viscous_factor_ = std::max(0.01, 1.0 + e->rate_1_K * above_K);
   if (const auto& e = p_.effects.payload_step; e && time_s_ >= e->time_s) {
-    table_mass_kg_ = std::max(0.05 * p_.table_mass_kg,
-                              p_.table_mass_kg + e->inertia_change_rel * (p_.table_mass_kg + motor_mass_kg_));
+    const double rigid_kg = RigidMass_kg(p_);
+    table_mass_kg_ =
+        std::max(0.05 * rigid_kg, rigid_kg + e->inertia_change_rel * (p_.table_mass_kg + motor_mass_kg_));
     ChooseStep();
   }
 }
@@ -273,21 +265,20 @@ double AxisPlant::table_position_m() const noexcept {
 
 double AxisPlant::friction_N() const noexcept {
   const FrictionScale scale = Scale();
-  double force =
-      std::visit([&](const auto& friction) { return friction.Force_N(table_m_s_, scale); }, friction_);
-  if (second_) force += second_->Force_N(table_m_s_, scale);
-  return force + ExtraFriction_N(table_m_s_);
+  double force = friction_.Force_N(table_m_s_, scale) + ExtraFriction_N(table_m_s_);
+  if (motor_friction_) force += motor_friction_->Force_N(motor_m_s_, scale);
+  return force;
 }
 
 double AxisPlant::elastic_N() const noexcept {
-  const double main = std::visit([](const auto& friction) { return friction.Elastic_N(); }, friction_);
-  return second_ ? main + second_->Elastic_N() : main;
+  return friction_.Elastic_N() + (motor_friction_ ? motor_friction_->Elastic_N() : 0.0);
 }
 
 double AxisPlant::energy_J() const noexcept {
   const double windup = motor_m_ - table_m_;
   return 0.5 * (motor_mass_kg_ * motor_m_s_ * motor_m_s_ + table_mass_kg_ * table_m_s_ * table_m_s_ +
-                p_.stiffness_N_m * windup * windup);
+                p_.stiffness_N_m * windup * windup) +
+         side_modes_.Energy_J(table_m_);
 }
 
 void AxisPlant::SetState(double motor_m, double motor_m_s, double table_m, double table_m_s) noexcept {
@@ -297,6 +288,7 @@ void AxisPlant::SetState(double motor_m, double motor_m_s, double table_m, doubl
   table_m_s_ = table_m_s;
   motor_m_s2_ = 0.0;
   table_m_s2_ = 0.0;
+  side_modes_.Place(table_m, table_m_s);
 }
 
 }  // namespace contour::plant

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <variant>
+#include <optional>
 
 #include "tools/plant_emulator/axis_parameters.h"
-#include "tools/plant_emulator/lugre_friction.h"
-#include "tools/plant_emulator/maxwell_slip_friction.h"
+#include "tools/plant_emulator/outside_effects.h"
+#include "tools/plant_emulator/place_friction.h"
+#include "tools/plant_emulator/side_modes.h"
 
 namespace contour::plant {
 
@@ -13,6 +14,7 @@ namespace contour::plant {
 /// screw's own damping), friction on the table. Motor angle as R theta, motor inertia as Jm / R^2, so all is
 /// in metres and newtons:
 ///   m v_m' = T / R - S - ...,   Mt v_t' = S - F(v_t) + ...,   S = K (x_m - x_t) + c (v_m - v_t).
+/// A share of the friction may act on the motor instead, and a share of the table's mass swing on springs.
 /// A step solves the implicit midpoint rule: energy of the spring is kept, nothing is too stiff for it.
 class AxisPlant {
  public:
@@ -35,16 +37,17 @@ class AxisPlant {
   [[nodiscard]] double table_position_m() const noexcept;
   [[nodiscard]] double table_velocity_m_s() const noexcept { return table_m_s_; }
   [[nodiscard]] double table_acceleration_m_s2() const noexcept { return table_m_s2_; }
+  /// Of the whole axis: on the table, and on the motor as seen at the table.
   [[nodiscard]] double friction_N() const noexcept;
   [[nodiscard]] double elastic_N() const noexcept;
   [[nodiscard]] double temperature_degC() const noexcept { return temperature_degC_; }
   [[nodiscard]] double time_s() const noexcept { return time_s_; }
   /// The motor's torque at this instant for what the current loop gives: torque constant, ripple, saturation.
   [[nodiscard]] double DeliveredTorque_Nm(double torque_Nm) const noexcept;
-  /// Kinetic and elastic energy (screw), J.
+  /// Kinetic and elastic energy (screw, side modes), J.
   [[nodiscard]] double energy_J() const noexcept;
 
-  /// For tests: puts the axis into a state.
+  /// For tests: puts the axis into a state; side masses rest on the table.
   void SetState(double motor_m, double motor_m_s, double table_m, double table_m_s) noexcept;
 
  private:
@@ -57,16 +60,18 @@ class AxisPlant {
   [[nodiscard]] FrictionScale Scale() const noexcept;
   [[nodiscard]] double MotorForce_N(double torque_Nm) const noexcept;
   [[nodiscard]] double TableForce_N() const noexcept;
+  [[nodiscard]] double CounterbalanceForce_N() const noexcept;
   [[nodiscard]] double ExtraFriction_N(double velocity_m_s) const noexcept;
   void UpdateSlowThings(double step_s) noexcept;
   void ChooseStep() noexcept;
 
   AxisParameters p_;
-  std::variant<LugreFriction, MaxwellSlipFriction> friction_;
-  std::optional<LugreFriction> second_;
+  PlaceFriction friction_;                       ///< on the table
+  std::optional<PlaceFriction> motor_friction_;  ///< before the screw
+  SideModes side_modes_;
   std::optional<OutsideEffects> outside_;
   double motor_mass_kg_ = 0.0;
-  double table_mass_kg_ = 0.0;
+  double table_mass_kg_ = 0.0;  ///< what does not swing, a counterbalance's mass included
   double max_step_s_ = 0.0;
 
   double time_s_ = 0.0;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "tools/plant_emulator/emulator_config.h"
+#include "tools/plant_emulator/notch_filter.h"
 #include "tools/plant_emulator/portable_math.h"
 #include "tools/plant_emulator/rest_watch.h"
 
@@ -45,14 +46,17 @@ class TargetInterpolator {
 };
 
 /// The drive's own cascade at its tick: position P, velocity PI with feed-forward, and a second set of gains
-/// for an axis that rests, where the first would only answer to the noise of its readings. In travel of the
-/// table; the output is an acceleration, which the drive turns into torque by its inertia.
+/// for an axis that rests, where the first would only answer to the noise of its readings. With a dual loop
+/// the position is the scale's up to a frequency, and the motor's above it. In travel of the table; the
+/// output is an acceleration, which the drive turns into torque by its inertia.
 class DriveCascade {
  public:
   DriveCascade(const EmulatedCascadeConfig& gains, double tick_s, double count_m) noexcept
       : gains_(gains),
         tick_s_(tick_s),
         rest_(gains, tick_s, count_m),
+        notch_(gains.notch_Hz, gains.notch_width, gains.notch_depth, tick_s),
+        scale_share_(1.0 - portable::Exp(-6.283185307179586 * gains.dual_loop_Hz * tick_s)),
         mean_share_(1.0 - portable::Exp(-kSmoothingsPerRest * 1e3 * tick_s / gains.rest_delay_ms)),
         filter_share_(1.0 - portable::Exp(-6.283185307179586 * gains.velocity_filter_Hz * tick_s)) {}
 
@@ -64,7 +68,17 @@ class DriveCascade {
     position_m_ = position_m;
     sensed_ = true;
   }
-  /// Also what a loop begins with: the gains are those of motion.
+  /// The linear scale at a tick, for a drive with a dual loop.
+  void SenseScale(double position_m) noexcept {
+    beyond_m_ += scale_share_ * (position_m - position_m_ - beyond_m_);
+  }
+  /// What a loop begins with. The table is where it is: a dual loop goes to the scale by and by.
+  void Begin() noexcept {
+    ResetIntegral();
+    notch_.Reset();
+    beyond_m_ = 0.0;
+  }
+  /// The gains are those of motion.
   void ResetIntegral() noexcept {
     integral_m_s_ = mean_m_s2_ = 0.0;
     share_ = 1.0;
@@ -72,9 +86,9 @@ class DriveCascade {
   }
 
   double PositionLoop_m_s2(const CascadeTarget& target, double limit_m_s2) noexcept {
-    TakeShare(rest_.Rests(target.position_m, position_m_) ? gains_.rest_gain_rel : 1.0);
+    TakeShare(rest_.Rests(target.position_m, controlled_position_m()) ? gains_.rest_gain_rel : 1.0);
     const double wanted = gains_.velocity_feedforward * target.velocity_m_s +
-                          share_ * gains_.position_gain_1_s * (target.position_m - position_m_);
+                          share_ * gains_.position_gain_1_s * (target.position_m - controlled_position_m());
     const double held =
         VelocityLoop_m_s2(wanted, gains_.acceleration_feedforward * target.acceleration_m_s2, limit_m_s2);
     mean_m_s2_ += mean_share_ * (held - mean_m_s2_);
@@ -83,7 +97,8 @@ class DriveCascade {
 
   double VelocityLoop_m_s2(double wanted_m_s, double feedforward_m_s2, double limit_m_s2) noexcept {
     const double error = wanted_m_s - velocity_m_s_;
-    const double free = feedforward_m_s2 + share_ * gains_.velocity_gain_1_s * (error + integral_m_s_);
+    const double free =
+        notch_.Step(feedforward_m_s2 + share_ * gains_.velocity_gain_1_s * (error + integral_m_s_));
     const double held = std::clamp(free, -limit_m_s2, limit_m_s2);
     // The integral stands still while the limit holds the output and the error would push it further.
     if (held == free || (free > held) != (error > 0.0))
@@ -91,7 +106,10 @@ class DriveCascade {
     return held;
   }
 
+  /// Of the motor.
   [[nodiscard]] double position_m() const noexcept { return position_m_; }
+  /// What the position loop is closed on.
+  [[nodiscard]] double controlled_position_m() const noexcept { return position_m_ + beyond_m_; }
   [[nodiscard]] double velocity_m_s() const noexcept { return velocity_m_s_; }
 
  private:
@@ -112,6 +130,9 @@ class DriveCascade {
   EmulatedCascadeConfig gains_;
   double tick_s_;
   RestWatch rest_;
+  NotchFilter notch_;
+  double scale_share_;      ///< of the low-pass between motor and scale
+  double beyond_m_ = 0.0;   ///< scale less motor, below the dual loop's frequency
   double share_ = 1.0;      ///< of the gains
   double mean_share_;       ///< of the low-pass on the output
   double mean_m_s2_ = 0.0;  ///< the output, smoothed

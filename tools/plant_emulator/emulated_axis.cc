@@ -198,9 +198,7 @@ void EmulatedAxis::UpdateActualValues() noexcept {
   };
   torque_->value = per_mille(tampering_.reported_share() * current_.torque_Nm());
   torque_demand_->value = per_mille(current_.command_Nm());
-  if (scale_ != nullptr)
-    scale_->value = wrap(static_cast<std::int64_t>(
-        std::floor(plant_.table_position_m() * p_.scale_counts_per_m + 0.5 + 0.3 * scale_noise_.Normal())));
+  if (scale_ != nullptr) scale_->value = wrap(ReadScale());
   statusword_->value = Statusword();
 }
 
@@ -306,8 +304,15 @@ void EmulatedAxis::Sense() noexcept {
   past_counts_[past_] = counts_;
 }
 
+std::int64_t EmulatedAxis::ReadScale() noexcept {
+  return static_cast<std::int64_t>(
+      std::floor(plant_.table_position_m() * p_.scale_counts_per_m + 0.5 + 0.3 * scale_noise_.Normal()));
+}
+
 void EmulatedAxis::Tick() noexcept {
   Sense();
+  if (p_.cascade.dual_loop_Hz > 0.0 && mode_display_->value == kModeCsp)
+    cascade_.SenseScale(static_cast<double>(ReadScale()) / p_.scale_counts_per_m);
   if (p_.torque_noise_Nm > 0.0) {
     const bool changed = plant_.time_s() >= p_.torque_noise_change_s;
     torque_noise_now_Nm_ = tick_noise_Nm_ * (changed ? p_.torque_noise_change : 1.0) * torque_noise_.Normal();
@@ -340,7 +345,7 @@ void EmulatedAxis::StepPowerState() noexcept {
     case DrivePowerState::Action::kNone:
       return;
     case DrivePowerState::Action::kStarted:
-      cascade_.ResetIntegral();
+      cascade_.Begin();
       target_.Reset(cascade_.position_m());
       delayed_targets_.fill(0.0);
       delayed_positions_.fill(counts_);
@@ -400,7 +405,7 @@ void EmulatedAxis::BeginBraking(Braking why, std::int64_t option) noexcept {
   ramp_m_s_ = hardest ? 0.0 : cascade_.velocity_m_s();
   ramp_end_ns_ = -1;
   release_end_ns_ = -1;
-  cascade_.ResetIntegral();
+  cascade_.Begin();
   if (coasting_) BrakingDone();
 }
 
@@ -452,7 +457,8 @@ void EmulatedAxis::BrakingDone() noexcept {
 // --------------------------------------------------------------------------------------------------------
 
 double EmulatedAxis::InertiaForce_Nm(double acceleration_m_s2) const noexcept {
-  const double mass = p_.motor_inertia_kgm2 / (p_.radius_m_rad * p_.radius_m_rad) + p_.table_mass_kg;
+  const double mass = p_.motor_inertia_kgm2 / (p_.radius_m_rad * p_.radius_m_rad) + p_.table_mass_kg +
+                      p_.counterbalance_mass_kg;
   return mass * acceleration_m_s2 * p_.radius_m_rad;
 }
 
@@ -511,7 +517,7 @@ void EmulatedAxis::FollowPosition() noexcept {
   const double offset_Nm = 1e-3 * static_cast<double>(torque_offset_->value) * p_.rated_torque_Nm;
   const double limit = TorqueLimit_Nm(true) / InertiaForce_Nm(1.0);
   Command_Nm(InertiaForce_Nm(cascade_.PositionLoop_m_s2(target, limit)) + offset_Nm);
-  const double error_m = target.position_m - cascade_.position_m();
+  const double error_m = target.position_m - cascade_.controlled_position_m();
   following_error_->value =
       std::clamp<std::int64_t>(std::llround(error_m / TravelPerCount_m()), -2147483648LL, 2147483647LL);
   WatchFollowingError(error_m);

@@ -83,6 +83,7 @@ class EmulatedAxis final : private SlaveDevice {
   void FindObjects();
   void Integrate(std::int64_t duration_ns) noexcept;
   void Sense() noexcept;
+  [[nodiscard]] std::int64_t ReadScale() noexcept;
   void Tick() noexcept;
   void StepPowerState() noexcept;
   void ApplyTarget() noexcept;

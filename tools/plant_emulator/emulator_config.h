@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/visit.h"
 #include "tools/plant_emulator/effects_config.h"
@@ -31,7 +32,8 @@ constexpr bool FromName(std::string_view name, EmulatedFrictionLaw& law) noexcep
   return false;
 }
 
-/// Friction of the table on its guides and nut, in table units.
+/// Friction of the axis in table units: of the table on its guides and nut, and of what turns before the
+/// screw.
 struct EmulatedFrictionConfig {
   EmulatedFrictionLaw law = EmulatedFrictionLaw::kLugre;
   int stribeck_exponent = 1;
@@ -52,6 +54,7 @@ struct EmulatedFrictionConfig {
   double breakaway_min_um = 0.5;
   double breakaway_max_um = 20.0;
   double attraction_N_s = 5e4;
+  double motor_share_rel = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -80,6 +83,8 @@ struct EmulatedFrictionConfig {
     v.Optional("breakaway_max_um", breakaway_max_um, kPositive, "Maxwell slip: longest break-away travel");
     v.Optional("attraction_N_s", attraction_N_s, kPositive,
                "Maxwell slip: how fast the slipping elements follow the Stribeck curve");
+    v.Optional("motor_share_rel", motor_share_rel, Range{0.0, 0.95},
+               "share of all this friction that acts on the motor, before the screw");
   }
 };
 
@@ -91,6 +96,10 @@ struct EmulatedCascadeConfig {
   double velocity_feedforward = 1.0;
   double acceleration_feedforward = 1.0;
   double velocity_filter_Hz = 1500.0;
+  double notch_Hz = 0.0;
+  double notch_width = 0.5;
+  double notch_depth = 0.1;
+  double dual_loop_Hz = 0.0;
   int rest_window_counts = 0;
   double rest_delay_ms = 200.0;
   double rest_gain_rel = 0.1;
@@ -105,6 +114,12 @@ struct EmulatedCascadeConfig {
     v.Optional("acceleration_feedforward", acceleration_feedforward, Range{0.0, 1.5},
                "of the interpolated target's acceleration");
     v.Optional("velocity_filter_Hz", velocity_filter_Hz, kPositive, "low-pass on the velocity seen");
+    v.Optional("notch_Hz", notch_Hz, Range{0.0, 3000.0}, "notch on the torque command; 0: none");
+    v.Optional("notch_width", notch_width, Range{0.01, 2.0}, "damping ratio of the notch's poles");
+    v.Optional("notch_depth", notch_depth, Range{0.0, 3.0}, "what the notch leaves in its middle");
+    v.Optional("dual_loop_Hz", dual_loop_Hz, Range{0.0, 3000.0},
+               "CSP: the position loop is closed on the linear scale below this frequency and on the motor "
+               "above it; 0: on the motor");
     v.Optional(
         "rest_window_counts", rest_window_counts, Range{0, 1000},
         "CSP: an axis read within so many counts of a target that stands is at rest, and has the gains "
@@ -134,6 +149,37 @@ struct EmulatedTemperatureConfig {
   }
 };
 
+/// A part of the table's mass that swings on a spring along the axis.
+struct EmulatedSideModeConfig {
+  double frequency_Hz = 0.0;
+  double mass_share_rel = 0.0;
+  double damping_ratio = 0.02;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("frequency_Hz", frequency_Hz, Range{5.0, 1000.0}, "of the mass on its spring, the table held");
+    v.Required("mass_share_rel", mass_share_rel, Range{0.001, 0.9}, "of table_mass_kg");
+    v.Optional("damping_ratio", damping_ratio, Range{0.0, 1.0}, "of the mass on its spring");
+  }
+};
+
+/// What carries a vertical axis: a counterweight, or a cylinder with gas.
+struct EmulatedCounterbalanceConfig {
+  double force_N = 0.0;
+  double moving_mass_kg = 0.0;
+  double rate_N_mm = 0.0;
+
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Optional("force_N", force_N, kAny,
+               "force on the table at mid-stroke, less the weight that it carries; 0: balanced there");
+    v.Optional("moving_mass_kg", moving_mass_kg, kNotNegative,
+               "counterweight or piston: moves with the table");
+    v.Optional("rate_N_mm", rate_N_mm, kNotNegative,
+               "by how much the force falls as the table moves up: the gas's spring rate");
+  }
+};
+
 struct EmulatedAxisConfig {
   double motor_inertia_kgm2 = 0.0;
   double table_mass_kg = 0.0;
@@ -159,6 +205,8 @@ struct EmulatedAxisConfig {
   EmulatedFrictionConfig friction;
   EmulatedCascadeConfig cascade;
   EmulatedTemperatureConfig temperature;
+  std::vector<EmulatedSideModeConfig> side_modes;
+  std::optional<EmulatedCounterbalanceConfig> counterbalance;
   EffectsConfig effects;
 
   template <class Visitor>
@@ -198,9 +246,11 @@ struct EmulatedAxisConfig {
     v.Optional("torque_noise_change", torque_noise_change, kNotNegative,
                "factor on that noise from torque_noise_change_s on");
     v.Optional("torque_noise_change_s", torque_noise_change_s, kNotNegative, "in the machine's time");
-    v.Required("friction", friction, "friction of the table");
+    v.Required("friction", friction, "friction of the axis");
     v.Optional("cascade", cascade, "the drive's own control loops");
     v.Optional("temperature", temperature, "temperature of the screw");
+    v.Optional("side_modes", side_modes, "parts of the table that swing on springs");
+    v.Optional("counterbalance", counterbalance, "what carries a vertical axis");
     v.Optional("effects", effects, "what a textbook model leaves out");
   }
 };
