@@ -15,6 +15,7 @@ TEST(Assignments, AreWhatSetTakes) {
                                          {"table", std::vector<double>{-1.5, 2.0}},
                                          {"further", std::vector<std::string>{MapText({{"a", 1.0}})}}}));
   EXPECT_EQ(tree.Find("lag_ms")->value.text, "0.1");
+  ASSERT_NE(tree.Find("effects"), nullptr);
   const YamlValue& some = tree.Find("effects")->value.Find("some")->value;
   EXPECT_EQ(std::stod(some.Find("number")->value.text), 1.0 / 3.0) << "to the last bit";
   EXPECT_EQ(some.Find("axis")->value.text, "y");

@@ -1,0 +1,74 @@
+#include <gtest/gtest.h>
+
+#include "analysis/diagnosis/causes/catalogue.h"
+#include "tests/analysis/support/cause_checks.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr const char* kKind = "input_delay";
+
+TEST(InputDelay, IsAddedToTheStatedOneAndToldInMicroseconds) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "");
+  AxisModel expected = axis.problem.nominal;
+  expected.delay_s = 1e-3 + 150e-6;
+  const AxisModel m = test::With(axis, e, {150e-6});
+  EXPECT_NEAR(m.delay_s, expected.delay_s, 1e-15);
+  expected.delay_s = m.delay_s;
+  EXPECT_EQ(m, expected) << "and nothing else";
+  const NamedValues told = test::Told(axis, e, {150e-6});
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NEAR(told.at("delay_us"), 150.0, 1e-9);
+}
+
+TEST(InputDelay, IsANumberOfTheModelWhoseEvidenceLiesInItsPrior) {
+  const CauseDefinition& cause = CauseNamed(kKind);
+  ASSERT_EQ((*cause.freed_terms).size(), 1u);
+  EXPECT_EQ((*cause.freed_terms)[0], "delay");
+  EXPECT_TRUE(*(*cause.extension)->number_of_the_model);
+  const test::KnownAxis axis;
+  const double largest_s = (*cause.largest)(axis.problem);
+  EXPECT_GE(largest_s, test::KnownAxis::kPeriod_s) << "a cycle of it is a flaw that drives have";
+  EXPECT_LT(largest_s, 10.0 * test::KnownAxis::kPeriod_s);
+}
+
+TEST(InputDelay, OfTwoLogsTheSumIsTheModels) {
+  const ExtensionsConfig e = test::ExtendedBy(
+      {test::CauseWith(kKind, {{"delay_us", 150.0}}), test::CauseWith(kKind, {{"delay_us", -30.0}})});
+  const auto [read, errors] = test::ThroughYaml(e);
+  EXPECT_TRUE(errors.empty());
+  EXPECT_EQ(read.input_delay->delay_us, 120.0);
+  EXPECT_EQ(test::SimulatedWith(kKind, e).axis.effects.input_delay->delay_us, 120.0);
+  const ExtensionsConfig far = test::ExtendedBy({test::CauseWith(kKind, {{"delay_us", 1e6}})});
+  EXPECT_FALSE(test::ThroughYaml(far).errors.empty()) << "a second of it is refused";
+}
+
+TEST(InputDelay, LessThanStatedIsNoneInTheEmulatedMachine) {
+  const test::Emulated emulated =
+      test::SimulatedWith(kKind, test::ExtendedBy({test::CauseWith(kKind, {{"delay_us", -30.0}})}));
+  EXPECT_TRUE(emulated.errors.empty());
+  EXPECT_EQ(emulated.axis.effects.input_delay->delay_us, 0.0);
+}
+
+TEST(InputDelay, IsDecidedByAChirp) {
+  const test::KnownAxis axis;
+  const Program program = test::DecidingProgram(axis, kKind);
+  ASSERT_TRUE(program.torque);
+  EXPECT_EQ(program.torque->kind, TorqueSignalKind::kChirp);
+  EXPECT_TRUE(*CauseNamed(kKind).about_timing);
+}
+
+TEST(InputDelay, ASpecimenHasItsSizeInMicroseconds) {
+  const Specimen& s = **CauseNamed(kKind).specimen;
+  const Drawn drawn = (*s.draw)(test::MachineToDrawFor(), 1.0, test::Numbers({0.5}));
+  const test::Emulated emulated = test::EmulatedWith((*s.effect)(drawn, test::MachineToDrawFor(), {}));
+  EXPECT_TRUE(emulated.errors.empty());
+  EXPECT_EQ(emulated.axis.effects.input_delay->delay_us, drawn.size);
+  EXPECT_EQ((*s.truth)(drawn, {}).at("delay_us"), drawn.size);
+  EXPECT_TRUE(test::EmulatedWith((*s.effect)({.size = *s.largest_size}, test::MachineToDrawFor(), {}))
+                  .errors.empty());
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,33 @@
+#include "analysis/diagnosis/causes/kind_words.h"
+
+#include <gtest/gtest.h>
+
+namespace contour::diagnosis {
+namespace {
+
+TEST(KindWords, TheNameComesFirstThenWhatItIs) {
+  EXPECT_EQ(KindWords("backlash"), "backlash: free play between motor and table");
+  EXPECT_EQ(KindWords("outside:force of time"), "outside:force of time") << "it has no words";
+  EXPECT_EQ(KindWords("no_such_cause"), "no_such_cause");
+}
+
+TEST(KindWords, AdviceIsASentence) {
+  EXPECT_EQ(KindAdvice("cogging"), "Feed the torque forward.");
+  EXPECT_EQ(KindAdvice("no_such_cause"), "");
+}
+
+TEST(KindWords, AValueHasTheUnitOfItsName) {
+  EXPECT_EQ(ValueWords("amplitude_Nm", 0.0191), "0.0191 Nm");
+  EXPECT_EQ(ValueWords("gap_um", 3.0), "3 um");
+  EXPECT_EQ(ValueWords("change_rel", -0.125), "-12.5 %");
+  EXPECT_EQ(ValueWords("Fs_over_Fc", 1.5), "1.5");
+}
+
+TEST(KindWords, AParametersWordsHaveNoUnit) {
+  EXPECT_EQ(ParameterWords("amplitude_Nm"), "amplitude");
+  EXPECT_EQ(ParameterWords("change_rel"), "change");
+  EXPECT_EQ(ParameterWords("time_constant_s"), "time constant");
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,58 @@
+#include <gtest/gtest.h>
+
+#include "analysis/diagnosis/causes/catalogue.h"
+#include "tests/analysis/support/cause_checks.h"
+
+namespace contour::diagnosis {
+namespace {
+
+constexpr const char* kKind = "torque_saturation";
+
+TEST(TorqueSaturation, LosesItsShareAtTheRatedTorque) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "");
+  const AxisModel m = test::With(axis, e, {0.1});
+  // Delivered is u (1 - saturation u^2): 0.9 of 0.64 Nm, and 0.975 of half of it.
+  const auto delivered = [&](double u) { return u * (m.torque_gain - m.saturation * u * u); };
+  EXPECT_NEAR(delivered(0.64), 0.9 * 0.64, 1e-12);
+  EXPECT_NEAR(delivered(0.32), 0.975 * 0.32, 1e-12);
+  EXPECT_EQ(test::Told(axis, e, {0.1}), (NamedValues{{"loss_at_rated_rel", 0.1}}));
+}
+
+TEST(TorqueSaturation, OfALinearAxisIsOfItsRatedForce) {
+  const test::KnownAxis axis({.linear = true});
+  const AxisModel m = test::With(axis, test::OnGrid(axis, kKind, ""), {0.1});
+  EXPECT_NEAR(m.saturation * axis.stated.rated * axis.stated.rated, 0.1, 1e-12);
+}
+
+TEST(TorqueSaturation, IsAddedToWhatTheModelHas) {
+  const test::KnownAxis axis;
+  AxisModel m = axis.problem.nominal;
+  m.saturation = 0.05 / (0.64 * 0.64);
+  test::OnGrid(axis, kKind, "")->apply({0.1}, m);
+  EXPECT_NEAR(m.saturation * 0.64 * 0.64, 0.15, 1e-12);
+}
+
+TEST(TorqueSaturation, NoModelIsExtendedByItAndPulsesDecide) {
+  EXPECT_EQ(*CauseNamed(kKind).extension, nullptr);
+  const test::KnownAxis axis;
+  const Program program = test::DecidingProgram(axis, kKind);
+  ASSERT_TRUE(program.torque);
+  EXPECT_EQ(program.torque->kind, TorqueSignalKind::kPulses);
+  EXPECT_LE(program.torque->amplitude_Nm, axis.stated.rated);
+}
+
+TEST(TorqueSaturation, ASpecimenStaysWithinWhatTheEmulatedMachineHas) {
+  const Specimen& s = **CauseNamed(kKind).specimen;
+  for (const double size :
+       {(*s.draw)(test::MachineToDrawFor(), 1.0, test::Numbers({0.5})).size, *s.largest_size}) {
+    const test::Emulated emulated =
+        test::EmulatedWith((*s.effect)({.size = size}, test::MachineToDrawFor(), {}));
+    EXPECT_TRUE(emulated.errors.empty());
+    EXPECT_EQ(emulated.axis.effects.torque_saturation->loss_at_rated_rel, size);
+    EXPECT_EQ((*s.truth)({.size = size}, {}).at("loss_at_rated_rel"), size);
+  }
+}
+
+}  // namespace
+}  // namespace contour::diagnosis
