@@ -12,11 +12,10 @@
 #include "analysis/diagnosis/quantification/quantify.h"
 #include "analysis/diagnosis/rounds.h"
 #include "analysis/diagnosis/screening/nominal.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
 namespace {
-
-constexpr std::size_t kLeastRows = 3000;
 
 void CheckInput(const AxisLog& log, const StatedAxis& stated) {
   const std::size_t n = log.size();
@@ -35,7 +34,7 @@ Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
   out.false_alarm_rate = options.false_alarm_rate;
   out.data_quality.rows = log.rows;
   out.data_quality.missing = log.missing;
-  out.notes.push_back("The log is shorter than " + std::to_string(kLeastRows) + " rows.");
+  out.notes.push_back("The log is shorter than " + std::to_string(kRounds.fewest_rows) + " rows.");
   return out;
 }
 
@@ -43,7 +42,7 @@ Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
 
 Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& options) {
   CheckInput(log, stated);
-  if (log.size() < kLeastRows) return TooShort(log, options);
+  if (log.size() < kRounds.fewest_rows) return TooShort(log, options);
   Diagnosis out;
   out.false_alarm_rate = options.false_alarm_rate;
   Problem problem(log, stated, options.threads);

@@ -12,14 +12,11 @@
 #include "analysis/diagnosis/quantification/detectable.h"
 #include "analysis/diagnosis/quantification/jitter_cause.h"
 #include "analysis/diagnosis/screening/screen.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 namespace {
-
-constexpr double kNoDoubt = 1000.0;  // of a score
-// Of the drop of jitter: in addition to a mean effect that its variance was about, less is left.
-constexpr double kJitterLeft = 0.6;
 
 /// What goes on from round to round.
 struct Rounds {
@@ -54,7 +51,8 @@ bool Known(const std::string& kind, const Diagnosis& out) {
 /// is not asked before. Else none.
 std::vector<std::string> ThoseWithoutDoubt(const std::vector<Hypothesis>& hypotheses) {
   std::vector<std::string> out;
-  if (hypotheses.empty() || hypotheses[0].no_fault || hypotheses[0].score < kNoDoubt) return out;
+  if (hypotheses.empty() || hypotheses[0].no_fault || hypotheses[0].score < kRounds.no_doubt_score)
+    return out;
   for (const Hypothesis& r : hypotheses) out.push_back(r.effect().kind);
   return out;
 }
@@ -161,7 +159,8 @@ Next OneRound(int round, Rounds& r) {
   if (seen.jitter_there) {
     // A mean effect that the variance was about leaves none behind.
     const Jitter left = TestJitter(r.problem, hypotheses[0].fit);
-    if (left.drop > kJitterLeft * seen.jitter.drop && (!choice.found || left.drop > choice.tested)) {
+    if (left.drop > kRounds.jitter_left_share * seen.jitter.drop &&
+        (!choice.found || left.drop > choice.tested)) {
       AcceptJitter(r.problem, r.nominal.fit, left, r.out);
       r.jitter_known = true;
       r.tried.clear();

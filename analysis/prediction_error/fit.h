@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <vector>
 
+#include "analysis/diagnosis/tuning/fit_effort.h"
 #include "analysis/prediction_error/problem.h"
 
 namespace contour::diagnosis {
@@ -19,17 +19,6 @@ struct Fit {
   Eigen::MatrixXd covariance;              ///< of the parameters, noise of unit variance
   double promised = 0.0;  ///< what one more step would take off, as far as the last one kept it
   bool converged = false;
-};
-
-struct FitEffort {
-  int most_steps = 8;
-  int most_refreshes = 8;      ///< of the sensitivities
-  double close_enough = 0.02;  ///< what one more step would promise at an end, of |r|^2
-  bool covariance = true;      ///< of the end point; else sensitivities may be old
-  /// So much of what the cost has fallen below `from` is close enough, too.
-  double share_enough = 0.0, from = 0.0;
-  /// Given up where not even the first step's promise leads below.
-  double hopeless_above = std::numeric_limits<double>::infinity();
 };
 
 /// To see in which basin a point lies.

@@ -17,7 +17,7 @@ SIMULATED = ["tools/plant_emulator", "tools/machine", "tools/simulate"]
 # The floors of analysis/, lowest first.
 MODEL = ["analysis/recording", "analysis/axis_model"]
 PREDICTION = [*MODEL, "analysis/prediction_error", "analysis/prediction_error/simd"]
-DIAGNOSIS = ["result", "tuning", "causes", "screening", "adequacy", "decision", "quantification"]
+DIAGNOSIS = ["tuning", "result", "causes", "screening", "adequacy", "decision", "quantification"]
 
 
 def diagnosis_floors(names):
@@ -31,10 +31,10 @@ ANALYSIS = {
     "analysis/metrics": BELOW_ANALYSIS,
     "analysis/axis_model": ["core", "estimator", "config"],
     "analysis/prediction_error/simd": [],
-    "analysis/prediction_error": ["analysis/parallel", *PREDICTION],
+    "analysis/prediction_error": ["analysis/parallel", *PREDICTION, "analysis/diagnosis/tuning"],
     "analysis/identification": ["core", "config", "analysis/text", *PREDICTION],
-    "analysis/diagnosis/result": ["analysis/recording"],
-    "analysis/diagnosis/tuning": ["analysis/diagnosis/result"],
+    "analysis/diagnosis/result": ["analysis/recording", "analysis/diagnosis/tuning"],
+    "analysis/diagnosis/tuning": [],
     "analysis/diagnosis/causes": ["config", "estimator", *PREDICTION, *diagnosis_floors(["result", "tuning"])],
     **{f"analysis/diagnosis/{name}": [*PREDICTION, *diagnosis_floors(DIAGNOSIS[:i])]
        for i, name in enumerate(DIAGNOSIS) if i >= DIAGNOSIS.index("screening")},

@@ -39,7 +39,7 @@ struct Options {
   std::string json;
   std::string columns;
   std::string program;
-  double false_alarm_rate = 0.05;
+  double false_alarm_rate = diagnosis::DiagnoseOptions{}.false_alarm_rate;
   int bootstrap_runs = 0;
   std::uint64_t seed = 1;
   int threads = 0;

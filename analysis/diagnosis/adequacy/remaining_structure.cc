@@ -7,15 +7,14 @@
 #include "analysis/diagnosis/adequacy/structure_maps.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/tuning/adequacy_tuning.h"
 #include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr std::size_t kReach = 64;  // rows that a pulse is followed for
-constexpr double kFewestRows = 20.0, kLeastFree = 0.05;
-// Of the asked false alarms, this share may be `unexplained`, in equal parts by each class of structure.
-constexpr double kShare = 0.1;
+// Beyond so many deviations erfc is nothing, and its asymptotic form exact.
+constexpr double kAsymptotic = 30.0;
 
 double SizeAt(const BinnedRows& rows, std::size_t k) { return rows.size.empty() ? 1.0 : rows.size[k]; }
 
@@ -43,19 +42,20 @@ std::vector<double> TakeOut(const BinnedRows& known, const std::vector<double>& 
 double ChiSquareScore(double x, double degrees) {
   const double variance = 2.0 / (9.0 * degrees);
   const double z = (std::cbrt(std::max(0.0, x) / degrees) - 1.0 + variance) / std::sqrt(variance);
-  if (z < 30.0) return -2.0 * std::log(0.5 * std::erfc(z / std::numbers::sqrt2));
+  if (z < kAsymptotic) return -2.0 * std::log(0.5 * std::erfc(z / std::numbers::sqrt2));
   return z * z + 2.0 * std::log(z * std::sqrt(2.0 * std::numbers::pi));
 }
 
 /// The score that something unknown must exceed.
 double Threshold(const Problem& problem, std::string_view structure_class, double false_alarm_rate) {
-  const double own = kShare / static_cast<double>(kStructureClasses.size()) * false_alarm_rate;
+  const double own =
+      kAdequacy.share_of_false_alarms / static_cast<double>(kStructureClasses.size()) * false_alarm_rate;
   const double errors = AllowancePerRow(structure_class, own) * static_cast<double>(problem.rows());
   return std::max(-2.0 * std::log(own), -2.0 * std::log(kCalibratedRate) + errors);
 }
 
 std::vector<double> Autocorrelation(const std::vector<double>& response) {
-  std::vector<double> out(std::min(kReach, response.size()), 0.0);
+  std::vector<double> out(std::min(kAdequacy.response_rows, response.size()), 0.0);
   for (std::size_t lag = 0; lag < out.size(); ++lag)
     for (std::size_t i = 0; i + lag < response.size(); ++i) out[lag] += response[i] * response[i + lag];
   return out;
@@ -90,11 +90,11 @@ RemainingStructure TestBins(const BinnedRows& rows, const BinnedRows& known, std
   out.structure_class = rows.structure_class;
   double most = 0.0;
   for (std::size_t b = 0; b < count; ++b) {
-    if (seen[b] < kFewestRows || !(information[b] > 0.0)) continue;
+    if (seen[b] < kAdequacy.fewest_rows_per_bin || !(information[b] > 0.0)) continue;
     // What was taken out does not scatter any more.
     double free = 1.0;
     for (std::size_t i = 0; i < others; ++i) free -= std::pow(shared[b * others + i], 2) / (own[b] * all[i]);
-    if (free < kLeastFree) continue;
+    if (free < kAdequacy.least_free_share) continue;
     const double drop = g[b] * g[b] / information[b];
     out.drop += drop;
     out.bins += free;

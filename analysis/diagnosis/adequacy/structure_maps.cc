@@ -7,13 +7,18 @@
 #include <utility>
 
 #include "analysis/diagnosis/screening/gross_sliding.h"
+#include "analysis/diagnosis/tuning/adequacy_tuning.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr int kPlaces = 48, kSpeeds = 16, kTravelBins = 14, kAngles = 48, kTemperatures = 12;
-constexpr double kTorqueEach_s = 0.25, kFrictionEach_s = 1.0;
-constexpr double kShortestTravel_m = 1e-6;
+constexpr int kPlaces = kAdequacy.position_bins, kSpeeds = kAdequacy.speed_bins;
+constexpr int kTravelBins = kAdequacy.travel_bins, kAngles = kAdequacy.angle_bins;
+constexpr int kTemperatures = kAdequacy.temperature_bins;
+constexpr double kShortestTravel_m = kAdequacy.shortest_travel_m;
+constexpr double kDegreesPerTurn = 360.0;
+// Of a range, and of a speed that divides.
+constexpr double kLeast = 1e-12;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 struct Range {
@@ -27,7 +32,7 @@ struct Range {
 
 Range RangeOf(const Signal& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  return {*low, std::max(*high, *low + 1e-12)};
+  return {*low, std::max(*high, *low + kLeast)};
 }
 
 std::string Text(double x, const char* unit) {
@@ -38,7 +43,7 @@ std::string Text(double x, const char* unit) {
 
 /// Slow speeds in finer steps.
 int SpeedBin(const Signals& s, std::size_t k) {
-  return Range{}.Bin(std::sqrt(std::fabs(s.velocity[k]) / std::max(s.max_speed, 1e-12)), kSpeeds);
+  return Range{}.Bin(std::sqrt(std::fabs(s.velocity[k]) / std::max(s.max_speed, kLeast)), kSpeeds);
 }
 
 class Maps {
@@ -71,7 +76,7 @@ class Maps {
           const double turns = s_.angle_rad[k] / kTurn;
           return Range{}.Bin(turns - std::floor(turns), kAngles);
         },
-        [](int b) { return Text(360.0 * Range{}.Middle(b, kAngles), "degrees"); });
+        [](int b) { return Text(kDegreesPerTurn * Range{}.Middle(b, kAngles), "degrees"); });
     out_.back().series = true;
     if (!s_.temperature_K.empty()) {
       const Range t = RangeOf(s_.temperature_K);
@@ -82,8 +87,8 @@ class Maps {
             return Text(t.Middle(b, kTemperatures) + mean_degC, "degC");
           });
     }
-    OfTime("time, as a torque", kTorqueEach_s, {}, kUnexplainedTorque);
-    OfTime("time, as friction", kFrictionEach_s, s_.sign, kUnexplainedFriction);
+    OfTime("time, as a torque", kAdequacy.torque_bin_s, {}, kUnexplainedTorque);
+    OfTime("time, as friction", kAdequacy.friction_bin_s, s_.sign, kUnexplainedFriction);
     return std::move(out_);
   }
 

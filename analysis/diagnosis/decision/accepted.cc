@@ -7,29 +7,20 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
 #include "analysis/diagnosis/decision/choose.h"
-#include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/decision/held_out.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {
 
-// Most effects show in a few strokes only, whose scatter says the less of an interval: Student's t of six
-// over normal.
-constexpr double kFewStrokes = 1.25;
-// An extension that was found in another log may be off by a hundredth of its amplitude.
-constexpr double kOffStated = 1e-4;
-// Scores that are alike, of the best. On a friction-model mismatch what is wrong with the model takes
-// part in the difference, and constant torque and asymmetry differ at reversals only, which do not count.
-constexpr double kAlike = 0.03, kAlikeOnMismatch = 0.1;
-// An element in presliding stands for a friction-model mismatch, and leaves more than a right name does.
-constexpr double kLeakageOnMismatch = 0.05;
-
 /// What the hypotheses scored, and which of them cannot be told from the first.
 void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                     const ScoreThreshold& threshold, const Accepted& accepted, Cause& cause, Diagnosis& out) {
   const Hypothesis& best = hypotheses[0];
-  const double alike = FrictionModelMismatch(problem, accepted.fit) ? kAlikeOnMismatch : kAlike;
+  const double alike = FrictionModelMismatch(problem, accepted.fit) ? kAcceptance.alike_on_mismatch_share
+                                                                    : kAcceptance.alike_share;
   for (const Hypothesis& r : hypotheses) {
     const std::string& kind = r.effect().kind;
     for (Candidate& c : out.candidates)
@@ -39,7 +30,8 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
       }
     // What would not have been accepted alone explains too little to be the cause.
     if (&r != &best && !r.refused && !r.given_up && !Outside(kind) &&
-        r.score > Asked(problem, r, threshold) && r.score > best.score - std::max(12.0, alike * best.score) &&
+        r.score > Asked(problem, r, threshold) &&
+        r.score > best.score - std::max(kAcceptance.alike_score, alike * best.score) &&
         !ExplainsSomethingElse(problem, best.fit, r) && !ExplainsSomethingElse(problem, r.fit, best))
       cause.indistinguishable_from.push_back(kind);
   }
@@ -51,11 +43,11 @@ ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted
                                 std::span<const Scored> scored, double by_extras,
                                 const DiagnoseOptions& options) {
   ScoreThreshold threshold =
-      SignFlips(scored, options.false_alarm_rate, options.seed, kOffStated * by_extras);
+      SignFlips(scored, options.false_alarm_rate, options.seed, StatedOffDrop() * by_extras);
   threshold.accepted = static_cast<int>(accepted.places.size());
-  threshold.leakage =
-      accepted.leakage +
-      (FrictionModelMismatch(problem, accepted.fit) ? kLeakageOnMismatch * accepted.in_presliding : 0.0);
+  threshold.leakage = accepted.leakage + (FrictionModelMismatch(problem, accepted.fit)
+                                              ? kThreshold.leakage_on_mismatch_share * accepted.in_presliding
+                                              : 0.0);
   threshold.leakage_of_kind = accepted.leakage_of_kind;
   return threshold;
 }
@@ -70,7 +62,8 @@ void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypothes
   const Experiment experiment = DecidingExperiment(problem, cause.kind, cause.indistinguishable_from);
   cause.deciding_experiment = experiment.text;
   cause.deciding_program = experiment.program;
-  accepted.scatter.push_back(OverdispersionOfLast(problem, best.fit) * kFewStrokes * kFewStrokes);
+  accepted.scatter.push_back(OverdispersionOfLast(problem, best.fit) * kAcceptance.few_strokes *
+                             kAcceptance.few_strokes);
   std::vector<BlockGain> blocks;
   HeldOutGain(problem, accepted.fit, best.fit, CauseNamed(cause.kind).judged_at_scale, cause, blocks);
   if (out.causes.empty()) out.blocks = blocks;

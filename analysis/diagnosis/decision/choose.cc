@@ -4,23 +4,19 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/decision/held_out.h"
+#include "analysis/diagnosis/decision/tested_score.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
 namespace {
-
-// Of the drop in unseen blocks, over the root of its sum of squares: more than one block carries it.
-constexpr double kConsistent = 1.2;
-// Of the drop.
-constexpr double kStillThere = 0.6;
-constexpr double kNoChance = 100.0, kNotOneEvent = 1.5;
 
 bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested,
            const ScoreThreshold& threshold) {
   // From outside the catalogue only what is beyond doubt.
   const double least = Asked(problem, r, threshold);
-  if (tested <= (Outside(r.effect().kind) ? least + 25.0 : least)) return false;
+  if (tested <= (Outside(r.effect().kind) ? least + kHypotheses.outside_score : least)) return false;
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
   // A further effect that does harm in the half of the log that it was not fitted on is none.
@@ -30,10 +26,11 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     HeldOutGain(problem, current, r.fit, CauseNamed(r.effect().kind).judged_at_scale, cause, blocks);
     if (cause.heldout_gain_high < 0.0) return false;
   }
-  if (Consistency(problem, current, r.fit, true) > kConsistent) return true;
+  if (Consistency(problem, current, r.fit, true) > kAcceptance.consistency) return true;
   // Left out, the only stroke that shows a base parameter may take it far. Where chance is out of the
   // question, it is enough that the drop does not come from one event.
-  return tested > kNoChance && Consistency(problem, current, r.fit, false) > kNotOneEvent;
+  return tested > kAcceptance.no_chance_score &&
+         Consistency(problem, current, r.fit, false) > kAcceptance.seen_consistency;
 }
 
 /// The hypothesis itself, or a number of the base behind it that the log says more about, where that is not
@@ -64,7 +61,8 @@ double Asked(const Problem& problem, const Hypothesis& r, const ScoreThreshold& 
 bool ExplainsSomethingElse(const Problem& problem, const Fit& other, const Hypothesis& r) {
   const SharedEffect& effect = r.fit.point.effects.back();
   if (!effect->signals && !InBase(problem, effect->kind)) return false;
-  return ScoreEffects(problem, other, {effect})[0].drop > kStillThere * (r.score + Penalty(*effect));
+  return ScoreEffects(problem, other, {effect})[0].drop >
+         kAcceptance.still_there_share * (r.score + Penalty(*effect));
 }
 
 Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThreshold& threshold,
@@ -72,7 +70,7 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThresh
   Choice choice;
   for (std::size_t i = 0; i < hypotheses.size() && !choice.found; ++i) {
     if (hypotheses[i].given_up) continue;
-    if (i > 0 && hypotheses[i].score < 0.3 * hypotheses[0].score &&
+    if (i > 0 && hypotheses[i].score < kHypotheses.may_matter_share * hypotheses[0].score &&
         !InBase(problem, hypotheses[i].effect().kind))
       continue;
     const double score = TestedScore(problem, current, hypotheses[i]);
@@ -85,7 +83,7 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThresh
     if (chosen == 0) continue;
     std::rotate(hypotheses.begin(), hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen),
                 hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
-    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), {.most_steps = 4, .most_refreshes = 2});
+    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), kHypotheses.chosen);
     hypotheses[0].score = DropOf(problem, current, hypotheses[0].fit) - Penalty(hypotheses[0].effect());
   }
   return choice;

@@ -6,7 +6,8 @@
 #include <string>
 
 #include "analysis/diagnosis/decision/choose.h"
-#include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/decision/held_out.h"
+#include "analysis/diagnosis/decision/tested_score.h"
 #include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {

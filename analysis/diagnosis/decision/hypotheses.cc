@@ -5,31 +5,18 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/decision/tested_score.h"
 #include "analysis/diagnosis/screening/full_size.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/prediction_error/common_factor.h"
 #include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 namespace {
-
-constexpr double kNoScore = -1e300;
-constexpr double kSmall = 60.0, kBeyondChance = 300.0;  // drops
-constexpr std::size_t kMostKinds = 4, kMostTried = 6;
-constexpr double kFewOfMost = 0.1;
-constexpr int kMostTurns = 3;
-constexpr std::size_t kMostKept = 6;
-// Of the best score: hypotheses below are given up at first, and what is no more than this is no reason to go
-// on.
-constexpr double kGivenUp = 0.02, kAllTheSame = 1e-3;
-constexpr double kMayMatter = 0.3;    // the least share of the best one's score that is tested at all
-constexpr double kMayWin = 0.4;       // the same before the last steps
-constexpr double kSmallStill = 30.0;  // of a score, which new noise may bring
-constexpr double kNearThreshold = 0.5;
 
 /// Catalogue first, the best first, those given up at the end; what lies outside it comes first only where it
 /// explains far more.
@@ -43,46 +30,16 @@ void Sort(std::vector<Hypothesis>& hypotheses) {
     return !r.given_up && Outside(r.effect().kind);
   });
   if (outside == hypotheses.end() || outside == hypotheses.begin()) return;
-  if (outside->score > 1.3 * std::max(0.0, hypotheses[0].score) + 25.0)
+  if (outside->score >
+      kHypotheses.outside_factor * std::max(0.0, hypotheses[0].score) + kHypotheses.outside_score)
     std::rotate(hypotheses.begin(), outside, outside + 1);
 }
 
-bool AddsCoupling(const Problem& problem, const Hypothesis& r) {
-  return CauseNamed(r.effect().kind).coupling && !problem.nominal.two_inertia;
-}
-
-/// Where the fit has gone the cause is not what its name says.
-bool Implausible(const Problem& problem, const Hypothesis& r) {
-  const CauseDefinition& cause = CauseNamed(r.effect().kind);
-  return cause.implausible != nullptr &&
-         (*cause.implausible)(problem, r.effect(), r.fit.point.amplitudes.back());
-}
-
-/// A coupling that every screw has.
-bool NoFault(const Problem& problem, const Hypothesis& r) {
-  const AxisModel m = problem.Build(r.fit.point);
-  return m.two_inertia && m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kNoFault_Hz, 2);
-}
-
-void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
-  // A fit may end at parameters that no machine can have.
-  const bool coupling = AddsCoupling(problem, r);
-  const bool out = !std::isfinite(r.fit.cost) || Implausible(problem, r);
-  r.no_fault = !out && coupling && NoFault(problem, r);
-  r.score = out ? kNoScore : DropOf(problem, current, r.fit) - Penalty(r.effect());
-}
-
-// In addition to a large cause the score test falls short by as much: the noise that it was made under has
-// the other one in it.
-constexpr double kShortByLeakage = 0.1;
-
-bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold) {
-  threshold.leakage *= kShortByLeakage;
-  for (auto& [kind, left] : threshold.leakage_of_kind) left *= kShortByLeakage;
-  ScoreScale score_scale = ScoreScaleOf(problem, s);
-  score_scale.overdispersion = std::min(s.overdispersion, kMostOverdispersion);
-  return s.drop / score_scale.overdispersion - Penalty(*s.effect) >
-         Threshold(problem, threshold, *s.effect, score_scale);
+/// The effort of a fit that ends where a step gains less than a share of what it is below `current`.
+FitEffort WorthFrom(const Fit& current, FitEffort effort, double share) {
+  effort.share_enough = share;
+  effort.from = current.cost;
+  return effort;
 }
 
 /// From the linear estimate.
@@ -98,14 +55,7 @@ InitialGuess Near(const Problem& problem, const Fit& current, const Scored& s) {
   for (std::size_t i = 0; i < freed.size() && i < a.size(); ++i) start.base[freed[i]] -= a[i];
   start.amplitudes.push_back(std::move(a));
   if (s.effect->common_factor) ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
-  return {std::move(start),
-          {.most_steps = 3,
-           .most_refreshes = 1,
-           .close_enough = 1.0,
-           .covariance = false,
-           .share_enough = kAllTheSame,
-           .from = current.cost},
-          &current};
+  return {std::move(start), WorthFrom(current, kHypotheses.near, kHypotheses.all_the_same_share), &current};
 }
 
 /// Of a kind, what no fit leads from one to the other.
@@ -136,28 +86,19 @@ std::vector<InitialGuess> Far(const Problem& problem, const Fit& current, const 
   GridPoint best, stiff;
   const bool coupling = CauseNamed(kind).coupling && !problem.nominal.two_inertia;
   for (GridPoint& p : FullSize(problem, current, kind, scored)) {
-    GridPoint& of = coupling && p.point.effects.back()->order > kNoFault_Hz ? stiff : best;
+    GridPoint& of = coupling && p.point.effects.back()->order > kScreening.no_fault_Hz ? stiff : best;
     if (p.cost < of.cost) of = std::move(p);
   }
   std::vector<InitialGuess> out;
   // The base's sensitivities serve until they lead astray.
+  FitEffort effort = WorthFrom(current, kHypotheses.far, kHypotheses.all_the_same_share);
+  effort.hopeless_above = current.cost;
   for (GridPoint* p : {&best, &stiff})
-    if (std::isfinite(p->cost))
-      out.push_back({std::move(p->point),
-                     {.most_steps = 8,
-                      .most_refreshes = 3,
-                      .close_enough = 1.0,
-                      .covariance = false,
-                      .share_enough = kAllTheSame,
-                      .from = current.cost,
-                      .hopeless_above = current.cost},
-                     &current});
+    if (std::isfinite(p->cost)) out.push_back({std::move(p->point), effort, &current});
   return out;
 }
 
 }  // namespace
-
-bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
 
 bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                   const std::vector<std::string>& tried) {
@@ -187,7 +128,8 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
     } else {
       // Evidence in the priors is small compared with what lies in the residual, and as good.
       const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, threshold);
-      if (!by_priors && (fitted >= kMostKinds || looked_at >= kMostTried || s.drop < kFewOfMost * most))
+      if (!by_priors && (fitted >= kHypotheses.most_kinds || looked_at >= kHypotheses.most_tried ||
+                         s.drop < kHypotheses.waits_share * most))
         continue;
       if (Among(tried, s)) continue;
       tried.push_back(FamilyOf(*s.effect));
@@ -216,7 +158,8 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
 bool MayMatter(const std::vector<Scored>& scored, const Hypothesis& r, double best) {
   if (!r.effect().start.empty()) return true;
   return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
-    return s.effect->kind == r.effect().kind && s.drop > kMayMatter * best - kSmallStill;
+    return s.effect->kind == r.effect().kind &&
+           s.drop > kHypotheses.may_matter_share * best - kHypotheses.new_noise_score;
   });
 }
 
@@ -224,14 +167,14 @@ bool MayMatter(const std::vector<Scored>& scored, const Hypothesis& r, double be
 /// stated. One after the other, for the memory.
 void FitAllFromStated(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
                       std::vector<Hypothesis>& hypotheses) {
-  const FitEffort effort{.most_steps = 8, .most_refreshes = 3, .close_enough = 1.0, .covariance = false};
   double best = 0.0;
   for (Hypothesis& r : hypotheses) {
     if (Outside(r.effect().kind)) continue;
     if (!InBase(problem, r.effect().kind) && !MayMatter(scored, r, best)) continue;
     double worth = std::numeric_limits<double>::infinity();
-    if (!InBase(problem, r.effect().kind)) worth = current.cost - Penalty(r.effect()) - kMayMatter * best;
-    if (FitFromStated(problem, r.fit, effort, worth)) Judge(problem, current, r);
+    if (!InBase(problem, r.effect().kind))
+      worth = current.cost - Penalty(r.effect()) - kHypotheses.may_matter_share * best;
+    if (FitFromStated(problem, r.fit, kHypotheses.far, worth)) Judge(problem, current, r);
     best = std::max(best, r.score);
   }
 }
@@ -240,7 +183,7 @@ void FitAllFromStated(const Problem& problem, const Fit& current, const std::vec
 void GiveUpFarBehind(const Problem& problem, double share, std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& r : hypotheses) {
     if (&r == hypotheses.data() || r.given_up || InBase(problem, r.effect().kind)) continue;
-    r.given_up = r.score < share * std::max(0.0, hypotheses[0].score) - kSmallStill;
+    r.given_up = r.score < share * std::max(0.0, hypotheses[0].score) - kHypotheses.new_noise_score;
     if (!r.given_up) continue;
     Fit left;
     left.point = std::move(r.fit.point);
@@ -255,7 +198,7 @@ void GiveUpFarBehind(const Problem& problem, double share, std::vector<Hypothesi
 void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
   std::size_t kept = 0;
   std::erase_if(hypotheses, [&](const Hypothesis& r) {
-    return !InBase(problem, r.effect().kind) && !Outside(r.effect().kind) && kept++ >= kMostKept;
+    return !InBase(problem, r.effect().kind) && !Outside(r.effect().kind) && kept++ >= kHypotheses.most_kept;
   });
 }
 
@@ -265,8 +208,8 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
                                       const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                                       std::vector<std::string>& tried) {
   std::vector<Hypothesis> out;
-  double best = kNoScore;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (int turn = 0; turn < kHypotheses.most_turns; ++turn) {
     double most = 0.0;
     for (Fit& fit : FitPoints(problem, NextGuesses(problem, current, scored, threshold, tried, most))) {
       out.push_back({std::move(fit)});
@@ -274,13 +217,13 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
       best = std::max(best, out.back().score);
     }
     // Where the best came to nothing, those far behind it have their turn.
-    if (best > kFewOfMost * most || !MorePromised(problem, scored, threshold, tried)) break;
+    if (best > kHypotheses.waits_share * most || !MorePromised(problem, scored, threshold, tried)) break;
   }
   Sort(out);
   KeepBest(problem, out);
   FitAllFromStated(problem, current, scored, out);
   Sort(out);
-  GiveUpFarBehind(problem, kGivenUp, out);
+  GiveUpFarBehind(problem, kHypotheses.given_up_share, out);
   return out;
 }
 
@@ -289,7 +232,8 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
   return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& r) {
     if (r.given_up) return false;
     const ScoreScale score_scale = threshold.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
-    return r.score + r.fit.promised > kNearThreshold * Threshold(problem, threshold, r.effect(), score_scale);
+    return r.score + r.fit.promised >
+           kHypotheses.near_threshold_share * Threshold(problem, threshold, r.effect(), score_scale);
   });
 }
 
@@ -298,7 +242,7 @@ namespace {
 /// The base may lie in another basin since: from there anew, where the score test promises far more than a
 /// hypothesis has, and enough to matter.
 void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>& hypotheses) {
-  const double matters = kMayMatter * hypotheses[0].score;
+  const double matters = kHypotheses.may_matter_share * hypotheses[0].score;
   std::vector<std::size_t> again;
   std::vector<InitialGuess> guesses;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
@@ -307,7 +251,9 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
     if (!by_priors && (!r.effect().signals || FrictionModelMismatch(problem, current))) continue;
     const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
     const double promised = s.drop - Penalty(*s.effect);
-    if (r.score > (by_priors ? promised - 1.0 : 0.5 * promised - 30.0)) continue;
+    if (r.score > (by_priors ? promised - kHypotheses.fitted_anew_score
+                             : kHypotheses.fitted_anew_share * promised - kHypotheses.new_noise_score))
+      continue;
     if (!by_priors && promised < matters) continue;
     again.push_back(i);
     guesses.push_back(Near(problem, current, s));
@@ -327,14 +273,19 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
     fits[on.size() - 1] = std::move(anew.fit);
   }
   for (std::size_t i = 0; i < on.size(); ++i)
-    guesses.push_back(
-        {fits[i].point, {.most_steps = 5, .most_refreshes = 2, .close_enough = 0.3}, nullptr, &fits[i]});
+    guesses.push_back({fits[i].point, kHypotheses.anew, nullptr, &fits[i]});
   fits = FitPoints(problem, std::move(guesses));
   for (std::size_t i = 0; i < on.size(); ++i) {
     Hypothesis anew{std::move(fits[i])};
     Judge(problem, current, anew);
     if (anew.score > hypotheses[on[i]].score) hypotheses[on[i]] = std::move(anew);
   }
+}
+
+FitEffort EffortAgain(const Fit& current, bool best) {
+  const double enough = kHypotheses.all_the_same_share;
+  return best ? WorthFrom(current, kHypotheses.best_again, kHypotheses.best_fit_factor * enough)
+              : WorthFrom(current, kHypotheses.others_again, enough);
 }
 
 }  // namespace
@@ -348,7 +299,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   }
   Sort(hypotheses);
   // What will not be tested needs no sensitivities.
-  GiveUpFarBehind(problem, kMayMatter, hypotheses);
+  GiveUpFarBehind(problem, kHypotheses.may_matter_share, hypotheses);
   for (Hypothesis& r : hypotheses)
     if (!r.given_up) RewhitenSensitivities(problem, r.fit);
   // A basin may end in two places: the base goes on from where the best hypothesis's lies, where that is
@@ -359,26 +310,17 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   const bool there = CostAt(problem, other) < current.cost;
   const double best = hypotheses[0].score;
   // A base is as well known as the scores need it.
+  FitEffort base = kHypotheses.base_again;
+  base.close_enough = std::max(base.close_enough, kHypotheses.all_the_same_share * best);
   std::vector<InitialGuess> guesses = {
-      {there ? std::move(other) : current.point,
-       {.most_steps = 10, .most_refreshes = 3, .close_enough = std::max(0.1, kAllTheSame * best)},
-       nullptr,
-       there ? nullptr : &current}};
+      {there ? std::move(other) : current.point, base, nullptr, there ? nullptr : &current}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const Hypothesis& r = hypotheses[i];
     if (r.given_up) continue;
-    if (i > 0 && r.score < kMayWin * best - kSmallStill) continue;
+    if (i > 0 && r.score < kHypotheses.may_win_share * best - kHypotheses.new_noise_score) continue;
     again.push_back(i);
-    guesses.push_back({r.fit.point,
-                       {.most_steps = i == 0 ? 10 : 5,
-                        .most_refreshes = i == 0 ? 4 : 1,
-                        .close_enough = i == 0 ? 0.1 : 0.3,
-                        .covariance = i == 0,
-                        .share_enough = i == 0 ? 0.02 * kAllTheSame : kAllTheSame,
-                        .from = current.cost},
-                       nullptr,
-                       &hypotheses[i].fit});
+    guesses.push_back({r.fit.point, EffortAgain(current, i == 0), nullptr, &hypotheses[i].fit});
   }
   std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
   current = std::move(fits[0]);
@@ -390,21 +332,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   Sort(hypotheses);
   OneOfEach(hypotheses);
   if (&hypotheses[0].effect() != first)
-    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), {.most_steps = 3, .most_refreshes = 2});
-}
-
-double TestedScore(const Problem& problem, const Fit& current, const Hypothesis& hypothesis) {
-  const SharedEffect& effect = hypothesis.fit.point.effects.back();
-  double drop = hypothesis.score + Penalty(*effect);
-  double most = std::numeric_limits<double>::infinity();
-  // Chance does not lower a cost that far; a base that lies elsewhere without the effect does.
-  if (drop < kBeyondChance && effect->start.empty() && !InBase(problem, effect->kind)) {
-    const Scored again = ScoreEffects(problem, current, {effect})[0];
-    if (again.drop < kSmall) drop = std::min(drop, again.drop);
-    // An effect that is there makes its score scatter from block to block, but not as a single event does.
-    most = kMostOverdispersion * again.drop / again.overdispersion;
-  }
-  return std::min(drop / OverdispersionOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
+    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), kHypotheses.became_first);
 }
 
 }  // namespace contour::diagnosis

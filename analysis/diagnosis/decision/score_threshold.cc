@@ -7,25 +7,19 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/chi_square.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {
 
-// Of numbers of the base in addition to accepted causes, whose residual leakage they may take up; per row.
-constexpr double kLeakagePerRow = 3e-5;
-// Each kind that is a number of the base has this share of the false alarms.
-constexpr double kShareInBase = 0.2;
-// A stated uncertainty is no normal distribution far out: what is less probable than this is no chance at any
-// rate (3.1 standard deviations).
-constexpr double kBeyondStated = 2e-3;
+constexpr double kTail = TailQuantile();
 
 }  // namespace
 
 ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed,
                          double more) {
-  constexpr int kDraws = 1500;
-  constexpr int kScans = 6;
+  constexpr int kDraws = kThreshold.flip_draws;
   std::mt19937_64 random(seed * 2654435761U + 99);
   std::uniform_real_distribution<double> uniform(1e-12, 1.0);
   std::vector<double> largest;
@@ -33,9 +27,10 @@ ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate
   for (int d = 0; d < kDraws; ++d) {
     for (Eigen::Index b = 0; b < kBlocks; ++b) signs(b) = (random() & 1U) != 0 ? 1.0 : -1.0;
     double best = -1e300;
-    for (int i = 0; i < kScans; ++i) best = std::max(best, -2.0 * std::log(-std::log(uniform(random))) - 6.0);
+    for (int i = 0; i < kThreshold.scans; ++i)
+      best = std::max(best, -2.0 * std::log(-std::log(uniform(random))) - ScanPenalty());
     for (const Scored& s : scored) {
-      if (s.effect->wave && s.effect->grid >= 12.0) continue;  // a scan's
+      if (s.effect->wave && s.effect->grid >= kThreshold.scanned_grid) continue;  // a scan's
       const Eigen::VectorXd h = s.per_block * signs;
       best = std::max(best, h.dot(s.covariance * h) / s.overdispersion - Penalty(*s.effect));
     }
@@ -45,12 +40,13 @@ ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate
   const auto drawn = [&](double p) {
     return largest[std::min<std::size_t>(kDraws - 1, static_cast<std::size_t>(p * kDraws))];
   };
-  // Straight through the 80 % and the 98 % quantile on Gumbel's paper.
+  // Straight through two quantiles on Gumbel's paper.
   const auto paper = [](double p) { return -std::log(-std::log(p)); };
-  const double slope = (drawn(0.98) - drawn(0.80)) / (paper(0.98) - paper(0.80));
+  const double slope =
+      (drawn(kTail) - drawn(kThreshold.fitted_quantile)) / (paper(kTail) - paper(kThreshold.fitted_quantile));
   const auto at_rate = [&](double rate) {
-    if (rate >= 0.02) return drawn(1.0 - rate);
-    return drawn(0.98) + slope * (paper(1.0 - rate) - paper(0.98));
+    if (rate >= kThreshold.tail_rate) return drawn(1.0 - rate);
+    return drawn(kTail) + slope * (paper(1.0 - rate) - paper(kTail));
   };
   return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
 }
@@ -122,9 +118,10 @@ double Threshold(const Problem& problem, const ScoreThreshold& threshold, const 
     return Threshold(problem, threshold, effect.kind) + left / score_scale.overdispersion;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
-  const double by_chance = ChiSquareQuantile(degrees, std::max(kShareInBase * threshold.rate, kBeyondStated));
+  const double by_chance = ChiSquareQuantile(
+      degrees, std::max(kThreshold.share_in_base * threshold.rate, kThreshold.beyond_stated_rate));
   if (threshold.accepted == 0) return by_chance - Penalty(effect);
-  left += kLeakagePerRow * static_cast<double>(problem.rows());
+  left += kThreshold.leakage_per_row * static_cast<double>(problem.rows());
   // At its worst residual leakage of chi^2 moves the number by its root, in standard errors of the log.
   const double moved = score_scale.variance_ratio * left;
   left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));

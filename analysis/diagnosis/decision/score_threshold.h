@@ -7,16 +7,17 @@
 #include <vector>
 
 #include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
 
 /// What a score must exceed for its kind to be named.
 struct ScoreThreshold {
-  double flips = 0.0;       ///< as SignFlips has it, at the asked rate
-  double calibrated = 0.0;  ///< the same at the rate of the calibration
-  double rate = 0.05;       ///< of false alarms
-  int accepted = 0;         ///< causes that are accepted already
-  double leakage = 0.0;     ///< what of their scores may look like other causes
+  double flips = 0.0;                      ///< as SignFlips has it, at the asked rate
+  double calibrated = 0.0;                 ///< the same at the rate of the calibration
+  double rate = kRounds.false_alarm_rate;  ///< of false alarms
+  int accepted = 0;                        ///< causes that are accepted already
+  double leakage = 0.0;                    ///< what of their scores may look like other causes
   /// The same, as another cause of a kind that is among them: harmonics, neighbouring orders.
   std::map<std::string, double> leakage_of_kind = {};
 
@@ -43,7 +44,7 @@ ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit);
 
 /// The score that the best of all candidates exceeds by chance with a given probability: residual blocks
 /// with random signs against the fixed columns, waves found by a scan as the largest of their grid; beyond
-/// the 2 % quantile along a Gumbel fit. `more` is added to it.
+/// kThreshold.tail_rate along a Gumbel fit. `more` is added to it.
 ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed,
                          double more);
 

@@ -8,15 +8,10 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
 namespace {
-
-// Of what there is to explain, causes by their right names leave less than a hundredth, others a tenth and
-// more.
-constexpr double kLargeShare = 0.04;
-// A torque that is left says little about an error of the lead, which shows on the scale alone.
-constexpr double kLargeWithScaleError = 0.3;
 
 std::string StructureText(const Problem& problem, const RemainingStructure& left) {
   const bool linear = problem.log.linear;
@@ -45,7 +40,9 @@ void Conclude(const Problem& problem, const std::vector<RemainingStructure>& lef
   // A shape that was fitted, but is none of the catalogue, is no explanation either.
   for (const Cause& c : out.causes) (Outside(c.kind) ? beyond : named) += 2.0 * c.log_evidence_gain;
   const bool scale = !out.causes.empty() && CauseNamed(out.causes[0].kind).judged_at_scale;
-  const bool unexplained = beyond > (scale ? kLargeWithScaleError : kLargeShare) * (named + beyond);
+  const bool unexplained =
+      beyond >
+      (scale ? kAcceptance.large_with_scale_error_share : kAcceptance.large_share) * (named + beyond);
   for (const Cause& c : out.causes)
     if (Outside(c.kind))
       out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +

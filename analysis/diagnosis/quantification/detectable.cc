@@ -9,33 +9,23 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/screening/full_size.h"
+#include "analysis/diagnosis/tuning/quantification_tuning.h"
+#include "analysis/diagnosis/tuning/statistics.h"
 #include "analysis/prediction_error/products.h"
 #include "analysis/prediction_error/simd/lanes.h"
 
 namespace contour::diagnosis {
 namespace {
 
-// A cause must also hold in several blocks, in unseen halves and against other hypotheses, and the rest of
-// the fit takes a part of it over: by recorded machines (docs/diagnosis_results.md).
-constexpr double kBeyondTheThreshold = 1.6;
-// The same where the size comes from runs at that size.
-constexpr double kBeyondRuns = 1.5;
-
-// A log is good for a kind while such a flaw would show by this much less.
-constexpr double kHopeless = 1.5;
-
-// Standard deviations that 90 % of cases stay within on one side.
-constexpr double kNinety = 1.2816;
-
 /// Standard errors that exceed a threshold of the squared score in 90 % of cases.
-double Needed(double threshold) { return std::sqrt(std::max(threshold, 1.0)) + kNinety; }
+double Needed(double threshold) { return std::sqrt(std::max(threshold, 1.0)) + kNormal90; }
 
 double Needed(const Problem& problem, const ScoreThreshold& threshold, const Scored& s) {
   return Needed(Threshold(problem, threshold, *s.effect, ScoreScaleOf(problem, s)) + Penalty(*s.effect));
 }
 
 /// An effect that is there makes every score scatter.
-double ByChance(const Scored& s) { return std::min(s.overdispersion, kMostOverdispersion); }
+double ByChance(const Scored& s) { return std::min(s.overdispersion, kScreening.most_overdispersion); }
 
 /// By the first amplitude: the linear estimate of what exceeds the threshold in 90 % of cases.
 double LinearSize(const Problem& problem, const ScoreThreshold& threshold, const Scored& s) {
@@ -82,7 +72,8 @@ std::optional<Detectable> Middle(const Problem& problem, const ScoreThreshold& t
   if (shapes.empty()) return std::nullopt;
   std::sort(shapes.begin(), shapes.end());
   const auto& [size, at] = shapes[(shapes.size() - 1) / 2];
-  return Detectable{at->effect, size, (InBase(problem, kind) ? 1.0 : kBeyondTheThreshold) * size};
+  return Detectable{at->effect, size,
+                    (InBase(problem, kind) ? 1.0 : kQuantification.beyond_threshold) * size};
 }
 
 /// A point in addition to the base, with a first amplitude.
@@ -116,7 +107,8 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
   std::vector<double> sizes;
   std::vector<Point> points;
   const double largest = linear.effect->high[0];
-  for (double size = 0.5 * linear.threshold; size < largest && points.size() < kLanes; size *= 2.0) {
+  for (double size = kQuantification.first_run_share * linear.threshold;
+       size < largest && points.size() < kLanes; size *= 2.0) {
     sizes.push_back(size);
     points.push_back(WithEffect(base, linear.effect, size));
   }
@@ -126,7 +118,8 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
     if (s.effect == linear.effect) enough = std::pow(Needed(problem, threshold, s), 2) * ByChance(s);
     if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
     points.push_back(WithEffect(base, s.effect, s.effect->steps[0]));
-    promising.push_back(kMostOverdispersion * std::pow(Needed(problem, threshold, s) - kNinety, 2));
+    promising.push_back(kScreening.most_overdispersion *
+                        std::pow(Needed(problem, threshold, s) - kNormal90, 2));
   }
   const Eigen::MatrixXd left = LeftOf(problem, base, points);
   const auto n = static_cast<Eigen::Index>(sizes.size());
@@ -144,7 +137,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
     if (!(over[i] > 1.0)) continue;
     double size = sizes[i];
     if (i > 0 && over[i - 1] > 0.0) size *= std::exp2(-std::log(over[i]) / std::log(over[i] / over[i - 1]));
-    return Detectable{linear.effect, size, kBeyondRuns * size};
+    return Detectable{linear.effect, size, kQuantification.beyond_runs * size};
   }
   return std::nullopt;
 }
@@ -155,7 +148,8 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   std::vector<Point> points;
   std::vector<const Scored*> places;
   for (const Scored& s : scored) {
-    if (!CauseNamed(s.effect->kind).coupling || s.effect->start.empty() || s.effect->order > kNoFault_Hz)
+    if (!CauseNamed(s.effect->kind).coupling || s.effect->start.empty() ||
+        s.effect->order > kScreening.no_fault_Hz)
       continue;
     places.push_back(&s);
     points.push_back(WithEffect(base, s.effect, s.effect->start[0]));
@@ -164,8 +158,8 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   const Eigen::VectorXd promised = LeftOf(problem, base, points).diagonal();
   const Scored* best = nullptr;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double enough =
-        std::pow(kBeyondRuns * Needed(problem, threshold, *places[i]), 2) * ByChance(*places[i]);
+    const double enough = std::pow(kQuantification.beyond_runs * Needed(problem, threshold, *places[i]), 2) *
+                          ByChance(*places[i]);
     if (promised(static_cast<Eigen::Index>(i)) > enough &&
         (best == nullptr || places[i]->effect->order > best->effect->order))
       best = places[i];
@@ -195,7 +189,7 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
     const std::string kind(*cause->name);
     if (!only.empty() && std::find(only.begin(), only.end(), kind) == only.end()) continue;
     const std::optional<Detectable> d = Smallest(problem, base, screened.threshold, screened.scored, kind);
-    if (!d || d->threshold > kHopeless * (*cause->largest)(problem)) continue;
+    if (!d || d->threshold > kQuantification.hopeless_factor * (*cause->largest)(problem)) continue;
     Fit at;
     at.point = base.point;
     // Numbers of the model deviate from what is stated.
@@ -214,7 +208,8 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
   if (screened.jitter.tested) {
     const CauseDefinition& cause = CauseInScatter();
     out[std::string(*cause.name)][std::string(*cause.main_parameter)] =
-        1e6 * std::sqrt(kBeyondTheThreshold * Needed(Threshold(problem, screened.threshold) + 3.0) *
+        1e6 * std::sqrt(kQuantification.beyond_threshold *
+                        Needed(Threshold(problem, screened.threshold) + kScreening.penalty_per_amplitude) *
                         screened.jitter.sigma_s2);
   }
   return out;

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/tuning/statistics.h"
 #include "analysis/prediction_error/common_factor.h"
 
 namespace contour::diagnosis {
@@ -24,7 +25,7 @@ void WidenIntervals(const Problem& problem, const Point& point, Cause& cause) {
     double sigma = ModelErrorOf(definition, name);
     // All forces against the torque: the log itself says nothing about it.
     if (definition.common_factor) sigma = FindCommonFactor(problem, point).sigma;
-    const double by = 1.96 * sigma * std::fabs(interval.value);
+    const double by = kNormal95 * sigma * std::fabs(interval.value);
     interval.low = interval.value - std::hypot(interval.value - interval.low, by);
     interval.high = interval.value + std::hypot(interval.high - interval.value, by);
   }

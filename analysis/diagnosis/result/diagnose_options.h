@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/diagnosis/tuning/decision_tuning.h"
+
 namespace contour::diagnosis {
 
 /// What one kind of cause scored in one round, for calibrations.
@@ -24,11 +26,12 @@ struct Evidence {
 };
 
 struct DiagnoseOptions {
-  double false_alarm_rate = 0.05;
+  double false_alarm_rate = kRounds.false_alarm_rate;
   std::uint64_t seed =
       1;  ///< of everything drawn; the same seed gives the same answer on any number of threads
   int threads = 1;
-  int most_effects = 3;  ///< causes named at most; as many further orders of theirs do not count
+  int most_effects =
+      kRounds.most_effects;  ///< causes named at most; as many further orders of theirs do not count
   /// Refits with the residual of every stroke at random, from which the intervals come; 0: from the fit's
   /// covariance.
   int bootstrap_runs = 0;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/recording/data_quality.h"
 
 // What diagnosis says. The JSON file, the text and the report are written from this and nothing else.
@@ -69,7 +70,7 @@ struct Diagnosis {
   std::vector<Cause> causes;
   std::vector<std::string> not_excited;
   std::map<std::string, std::map<std::string, double>> smallest_detectable;
-  double false_alarm_rate = 0.05;
+  double false_alarm_rate = kRounds.false_alarm_rate;
   double threshold = 0.0;  ///< score that the calibrated threshold asked for
   int bootstrap_runs = 0;  ///< that the intervals come from; 0: from the fit's covariance
   DataQuality data_quality;

@@ -6,17 +6,14 @@
 #include <memory>
 #include <utility>
 
+#include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "analysis/prediction_error/products.h"
 #include "analysis/prediction_error/simd/lanes.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kFineStep = 0.05;
-constexpr std::size_t kSmallStarts = 4;
-// Drop of chi^2 from which an excerpt ranks places: a difference of two costs scatters by twice its root over
-// the excerpt's share of the log, so the best one is hardly ever behind eight others.
-constexpr double kRanks = 100.0;
+// Grid points that the excerpt leaves for the whole log: one run of all lanes.
 constexpr std::size_t kShortlist = kLanes;
 
 std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, const std::string& kind,
@@ -27,7 +24,7 @@ std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, cons
     a[0] = std::clamp(first, e->low[0], e->high[0]);
     // The test's step is as large as what it looks for; a derivative needs a small one.
     auto fine = std::make_shared<Effect>(*e);
-    fine->steps[0] = std::min(fine->steps[0], kFineStep * std::fabs(a[0]));
+    fine->steps[0] = std::min(fine->steps[0], kScreening.fine_step_share * std::fabs(a[0]));
     Point p = current.point;
     p.effects.push_back(std::move(fine));
     p.amplitudes.push_back(std::move(a));
@@ -36,11 +33,11 @@ std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, cons
   std::size_t small = 0;
   for (const Scored& s : scored) {
     if (s.effect->kind != kind) continue;
-    for (const double size : {0.15, 0.5, 1.5}) add(s.effect, size * s.effect->start[0]);
+    for (const double size : kScreening.grid_sizes) add(s.effect, size * s.effect->start[0]);
     // Small ones from where the score test would have them.
-    if (small >= kSmallStarts || InBase(problem, kind) || s.amplitude(0) <= 0.0) continue;
+    if (small >= kScreening.small_grid_points || InBase(problem, kind) || s.amplitude(0) <= 0.0) continue;
     ++small;
-    for (const double size : {1.0, 3.0}) add(s.effect, size * s.amplitude(0));
+    for (const double size : kScreening.small_sizes) add(s.effect, size * s.amplitude(0));
   }
   return points;
 }
@@ -97,7 +94,9 @@ std::vector<Point> Shortlist(const Problem& problem, const Fit& current, std::ve
       Costs(problem, OnExcerpt(problem, current), std::move(points), Extent::kExcerpt);
   std::stable_sort(points_of_grid.begin(), points_of_grid.end(),
                    [](const GridPoint& a, const GridPoint& b) { return a.cost < b.cost; });
-  const auto stiff = [](const GridPoint& p) { return p.point.effects.back()->order > kNoFault_Hz; };
+  const auto stiff = [](const GridPoint& p) {
+    return p.point.effects.back()->order > kScreening.no_fault_Hz;
+  };
   const bool both = std::any_of(points_of_grid.begin(), points_of_grid.end(), stiff);
   const std::size_t most = both ? kShortlist / 2 : kShortlist;
   std::size_t kept[2] = {0, 0};
@@ -112,8 +111,9 @@ std::vector<Point> Shortlist(const Problem& problem, const Fit& current, std::ve
 std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
                                 const std::vector<Scored>& scored) {
   std::vector<Point> points = GridPointsOf(problem, current, kind, scored);
-  const bool strong = std::any_of(scored.begin(), scored.end(),
-                                  [&](const Scored& s) { return s.effect->kind == kind && s.drop > kRanks; });
+  const bool strong = std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+    return s.effect->kind == kind && s.drop > kScreening.ranks_drop;
+  });
   if (strong && points.size() > 2 * kShortlist && !problem.excerpt.empty())
     points = Shortlist(problem, current, std::move(points));
   std::vector<GridPoint> out = Costs(problem, current, std::move(points), Extent::kWhole);

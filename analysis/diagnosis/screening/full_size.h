@@ -9,9 +9,6 @@
 
 namespace contour::diagnosis {
 
-/// A coupling above is one that every screw has.
-inline constexpr double kNoFault_Hz = 700.0;
-
 /// A grid point at full size, and what the cost would be there, the base following to first order.
 struct GridPoint {
   Point point;

@@ -5,18 +5,9 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/tuning/screening_tuning.h"
 
 namespace contour::diagnosis {
-namespace {
-
-// Maxwell-slip elements of real axes break away within some ten lengths of the bristle that fits best.
-constexpr double kLengths = 20.0;
-// Of a mean square, in stated deviations: with friction of the law and a soft element it ends above zero, on
-// Maxwell-slip friction well below.
-constexpr double kBelowZero = 0.5;
-
-}  // namespace
-
 std::vector<double> TravelSinceReversal(const Signals& s) {
   const Signal& x = s.table_m;
   std::vector<double> travel(x.size(), 0.0);
@@ -41,7 +32,7 @@ bool FrictionModelMismatch(const Problem& problem, const Fit& fit) {
     return false;
   for (std::size_t i = 0; i < problem.terms.size(); ++i) {
     const BaseTerm& t = problem.terms[i];
-    if (t.name == "rough" && fit.point.base[i] < -kBelowZero * t.sigma) return true;
+    if (t.name == "rough" && fit.point.base[i] < -kMismatch.below_zero_deviations * t.sigma) return true;
   }
   return false;
 }
@@ -49,7 +40,7 @@ bool FrictionModelMismatch(const Problem& problem, const Fit& fit) {
 std::vector<bool> GrossSliding(const Problem& problem) {
   const Signals& s = *problem.signals;
   const StatedFriction& f = problem.nominal.friction;
-  const double far_m = kLengths * f.Fc_plus / f.s0 * problem.stated.table_per_q;
+  const double far_m = kMismatch.gross_sliding_lengths * f.Fc_plus / f.s0 * problem.stated.table_per_q;
   const std::vector<double> travel = TravelSinceReversal(s);
   std::vector<bool> out(problem.rows());
   for (std::size_t k = 0; k < out.size(); ++k)

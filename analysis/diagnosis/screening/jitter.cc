@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/tuning/screening_tuning.h"
+#include "analysis/diagnosis/tuning/statistics.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr int kParts = 8;
-constexpr std::size_t kBlock = 50;
+constexpr int kParts = kJitter.parts;
+constexpr std::size_t kBlock = kJitter.block_rows;
 constexpr int kSpeed = kParts;
 
 using Row = Eigen::Matrix<double, kParts + 2, 1>;
@@ -26,7 +28,7 @@ struct Variances {
 Variances BlockVariances(const Problem& problem, const Fit& fit) {
   const Signals& s = *problem.signals;
   // Slower than this, quantisation is no noise of constant variance.
-  const double slowest = 2.0 * problem.stated.position_step / problem.log.period_s;
+  const double slowest = kJitter.slowest_counts_per_row * problem.stated.position_step / problem.log.period_s;
   Variances out;
   for (std::size_t from = 2; from + kBlock <= problem.rows(); from += kBlock) {
     double sum = 0.0, w2 = 0.0, a2 = 0.0;
@@ -38,7 +40,7 @@ Variances BlockVariances(const Problem& problem, const Fit& fit) {
       if (!use) break;
       const auto at = [&](std::size_t i) { return fit.residual[i] / problem.root_weight[i]; };
       const double d = at(k) - 2.0 * at(k - 1) + at(k - 2);
-      sum += d * d / 6.0;
+      sum += d * d / kVarianceOfSecondDifference;
       w2 += s.velocity[k] * s.velocity[k];
       a2 += s.acceleration[k] * s.acceleration[k];
     }
@@ -68,15 +70,16 @@ WeightedFit FitVariances(const std::vector<Row>& rows, const std::vector<double>
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                    sorted.end());
   const double middle = sorted[sorted.size() / 2];
-  for (int pass = 0; pass < 6; ++pass) {
+  for (int pass = 0; pass < kJitter.passes; ++pass) {
     Square normal = Square::Identity() * 1e-12;
     Row right = Row::Zero();
     scatter.setZero();
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      const double expected = std::max(pass == 0 ? middle : rows[i].dot(c), 0.2 * middle);
+      const double expected =
+          std::max(pass == 0 ? middle : rows[i].dot(c), kJitter.least_expected_share * middle);
       const double weight = 1.0 / (expected * expected);
       // A block with a shock in it counts as far as it may be chance.
-      const double seen = std::min(variance[i], 3.0 * expected);
+      const double seen = std::min(variance[i], kJitter.most_seen_factor * expected);
       normal += weight * rows[i] * rows[i].transpose();
       right += weight * seen * rows[i];
       scatter += std::pow(weight * (seen - rows[i].dot(c)), 2) * rows[i] * rows[i].transpose();
@@ -93,7 +96,7 @@ double GainOfReading(const Problem& problem) {
   double gain = 0.0;
   for (std::size_t k = 0; k < h.size(); ++k) {
     const double d = h[k] - 2.0 * (k > 0 ? h[k - 1] : 0.0) + (k > 1 ? h[k - 2] : 0.0);
-    gain += d * d / 6.0;
+    gain += d * d / kVarianceOfSecondDifference;
   }
   return gain;
 }
@@ -103,7 +106,7 @@ double GainOfReading(const Problem& problem) {
 Jitter TestJitter(const Problem& problem, const Fit& fit) {
   auto [rows, variance] = BlockVariances(problem, fit);
   Jitter out;
-  if (rows.size() < 100) return out;
+  if (rows.size() < kJitter.fewest_blocks) return out;
   Row top = Row::Constant(1e-300);
   for (const auto& r : rows) top = top.cwiseMax(r);
   double low = 1.0;
@@ -111,7 +114,7 @@ Jitter TestJitter(const Problem& problem, const Fit& fit) {
     r = r.cwiseQuotient(top).eval();
     low = std::min(low, r(kSpeed));
   }
-  if (low > 0.25) return out;
+  if (low > kJitter.slow_enough_share) return out;
   out.tested = true;
   const auto [c, covariance] = FitVariances(rows, variance);
   const double sigma = std::sqrt(std::max(covariance(kSpeed, kSpeed), 1e-300));

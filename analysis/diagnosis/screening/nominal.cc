@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
@@ -15,19 +16,17 @@ Nominal FitNominal(Problem& problem) {
   problem.LearnOutliers(start);
   problem.LearnNoise(start);
   const Extent ahead = problem.excerpt.empty() ? Extent::kWhole : Extent::kExcerpt;
-  nominal.fit =
-      FitPoint(problem, start,
-               {.most_steps = 4, .most_refreshes = 2, .close_enough = 3.0, .covariance = false}, ahead);
+  nominal.fit = FitPoint(problem, start, kScreening.base_ahead, ahead);
   problem.LearnNoise(nominal.fit.point);
-  const FitEffort effort{.most_steps = 12, .most_refreshes = 4, .close_enough = 0.1};
   if (ahead == Extent::kExcerpt) {
-    nominal.fit = FitPoint(problem, FitPoint(problem, nominal.fit.point, kToTheBasin, ahead).point, effort);
+    nominal.fit =
+        FitPoint(problem, FitPoint(problem, nominal.fit.point, kToTheBasin, ahead).point, kScreening.base);
   } else {
     Rewhiten(problem, nominal.fit);
-    nominal.fit = FitOn(problem, std::move(nominal.fit), effort);
+    nominal.fit = FitOn(problem, std::move(nominal.fit), kScreening.base);
   }
   // A resonance may have been taken for another one.
-  FitFromStated(problem, nominal.fit, effort);
+  FitFromStated(problem, nominal.fit, kScreening.base);
   problem.LearnSignals(nominal.fit.point);
   nominal.catalogue = CatalogueEffects(problem);
   nominal.by_extras = std::max(0.0, problem.ExplainedByExtras(nominal.fit.point));

@@ -13,16 +13,9 @@
 namespace contour::diagnosis {
 namespace {
 
-// Fewer periods of friction over the travel than this are friction along the stroke, whose cosines cover
-// them.
-constexpr double kFewestPeriods = 4.5;
-
-// A force held over a row hardly moves anything near half the rate: nothing divided by nothing.
-constexpr double kHighestPerRow = 0.4;
-
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr std::size_t kResponse = 256;
-constexpr std::size_t kTransfer = 4096;
+constexpr std::size_t kResponse = kScan.response_rows;
+constexpr std::size_t kTransfer = kScan.transfer_rows;
 
 struct Matched {
   std::vector<double> lambda;    // gradient of |r|^2 / 2 by a pulse at each row
@@ -79,12 +72,12 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   const Signals& s = *problem.signals;
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = std::max(1.0, (*high - *low) / kTwoPi);
-  const double per_rev = std::exp2(std::ceil(std::log2(4.0 * highest)));
+  const double per_rev = std::exp2(std::ceil(std::log2(kScan.samples_per_period * highest)));
   const auto length = folded ? static_cast<std::size_t>(per_rev)
                              : std::bit_ceil(static_cast<std::size_t>(per_rev * revs * 2.0) + 2);
   std::vector<double> re(length, 0.0), im(length, 0.0);
   Histogram histogram;
-  constexpr std::size_t kBins = 200;
+  constexpr std::size_t kBins = kScan.speed_bins;
   histogram.weight.assign(kBins, 0.0);
   histogram.speed.assign(kBins, 0.0);
   double fastest = 1e-12;
@@ -110,7 +103,7 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   for (std::size_t i = 1; i < length / 2; ++i) {
     const double order = step * static_cast<double>(i);
     if (order > highest) break;
-    if (order > info_at * 1.01 + 0.02 || info_at < 0.0) {
+    if (order > info_at * kScan.renewed_at_ratio + kScan.renewed_at_orders || info_at < 0.0) {
       info = histogram.InformationAt(matched, order);
       info_at = order;
     }
@@ -119,13 +112,35 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   return out;
 }
 
+// Of forces of time, by one transform of the gradient.
+std::vector<double> Frequencies(const Problem& problem, const Matched& torque,
+                                const std::vector<double>& sliding) {
+  const std::size_t n = problem.rows();
+  const std::size_t length = std::bit_ceil(2 * n);
+  std::vector<double> re(length, 0.0), im(length, 0.0);
+  double moving = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    re[k] = sliding[k] * torque.lambda[k];
+    moving += sliding[k] * problem.root_weight[k] * problem.root_weight[k];
+  }
+  FourierTransform(re, im, false);
+  std::vector<Peak> time;
+  for (std::size_t i = 1; i < length / 2; ++i) {
+    const double f = static_cast<double>(i) / static_cast<double>(length);
+    if (f * static_cast<double>(n) < kScan.fewest_periods_of_time || f > kScan.highest_per_row) continue;
+    time.push_back(
+        {f / problem.log.period_s, 2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
+  }
+  return Best(time, kScan.proposed, 2.0 / (static_cast<double>(n) * problem.log.period_s));
+}
+
 }  // namespace
 
 std::vector<double> PulseResponse(const Problem& problem, bool reading) {
   // In the middle of the longest slide.
   const Signals& s = *problem.signals;
   const std::size_t n = problem.rows();
-  const double slow = 0.02 * s.max_speed;
+  const double slow = kScan.slow_share * s.max_speed;
   std::size_t row = n / 2, longest = 0, since = 0;
   for (std::size_t k = 1; k <= n; ++k) {
     const bool slides = k < n && problem.counted[k] != 0 && std::fabs(s.velocity[k]) > slow &&
@@ -149,6 +164,11 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   const auto add = [&](Wave wave, const std::vector<double>& orders, double grid) {
     for (const double o : orders) out.push_back(WaveEffect(problem, wave, o, grid));
   };
+  const auto whole_orders = [&](Wave wave, const Matched& matched, const std::vector<double>& weight,
+                                double highest, std::size_t count) {
+    add(wave, Best(AngleScores(problem, matched, weight, highest, true), count, kScan.whole_orders_apart),
+        highest);
+  };
   std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + static_cast<std::ptrdiff_t>(n));
   NoiseFilter::Gradient back = problem.noise.Back(innovation, problem.counted, problem.root_weight.data());
   for (double& x : back.level) x /= s.coulomb;
@@ -164,41 +184,28 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   }
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = (*high - *low) / kTwoPi;
-  if (revs > 1.5) {
-    add(Wave::kFrictionOfAngle, Best(AngleScores(problem, level, sliding, 40.0, true), 2, 0.5), 40.0);
+  if (revs > kScan.fewest_turns) {
+    whole_orders(Wave::kFrictionOfAngle, level, sliding, kScan.highest_friction_order, kScan.proposed);
     std::vector<Peak> between;
-    if (revs > 5.0)
-      for (const Peak& p : AngleScores(problem, level, sliding, 20.0, false))
-        if (std::fabs(p.order - std::round(p.order)) > 0.75 / revs && p.order > kFewestPeriods / revs)
+    if (revs > kScan.fewest_turns_between)
+      for (const Peak& p : AngleScores(problem, level, sliding, kScan.highest_order_between, false))
+        if (std::fabs(p.order - std::round(p.order)) > kScan.off_whole_periods / revs &&
+            p.order > kScan.fewest_friction_periods / revs)
           between.push_back(p);
-    add(Wave::kFrictionOfAngle, Best(std::move(between), 2, 1.0 / revs), 20.0 * revs);
-    add(Wave::kTorqueOfAngle, Best(AngleScores(problem, torque, sliding, 144.0, true), 2, 0.5), 144.0);
-    add(Wave::kGainOfAngle, Best(AngleScores(problem, torque, loaded, 144.0, true), 1, 0.5), 144.0);
+    add(Wave::kFrictionOfAngle, Best(std::move(between), kScan.proposed, 1.0 / revs),
+        kScan.highest_order_between * revs);
+    whole_orders(Wave::kTorqueOfAngle, torque, sliding, kScan.highest_torque_order, kScan.proposed);
+    whole_orders(Wave::kGainOfAngle, torque, loaded, kScan.highest_torque_order, 1);
   }
-  if (revs > 0.05) {
+  if (revs > kScan.fewest_turns_of_lines) {
     const Matched reading = Match(problem, true, std::move(back.reading));
-    std::vector<Peak> lines = AngleScores(problem, reading, std::vector<double>(n, 1.0), 4096.0, true);
-    std::erase_if(lines, [](const Peak& peak) { return peak.order < 8.0; });
-    add(Wave::kReadingOfAngle, Best(std::move(lines), 2, 0.5), 4096.0);
+    std::vector<Peak> lines =
+        AngleScores(problem, reading, std::vector<double>(n, 1.0), kScan.highest_line_order, true);
+    std::erase_if(lines, [](const Peak& peak) { return peak.order < kScan.lowest_line_order; });
+    add(Wave::kReadingOfAngle, Best(std::move(lines), kScan.proposed, kScan.whole_orders_apart),
+        kScan.highest_line_order);
   }
-  // Time: one transform of the gradient.
-  const std::size_t length = std::bit_ceil(2 * n);
-  std::vector<double> re(length, 0.0), im(length, 0.0);
-  double moving = 0.0;
-  for (std::size_t k = 0; k < n; ++k) {
-    re[k] = sliding[k] * torque.lambda[k];
-    moving += sliding[k] * problem.root_weight[k] * problem.root_weight[k];
-  }
-  FourierTransform(re, im, false);
-  std::vector<Peak> time;
-  for (std::size_t i = 1; i < length / 2; ++i) {
-    const double f = static_cast<double>(i) / static_cast<double>(length);
-    if (f * static_cast<double>(n) < 6.0 || f > kHighestPerRow) continue;
-    time.push_back(
-        {f / problem.log.period_s, 2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
-  }
-  add(Wave::kForceOfTime, Best(time, 2, 2.0 / (static_cast<double>(n) * problem.log.period_s)),
-      0.5 * static_cast<double>(n));
+  add(Wave::kForceOfTime, Frequencies(problem, torque, sliding), 0.5 * static_cast<double>(n));
   return out;
 }
 

@@ -11,6 +11,9 @@
 namespace contour::diagnosis {
 namespace {
 
+// Keep solvers away from zero.
+constexpr double kRidge = 1e-6, kLeastLeft = 1e-9;
+
 // Products of columns with each other and, in blocks of time, with the residual.
 ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<const double* const> a,
                           std::span<const double* const> b) {
@@ -55,7 +58,8 @@ double OverdispersionOfLast(const Problem& problem, const Fit& fit) {
 }
 
 double Penalty(const Effect& effect) {
-  return 3.0 * static_cast<double>(effect.steps.size()) + 2.0 * std::log(std::max(1.0, effect.grid));
+  return kScreening.penalty_per_amplitude * static_cast<double>(effect.steps.size()) +
+         2.0 * std::log(std::max(1.0, effect.grid));
 }
 
 namespace {
@@ -169,7 +173,8 @@ class Scorer {
     Eigen::VectorXd to = z, spread(n);
     s.drop = 0.0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double share = std::clamp(eigen.eigenvalues()(i), 1e-9, 0.9);
+      const double share =
+          std::clamp(eigen.eigenvalues()(i), kLeastLeft, kScreening.most_left_of_prior_share);
       s.drop += z(i) * z(i) / (1.0 - share);
       to(i) = z(i) / (1.0 - share);
       spread(i) = share / (1.0 - share);
@@ -189,8 +194,8 @@ class Scorer {
     Eigen::MatrixXd information = square - cross.transpose() * onto;
     s.per_block = blocks - onto.transpose() * base_blocks_;
     // Directions that the base explains already, to rounding, carry nothing.
-    const bool nearly_base = n == 1 && information(0, 0) < 1e-3 * square(0, 0);
-    for (Eigen::Index i = 0; i < n; ++i) information(i, i) += 1e-6 * square(i, i) + 1e-300;
+    const bool nearly_base = n == 1 && information(0, 0) < kScreening.nearly_base_share * square(0, 0);
+    for (Eigen::Index i = 0; i < n; ++i) information(i, i) += kRidge * square(i, i) + 1e-300;
     // The gradient of the prior belongs to the base; at its optimum both parts cancel.
     const Eigen::LDLT<Eigen::MatrixXd> solver(information);
     s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
@@ -198,7 +203,9 @@ class Scorer {
     s.drop = -gradient.dot(s.amplitude);
     s.overdispersion = Overdispersion(s.per_block, s.covariance);
     // What the base can nearly do itself frees it from its priors and no more.
-    if (nearly_base) s.drop = std::min(s.drop, 1.5 * fit_.prior + 5.0);
+    if (nearly_base)
+      s.drop =
+          std::min(s.drop, kScreening.nearly_base_prior_factor * fit_.prior + kScreening.nearly_base_score);
     if (InBase(problem_, effect->kind)) {
       // A number of the base already: the evidence is in the prior and not in the blocks.
       s.per_block.setZero();
@@ -224,12 +231,12 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::ve
                    [](const SharedEffect& a, const SharedEffect& b) { return MeansOf(*a) < MeansOf(*b); });
   const Scorer scorer(problem, fit);
   std::vector<Scored> out;
-  // Some two dozen columns at a time bound the memory.
+  // So many columns at a time bound the memory.
   for (std::size_t at = 0; at < effects.size();) {
     const Means means = MeansOf(*effects[at]);
     std::size_t end = at, count = 0;
     while (end < effects.size() && MeansOf(*effects[end]) == means &&
-           (count == 0 || count + effects[end]->tested <= 24)) {
+           (count == 0 || count + effects[end]->tested <= kScreening.columns_at_once)) {
       count += effects[end]->tested;
       ++end;
     }

@@ -4,19 +4,20 @@
 #include <span>
 #include <vector>
 
+#include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "analysis/prediction_error/fit.h"
 
 namespace contour::diagnosis {
 
 /// Blocks of time for sign flips and held-out figures.
-inline constexpr Eigen::Index kBlocks = 60;
+inline constexpr Eigen::Index kBlocks = kScreening.blocks;
 
 /// A candidate against the residual of a fit: what its amplitudes would explain beyond the base parameters,
 /// to first order (score test; partial regression with the base's priors).
 struct Scored {
   SharedEffect effect;
   double drop = 0.0;         ///< of chi^2 and prior
-  double score = 0.0;        ///< less 3 per amplitude and 2 ln(grid)
+  double score = 0.0;        ///< less a penalty per amplitude and 2 ln(grid)
   double consistency = 0.0;  ///< sum over root of sum of squares of the drop per block
   Eigen::VectorXd amplitude;
   Eigen::MatrixXd covariance;  ///< of the amplitudes
@@ -25,10 +26,6 @@ struct Scored {
   /// A residual that is not quite white, or not quite stationary, shows here.
   double overdispersion = 1.0;
 };
-
-/// An effect that is there makes its own score scatter from block to block, too: beyond this, scatter says no
-/// more about chance.
-inline constexpr double kMostOverdispersion = 3.0;
 
 double Penalty(const Effect& effect);
 

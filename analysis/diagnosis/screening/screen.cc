@@ -9,13 +9,6 @@
 #include "analysis/diagnosis/screening/gross_sliding.h"
 
 namespace contour::diagnosis {
-namespace {
-
-// Waves of one kind that are two, by order or Hz.
-constexpr double kOrdersApart = 0.9;
-
-}  // namespace
-
 std::vector<Scored> Screen(const Problem& problem, const Fit& fit, std::span<const SharedEffect> catalogue) {
   std::vector<SharedEffect> effects(catalogue.begin(), catalogue.end());
   for (SharedEffect& e : ScanWaves(problem, fit)) effects.push_back(std::move(e));
@@ -26,7 +19,7 @@ std::vector<Scored> Screen(const Problem& problem, const Fit& fit, std::span<con
     if (mismatch && CauseNamed(e->kind).refuted_by_mismatch) return true;
     return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
       // A wave may have further orders.
-      const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kOrdersApart;
+      const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kScreening.waves_apart;
       return f->kind == e->kind && !another;
     });
   });

@@ -3,10 +3,12 @@
 #include <array>
 #include <string_view>
 
+#include "analysis/diagnosis/tuning/decision_tuning.h"
+
 namespace contour::diagnosis {
 
 /// The rate at which model-error allowances were read off clean logs.
-inline constexpr double kCalibratedRate = 0.05;
+inline constexpr double kCalibratedRate = kThreshold.calibrated_rate;
 
 /// In addition to the kinds of cause: that something is left which none of them fits. Over the time the
 /// model's own errors show, motion by motion, and nowhere else; each has an allowance of its own.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/tested_score.h"
 #include "tests/analysis/support/learnt_problem.h"
 
 namespace contour::diagnosis {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "analysis/diagnosis/result/finding.h"
+#include "analysis/prediction_error/fit.h"
+
+namespace contour::diagnosis {
+
+/// What the white residual loses in blocks of time, over the root of the sum of squares per block: 1 where a
+/// single block carries it. Unseen: in blocks that the fit has not seen (to first order); then about standard
+/// normal, or less, where there is no effect.
+double Consistency(const Problem& problem, const Fit& without, const Fit& with, bool unseen);
+
+/// Gain of `with` over `without` on blocks that the fit did not see (two interleaved folds; parameters of
+/// each fold by one Gauss-Newton step from the whole fit, then run anew), 95 % interval by a bootstrap of the
+/// blocks.
+void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
+                 std::vector<BlockGain>& blocks);
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/prediction_error/fit.h"
+
+namespace contour::diagnosis {
+
+/// A candidate hypothesis, fitted jointly with the base and with what is accepted already.
+struct Hypothesis {
+  Fit fit;
+  double score = 0.0;    ///< what it lowers chi^2 and prior by, less its penalty
+  bool refused = false;  ///< did not hold
+  /// So far behind that nothing but its place and its score is kept: the rest of a fit is large.
+  bool given_up = false;
+  /// A coupling that every screw has, no cause of a deviation: it belongs to the base.
+  bool no_fault = false;
+
+  [[nodiscard]] const Effect& effect() const { return *fit.point.effects.back(); }
+};
+
+bool Outside(const std::string& kind);
+
+}  // namespace contour::diagnosis

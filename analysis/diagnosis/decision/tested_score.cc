@@ -1,0 +1,71 @@
+#include "analysis/diagnosis/decision/tested_score.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/screening/gross_sliding.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
+
+namespace contour::diagnosis {
+namespace {
+
+// Of a fit that is none.
+constexpr double kNoScore = -1e300;
+
+/// Where the fit has gone the cause is not what its name says.
+bool Implausible(const Problem& problem, const Hypothesis& r) {
+  const CauseDefinition& cause = CauseNamed(r.effect().kind);
+  return cause.implausible != nullptr &&
+         (*cause.implausible)(problem, r.effect(), r.fit.point.amplitudes.back());
+}
+
+/// A coupling that every screw has.
+bool NoFault(const Problem& problem, const Hypothesis& r) {
+  const AxisModel m = problem.Build(r.fit.point);
+  return m.two_inertia &&
+         m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kScreening.no_fault_Hz, 2);
+}
+
+}  // namespace
+
+bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
+
+bool AddsCoupling(const Problem& problem, const Hypothesis& r) {
+  return CauseNamed(r.effect().kind).coupling && !problem.nominal.two_inertia;
+}
+
+void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
+  // A fit may end at parameters that no machine can have.
+  const bool coupling = AddsCoupling(problem, r);
+  const bool out = !std::isfinite(r.fit.cost) || Implausible(problem, r);
+  r.no_fault = !out && coupling && NoFault(problem, r);
+  r.score = out ? kNoScore : DropOf(problem, current, r.fit) - Penalty(r.effect());
+}
+
+bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold) {
+  threshold.leakage *= kHypotheses.short_by_leakage_share;
+  for (auto& [kind, left] : threshold.leakage_of_kind) left *= kHypotheses.short_by_leakage_share;
+  ScoreScale score_scale = ScoreScaleOf(problem, s);
+  score_scale.overdispersion = std::min(s.overdispersion, kScreening.most_overdispersion);
+  return s.drop / score_scale.overdispersion - Penalty(*s.effect) >
+         Threshold(problem, threshold, *s.effect, score_scale);
+}
+
+double TestedScore(const Problem& problem, const Fit& current, const Hypothesis& hypothesis) {
+  const SharedEffect& effect = hypothesis.fit.point.effects.back();
+  double drop = hypothesis.score + Penalty(*effect);
+  double most = std::numeric_limits<double>::infinity();
+  // Chance does not lower a cost that far; a base that lies elsewhere without the effect does.
+  if (drop < kThreshold.beyond_chance_drop && effect->start.empty() && !InBase(problem, effect->kind)) {
+    const Scored again = ScoreEffects(problem, current, {effect})[0];
+    if (again.drop < kThreshold.small_drop) drop = std::min(drop, again.drop);
+    // An effect that is there makes its score scatter from block to block, but not as a single event does.
+    most = kScreening.most_overdispersion * again.drop / again.overdispersion;
+  }
+  return std::min(drop / OverdispersionOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,13 @@
+#pragma once
+
+// Mathematical constants, as everything that was calibrated with them has them rounded.
+namespace contour::diagnosis {
+
+/// Standard deviations that 95 % of a normal distribution lie within.
+inline constexpr double kNormal95 = 1.96;
+/// Standard deviations that 90 % of cases stay within on one side.
+inline constexpr double kNormal90 = 1.2816;
+/// Of the second difference of white noise, over the noise's own: 1 + 2^2 + 1.
+inline constexpr double kVarianceOfSecondDifference = 6.0;
+
+}  // namespace contour::diagnosis
