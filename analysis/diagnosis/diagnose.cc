@@ -7,7 +7,7 @@
 
 #include "analysis/diagnosis/adequacy/remaining_structure.h"
 #include "analysis/diagnosis/decision/evidence.h"
-#include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/verdict.h"
 #include "analysis/diagnosis/quantification/quantify.h"
 #include "analysis/diagnosis/rounds.h"

@@ -9,6 +9,7 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/evidence.h"
+#include "analysis/diagnosis/decision/hypotheses.h"
 #include "analysis/diagnosis/quantification/detectable.h"
 #include "analysis/diagnosis/quantification/jitter_cause.h"
 #include "analysis/diagnosis/screening/screen.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/score_threshold.h"
 #include "analysis/diagnosis/result/diagnose_options.h"
 #include "analysis/diagnosis/result/finding.h"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/score_threshold.h"
 
 namespace contour::diagnosis {

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/prediction_error/fit.h"
 
 namespace contour::diagnosis {
@@ -19,6 +20,7 @@ struct Hypothesis {
   [[nodiscard]] const Effect& effect() const { return *fit.point.effects.back(); }
 };
 
-bool Outside(const std::string& kind);
+/// A shape that is none of the catalogue.
+inline bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
 
 }  // namespace contour::diagnosis

@@ -31,8 +31,6 @@ bool NoFault(const Problem& problem, const Hypothesis& r) {
 
 }  // namespace
 
-bool Outside(const std::string& kind) { return kind.starts_with(kOutside); }
-
 bool AddsCoupling(const Problem& problem, const Hypothesis& r) {
   return CauseNamed(r.effect().kind).coupling && !problem.nominal.two_inertia;
 }

@@ -7,7 +7,7 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
-#include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
