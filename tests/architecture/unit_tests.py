@@ -14,7 +14,7 @@ from pathlib import Path
 # Translations of one set of loops for several instruction sets have one test.
 SHARED = {f"analysis/prediction_error/simd/lane_run_{name}.cc": "tests/analysis/prediction_error/simd/lane_loops_test.cc"
           for name in ("avx2", "avx512", "baseline")}
-WITHOUT = {*(f"analysis/diagnosis/{folder}" for folder in ("adequacy/", "decision/", "quantification/", "report/", "rounds.cc", "screening/", "tuning/"))}
+WITHOUT = set()
 
 
 def test_of(unit, shared):

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
+#include "analysis/diagnosis/causes/catalogue.h"
+
 namespace contour::diagnosis {
 namespace {
 
@@ -27,6 +31,17 @@ TEST(KindWords, AParametersWordsHaveNoUnit) {
   EXPECT_EQ(ParameterWords("amplitude_Nm"), "amplitude");
   EXPECT_EQ(ParameterWords("change_rel"), "change");
   EXPECT_EQ(ParameterWords("time_constant_s"), "time constant");
+}
+
+TEST(KindWords, EveryKindHasWords) {
+  for (const CauseDefinition* cause : AllCauses()) {
+    const std::string_view kind = cause->name;
+    EXPECT_GT(KindWords(kind).size(), kind.size() + 5) << kind;
+    EXPECT_FALSE(KindAdvice(kind).empty()) << kind;
+  }
+  EXPECT_EQ(ValueWords("amplitude_rel", 0.25), "25 %");
+  EXPECT_EQ(ValueWords("stiffness_Nm_rad", 12.5), "12.5 Nm/rad");
+  EXPECT_EQ(ParameterWords("torque_at_stroke_end_Nm"), "torque at stroke end");
 }
 
 }  // namespace

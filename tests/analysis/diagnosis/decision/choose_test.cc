@@ -1,0 +1,88 @@
+#include "analysis/diagnosis/decision/choose.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/analysis/support/fitted_axis.h"
+
+namespace contour::diagnosis {
+namespace {
+
+class ChooseTest : public testing::Test {
+ protected:
+  Hypothesis Of(const std::string& kind) const {
+    Hypothesis h;
+    h.fit = axis_.With(axis_.Of(kind));
+    h.score = axis_.base.cost - h.fit.cost - Penalty(h.effect());
+    return h;
+  }
+
+  // A torque of 0.3 Fc that the model does not have.
+  test::FittedAxis axis_{{{"constant_torque", 0.3, 0.0, 0.0, 0.0}}};
+  ScoreThreshold threshold_{.flips = 20.0, .calibrated = 20.0};
+};
+
+TEST_F(ChooseTest, TheBestOneThatHoldsStaysInFront) {
+  std::vector<Hypothesis> hypotheses = {Of("constant_torque"), Of("cable_spring")};
+  const Choice choice = ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses);
+  EXPECT_TRUE(choice.found);
+  EXPECT_EQ(hypotheses[0].effect().kind, "constant_torque");
+  EXPECT_FALSE(hypotheses[0].refused);
+  EXPECT_GT(choice.tested, 20.0);
+}
+
+TEST_F(ChooseTest, WhereTheBestDoesNotHoldTheNextGoesToTheFront) {
+  // Its score is made up: the score test at its own place promises next to nothing of it.
+  Hypothesis boasting = Of("friction_drift");
+  const Hypothesis there = Of("constant_torque");
+  boasting.score = 250.0;
+  ASSERT_GT(there.score, 100.0);
+  std::vector<Hypothesis> hypotheses = {boasting, there};
+  const Choice choice = ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses);
+  ASSERT_TRUE(choice.found);
+  EXPECT_EQ(hypotheses[0].effect().kind, "constant_torque");
+  EXPECT_TRUE(hypotheses[1].refused);
+}
+
+TEST_F(ChooseTest, NothingHoldsBelowItsThreshold) {
+  threshold_.flips = threshold_.calibrated = 1e9;
+  std::vector<Hypothesis> hypotheses = {Of("constant_torque")};
+  const Choice choice = ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses);
+  EXPECT_FALSE(choice.found);
+  EXPECT_TRUE(hypotheses[0].refused);
+}
+
+TEST_F(ChooseTest, WhatWasGivenUpIsNotAsked) {
+  std::vector<Hypothesis> hypotheses = {Of("constant_torque")};
+  hypotheses[0].given_up = true;
+  EXPECT_FALSE(ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses).found);
+  EXPECT_FALSE(hypotheses[0].refused);
+}
+
+TEST_F(ChooseTest, ResidualLeakageIsAskedForOnceSomethingIsAccepted) {
+  const Hypothesis spring = Of("cable_spring");
+  const double alone = Asked(axis_.problem, spring, threshold_);
+  threshold_.accepted = 1;
+  threshold_.leakage = 300.0;
+  const double overdispersion = OverdispersionOfLast(axis_.problem, spring.fit);
+  EXPECT_NEAR(Asked(axis_.problem, spring, threshold_), alone + 300.0 / overdispersion, 1e-6);
+}
+
+TEST_F(ChooseTest, WhatIsInTheModelExplainsNothingElse) {
+  const Hypothesis there = Of("constant_torque");
+  EXPECT_TRUE(ExplainsSomethingElse(axis_.problem, axis_.base, [&] {
+    // A spring that is there in addition to nothing goes on being there in addition to the base.
+    Hypothesis spring = Of("cable_spring");
+    spring.score = ScoreEffects(axis_.problem, axis_.base, {spring.fit.point.effects.back()})[0].drop -
+                   Penalty(spring.effect());
+    return spring;
+  }()));
+  Hypothesis far = Of("cable_spring");
+  far.score = 1e6;
+  EXPECT_FALSE(ExplainsSomethingElse(axis_.problem, there.fit, far)) << "nothing of it is left";
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,97 @@
+#include "analysis/diagnosis/decision/hypotheses.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "tests/analysis/support/fitted_axis.h"
+
+namespace contour::diagnosis {
+namespace {
+
+TEST(Hypotheses, OutsideTheCatalogueSaysItsName) {
+  EXPECT_TRUE(Outside("outside:force of time"));
+  EXPECT_FALSE(Outside("constant_torque"));
+}
+
+class HypothesesTest : public testing::Test {
+ protected:
+  std::vector<Scored> ScoredOf(const std::vector<std::string>& kinds) const {
+    std::vector<SharedEffect> effects;
+    for (const std::string& kind : kinds) effects.push_back(axis_.Of(kind));
+    std::vector<Scored> scored = ScoreEffects(axis_.problem, axis_.base, effects);
+    std::stable_sort(scored.begin(), scored.end(),
+                     [](const Scored& a, const Scored& b) { return a.drop > b.drop; });
+    return scored;
+  }
+
+  // A torque of 0.3 Fc that the model does not have.
+  test::FittedAxis axis_{{{"constant_torque", 0.3, 0.0, 0.0, 0.0}}};
+  ScoreThreshold threshold_{.flips = 20.0, .calibrated = 20.0};
+  std::vector<std::string> tried_;
+};
+
+TEST_F(HypothesesTest, TheOneThatIsThereComesFirstWithItsSize) {
+  const std::vector<Scored> scored = ScoredOf({"constant_torque", "friction_drift", "cable_spring"});
+  const std::vector<Hypothesis> found = FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_);
+  ASSERT_FALSE(found.empty());
+  EXPECT_EQ(found[0].effect().kind, "constant_torque");
+  const double Fc = axis_.made.axis.stated.friction.Fc_plus;
+  EXPECT_NEAR(found[0].fit.point.amplitudes.back()[0], 0.3 * Fc, 0.03 * Fc);
+  EXPECT_NEAR(found[0].score, axis_.base.cost - found[0].fit.cost - Penalty(found[0].effect()), 1.0);
+  for (std::size_t i = 1; i < found.size(); ++i)
+    if (!found[i].given_up) {
+      EXPECT_LE(found[i].score, found[i - 1].score);
+    }
+  EXPECT_TRUE(MayHold(axis_.problem, found, threshold_));
+}
+
+TEST_F(HypothesesTest, WhatHasBeenTriedIsNotFittedAgain) {
+  const std::vector<Scored> scored = ScoredOf({"constant_torque"});
+  EXPECT_TRUE(MorePromised(axis_.problem, scored, threshold_, tried_));
+  ASSERT_EQ(FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_).size(), 1u);
+  EXPECT_FALSE(tried_.empty());
+  EXPECT_FALSE(MorePromised(axis_.problem, scored, threshold_, tried_));
+  EXPECT_TRUE(FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_).empty());
+}
+
+TEST_F(HypothesesTest, NothingIsFittedWhereNothingIsPromised) {
+  threshold_.flips = threshold_.calibrated = 1e9;
+  const std::vector<Scored> scored = ScoredOf({"constant_torque", "cable_spring"});
+  EXPECT_FALSE(MorePromised(axis_.problem, scored, threshold_, tried_));
+  EXPECT_TRUE(FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_).empty());
+}
+
+TEST_F(HypothesesTest, WhatIsFarBelowItsThresholdWillNotHold) {
+  const std::vector<Scored> scored = ScoredOf({"constant_torque"});
+  std::vector<Hypothesis> found = FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_);
+  ASSERT_FALSE(found.empty());
+  threshold_.flips = threshold_.calibrated = 1e9;
+  EXPECT_FALSE(MayHold(axis_.problem, found, threshold_));
+  threshold_.flips = threshold_.calibrated = 20.0;
+  found[0].given_up = true;
+  EXPECT_FALSE(MayHold(axis_.problem, found, threshold_));
+}
+
+TEST_F(HypothesesTest, UnderNewNoiseTheyAreFittedAnewAndEachKindIsThereOnce) {
+  const std::vector<Scored> scored = ScoredOf({"constant_torque", "cable_spring"});
+  std::vector<Hypothesis> found = FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_);
+  ASSERT_FALSE(found.empty());
+  axis_.made.problem.LearnNoise(found[0].fit.point);
+  Fit current = axis_.base;
+  FitAgain(axis_.problem, current, found);
+  EXPECT_EQ(found[0].effect().kind, "constant_torque");
+  EXPECT_NEAR(found[0].score, current.cost - found[0].fit.cost - Penalty(found[0].effect()), 1.0);
+  double counted = 0.0;
+  for (std::size_t k = 0; k < axis_.problem.rows(); ++k) counted += axis_.problem.counted[k];
+  EXPECT_NEAR(found[0].fit.cost / counted, 1.0, 0.15) << "white under the noise that it leaves";
+  EXPECT_EQ(std::count_if(found.begin(), found.end(),
+                          [](const Hypothesis& h) { return h.effect().kind == "cable_spring"; }),
+            static_cast<std::ptrdiff_t>(found.size()) - 1);
+  EXPECT_LE(found.size(), 2u);
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,61 @@
+#include "analysis/diagnosis/report/diagnosis_text.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "tests/analysis/diagnosis/report/example_diagnosis.h"
+
+namespace contour::diagnosis {
+namespace {
+
+using test::Example;
+
+TEST(DiagnosisText, TextSaysWhatHowSureAndWhatNext) {
+  const std::string text = DiagnosisText(Example());
+  for (const char* part : {"cannot tell", "cogging: a torque", "0.0191 Nm", "345.6 nats", "50 % less",
+                           "friction_ripple", "Sweep both ways.", "Next: Feed the torque forward.",
+                           "3 outliers", "backlash and temperature_viscosity"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  for (std::size_t at = 0, end = 0; end != std::string::npos; at = end + 1) {
+    end = text.find('\n', at);
+    EXPECT_LE((end == std::string::npos ? text.size() : end) - at, 100u);
+  }
+}
+
+TEST(DiagnosisText, EveryVerdictIsASentenceOfItsOwn) {
+  std::set<std::string> sentences;
+  Diagnosis d;
+  for (const Verdict v : {Verdict::kCauseFound, Verdict::kAmbiguous, Verdict::kNothingFound,
+                          Verdict::kUnexplained, Verdict::kInsufficientData}) {
+    d.verdict = v;
+    sentences.insert(VerdictText(d));
+    EXPECT_NE(VerdictText(d).find('.'), std::string::npos);
+  }
+  EXPECT_EQ(sentences.size(), 5u);
+}
+
+TEST(DiagnosisText, CountsItsCausesAndSaysHowOftenItAlarms) {
+  Diagnosis d = Example();
+  d.verdict = Verdict::kCauseFound;
+  EXPECT_EQ(VerdictText(d), "One cause was found.");
+  d.causes.push_back(d.causes[0]);
+  EXPECT_EQ(VerdictText(d), "2 causes were found.");
+  EXPECT_NE(DiagnosisText(d).find("\n2. cogging"), std::string::npos);
+  d.verdict = Verdict::kNothingFound;
+  EXPECT_NE(VerdictText(d).find("1 % of all cases"), std::string::npos);
+}
+
+TEST(DiagnosisText, NotesAndRefitsAreToldWhereThereAreSome) {
+  Diagnosis d = Example();
+  EXPECT_EQ(DiagnosisText(d).find("Note:"), std::string::npos);
+  EXPECT_EQ(DiagnosisText(d).find("refits"), std::string::npos);
+  d.notes = {"Something small is left."};
+  d.bootstrap_runs = 100;
+  EXPECT_NE(DiagnosisText(d).find("Note: Something small is left."), std::string::npos);
+  EXPECT_NE(DiagnosisText(d).find("from 100 refits"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace contour::diagnosis

@@ -1,0 +1,158 @@
+#include "analysis/diagnosis/screening/score.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "tests/analysis/support/fitted_axis.h"
+
+namespace contour::diagnosis {
+namespace {
+
+TEST(Score, APenaltyIsThreePerAmplitudeAndTheLogarithmOfTheGrid) {
+  Effect e;
+  e.steps = {0.1, 0.1};
+  e.grid = 1.0;
+  EXPECT_NEAR(Penalty(e), 6.0, 1e-12);
+  e.grid = 20.0;
+  EXPECT_NEAR(Penalty(e), 6.0 + 2.0 * std::log(20.0), 1e-12);
+  e.grid = 0.5;
+  EXPECT_NEAR(Penalty(e), 6.0, 1e-12) << "less than one place was never looked at";
+}
+
+class ScoreTest : public testing::Test {
+ protected:
+  Scored ScoreOf(const Fit& fit, const SharedEffect& effect) const {
+    return ScoreEffects(axis_.problem, fit, {effect})[0];
+  }
+  /// The base fit, and in its residual what an effect of that amplitude would put there.
+  Fit Without(double amplitude, const Eigen::VectorXd& column) const {
+    Fit fit = axis_.base;
+    for (std::size_t k = 0; k < fit.residual.size(); ++k)
+      fit.residual[k] -= amplitude * column(static_cast<Eigen::Index>(k));
+    return fit;
+  }
+
+  /// White, of an effect that is a signal: it does not depend on a residual.
+  Eigen::VectorXd ColumnOf(const SharedEffect& effect) const {
+    const std::vector<double> column =
+        axis_.problem.LinearResponses(axis_.base.point, std::span(&effect, 1))[0];
+    return Eigen::Map<const Eigen::VectorXd>(column.data(), static_cast<Eigen::Index>(column.size()));
+  }
+
+  test::FittedAxis axis_;
+};
+
+TEST_F(ScoreTest, FreedTermsAreThoseThatTheModelHas) {
+  ASSERT_EQ(FreedTerms(axis_.problem, "current_lag").size(), 1u);
+  EXPECT_EQ(axis_.problem.terms[FreedTerms(axis_.problem, "current_lag")[0]].name, "lag");
+  EXPECT_TRUE(FreedTerms(axis_.problem, "compliance").empty()) << "a rigid model states no stiffness";
+  EXPECT_TRUE(InBase(axis_.problem, "stribeck"));
+  EXPECT_TRUE(InBase(axis_.problem, "torque_constant"));
+  EXPECT_FALSE(InBase(axis_.problem, "compliance"));
+  EXPECT_FALSE(InBase(axis_.problem, "cogging"));
+}
+
+TEST_F(ScoreTest, TheAmplitudeIsWhatIsMissing) {
+  const SharedEffect e = axis_.Of("cable_spring")->shorter;
+  const Eigen::VectorXd column = ColumnOf(e);
+  // What the base makes up for is no longer there once it is fitted.
+  const Eigen::MatrixXd& base = axis_.base.jacobian;
+  const Eigen::VectorXd rest = column - base * (axis_.base.covariance * (base.transpose() * column));
+  const Scored before = ScoreOf(axis_.base, e);
+  const double sigma = std::sqrt(before.covariance(0, 0)), amplitude = 20.0 * sigma;
+  EXPECT_NEAR(column.dot(rest) * sigma * sigma, 1.0, 1e-3);
+  const Scored after = ScoreOf(Without(amplitude, rest), e);
+  EXPECT_NEAR(after.amplitude(0) - before.amplitude(0), amplitude, 0.02 * amplitude);
+  // 20 standard errors: 400 of chi^2.
+  const double expected = std::pow((before.amplitude(0) + amplitude) / sigma, 2);
+  EXPECT_NEAR(after.drop, expected, 0.02 * expected);
+  EXPECT_NEAR(after.score, after.drop / after.overdispersion - Penalty(*e), 1e-9);
+}
+
+TEST_F(ScoreTest, WhatIsThereAllTheTimeIsConsistentAndOneEventIsNot) {
+  const SharedEffect e = axis_.Of("cable_spring")->shorter;
+  const Eigen::VectorXd column = ColumnOf(e);
+  const double sigma = std::sqrt(ScoreOf(axis_.base, e).covariance(0, 0));
+  const Scored all = ScoreOf(Without(30.0 * sigma, column), e);
+  Eigen::VectorXd event = Eigen::VectorXd::Zero(column.size());
+  const Eigen::Index block = column.size() / kBlocks;
+  event.segment(20 * block, block) = column.segment(20 * block, block);
+  const Scored once = ScoreOf(Without(300.0 * sigma, event), e);
+  EXPECT_GT(all.consistency, 2.0 * once.consistency);
+  EXPECT_GT(once.overdispersion, 2.0 * all.overdispersion);
+}
+
+TEST_F(ScoreTest, ColumnsOfSignalsAreThoseOfRuns) {
+  const test::FittedAxis pushed({{"cable_spring", 0.2, 0.0, 0.0, 0.0}});
+  const SharedEffect spring = pushed.Of("cable_spring")->shorter;
+  ASSERT_TRUE(spring->signals);
+  auto by_runs = std::make_shared<Effect>(*spring);
+  by_runs->signals = false;
+  const Scored linear = ScoreEffects(pushed.problem, pushed.base, {spring})[0],
+               runs = ScoreEffects(pushed.problem, pushed.base, {by_runs})[0];
+  EXPECT_GT(linear.drop, 100.0);
+  EXPECT_NEAR(linear.amplitude(0), runs.amplitude(0), 0.1 * std::fabs(runs.amplitude(0)));
+  EXPECT_NEAR(linear.drop, runs.drop, 0.15 * runs.drop);
+}
+
+TEST_F(ScoreTest, ColumnsOfABaseTermAreThoseOfRuns) {
+  const test::FittedAxis loaded({{"payload_step", 0.2, 0.0, 0.0, 0.5}});
+  SharedEffect step;
+  for (const SharedEffect& e : CatalogueEffects(loaded.problem))
+    if (e->kind == "payload_step" && e->from_row == loaded.problem.rows() / 2) step = e;
+  ASSERT_TRUE(step);
+  auto by_runs = std::make_shared<Effect>(*step);
+  by_runs->as_term.clear();
+  const Scored term = ScoreEffects(loaded.problem, loaded.base, {step})[0],
+               runs = ScoreEffects(loaded.problem, loaded.base, {by_runs})[0];
+  EXPECT_GT(term.drop, 50.0);
+  EXPECT_NEAR(term.amplitude(0), runs.amplitude(0), 0.05 * std::fabs(runs.amplitude(0)));
+  EXPECT_NEAR(term.drop, runs.drop, 0.1 * runs.drop);
+}
+
+TEST_F(ScoreTest, OfANumberOfTheModelThePriorTells) {
+  const SharedEffect e = axis_.Of("input_delay");
+  const std::size_t term = FreedTerms(axis_.problem, "input_delay")[0];
+  Fit fit = axis_.base;
+  const double sigma = axis_.problem.terms[term].sigma;
+  fit.point.base[term] = 4.0 * sigma;
+  // As good as known by the log: 16 of the prior, of which nothing else knows.
+  fit.covariance.setZero();
+  fit.covariance(static_cast<Eigen::Index>(term), static_cast<Eigen::Index>(term)) = 1e-6 * sigma * sigma;
+  EXPECT_NEAR(ScoreOf(fit, e).drop, 16.0, 0.01);
+  EXPECT_EQ(ScoreOf(fit, e).overdispersion, 1.0);
+  // Not known at all, it stays at the most a tenth is known.
+  fit.point.base[term] = 0.0;
+  EXPECT_NEAR(ScoreOf(fit, e).drop, 0.0, 1e-9);
+}
+
+TEST_F(ScoreTest, AShorterHypothesisIsTestedAtNoCost) {
+  const SharedEffect e = axis_.Of("cable_spring");
+  const std::vector<Scored> scored = ScoreEffects(axis_.problem, axis_.base, {e});
+  ASSERT_EQ(scored.size(), 2u);
+  EXPECT_EQ(scored[0].amplitude.size(), 4);
+  EXPECT_EQ(scored[1].amplitude.size(), 1);
+  EXPECT_LE(scored[1].drop, scored[0].drop + 1e-6) << "it has one of the other's amplitudes";
+}
+
+TEST_F(ScoreTest, TheFittedEffectsOwnResidualScattersAsWhiteNoise) {
+  const Fit fit = axis_.With(axis_.Of("constant_torque"));
+  EXPECT_GE(OverdispersionOfLast(axis_.problem, fit), 1.0);
+  EXPECT_LT(OverdispersionOfLast(axis_.problem, fit), 2.5);
+  // Plus in one block and minus in the next: it explains nothing, and scatters as nothing white does.
+  Fit scattered = fit;
+  const Eigen::VectorXd column = fit.jacobian.rightCols(1);
+  const Eigen::Index block = column.size() / kBlocks;
+  const double amplitude = 100.0 / column.norm();
+  for (Eigen::Index k = 0; k < column.size(); ++k)
+    scattered.residual[static_cast<std::size_t>(k)] +=
+        (k / block % 2 == 0 ? amplitude : -amplitude) * column(k);
+  EXPECT_GT(OverdispersionOfLast(axis_.problem, scattered), 20.0);
+  EXPECT_EQ(OverdispersionOfLast(axis_.problem, axis_.With(axis_.Of("input_delay"))), 1.0);
+}
+
+}  // namespace
+}  // namespace contour::diagnosis
