@@ -66,5 +66,47 @@ TEST_F(TestedScoreTest, IsLittleWhereOneEventMakesIt) {
   EXPECT_LT(TestedWith(20 * block, 21 * block), 0.1 * hypothesis_.score);
 }
 
+TEST_F(TestedScoreTest, AFitIsJudgedByWhatItLowersTheCostBy) {
+  Hypothesis h{.fit = hypothesis_.fit};
+  h.fit.cost = base_.cost - 40.0;
+  Judge(problem_, base_, h);
+  EXPECT_NEAR(h.score, 40.0 - Penalty(*effect_), 1e-6);
+  EXPECT_FALSE(h.no_fault);
+  // Where it ended nowhere it has no score at all.
+  h.fit.cost = std::nan("");
+  Judge(problem_, base_, h);
+  EXPECT_LT(h.score, -1e100);
+}
+
+TEST_F(TestedScoreTest, ACouplingThatEveryScrewHasIsNoFault) {
+  const std::vector<SharedEffect> all = CatalogueEffects(problem_);
+  const auto coupling = std::find_if(
+      all.begin(), all.end(), [](const auto& e) { return e->kind == "compliance" && e->order > 900.0; });
+  ASSERT_NE(coupling, all.end());
+  Hypothesis h{.fit = base_};
+  h.fit.point.effects.push_back(*coupling);
+  h.fit.point.amplitudes.push_back({0.3, 0.0, 0.0});
+  EXPECT_TRUE(AddsCoupling(problem_, h));
+  EXPECT_FALSE(AddsCoupling(problem_, hypothesis_));
+  Judge(problem_, base_, h);
+  EXPECT_TRUE(h.no_fault);
+  h.fit.point.amplitudes.back()[1] = std::log(0.2);  // 200 Hz
+  Judge(problem_, base_, h);
+  EXPECT_FALSE(h.no_fault);
+  h.fit.point.amplitudes.back() = {0.001, 0.0, 0.0};  // with nothing behind it
+  Judge(problem_, base_, h);
+  EXPECT_LT(h.score, -1e100);
+}
+
+TEST_F(TestedScoreTest, OfWhatChanceExplainsNothingIsPromised) {
+  const Scored s = ScoreEffects(problem_, base_, {effect_})[0];
+  ScoreThreshold threshold;
+  threshold.flips = threshold.calibrated = 20.0;
+  EXPECT_FALSE(Promising(problem_, s, threshold));
+  Scored much = s;
+  much.drop = 1e4;
+  EXPECT_TRUE(Promising(problem_, much, threshold));
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

@@ -11,15 +11,17 @@
 namespace contour::diagnosis {
 namespace {
 
-TEST(Score, APenaltyIsThreePerAmplitudeAndTheLogarithmOfTheGrid) {
-  Effect e;
-  e.steps = {0.1, 0.1};
-  e.grid = 1.0;
-  EXPECT_NEAR(Penalty(e), 6.0, 1e-12);
-  e.grid = 20.0;
-  EXPECT_NEAR(Penalty(e), 6.0 + 2.0 * std::log(20.0), 1e-12);
-  e.grid = 0.5;
-  EXPECT_NEAR(Penalty(e), 6.0, 1e-12) << "less than one place was never looked at";
+TEST(Score, APenaltyIsOfEveryAmplitudeAndOfThePlacesThatWereLookedAt) {
+  Effect one, two, many;
+  one.steps = {0.1};
+  two.steps = {0.1, 0.1};
+  many.steps = {0.1};
+  many.grid = 20.0;
+  EXPECT_GT(Penalty(one), 1.0) << "noise lowers chi^2 by one";
+  EXPECT_NEAR(Penalty(two), 2.0 * Penalty(one), 1e-12);
+  EXPECT_NEAR(Penalty(many) - Penalty(one), 2.0 * std::log(20.0), 1e-12);
+  many.grid = 0.5;
+  EXPECT_EQ(Penalty(many), Penalty(one)) << "less than one place was never looked at";
 }
 
 class ScoreTest : public testing::Test {
