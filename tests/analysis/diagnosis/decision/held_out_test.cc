@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "tests/analysis/support/fitted_axis.h"
 #include "tests/analysis/support/known_axis.h"
@@ -115,6 +116,11 @@ TEST_F(HeldOutTest, WhatIsThereGainsOnBlocksThatTheFitHasNotSeen) {
   EXPECT_GE(cause.heldout_gain_high, cause.heldout_gain);
   EXPECT_NEAR(cause.heldout_gain, 1.0 - cause.heldout_rms_after / cause.heldout_rms_before, 1e-9);
   EXPECT_EQ(cause.unit, "Nm");
+  // Nearly the residual of the fit itself: half of the log moves a base of a dozen numbers by little.
+  const Signal residual = TorqueResidual(axis_.problem, axis_.base.point);
+  const double squares = std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
+  EXPECT_NEAR(cause.heldout_rms_before, std::sqrt(squares / static_cast<double>(residual.size())),
+              0.2 * cause.heldout_rms_before);
   ASSERT_GT(blocks.size(), 1u);
   EXPECT_EQ(blocks.front().start_s, 0.0);
   EXPECT_NEAR(blocks.back().end_s, 8.0, 1e-9);

@@ -43,6 +43,7 @@ TEST(DiagnosisJson, TheContourGainIsRelative) {
   const auto json = nlohmann::json::parse(DiagnosisJson(Example(), "", ContourGain{"circle.yaml", 8.0, 2.0}));
   EXPECT_EQ(json["contour_gain"]["program"], "circle.yaml");
   EXPECT_EQ(json["contour_gain"]["peak_before_um"], 8.0);
+  EXPECT_EQ(json["contour_gain"]["peak_after_um"], 2.0);
   EXPECT_EQ(json["contour_gain"]["gain"], 0.75);
 }
 

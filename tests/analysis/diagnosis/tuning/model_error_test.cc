@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string_view>
 
 namespace contour::diagnosis {
@@ -18,6 +19,27 @@ TEST(ModelError, AnAllowanceGrowsWithTheLogarithmOfTheRate) {
     EXPECT_GT(at_1e_4, at_1e_3) << kind;
     EXPECT_NEAR(at_1e_5 - at_1e_4, at_1e_4 - at_1e_3, 1e-12) << kind;
   }
+}
+
+constexpr ErrorScore kTable[] = {
+#include "analysis/diagnosis/tuning/model_error_table.inc"
+};
+
+TEST(ModelError, AllKindsTogetherAlarmAsOftenAsAsked) {
+  for (const double rate : {1e-3, 1e-5}) {
+    double exceed = 0.0;
+    for (const ErrorScore& e : kTable)
+      if (!IsStructureClass(e.kind))
+        exceed += e.share * std::exp(-1e5 * AllowancePerRow(e.kind, rate) / e.scale);
+    EXPECT_NEAR(exceed / rate, 1.0, 1e-9);
+  }
+}
+
+TEST(ModelError, WhatNoCauseExplainsHasARateForEachOfItsClasses) {
+  for (const ErrorScore& e : kTable)
+    if (IsStructureClass(e.kind)) {
+      EXPECT_NEAR(e.share * std::exp(-1e5 * AllowancePerRow(e.kind, 1e-4) / e.scale), 1e-4, 1e-12) << e.kind;
+    }
 }
 
 TEST(ModelError, WhereEveryLogMayAlarmNothingIsAllowed) {
