@@ -9,7 +9,7 @@
 namespace contour {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, std::string_view>, 35> kUnits{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 36> kUnits{{
     {"m", "m"},         {"mm", "mm"},         {"um", "um"},       {"nm", "nm"},     {"rad", "rad"},
     {"deg", "deg"},     {"s", "s"},           {"ms", "ms"},       {"us", "us"},     {"ns", "ns"},
     {"min", "min"},     {"s2", "s^2"},        {"s3", "s^3"},      {"N", "N"},       {"kN", "kN"},
@@ -17,6 +17,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 35> kUnits{{
     {"kgm2", "kg m^2"}, {"kgcm2", "kg cm^2"}, {"gcm2", "g cm^2"}, {"Ns", "N s"},    {"Nms", "Nm s"},
     {"Hz", "Hz"},       {"kHz", "kHz"},       {"degC", "degC"},   {"K", "K"},       {"bit", "bit"},
     {"kbit", "kbit"},   {"cycles", "cycles"}, {"rev", "rev"},     {"turn", "turn"}, {"rpm", "1/min"},
+    {"Nms2", "Nm s^2"},
 }};
 
 const std::string_view* FindUnit(std::string_view token) {
@@ -69,9 +70,10 @@ KeyParts SplitUnit(std::string_view key) {
   const std::vector<std::string_view> tokens = Tokens(key);
   std::size_t first = tokens.size();
   // "per" written out belongs to the unit, with what is counted before it: counts_per_rev, degC_per_count.
-  // What is not counted but is a quantity of its own stays a stem: order_per_rev.
+  // What is not counted but is a quantity of its own stays a stem: order_per_rev. Where more follows, it is
+  // the name that has it: torque_per_acceleration_Nms2_m.
   const auto per = std::find(tokens.begin(), tokens.end(), "per");
-  if (per != tokens.end() && per != tokens.begin()) {
+  if (tokens.end() - per == 2 && per != tokens.begin()) {
     first = static_cast<std::size_t>(per - tokens.begin());
     const std::string_view before = tokens[first - 1];
     if (before == "counts" || FindUnit(before) != nullptr) --first;

@@ -87,6 +87,10 @@ TEST(KeyHints, Units) {
   EXPECT_EQ(UnitText(SplitUnit("seed").unit), "");
   EXPECT_EQ(UnitText(SplitUnit("priority").unit), "");
   EXPECT_EQ(UnitText(SplitUnit("order_per_rev").unit), "1/rev");
+  // Of what has a unit after it, "per" belongs to the name.
+  EXPECT_EQ(UnitText(SplitUnit("torque_per_acceleration_Nms2_m").unit), "Nm s^2/m");
+  EXPECT_EQ(SplitUnit("torque_per_acceleration_Nms2_m").stem, "torque_per_acceleration");
+  EXPECT_EQ(UnitText(SplitUnit("friction_per_torque_rel").unit), "");
 }
 
 TEST(KeyHints, OtherUnitBeforeSimilarName) {

@@ -25,12 +25,15 @@ TEST(KindWords, AValueHasTheUnitOfItsName) {
   EXPECT_EQ(ValueWords("gap_um", 3.0), "3 um");
   EXPECT_EQ(ValueWords("change_rel", -0.125), "-12.5 %");
   EXPECT_EQ(ValueWords("Fs_over_Fc", 1.5), "1.5");
+  EXPECT_EQ(ValueWords("torque_per_acceleration_Nms2_m", 0.002), "0.002 Nm s^2/m");
 }
 
 TEST(KindWords, AParametersWordsHaveNoUnit) {
   EXPECT_EQ(ParameterWords("amplitude_Nm"), "amplitude");
   EXPECT_EQ(ParameterWords("change_rel"), "change");
   EXPECT_EQ(ParameterWords("time_constant_s"), "time constant");
+  EXPECT_EQ(ParameterWords("torque_per_acceleration_Nms2_m"), "torque per acceleration");
+  EXPECT_EQ(ParameterWords("friction_per_torque_rel"), "friction per torque");
 }
 
 TEST(KindWords, EveryKindHasWords) {
