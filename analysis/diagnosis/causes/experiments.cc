@@ -16,7 +16,7 @@ std::string Number(double x) {
 }
 
 struct Sizes {
-  std::string axis, stroke_mm, slow, middle, fast, torque_Nm;
+  std::string axis, stroke_mm, slow, low, middle, high, fast, torque_Nm;
 };
 
 /// The axis as its files name it; that of a file without names is x.
@@ -32,14 +32,20 @@ Sizes SizesOf(const Problem& p) {
   // At the motor, whatever the log's coordinate is.
   const double to_motor =
       p.log.linear && p.stated.lead_m > 0.0 ? p.stated.lead_m / (2.0 * std::numbers::pi) : 1.0;
-  return {NameOf(p),           Number(stroke_mm),
-          Number(0.02 * fast), Number(0.3 * fast),
-          Number(0.95 * fast), Number(std::max(0.2 * p.stated.rated, p.signals->coulomb) * to_motor)};
+  const auto share = [&](double of_fast) { return Number(of_fast * fast); };
+  return {NameOf(p),   Number(stroke_mm),
+          share(0.02), share(0.1),
+          share(0.3),  share(0.6),
+          share(0.95), Number(std::max(0.2 * p.stated.rated, p.signals->coulomb) * to_motor)};
 }
 
 std::string Creep(const Sizes& s, const std::string& speeds, int repeats) {
   return "shape: creep\naxis: " + s.axis + "\nstroke_mm: " + s.stroke_mm + "\nvelocities_mm_s: [" + speeds +
          "]\nrepeats: " + std::to_string(repeats) + "\n";
+}
+
+std::string FiveSpeeds(const Sizes& s) {
+  return s.slow + ", " + s.low + ", " + s.middle + ", " + s.high + ", " + s.fast;
 }
 
 std::string ThreeSpeeds(const Sizes& s) { return s.slow + ", " + s.middle + ", " + s.fast; }
@@ -100,7 +106,7 @@ Experiment FiveSpeedsAndPulses(const Problem& problem, bool) {
       "Strokes at five speeds, then pulses of high torque at low and at high speed: saturation and load go "
       "with the torque, viscosity with the speed. A torque constant needs one number measured otherwise, "
       "such as the inertia or the torque at a lever.",
-      Creep(s, s.slow + ", " + s.middle + ", " + s.fast, 2) + "torque: {axis: " + s.axis +
+      Creep(s, FiveSpeeds(s), 2) + "torque: {axis: " + s.axis +
           ", kind: pulses, amplitude_Nm: " + s.torque_Nm + ", period_s: 1}\n"};
 }
 

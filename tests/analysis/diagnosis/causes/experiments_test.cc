@@ -63,6 +63,13 @@ TEST(DecidingExperiment, StaysWithinTheSpeedAndTheStrokeOfTheLog) {
   }
 }
 
+TEST(DecidingExperiment, StrokesAtFiveSpeedsAreFiveThatRise) {
+  const test::KnownAxis axis;
+  const auto creep = std::get<CreepShape>(test::DecidingProgram(axis, "viscous_nonlinear").shape);
+  ASSERT_EQ(creep.velocities_mm_s.size(), 5u);
+  for (std::size_t i = 1; i < 5; ++i) EXPECT_GT(creep.velocities_mm_s[i], 1.3 * creep.velocities_mm_s[i - 1]);
+}
+
 TEST(DecidingExperiment, GivesTorqueAtTheMotorWhateverTheLogHas) {
   const test::KnownAxis rotary, linear({.linear = true});
   const auto steps = [](const test::KnownAxis& axis) {
