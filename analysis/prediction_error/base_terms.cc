@@ -3,25 +3,25 @@
 #include <cmath>
 #include <map>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
+
 namespace contour::diagnosis {
 namespace {
 
-// A coupling of 1 kHz; softer ones are for `compliance` to find.
-constexpr double kLagForDelay_s = 25e-6;
-// Without a statement of the model file: what a careful data sheet is worth.
-const std::map<std::string, double> kDefaultSigma = {{"inertia", 0.05},
-                                                     {"load_inertia", 0.05},
-                                                     {"stiffness", 0.10},
-                                                     {"damping", 0.5},
-                                                     {"Fc", 0.10},
-                                                     {"Fs", 0.10},
-                                                     {"vs", 0.20},
-                                                     {"s0", 0.20},
-                                                     {"s1", 0.50},
-                                                     {"s2", 0.10},
-                                                     {"delay", 0.01},
-                                                     {"lag", 0.05},
-                                                     {"torque_constant", 0.0}};
+// Without a statement of the model file.
+const std::map<std::string, double> kDefaultSigma = {{"inertia", kPriors.inertia_rel},
+                                                     {"load_inertia", kPriors.load_inertia_rel},
+                                                     {"stiffness", kPriors.stiffness_rel},
+                                                     {"damping", kPriors.damping_rel},
+                                                     {"Fc", kPriors.Fc_rel},
+                                                     {"Fs", kPriors.Fs_rel},
+                                                     {"vs", kPriors.vs_rel},
+                                                     {"s0", kPriors.s0_rel},
+                                                     {"s1", kPriors.s1_rel},
+                                                     {"s2", kPriors.s2_rel},
+                                                     {"delay", kPriors.delay_rel},
+                                                     {"lag", kPriors.lag_rel},
+                                                     {"torque_constant", kPriors.torque_constant_rel}};
 
 void AddNumbers(const StatedAxis& stated, AxisModel& nominal, std::vector<BaseTerm>& terms) {
   const auto sigma_of = [&](const char* name) { return StatedSigma(stated, name); };
@@ -41,7 +41,7 @@ void AddNumbers(const StatedAxis& stated, AxisModel& nominal, std::vector<BaseTe
     add("damping", sigma_of("damping"), 5e-3, [](AxisModel& m) { return &m.damping; });
   }
   const StatedFriction& f = nominal.friction;
-  const bool stribeck = f.Fs_plus + f.Fs_minus > 1.05 * (f.Fc_plus + f.Fc_minus);
+  const bool stribeck = f.Fs_plus + f.Fs_minus > kPriors.stribeck_ratio * (f.Fc_plus + f.Fc_minus);
   add("Fc", sigma_of("Fc"), 1e-3, [](AxisModel& m) { return &m.friction.Fc_plus; });
   if (stribeck) {
     add("Fs", sigma_of("Fs"), 2e-3, [](AxisModel& m) { return &m.friction.Fs_plus; });
@@ -68,10 +68,10 @@ void AddTimes(const StatedAxis& stated, AxisModel& nominal, std::vector<BaseTerm
   timed("lag", [](AxisModel& m) { return &m.lag_s; });
   // No axis is quite rigid: below its antiresonance a coupling acts as a lag does that came with less delay
   // (both leave the sum alone; 1 + s^2 / w_ar^2 ... against s^2 lag^2 / 2).
-  if (!nominal.two_inertia && nominal.delay_s > 2.0 * kLagForDelay_s) {
+  if (!nominal.two_inertia && nominal.delay_s > 2.0 * kPriors.lag_for_delay_s) {
     BaseTerm exchange;
     exchange.name = "lag_for_delay";
-    exchange.sigma = kLagForDelay_s;
+    exchange.sigma = kPriors.lag_for_delay_s;
     exchange.step = 2e-6;
     exchange.additive = exchange.nuisance = true;
     exchange.field = [](AxisModel& m) { return &m.lag_for_delay_s; };
@@ -82,15 +82,15 @@ void AddTimes(const StatedAxis& stated, AxisModel& nominal, std::vector<BaseTerm
 void AddNuisances(const StatedFriction& f, std::vector<BaseTerm>& terms) {
   BaseTerm rough;
   rough.name = "rough";
-  rough.sigma = std::pow(0.05 * f.vs, 2);
-  rough.start = 0.04 * rough.sigma;
+  rough.sigma = std::pow(kPriors.rough_speed_share * f.vs, 2);
+  rough.start = kPriors.rough_start_deviations * rough.sigma;
   rough.step = 0.002 * rough.sigma;
   rough.additive = rough.nuisance = true;
   rough.field = [](AxisModel& m) { return &m.rough; };
   terms.push_back(rough);
   BaseTerm z;
   z.name = "start_bristle";
-  z.sigma = 0.7 * f.Fc_plus / f.s0;
+  z.sigma = kPriors.start_bristle_lengths * f.Fc_plus / f.s0;
   z.step = 0.01 * f.Fc_plus / f.s0;
   z.additive = z.nuisance = true;
   z.field = [](AxisModel& m) { return &m.start_bristle; };

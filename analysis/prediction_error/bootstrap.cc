@@ -5,19 +5,12 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/products.h"
 #include "analysis/prediction_error/simd/lanes.h"
 
 namespace contour::diagnosis {
 namespace {
-
-constexpr double kShortest_s = 0.25;
-constexpr std::size_t kFewestBlocks = 40;
-// Of the travel: what comes back less far is dither and no turn.
-constexpr double kTurn = 1e-4;
-
-// No stroke's gradient is made more than this many times larger for what the fit took of it.
-constexpr double kMostTaken = 5.0;
 
 /// What the strokes pull the parameters by, one column per stroke, in the size that it had before the fit
 /// yielded to it: with G = J'J of the stroke, white noise would make the covariance of the pull G, the fit
@@ -51,8 +44,10 @@ Eigen::MatrixXd PullsOf(const Problem& problem, const Fit& fit, const Eigen::Vec
     const Eigen::MatrixXd half = unit.cwiseInverse().asDiagonal() * split.eigenvectors() * root.asDiagonal();
     const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(n, n) - half.transpose() * solver.solve(half);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> taken(left);
-    const Eigen::VectorXd larger =
-        taken.eigenvalues().cwiseMax(1.0 / (kMostTaken * kMostTaken)).cwiseSqrt().cwiseInverse();
+    const Eigen::VectorXd larger = taken.eigenvalues()
+                                       .cwiseMax(1.0 / (kBootstrap.most_taken * kBootstrap.most_taken))
+                                       .cwiseSqrt()
+                                       .cwiseInverse();
     const Eigen::VectorXd seen =
         root.cwiseInverse().asDiagonal() * split.eigenvectors().transpose() * unit.asDiagonal() * pull;
     pulls.col(static_cast<Eigen::Index>(b)) =
@@ -133,10 +128,11 @@ std::vector<std::size_t> StrokeEnds(const Problem& problem) {
   const std::vector<double>& q = problem.signals->position;
   const std::size_t n = problem.rows();
   const auto shortest =
-      std::max<std::size_t>(1, static_cast<std::size_t>(kShortest_s / problem.log.period_s));
-  const std::size_t longest = std::max(shortest, n / kFewestBlocks);
+      std::max<std::size_t>(1, static_cast<std::size_t>(kBootstrap.shortest_s / problem.log.period_s));
+  const std::size_t longest = std::max(shortest, n / kBootstrap.fewest_blocks);
   const auto [low, high] = std::minmax_element(q.begin(), q.end());
-  const double turn = std::max(kTurn * (*high - *low), 4.0 * problem.stated.position_step);
+  const double turn =
+      std::max(kBootstrap.turn_share * (*high - *low), kBootstrap.turn_counts * problem.stated.position_step);
   std::vector<std::size_t> ends;
   std::size_t from = 0, extreme = 0;
   double direction = 0.0;  // +1 upwards, -1 downwards, 0 not known yet

@@ -4,27 +4,20 @@
 #include <cmath>
 #include <random>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
+
 namespace contour::diagnosis {
-namespace {
-
-constexpr double kShare = 0.25;
-constexpr double kSettling_s = 0.2, kLength_s = 0.8;  // each, the settling included
-constexpr std::size_t kFewest = 20;
-constexpr double kBristles = 4.0;  // of travel while it settles
-
-}  // namespace
-
 Excerpt ChooseExcerpt(const std::vector<double>& position, const std::vector<double>& velocity,
                       const std::vector<std::uint8_t>& valid, const std::vector<std::uint8_t>& counted,
                       double period_s, double bristle) {
   Excerpt out;
   const std::size_t n = position.size();
-  const auto length = static_cast<std::size_t>(kLength_s / period_s),
-             settling = static_cast<std::size_t>(kSettling_s / period_s);
+  const auto length = static_cast<std::size_t>(kExcerpts.segment_s / period_s),
+             settling = static_cast<std::size_t>(kExcerpts.settling_s / period_s);
   if (settling < 1 || n < 2 * length) return out;
-  const auto places =
-      static_cast<std::size_t>(kShare * static_cast<double>(n) / static_cast<double>(length - settling));
-  if (places < kFewest) return out;
+  const auto places = static_cast<std::size_t>(kExcerpts.share * static_cast<double>(n) /
+                                               static_cast<double>(length - settling));
+  if (places < kExcerpts.fewest) return out;
   // One in every part of the log, at random in it: a program's period must not decide what is seen.
   std::mt19937 random(1);
   const std::size_t part = n / places;
@@ -33,7 +26,7 @@ Excerpt ChooseExcerpt(const std::vector<double>& position, const std::vector<dou
     std::size_t from = begin + random() % part;
     const auto slides = [&](std::size_t k) {
       return k < end && valid[k] != 0 &&
-             std::fabs(position[k + settling] - position[k]) > kBristles * bristle;
+             std::fabs(position[k + settling] - position[k]) > kExcerpts.settling_lengths * bristle;
     };
     while (from < end && !slides(from)) ++from;
     if (from >= end) {
@@ -49,7 +42,7 @@ Excerpt ChooseExcerpt(const std::vector<double>& position, const std::vector<dou
       out.counts.push_back(k >= settling && counted[from + k] != 0 ? 1 : 0);
     }
   }
-  if (out.segments.size() < kFewest) return {};
+  if (out.segments.size() < kExcerpts.fewest) return {};
   const auto sum = [](const std::vector<std::uint8_t>& v) {
     return static_cast<double>(std::count(v.begin(), v.end(), std::uint8_t{1}));
   };

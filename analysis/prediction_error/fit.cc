@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/common_factor.h"
 #include "analysis/prediction_error/products.h"
 #include "analysis/prediction_error/simd/lanes.h"
@@ -25,8 +26,6 @@ double StepOf(const Problem& problem, const Point& p, std::size_t i) {
   }
   return 0.0;
 }
-
-constexpr double kWorthWhile = 3.0, kKept = 0.1;
 
 /// One fit, which says what runs it needs next and goes on when it has them.
 class Descent {
@@ -248,18 +247,18 @@ class Descent {
     kept_ = std::clamp(gained / promised_, 0.0, 1.0);
     fit_.promised = kept_ * promised_;
     if (chosen_ < tried_.size()) {
-      if (gained < 0.6 * promised_ || chosen_ > 0) stale_ = true;
+      if (gained < kFits.stale_share * promised_ || chosen_ > 0) stale_ = true;
       fit_.point = std::move(tried_[chosen_]);
       fit_.raw = std::move(chosen_raw_);
       fit_.residual = std::move(chosen_white_);
       // A cost that is rough, or sensitivities that serve no more: small steps lead nowhere either.
-      if (small_ && last_chance_ && gained < kKept * promised_) {
+      if (small_ && last_chance_ && gained < kFits.kept_share * promised_) {
         fit_.converged = true;
         return Close(false);
       }
       small_ = false;
     } else {
-      if (last_chance_ && !small_ && promised_ > kWorthWhile) {
+      if (last_chance_ && !small_ && promised_ > kFits.worth_while) {
         small_ = true;
         return;
       }

@@ -21,10 +21,6 @@ struct Fit {
   bool converged = false;
 };
 
-/// To see in which basin a point lies.
-inline constexpr FitEffort kToTheBasin = {
-    .most_steps = 12, .most_refreshes = 4, .close_enough = 1.0, .covariance = false};
-
 /// Where a fit begins.
 struct InitialGuess {
   Point point;

@@ -6,14 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/simd/lane_linear.h"
 #include "analysis/prediction_error/simd/lane_loops.h"
 
 namespace contour::diagnosis {
 namespace {
-
-// Rows at the beginning of a segment that let the variance settle.
-constexpr std::size_t kSettling = 150;
 
 struct Noise {
   double torque = 0.0;   // variance over a row
@@ -72,7 +70,7 @@ void Likelihood(const Rows& rows, const Noise& noise, Sums& sums, float* gains) 
       for (int i = 0; i < n; ++i) out[i] = static_cast<float>(kappa(i));
       out[n] = static_cast<float>(1.0 / std::sqrt(s));
     }
-    if (rows.counted[k + 1] != 0 && k >= rows.from + kSettling) {
+    if (rows.counted[k + 1] != 0 && k >= rows.from + kNoise.settling_rows) {
       sums.squares += std::min(nu * nu / s, 100.0 * (sums.squares + 1.0) / (sums.count + 1.0));
       sums.logs += std::log(s);
       sums.count += 1.0;
@@ -142,13 +140,14 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
   const double unit = inertia / (period_s * period_s);
   const double reading = std::max(reading_step * reading_step / 12.0, 1e-24);
   const auto noise_at = [&](double x) { return Noise{reading * unit * unit * std::pow(10.0, x), reading}; };
-  // A dozen segments all over the log are enough for one number.
-  constexpr std::size_t kStretches = 12;
-  const std::size_t length = std::min(n / kStretches, std::max<std::size_t>(n / 60, 1200));
+  // Some segments all over the log are enough for one number.
+  constexpr std::size_t kSegments = kNoise.segments;
+  const std::size_t length =
+      std::min(n / kSegments, std::max(n / kNoise.segments_of_log, kNoise.segment_rows));
   const auto badness = [&](double x) {
     Sums sums;
-    for (std::size_t i = 0; i < kStretches; ++i) {
-      const std::size_t from = (n - length) * i / (kStretches - 1);
+    for (std::size_t i = 0; i < kSegments; ++i) {
+      const std::size_t from = (n - length) * i / (kSegments - 1);
       Pass({m, counted, period_s, from, from + length}, noise_at(x), sums, nullptr);
     }
     return sums.count > 0.0 ? sums.count * std::log(sums.squares / sums.count + 1e-300) + sums.logs : 0.0;

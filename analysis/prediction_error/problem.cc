@@ -7,6 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/extras.h"
 #include "analysis/prediction_error/scale_noise.h"
 #include "analysis/prediction_error/simd/lane_run.h"
@@ -14,10 +15,7 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kObserverBandwidth_Hz = 35.0;
-constexpr double kSettling_s = 0.3;
-constexpr std::size_t kSlowRows = 20;
-constexpr double kLeastCountsPerRow = 1e-3;
+constexpr std::size_t kSlowRows = kRows.slow_rows;
 
 }  // namespace
 
@@ -35,10 +33,10 @@ Problem::Problem(const AxisLog& axis_log, const StatedAxis& stated_axis, int mos
   const std::size_t n = std::min<std::size_t>(10, rows() - 1);
   setup.start = {signals->position[0],
                  (signals->position[n] - signals->position[0]) / (static_cast<double>(n) * log.period_s)};
-  setup.gain_two = SteadyObserverGain(nominal, log.period_s, kObserverBandwidth_Hz);
+  setup.gain_two = SteadyObserverGain(nominal, log.period_s, kNoise.observer_bandwidth_Hz);
   AxisModel rigid = nominal;
   rigid.two_inertia = false;
-  setup.gain = SteadyObserverGain(rigid, log.period_s, kObserverBandwidth_Hz);
+  setup.gain = SteadyObserverGain(rigid, log.period_s, kNoise.observer_bandwidth_Hz);
   if (!nominal.two_inertia) setup.gain_two = {setup.gain[0], setup.gain[1], setup.gain[0], setup.gain[1]};
   ChooseSubsteps();
   terms = MakeBaseTerms(stated, nominal);
@@ -71,7 +69,7 @@ void Problem::ChooseSubsteps() {
 void Problem::CountRows() {
   const std::size_t n = rows();
   counted.assign(n, 1);
-  const auto settled = std::min(n, static_cast<std::size_t>(kSettling_s / log.period_s));
+  const auto settled = std::min(n, static_cast<std::size_t>(kRows.settling_s / log.period_s));
   std::fill(counted.begin(), counted.begin() + static_cast<std::ptrdiff_t>(settled), std::uint8_t{0});
   for (std::size_t k = 0; k < n; ++k) {
     if (setup.valid[k] != 0) continue;
@@ -284,9 +282,9 @@ void Problem::LearnNoise(const Point& point) {
       if (k + 1 >= kSlowRows)
         slow[k + 1 - kSlowRows / 2 - 1] = sum / std::sqrt(static_cast<double>(kSlowRows));
     }
-    Lower(r, 15, 2.0, w);
-    Lower(r, 150, 1.25, w);
-    Lower(slow.data(), 400, 2.0, w);
+    Lower(r, kRows.short_window_rows, kRows.short_by_chance, w);
+    Lower(r, kRows.long_window_rows, kRows.long_by_chance, w);
+    Lower(slow.data(), kRows.slow_window_rows, kRows.slow_by_chance, w);
   }
   if (has_scale()) LowerWhereScaleRests(&root_weight[n]);
   for (std::size_t k = 0; k < data_size(); ++k)
@@ -315,7 +313,7 @@ void Problem::LowerWhereScaleRests(double* w) const {
   if (!std::isfinite(step)) return;
   for (std::size_t k = 0; k < n; ++k) {
     const double counts_per_row = std::fabs(signals->velocity[k]) * log.period_s * stated.table_per_q / step;
-    w[k] *= std::sqrt(std::clamp(counts_per_row, kLeastCountsPerRow, 1.0));
+    w[k] *= std::sqrt(std::clamp(counts_per_row, kRows.least_counts_per_row, 1.0));
   }
 }
 

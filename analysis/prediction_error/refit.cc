@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/products.h"
 
 namespace contour::diagnosis {
@@ -15,13 +16,9 @@ using Column = Eigen::Map<const Eigen::VectorXd>;
 
 Column ColumnOf(const std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
 
-// Of chi^2 in excess of twice its degrees; standard deviations.
-constexpr double kHardlyEver = 2.0, kFarOff = 2.0;
-constexpr double kLower = 2.0;  // of chi^2
-
 bool Implausible(const Problem& problem, const Fit& fit) {
   const auto terms = static_cast<double>(problem.terms.size());
-  return fit.prior > kHardlyEver * terms;
+  return fit.prior > kFits.hardly_ever * terms;
 }
 
 }  // namespace
@@ -31,13 +28,13 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, do
   Point back = fit.point;
   for (std::size_t i = 0; i < back.base.size(); ++i) {
     const BaseTerm& t = problem.terms[i];
-    if (!t.nuisance && std::fabs(back.base[i]) > kFarOff * t.sigma) back.base[i] = 0.0;
+    if (!t.nuisance && std::fabs(back.base[i]) > kFits.far_off_deviations * t.sigma) back.base[i] = 0.0;
   }
   if (!problem.excerpt.empty()) {
     // Where it leads is seen on a part of the log, from both places, as its lowest points are not the log's.
-    const Fit here = FitPoint(problem, fit.point, kToTheBasin, Extent::kExcerpt);
-    Fit there = FitPoint(problem, std::move(back), kToTheBasin, Extent::kExcerpt);
-    if (there.cost > here.cost - kLower || fit.cost + there.cost - here.cost > worth) return false;
+    const Fit here = FitPoint(problem, fit.point, kFits.to_the_basin, Extent::kExcerpt);
+    Fit there = FitPoint(problem, std::move(back), kFits.to_the_basin, Extent::kExcerpt);
+    if (there.cost > here.cost - kFits.lower || fit.cost + there.cost - here.cost > worth) return false;
     back = std::move(there.point);
   }
   Fit other = FitPoint(problem, std::move(back), effort);

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
+
 namespace contour::diagnosis {
 namespace {
 
-constexpr Eigen::Index kCosines = 8;  // as `pitch_error` has
+constexpr Eigen::Index kCosines = kNoise.scale_cosines;
 
 }  // namespace
 

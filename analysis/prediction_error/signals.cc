@@ -4,11 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
+#include "analysis/diagnosis/tuning/statistics.h"
+
 namespace contour::diagnosis {
 namespace {
-
-// Width of the smoothing of position for velocity and acceleration: half power at about 45 Hz.
-constexpr double kKinematicSigma_s = 3e-3;
 
 Signal Convolve(const Signal& x, const std::vector<double>& kernel) {
   const auto n = static_cast<std::ptrdiff_t>(x.size());
@@ -106,10 +106,11 @@ Signal SmoothSlow(const Signal& x, double sigma_rows) {
 
 Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   Signals s;
-  const double sigma = kKinematicSigma_s / log.period_s;
+  const double sigma = kRows.kinematic_smoothing_s / log.period_s;
   s.position = Filled(log.position);
   s.velocity = Derivative(s.position, sigma, log.period_s);
-  s.acceleration = Derivative(s.velocity, std::max(1.0, 0.7 * sigma), log.period_s);
+  s.acceleration =
+      Derivative(s.velocity, std::max(1.0, kRows.acceleration_smoothing_share * sigma), log.period_s);
   const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
   const double middle = 0.5 * (*low + *high);
   s.half_stroke_m = 0.5 * (*high - *low) * stated.table_per_q;
@@ -124,7 +125,7 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   for (const double w : s.velocity) s.max_speed = std::max(s.max_speed, std::fabs(w));
   s.coulomb = 0.5 * (stated.friction.Fc_plus + stated.friction.Fc_minus);
   if (!log.temperature_degC.empty()) {
-    s.temperature_K = SmoothSlow(Filled(log.temperature_degC), 0.25 / log.period_s);
+    s.temperature_K = SmoothSlow(Filled(log.temperature_degC), kRows.temperature_smoothing_s / log.period_s);
     double mean = 0.0;
     for (const double t : s.temperature_K) mean += t / static_cast<double>(log.size());
     for (double& t : s.temperature_K) t -= mean;
@@ -133,10 +134,12 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   if (!log.axis2_position_m.empty()) {
     const Signal other = Filled(log.axis2_position_m);
     s.axis2_m_s = Derivative(other, sigma, log.period_s);
-    s.axis2_m_s2 = Derivative(s.axis2_m_s, std::max(1.0, 0.7 * sigma), log.period_s);
+    s.axis2_m_s2 =
+        Derivative(s.axis2_m_s, std::max(1.0, kRows.acceleration_smoothing_share * sigma), log.period_s);
     // What the smoothing took, once more: it would make the coupling look stronger than it is (Tukey's
     // twicing).
-    const Signal smoother = Smooth(s.axis2_m_s2, std::hypot(sigma, std::max(1.0, 0.7 * sigma)));
+    const Signal smoother =
+        Smooth(s.axis2_m_s2, std::hypot(sigma, std::max(1.0, kRows.acceleration_smoothing_share * sigma)));
     for (std::size_t k = 0; k < log.size(); ++k) s.axis2_m_s2[k] += s.axis2_m_s2[k] - smoother[k];
   }
   return s;
@@ -165,7 +168,7 @@ std::vector<std::uint8_t> ValidRows(const AxisLog& log, const Signals& signals, 
   std::vector<std::uint8_t> valid(n, 1);
   quality.rows = log.rows;
   quality.missing = log.missing;
-  const double moved = 4.0 * stated.position_step / log.period_s;
+  const double moved = kRows.stale_counts_per_row * stated.position_step / log.period_s;
   for (std::size_t k = 0; k < n; ++k) {
     if (!std::isfinite(log.position[k]) || (k < log.present.size() && log.present[k] == 0)) {
       valid[k] = 0;
@@ -182,7 +185,7 @@ std::vector<std::uint8_t> ValidRows(const AxisLog& log, const Signals& signals, 
 
 void MarkOutliers(const std::vector<double>& innovation, double position_step,
                   std::vector<std::uint8_t>& valid, DataQuality& quality) {
-  const std::size_t n = innovation.size(), half = 150;
+  const std::size_t n = innovation.size(), half = kRows.outlier_reach_rows;
   std::vector<double> scratch;
   const auto scale_at = [&](std::size_t k) {
     scratch.clear();
@@ -190,20 +193,23 @@ void MarkOutliers(const std::vector<double>& innovation, double position_step,
       scratch.push_back(std::fabs(innovation[i]));
     const auto middle = scratch.begin() + static_cast<std::ptrdiff_t>(scratch.size() / 2);
     std::nth_element(scratch.begin(), middle, scratch.end());
-    return 1.4826 * *middle;
+    return kNormalMad * *middle;
   };
   // The neighbourhood is looked at only where the row stands out from the whole log.
   scratch.assign(innovation.begin(), innovation.end());
   for (double& v : scratch) v = std::fabs(v);
   std::nth_element(scratch.begin(), scratch.begin() + static_cast<std::ptrdiff_t>(n / 2), scratch.end());
-  const double global = 1.4826 * scratch[n / 2];
+  const double global = kNormalMad * scratch[n / 2];
   for (std::size_t k = 2; k + 3 < n; ++k) {
     const double e = std::fabs(innovation[k]);
-    if (valid[k] == 0 || e < 10.0 * global + 6.0 * position_step) continue;
+    if (valid[k] == 0 || e < kRows.outlier_deviations * global + kRows.outlier_counts * position_step)
+      continue;
     const double local = scale_at(k);
-    if (e < 15.0 * local + 6.0 * position_step) continue;
+    if (e < kRows.outlier_near_deviations * local + kRows.outlier_counts * position_step) continue;
     // A shock goes on; a wrong reading is over after the rows that it pulled along.
-    if (std::fabs(innovation[k - 1]) > 0.3 * e || std::fabs(innovation[k + 3]) > 0.3 * e) continue;
+    if (std::fabs(innovation[k - 1]) > kRows.shock_share * e ||
+        std::fabs(innovation[k + 3]) > kRows.shock_share * e)
+      continue;
     valid[k] = 0;
     ++quality.outliers;
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/axis_model/axis_model.h"
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/forward_filter.h"
 #include "analysis/recording/axis_log.h"
 #include "analysis/recording/data_quality.h"
@@ -33,7 +34,7 @@ struct Signals {
 };
 
 /// Of `sign`: friction beyond it follows the motion.
-inline constexpr double kFollowsMotion = 0.8;
+inline constexpr double kFollowsMotion = kRows.follows_motion_share;
 
 /// Gaussian smoothing and its derivatives, without phase; ends are held.
 Signal Smooth(const Signal& x, double sigma_rows);

@@ -5,15 +5,16 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/levinson.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr std::size_t kSegment = 4096;
-constexpr std::size_t kOrder = 48;
-constexpr int kSmoothBins = 8;
-constexpr std::size_t kLineBins = 12;
+constexpr std::size_t kSegment = kNoise.spectrum_rows;
+constexpr std::size_t kOrder = kNoise.whitener_order;
+constexpr int kSmoothBins = kNoise.smooth_bins;
+constexpr std::size_t kLineBins = kNoise.line_bins;
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "analysis/prediction_error/refit.h"
 
@@ -19,8 +20,8 @@ Nominal FitNominal(Problem& problem) {
   nominal.fit = FitPoint(problem, start, kScreening.base_ahead, ahead);
   problem.LearnNoise(nominal.fit.point);
   if (ahead == Extent::kExcerpt) {
-    nominal.fit =
-        FitPoint(problem, FitPoint(problem, nominal.fit.point, kToTheBasin, ahead).point, kScreening.base);
+    nominal.fit = FitPoint(problem, FitPoint(problem, nominal.fit.point, kFits.to_the_basin, ahead).point,
+                           kScreening.base);
   } else {
     Rewhiten(problem, nominal.fit);
     nominal.fit = FitOn(problem, std::move(nominal.fit), kScreening.base);

@@ -7,6 +7,8 @@ namespace contour::diagnosis {
 inline constexpr double kNormal95 = 1.96;
 /// Standard deviations that 90 % of cases stay within on one side.
 inline constexpr double kNormal90 = 1.2816;
+/// A normal distribution's deviation over its median absolute deviation.
+inline constexpr double kNormalMad = 1.4826;
 /// Of the second difference of white noise, over the noise's own: 1 + 2^2 + 1.
 inline constexpr double kVarianceOfSecondDifference = 6.0;
 
