@@ -148,10 +148,11 @@ void CheckMode(const MachineConfig& c, const std::string& key, const DriveConfig
   if (const DriveMode other = ModeFor(controller, first.drive); mode != other)
     problems.Add(key + ".mode", "found " + std::string(Name(mode)) + ", but axis '" + first_name + "' has " +
                                     std::string(Name(other)) + "; expected one mode for all axes");
-  if (controller == ControllerName::kFull && mode == DriveMode::kCsp && !d.csp_torque_offset)
+  const bool sends_friction = controller == ControllerName::kFull || controller == ControllerName::kCnc;
+  if (sends_friction && mode == DriveMode::kCsp && !d.csp_torque_offset)
     problems.Add(key + ".csp_torque_offset",
-                 "found false, but machine.controller full sends friction as torque offset in mode csp; "
-                 "expected true");
+                 "found false, but machine.controller " + std::string(Name(controller)) +
+                     " sends friction as torque offset in mode csp; expected true");
   if (c.control.csp.torque_offset && !d.csp_torque_offset)
     problems.Add(key + ".csp_torque_offset",
                  "found false, but control.csp.torque_offset is true; expected true");

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "control/cascade_law.h"
+#include "control/cnc_law.h"
 #include "control/csp_law.h"
 #include "control/loop_bandwidth.h"
 #include "control/mpc_law.h"
@@ -23,6 +24,8 @@ std::unique_ptr<ControlLaw> MakeLaw(ControllerName name, const ControllerConfig&
       return std::make_unique<PidLaw>(config.pid, options, axes, period_s);
     case ControllerKind::kCsp:
       return std::make_unique<CspLaw>(config.csp, options, axes, period_s);
+    case ControllerKind::kCnc:
+      return std::make_unique<CncLaw>(config.cnc, axes, period_s);
     case ControllerKind::kMpc:
       break;
   }
@@ -47,6 +50,7 @@ const MpcConfig& MpcConfigFor(const ControllerConfig& config, ControllerName nam
     case ControllerName::kPid:
     case ControllerName::kCsp:
     case ControllerName::kFull:
+    case ControllerName::kCnc:
       break;
   }
   return config.full;

@@ -12,7 +12,7 @@
 
 namespace contour {
 
-enum class ControllerKind : std::uint8_t { kPid, kCsp, kMpc };
+enum class ControllerKind : std::uint8_t { kPid, kCsp, kMpc, kCnc };
 
 /// What a named controller is made of on the control side.
 struct ControllerOptions {
@@ -36,6 +36,8 @@ constexpr ControllerOptions OptionsFor(ControllerName name) noexcept {
       return {ControllerKind::kPid, false, false};
     case ControllerName::kCsp:
       return {ControllerKind::kCsp, false, false};
+    case ControllerName::kCnc:
+      return {ControllerKind::kCnc, false, false};
     case ControllerName::kMpc:
       return {ControllerKind::kMpc, false, false};
     case ControllerName::kMpcObserver:
@@ -58,6 +60,10 @@ struct ControlledAxis {
   AxisLimitsSi limits;
   double lag_s = 0.0;         ///< first-order lag of the drive's current loop
   double viscous_Ns_m = 0.0;  ///< sigma2, for controllers without a friction preview
+  // For `cnc`, which compensates reversals by fixed numbers:
+  double coulomb_plus_N = 0.0;
+  double coulomb_minus_N = 0.0;
+  double presliding_m = 0.0;  ///< travel after which friction is sliding: Fc / sigma0
 };
 
 /// Everything the controller sees of one cycle; see core/horizon.h for the time indices.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "control/cnc_config.h"
 #include "control/monitor_config.h"
 #include "control/supervision_config.h"
 #include "core/visit.h"
@@ -172,6 +173,7 @@ struct GuardConfig {
 struct ControllerConfig {
   PidConfig pid;
   CspConfig csp;
+  CncConfig cnc;
   // As stiff as stays stable with 30 % more or less inertia and one more cycle of delay: estimates that are
   // fed forward close a loop of their own and take their share of the margin.
   MpcConfig mpc{.contour_bandwidth_Hz = 42.0};
@@ -189,6 +191,7 @@ struct ControllerConfig {
   void Visit(Visitor& v) {
     v.Optional("pid", pid, "PID with feed-forward");
     v.Optional("csp", csp, "the drive's own position cascade");
+    v.Optional("cnc", cnc, "the drive's own position cascade, with what numerical controls compensate");
     v.Optional("mpc", mpc, "MPC without compensation");
     v.Optional("mpc_observer", mpc_observer, "MPC with disturbance observer");
     v.Optional("mpc_srukf4", mpc_srukf4, "MPC with the 4-state friction filter");

@@ -21,7 +21,8 @@ double LoopBandwidth_Hz(const ControllerConfig& config, ControllerName controlle
 
 double StiffnessBandwidth_Hz(const ControllerConfig& config, ControllerName controller,
                              bool in_cascade) noexcept {
-  if (in_cascade || controller == ControllerName::kCsp) return config.monitor.drive_loop_Hz;
+  if (in_cascade || controller == ControllerName::kCsp || controller == ControllerName::kCnc)
+    return config.monitor.drive_loop_Hz;
   if (controller == ControllerName::kMpc) return kUncompensated * LoopBandwidth_Hz(config, controller);
   if (controller == ControllerName::kMpcObserver)
     return std::sqrt(config.mpc_observer.contour_bandwidth_Hz * config.mpc_observer.lag_bandwidth_Hz);

@@ -17,7 +17,9 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
   PerAxis<ControlledAxis> axes;
   for (const CycleAxisConfig& a : config.axes) {
     const double r = a.mechanics.radius_m_rad;
-    axes.push_back({a.mechanics, ToSi(a.limits, r), a.lag_s, ToSi(a.friction, r).sigma2_Ns_m});
+    const Friction f = ToSi(a.friction, r);
+    axes.push_back({a.mechanics, ToSi(a.limits, r), a.lag_s, f.sigma2_Ns_m, f.Fc_plus_N, f.Fc_minus_N,
+                    0.5 * (f.Fc_plus_N + f.Fc_minus_N) / f.sigma0_N_m});
   }
   return axes;
 }
@@ -32,6 +34,7 @@ EstimatorKind EstimatorFor(const CycleConfig& config) noexcept {
   switch (config.controller) {
     case ControllerName::kPid:
     case ControllerName::kCsp:
+    case ControllerName::kCnc:
     case ControllerName::kMpc:
       return EstimatorKind::kKinematic;
     case ControllerName::kMpcObserver:

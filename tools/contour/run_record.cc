@@ -30,6 +30,7 @@ void AppendNumber(double value, std::string& out) {
 
 bool EstimatesFriction(const std::string& controller) {
   return controller != Name(ControllerName::kPid) && controller != Name(ControllerName::kCsp) &&
+         controller != Name(ControllerName::kCnc) &&
          controller != Name(ControllerName::kMpc);
 }
 
