@@ -18,6 +18,7 @@ LABELS = {
     "mpc_srukf4": "MPC + 4-state SRUKF",
     "mpc_ekf7": "MPC + 7-state EKF",
     "mpc_srukf7": "MPC + 7-state SRUKF",
+    "cnc": "numerical control as sold",
     "full": "MPC compensated (full)",
 }
 
