@@ -70,6 +70,8 @@ MAY_INCLUDE = {
     # Each way of validation is blind to the others.
     "tools/validation/contest": [*BELOW_ANALYSIS, "analysis/metrics", "design", *SIMULATED],
     "tools/validation/emps": [*BELOW_ANALYSIS, "analysis"],
+    # The family has the contest's way with assignments and costs.
+    "tools/validation/family": [*BELOW_ANALYSIS, "analysis", "design", "tools/validation/contest", *SIMULATED],
     "tools/validation/hidden": [*BELOW_ANALYSIS, "analysis", *SIMULATED],
     "tools/contour_gain": [*BELOW_ANALYSIS, "analysis", "tools/validation/contest", *SIMULATED],
     # The programs know everything.

@@ -1,0 +1,107 @@
+#include "tools/validation/family/family_report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace contour {
+namespace {
+
+std::string Fixed(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+std::string FourDigits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string Quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Runs of one controller on one machine, by program.
+struct Group {
+  std::map<char, std::vector<const FamilyResult*>> programs;
+
+  [[nodiscard]] std::string Text() const {
+    std::string peaks;
+    double hold = 0.0;
+    bool refused = true;
+    for (const auto& [letter, runs] : programs) {
+      std::vector<double> peak;
+      bool stopped = false;
+      for (const FamilyResult* r : runs) {
+        refused = refused && r->refused;
+        stopped = stopped || !r->failure.empty();
+        peak.push_back(r->peak_um / r->wind_up_um);
+        hold = std::max(hold, r->hold_pp_um / r->wind_up_um);
+      }
+      peaks += (peaks.empty() ? "" : " / ") + (stopped ? "stopped" : Fixed(Median(peak)));
+    }
+    return refused ? "refused" : peaks + " (" + Fixed(hold) + ")";
+  }
+};
+
+void AddOnce(std::vector<std::string>& all, const std::string& name) {
+  if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+}
+
+}  // namespace
+
+void WriteFamilyCsv(std::ostream& out, const std::vector<FamilyCell>& cells,
+                    const std::vector<FamilyResult>& results) {
+  out << "machine,plant,model,law,variation,controller,mode,program,seed,wind_up_um,peak_um,rms_um,hold_pp_"
+         "um,"
+         "failure\n";
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const FamilyCell& c = cells[i];
+    const FamilyResult& r = results[i];
+    out << c.setting.machine << ',' << kFamilyPlants[static_cast<std::size_t>(c.setting.plant)] << ','
+        << kFamilyModels[static_cast<std::size_t>(c.setting.model)] << ','
+        << (c.setting.maxwell_slip ? "maxwell_slip" : "lugre") << ',' << c.setting.variation << ','
+        << c.entry.controller << ',' << c.entry.mode << ',' << c.program << ',' << c.seed << ','
+        << FourDigits(r.wind_up_um) << ',' << FourDigits(r.peak_um) << ',' << FourDigits(r.rms_um) << ','
+        << FourDigits(r.hold_pp_um) << ',' << Quoted(r.failure) << '\n';
+  }
+}
+
+void WriteFamilyTable(std::ostream& out, const std::vector<FamilyCell>& cells,
+                      const std::vector<FamilyResult>& results) {
+  std::vector<std::string> rows, columns;
+  std::map<std::string, double> wind_up_um;
+  std::map<std::pair<std::string, std::string>, Group> groups;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const FamilyCell& c = cells[i];
+    const std::string row =
+        c.setting.machine + (c.setting.variation.empty() ? "" : " " + c.setting.variation);
+    const std::string column = c.entry.controller + " " + c.entry.mode;
+    AddOnce(rows, row);
+    AddOnce(columns, column);
+    wind_up_um[row] = results[i].wind_up_um;
+    groups[{row, column}].programs[c.program].push_back(&results[i]);
+  }
+  out << "| | F/K um |";
+  for (const std::string& column : columns) out << ' ' << column << " |";
+  out << "\n|---|---|";
+  for (std::size_t i = 0; i < columns.size(); ++i) out << "---|";
+  out << '\n';
+  for (const std::string& row : rows) {
+    out << "| " << row << " | " << Fixed(wind_up_um[row]) << " |";
+    for (const std::string& column : columns) out << ' ' << groups[{row, column}].Text() << " |";
+    out << '\n';
+  }
+}
+
+}  // namespace contour
