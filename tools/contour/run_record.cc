@@ -30,8 +30,7 @@ void AppendNumber(double value, std::string& out) {
 
 bool EstimatesFriction(const std::string& controller) {
   return controller != Name(ControllerName::kPid) && controller != Name(ControllerName::kCsp) &&
-         controller != Name(ControllerName::kCnc) &&
-         controller != Name(ControllerName::kMpc);
+         controller != Name(ControllerName::kCnc) && controller != Name(ControllerName::kMpc);
 }
 
 /// cycles.csv: the rows of every table of cycles, then the true friction of an emulated machine.

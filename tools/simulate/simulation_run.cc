@@ -61,8 +61,7 @@ class CyclesFile {
 
 bool EstimatesFriction(ControllerName controller) {
   return controller != ControllerName::kPid && controller != ControllerName::kCsp &&
-         controller != ControllerName::kCnc &&
-         controller != ControllerName::kMpc;
+         controller != ControllerName::kCnc && controller != ControllerName::kMpc;
 }
 
 std::vector<ScoredAxisFacts> AxisFacts(const MachineConfig& machine) {
