@@ -28,9 +28,9 @@ struct FamilySetting {
   std::string machine;  ///< of config/family
   FamilyPlant plant = FamilyPlant::kIdeal;
   FamilyModel model = FamilyModel::kNear;
-  std::string variation;         ///< a name of FamilyVariations(); empty: none
-  bool maxwell_slip = false;     ///< instead of the file's friction law
-  std::vector<std::string> set;  ///< put on top
+  std::string variation{};         ///< a name of FamilyVariations(); empty: none
+  bool maxwell_slip = false;       ///< instead of the file's friction law
+  std::vector<std::string> set{};  ///< put on top
 };
 
 /// "k_minus_30" and so on: each alone.

@@ -30,7 +30,7 @@ struct FamilyResult {
   double peak_um = 0.0;     ///< at the table, circles after the first turn, others from 1 s on
   double rms_um = 0.0;
   double hold_pp_um = 0.0;  ///< of the table's worst axis, in the last three seconds of hold
-  std::string failure;      ///< why the machine stopped; empty: it did not
+  std::string failure{};    ///< why the machine stopped; empty: it did not
   bool refused = false;     ///< before motion, by its checks
 };
 

@@ -56,7 +56,8 @@ TEST(FamilyMachine, TheCatalogueIsWrongWithinWhatItStatesAndNowhereRight) {
 TEST(FamilyMachine, RoughOnesHaveWhatTheirOwnNumbersSay) {
   FamilySetting setting{"m100"};
   setting.plant = FamilyPlant::kRough;
-  const EmulatedAxisConfig& axis = Load(setting).emulator.axes.at("x");
+  const EmulatedMachineFile file = Load(setting);
+  const EmulatedAxisConfig& axis = file.emulator.axes.at("x");
   EXPECT_EQ(axis.friction.motor_share_rel, 0.3);
   ASSERT_EQ(axis.side_modes.size(), 1U);
   EXPECT_NEAR(axis.side_modes[0].frequency_Hz, 0.55 * 141.5, 0.5);
