@@ -39,7 +39,7 @@ struct CncTask {
   FamilyPlant plant = FamilyPlant::kIdeal;
   bool dual_loop = false;  ///< with the position loop closed on the scale
   char program = 'C';      ///< what it is tuned on, and that alone
-  int evaluations_per_key = 40;
+  int evaluations_per_key = 20;
 };
 /// By the search by which all rivals are tuned, for the largest error at the table: what the family scores. A
 /// run that stopped counts as a millimetre.

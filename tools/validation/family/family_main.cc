@@ -35,7 +35,7 @@ struct Options {
   bool maxwell_slip = false;
   bool tune_cnc = false;
   std::string tune_on = "C";
-  int evaluations = 40;
+  int evaluations = 20;
   int jobs = 1;
   std::string out;
 };
