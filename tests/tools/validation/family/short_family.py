@@ -16,8 +16,8 @@ FOLDER = ROOT / "config" / "family"
 TUNED = ROOT / "tools" / "validation" / "family" / "cnc_tuned.csv"
 
 
-def family(*arguments):
-    return subprocess.run([FAMILY, "--family", FOLDER, "--cnc", TUNED, *map(str, arguments)], capture_output=True, text=True, check=False)
+def family(*arguments, tuned=TUNED):
+    return subprocess.run([FAMILY, "--family", FOLDER, "--cnc", tuned, *map(str, arguments)], capture_output=True, text=True, check=False)
 
 
 class ShortFamily(unittest.TestCase):
@@ -80,7 +80,7 @@ class ShortFamily(unittest.TestCase):
             result = family(option, wrong)
             self.assertEqual(result.returncode, 2, option)
             self.assertIn(known, result.stderr, option)
-        result = family("--cnc", self.out / "none.csv", "--controllers", "cnc")
+        result = family("--controllers", "cnc", tuned=self.out / "none.csv")
         self.assertEqual(result.returncode, 2)
         self.assertIn("--tune-cnc", result.stderr)
 
