@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include "config/realtime_config.h"
 #include "control/control_config.h"
 #include "core/controller_name.h"
+#include "core/loop_limits.h"
+#include "core/loop_tuning.h"
 #include "core/visit.h"
 #include "drivers/cia402/drive_config.h"
 #include "drivers/lcm/telemetry_config.h"
@@ -39,12 +42,16 @@ struct AxisConfig {
   DriveConfig drive;
   AxisLimits limits;
   ModelConfig model;
+  std::optional<LoopTuning> loop;
+  LoopLimits loop_limits;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Required("drive", drive, "the CiA 402 drive of this axis");
     v.Required("limits", limits, "what the axis may do");
     v.Required("model", model, "what is believed of the axis; or the name of a file that holds it");
+    v.Optional("loop", loop, "tuning of the two-inertia loop, as `contour tune --from-model` finds it");
+    v.Optional("loop_limits", loop_limits, "what the two-inertia loop must bear");
   }
 };
 

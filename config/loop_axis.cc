@@ -1,0 +1,34 @@
+#include "config/loop_axis.h"
+
+#include <algorithm>
+
+#include "config/extended_model.h"
+
+namespace contour {
+
+LoopAxis LoopAxisOf(const AxisConfig& axis) {
+  const ExtendedModel model = Extended(axis.model);
+  const Mechanics mechanics = ToSi(model.mechanics);
+  LoopAxis out;
+  out.friction = ToSi(model.friction, mechanics.radius_m_rad);
+  const double lag_s = std::max(0.0, 1e-3 * axis.drive.lag_ms + model.added_lag_s);
+  out.axis = ToTwoInertiaAxis(mechanics, out.friction.sigma2_Ns_m, lag_s, axis.drive.delay_cycles);
+  // The cycle cannot know of less than its own delay.
+  out.axis.dead_time_s = std::max(0.0, model.added_delay_s);
+  out.rated_force_N = axis.drive.rated_torque_Nm / mechanics.radius_m_rad;
+  out.encoder_step_m = 1e-3 * model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
+  if (axis.drive.linear_scale) out.scale_step_m = 1e-3 / axis.drive.linear_scale->counts_per_mm;
+  out.limits = axis.loop_limits;
+  const auto std_of = [&](const char* key) {
+    const auto stated = axis.model.uncertainty.find(key);
+    const double value =
+        stated == axis.model.uncertainty.end() ? axis.loop_limits.uncertainty : stated->second;
+    return std::max(value, axis.loop_limits.smallest_uncertainty);
+  };
+  out.stiffness_std = std_of("screw_stiffness_N_um");
+  out.motor_mass_std = std_of("motor_inertia_kgm2");
+  out.table_mass_std = std_of("table_mass_kg");
+  return out;
+}
+
+}  // namespace contour

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+
+#include "config/machine_config.h"
+#include "core/loop_limits.h"
+#include "core/two_inertia_axis.h"
+#include "estimator/friction_config.h"
+
+namespace contour {
+
+/// All that the design of an axis's loop goes by, SI units at the table.
+struct LoopAxis {
+  TwoInertiaAxis axis;
+  Friction friction;
+  double rated_force_N = 0.0;
+  double encoder_step_m = 0.0;
+  std::optional<double> scale_step_m;  ///< of the linear scale, where the loop has one
+  LoopLimits limits;
+  // Relative, one standard deviation.
+  double stiffness_std = 0.0;
+  double motor_mass_std = 0.0;
+  double table_mass_std = 0.0;
+};
+
+/// As the machine file states it, extensions of the model included.
+LoopAxis LoopAxisOf(const AxisConfig& axis);
+
+}  // namespace contour

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "design/loop_member.h"
+#include "design/loop_plant.h"
+
+namespace contour {
+
+/// How far a loop is from instability on one axis. L is the loop opened at the torque.
+struct LoopMargins {
+  bool stable = false;
+  double growth_per_cycle = 0.0;  ///< largest eigenvalue of the closed loop
+  double peak = 0.0;              ///< 1 / min |1 + L|; the modulus margin is 1 / peak
+  double peak_Hz = 0.0;
+  double gain_up = 0.0;       ///< the gain may rise by this factor; infinite when it never matters
+  double gain_down = 0.0;     ///< and fall to this share; 0 when it may vanish
+  double phase_deg = 0.0;     ///< smallest distance of the phase from -180 degrees where |L| = 1
+  double bandwidth_Hz = 0.0;  ///< lowest frequency at which |L| falls to 1
+};
+LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s);
+
+/// The table under a force that steps through a lag of 4 ms, on the stated axis, sliding, with nothing
+/// learnt.
+struct ForceStep {
+  double peak_m = 0.0;
+  double mean_m = 0.0;  ///< of the absolute error over 200 ms
+  double rms_m = 0.0;   ///< from 10 to 200 ms after it
+};
+ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, double period_s,
+                         double force_N);
+
+/// The worst of the members of one kind.
+struct WorstMember {
+  std::string name;
+  bool stable = true;
+  double peak = 0.0;
+  double growth_per_cycle = 0.0;
+  double limit = 0.0;
+};
+
+/// All that a loop is judged by.
+struct LoopVerdict {
+  std::array<WorstMember, kMemberKinds> worst;  ///< by MemberKind
+  ForceStep step;
+  double torque_noise = 0.0;  ///< from the resolution of the encoder (and scale), in rated torque
+  double noise_limit = 0.0;
+};
+/// Every limit is kept, but for this share.
+[[nodiscard]] bool Acceptable(const LoopVerdict& verdict, double tolerance = 0.02);
+/// What is nearest to its limit.
+[[nodiscard]] const WorstMember& Binding(const LoopVerdict& verdict);
+
+/// Judges loops of one axis; what does not depend on the loop is computed once.
+class LoopJudge {
+ public:
+  LoopJudge(const LoopAxis& axis, double period_s);
+  [[nodiscard]] LoopVerdict Judge(const TwoInertiaLoop& loop) const;
+
+ private:
+  struct Member {
+    LoopMember member;
+    LinearSystem plant;
+    std::vector<std::array<Complex, 2>> response;
+  };
+  LoopAxis axis_;
+  double period_s_;
+  std::vector<double> frequencies_;
+  std::vector<Member> members_;
+};
+
+}  // namespace contour

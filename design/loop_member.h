@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/loop_axis.h"
+
+namespace contour {
+
+/// What holds the table besides viscous friction, linear about one state of the friction:
+/// z' = rate v2 - decay z, force = stiffness z + damping z'.
+struct TableBristle {
+  double stiffness_N_m = 0.0;
+  double damping_Ns_m = 0.0;
+  double rate = 0.0;
+  double decay_1_s = 0.0;
+};
+
+/// How far from the stated axis a member of the uncertainty set is, and so which limit holds for it.
+enum class MemberKind { kAsStated, kFarOff, kLate };
+inline constexpr std::size_t kMemberKinds = 3;
+[[nodiscard]] double PeakLimit(const LoopLimits& limits, MemberKind kind);
+
+/// One axis that the stated one might be, on which its loop must be stable.
+struct LoopMember {
+  std::string name;
+  MemberKind kind = MemberKind::kAsStated;
+  TwoInertiaAxis axis;
+  TableBristle bristle;
+};
+
+/// The stated axis, sliding.
+LoopMember SlidingMember(const LoopAxis& axis);
+/// The stated axis, at rest: held by the bristle.
+LoopMember RestingMember(const LoopAxis& axis);
+/// All that the loop must bear. The first is SlidingMember.
+std::vector<LoopMember> UncertaintySet(const LoopAxis& axis);
+
+/// LuGre friction about steady sliding at this speed.
+TableBristle BristleAt(const Friction& friction, double velocity_m_s);
+
+}  // namespace contour

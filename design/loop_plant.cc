@@ -1,0 +1,206 @@
+#include "design/loop_plant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <unsupported/Eigen/MatrixFunctions>
+
+namespace contour {
+namespace {
+
+using Index = Eigen::Index;
+
+constexpr Index kStates = 6;  // p1 v1 p2 v2 u z
+// A drive without a lag has one of a thousandth of the period, as in core/two_inertia_loop.cc.
+constexpr double kLeastLag = 1e-3;
+
+/// Exact motion over a share of a period; columns after the states: command, force on the table. Time in
+/// periods, lengths in metres, forces in `force_N`.
+LoopMatrix Over(const LoopMember& m, double period_s, double force_N, double share) {
+  const TwoInertiaAxis& a = m.axis;
+  const double t2 = period_s * period_s;
+  const double k1 = a.stiffness_N_m * t2 / a.motor_mass_kg, k2 = a.stiffness_N_m * t2 / a.table_mass_kg;
+  const double c1 = a.damping_Ns_m * period_s / a.motor_mass_kg;
+  const double c2 = a.damping_Ns_m * period_s / a.table_mass_kg;
+  const double f1 = force_N * t2 / a.motor_mass_kg, f2 = force_N * t2 / a.table_mass_kg;
+  const TableBristle& b = m.bristle;
+  // At rest the bristle's state is the table's position; what would be its own would never move. It dies out
+  // unheard, as where there is no bristle.
+  const bool sticks = b.decay_1_s <= 0.0;
+  const double by_state = sticks ? 0.0 : b.stiffness_N_m - b.damping_Ns_m * b.decay_1_s;
+  const double by_position = sticks ? b.stiffness_N_m * b.rate : 0.0;
+  const double decay = sticks ? 1.0 : b.decay_1_s * period_s;
+  LoopMatrix rate = LoopMatrix::Zero(8, 8);
+  rate(0, 1) = 1.0;
+  rate.row(1) << -k1, -c1, k1, c1, f1, 0.0, 0.0, 0.0;
+  rate(2, 3) = 1.0;
+  rate.row(3) << k2, c2, -k2 - by_position * t2 / a.table_mass_kg,
+      -c2 - (a.viscous_Ns_m + b.damping_Ns_m * b.rate) * period_s / a.table_mass_kg, 0.0,
+      -by_state * t2 / a.table_mass_kg, 0.0, -f2;
+  const double lag = std::max(a.lag_s / period_s, kLeastLag);
+  rate(4, 4) = -1.0 / lag;
+  rate(4, 6) = 1.0 / lag;
+  rate(5, 3) = sticks ? 0.0 : b.rate;
+  rate(5, 5) = -decay;
+  const LoopMatrix scaled = rate * share;
+  return scaled.exp();
+}
+
+Eigen::MatrixXcd Resolvent(const LinearSystem& s, double frequency, const Eigen::MatrixXcd& right) {
+  Eigen::MatrixXcd shifted = -s.a.cast<Complex>();
+  shifted.diagonal().array() += std::polar(1.0, 2.0 * std::numbers::pi * frequency);
+  return shifted.partialPivLu().solve(right);
+}
+
+}  // namespace
+
+LoopPlant MakePlant(const LoopMember& m, double period_s, double force_N) {
+  const double delay = std::max(0.0, m.axis.delay_cycles + m.axis.dead_time_s / period_s);
+  const double whole = std::floor(delay + 1e-9);
+  const double rest = delay - whole > 1e-9 ? delay - whole : 0.0;
+  const Index queued = static_cast<Index>(whole) + (rest > 0.0 ? 1 : 0);
+  const LoopMatrix all = Over(m, period_s, force_N, 1.0);
+  const LoopMatrix second = Over(m, period_s, force_N, 1.0 - rest);
+  LoopMatrix input = LoopMatrix::Zero(kStates, 2);
+  input.col(rest > 0.0 ? 1 : 0) = second.block(0, kStates, kStates, 1);
+  if (rest > 0.0)
+    input.col(0) =
+        second.block(0, 0, kStates, kStates) * Over(m, period_s, force_N, rest).block(0, kStates, kStates, 1);
+
+  const Index n = kStates + queued;
+  LoopPlant plant;
+  plant.force_N = force_N;
+  LinearSystem& s = plant.system;
+  s.a = LoopMatrix::Zero(n, n);
+  s.b = LoopMatrix::Zero(n, 2);
+  s.c = LoopMatrix::Zero(2, n);
+  s.d = LoopMatrix::Zero(2, 2);
+  s.a.topLeftCorner(kStates, kStates) = all.topLeftCorner(kStates, kStates);
+  for (Index i = 0; i < 2; ++i) {
+    if (i < queued)
+      s.a.block(0, kStates + i, kStates, 1) = input.col(i);
+    else if (i == queued)
+      s.b.block(0, 0, kStates, 1) += input.col(i);
+  }
+  for (Index i = 0; i + 1 < queued; ++i) s.a(kStates + i, kStates + i + 1) = 1.0;
+  if (queued > 0) s.b(n - 1, 0) = 1.0;
+  s.b.block(0, 1, kStates, 1) = all.block(0, kStates + 1, kStates, 1);
+  s.c(0, 0) = s.c(1, 2) = 1.0;
+  return plant;
+}
+
+LinearSystem MakeController(const TwoInertiaLoop& loop, double force_N) {
+  constexpr Index kMotion = kLoopMotion;
+  const auto queued = static_cast<Index>(loop.queued);
+  const Index bias = kMotion, d = bias + 1, queue = d + 1, filter = queue + queued, n = filter + 2;
+  // Forces in units of force_N, so that all states are of a size.
+  LoopMatrix unit = LoopMatrix::Ones(kMotion, 1);
+  unit(4, 0) = force_N;
+
+  // After the correction: rows of motion, b and d over the states before it and over y.
+  LoopMatrix on_state = LoopMatrix::Identity(n, n), on_y = LoopMatrix::Zero(n, 2);
+  for (std::size_t i = 0; i < kObserverStates; ++i) {
+    const auto row = static_cast<Index>(i);
+    const double scale = row < kMotion ? unit(row, 0) : row == d ? force_N : 1.0;
+    for (Index j = 0; j < 2; ++j) on_y(row, j) = loop.gain[i][static_cast<std::size_t>(j)] / scale;
+  }
+  on_state.col(0) -= on_y.col(0);
+  on_state.col(bias) -= on_y.col(0);
+  on_state.col(2) -= on_y.col(1);
+  if (!loop.scale) on_state.row(bias).setZero();
+
+  LoopMatrix wanted = LoopMatrix::Zero(1, n);
+  for (Index i = 0; i < kMotion; ++i)
+    wanted(0, i) = -loop.regulator_motion[static_cast<std::size_t>(i)] * unit(i, 0) / force_N;
+  wanted(0, d) = loop.disturbance_to_command;
+  for (Index i = 0; i < queued; ++i)
+    wanted(0, queue + i) = -loop.regulator_queue[static_cast<std::size_t>(i)];
+  const LoopMatrix wanted_state = wanted * on_state, wanted_y = wanted * on_y;
+
+  const Biquad& f = loop.filter;
+  LinearSystem s;
+  s.c = f.b0 * wanted_state;
+  s.c(0, filter) += 1.0;
+  s.d = f.b0 * wanted_y;
+
+  LoopMatrix next = LoopMatrix::Zero(n, n), from_command = LoopMatrix::Zero(n, 1);
+  for (Index i = 0; i < kMotion; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    for (Index j = 0; j < kMotion; ++j)
+      next(i, j) = loop.motion_from_motion[row][static_cast<std::size_t>(j)] * unit(j, 0) / unit(i, 0);
+    next(i, d) = loop.motion_from_disturbance[row] * force_N / unit(i, 0);
+    for (Index j = 0; j < 2; ++j) {
+      const double value = loop.motion_from_input[static_cast<std::size_t>(j)][row] * force_N / unit(i, 0);
+      if (j < queued)
+        next(i, queue + j) = value;
+      else if (j == queued)
+        from_command(i, 0) += value;
+    }
+  }
+  next(bias, bias) = next(d, d) = 1.0;
+  for (Index i = 0; i + 1 < queued; ++i) next(queue + i, queue + i + 1) = 1.0;
+  if (queued > 0) from_command(filter - 1, 0) = 1.0;
+  // Direct form II, transposed.
+  from_command(filter, 0) = -f.a1;
+  from_command(filter + 1, 0) = -f.a2;
+  s.a = next * on_state + from_command * s.c;
+  s.b = next * on_y + from_command * s.d;
+  s.a.row(filter) += f.b1 * wanted_state;
+  s.a(filter, filter + 1) += 1.0;
+  s.a.row(filter + 1) += f.b2 * wanted_state;
+  s.b.row(filter) += f.b1 * wanted_y;
+  s.b.row(filter + 1) += f.b2 * wanted_y;
+  return s;
+}
+
+std::vector<std::array<Complex, 2>> Response(const LinearSystem& s, Eigen::Index input,
+                                             const std::vector<double>& frequencies) {
+  std::vector<std::array<Complex, 2>> out;
+  out.reserve(frequencies.size());
+  const Eigen::MatrixXcd right = s.b.col(input).cast<Complex>();
+  for (const double f : frequencies) {
+    const Eigen::MatrixXcd y = s.c.cast<Complex>() * Resolvent(s, f, right);
+    out.push_back({y(0, 0) + s.d(0, input), y(1, 0) + s.d(1, input)});
+  }
+  return out;
+}
+
+std::vector<std::array<Complex, 2>> ResponseToBoth(const LinearSystem& s,
+                                                   const std::vector<double>& frequencies) {
+  std::vector<std::array<Complex, 2>> out;
+  out.reserve(frequencies.size());
+  // One Hessenberg form serves all frequencies: then each is one elimination along the subdiagonal.
+  const Eigen::HessenbergDecomposition<LoopMatrix> form(s.a);
+  const LoopMatrix q = form.matrixQ();
+  const LoopMatrix h = form.matrixH();
+  const LoopMatrix b = q.transpose() * s.b, c = s.c * q;
+  const Index n = h.rows();
+  using Columns = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostClosedStates,
+                                kMostClosedStates>;
+  Columns m(n, n + 2);
+  for (const double f : frequencies) {
+    m.leftCols(n) = -h.cast<Complex>();
+    m.rightCols(2) = b.cast<Complex>();
+    const Complex z = std::polar(1.0, 2.0 * std::numbers::pi * f);
+    for (Index i = 0; i < n; ++i) m(i, i) += z;
+    for (Index i = 0; i + 1 < n; ++i) {
+      if (std::norm(m(i + 1, i)) > std::norm(m(i, i))) m.row(i).swap(m.row(i + 1));
+      const Complex factor = m(i + 1, i) / m(i, i);
+      m.row(i + 1).tail(n + 1 - i) -= factor * m.row(i).tail(n + 1 - i);
+    }
+    std::array<Complex, 2> y{s.d(0, 0), s.d(0, 1)};
+    for (std::size_t j = 0; j < 2; ++j) {
+      const Index right = n + static_cast<Index>(j);
+      for (Index i = n - 1; i >= 0; --i) {
+        Complex x = m(i, right);
+        for (Index k = i + 1; k < n; ++k) x -= m(i, k) * m(k, right);
+        m(i, right) = x / m(i, i);
+        y[j] += c(0, i) * m(i, right);
+      }
+    }
+    out.push_back(y);
+  }
+  return out;
+}
+
+}  // namespace contour

@@ -1,0 +1,165 @@
+#include "design/loop_search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "analysis/parallel/parallel_for.h"
+#include "design/evolution_search.h"
+
+namespace contour {
+namespace {
+
+// What breaks a limit costs this much per share beyond it: first about what the error gains there, so that
+// the search can cross, then more, so that it stays within.
+constexpr double kGentleSlope = 3.0;
+constexpr double kLimitSlope = 8.0;
+// However far beyond: what is unstable costs more than what only has no margin.
+constexpr double kWorstExcess = 5.0;
+constexpr double kHopeless = 1e6;
+constexpr double kFirstStep = 0.1;
+constexpr double kSmallStep = 0.05;
+constexpr int kLargePopulation = 20;
+
+/// One number of the tuning and where it is searched, as a logarithm. Frequencies are in those of sampling:
+/// what bounds a loop is its delay.
+struct Parameter {
+  double LoopTuning::*value;
+  double low, high;
+  bool frequency;
+};
+constexpr std::array<Parameter, 11> kParameters{{
+    {&LoopTuning::regulator_Hz, 1.5e-3, 0.12, true},
+    {&LoopTuning::windup_weight, 0.02, 20.0, false},
+    {&LoopTuning::velocity_weight, 0.02, 3.0, false},
+    {&LoopTuning::disturbance_Hz, 0.01, 0.5, true},
+    {&LoopTuning::motor_force_Hz, 0.02, 5.0, true},
+    {&LoopTuning::table_force_Hz, 2e-3, 2.0, true},
+    {&LoopTuning::notch_ratio, 0.5, 1.6, false},
+    {&LoopTuning::notch_pole_damping, 0.1, 1.5, false},
+    {&LoopTuning::notch_zero_damping, 0.02, 1.5, false},
+    {&LoopTuning::scale_noise_ratio, 0.05, 50.0, false},
+    {&LoopTuning::bias_Hz, 3e-4, 0.05, true},
+}};
+constexpr std::size_t kWithoutScale = 9;
+
+/// Found on other axes, for 1 kHz.
+constexpr std::array<LoopTuning, 6> kOthers{{
+    {18.0, 0.4, 0.15, 200.0, 400.0, 30.0, 0.77, 0.7, 0.18, 1.0, 5.0},
+    {18.0, 0.4, 0.15, 200.0, 400.0, 100.0, 0.77, 0.7, 0.18, 1.0, 5.0},
+    {18.0, 0.4, 0.15, 200.0, 400.0, 400.0, 0.77, 0.7, 0.18, 1.0, 5.0},
+    {18.0, 2.0, 0.15, 200.0, 400.0, 200.0, 1.0, 0.7, 0.4, 1.0, 5.0},
+    {45.0, 0.4, 0.15, 200.0, 400.0, 200.0, 0.77, 0.7, 0.18, 1.0, 5.0},
+    {30.0, 0.4, 0.15, 200.0, 400.0, 200.0, 0.77, 0.7, 0.18, 15.0, 5.0},
+}};
+
+/// Between the unit box and tunings.
+class Box {
+ public:
+  Box(double period_s, bool scale) : period_s_(period_s), size_(scale ? kParameters.size() : kWithoutScale) {}
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] LoopTuning At(const std::vector<double>& point) const {
+    LoopTuning t;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Parameter& p = kParameters[i];
+      t.*p.value = p.low * std::pow(p.high / p.low, point[i]) * (p.frequency ? 1.0 / period_s_ : 1.0);
+    }
+    return t;
+  }
+  [[nodiscard]] std::vector<double> PointOf(const LoopTuning& t) const {
+    std::vector<double> point(size_);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Parameter& p = kParameters[i];
+      const double value = t.*p.value * (p.frequency ? period_s_ : 1.0);
+      point[i] = std::clamp(std::log(value / p.low) / std::log(p.high / p.low), 0.0, 1.0);
+    }
+    return point;
+  }
+
+ private:
+  double period_s_;
+  std::size_t size_;
+};
+
+double Excess(const WorstMember& w) {
+  if (!w.stable) return kWorstExcess + 100.0 * (w.growth_per_cycle - 1.0);
+  return std::clamp(w.peak / w.limit - 1.0, 0.0, kWorstExcess);
+}
+
+}  // namespace
+
+double LoopCost(const LoopVerdict& v, double limit_slope) {
+  double excess = std::clamp(v.torque_noise / v.noise_limit - 1.0, 0.0, kWorstExcess);
+  for (const WorstMember& w : v.worst) excess += Excess(w);
+  const double error_um = 1e6 * (v.step.peak_m + 2.0 * v.step.mean_m);
+  // An unstable loop's error says nothing.
+  const double cost = std::isfinite(error_um) ? std::min(std::log(error_um), 20.0) : 20.0;
+  return std::min(cost + limit_slope * excess, kHopeless);
+}
+
+FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOptions& options) {
+  const bool scale = axis.scale_step_m.has_value();
+  LoopMotionOf(axis.axis, period_s);  // throws when the axis cannot be
+  const LoopJudge judge(axis, period_s);
+  const Box box(period_s, scale);
+  const auto cost = [&](const std::vector<double>& point, double slope) {
+    try {
+      return LoopCost(judge.Judge(DesignLoop(axis.axis, box.At(point), period_s, scale)), slope);
+    } catch (const std::invalid_argument&) {
+      return kHopeless;
+    }
+  };
+
+  std::vector<std::vector<double>> starts;
+  if (options.start) starts.push_back(box.PointOf(*options.start));
+  for (const LoopTuning& t : kOthers) {
+    LoopTuning here = t;
+    for (const Parameter& p : kParameters)
+      if (p.frequency) here.*p.value *= 1e-3 / period_s;
+    starts.push_back(box.PointOf(here));
+  }
+  PortableRandom random(1);
+  for (int i = 0; i < options.random_starts; ++i) {
+    std::vector<double> point(box.size());
+    for (double& x : point) x = random.Uniform();
+    starts.push_back(std::move(point));
+  }
+  std::vector<double> costs(starts.size());
+  ParallelFor(starts.size(), options.threads,
+              [&](std::size_t i) { costs[i] = cost(starts[i], kGentleSlope); });
+  std::vector<std::size_t> order(starts.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+
+  const auto runs = std::min(static_cast<std::size_t>(options.runs), starts.size());
+  std::vector<SearchResult> results(runs);
+  const auto by_cost = [](const SearchResult& a, const SearchResult& b) { return a.cost < b.cost; };
+  ParallelFor(runs, options.threads, [&](std::size_t i) {
+    results[i] = EvolutionSearch(
+        [&](const std::vector<double>& point) { return cost(point, kGentleSlope); }, starts[order[i]],
+        {kFirstStep, options.evaluations_per_run, 0, static_cast<std::uint64_t>(i + 1)});
+  });
+  int evaluations = static_cast<int>(starts.size());
+  for (const SearchResult& r : results) evaluations += r.evaluations;
+  std::sort(results.begin(), results.end(), by_cost);
+  results.resize(std::min(runs, static_cast<std::size_t>(std::max(1, options.refinements))));
+  ParallelFor(results.size(), options.threads, [&](std::size_t i) {
+    results[i] = EvolutionSearch([&](const std::vector<double>& point) { return cost(point, kLimitSlope); },
+                                 results[i].best,
+                                 {kSmallStep, options.evaluations_per_refinement, kLargePopulation,
+                                  static_cast<std::uint64_t>(i + 1)});
+  });
+  for (const SearchResult& r : results) evaluations += r.evaluations;
+  const auto best = std::min_element(results.begin(), results.end(), by_cost);
+  FoundLoop found;
+  found.tuning = box.At(best->best);
+  found.cost = best->cost;
+  found.verdict = judge.Judge(DesignLoop(axis.axis, found.tuning, period_s, scale));
+  found.evaluations = evaluations;
+  return found;
+}
+
+}  // namespace contour

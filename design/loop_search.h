@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "core/loop_tuning.h"
+#include "design/loop_margins.h"
+
+namespace contour {
+
+struct LoopSearchOptions {
+  int random_starts = 60;
+  int runs = 6;
+  int evaluations_per_run = 600;
+  int refinements = 2;  ///< of the best runs
+  int evaluations_per_refinement = 1500;
+  int threads = 1;
+  std::optional<LoopTuning> start;  ///< for instance, the one that the machine has
+};
+
+/// The tuning found, and how good it is.
+struct FoundLoop {
+  LoopTuning tuning;
+  LoopVerdict verdict;
+  double cost = 0.0;
+  int evaluations = 0;
+};
+
+/// What the search makes small: the logarithm of the table's error under a force step (peak and twice the
+/// mean, in micrometres), and `limit_slope` per share beyond a limit.
+double LoopCost(const LoopVerdict& verdict, double limit_slope);
+
+/// Searches the tuning of one axis. Deterministic. Whether what was found keeps the limits is for Acceptable
+/// to say. Throws std::invalid_argument when the axis itself cannot be.
+FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOptions& options = {});
+
+}  // namespace contour

@@ -1,0 +1,113 @@
+#include "design/loop_margins.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/design/family_axes.h"
+
+namespace contour {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+constexpr LoopTuning kTuning{.regulator_Hz = 9.0,
+                             .windup_weight = 0.2,
+                             .velocity_weight = 0.35,
+                             .disturbance_Hz = 150.0,
+                             .motor_force_Hz = 400.0,
+                             .table_force_Hz = 60.0,
+                             .notch_ratio = 0.7,
+                             .notch_pole_damping = 0.7,
+                             .notch_zero_damping = 0.2};
+
+/// The same axis, moved more by the same force.
+LoopMember WithGain(LoopMember m, double gain) {
+  for (double* v : {&m.axis.motor_mass_kg, &m.axis.table_mass_kg, &m.axis.stiffness_N_m, &m.axis.damping_Ns_m,
+                    &m.axis.viscous_Ns_m, &m.bristle.stiffness_N_m, &m.bristle.damping_Ns_m})
+    *v /= gain;
+  return m;
+}
+
+class Margins : public testing::TestWithParam<const char*> {
+ protected:
+  LoopAxis axis_ = AxisOf(GetParam());
+  TwoInertiaLoop loop_ = DesignLoop(axis_.axis, kTuning, kPeriod_s, false);
+};
+
+TEST_P(Margins, GainMayRiseAndFallAsFarAsTheySay) {
+  for (const LoopMember& member : {SlidingMember(axis_), RestingMember(axis_)}) {
+    const LoopMargins m = MarginsOn(member, loop_, kPeriod_s);
+    ASSERT_TRUE(m.stable);
+    const auto stable_at = [&](double gain) {
+      return MarginsOn(WithGain(member, gain), loop_, kPeriod_s).stable;
+    };
+    ASSERT_LT(m.growth_per_cycle, 0.9999) << "nothing in it that never moves";
+    EXPECT_TRUE(stable_at(0.99 * m.gain_up));
+    EXPECT_FALSE(stable_at(1.01 * m.gain_up));
+    if (m.gain_down == 0.0) continue;
+    EXPECT_TRUE(stable_at(1.01 * m.gain_down));
+    EXPECT_FALSE(stable_at(0.99 * m.gain_down));
+  }
+}
+
+TEST_P(Margins, DeadTimeUsesUpThePhaseMarginAtTheLatest) {
+  const LoopMember sliding = SlidingMember(axis_);
+  const LoopMargins m = MarginsOn(sliding, loop_, kPeriod_s);
+  ASSERT_GT(m.bandwidth_Hz, 0.0);
+  LoopMember late = sliding;
+  late.axis.dead_time_s = 1.1 * m.phase_deg / 360.0 / m.bandwidth_Hz;
+  EXPECT_FALSE(MarginsOn(late, loop_, kPeriod_s).stable);
+}
+
+TEST_P(Margins, PeakIsAtLeastWhatGainAndPhaseSay) {
+  const LoopMargins m = MarginsOn(SlidingMember(axis_), loop_, kPeriod_s);
+  EXPECT_GE(m.peak * 1.001, 1.0 / (1.0 - 1.0 / m.gain_up));
+  EXPECT_GE(m.peak * 1.01, 1.0 / (2.0 * std::sin(0.5 * m.phase_deg * std::numbers::pi / 180.0)));
+}
+
+TEST_P(Margins, SearchSeesThePeaksOfTheReport) {
+  const LoopJudge judge(axis_, kPeriod_s);
+  const LoopVerdict v = judge.Judge(loop_);
+  double worst = 0.0;
+  for (const LoopMember& m : UncertaintySet(axis_))
+    if (m.kind == MemberKind::kAsStated) worst = std::max(worst, MarginsOn(m, loop_, kPeriod_s).peak);
+  EXPECT_NEAR(v.worst[0].peak, worst, 0.03 * worst);
+}
+
+INSTANTIATE_TEST_SUITE_P(Family, Margins, testing::Values("base", "t20", "m300"),
+                         [](const auto& at) { return std::string(at.param); });
+
+TEST(UnderForceStep, GrowsWithTheForceAndIsMadeUpFor) {
+  const LoopAxis axis = AxisOf("base");
+  const TwoInertiaLoop loop = DesignLoop(axis.axis, kTuning, kPeriod_s, false);
+  const LoopMember sliding = SlidingMember(axis);
+  const ForceStep one = UnderForceStep(sliding, loop, kPeriod_s, 40.0);
+  const ForceStep two = UnderForceStep(sliding, loop, kPeriod_s, 80.0);
+  EXPECT_NEAR(two.peak_m, 2.0 * one.peak_m, 1e-9 * two.peak_m);
+  EXPECT_GT(one.peak_m, 40.0 / axis.axis.stiffness_N_m) << "no less than the screw gives way";
+  EXPECT_LT(one.mean_m, 0.5 * one.peak_m);
+}
+
+TEST(LoopJudge, NamesWhatIsUnstable) {
+  // One more cycle, and twice as fast as this axis can be held.
+  const LoopAxis axis = AxisOf("t50");
+  LoopTuning fast = kTuning;
+  fast.regulator_Hz = 60.0;
+  const LoopVerdict v = LoopJudge(axis, kPeriod_s).Judge(DesignLoop(axis.axis, fast, kPeriod_s, false));
+  EXPECT_FALSE(Acceptable(v));
+  EXPECT_FALSE(Binding(v).stable);
+  EXPECT_FALSE(Binding(v).name.empty());
+}
+
+TEST(LoopJudge, CoarseEncodersMakeTorqueNoise) {
+  LoopAxis axis = AxisOf("base");
+  const TwoInertiaLoop loop = DesignLoop(axis.axis, kTuning, kPeriod_s, false);
+  const double fine = LoopJudge(axis, kPeriod_s).Judge(loop).torque_noise;
+  axis.encoder_step_m *= 100.0;
+  const LoopVerdict coarse = LoopJudge(axis, kPeriod_s).Judge(loop);
+  EXPECT_NEAR(coarse.torque_noise, 100.0 * fine, 1e-6 * coarse.torque_noise);
+}
+
+}  // namespace
+}  // namespace contour
