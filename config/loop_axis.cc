@@ -17,7 +17,8 @@ LoopAxis LoopAxisOf(const AxisConfig& axis) {
   out.axis.dead_time_s = std::max(0.0, model.added_delay_s);
   out.rated_force_N = axis.drive.rated_torque_Nm / mechanics.radius_m_rad;
   out.encoder_step_m = 1e-3 * model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
-  if (axis.drive.linear_scale) out.scale_step_m = 1e-3 / axis.drive.linear_scale->counts_per_mm;
+  if (kLoopTakesScale && axis.drive.linear_scale)
+    out.scale_step_m = 1e-3 / axis.drive.linear_scale->counts_per_mm;
   out.limits = axis.loop_limits;
   const auto std_of = [&](const char* key) {
     const auto stated = axis.model.uncertainty.find(key);

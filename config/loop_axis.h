@@ -9,6 +9,10 @@
 
 namespace contour {
 
+/// Whether the cycle's law of two inertias takes a linear scale into its loop. While it does not, a loop is
+/// designed and judged without, whatever the drive has.
+inline constexpr bool kLoopTakesScale = false;
+
 /// All that the design of an axis's loop goes by, SI units at the table.
 struct LoopAxis {
   TwoInertiaAxis axis;

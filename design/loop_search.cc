@@ -39,21 +39,24 @@ constexpr std::array<Parameter, 11> kParameters{{
     {&LoopTuning::motor_force_Hz, 0.02, 5.0, true},
     {&LoopTuning::table_force_Hz, 2e-3, 2.0, true},
     {&LoopTuning::notch_ratio, 0.5, 1.6, false},
-    {&LoopTuning::notch_pole_damping, 0.1, 1.5, false},
-    {&LoopTuning::notch_zero_damping, 0.02, 1.5, false},
+    {&LoopTuning::notch_pole_damping, 0.1, 2.0, false},
+    {&LoopTuning::notch_zero_damping, 0.02, 2.0, false},
     {&LoopTuning::scale_noise_ratio, 0.05, 50.0, false},
-    {&LoopTuning::bias_Hz, 3e-4, 0.05, true},
+    {&LoopTuning::bias_Hz, 3e-4, 0.2, true},
 }};
 constexpr std::size_t kWithoutScale = 9;
 
-/// Found on other axes, for 1 kHz.
-constexpr std::array<LoopTuning, 6> kOthers{{
-    {18.0, 0.4, 0.15, 200.0, 400.0, 30.0, 0.77, 0.7, 0.18, 1.0, 5.0},
-    {18.0, 0.4, 0.15, 200.0, 400.0, 100.0, 0.77, 0.7, 0.18, 1.0, 5.0},
-    {18.0, 0.4, 0.15, 200.0, 400.0, 400.0, 0.77, 0.7, 0.18, 1.0, 5.0},
-    {18.0, 2.0, 0.15, 200.0, 400.0, 200.0, 1.0, 0.7, 0.4, 1.0, 5.0},
-    {45.0, 0.4, 0.15, 200.0, 400.0, 200.0, 0.77, 0.7, 0.18, 1.0, 5.0},
-    {30.0, 0.4, 0.15, 200.0, 400.0, 200.0, 0.77, 0.7, 0.18, 15.0, 5.0},
+/// Found on other axes at 1 kHz (docs/laboratory/loop_designs.md).
+constexpr std::array<LoopTuning, 9> kOthers{{
+    {23.8, 0.26, 0.26, 262.0, 905.0, 17.0, 0.79, 0.16, 0.08, 1.0, 5.0},
+    {18.8, 0.21, 0.06, 290.0, 1159.0, 1371.0, 0.76, 0.10, 0.04, 1.0, 5.0},
+    {13.9, 0.19, 0.46, 257.0, 804.0, 1600.0, 0.77, 0.10, 0.05, 1.0, 5.0},
+    {17.5, 0.04, 0.05, 268.0, 523.0, 60.0, 0.69, 1.29, 0.49, 1.0, 5.0},
+    {22.2, 0.86, 0.19, 234.0, 514.0, 414.0, 1.21, 1.49, 0.84, 1.0, 5.0},
+    {12.4, 0.98, 0.09, 275.0, 761.0, 142.0, 0.64, 0.67, 0.24, 1.0, 5.0},
+    {32.9, 0.04, 0.31, 208.0, 220.0, 407.0, 1.04, 0.22, 0.45, 0.05, 50.0},
+    {37.7, 0.37, 0.06, 234.0, 991.0, 1101.0, 1.46, 0.24, 0.29, 0.14, 38.4},
+    {34.0, 0.18, 0.13, 120.0, 270.0, 9.0, 0.96, 0.43, 0.88, 0.87, 50.0},
 }};
 
 /// Between the unit box and tunings.

@@ -49,8 +49,8 @@ TEST(LoopAxisOf, KnowsTheScaleAndWhatDiagnosisAdded) {
   axis.model.extensions.input_delay = InputDelayExtension{.delay_us = 60.0};
   axis.model.extensions.current_lag = CurrentLagExtension{.time_constant_us = 50.0};
   const LoopAxis a = LoopAxisOf(axis);
-  ASSERT_TRUE(a.scale_step_m);
-  EXPECT_DOUBLE_EQ(*a.scale_step_m, 5e-9);
+  ASSERT_EQ(a.scale_step_m.has_value(), kLoopTakesScale);
+  EXPECT_DOUBLE_EQ(a.scale_step_m.value_or(5e-9), 5e-9);
   EXPECT_NEAR(a.axis.dead_time_s, 60e-6, 1e-12);
   EXPECT_NEAR(a.axis.lag_s, 0.35e-3, 1e-12);
 }

@@ -6,9 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "config/config_error.h"
 #include "config/interfaces.h"
 #include "config/key_table.h"
+#include "config/load_machine.h"
+#include "config/yaml_tree.h"
 #include "tools/contour/check_report.h"
+#include "tools/contour/loop_section.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour {
@@ -50,13 +54,23 @@ ExitStatus CheckInterfaces(const MachineConfig& config) {
   return status;
 }
 
+/// Messages that begin with their dotted key, behind where it is written.
+std::vector<std::string> WithPlaces(const Options& options, const std::vector<std::string>& messages) {
+  const YamlValue tree = OpenMachineFile(options.file, options.set);
+  std::vector<std::string> placed;
+  for (const std::string& m : messages) placed.push_back(WhereIs(tree, m.substr(0, m.find(':'))) + ": " + m);
+  return placed;
+}
+
 int RunCheck(const Options& options) {
   if (options.describe || options.markdown) {
     std::cout << (options.markdown ? kReferenceHead + MarkdownReference(AllKeys()) : TextTable(AllKeys()));
     if (options.file.empty()) return kExitDone;
   }
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
-  std::cout << CheckReport(file.machine);
+  const LoopSection loops = CheckLoops(file.machine);
+  std::cout << CheckReport(file.machine) << loops.text << std::flush;
+  if (!loops.refused.empty()) throw ConfigError(WithPlaces(options, loops.refused));
   return CheckInterfaces(file.machine);
 }
 

@@ -13,6 +13,7 @@
 #include "analysis/parallel/parallel_for.h"
 #include "config/config_error.h"
 #include "core/exit_status.h"
+#include "tools/contour/tune_loops.h"
 #include "tools/validation/contest/contest_plan.h"
 #include "tools/validation/contest/tuning.h"
 
@@ -26,6 +27,8 @@ struct Options {
   int evaluations = 0;
   unsigned workers = 0;
   std::string out;
+  std::string from_model;
+  std::string axis;
 };
 
 std::vector<TunedController> Chosen(const TuneConfig& config, const std::vector<std::string>& names) {
@@ -48,6 +51,9 @@ void Print(const TunedResult& r) {
 }
 
 int RunTune(const Options& options) {
+  if (!options.from_model.empty())
+    return TuneLoops({options.from_model, options.axis, options.out, options.workers});
+  if (options.out.empty()) throw ConfigError({"contour: --out: missing, expected a file for the tuned keys"});
   const ContestConfig config = LoadContest(options.contest);
   if (config.tune.controllers.empty())
     throw ConfigError({options.contest + ": tune: missing, expected what is to be tuned"});
@@ -81,14 +87,19 @@ int RunTune(const Options& options) {
 
 void AddTuneCommand(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("tune", "Tune every controller by the same search, cost and budget");
+  CLI::App* sub = app.add_subcommand(
+      "tune", "Tune every controller by the same search, cost and budget; or loops from their axes' models");
+  sub->add_option("--from-model", options->from_model,
+                  "Machine file: search the two-inertia loop of each axis from its model, print margins");
+  sub->add_option("--axis", options->axis, "Only this axis (with --from-model)");
   sub->add_option("--config", options->config, "Machine file with an emulator: section")
       ->capture_default_str();
   sub->add_option("--contest", options->contest, "What is tuned, and on what")->capture_default_str();
   sub->add_option("--controllers", options->controllers, "Only these controllers");
   sub->add_option("--evaluations", options->evaluations, "Budget of each; default: the contest file's");
   sub->add_option("--threads,--workers", options->workers, "Runs at a time; default: one per processor");
-  sub->add_option("--out", options->out, "YAML file for the tuned keys")->required();
+  sub->add_option("--out", options->out,
+                  "YAML file for the tuned keys; with --from-model, the machine file with them in it");
   sub->callback([options, &action] { action = [options] { return RunTune(*options); }; });
 }
 

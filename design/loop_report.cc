@@ -1,0 +1,101 @@
+#include "design/loop_report.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "config/number_text.h"
+#include "design/loop_search.h"
+
+namespace contour {
+namespace {
+
+// A written tuning is rounded, and a limit that is missed by so little bounds nothing.
+constexpr double kRounding = 0.05;
+// As fine as scales of machine tools are, where the axis has none to go by.
+constexpr double kScaleStep_m = 1e-7;
+constexpr std::array<double, 3> kStiffer{2.0, 4.0, 8.0};
+constexpr LoopSearchOptions kShortSearch{.random_starts = 30,
+                                         .runs = 3,
+                                         .evaluations_per_run = 300,
+                                         .refinements = 1,
+                                         .evaluations_per_refinement = 300,
+                                         .threads = 1,
+                                         .start = {}};
+
+std::string Fixed(double value, int decimals) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+
+std::string Line(const char* state, const LoopMargins& m) {
+  const std::string begin = std::string("  ") + state + ": ";
+  if (!m.stable) return begin + "unstable, growing by " + Fixed(m.growth_per_cycle, 4) + " a cycle\n";
+  std::string gain = std::isfinite(m.gain_up) ? Fixed(m.gain_up, 1) : "without limit";
+  if (m.gain_down > 0.0) gain += " (down 1 / " + Fixed(1.0 / m.gain_down, 1) + ")";
+  return begin + "gain margin " + gain + ", phase margin " + Fixed(m.phase_deg, 0) +
+         " degrees, modulus margin " + Fixed(1.0 / m.peak, 2) + " (peak " + Fixed(m.peak, 2) + " at " +
+         Fixed(m.peak_Hz, 0) + " Hz), bandwidth " + Fixed(m.bandwidth_Hz, 1) + " Hz\n";
+}
+
+constexpr std::array<const char*, kMemberKinds> kKinds{"as stated", "far off", "late"};
+
+}  // namespace
+
+LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s) {
+  const TwoInertiaLoop loop = DesignLoop(axis.axis, tuning, period_s, axis.scale_step_m.has_value());
+  return {LoopJudge(axis, period_s).Judge(loop), MarginsOn(SlidingMember(axis), loop, period_s),
+          MarginsOn(RestingMember(axis), loop, period_s)};
+}
+
+std::string Describe(const LoopReport& r) {
+  std::string text = Line("sliding", r.sliding) + Line("at rest", r.rest);
+  for (std::size_t i = 0; i < kMemberKinds; ++i) {
+    const WorstMember& w = r.verdict.worst[i];
+    text += std::string("  worst of the axis ") + kKinds[i] + ": " +
+            (w.stable ? "peak " + Fixed(w.peak, 2) + ", limit " + Fixed(w.limit, 2) : "unstable") + " (" +
+            w.name + ")\n";
+  }
+  text += "  binding: " + Binding(r.verdict).name + "\n";
+  text += "  expected error of the table under the force step: " + Fixed(1e6 * r.verdict.step.peak_m, 1) +
+          " um at most, " + Fixed(1e6 * r.verdict.step.mean_m, 1) + " um on average over 200 ms\n";
+  return text + "  torque noise by the encoder: " + Fixed(100.0 * r.verdict.torque_noise, 2) +
+         " % of rated torque\n";
+}
+
+std::string WhatIsWrong(const LoopVerdict& v) {
+  if (Acceptable(v, kRounding)) return "";
+  const WorstMember& w = Binding(v);
+  if (!w.stable) return "unstable: " + w.name;
+  if (w.peak > w.limit * (1.0 + kRounding))
+    return "peak " + Fixed(w.peak, 2) + ", limit " + Fixed(w.limit, 2) + ": " + w.name;
+  return "torque noise of " + Fixed(100.0 * v.torque_noise, 2) + " % of rated torque, limit " +
+         Fixed(100.0 * v.noise_limit, 2) + " %";
+}
+
+std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads) {
+  std::vector<std::string> help{"drive.mode: csp, in which the drive closes the loop"};
+  LoopSearchOptions options = kShortSearch;
+  options.threads = threads;
+  const auto works = [&](const LoopAxis& other) {
+    return Acceptable(SearchLoop(other, period_s, options).verdict, kRounding);
+  };
+  if (!axis.scale_step_m) {
+    LoopAxis with = axis;
+    with.scale_step_m = kScaleStep_m;
+    if (works(with)) help.emplace_back("a linear scale at the table, in the loop");
+  }
+  for (const double factor : kStiffer) {
+    LoopAxis stiff = axis;
+    stiff.axis.stiffness_N_m *= factor;
+    stiff.axis.damping_Ns_m *= std::sqrt(factor);
+    if (!works(stiff)) continue;
+    help.push_back("a screw of " + RoundedText(1e-6 * stiff.axis.stiffness_N_m) + " N/um instead of " +
+                   RoundedText(1e-6 * axis.axis.stiffness_N_m));
+    break;
+  }
+  return help;
+}
+
+}  // namespace contour

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/loop_axis.h"
+#include "design/loop_margins.h"
+
+namespace contour {
+
+/// A loop of an axis for people: what `contour check` and `contour tune --from-model` print.
+struct LoopReport {
+  LoopVerdict verdict;
+  LoopMargins sliding, rest;
+};
+LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s);
+
+/// Lines, each behind two spaces, without the axis's name.
+std::string Describe(const LoopReport& report);
+
+/// What of it breaks a limit, in one sentence; empty when nothing does.
+std::string WhatIsWrong(const LoopVerdict& verdict);
+
+/// What would give an axis a loop that keeps its limits, tried on the model: a linear scale, a stiffer screw.
+/// That its drive may close the loop (csp) helps always.
+std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads);
+
+}  // namespace contour

@@ -1,0 +1,42 @@
+#include "tools/contour/loop_section.h"
+
+#include <stdexcept>
+
+#include "config/loop_axis.h"
+#include "design/loop_report.h"
+#include "drivers/cia402/mode_for.h"
+
+namespace contour {
+
+LoopSection CheckLoops(const MachineConfig& machine) {
+  LoopSection section;
+  if (machine.machine.controller != ControllerName::kFull) return section;
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  for (const auto& [name, config] : machine.axes) {
+    if (ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
+    if (!config.loop) {
+      section.text += "  axis " + name + ": no loop: tuning; contour tune --from-model finds it\n";
+      continue;
+    }
+    const std::string key = "axes." + name + ".loop: ";
+    const LoopAxis axis = LoopAxisOf(config);
+    try {
+      const LoopReport report = ReportOn(axis, *config.loop, period_s);
+      section.text += "  axis " + name + "\n" + Describe(report);
+      const std::string wrong = WhatIsWrong(report.verdict);
+      if (wrong.empty()) continue;
+      std::string message =
+          key + "found a loop that does not keep its limits (" + wrong +
+          "), expected one that does: contour tune --from-model searches it; what would help:";
+      for (const std::string& help : WhatWouldHelp(axis, period_s, 1)) message += " " + help + ";";
+      message.pop_back();
+      section.refused.push_back(std::move(message));
+    } catch (const std::invalid_argument& e) {
+      section.refused.push_back(key + e.what());
+    }
+  }
+  if (!section.text.empty()) section.text = "\nLoops in torque mode\n" + section.text;
+  return section;
+}
+
+}  // namespace contour

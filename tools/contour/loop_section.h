@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/machine_config.h"
+
+namespace contour {
+
+/// What `contour check` says of the two-inertia loops of a machine.
+struct LoopSection {
+  std::string text;
+  std::vector<std::string> refused;  ///< why an axis may not be moved with its loop, one message each
+};
+
+/// Loops act where `full` gives torques; in csp the drive closes them. Of axes without `loop:` it says what
+/// would find one.
+LoopSection CheckLoops(const MachineConfig& machine);
+
+}  // namespace contour

@@ -1,0 +1,114 @@
+#include "tools/contour/tune_loops.h"
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+
+#include "analysis/parallel/parallel_for.h"
+#include "config/axis_block.h"
+#include "config/config_error.h"
+#include "config/loop_axis.h"
+#include "config/yaml_tree.h"
+#include "config/yaml_writer.h"
+#include "core/exit_status.h"
+#include "design/loop_report.h"
+#include "design/loop_search.h"
+#include "tools/machine/load_emulated_machine.h"
+
+namespace contour {
+namespace {
+
+/// What is written is what was judged: three digits.
+class Rounding {
+ public:
+  template <class... T>
+  void Required(std::string_view, double& value, T...) {
+    Round(value);
+  }
+  template <class... T>
+  void Optional(std::string_view, double& value, T...) {
+    Round(value);
+  }
+
+ private:
+  static void Round(double& value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    value = std::stod(text);
+  }
+};
+
+std::string Head(const std::string& name, const LoopAxis& a) {
+  char text[300];
+  std::snprintf(text, sizeof text,
+                "axis %s: motor %.3g kg, table %.3g kg at the table, screw %.3g N/um, mode %.0f Hz%s\n",
+                name.c_str(), a.axis.motor_mass_kg, a.axis.table_mass_kg, 1e-6 * a.axis.stiffness_N_m,
+                ModeFrequency_Hz(a.axis), a.scale_step_m ? ", with its linear scale" : "");
+  return text;
+}
+
+/// False when there is no loop for this axis.
+bool TuneAxis(const MachineConfig& machine, const std::string& name, int threads, std::string& text,
+              const std::string& file) {
+  const AxisConfig& config = machine.axes.at(name);
+  const LoopAxis axis = LoopAxisOf(config);
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  std::cout << Head(name, axis) << std::flush;
+  LoopSearchOptions options;
+  options.threads = threads;
+  options.start = config.loop;
+  FoundLoop found = SearchLoop(axis, period_s, options);
+  Rounding rounding;
+  found.tuning.Visit(rounding);
+  const LoopReport report = ReportOn(axis, found.tuning, period_s);
+  std::cout << Describe(report);
+  if (const std::string wrong = WhatIsWrong(report.verdict); !wrong.empty()) {
+    std::cout << "  NO stable loop in torque mode within the limits was found; the best of "
+              << found.evaluations << ": " << wrong << "\n";
+    for (const std::string& help : WhatWouldHelp(axis, period_s, threads))
+      std::cout << "  what would help: " << help << "\n";
+    return false;
+  }
+  const std::string block = WriteYaml(found.tuning);
+  std::cout << "  axes." << name << ".loop:\n";
+  std::string line;
+  for (const char c : block) {
+    if (line.empty()) line = "    ";
+    line += c;
+    if (c != '\n') continue;
+    std::cout << line;
+    line.clear();
+  }
+  if (!text.empty()) text = WithAxisBlock(text, file, name, "loop", block);
+  return true;
+}
+
+}  // namespace
+
+int TuneLoops(const TuneLoopsOptions& options) {
+  const MachineConfig machine = LoadMaybeEmulatedMachine(options.machine).machine;
+  if (!options.axis.empty() && !machine.axes.contains(options.axis))
+    throw ConfigError(
+        {options.machine + ": axes." + options.axis + ": missing, expected an axis of this name (--axis)"});
+  std::string text = options.out.empty() ? "" : ReadTextFile(options.machine);
+  bool all = true;
+  for (const auto& [name, axis] : machine.axes) {
+    if (!options.axis.empty() && name != options.axis) continue;
+    all = TuneAxis(machine, name, ThreadsOf(static_cast<int>(options.threads)), text, options.machine) && all;
+  }
+  if (!all) {
+    std::cout << "nothing was written: an axis has no loop that keeps its limits\n";
+    return kExitFailed;
+  }
+  if (options.out.empty()) return kExitDone;
+  std::ofstream out(options.out, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + options.out);
+  std::cout << "wrote " << options.out << "\n";
+  return kExitDone;
+}
+
+}  // namespace contour

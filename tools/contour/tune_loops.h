@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace contour {
+
+struct TuneLoopsOptions {
+  std::string machine;  ///< file
+  std::string axis;     ///< empty: all of them
+  std::string out;      ///< machine file to write; empty: print only
+  unsigned threads = 0;
+};
+
+/// `contour tune --from-model`: the two-inertia loop of each axis from its model. Returns the exit status.
+int TuneLoops(const TuneLoopsOptions& options);
+
+}  // namespace contour
