@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <unsupported/Eigen/MatrixFunctions>
+#include <utility>
 
 namespace contour {
 namespace {
@@ -52,6 +53,36 @@ Eigen::MatrixXcd Resolvent(const LinearSystem& s, double frequency, const Eigen:
   return shifted.partialPivLu().solve(right);
 }
 
+/// States of the controller: the motion, b, d, the queue, two of the torque filter.
+constexpr Index kMotion = kLoopMotion, kBias = kMotion, kForce = kBias + 1, kQueue = kForce + 1;
+
+/// Forces in units of force_N, so that all states are of a size.
+double UnitOf(Index state, double force_N) { return state == 4 || state == kForce ? force_N : 1.0; }
+
+/// The observer's step to the next sample: over the states, and over the command.
+std::pair<LoopMatrix, LoopMatrix> Prediction(const TwoInertiaLoop& loop, double force_N, Index n) {
+  const auto queued = static_cast<Index>(loop.queued);
+  LoopMatrix next = LoopMatrix::Zero(n, n), from_command = LoopMatrix::Zero(n, 1);
+  for (Index i = 0; i < kMotion; ++i) {
+    const auto row = static_cast<std::size_t>(i);
+    const double unit = UnitOf(i, force_N);
+    for (Index j = 0; j < kMotion; ++j)
+      next(i, j) = loop.motion_from_motion[row][static_cast<std::size_t>(j)] * UnitOf(j, force_N) / unit;
+    next(i, kForce) = loop.motion_from_disturbance[row] * force_N / unit;
+    for (Index j = 0; j < 2; ++j) {
+      const double value = loop.motion_from_input[static_cast<std::size_t>(j)][row] * force_N / unit;
+      if (j < queued)
+        next(i, kQueue + j) = value;
+      else if (j == queued)
+        from_command(i, 0) += value;
+    }
+  }
+  next(kBias, kBias) = next(kForce, kForce) = 1.0;
+  for (Index i = 0; i + 1 < queued; ++i) next(kQueue + i, kQueue + i + 1) = 1.0;
+  if (queued > 0) from_command(kQueue + queued - 1, 0) = 1.0;
+  return {next, from_command};
+}
+
 }  // namespace
 
 LoopPlant MakePlant(const LoopMember& m, double period_s, double force_N) {
@@ -90,31 +121,27 @@ LoopPlant MakePlant(const LoopMember& m, double period_s, double force_N) {
 }
 
 LinearSystem MakeController(const TwoInertiaLoop& loop, double force_N) {
-  constexpr Index kMotion = kLoopMotion;
   const auto queued = static_cast<Index>(loop.queued);
-  const Index bias = kMotion, d = bias + 1, queue = d + 1, filter = queue + queued, n = filter + 2;
-  // Forces in units of force_N, so that all states are of a size.
-  LoopMatrix unit = LoopMatrix::Ones(kMotion, 1);
-  unit(4, 0) = force_N;
+  const Index filter = kQueue + queued, n = filter + 2;
 
   // After the correction: rows of motion, b and d over the states before it and over y.
   LoopMatrix on_state = LoopMatrix::Identity(n, n), on_y = LoopMatrix::Zero(n, 2);
   for (std::size_t i = 0; i < kObserverStates; ++i) {
     const auto row = static_cast<Index>(i);
-    const double scale = row < kMotion ? unit(row, 0) : row == d ? force_N : 1.0;
+    const double scale = UnitOf(row, force_N);
     for (Index j = 0; j < 2; ++j) on_y(row, j) = loop.gain[i][static_cast<std::size_t>(j)] / scale;
   }
   on_state.col(0) -= on_y.col(0);
-  on_state.col(bias) -= on_y.col(0);
+  on_state.col(kBias) -= on_y.col(0);
   on_state.col(2) -= on_y.col(1);
-  if (!loop.scale) on_state.row(bias).setZero();
+  if (!loop.scale) on_state.row(kBias).setZero();
 
   LoopMatrix wanted = LoopMatrix::Zero(1, n);
   for (Index i = 0; i < kMotion; ++i)
-    wanted(0, i) = -loop.regulator_motion[static_cast<std::size_t>(i)] * unit(i, 0) / force_N;
-  wanted(0, d) = loop.disturbance_to_command;
+    wanted(0, i) = -loop.regulator_motion[static_cast<std::size_t>(i)] * UnitOf(i, force_N) / force_N;
+  wanted(0, kForce) = loop.disturbance_to_command;
   for (Index i = 0; i < queued; ++i)
-    wanted(0, queue + i) = -loop.regulator_queue[static_cast<std::size_t>(i)];
+    wanted(0, kQueue + i) = -loop.regulator_queue[static_cast<std::size_t>(i)];
   const LoopMatrix wanted_state = wanted * on_state, wanted_y = wanted * on_y;
 
   const Biquad& f = loop.filter;
@@ -123,23 +150,7 @@ LinearSystem MakeController(const TwoInertiaLoop& loop, double force_N) {
   s.c(0, filter) += 1.0;
   s.d = f.b0 * wanted_y;
 
-  LoopMatrix next = LoopMatrix::Zero(n, n), from_command = LoopMatrix::Zero(n, 1);
-  for (Index i = 0; i < kMotion; ++i) {
-    const auto row = static_cast<std::size_t>(i);
-    for (Index j = 0; j < kMotion; ++j)
-      next(i, j) = loop.motion_from_motion[row][static_cast<std::size_t>(j)] * unit(j, 0) / unit(i, 0);
-    next(i, d) = loop.motion_from_disturbance[row] * force_N / unit(i, 0);
-    for (Index j = 0; j < 2; ++j) {
-      const double value = loop.motion_from_input[static_cast<std::size_t>(j)][row] * force_N / unit(i, 0);
-      if (j < queued)
-        next(i, queue + j) = value;
-      else if (j == queued)
-        from_command(i, 0) += value;
-    }
-  }
-  next(bias, bias) = next(d, d) = 1.0;
-  for (Index i = 0; i + 1 < queued; ++i) next(queue + i, queue + i + 1) = 1.0;
-  if (queued > 0) from_command(filter - 1, 0) = 1.0;
+  auto [next, from_command] = Prediction(loop, force_N, n);
   // Direct form II, transposed.
   from_command(filter, 0) = -f.a1;
   from_command(filter + 1, 0) = -f.a2;

@@ -75,12 +75,13 @@ std::string WhatIsWrong(const LoopVerdict& v) {
 }
 
 std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads) {
-  std::vector<std::string> help{"drive.mode: csp, in which the drive closes the loop"};
   LoopSearchOptions options = kShortSearch;
   options.threads = threads;
   const auto works = [&](const LoopAxis& other) {
     return Acceptable(SearchLoop(other, period_s, options).verdict, kRounding);
   };
+  if (works(axis)) return {"another tuning: contour tune --from-model finds one"};
+  std::vector<std::string> help{"drive.mode: csp, in which the drive closes the loop"};
   if (!axis.scale_step_m) {
     LoopAxis with = axis;
     with.scale_step_m = kScaleStep_m;

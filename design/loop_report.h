@@ -21,8 +21,8 @@ std::string Describe(const LoopReport& report);
 /// What of it breaks a limit, in one sentence; empty when nothing does.
 std::string WhatIsWrong(const LoopVerdict& verdict);
 
-/// What would give an axis a loop that keeps its limits, tried on the model: a linear scale, a stiffer screw.
-/// That its drive may close the loop (csp) helps always.
+/// What would give an axis a loop that keeps its limits, tried on the model: another tuning, and where there
+/// is none, a linear scale or a stiffer screw. That its drive may close the loop (csp) helps always.
 std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads);
 
 }  // namespace contour

@@ -87,6 +87,25 @@ class Box {
   std::size_t size_;
 };
 
+/// Where the search may begin: what the axis has, what others have, and by chance.
+std::vector<std::vector<double>> Starts(const Box& box, const LoopSearchOptions& options, double period_s) {
+  std::vector<std::vector<double>> starts;
+  if (options.start) starts.push_back(box.PointOf(*options.start));
+  for (const LoopTuning& t : kOthers) {
+    LoopTuning here = t;
+    for (const Parameter& p : kParameters)
+      if (p.frequency) here.*p.value *= 1e-3 / period_s;
+    starts.push_back(box.PointOf(here));
+  }
+  PortableRandom random(1);
+  for (int i = 0; i < options.random_starts; ++i) {
+    std::vector<double> point(box.size());
+    for (double& x : point) x = random.Uniform();
+    starts.push_back(std::move(point));
+  }
+  return starts;
+}
+
 double Excess(const WorstMember& w) {
   if (!w.stable) return kWorstExcess + 100.0 * (w.growth_per_cycle - 1.0);
   return std::clamp(w.peak / w.limit - 1.0, 0.0, kWorstExcess);
@@ -116,20 +135,7 @@ FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOpti
     }
   };
 
-  std::vector<std::vector<double>> starts;
-  if (options.start) starts.push_back(box.PointOf(*options.start));
-  for (const LoopTuning& t : kOthers) {
-    LoopTuning here = t;
-    for (const Parameter& p : kParameters)
-      if (p.frequency) here.*p.value *= 1e-3 / period_s;
-    starts.push_back(box.PointOf(here));
-  }
-  PortableRandom random(1);
-  for (int i = 0; i < options.random_starts; ++i) {
-    std::vector<double> point(box.size());
-    for (double& x : point) x = random.Uniform();
-    starts.push_back(std::move(point));
-  }
+  const std::vector<std::vector<double>> starts = Starts(box, options, period_s);
   std::vector<double> costs(starts.size());
   ParallelFor(starts.size(), options.threads,
               [&](std::size_t i) { costs[i] = cost(starts[i], kGentleSlope); });

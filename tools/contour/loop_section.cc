@@ -25,9 +25,8 @@ LoopSection CheckLoops(const MachineConfig& machine) {
       section.text += "  axis " + name + "\n" + Describe(report);
       const std::string wrong = WhatIsWrong(report.verdict);
       if (wrong.empty()) continue;
-      std::string message =
-          key + "found a loop that does not keep its limits (" + wrong +
-          "), expected one that does: contour tune --from-model searches it; what would help:";
+      std::string message = key + "found a loop that does not keep its limits (" + wrong +
+                            "), expected one that does; what would help:";
       for (const std::string& help : WhatWouldHelp(axis, period_s, 1)) message += " " + help + ";";
       message.pop_back();
       section.refused.push_back(std::move(message));
