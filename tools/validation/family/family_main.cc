@@ -171,6 +171,7 @@ int Run(Options o) {
       RunFamily(o.folder, cells, o.jobs, [&](std::size_t done) { progress.Show(done); });
   if (!o.out.empty()) WriteFile(o.out, [&](std::ostream& out) { WriteFamilyCsv(out, cells, results); });
   WriteFamilyTable(std::cout, cells, results);
+  WriteFamilyRatios(std::cout, cells, results);
   return kExitDone;
 }
 

@@ -1,7 +1,9 @@
 #include "tools/validation/family/family_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -35,6 +37,16 @@ double Median(std::vector<double> values) {
 struct Group {
   std::map<char, std::vector<const FamilyResult*>> programs;
 
+  /// Median of the seeds; infinite when the machine stopped with any of them.
+  [[nodiscard]] double Peak_um(char letter) const {
+    std::vector<double> peaks;
+    for (const FamilyResult* r : programs.at(letter)) {
+      if (!r->failure.empty()) return std::numeric_limits<double>::infinity();
+      peaks.push_back(r->peak_um);
+    }
+    return Median(peaks);
+  }
+
   [[nodiscard]] std::string Text() const {
     std::string peaks;
     double hold = 0.0;
@@ -57,6 +69,27 @@ struct Group {
 void AddOnce(std::vector<std::string>& all, const std::string& name) {
   if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
 }
+
+std::string RowName(const FamilyCell& c) {
+  return c.setting.machine + (c.setting.variation.empty() ? "" : " " + c.setting.variation);
+}
+
+/// A mode of `full`, and `cnc`, on one machine.
+struct Pairing {
+  std::map<std::string, Group> full;  ///< by mode
+  Group cnc;
+
+  [[nodiscard]] bool complete() const { return !full.empty() && !cnc.programs.empty(); }
+  [[nodiscard]] std::string BetterMode() const {
+    const auto& drawn = cnc.programs;
+    const char letter = drawn.contains('C') ? 'C' : drawn.begin()->first;
+    return std::min_element(full.begin(), full.end(),
+                            [&](const auto& a, const auto& b) {
+                              return a.second.Peak_um(letter) < b.second.Peak_um(letter);
+                            })
+        ->first;
+  }
+};
 
 }  // namespace
 
@@ -102,6 +135,41 @@ void WriteFamilyTable(std::ostream& out, const std::vector<FamilyCell>& cells,
     for (const std::string& column : columns) out << ' ' << groups[{row, column}].Text() << " |";
     out << '\n';
   }
+}
+
+void WriteFamilyRatios(std::ostream& out, const std::vector<FamilyCell>& cells,
+                       const std::vector<FamilyResult>& results) {
+  std::vector<std::string> rows;
+  std::map<std::string, Pairing> pairings;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const FamilyCell& c = cells[i];
+    Pairing& pairing = pairings[RowName(c)];
+    AddOnce(rows, RowName(c));
+    if (c.entry.controller == "full")
+      pairing.full[c.entry.mode].programs[c.program].push_back(&results[i]);
+    else if (c.entry.controller == "cnc")
+      pairing.cnc.programs[c.program].push_back(&results[i]);
+  }
+  std::erase_if(rows, [&](const std::string& row) { return !pairings[row].complete(); });
+  if (rows.empty()) return;
+  std::map<char, std::vector<double>> ratios;
+  out << "\n| cnc over full | full in | ratio, program by program |\n|---|---|---|\n";
+  for (const std::string& row : rows) {
+    const Pairing& pairing = pairings[row];
+    const std::string mode = pairing.BetterMode();
+    std::string text;
+    for (const auto& [letter, runs] : pairing.cnc.programs) {
+      const double full_um = pairing.full.at(mode).Peak_um(letter), cnc_um = pairing.cnc.Peak_um(letter);
+      const bool both_stopped = std::isinf(full_um) && std::isinf(cnc_um);
+      ratios[letter].push_back(both_stopped ? 1.0 : cnc_um / full_um);
+      text += (text.empty() ? "" : " / ") + Fixed(ratios[letter].back());
+    }
+    out << "| " << row << " | " << mode << " | " << text << " |\n";
+  }
+  out << "| median | |";
+  std::string medians;
+  for (auto& [letter, values] : ratios) medians += (medians.empty() ? " " : " / ") + Fixed(Median(values));
+  out << medians << " |\n";
 }
 
 }  // namespace contour

@@ -47,5 +47,24 @@ TEST(FamilyReport, TheTableForProgramsHasARowPerRun) {
       << out.str();
 }
 
+TEST(FamilyReport, RatiosAreToFullInTheModeOfTheBetterCircle) {
+  FamilyCell b = Cell("a", "csp", 'B', 1), c = Cell("a", "csp", 'C', 1);
+  b.entry.controller = c.entry.controller = "cnc";
+  std::ostringstream out;
+  WriteFamilyRatios(out,
+                    {Cell("a", "cst", 'B', 1), Cell("a", "cst", 'C', 1), Cell("a", "csp", 'B', 1),
+                     Cell("a", "csp", 'C', 1), b, c},
+                    {Result(0.1, 0.0), Result(4.0, 0.0), Result(0.5, 0.0), Result(1.0, 0.0), Result(2.0, 0.0),
+                     Result(3.0, 0.0)});
+  EXPECT_NE(out.str().find("| a | csp | 4.00 / 3.00 |\n| median | | 4.00 / 3.00 |"), std::string::npos)
+      << out.str();
+}
+
+TEST(FamilyReport, WithoutARivalThereIsNoRatio) {
+  std::ostringstream out;
+  WriteFamilyRatios(out, {Cell("a", "cst", 'B', 1)}, {Result(1.0, 0.0)});
+  EXPECT_EQ(out.str(), "");
+}
+
 }  // namespace
 }  // namespace contour

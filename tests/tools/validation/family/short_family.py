@@ -39,7 +39,8 @@ class ShortFamily(unittest.TestCase):
     def test_every_controller_drew_everything(self):
         self.assertEqual(self.result.returncode, 0, self.result.stderr)
         self.assertEqual(len(self.rows), 2 * 3 * 3)
-        self.assertEqual(len(self.result.stdout.splitlines()), 4, self.result.stdout)
+        self.assertEqual(len(self.result.stdout.splitlines()), 4 + 6, self.result.stdout)
+        self.assertIn("| median | |", self.result.stdout)
 
     def test_the_rival_is_no_straw_man(self):
         # What the compensation of a numerical control leaves of the plain cascade's error; on base it has to reach what a prototype's did
