@@ -17,7 +17,8 @@ void WriteFamilyTable(std::ostream& out, const std::vector<FamilyCell>& cells,
                       const std::vector<FamilyResult>& results);
 
 /// How many times the error of `full` that of `cnc` is, machine by machine, `full` in the mode that draws the
-/// better C (the better first program where C did not run); then the medians. Nothing when either did not run.
+/// better C (the better first program where C did not run); then the medians. Nothing when either did not
+/// run.
 void WriteFamilyRatios(std::ostream& out, const std::vector<FamilyCell>& cells,
                        const std::vector<FamilyResult>& results);
 

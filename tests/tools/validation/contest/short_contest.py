@@ -73,8 +73,8 @@ class ShortContest(unittest.TestCase):
         self.assertEqual(contour("contest", "--again", "csp", *both, "--out", pieces).returncode, 2)
 
     def test_every_controller_ran_on_everything(self):
-        self.assertEqual(len({r["controller"] for r in self.rows}), 8)
-        self.assertEqual(len(self.rows), 8 * len({(r["program"], r["machine"], r["seed"]) for r in self.rows}))
+        self.assertEqual(len({r["controller"] for r in self.rows}), 9)
+        self.assertEqual(len(self.rows), 9 * len({(r["program"], r["machine"], r["seed"]) for r in self.rows}))
 
     def test_a_run_is_what_simulate_gives(self):
         program = self.out / "circle.yaml"
