@@ -52,7 +52,7 @@ void Print(const TunedResult& r) {
 
 int RunTune(const Options& options) {
   if (!options.from_model.empty())
-    return TuneLoops({options.from_model, options.axis, options.out, options.workers});
+    return TuneLoops({options.from_model, options.axis, options.out, options.workers, options.evaluations});
   if (options.out.empty()) throw ConfigError({"contour: --out: missing, expected a file for the tuned keys"});
   const ContestConfig config = LoadContest(options.contest);
   if (config.tune.controllers.empty())
@@ -96,7 +96,9 @@ void AddTuneCommand(CLI::App& app, Action& action) {
       ->capture_default_str();
   sub->add_option("--contest", options->contest, "What is tuned, and on what")->capture_default_str();
   sub->add_option("--controllers", options->controllers, "Only these controllers");
-  sub->add_option("--evaluations", options->evaluations, "Budget of each; default: the contest file's");
+  sub->add_option(
+      "--evaluations", options->evaluations,
+      "Budget of each; default: the contest file's; with --from-model, of each run of the search");
   sub->add_option("--threads,--workers", options->workers, "Runs at a time; default: one per processor");
   sub->add_option("--out", options->out,
                   "YAML file for the tuned keys; with --from-model, the machine file with them in it");

@@ -50,14 +50,16 @@ std::string Head(const std::string& name, const LoopAxis& a) {
 }
 
 /// False when there is no loop for this axis.
-bool TuneAxis(const MachineConfig& machine, const std::string& name, int threads, std::string& text,
-              const std::string& file) {
+bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneLoopsOptions& asked,
+              std::string& text) {
   const AxisConfig& config = machine.axes.at(name);
   const LoopAxis axis = LoopAxisOf(config);
   const double period_s = 1e-6 * machine.machine.cycle_us;
   std::cout << Head(name, axis) << std::flush;
   LoopSearchOptions options;
-  options.threads = threads;
+  options.threads = ThreadsOf(static_cast<int>(asked.threads));
+  if (asked.evaluations > 0)
+    options.evaluations_per_run = options.evaluations_per_refinement = asked.evaluations;
   options.start = config.loop;
   FoundLoop found = SearchLoop(axis, period_s, options);
   Rounding rounding;
@@ -67,7 +69,7 @@ bool TuneAxis(const MachineConfig& machine, const std::string& name, int threads
   if (const std::string wrong = WhatIsWrong(report.verdict); !wrong.empty()) {
     std::cout << "  NO stable loop in torque mode within the limits was found; the best of "
               << found.evaluations << ": " << wrong << "\n";
-    for (const std::string& help : WhatWouldHelp(axis, period_s, threads))
+    for (const std::string& help : WhatWouldHelp(axis, period_s, options.threads))
       std::cout << "  what would help: " << help << "\n";
     return false;
   }
@@ -81,7 +83,7 @@ bool TuneAxis(const MachineConfig& machine, const std::string& name, int threads
     std::cout << line;
     line.clear();
   }
-  if (!text.empty()) text = WithAxisBlock(text, file, name, "loop", block);
+  if (!text.empty()) text = WithAxisBlock(text, asked.machine, name, "loop", block);
   return true;
 }
 
@@ -96,7 +98,7 @@ int TuneLoops(const TuneLoopsOptions& options) {
   bool all = true;
   for (const auto& [name, axis] : machine.axes) {
     if (!options.axis.empty() && name != options.axis) continue;
-    all = TuneAxis(machine, name, ThreadsOf(static_cast<int>(options.threads)), text, options.machine) && all;
+    all = TuneAxis(machine, name, options, text) && all;
   }
   if (!all) {
     std::cout << "nothing was written: an axis has no loop that keeps its limits\n";

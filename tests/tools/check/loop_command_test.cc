@@ -1,0 +1,79 @@
+// `contour tune --from-model` and what `contour check` says of loops, as their users meet them.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "tests/config/test_files.h"
+
+namespace contour {
+namespace {
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+};
+
+/// Output and errors together.
+Outcome Contour(const std::string& arguments) {
+  std::FILE* pipe = popen((std::string(CONTOUR_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
+  Outcome outcome;
+  std::array<char, 4096> block{};
+  for (std::size_t n = 0; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
+    outcome.out.append(block.data(), n);
+  const int status = pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+void ExpectHas(const Outcome& o, const std::string& part) {
+  EXPECT_NE(o.out.find(part), std::string::npos) << part << " in\n" << o.out;
+}
+
+TEST(TuneFromModel, WritesALoopThatCheckAccepts) {
+  const std::string machine = WriteTestFile("one.yaml", ReadText(ExampleMachine("single_axis.yaml")));
+  const std::string tuned = machine + ".tuned.yaml";
+  const Outcome tune = Contour("tune --from-model " + machine + " --evaluations 100 --out " + tuned);
+  ASSERT_EQ(tune.status, 0) << tune.out;
+  for (const char* part : {"gain margin", "phase margin", "modulus margin", "bandwidth",
+                           "binding: ", "expected error", "regulator_Hz: "})
+    ExpectHas(tune, part);
+  const Outcome check = Contour("check " + tuned);
+  EXPECT_EQ(check.status, 0) << check.out;
+  ExpectHas(check, "Loops in torque mode\n");
+  ExpectHas(check, "binding: ");
+  // As if an operator had made it faster by hand.
+  const Outcome fast = Contour("check " + tuned + " --set axes.x.loop.regulator_Hz=90");
+  EXPECT_EQ(fast.status, 2) << fast.out;
+  ExpectHas(fast, "axes.x.loop: found a loop that does not keep its limits (unstable: ");
+  ExpectHas(fast, "another tuning: contour tune --from-model finds one");
+}
+
+TEST(TuneFromModel, RefusesABeltAndSaysWhatWouldHelp) {
+  const std::string machine = WriteTestFile("belt.yaml", ReadText(ExampleMachine("family/belt.yaml")));
+  const std::string tuned = machine + ".tuned.yaml";
+  const Outcome o = Contour("tune --from-model " + machine + " --axis x --evaluations 60 --out " + tuned);
+  EXPECT_EQ(o.status, 1) << o.out;
+  ExpectHas(o, "NO stable loop in torque mode");
+  ExpectHas(o, "what would help: drive.mode: csp");
+  ExpectHas(o, "nothing was written");
+  EXPECT_FALSE(std::filesystem::exists(tuned));
+}
+
+TEST(TuneFromModel, NamesAnAxisThatThereIsNot) {
+  const Outcome o = Contour("tune --from-model " + ExampleMachine("single_axis.yaml") + " --axis q");
+  EXPECT_EQ(o.status, 2);
+  ExpectHas(o, "axes.q: missing");
+}
+
+TEST(TuneFromModel, IsNotMeantByTuneWithoutOut) {
+  const Outcome o = Contour("tune");
+  EXPECT_EQ(o.status, 2);
+  ExpectHas(o, "--out: missing");
+}
+
+}  // namespace
+}  // namespace contour
