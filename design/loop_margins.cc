@@ -109,7 +109,7 @@ LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, doub
     if ((std::abs(a) - 1.0) * (std::abs(b) - 1.0) < 0.0) {
       const double to_minus_one = 180.0 - std::fabs(std::arg(b)) * 180.0 / std::numbers::pi;
       m.phase_deg = std::min(m.phase_deg, to_minus_one);
-      if (m.bandwidth_Hz == 0.0) m.bandwidth_Hz = f[i] / period_s;
+      if (m.bandwidth_Hz == 0.0 && std::abs(b) < 1.0) m.bandwidth_Hz = f[i] / period_s;
     }
   }
   return m;

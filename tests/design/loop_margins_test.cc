@@ -78,6 +78,13 @@ TEST_P(Margins, SearchSeesThePeaksOfTheReport) {
 INSTANTIATE_TEST_SUITE_P(Family, Margins, testing::Values("base", "t20", "m300"),
                          [](const auto& at) { return std::string(at.param); });
 
+TEST_P(Margins, BandwidthIsWhereTheLoopGainHasFallenToOne) {
+  const LoopMember sliding = SlidingMember(axis_);
+  const double bandwidth_Hz = MarginsOn(sliding, loop_, kPeriod_s).bandwidth_Hz;
+  EXPECT_LT(MarginsOn(WithGain(sliding, 0.8), loop_, kPeriod_s).bandwidth_Hz, bandwidth_Hz);
+  EXPECT_GT(MarginsOn(WithGain(sliding, 1.2), loop_, kPeriod_s).bandwidth_Hz, bandwidth_Hz);
+}
+
 TEST(UnderForceStep, GrowsWithTheForceAndIsMadeUpFor) {
   const LoopAxis axis = AxisOf("base");
   const TwoInertiaLoop loop = DesignLoop(axis.axis, kTuning, kPeriod_s, false);
