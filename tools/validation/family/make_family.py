@@ -3,6 +3,8 @@
 
     make_family.py              writes the files
     make_family.py --check      exit 1 when a file is not what the tables say
+    make_family.py --out DIR [--model near]
+                                writes them elsewhere, to be tuned there; near: with the near models in place of the catalogue's
 """
 import argparse
 import csv
@@ -140,7 +142,7 @@ def emulated_lines(m, axis):
     return ["      " + line for line in lines] + friction_lines(LEVELS[axis], m.size, 8, more)
 
 
-def machine_file(m):
+def machine_file(m, near=False):
     lines = [f"# {m.name}: {m.what}. One of the family (docs/laboratory/family.md), written by tools/validation/family/make_family.py: change the tables there.",
              f"# Motor {number(m.motor_kg)} kg at the table, mode {number(m.mode_Hz)} Hz, F/K {number(1e6 * m.friction_N / m.stiffness)} um.", "",
              f"machine: {{name: {m.name}, cycle_us: 1000, controller: full}}", # A scale's reading makes the frames longer.
@@ -148,8 +150,11 @@ def machine_file(m):
              "memory: {friction_map: false}    # the emulated machine is another one with every seed", "buses:",
              "  main: {interface: loopback, bitrate_bit_s: 1000000}", "", "axes:"]
     for node, axis in enumerate(LEVELS, start=1):
-        lines += [f"  {axis}:", *drive_lines(m, node), "    # From catalogues: masses, stiffness of the screw, friction by preload; nothing was measured.",
-                  "    model:", *catalogue_model(m, 6)]
+        lines += [f"  {axis}:", *drive_lines(m, node)]
+        if near:
+            lines += [f"    model: near/{m.name}_{axis}.yaml"]
+        else:
+            lines += ["    # From catalogues: masses, stiffness of the screw, friction by preload; nothing was measured.", "    model:", *catalogue_model(m, 6)]
     lines += ["", "# What the emulated machine really is.", "emulator:", "  seed: 1", "  axes:"]
     for axis in LEVELS:
         lines += [f"    {axis}:", *emulated_lines(m, axis)]
@@ -161,30 +166,34 @@ def read(path):
         return list(csv.DictReader(text))
 
 
-def files():
+def files(folder=FAMILY, near=False):
     gains = {row["name"]: row for row in read(HERE / "drive_gains.csv")}
     for row in read(HERE / "machines.csv"):
         m = Machine(row, gains[row["name"]])
-        yield FAMILY / f"{m.name}.yaml", machine_file(m)
+        yield folder / f"{m.name}.yaml", machine_file(m, near)
         for axis in LEVELS:
-            yield FAMILY / "near" / f"{m.name}_{axis}.yaml", near_model(m, axis)
+            yield folder / "near" / f"{m.name}_{axis}.yaml", near_model(m, axis)
 
 
 def main():
     arguments = argparse.ArgumentParser()
     arguments.add_argument("--check", action="store_true")
+    arguments.add_argument("--out", type=Path, default=FAMILY)
+    arguments.add_argument("--model", choices=("catalogue", "near"), default="catalogue")
     options = arguments.parse_args()
-    wanted = dict(files())
+    if options.model == "near" and options.out == FAMILY:
+        arguments.error("--model near needs --out: the family's own files have the catalogue's models")
+    wanted = dict(files(options.out, options.model == "near"))
     if not options.check:
-        (FAMILY / "near").mkdir(parents=True, exist_ok=True)
+        (options.out / "near").mkdir(parents=True, exist_ok=True)
         for path, text in wanted.items():
             path.write_text(text, encoding="utf-8")
         return 0
-    there = set(FAMILY.glob("**/*.yaml"))
+    there = set(options.out.glob("**/*.yaml"))
     wrong = [path for path, text in wanted.items() if path not in there or path.read_text(encoding="utf-8") != text]
     wrong += sorted(there - set(wanted))
     for path in wrong:
-        print(f"{path.relative_to(ROOT)}: not what machines.csv and drive_gains.csv say; run make_family.py")
+        print(f"{path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}: not what machines.csv and drive_gains.csv say; run make_family.py")
     return 1 if wrong else 0
 
 

@@ -41,6 +41,15 @@ class FamilyFiles(unittest.TestCase):
             self.assertEqual(python(copy / TOOLS / "make_family.py").returncode, 0)
             self.assertEqual(python(copy / TOOLS / "make_family.py", "--check").returncode, 0)
 
+    def test_files_elsewhere_may_have_the_near_models(self):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "family"
+            self.assertEqual(python(ROOT / TOOLS / "make_family.py", "--out", out, "--model", "near").returncode, 0)
+            self.assertIn("model: near/t30_x.yaml", (out / "t30.yaml").read_text(encoding="utf-8"))
+            result = subprocess.run([CONTOUR, "check", out / "t30.yaml"], capture_output=True, text=True, check=False)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(python(ROOT / TOOLS / "make_family.py", "--model", "near").returncode, 2)
+
     def test_drives_keep_their_margins(self):
         result = python(ROOT / TOOLS / "drive_gains.py", "--check")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
