@@ -68,7 +68,7 @@ int RunCheck(const Options& options) {
     if (options.file.empty()) return kExitDone;
   }
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
-  const LoopSection loops = CheckLoops(file.machine);
+  const LoopSection loops = JudgeLoops(file.machine);
   std::cout << CheckReport(file.machine) << loops.text << std::flush;
   if (!loops.refused.empty()) throw ConfigError(WithPlaces(options, loops.refused));
   return CheckInterfaces(file.machine);

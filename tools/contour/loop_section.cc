@@ -8,7 +8,7 @@
 
 namespace contour {
 
-LoopSection CheckLoops(const MachineConfig& machine) {
+LoopSection JudgeLoops(const MachineConfig& machine) {
   LoopSection section;
   if (machine.machine.controller != ControllerName::kFull) return section;
   const double period_s = 1e-6 * machine.machine.cycle_us;

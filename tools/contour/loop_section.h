@@ -15,6 +15,6 @@ struct LoopSection {
 
 /// Loops act where `full` gives torques; in csp the drive closes them. Of axes without `loop:` it says what
 /// would find one.
-LoopSection CheckLoops(const MachineConfig& machine);
+LoopSection JudgeLoops(const MachineConfig& machine);
 
 }  // namespace contour
