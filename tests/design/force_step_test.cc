@@ -105,6 +105,20 @@ TEST_P(ForceStepOf, TableMovesAsFarAsTheRecordSays) {
   EXPECT_TRUE(Acceptable(verdict, 0.15)) << Binding(verdict).name << " " << Binding(verdict).peak;
 }
 
+// What supervision does to a loop that oscillates must not take stability away.
+TEST_P(ForceStepOf, SoftenedLoopStaysStableOnEveryMember) {
+  const LoopAxis axis = AxisOf(GetParam().axis);
+  const LoopJudge judge(axis, kPeriod_s);
+  const double before = judge.Judge(DesignLoop(axis.axis, GetParam().tuning, kPeriod_s, false)).worst[0].peak;
+  for (const double share : {0.7, 0.5, 0.3}) {
+    LoopTuning soft = GetParam().tuning;
+    soft.regulator_Hz *= share;
+    const LoopVerdict v = judge.Judge(DesignLoop(axis.axis, soft, kPeriod_s, false));
+    for (const WorstMember& w : v.worst) EXPECT_TRUE(w.stable) << share << " " << w.name;
+    EXPECT_LT(v.worst[0].peak, before) << share;
+  }
+}
+
 LoopTuning Tuning(std::array<double, 9> v) {
   return {v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8], 1.0, 5.0};
 }
