@@ -13,6 +13,7 @@
 #include "config/bus_timing.h"
 #include "config/emergency_checks.h"
 #include "config/key_table.h"
+#include "config/loop_checks.h"
 #include "config/motion_bounds.h"
 #include "config/number_text.h"
 #include "config/plausible_limits.h"
@@ -357,6 +358,7 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     Append(ImplausibleLimits(c, name), problems);
     Append(Check(axis.model, key + ".model"), problems);
   }
+  Append(CheckLoops(c), problems);
   Append(ImplausibleTelemetry(c.telemetry), problems);
   if (c.io.modbus) {
     if (std::string text = Problem(*c.io.modbus); !text.empty()) problems.Add("io.modbus.timeout_ms", text);

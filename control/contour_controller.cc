@@ -1,6 +1,8 @@
 #include "control/contour_controller.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "control/cascade_law.h"
@@ -10,6 +12,7 @@
 #include "control/mpc_law.h"
 #include "control/pid_law.h"
 #include "control/reference_planner.h"
+#include "control/two_inertia_law.h"
 #include "core/state_keeper.h"
 
 namespace contour {
@@ -30,7 +33,17 @@ std::unique_ptr<ControlLaw> MakeLaw(ControllerName name, const ControllerConfig&
       break;
   }
   if (name == ControllerName::kFull && cascade) return std::make_unique<CascadeLaw>(axes, period_s);
+  if (name == ControllerName::kFull && config.friction == FrictionKind::kLinear)
+    return std::make_unique<TwoInertiaLaw>(axes, options, period_s);
   return std::make_unique<MpcLaw>(MpcConfigFor(config, name), options, axes, period_s);
+}
+
+double Loop_Hz(ControllerName name, const ControllerConfig& config, const PerAxis<ControlledAxis>& axes,
+               bool cascade) noexcept {
+  double least_Hz = std::numeric_limits<double>::infinity();
+  for (const ControlledAxis& axis : axes)
+    if (axis.loop) least_Hz = std::min(least_Hz, axis.regulator_Hz);
+  return std::isfinite(least_Hz) ? least_Hz : StiffnessBandwidth_Hz(config, name, cascade);
 }
 
 }  // namespace
@@ -59,7 +72,7 @@ const MpcConfig& MpcConfigFor(const ControllerConfig& config, ControllerName nam
 ContourController::ContourController(ControllerName name, const ControllerConfig& config,
                                      const PerAxis<ControlledAxis>& axes, double period_s, bool cascade)
     : options_(OptionsFor(name)),
-      loop_Hz_(StiffnessBandwidth_Hz(config, name, cascade)),
+      loop_Hz_(Loop_Hz(name, config, axes, cascade)),
       // A drive's own loop is not ours to soften.
       soft_loop_Hz_(cascade ? loop_Hz_ : config.supervision.softer * loop_Hz_) {
   if (axes.empty()) throw std::invalid_argument("controller: there is no axis");

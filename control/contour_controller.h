@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "control/control_config.h"
 #include "core/axis.h"
@@ -9,6 +10,7 @@
 #include "core/horizon.h"
 #include "core/mechanics.h"
 #include "core/reason.h"
+#include "core/two_inertia_loop.h"
 
 namespace contour {
 
@@ -64,6 +66,11 @@ struct ControlledAxis {
   double coulomb_plus_N = 0.0;
   double coulomb_minus_N = 0.0;
   double presliding_m = 0.0;  ///< travel after which friction is sliding: Fc / sigma0
+  /// The axis as two inertias and the loop around it, where it has one, and that of the softened machine.
+  std::optional<TwoInertiaLoop> loop = std::nullopt, softer_loop = std::nullopt;
+  double regulator_Hz = 0.0;  ///< of that loop
+  /// What one step of the drive's torque moves the axis by while friction has hold of it.
+  double torque_step_moves_m = 0.0;
 };
 
 /// Everything the controller sees of one cycle; see core/horizon.h for the time indices.

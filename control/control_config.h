@@ -7,6 +7,7 @@
 #include "control/cnc_config.h"
 #include "control/monitor_config.h"
 #include "control/supervision_config.h"
+#include "core/friction_kind.h"
 #include "core/visit.h"
 
 namespace contour {
@@ -186,6 +187,7 @@ struct ControllerConfig {
   GuardConfig guard;
   SupervisionConfig supervision;
   MonitorConfig monitor;
+  FrictionKind friction = FrictionKind::kSrukf;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -198,6 +200,10 @@ struct ControllerConfig {
     v.Optional("mpc_ekf7", mpc_ekf7, "MPC with the 7-state EKF");
     v.Optional("mpc_srukf7", mpc_srukf7, "MPC with the 7-state SRUKF");
     v.Optional("full", full, "MPC with friction preview and wind-up compensation");
+    v.Optional("friction", friction, kAny,
+               "what `full` knows friction by: srukf, states of its filter beside one rigid mass; linear, "
+               "learnt along the reference, outside a loop that knows motor and table apart (torque mode: "
+               "needs axes.<name>.loop)");
     v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
     v.Optional("supervision", supervision, "how the machine watches its own control");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -71,6 +72,8 @@ struct AxisEstimate {
   double sigma0_N_m = 0.0;
   double innovation_m = 0.0;  ///< measured minus predicted position
   double innovation_std_m = 0.0;
+  /// Of motor and table, where the estimator tells them apart: TwoInertiaLoop's motion at the sample.
+  std::array<double, 5> motion{};
   Reason limit = Reason::kNone;  ///< kInnovationGated, kParameterBound or kNone
   bool diverged = false;         ///< the numbers are not to be used
 };

@@ -25,6 +25,7 @@ CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const 
   // A delay of a fraction of a period does to the axis what a lag of that time constant does, to first order.
   out.lag_s = std::max(0.0, axis.drive.lag_ms * 1e-3 + model.added_lag_s + model.added_delay_s);
   out.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
+  out.loop = axis.loop;
   return out;
 }
 

@@ -64,6 +64,17 @@ void WithFilter(Filters& filters, What&& what) noexcept {
 
 }  // namespace
 
+FilterSetup AxisEstimator::SetupOf(const Mechanics& mechanics, const FrictionConfig& friction,
+                                   const EstimatorConfig& config, double period_s, double lag_s,
+                                   double resolution_m) {
+  return Check(mechanics, friction, config, period_s, lag_s, resolution_m);
+}
+
+AxisEstimator::AxisEstimator(const TwoInertiaEstimator::Setup& setup)
+    : kind_(EstimatorKind::kTwoInertia),
+      filter_(KinematicObserver(setup.filter)),
+      two_inertia_(std::make_unique<TwoInertiaEstimator>(setup)) {}
+
 AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, const FrictionConfig& friction,
                              const EstimatorConfig& config, double period_s, double lag_s,
                              double resolution_m, KnownEffects known)
@@ -71,10 +82,12 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
   const bool cascade = kind == EstimatorKind::kFullInCascade;
   // The torque that a drive reports is what it gives: its lag is behind it.
   if (cascade) lag_s = 0.0;
-  FilterSetup setup = Check(mechanics, friction, config, period_s, lag_s, resolution_m);
+  FilterSetup setup = SetupOf(mechanics, friction, config, period_s, lag_s, resolution_m);
   setup.reported_torque = cascade;
   setup.looks_ahead = !is_full();
   switch (kind) {
+    case EstimatorKind::kTwoInertia:
+      throw std::invalid_argument("estimator: two inertias have a setup of their own");
     case EstimatorKind::kKinematic:
       filter_.emplace<KinematicObserver>(setup);
       break;
@@ -125,6 +138,7 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
 }
 
 void AxisEstimator::Reset(double position_m) noexcept {
+  if (two_inertia_) return two_inertia_->Reset(position_m);
   WithFilter(filter_, [&](auto& filter) noexcept { filter.Reset(position_m); });
   roll_.Reset(0.0);
   correction_.Reset();
@@ -139,6 +153,7 @@ void AxisEstimator::Reset(double position_m) noexcept {
 }
 
 void AxisEstimator::Freeze(bool frozen) noexcept {
+  if (two_inertia_) return two_inertia_->Freeze(frozen);
   if (frozen == frozen_) return;
   frozen_ = frozen;
   WithFilter(filter_, [&](auto& filter) noexcept {
@@ -147,6 +162,7 @@ void AxisEstimator::Freeze(bool frozen) noexcept {
 }
 
 AxisEstimate AxisEstimator::Update(const Input& in) noexcept {
+  if (two_inertia_) return two_inertia_->Update(in);
   if (is_full()) return UpdateFull(in);
   at_rest_ = in.at_rest || !in.enabled;
   AxisEstimate estimate;
@@ -232,6 +248,7 @@ void AxisEstimator::LearnWindUp(double position_m, double velocity_m_s, double f
 
 void AxisEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
                                     FrictionPreview& out) noexcept {
+  if (two_inertia_) return two_inertia_->PreviewFriction(reference, points, out);
   if (is_full()) {
     const auto& filter = *std::get_if<SevenStateFilter<SqrtUkf<kSevenStates>>>(&filter_);
     roll_.Run(filter.model(), filter.state(), correction_, viscous_,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <variant>
 
 #include "core/axis.h"
@@ -21,6 +22,7 @@
 #include "estimator/level_correction.h"
 #include "estimator/momentum_balance.h"
 #include "estimator/seven_state_filter.h"
+#include "estimator/two_inertia_estimator.h"
 #include "estimator/viscous_correction.h"
 #include "estimator/wind_up_fit.h"
 
@@ -34,11 +36,11 @@ enum class EstimatorKind : std::uint8_t {
   kSrukf7,               ///< seven states in a square-root unscented Kalman filter
   kFull,                 ///< kSrukf7, level learnt over turn and speed, friction rolled along the reference
   kFullInCascade,        ///< kFull, for a drive that closes its own position loop and reports its torque
+  kTwoInertia,           ///< two inertias, friction learnt along the reference; built from a Setup of its own
 };
 
 /// State, velocity and friction of one axis from its motor encoder and the torque sent to it.
-/// One Update per cycle, then PreviewFriction if wanted. Value semantics; nothing allocates after
-/// construction.
+/// One Update per cycle, then PreviewFriction if wanted. Nothing allocates after construction.
 class AxisEstimator {
  public:
   using Input = AxisEstimatorInput;
@@ -49,6 +51,12 @@ class AxisEstimator {
   AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, const FrictionConfig& friction,
                 const EstimatorConfig& config, double period_s, double lag_s, double resolution_m = 0.0,
                 KnownEffects known = {});
+  /// The axis as two inertias, with friction learnt along the reference.
+  explicit AxisEstimator(const TwoInertiaEstimator::Setup& setup);
+  /// From the same numbers as above.
+  static FilterSetup SetupOf(const Mechanics& mechanics, const FrictionConfig& friction,
+                             const EstimatorConfig& config, double period_s, double lag_s,
+                             double resolution_m);
 
   /// Starts anew at a position, at rest; friction parameters as commissioned.
   void Reset(double position_m) noexcept;
@@ -67,7 +75,7 @@ class AxisEstimator {
   /// The extensions of the model stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
     keep(filter_, roll_, correction_, viscous_, momentum_, map_, wind_up_, lag_, drive_N_, temperature_degC_,
-         at_rest_, frozen_, followed_, knows_followed_);
+         at_rest_, frozen_, followed_, knows_followed_, two_inertia_);
   }
 
  private:
@@ -99,6 +107,7 @@ class AxisEstimator {
   /// Of what is followed, at the next sample: where corners are planned it is not the program's own motion.
   ReferencePoint followed_;
   bool knows_followed_ = false;
+  std::unique_ptr<TwoInertiaEstimator> two_inertia_;  ///< does everything, where it is
 };
 
 }  // namespace contour

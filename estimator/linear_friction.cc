@@ -40,6 +40,11 @@ LinearFriction::LinearFriction(const FrictionScale& scale) noexcept
   }
 }
 
+std::array<double, 3> LinearFriction::StribeckAt(double speed) noexcept {
+  return {ExpOfNegative(-speed / kStribeckSpeeds[0]), ExpOfNegative(-speed / kStribeckSpeeds[1]),
+          ExpOfNegative(-speed)};
+}
+
 CONTOUR_WIDE_VECTORS
 void LinearFriction::Follow(double step_m, double position_m, double velocity_m_s, double acceleration_m_s2,
                             FrictionMemory& memory, FrictionTerms& terms) const noexcept {
@@ -63,8 +68,14 @@ void LinearFriction::Follow(double step_m, double position_m, double velocity_m_
   }
   const CosSin turn = Turn((position_m - scale_.centre_m) * per_turn_1_m_);
   const double along = (position_m - scale_.centre_m) / scale_.half_stroke_m;
-  const std::array<double, 8> towards{sign * kept[4],  sign * kept[5], kept[6], sign * turn.cos,
-                                      sign * turn.sin, sign * along,   0.0,     0.0};
+  const std::array<double, 8> towards{sign * kept[4],
+                                      sign * kept[5],
+                                      kept[6],
+                                      sign * along,
+                                      sign * turn.cos,
+                                      sign * turn.sin,
+                                      sign * (turn.cos * turn.cos - turn.sin * turn.sin),
+                                      sign * 2.0 * turn.cos * turn.sin};
   for (std::size_t i = 0; i < 8; ++i)
     memory.relaxed[i] = towards[i] + (memory.relaxed[i] - towards[i]) * kept[kNominalDahl];
   for (std::size_t i = 0; i < 4; ++i) {
@@ -78,9 +89,10 @@ void LinearFriction::Follow(double step_m, double position_m, double velocity_m_
   terms[kEvenStribeck] = memory.relaxed[2];
   terms[kSlowBristle] = memory.stop[kWideStop] * kept[6];
   terms[kDamping] = kept[7] * (velocity_m_s - speed_m_s * bristle) / scale_.vs_m_s;
-  terms[kCosTurn] = memory.relaxed[3];
-  terms[kSinTurn] = memory.relaxed[4];
-  terms[kStroke] = memory.relaxed[5];
+  for (std::size_t i = 0; i < 4; ++i) terms[kTurn + i] = memory.relaxed[4 + i];
+  terms[kEvenTurn] = turn.cos;
+  terms[kEvenTurn + 1] = turn.sin;
+  terms[kStroke] = memory.relaxed[3];
   terms[kViscous] = velocity_m_s / (kViscousSpeeds * scale_.vs_m_s);
   terms[kMass] = acceleration_m_s2;
   terms[kUsed] = 0.0;

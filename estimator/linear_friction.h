@@ -8,7 +8,7 @@
 namespace contour {
 
 /// Terms of friction along a known motion; the number is rounded up to whole registers.
-inline constexpr std::size_t kFrictionTerms = 20;
+inline constexpr std::size_t kFrictionTerms = 24;
 using FrictionTerms = std::array<double, kFrictionTerms>;
 
 /// What each term is. The friction is the sum of parameter times term; parameters are in N, but for the last
@@ -21,12 +21,12 @@ inline constexpr std::size_t kStribeck = 9;       ///< 2, relaxed by the bristle
 inline constexpr std::size_t kEvenStribeck = 11;  ///< the same of break-away levels that differ by direction
 inline constexpr std::size_t kSlowBristle = 12;   ///< bristle that fades with speed
 inline constexpr std::size_t kDamping = 13;       ///< of the bristle
-inline constexpr std::size_t kCosTurn = 14;       ///< friction over the angle of the screw
-inline constexpr std::size_t kSinTurn = 15;
-inline constexpr std::size_t kStroke = 16;   ///< friction over the stroke
-inline constexpr std::size_t kViscous = 17;  ///< in N at 25 Stribeck velocities
-inline constexpr std::size_t kMass = 18;     ///< kg: the term is the acceleration
-inline constexpr std::size_t kUsed = 19;
+inline constexpr std::size_t kTurn = 14;  ///< 4: cosine and sine of the screw's angle and of twice it, signed
+inline constexpr std::size_t kEvenTurn = 18;  ///< 2: the same of its angle whatever the direction
+inline constexpr std::size_t kStroke = 20;    ///< friction over the stroke
+inline constexpr std::size_t kViscous = 21;   ///< in N at 25 Stribeck velocities
+inline constexpr std::size_t kMass = 22;      ///< kg: the term is the acceleration
+inline constexpr std::size_t kUsed = 23;
 }  // namespace friction_term
 
 /// Lengths and speeds of one axis that its friction is laid over.
@@ -43,7 +43,7 @@ struct FrictionScale {
 FrictionScale ScaleOf(const Friction& friction, double lead_m, double position_min_m,
                       double position_max_m) noexcept;
 
-/// What of the past counts: four bristles, four stops, six signs that bristles relax.
+/// What of the past counts: four bristles, four stops, eight signs that bristles relax.
 struct FrictionMemory {
   std::array<double, 4> dahl{};
   std::array<double, 4> stop{};
@@ -63,6 +63,9 @@ class LinearFriction {
 
   [[nodiscard]] const FrictionScale& scale() const noexcept { return scale_; }
   static constexpr double kViscousSpeeds = 25.0;
+
+  /// The fading of the Stribeck terms, then of the even one and the slow bristle, at a speed in vs.
+  static std::array<double, 3> StribeckAt(double speed) noexcept;
 
   /// Moves on to `position_m`, `step_m` from where it was, and gives the terms there.
   void Follow(double step_m, double position_m, double velocity_m_s, double acceleration_m_s2,

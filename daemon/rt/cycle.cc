@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "daemon/rt/cycle_parts.h"
 #include "drivers/cia301/messages.h"
@@ -23,21 +22,16 @@ PerAxis<double> Zeros(std::size_t n) {
 
 }  // namespace
 
-Cycle::Axis::Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored,
-                  const MonitorConfig& monitoring, WatchesOff off, EstimatorKind kind, double period_s)
-    : radius_m_rad(config.mechanics.radius_m_rad),
-      estimator(kind, config.mechanics, config.friction, config.estimator, period_s, config.lag_s,
-                2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev,
-                config.known),
-      observer(EstimatorKind::kDisturbanceObserver, config.mechanics, config.friction, config.estimator,
-               period_s, config.lag_s,
-               2.0 * std::numbers::pi * config.mechanics.radius_m_rad / config.encoder_counts_per_rev),
-      monitor(monitored, monitoring, period_s, off),
-      mass_kg(config.mechanics.mass_kg),
-      unreferenced_travel_m(1e-3 * config.limits.unreferenced_travel_mm),
-      following_error_m(1e-3 * config.limits.following_error_mm),
-      position_min_m(1e-3 * config.limits.position_mm[0]),
-      position_max_m(1e-3 * config.limits.position_mm[1]) {}
+Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAxis& monitored)
+    : radius_m_rad(cycle.axes[index].mechanics.radius_m_rad),
+      estimator(MakeEstimator(cycle, index)),
+      observer(MakeObserver(cycle, index)),
+      monitor(monitored, cycle.control.monitor, cycle.cycle_us * 1e-6, cycle.off),
+      mass_kg(cycle.axes[index].mechanics.mass_kg),
+      unreferenced_travel_m(1e-3 * cycle.axes[index].limits.unreferenced_travel_mm),
+      following_error_m(1e-3 * cycle.axes[index].limits.following_error_mm),
+      position_min_m(1e-3 * cycle.axes[index].limits.position_mm[0]),
+      position_max_m(1e-3 * cycle.axes[index].limits.position_mm[1]) {}
 
 Cycle::Cycle(const CycleConfig& config)
     : period_s_(config.cycle_us * 1e-6),
@@ -60,9 +54,7 @@ Cycle::Cycle(const CycleConfig& config)
       near_position_m_(config.axes.size()),
       near_path_(config.axes.size()) {
   const PerAxis<MonitoredAxis> monitored = MonitoredAxes(config);
-  for (std::size_t i = 0; i < config.axes.size(); ++i)
-    axes_.emplace_back(config.axes[i], monitored[i], config.control.monitor, config.off, EstimatorFor(config),
-                       period_s_);
+  for (std::size_t i = 0; i < config.axes.size(); ++i) axes_.emplace_back(config, i, monitored[i]);
   for (const AxisDriveConfig& a : config.master.axes)
     answers_.push_back({{static_cast<std::uint16_t>(cob::kTpdo1 + a.drive.node_id), 0, {}}, a.bus, 0});
   for (const BusConfig& b : config.master.buses) {

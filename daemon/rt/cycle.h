@@ -74,8 +74,7 @@ class Cycle {
 
  private:
   struct Axis {
-    Axis(const CycleAxisConfig& config, const MonitoredAxis& monitored, const MonitorConfig& monitoring,
-         WatchesOff off, EstimatorKind kind, double period_s);
+    Axis(const CycleConfig& config, std::size_t index, const MonitoredAxis& monitored);
     double radius_m_rad;
     AxisEstimator estimator;
     AxisEstimator observer;  ///< to fall back to

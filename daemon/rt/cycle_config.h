@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "control/control_config.h"
 #include "core/axis.h"
 #include "core/controller_name.h"
+#include "core/loop_tuning.h"
 #include "core/mechanics.h"
 #include "core/watch.h"
 #include "drivers/cia402/drive_master.h"
@@ -26,6 +28,7 @@ struct CycleAxisConfig {
   AxisLimits limits;
   double lag_s = 0.0;
   double encoder_counts_per_rev = 0.0;
+  std::optional<LoopTuning> loop;  ///< of the two-inertia loop, where the file has one
 };
 
 /// All the cycle needs to know; it never sees a file.

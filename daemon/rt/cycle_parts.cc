@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
 
 #include "control/loop_bandwidth.h"
+#include "core/two_inertia_axis.h"
+#include "core/two_inertia_loop.h"
 
 namespace contour {
 namespace {
@@ -13,13 +18,58 @@ constexpr std::uint32_t kOnItsWay_cycles = 20;
 /// and for those before it: of a fault that was just reset, and of its end.
 constexpr double kMessages = 3.0;
 
+// Of rated torque: the unit of torques on the bus.
+constexpr double kTorqueStep = 1e-3;
+
+// In a cascade the observer only watches: fast enough to see what friction does, slow enough for the noise of
+// a reported torque. No machine's own number is in it.
+constexpr LoopTuning kWatching{.regulator_Hz = 20.0,
+                               .windup_weight = 0.3,
+                               .velocity_weight = 0.2,
+                               .disturbance_Hz = 60.0,
+                               .motor_force_Hz = 150.0,
+                               .table_force_Hz = 100.0,
+                               .notch_ratio = 1.0,
+                               .notch_pole_damping = 0.5,
+                               .notch_zero_damping = 0.5};
+
+TwoInertiaAxis ToTwoInertia(const CycleConfig& config, std::size_t axis) {
+  const CycleAxisConfig& a = config.axes[axis];
+  const double sigma2 = ToSi(a.friction, a.mechanics.radius_m_rad).sigma2_Ns_m;
+  // The torque that a drive reports is what it gave over the period that has passed.
+  if (InCascade(config)) return ToTwoInertiaAxis(a.mechanics, sigma2, 0.0, 0);
+  return ToTwoInertiaAxis(a.mechanics, sigma2, a.lag_s, config.master.axes[axis].drive.delay_cycles);
+}
+
+TwoInertiaLoop LoopOf(const CycleConfig& config, std::size_t axis, double softer) {
+  const double period_s = config.cycle_us * 1e-6;
+  const TwoInertiaAxis two = ToTwoInertia(config, axis);
+  if (InCascade(config)) return DesignLoop(two, kWatching, period_s, false);
+  if (!config.axes[axis].loop)
+    throw std::invalid_argument("axis " + config.axes[axis].name +
+                                ": control.friction: linear in torque mode needs its loop: tuning "
+                                "(contour tune --from-model writes it)");
+  LoopTuning tuning = *config.axes[axis].loop;
+  tuning.regulator_Hz *= softer;
+  return DesignLoop(two, tuning, period_s, false);
+}
+
 PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
   PerAxis<ControlledAxis> axes;
-  for (const CycleAxisConfig& a : config.axes) {
+  for (std::size_t i = 0; i < config.axes.size(); ++i) {
+    const CycleAxisConfig& a = config.axes[i];
     const double r = a.mechanics.radius_m_rad;
     const Friction f = ToSi(a.friction, r);
-    axes.push_back({a.mechanics, ToSi(a.limits, r), a.lag_s, f.sigma2_Ns_m, f.Fc_plus_N, f.Fc_minus_N,
-                    0.5 * (f.Fc_plus_N + f.Fc_minus_N) / f.sigma0_N_m});
+    ControlledAxis axis{a.mechanics, ToSi(a.limits, r), a.lag_s, f.sigma2_Ns_m, f.Fc_plus_N, f.Fc_minus_N,
+                        0.5 * (f.Fc_plus_N + f.Fc_minus_N) / f.sigma0_N_m};
+    if (KnowsTwoInertias(config) && !InCascade(config)) {
+      axis.loop = LoopOf(config, i, 1.0);
+      axis.softer_loop = LoopOf(config, i, config.control.supervision.softer);
+      axis.regulator_Hz = a.loop->regulator_Hz;
+      const double step_N = kTorqueStep * config.master.axes[i].drive.rated_torque_Nm / r;
+      axis.torque_step_moves_m = step_N / ToSi(a.friction, r).sigma0_N_m;
+    }
+    axes.push_back(axis);
   }
   return axes;
 }
@@ -28,6 +78,54 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
 
 bool InCascade(const CycleConfig& config) noexcept {
   return !config.master.axes.empty() && config.master.axes.front().drive.mode == DriveMode::kCsp;
+}
+
+bool KnowsTwoInertias(const CycleConfig& config) noexcept {
+  return config.controller == ControllerName::kFull && config.control.friction == FrictionKind::kLinear;
+}
+
+double DesignedLoop_Hz(const CycleConfig& config) noexcept {
+  if (!KnowsTwoInertias(config) || InCascade(config))
+    return LoopBandwidth_Hz(config.control, config.controller);
+  double least_Hz = std::numeric_limits<double>::infinity();
+  for (const CycleAxisConfig& a : config.axes)
+    if (a.loop) least_Hz = std::min(least_Hz, a.loop->regulator_Hz);
+  return least_Hz;
+}
+
+double StiffnessLoop_Hz(const CycleConfig& config) noexcept {
+  if (KnowsTwoInertias(config) && !InCascade(config)) return DesignedLoop_Hz(config);
+  return StiffnessBandwidth_Hz(config.control, config.controller, InCascade(config));
+}
+
+AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis) {
+  const CycleAxisConfig& a = config.axes[axis];
+  const double period_s = config.cycle_us * 1e-6;
+  const double count_m = 2.0 * std::numbers::pi * a.mechanics.radius_m_rad / a.encoder_counts_per_rev;
+  const EstimatorKind kind = EstimatorFor(config);
+  if (kind != EstimatorKind::kTwoInertia)
+    return {kind, a.mechanics, a.friction, a.estimator, period_s, a.lag_s, count_m, a.known};
+  TwoInertiaEstimator::Setup setup;
+  setup.filter = AxisEstimator::SetupOf(a.mechanics, a.friction, a.estimator, period_s,
+                                        InCascade(config) ? 0.0 : a.lag_s, count_m);
+  setup.filter.reported_torque = InCascade(config);
+  setup.axis = ToTwoInertia(config, axis);
+  setup.loop = LoopOf(config, axis, 1.0);
+  setup.position_min_m = 1e-3 * a.limits.position_mm[0];
+  setup.position_max_m = 1e-3 * a.limits.position_mm[1];
+  setup.known = a.known;
+  return AxisEstimator(setup);
+}
+
+AxisEstimator MakeObserver(const CycleConfig& config, std::size_t axis) {
+  const CycleAxisConfig& a = config.axes[axis];
+  return {EstimatorKind::kDisturbanceObserver,
+          a.mechanics,
+          a.friction,
+          a.estimator,
+          config.cycle_us * 1e-6,
+          a.lag_s,
+          2.0 * std::numbers::pi * a.mechanics.radius_m_rad / a.encoder_counts_per_rev};
 }
 
 EstimatorKind EstimatorFor(const CycleConfig& config) noexcept {
@@ -48,6 +146,7 @@ EstimatorKind EstimatorFor(const CycleConfig& config) noexcept {
     case ControllerName::kFull:
       break;
   }
+  if (KnowsTwoInertias(config)) return EstimatorKind::kTwoInertia;
   return InCascade(config) ? EstimatorKind::kFullInCascade : EstimatorKind::kFull;
 }
 
@@ -60,7 +159,7 @@ PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config) {
 
 PerAxis<MonitoredAxis> MonitoredAxes(const CycleConfig& config) {
   PerAxis<MonitoredAxis> axes;
-  const double loop_Hz = StiffnessBandwidth_Hz(config.control, config.controller, InCascade(config));
+  const double loop_Hz = StiffnessLoop_Hz(config);
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     const CycleAxisConfig& a = config.axes[i];
     const DriveConfig& d = config.master.axes[i].drive;
@@ -96,7 +195,9 @@ ContourController MakeController(const CycleConfig& config) {
 
 std::unique_ptr<ContourController> MakeFallback(const CycleConfig& config) {
   const EstimatorKind kind = EstimatorFor(config);
-  if (InCascade(config) || kind == EstimatorKind::kKinematic || kind == EstimatorKind::kDisturbanceObserver)
+  // What it would fall back to knows one inertia and is no more stable; its own softened loop is.
+  if (InCascade(config) || KnowsTwoInertias(config) || kind == EstimatorKind::kKinematic ||
+      kind == EstimatorKind::kDisturbanceObserver)
     return nullptr;
   return std::make_unique<ContourController>(ControllerName::kMpcObserver, config.control,
                                              ControlledAxes(config), config.cycle_us * 1e-6);

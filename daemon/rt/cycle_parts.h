@@ -16,7 +16,18 @@ namespace contour {
 /// Whether the drives close the position loop.
 [[nodiscard]] bool InCascade(const CycleConfig& config) noexcept;
 
+/// `full` with friction learnt along the reference.
+[[nodiscard]] bool KnowsTwoInertias(const CycleConfig& config) noexcept;
+
 [[nodiscard]] EstimatorKind EstimatorFor(const CycleConfig& config) noexcept;
+/// The estimator of one axis. Throws std::invalid_argument.
+[[nodiscard]] AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis);
+/// The observer that an axis falls back to.
+[[nodiscard]] AxisEstimator MakeObserver(const CycleConfig& config, std::size_t axis);
+
+/// The position loop as designed, and one that holds a rigid axis as stiffly; of the slowest axis.
+[[nodiscard]] double DesignedLoop_Hz(const CycleConfig& config) noexcept;
+[[nodiscard]] double StiffnessLoop_Hz(const CycleConfig& config) noexcept;
 
 [[nodiscard]] PerAxis<GuardedAxis> GuardedAxes(const CycleConfig& config);
 

@@ -58,8 +58,8 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
       std::sqrt(m.stiffness_N_m * (1.0 / motor_kg + 1.0 / m.table_mass_kg)) / (2.0 * std::numbers::pi);
   OscillationBounds b;
   b.period_s = config.cycle_us * 1e-6;
-  b.low_Hz = kSlowestOfBandwidth * LoopBandwidth_Hz(config.control, config.controller);
-  b.low_moving_Hz = kSlowestMovingOfBandwidth * LoopBandwidth_Hz(config.control, config.controller);
+  b.low_Hz = kSlowestOfBandwidth * DesignedLoop_Hz(config);
+  b.low_moving_Hz = kSlowestMovingOfBandwidth * DesignedLoop_Hz(config);
   b.high_Hz = std::min(kModeMargin * mode_Hz, 1.0 / (kFewestCyclesPerPeriod * b.period_s));
   b.swing_m = kBeyondRounding * (kRoundingCounts * count_m + torque_step_N / f.sigma0_N_m);
   b.swing_N = kBeyondRounding * torque_step_N;

@@ -53,6 +53,27 @@ TEST(MachineChecks, LearningNeedsAScaleOnEveryAxis) {
       "axes.y.drive.linear_scale: found none, but learning.enabled is true; expected a scale on every axis");
 }
 
+TEST(MachineChecks, FrictionAlongTheReferenceNeedsALoopOnEveryAxisInTorqueMode) {
+  MachineConfig c = Good();
+  c.control.friction = FrictionKind::kLinear;
+  const LoopTuning loop{20.0, 0.4, 0.18, 200.0, 400.0, 400.0, 0.77, 0.7, 0.3};
+  c.axes.at("x").loop = loop;
+  EXPECT_EQ(Only(c),
+            "axes.y.loop: found nothing, but control.friction is linear and drive.mode cst: expected the "
+            "tuning that `contour tune --from-model` writes");
+  c.axes.at("y").loop = loop;
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("y").loop->disturbance_Hz = -1.0;
+  EXPECT_EQ(Only(c),
+            "axes.y.loop: found a tuning that gives no loop: disturbance_Hz: expected a positive number");
+  for (const char* axis : {"x", "y"}) c.axes.at(axis).loop.reset();
+  for (const char* axis : {"x", "y"}) c.axes.at(axis).drive.mode = DriveMode::kCsp;
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("x").drive.mode = c.axes.at("y").drive.mode = DriveMode::kCst;
+  c.machine.controller = ControllerName::kMpcSrukf7;
+  EXPECT_TRUE(Check(c).empty());
+}
+
 TEST(MachineChecks, Buses) {
   MachineConfig c = Good();
   c.axes.at("x").drive.bus = "mian";

@@ -144,7 +144,7 @@ TEST(LinearFriction, FitsMaxwellSlip) {
     }
   }
   FrictionTerms std{};
-  for (std::size_t i = 0; i < friction_term::kCosTurn; ++i) std[i] = 45.0;
+  for (std::size_t i = 0; i < friction_term::kTurn; ++i) std[i] = 45.0;
   const FrictionTerms parameters = fit.Solve(std);
   for (const Circle& c : kCircles) {
     MaxwellSlip law(45.0);
@@ -164,7 +164,7 @@ TEST(LinearFriction, AStandingAxisHoldsWhatItHas) {
   const FrictionMemory before = memory;
   for (int k = 0; k < 1000; ++k) basis.Follow(0.0, 20e-6, 0.0, 0.0, memory, standing);
   EXPECT_EQ(memory, before);
-  for (std::size_t i = 0; i < friction_term::kCosTurn; ++i) EXPECT_NEAR(standing[i], moving[i], 1e-5) << i;
+  for (std::size_t i = 0; i < friction_term::kTurn; ++i) EXPECT_NEAR(standing[i], moving[i], 1e-5) << i;
 }
 
 }  // namespace

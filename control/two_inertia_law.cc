@@ -1,0 +1,169 @@
+#include "control/two_inertia_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace contour {
+namespace {
+
+// A softened loop answers what its observer finds this much more slowly than it holds the axis.
+constexpr double kSlower = 0.5;
+// An axis at rest is let go on under the torque it has while its error is below what one step of torque
+// moves it by: answering it would step to and fro. A third of that begins it, held for that long.
+constexpr double kBeginsQuiet = 0.35, kEndsQuiet = 1.5;
+constexpr double kSettles_s = 0.03;
+
+FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept {
+  if (friction.empty()) return {};
+  return friction[std::min(index, friction.size() - 1)];
+}
+
+const TwoInertiaLoop& Required(const std::optional<TwoInertiaLoop>& loop) {
+  if (!loop) throw std::invalid_argument("two inertias: an axis has no loop");
+  if (loop->queued == 0) throw std::invalid_argument("two inertias: a torque takes at least one period");
+  return *loop;
+}
+
+}  // namespace
+
+TwoInertiaLaw::Axis::Axis(const ControlledAxis& axis, const ControllerOptions& options, double period_s)
+    : own(Required(axis.loop)),
+      softer(Required(axis.softer_loop)),
+      feedforward(axis, options, period_s),
+      mechanics(axis.mechanics),
+      force_limit_N(axis.limits.force_N),
+      lag_kept(axis.lag_s > 0.0 ? std::exp(-period_s / axis.lag_s) : 0.0),
+      quiet_m(axis.torque_step_moves_m),
+      settle(static_cast<int>(kSettles_s / period_s)),
+      slow_share(
+          1.0 - std::exp(-2.0 * std::numbers::pi * kSlower * options.softer * axis.regulator_Hz * period_s)) {
+}
+
+TwoInertiaLaw::TwoInertiaLaw(const PerAxis<ControlledAxis>& axes, const ControllerOptions& options,
+                             double period_s)
+    : period_s_(period_s) {
+  std::size_t queued = 1;
+  for (const ControlledAxis& axis : axes) {
+    axes_.emplace_back(axis, options, period_s);
+    queued = std::max(queued, axes_.back().own.queued);
+  }
+  // One interval per command under way, and the wind-up's derivatives one more on either side.
+  horizon_points_ = static_cast<int>(queued) + 4;
+}
+
+void TwoInertiaLaw::Axis::Forget() noexcept {
+  planned_N = sent_N = {};
+  led_N = wound_m = lead_m = slow_N = 0.0;
+  quiet = 0;
+  filter = {};
+  steps = 0;
+}
+
+void TwoInertiaLaw::Reset() noexcept {
+  for (Axis& axis : axes_) axis.Forget();
+}
+
+// From the sample before to this one. What is not known of the past was as sent, so that it deviates by
+// nothing.
+void TwoInertiaLaw::Advance(Axis& a, double sent_N) const noexcept {
+  if (a.steps == 0) {
+    a.planned_N.fill(sent_N);
+    a.sent_N.fill(sent_N);
+    a.led_N = sent_N;
+    return;
+  }
+  std::shift_right(a.sent_N.begin(), a.sent_N.end(), 1);
+  a.sent_N[0] = sent_N;
+  const double acted_N = a.planned_N[a.own.queued];
+  a.led_N = acted_N + a.lag_kept * (a.led_N - acted_N);
+}
+
+double TwoInertiaLaw::Feedforward_N(Axis& a, const AxisHorizon& reference, const FrictionPreview& friction,
+                                    double& target_m) const noexcept {
+  AxisPlan plan;
+  const std::size_t queued = a.own.queued;
+  a.feedforward.Plan(reference, friction, a.planned_N[queued - 1] / a.mechanics.mass_kg, queued, plan);
+  target_m = plan.target_position_m;
+  return plan.command_m_s2[queued - 1] * a.mechanics.mass_kg;
+}
+
+// Where the axis is to be at the sample, as the observer sees it: of a lead beside the commissioned wind-up
+// it does not know, and takes it for the table's.
+LoopMotion TwoInertiaLaw::Wanted(Axis& a, const AxisHorizon& reference,
+                                 const FrictionPreview& friction) const noexcept {
+  const Mechanics& m = a.mechanics;
+  const auto wound_m = [&](std::size_t n) {
+    return (Ahead(friction, n).node_N + m.table_mass_kg * PointAt(reference, n).acceleration_m_s2) /
+           m.stiffness_N_m;
+  };
+  const double now_m = wound_m(0), lead_m = Ahead(friction, 0).lead_m;
+  const double before_m = a.steps == 0 ? now_m : a.wound_m;
+  const double lead_before_m = a.steps == 0 ? lead_m : a.lead_m;
+  const double span_s = a.steps == 0 ? period_s_ : 2.0 * period_s_;
+  const double winding_m_s = (wound_m(1) - before_m) / span_s;
+  const double leading_m_s = (Ahead(friction, 1).lead_m - lead_before_m) / span_s;
+  a.wound_m = now_m;
+  a.lead_m = lead_m;
+  const ReferencePoint& r = PointAt(reference, 0);
+  const double table_m = r.position_m + lead_m, table_m_s = r.velocity_m_s + leading_m_s;
+  return {table_m + now_m, table_m_s + winding_m_s, table_m, table_m_s, a.led_N};
+}
+
+double TwoInertiaLaw::Feedback_N(Axis& a, const LoopMotion& wanted,
+                                 const AxisEstimate& estimate) const noexcept {
+  const TwoInertiaLoop& loop = softer_ ? a.softer : a.own;
+  a.slow_N += a.slow_share * (estimate.disturbance_N - a.slow_N);
+  double force_N = loop.disturbance_to_command * (softer_ ? a.slow_N : estimate.disturbance_N);
+  for (std::size_t i = 0; i < kLoopMotion; ++i)
+    force_N -= loop.regulator_motion[i] * (estimate.motion[i] - wanted[i]);
+  for (std::size_t i = 0; i < loop.queued; ++i) {
+    const std::size_t age = loop.queued - 1 - i;
+    force_N -= loop.regulator_queue[i] * (a.sent_N[age] - a.planned_N[age]);
+  }
+  const Biquad& b = loop.filter;
+  auto& [x1, x2, y1, y2] = a.filter;
+  if (a.steps == 0) x1 = x2 = y1 = y2 = force_N;
+  const double filtered_N = b.b0 * force_N + b.b1 * x1 + b.b2 * x2 - b.a1 * y1 - b.a2 * y2;
+  x2 = x1;
+  x1 = force_N;
+  y2 = y1;
+  y1 = filtered_N;
+  return filtered_N;
+}
+
+bool TwoInertiaLaw::Stands(Axis& a, const AxisHorizon& reference, const LoopMotion& wanted,
+                           const AxisEstimate& estimate) const noexcept {
+  bool moves = false;
+  const std::size_t points = std::min(reference.size(), static_cast<std::size_t>(horizon_points_));
+  for (std::size_t j = 0; j < points; ++j)
+    moves = moves || reference[j].velocity_m_s != 0.0 || reference[j].extra_torque_Nm != 0.0;
+  const double error_m = std::abs(estimate.motion[2] - wanted[2]);
+  const double most_m = (a.quiet >= a.settle ? kEndsQuiet : kBeginsQuiet) * a.quiet_m;
+  a.quiet = !moves && error_m < most_m ? std::min(a.quiet + 1, a.settle) : 0;
+  return a.quiet >= a.settle;
+}
+
+void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
+  output.iterations = 0;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    Axis& a = axes_[i];
+    const AxisHorizon& reference = Reference(input)[i];
+    const FrictionPreview& friction = input.friction[i];
+    Advance(a, input.previous_force_N[i]);
+    const LoopMotion wanted = Wanted(a, reference, friction);
+    const double feedback_N = Feedback_N(a, wanted, input.estimate[i]);
+    const double planned_N = Feedforward_N(a, reference, friction, output.target_position_m[i]);
+    std::shift_right(a.planned_N.begin(), a.planned_N.end(), 1);
+    a.planned_N[0] = planned_N;
+    a.steps = 1;
+    const bool stands = Stands(a, reference, wanted, input.estimate[i]);
+    const double force_N = stands ? a.sent_N[0] : planned_N + feedback_N;
+    output.feedforward_N[i] = planned_N;
+    output.force_N[i] = std::clamp(force_N, -a.force_limit_N, a.force_limit_N);
+    output.limit[i] = std::abs(force_N) > a.force_limit_N ? Reason::kTorqueLimit : Reason::kNone;
+  }
+}
+
+}  // namespace contour

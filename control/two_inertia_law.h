@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "control/control_law.h"
+#include "control/flat_feedforward.h"
+#include "core/two_inertia_loop.h"
+
+namespace contour {
+
+/// `full` with a loop that knows two inertias: the flat feed-forward of motor and table, and the regulator of
+/// TwoInertiaLoop on what the axis is off by from where it leads. The regulator acts on deviations, so
+/// friction along the reference is no part of it; what the observer finds beyond is answered at once.
+/// Each axis on its own.
+class TwoInertiaLaw final : public ControlLaw {
+ public:
+  /// Throws std::invalid_argument when an axis has no loop.
+  TwoInertiaLaw(const PerAxis<ControlledAxis>& axes, const ControllerOptions& options, double period_s);
+  void Reset() noexcept override;
+  void Release(std::size_t axis) noexcept override { axes_[axis].Forget(); }
+  void Soften(Softness softness) noexcept override { softer_ = softness != Softness::kNone; }
+  void Step(const ControlInput& input, ControlOutput& output) noexcept override;
+  [[nodiscard]] int horizon_points() const noexcept override { return horizon_points_; }
+  void Keep(StateKeeper& keep) noexcept override { keep(axes_, softer_); }
+
+ private:
+  using Commands = std::array<double, kLoopQueue + 1>;  ///< newest first
+
+  struct Axis {
+    Axis(const ControlledAxis& axis, const ControllerOptions& options, double period_s);
+    void Forget() noexcept;
+    void Keep(StateKeeper& keep) noexcept {
+      keep(planned_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, quiet, steps);
+    }
+
+    TwoInertiaLoop own, softer;
+    FlatFeedforward feedforward;
+    Mechanics mechanics;
+    double force_limit_N;
+    double lag_kept;    ///< of the drive's lag over a period
+    double quiet_m;     ///< an error that no torque which can be sent makes smaller
+    int settle;         ///< cycles with less than it until the axis counts as standing
+    double slow_share;  ///< of the disturbance that a softened loop answers
+
+    Commands planned_N{};  ///< feed-forward
+    Commands sent_N{};     ///< what became of it
+    double led_N = 0.0;    ///< what the motor gives by the feed-forward at the sample
+    double wound_m = 0.0;  ///< wind-up that was planned at the sample before
+    double lead_m = 0.0;   ///< lead beside it, there
+    double slow_N = 0.0;
+    std::array<double, 4> filter{};  ///< x(j-1), x(j-2), y(j-1), y(j-2)
+    int quiet = 0;                   ///< cycles in a row that it has stood with no more than that
+    int steps = 0;                   ///< since it was forgotten, as far as they matter
+  };
+
+  void Advance(Axis& axis, double sent_N) const noexcept;
+  double Feedforward_N(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction,
+                       double& target_m) const noexcept;
+  LoopMotion Wanted(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction) const noexcept;
+  bool Stands(Axis& axis, const AxisHorizon& reference, const LoopMotion& wanted,
+              const AxisEstimate& estimate) const noexcept;
+  double Feedback_N(Axis& axis, const LoopMotion& wanted, const AxisEstimate& estimate) const noexcept;
+
+  std::vector<Axis> axes_;
+  double period_s_;
+  int horizon_points_ = 0;
+  bool softer_ = false;
+};
+
+}  // namespace contour

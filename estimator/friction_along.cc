@@ -1,0 +1,66 @@
+#include "estimator/friction_along.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+
+namespace contour {
+namespace {
+
+bool SameBits(double a, double b) noexcept {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+}  // namespace
+
+// Elements 0 .. count-2 are what elements 1 .. count-1 were.
+bool FrictionAlong::MovedOn(const AxisHorizon& reference, std::size_t count) const noexcept {
+  if (count != known_) return false;
+  for (std::size_t j = 0; j + 1 < count; ++j) {
+    const Node& node = At(j + 1);
+    if (!SameBits(node.position_m, reference[j].position_m) ||
+        !SameBits(node.velocity_m_s, reference[j].velocity_m_s) ||
+        !SameBits(node.acceleration_m_s2, reference[j].acceleration_m_s2))
+      return false;
+  }
+  return true;
+}
+
+// `from` and `node` may be the same.
+void FrictionAlong::Lay(const ReferencePoint& point, const Node& from, const KnownEffects& known,
+                        Node& node) noexcept {
+  FrictionMemory memory = from.memory;
+  basis_.Follow(point.position_m - from.position_m, point.position_m, point.velocity_m_s,
+                point.acceleration_m_s2, memory, node.terms);
+  if (!known.neutral()) {
+    const double factor = known.LevelFactor(point.position_m);
+    for (std::size_t i = 0; i < friction_term::kViscous; ++i)
+      if (i != friction_term::kConstant) node.terms[i] *= factor;
+  }
+  node.memory = memory;
+  node.position_m = point.position_m;
+  node.velocity_m_s = point.velocity_m_s;
+  node.acceleration_m_s2 = point.acceleration_m_s2;
+}
+
+void FrictionAlong::Follow(const AxisHorizon& reference, std::size_t points,
+                           const KnownEffects& known) noexcept {
+  const std::size_t count = std::min({points, reference.size(), kMost});
+  if (count == 0) return;
+  if (MovedOn(reference, count)) {
+    const Node last = At(count - 1);
+    first_ = (first_ + 1) % nodes_.size();
+    Lay(reference[count - 1], last, known, At(count - 1));
+    return;
+  }
+  Node from;
+  if (known_ == 0)
+    from.position_m = reference[0].position_m;  // at rest, nothing is known of its past
+  else
+    from = At(known_ > 1 ? 1 : 0);
+  first_ = 0;
+  known_ = count;
+  for (std::size_t j = 0; j < count; ++j) Lay(reference[j], j == 0 ? from : At(j - 1), known, At(j));
+}
+
+}  // namespace contour

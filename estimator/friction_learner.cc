@@ -1,0 +1,233 @@
+#include "estimator/friction_learner.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/wide_numbers.h"
+#include "core/wide_vectors.h"
+
+namespace contour {
+namespace {
+
+// Of the level: what remains in a sample that friction along the reference does not know of. Errors of
+// neighbouring samples hang together, so it is far above what one of them is off by.
+constexpr double kNoise = 0.1;
+// Variance that a millisecond of motion adds, as a share of the one at the start: a fifth of its standard
+// deviation in ten seconds.
+constexpr double kDrift_1_ms = 3e-6;
+// In Stribeck velocities: below the first the axis as good as stands and nothing is told apart, from the
+// second on parameters drift at their full rate.
+constexpr double kSlowest = 0.0025, kFull = 0.1;
+// A force beyond that share of the level is from outside, unless the level itself is known no better; for a
+// while after it the axis comes back to its path.
+constexpr double kOutside = 0.6, kOutsideStds = 3.0;
+constexpr double kWait_s = 0.15;
+// What lasts longer than this in motion may be friction that was stated far too low after all: without an end
+// to the waiting nobody would ever learn it.
+constexpr double kLongest_s = 0.5;
+// Standard deviations from the commissioned value.
+constexpr double kBound = 4.0;
+// Parameters that explain less than commissioned ones have run away; over that time, beyond that.
+constexpr double kJudge_s = 0.5;
+constexpr double kWorse = 1.5;
+// A level may be on the edge of its range for good.
+constexpr double kBeyondRange = 1.5;
+constexpr double kNegligible = 0.02;  // of the level
+
+constexpr std::size_t kQuads = kFrictionTerms / 4;
+using Quads = wide::Quad[kQuads];
+
+}  // namespace
+
+FrictionLearner::FrictionLearner(const Setup& setup) noexcept
+    : setup_(setup),
+      noise_N2_(kNoise * setup.level_N * kNoise * setup.level_N * 1e-3 / setup.period_s),
+      outside_N_(std::max(kOutside, kOutsideStds * setup.level_std) * setup.level_N),
+      judge_share_(std::min(1.0, setup.period_s / kJudge_s)),
+      wait_(static_cast<int>(kWait_s / setup.period_s)),
+      longest_(static_cast<int>(kLongest_s / setup.period_s)) {
+  // An observer that is slow compared with the taps there are takes the rest with the last.
+  double rest = 1.0;
+  for (const double h : setup_.response) rest -= h;
+  setup_.response.back() += rest;
+  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
+    for (std::size_t j = 0; j < kFrictionTerms; ++j) {
+      initial_[i][j] = setup.level_std * setup.parameters[i] * setup.level_std * setup.parameters[j] +
+                       setup.per_std[i] * setup.per_std[j];
+    }
+    initial_[i][i] += setup.std[i] * setup.std[i];
+    drift_[i] = kDrift_1_ms * 1e3 * setup.period_s * setup.std[i] * setup.std[i];
+    bound_[i] = kBound * std::sqrt(initial_[i][i]);
+  }
+  Reset();
+}
+
+void FrictionLearner::Reset() noexcept {
+  parameters_ = setup_.parameters;
+  covariance_ = initial_;
+  with_N2_ = without_N2_ = 0.0;
+  bounded_ = false;
+  Forget();
+}
+
+void FrictionLearner::Forget() noexcept {
+  for (FrictionTerms& terms : past_) terms.fill(0.0);
+  newest_ = 0;
+  wait_cycles_ = waited_cycles_ = 0;
+}
+
+double FrictionLearner::Level_N(bool forward) const noexcept {
+  double sum = 0.0;
+  for (std::size_t i = friction_term::kDahl; i < friction_term::kConstant; ++i) sum += parameters_[i];
+  return forward ? sum + parameters_[friction_term::kConstant] : sum - parameters_[friction_term::kConstant];
+}
+
+double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noexcept {
+  using namespace friction_term;
+  const std::array<double, 3> at = LinearFriction::StribeckAt(speed_m_s / setup_.vs_m_s);
+  const double even_N = parameters_[kEvenStribeck] * at[2];
+  return Level_N(forward) + parameters_[kStribeck] * at[0] + parameters_[kStribeck + 1] * at[1] +
+         parameters_[kSlowBristle] * at[2] + (forward ? even_N : -even_N);
+}
+
+// The newest period shows at this sample with tap 1.
+[[gnu::always_inline]] inline void FrictionLearner::Filter(FrictionTerms& filtered) const noexcept {
+  Quads sum{};
+  std::size_t at = newest_;
+  for (std::size_t tap = 1; tap < kLoopTaps; ++tap) {
+    const double h = setup_.response[tap];
+    const double* terms = past_[at].data();
+    for (std::size_t q = 0; q < kQuads; ++q) {
+      wide::Quad term;
+      wide::Load(terms + 4 * q, term);
+      sum[q] += h * term;
+    }
+    at = at == 0 ? kLoopTaps - 1 : at - 1;
+  }
+  for (std::size_t q = 0; q < kQuads; ++q) wide::Store(filtered.data() + 4 * q, sum[q]);
+}
+
+[[gnu::always_inline]] inline void FrictionLearner::Along(const FrictionTerms& filtered,
+                                                          FrictionTerms& along) const noexcept {
+  Quads sum{};
+  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
+    const double f = filtered[i];
+    const double* row = covariance_[i].data();
+    for (std::size_t q = 0; q < kQuads; ++q) {
+      wide::Quad element;
+      wide::Load(row + 4 * q, element);
+      sum[q] += f * element;
+    }
+  }
+  for (std::size_t q = 0; q < kQuads; ++q) wide::Store(along.data() + 4 * q, sum[q]);
+}
+
+[[gnu::always_inline]] inline void FrictionLearner::Shrink(const FrictionTerms& along) noexcept {
+  Quads of{};
+  for (std::size_t q = 0; q < kQuads; ++q) wide::Load(along.data() + 4 * q, of[q]);
+  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
+    const double part = along[i];
+    double* row = covariance_[i].data();
+    for (std::size_t q = 0; q < kQuads; ++q) {
+      wide::Quad element;
+      wide::Load(row + 4 * q, element);
+      element -= part * of[q];
+      wide::Store(row + 4 * q, element);
+    }
+  }
+}
+
+[[gnu::always_inline]] inline void FrictionLearner::Update(const FrictionTerms& filtered,
+                                                           double disturbance_N, double moving,
+                                                           double& explained_N) noexcept {
+  FrictionTerms along;  // covariance times terms
+  Along(filtered, along);
+  // What a force that accelerates the axis is off by is no friction.
+  const double inertial_N = setup_.inertial_kg * filtered[friction_term::kMass];
+  const double per_variance = 1.0 / (noise_N2_ + inertial_N * inertial_N + Sum(filtered, along));
+  const double gain = disturbance_N * per_variance;
+  FrictionTerms step{};
+  bounded_ = false;
+  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
+    const double wanted = parameters_[i] + gain * along[i], from = setup_.parameters[i] - bound_[i],
+                 to = setup_.parameters[i] + bound_[i];
+    const double next = std::min(std::max(wanted, from), to);
+    bounded_ = bounded_ || next != wanted;
+    step[i] = next - parameters_[i];
+    parameters_[i] = next;
+  }
+  // Each factor on its own, so that rounding keeps it symmetric.
+  const double root = std::sqrt(per_variance);
+  for (double& a : along) a *= root;
+  Shrink(along);
+  // What nothing excites does not become less known than it was at the start.
+  for (std::size_t i = 0; i < kFrictionTerms; ++i)
+    if (covariance_[i][i] < initial_[i][i]) covariance_[i][i] += moving * drift_[i];
+  explained_N = Sum(filtered, step);
+}
+
+// What commissioned parameters would have left of the same samples.
+void FrictionLearner::Judge(const FrictionTerms& filtered, double disturbance_N) noexcept {
+  FrictionTerms learnt;
+  for (std::size_t i = 0; i < kFrictionTerms; ++i) learnt[i] = parameters_[i] - setup_.parameters[i];
+  const double without_N = disturbance_N + Sum(filtered, learnt);
+  with_N2_ += judge_share_ * (disturbance_N * disturbance_N - with_N2_);
+  without_N2_ += judge_share_ * (without_N * without_N - without_N2_);
+}
+
+bool FrictionLearner::Waits(double disturbance_N) noexcept {
+  if (std::abs(disturbance_N) > outside_N_)
+    wait_cycles_ = wait_;
+  else if (wait_cycles_ > 0)
+    --wait_cycles_;
+  waited_cycles_ = wait_cycles_ > 0 ? std::min(waited_cycles_ + 1, longest_) : 0;
+  return wait_cycles_ > 0 && waited_cycles_ < longest_;
+}
+
+bool FrictionLearner::Sound() const noexcept {
+  for (std::size_t i = 0; i < kFrictionTerms; ++i)
+    if (!std::isfinite(parameters_[i]) || !(covariance_[i][i] >= 0.0)) return false;
+  return true;
+}
+
+CONTOUR_WIDE_VECTORS
+double FrictionLearner::Learn(const FrictionTerms& terms, double disturbance_N, double speed_m_s,
+                              bool may) noexcept {
+  newest_ = newest_ + 1 == kLoopTaps ? 0 : newest_ + 1;
+  past_[newest_] = terms;
+  if (!setup_.learns || !may || speed_m_s < kSlowest * setup_.vs_m_s) {
+    if (wait_cycles_ > 0) --wait_cycles_;
+    return 0.0;
+  }
+  FrictionTerms filtered;
+  Filter(filtered);
+  Judge(filtered, disturbance_N);
+  if (Waits(disturbance_N)) return 0.0;
+  double explained_N = 0.0;
+  Update(filtered, disturbance_N, std::min(1.0, speed_m_s / (kFull * setup_.vs_m_s)), explained_N);
+  if (Sound()) return explained_N;
+  Reset();
+  ++brought_back_;
+  return 0.0;
+}
+
+void FrictionLearner::Rest() noexcept {
+  const double negligible_N = kNegligible * setup_.level_N;
+  const bool worse = with_N2_ > kWorse * without_N2_ + negligible_N * negligible_N;
+  bool beyond = false;
+  for (const bool forward : {true, false}) {
+    double commissioned_N = 0.0;
+    for (std::size_t i = friction_term::kDahl; i < friction_term::kConstant; ++i)
+      commissioned_N += setup_.parameters[i];
+    const double ratio = Level_N(forward) / commissioned_N;
+    const double range = kBeyondRange * setup_.level_range;
+    beyond = beyond || !(ratio < range) || !(ratio > 1.0 / range);
+  }
+  if (!worse && !beyond) return;
+  parameters_ = setup_.parameters;
+  covariance_ = initial_;
+  with_N2_ = without_N2_ = 0.0;
+  ++brought_back_;
+}
+
+}  // namespace contour

@@ -1,0 +1,308 @@
+#include "estimator/two_inertia_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "estimator/linear_friction_fit.h"
+#include "estimator/share_of_period.h"
+
+namespace contour {
+namespace {
+
+using namespace friction_term;
+
+// Of the level, for each parameter on its own: how far real friction is from the commissioned law's shape.
+constexpr double kShape = 0.15;
+constexpr double kTurnPart = 0.08;
+// Over half a stroke; a program sees but a part of it.
+constexpr double kStrokePart = 0.5;
+// Of the force that accelerates the axis: what it is off by beside the mass, and of viscous friction.
+constexpr double kInertialPart = 0.03;
+// A workpiece may have been mounted since the mass was stated.
+constexpr double kMassStds = 2.0;
+constexpr double kViscousPart = 0.3;
+constexpr double kSurprise_s = 0.2;
+constexpr double kLead_Hz = 3.0;
+// Reported torque is coarser than commanded torque is known: each reversal tells less of the screw, and all
+// of them together are farther off.
+constexpr double kMostStdInCascade = 0.25;
+constexpr double kSameLawInCascade = 0.3;
+
+FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFriction& basis) {
+  const EstimatorConfig& c = s.filter.config;
+  const Friction& friction = s.filter.friction;
+  FrictionLearner::Setup learner;
+  learner.parameters = FitToLuGre(basis, friction);
+  Friction stiffer = friction;
+  stiffer.sigma0_N_m *= std::exp(c.initial_log_sigma0_std);
+  const FrictionTerms other = FitToLuGre(basis, stiffer);
+  const double level_N = basis.scale().level_N;
+  for (std::size_t i = 0; i < kUsed; ++i) {
+    learner.std[i] = kShape * level_N;
+    learner.per_std[i] = other[i] - learner.parameters[i];
+  }
+  for (std::size_t i = kTurn; i < kStroke; ++i) learner.std[i] = kTurnPart * level_N;
+  learner.std[kStroke] = kStrokePart * level_N;
+  learner.std[kViscous] = kShape * level_N + kViscousPart * friction.sigma2_Ns_m *
+                                                 LinearFriction::kViscousSpeeds * friction.vs_m_s;
+  learner.std[kMass] = kMassStds * c.mass_std * s.filter.mechanics.mass_kg;
+  learner.inertial_kg = kInertialPart * s.filter.mechanics.mass_kg;
+  learner.level_std = c.initial_level_std;
+  learner.response = s.loop.disturbance_response;
+  learner.level_N = level_N;
+  learner.vs_m_s = friction.vs_m_s;
+  learner.level_range = c.level_range;
+  learner.period_s = s.filter.period_s;
+  learner.learns = c.adapt;
+  return FrictionLearner(learner);
+}
+
+WindUpFit MakeWindUp(const FilterSetup& s) {
+  WindUpFit::Tuning t;
+  t.period_s = s.period_s;
+  t.stiffness_N_m = s.mechanics.stiffness_N_m;
+  t.stiffness_std = s.config.adapt ? s.config.stiffness_std : 0.0;
+  t.vs_m_s = s.friction.vs_m_s;
+  t.sigma1_Ns_m = s.friction.sigma1_Ns_m;
+  t.sigma1_decay_m_s = s.friction.sigma1_decay_m_s;
+  t.sigma2_Ns_m = s.friction.sigma2_Ns_m;
+  if (s.reported_torque) {
+    t.most_std = kMostStdInCascade;
+    t.same_law = kSameLawInCascade;
+  }
+  return WindUpFit(t);
+}
+
+LinearFriction MakeBasis(const TwoInertiaEstimator::Setup& s) {
+  constexpr double kTurnOfRadius = 2.0 * std::numbers::pi;
+  return LinearFriction(ScaleOf(s.filter.friction, kTurnOfRadius * s.filter.mechanics.radius_m_rad,
+                                s.position_min_m, s.position_max_m));
+}
+
+// Periods until a force shows by half.
+std::size_t HalfSeen(const std::array<double, kLoopTaps>& response, std::size_t most) {
+  double seen = 0.0;
+  for (std::size_t i = 0; i < response.size(); ++i) {
+    seen += response[i];
+    if (seen >= 0.5) return std::clamp<std::size_t>(i, 1, most);
+  }
+  return most;
+}
+
+}  // namespace
+
+TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
+    : setup_(s.filter),
+      axis_(s.axis),
+      known_(s.known),
+      along_(MakeBasis(s)),
+      observer_({s.axis,
+                 s.loop,
+                 s.filter.period_s,
+                 s.filter.measurement_std_m,
+                 {s.filter.config.innovation_gate_sigma, s.filter.config.innovation_gate_um * 1e-6},
+                 s.filter.Sudden_m()}),
+      learner_(MakeLearner(s, MakeBasis(s))),
+      wind_up_(MakeWindUp(s.filter)),
+      lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
+      lead_({.lead_Hz = kLead_Hz}, s.filter.period_s),
+      motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
+      surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
+      settle_(HalfSeen(s.loop.disturbance_response, found_N_.size() - 1)) {
+  const Friction& f = s.filter.friction;
+  most_N_ = s.filter.config.level_range * std::max({f.Fs_plus_N, f.Fs_minus_N, f.Fc_plus_N, f.Fc_minus_N});
+  Reset(0.0);
+}
+
+void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
+  keep(along_, nodes_, observer_, learner_, wind_up_, lag_, lead_, given_N_, found_N_, newest_, surprise_N2_,
+       elapsed_, temperature_degC_, at_rest_, frozen_);
+}
+
+void TwoInertiaEstimator::Reset(double position_m) noexcept {
+  observer_.Reset(position_m);
+  along_.Reset();
+  nodes_ = {};
+  learner_.Reset();
+  wind_up_.Reset();
+  lag_.Reset();
+  lead_.Reset();
+  given_N_ = {};
+  found_N_ = {};
+  surprise_N2_ = 0.0;
+  elapsed_ = 0;
+  at_rest_ = true;
+}
+
+// By the parameters of this moment: of the table beside sigma2 v, which the observer's own model has, and of
+// the motor. What the axis is heavier than commissioned belongs to both in the ratio of their masses.
+void TwoInertiaEstimator::Lay() noexcept {
+  const double extra_kg = learner_.parameters()[kMass];
+  for (std::size_t j = 0; j < along_.size(); ++j) {
+    const FrictionTerms& terms = along_.terms(j);
+    Node& node = nodes_[j];
+    node.heavier_N = extra_kg * terms[kMass];
+    const double all_N = Sum(learner_.parameters(), terms) - motor_share_ * node.heavier_N;
+    node.table_N = std::clamp(all_N, -most_N_, most_N_);
+    node.driving_N = 0.0;
+    if (known_.neutral()) continue;
+    node.table_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
+    node.driving_N = known_.Force_N(along_.position_m(j));
+  }
+}
+
+const TwoInertiaEstimator::Node& TwoInertiaEstimator::At(std::size_t point) const noexcept {
+  return nodes_[along_.size() == 0 ? 0 : std::min(point, along_.size() - 1)];
+}
+
+// Means over the period that begins at a point.
+double TwoInertiaEstimator::Heavier_N(std::size_t period) const noexcept {
+  return 0.5 * (At(period).heavier_N + At(period + 1).heavier_N);
+}
+double TwoInertiaEstimator::Expected_N(std::size_t period) const noexcept {
+  return 0.5 * (At(period).table_N + At(period + 1).table_N);
+}
+double TwoInertiaEstimator::Motor_N(std::size_t period) const noexcept {
+  return 0.5 * (At(period).driving_N + At(period + 1).driving_N) - motor_share_ * Heavier_N(period);
+}
+
+void TwoInertiaEstimator::Remember(const AxisEstimatorInput& in) noexcept {
+  for (std::size_t i = given_N_.size(); --i > 0;) given_N_[i] = given_N_[i - 1];
+  // What was reported is of the period that has passed.
+  given_N_[0] = setup_.reported_torque ? in.force_N[1] : in.force_N[0];
+  temperature_degC_ = in.temperature_degC;
+}
+
+/// Of the period that begins at `period`; `ahead`: the one after the newest sample, not the one before.
+PeriodForces TwoInertiaEstimator::Forces(std::size_t period, bool ahead) const noexcept {
+  const std::size_t oldest = observer_.loop().queued;
+  const auto given_N = [&](std::size_t age) {
+    const std::size_t passed = ahead ? 1 : 0;
+    return given_N_[age > passed ? age - passed : 0];
+  };
+  return {{given_N(oldest), given_N(oldest > 0 ? oldest - 1 : 0)}, Motor_N(period), Expected_N(period)};
+}
+
+AxisEstimate TwoInertiaEstimator::Update(const AxisEstimatorInput& in) noexcept {
+  Remember(in);
+  AxisEstimate out;
+  if (!in.enabled) {
+    if (in.fresh) observer_.Reset(in.position_m);
+    learner_.Forget();
+    at_rest_ = true;
+    wind_up_.Pause();
+  } else {
+    const std::size_t period = elapsed_;
+    observer_.Predict(Forces(period, false));
+    TwoInertiaObserver::Seen seen;
+    if (in.fresh) seen = observer_.Correct(in.position_m);
+    out.innovation_m = seen.innovation_m;
+    out.innovation_std_m = in.fresh ? seen.innovation_std_m : 0.0;
+    if (seen.gated) out.limit = Reason::kInnovationGated;
+    Learn(in, in.fresh && !seen.gated && !frozen_);
+    if (learner_.bounded() && out.limit == Reason::kNone) out.limit = Reason::kParameterBound;
+  }
+  AxisEstimate believed = Believed(in);
+  believed.innovation_m = out.innovation_m;
+  believed.innovation_std_m = out.innovation_std_m;
+  believed.limit = out.limit;
+  ++elapsed_;
+  return believed;
+}
+
+void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept {
+  const std::size_t period = elapsed_;
+  if (along_.size() == 0) return;
+  const double velocity_m_s = 0.5 * (along_.velocity_m_s(period) + along_.velocity_m_s(period + 1));
+  at_rest_ = in.at_rest && velocity_m_s == 0.0;
+  FrictionTerms terms;
+  for (std::size_t i = 0; i < kFrictionTerms; ++i)
+    terms[i] = 0.5 * (along_.terms(period)[i] + along_.terms(period + 1)[i]);
+  const double explained_N =
+      learner_.Learn(terms, observer_.disturbance_N(), std::abs(velocity_m_s), may && !at_rest_);
+  observer_.Explain(explained_N);
+  newest_ = (newest_ + 1) % found_N_.size();
+  found_N_[newest_] = observer_.disturbance_N();
+  const double before_N = found_N_[(newest_ + found_N_.size() - settle_) % found_N_.size()];
+  const double change_N = found_N_[newest_] - before_N;
+  surprise_N2_ += surprise_share_ * (change_N * change_N - surprise_N2_);
+  if (at_rest_) learner_.Rest();
+  if (may && !at_rest_)
+    LearnWindUp(in);
+  else
+    wind_up_.Pause();
+}
+
+void TwoInertiaEstimator::LearnWindUp(const AxisEstimatorInput& in) noexcept {
+  const double force_N = lag_.Step(in.force_N[1])[0];
+  if (!wind_up_.learns()) return;
+  WindUpFit::Sample sample;
+  const double velocity_m_s = along_.velocity_m_s(elapsed_ + 1);
+  sample.alone = in.alone;
+  sample.position_m = in.position_m;
+  sample.force_N = force_N + At(elapsed_).driving_N;
+  sample.mass_kg = setup_.mechanics.mass_kg + learner_.parameters()[kMass];
+  sample.direction = velocity_m_s > 0.0 ? 1 : velocity_m_s < 0.0 ? -1 : 0;
+  if (wind_up_.NeedsLevels(sample.direction)) {
+    const bool forward = velocity_m_s >= 0.0;
+    sample.level_N = learner_.SlidingLevel_N(forward, 0.0);
+    sample.level_ratio = learner_.SlidingLevel_N(forward, std::abs(velocity_m_s)) / sample.level_N;
+    sample.sigma0_N_m = setup_.friction.sigma0_N_m;
+  }
+  wind_up_.Learn(sample);
+}
+
+AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const noexcept {
+  AxisEstimate out;
+  const LoopMotion& now = observer_.motion();
+  const LoopMotion next =
+      in.enabled ? observer_.Ahead(Forces(elapsed_ + 1, true)) : LoopMotion{now[0], 0.0, now[2], 0.0, 0.0};
+  out.position_m = now[0];
+  out.velocity_m_s = now[1];
+  out.predicted_position_m = next[0];
+  out.predicted_velocity_m_s = next[1];
+  out.motion = now;
+  out.disturbance_N = observer_.disturbance_N();
+  out.sigma0_N_m = setup_.friction.sigma0_N_m;
+  out.g_plus_N = learner_.Level_N(true);
+  out.g_minus_N = learner_.Level_N(false);
+  if (along_.size() > 0) {
+    // A mass that is off is no friction.
+    const Node& here = At(elapsed_ + 1);
+    out.bristle_N = here.table_N - (1.0 - motor_share_) * here.heavier_N;
+    out.friction_N = out.bristle_N + setup_.friction.sigma2_Ns_m * now[3] + out.disturbance_N;
+  }
+  out.friction_std_N = std::sqrt(surprise_N2_);
+  out.diverged = !observer_.Sound();
+  return out;
+}
+
+void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
+                                          FrictionPreview& out) noexcept {
+  const std::size_t size = std::min(points, reference.size());
+  out.resize(size);
+  if (size == 0) return;
+  along_.Follow(reference, std::max<std::size_t>(size, 3), known_);
+  elapsed_ = 0;
+  Lay();
+  const double sigma2 = setup_.friction.sigma2_Ns_m;
+  double lead_N = 0.0;
+  if (setup_.reported_torque) {
+    lead_.Step(observer_.disturbance_N(), learner_.Level_N(along_.velocity_m_s(0) >= 0.0), at_rest_);
+    lead_N = lead_.lead_N();
+  }
+  const double extra_m_N = wind_up_.extra_compliance_m_N();
+  for (std::size_t j = 0; j < size; ++j) {
+    const double v = along_.velocity_m_s(j);
+    const double node_N = At(j).table_N + sigma2 * v;
+    // A drive that closes the loop feeds its mass forward, whatever it is.
+    const double drives_N = setup_.reported_torque ? Heavier_N(j) : 0.0;
+    const double middle_N =
+        Expected_N(j) + 0.5 * sigma2 * (v + along_.velocity_m_s(j + 1)) - Motor_N(j) - drives_N;
+    const double wound_N = node_N + lead_N + setup_.mechanics.table_mass_kg * reference[j].acceleration_m_s2;
+    out[j] = {node_N + lead_N, middle_N, known_.Lead_m(along_.position_m(j)) + extra_m_N * wound_N};
+  }
+}
+
+}  // namespace contour

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "core/axis.h"
+#include "core/horizon.h"
+#include "core/state_keeper.h"
+#include "core/two_inertia_loop.h"
+#include "estimator/axis_estimator_input.h"
+#include "estimator/cascade_lead.h"
+#include "estimator/drive_lag.h"
+#include "estimator/filter_setup.h"
+#include "estimator/friction_along.h"
+#include "estimator/friction_learner.h"
+#include "estimator/known_effects.h"
+#include "estimator/two_inertia_observer.h"
+#include "estimator/wind_up_fit.h"
+
+namespace contour {
+
+/// One axis as two inertias: TwoInertiaObserver for what it does, FrictionLearner for the friction along its
+/// reference. What the observer finds beyond the friction that was expected teaches the learner, and nothing
+/// of the friction is a state of the loop. Where a drive closes its own loop the torque that it reports takes
+/// the place of the command.
+class TwoInertiaEstimator {
+ public:
+  struct Setup {
+    FilterSetup filter;
+    TwoInertiaAxis axis;
+    TwoInertiaLoop loop;
+    double position_min_m = -1.0, position_max_m = 1.0;
+    KnownEffects known;
+  };
+
+  /// Throws std::invalid_argument when a value makes no sense.
+  explicit TwoInertiaEstimator(const Setup& setup);
+
+  void Reset(double position_m) noexcept;
+  void Freeze(bool frozen) noexcept { frozen_ = frozen; }
+  AxisEstimate Update(const AxisEstimatorInput& in) noexcept;
+  /// Friction along the reference, without what only the observer knows; in a cascade, where nobody else
+  /// answers it, with that as far as it lasts.
+  void PreviewFriction(const AxisHorizon& reference, std::size_t points, FrictionPreview& out) noexcept;
+
+  [[nodiscard]] const FrictionLearner& learner() const noexcept { return learner_; }
+
+  void Keep(StateKeeper& keep) noexcept;
+
+ private:
+  /// At a point of the reference.
+  struct Node {
+    double table_N = 0.0;    ///< friction
+    double heavier_N = 0.0;  ///< for what the axis is heavier than commissioned, all of it
+    double driving_N = 0.0;  ///< on the motor, beside the drive's
+  };
+  void Lay() noexcept;
+  [[nodiscard]] const Node& At(std::size_t point) const noexcept;
+  [[nodiscard]] PeriodForces Forces(std::size_t period, bool ahead) const noexcept;
+  [[nodiscard]] double Heavier_N(std::size_t period) const noexcept;
+  [[nodiscard]] double Expected_N(std::size_t period) const noexcept;
+  [[nodiscard]] double Motor_N(std::size_t period) const noexcept;
+  void Remember(const AxisEstimatorInput& in) noexcept;
+  void Learn(const AxisEstimatorInput& in, bool may) noexcept;
+  void LearnWindUp(const AxisEstimatorInput& in) noexcept;
+  [[nodiscard]] AxisEstimate Believed(const AxisEstimatorInput& in) const noexcept;
+
+  FilterSetup setup_;
+  TwoInertiaAxis axis_;
+  KnownEffects known_;
+  FrictionAlong along_;
+  std::array<Node, FrictionAlong::kMost> nodes_{};
+  TwoInertiaObserver observer_;
+  FrictionLearner learner_;
+  WindUpFit wind_up_;
+  DriveLag<1> lag_;
+  CascadeLead lead_;
+  double most_N_ = 0.0;          ///< that friction along the reference may be
+  double motor_share_ = 0.0;     ///< of the mass
+  double surprise_share_ = 1.0;  ///< per period
+  std::size_t settle_ = 1;       ///< periods in which the observer sees half of a force
+
+  std::array<double, kLoopQueue + 1> given_N_{};  ///< to the drive, newest first
+  std::array<double, 16> found_N_{};              ///< disturbance at the samples before, a ring
+  std::size_t newest_ = 0;
+  double surprise_N2_ = 0.0;
+  std::size_t elapsed_ = 0;  ///< samples since friction was laid along the reference
+  double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();
+  bool at_rest_ = true;
+  bool frozen_ = false;
+};
+
+}  // namespace contour

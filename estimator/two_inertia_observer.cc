@@ -1,0 +1,83 @@
+#include "estimator/two_inertia_observer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+// Beyond these there is no axis: m, m/s, N.
+constexpr LoopMotion kLargest{1e2, 1e2, 1e2, 1e2, 1e7};
+
+// A force that acts on the motor at once.
+LoopMotion MotorForce(TwoInertiaAxis axis, double period_s) {
+  axis.lag_s = axis.dead_time_s = 0.0;
+  axis.delay_cycles = 0;
+  LoopMotion motion = LoopMotionOf(axis, period_s).motion_from_input[0];
+  motion[4] = 0.0;
+  return motion;
+}
+
+}  // namespace
+
+TwoInertiaObserver::TwoInertiaObserver(const Setup& setup)
+    : loop_(setup.loop),
+      motion_from_motor_force_(MotorForce(setup.axis, setup.period_s)),
+      period_s_(setup.period_s),
+      gate_(setup.gate, setup.sudden_m) {
+  // The gain is (S - R) / S of the position, S the innovation's variance.
+  const double left = std::max(1.0 - loop_.gain[0][0], 1e-6);
+  innovation_std_m_ = setup.measurement_std_m / std::sqrt(left);
+}
+
+void TwoInertiaObserver::Reset(double position_m) noexcept {
+  motion_ = {position_m, 0.0, position_m, 0.0, 0.0};
+  disturbance_N_ = 0.0;
+  gated_in_a_row_ = 0;
+  gate_.Reset();
+}
+
+LoopMotion TwoInertiaObserver::Ahead(const PeriodForces& f) const noexcept {
+  LoopMotion next;
+  // Positions are large beside what moves them: counted from the motor.
+  const double from_m = motion_[0];
+  const LoopMotion here{0.0, motion_[1], motion_[2] - from_m, motion_[3], motion_[4]};
+  for (std::size_t i = 0; i < kLoopMotion; ++i) {
+    double sum = loop_.motion_from_input[0][i] * f.input_N[0] + loop_.motion_from_input[1][i] * f.input_N[1] +
+                 loop_.motion_from_disturbance[i] * (f.table_N + disturbance_N_) +
+                 motion_from_motor_force_[i] * f.motor_N;
+    for (std::size_t j = 0; j < kLoopMotion; ++j) sum += loop_.motion_from_motion[i][j] * here[j];
+    next[i] = sum;
+  }
+  next[0] += from_m;
+  next[2] += from_m;
+  return next;
+}
+
+void TwoInertiaObserver::Predict(const PeriodForces& forces) noexcept { motion_ = Ahead(forces); }
+
+TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m) noexcept {
+  Seen seen;
+  seen.innovation_m = position_m - motion_[0];
+  seen.innovation_std_m = innovation_std_m_;
+  const InnovationGate gate = gate_.gate();
+  const double size_m = std::abs(seen.innovation_m);
+  seen.gated = !(size_m <= std::max(gate.sigmas * innovation_std_m_, gate.absolute));
+  gate_.After(seen.innovation_m, innovation_std_m_);
+  if (seen.gated) {
+    if (StartsAgain(++gated_in_a_row_, period_s_)) Reset(position_m);
+    return seen;
+  }
+  gated_in_a_row_ = 0;
+  for (std::size_t i = 0; i < kLoopMotion; ++i) motion_[i] += loop_.gain[i][0] * seen.innovation_m;
+  disturbance_N_ += loop_.gain[kObserverDisturbance][0] * seen.innovation_m;
+  return seen;
+}
+
+bool TwoInertiaObserver::Sound() const noexcept {
+  for (std::size_t i = 0; i < kLoopMotion; ++i)
+    if (!(std::abs(motion_[i]) <= kLargest[i])) return false;
+  return std::abs(disturbance_N_) <= kLargest[4];
+}
+
+}  // namespace contour

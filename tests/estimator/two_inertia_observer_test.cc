@@ -1,0 +1,102 @@
+#include "estimator/two_inertia_observer.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/estimator/two_inertia_axes.h"
+
+namespace contour {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+
+// The design's own model as the axis: what the observer sees, it sees without error.
+class OwnAxis {
+ public:
+  explicit OwnAxis(const TwoInertiaAxis& axis) : loop_(LoopMotionOf(axis, kPeriod_s)) {}
+  void Step(double input_N, double table_N) {
+    LoopMotion next{};
+    for (std::size_t i = 0; i < kLoopMotion; ++i) {
+      next[i] = loop_.motion_from_input[0][i] * input_N + loop_.motion_from_disturbance[i] * table_N;
+      for (std::size_t j = 0; j < kLoopMotion; ++j) next[i] += loop_.motion_from_motion[i][j] * x[j];
+    }
+    x = next;
+  }
+  LoopMotion x{};
+
+ private:
+  TwoInertiaLoop loop_;
+};
+
+TEST(TwoInertiaObserver, FindsAForceOnTheTableAsItsResponseSays) {
+  for (const test::FamilyAxis& member : test::kFamily) {
+    const TwoInertiaObserver::Setup setup = test::ObserverOf(member, kPeriod_s);
+    TwoInertiaObserver observer(setup);
+    OwnAxis axis(setup.axis);
+    observer.Reset(0.0);
+    // A force over the first period alone.
+    const double force_N = member.friction_N;
+    double found_N = 0.0;
+    for (std::size_t j = 0; j < kLoopTaps; ++j) {
+      if (j > 0) observer.Predict({{0.0, 0.0}, 0.0, 0.0});
+      observer.Correct(axis.x[0]);
+      EXPECT_NEAR(observer.disturbance_N(), setup.loop.disturbance_response[j] * force_N, 1e-6 * force_N)
+          << member.name << " " << j;
+      axis.Step(0.0, j == 0 ? force_N : 0.0);
+      found_N += observer.disturbance_N();
+    }
+    EXPECT_NEAR(found_N, force_N, 0.05 * force_N) << member.name;
+  }
+}
+
+TEST(TwoInertiaObserver, WhatIsKnownIsNotFound) {
+  const test::FamilyAxis& member = test::kFamily[1];
+  const TwoInertiaObserver::Setup setup = test::ObserverOf(member, kPeriod_s);
+  TwoInertiaObserver observer(setup);
+  OwnAxis axis(setup.axis);
+  observer.Reset(0.0);
+  for (int k = 0; k < 300; ++k) {
+    const double input_N = 40.0 * std::sin(0.05 * k), table_N = 30.0 * std::cos(0.02 * k);
+    axis.Step(input_N, table_N);
+    observer.Predict({{input_N, 0.0}, 0.0, table_N});
+    observer.Correct(axis.x[0]);
+    EXPECT_NEAR(observer.disturbance_N(), 0.0, 1e-5);
+    EXPECT_NEAR(observer.motion()[2], axis.x[2], 1e-12);
+  }
+}
+
+TEST(TwoInertiaObserver, FarFromTheOriginNothingIsLost) {
+  const test::FamilyAxis& member = test::kFamily[0];
+  const TwoInertiaObserver::Setup setup = test::ObserverOf(member, kPeriod_s);
+  TwoInertiaObserver here(setup), far(setup);
+  here.Reset(0.0);
+  far.Reset(8.0);
+  for (int k = 0; k < 200; ++k) {
+    const PeriodForces f{{50.0, 0.0}, 1.0, 20.0};
+    here.Predict(f);
+    far.Predict(f);
+    const double position_m = 1e-6 * k;
+    here.Correct(position_m);
+    far.Correct(8.0 + position_m);
+    EXPECT_NEAR(far.disturbance_N(), here.disturbance_N(), 1e-3);
+  }
+}
+
+TEST(TwoInertiaObserver, ASingleReadingThatIsFarOffIsNotBelieved) {
+  const TwoInertiaObserver::Setup setup = test::ObserverOf(test::kFamily[0], kPeriod_s);
+  TwoInertiaObserver observer(setup);
+  observer.Reset(0.0);
+  for (int k = 0; k < 10; ++k) {
+    observer.Predict({});
+    EXPECT_FALSE(observer.Correct(0.0).gated);
+  }
+  observer.Predict({});
+  EXPECT_TRUE(observer.Correct(100e-6).gated);
+  EXPECT_EQ(observer.disturbance_N(), 0.0);
+  observer.Predict({});
+  EXPECT_FALSE(observer.Correct(0.0).gated);
+}
+
+}  // namespace
+}  // namespace contour
