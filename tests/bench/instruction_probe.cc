@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "daemon/make_cycle_config.h"
 #include "estimator/axis_estimator.h"
@@ -43,9 +44,22 @@ void SolveQps(int count) {
   bench::MakeContourProblems(20, static_cast<std::size_t>(count));
 }
 
+/// Friction along the reference, and in torque mode the loop of two inertias.
+std::vector<std::string> Linear(const std::string& mode) {
+  std::vector<std::string> set{"control.friction=linear"};
+  for (const std::string axis : {"axes.x.", "axes.y."}) {
+    set.push_back(axis + "drive.mode=" + mode);
+    set.push_back(axis +
+                  "loop={regulator_Hz: 20, windup_weight: 0.4, velocity_weight: 0.18, disturbance_Hz: 200, "
+                  "motor_force_Hz: 400, table_force_Hz: 400, notch_ratio: 0.77, notch_pole_damping: 0.7, "
+                  "notch_zero_damping: 0.3}");
+  }
+  return set;
+}
+
 /// The first cycles of a run, stepped from its recorded inputs.
-void StepCycles(const std::string& file, int count) {
-  const EmulatedMachineFile machine_file = LoadEmulatedMachine(file);
+void StepCycles(const std::string& file, const std::vector<std::string>& overrides, int count) {
+  const EmulatedMachineFile machine_file = LoadEmulatedMachine(file, overrides);
   VirtualMachine machine(machine_file, ControllerName::kFull);
   std::vector<CycleInput> inputs;
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) { inputs.push_back(entry.input); });
@@ -113,7 +127,9 @@ int Probe(const std::string& what, int count, const std::string& file) {
   else if (what == "mpc20")
     SolveQps(count);
   else if (what == "cycle")
-    StepCycles(file, count);
+    StepCycles(file, {}, count);
+  else if (what == "cycle_linear" || what == "cycle_linear_csp")
+    StepCycles(file, Linear(what == "cycle_linear" ? "cst" : "csp"), count);
   else if (what == "cst" || what == "csp")
     ProfileCycles(file, what, count);
   else

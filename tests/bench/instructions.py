@@ -14,8 +14,9 @@ PROBE, MACHINE_FILE = sys.argv.pop(1), sys.argv.pop(1)
 
 # What g++ 12.2 -O3 for x86-64-v2 needs where loops with CONTOUR_WIDE_VECTORS find AVX2, with a quarter on top. Raise one only
 # with a reason.
-BOUNDS = {"srukf4": 3500, "srukf7": 7050, "mpc20": 16800, "cycle": 43900}
-COUNTS = {"srukf4": (1000, 2000), "srukf7": (1000, 2000), "mpc20": (500, 1000), "cycle": (100, 300)}
+BOUNDS = {"srukf4": 3500, "srukf7": 7050, "mpc20": 16800, "cycle": 43900, "cycle_linear": 39000, "cycle_linear_csp": 23400}
+COUNTS = {"srukf4": (1000, 2000), "srukf7": (1000, 2000), "mpc20": (500, 1000), "cycle": (100, 300),
+          "cycle_linear": (100, 300), "cycle_linear_csp": (100, 300)}
 
 
 def instructions(what, count):
@@ -48,6 +49,12 @@ class Instructions(unittest.TestCase):
 
     def test_whole_cycle_of_two_axes(self):
         self.per_call("cycle")
+
+    def test_whole_cycle_that_knows_two_inertias(self):
+        self.per_call("cycle_linear")
+
+    def test_the_same_where_the_drives_close_the_loop(self):
+        self.per_call("cycle_linear_csp")
 
 
 if __name__ == "__main__":

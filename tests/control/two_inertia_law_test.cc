@@ -156,6 +156,13 @@ TEST(TwoInertiaLaw, IsNotLostWithAModelThatIsThirtyPercentOff) {
   }
 }
 
+TEST(TwoInertiaLaw, LearnsFrictionThatIsHalfAgainAsLargeAsStated) {
+  for (const FamilyAxis& member : test::kFamily) {
+    const Result r = Draw(member, {.friction = 1.0 / 1.5}, 1e-4, std::numbers::pi / 4);
+    EXPECT_LT(r.peak_m, 0.55 * WindUp_m(member)) << member.name;
+  }
+}
+
 // Of all numbers these two are known least before commissioning.
 TEST(TwoInertiaLaw, StandsWithBristleAndScrewAThirdToThreeTimesAsStated) {
   for (const std::size_t i : {0u, 1u}) {
