@@ -11,8 +11,8 @@ namespace {
 // A softened loop answers what its observer finds this much more slowly than it holds the axis.
 constexpr double kSlower = 0.5;
 // An axis at rest is let go on under the torque it has while its error is below what one step of torque
-// moves it by: answering it would step to and fro. A third of that begins it, held for that long.
-constexpr double kBeginsQuiet = 0.35, kEndsQuiet = 1.5;
+// moves it by: answering it would step to and fro. Half of that begins it, held for that long.
+constexpr double kBeginsQuiet = 0.5, kEndsQuiet = 1.5;
 constexpr double kSettles_s = 0.03;
 
 FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept {
