@@ -60,7 +60,12 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
     const CycleAxisConfig& a = config.axes[i];
     const double r = a.mechanics.radius_m_rad;
     const Friction f = ToSi(a.friction, r);
-    ControlledAxis axis{a.mechanics, ToSi(a.limits, r), a.lag_s, f.sigma2_Ns_m, f.Fc_plus_N, f.Fc_minus_N,
+    ControlledAxis axis{a.mechanics,
+                        ToSi(a.limits, r),
+                        a.lag_s,
+                        f.sigma2_Ns_m,
+                        f.Fc_plus_N,
+                        f.Fc_minus_N,
                         0.5 * (f.Fc_plus_N + f.Fc_minus_N) / f.sigma0_N_m};
     if (KnowsTwoInertias(config) && !InCascade(config)) {
       axis.loop = LoopOf(config, i, 1.0);
