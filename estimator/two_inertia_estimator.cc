@@ -23,7 +23,6 @@ constexpr double kInertialPart = 0.03;
 constexpr double kMassStds = 2.0;
 constexpr double kViscousPart = 0.3;
 constexpr double kSurprise_s = 0.2;
-constexpr double kLead_Hz = 3.0;
 // Reported torque is coarser than commanded torque is known: each reversal tells less of the screw, and all
 // of them together are farther off.
 constexpr double kMostStdInCascade = 0.25;
@@ -106,7 +105,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       learner_(MakeLearner(s, MakeBasis(s))),
       wind_up_(MakeWindUp(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
-      lead_({.lead_Hz = kLead_Hz}, s.filter.period_s),
+      lead_({}, s.filter.period_s),
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
       surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
       settle_(HalfSeen(s.loop.disturbance_response, found_N_.size() - 1)) {
