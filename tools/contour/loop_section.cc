@@ -12,12 +12,14 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
   LoopSection section;
   if (machine.machine.controller != ControllerName::kFull) return section;
   const double period_s = 1e-6 * machine.machine.cycle_us;
+  const bool used = machine.control.friction == FrictionKind::kLinear;
   for (const auto& [name, config] : machine.axes) {
     if (ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
     if (!config.loop) {
       section.text += "  axis " + name + ": no loop: tuning; contour tune --from-model finds it\n";
       continue;
     }
+    // A loop that nothing uses is no danger.
     const std::string key = "axes." + name + ".loop: ";
     const LoopAxis axis = LoopAxisOf(config);
     try {
@@ -25,6 +27,11 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
       section.text += "  axis " + name + "\n" + Describe(report);
       const std::string wrong = WhatIsWrong(report.verdict);
       if (wrong.empty()) continue;
+      if (!used) {
+        section.text +=
+            "  NOT within its limits (" + wrong + "); control.friction: linear would be refused\n";
+        continue;
+      }
       std::string message = key + "found a loop that does not keep its limits (" + wrong +
                             "), expected one that does; what would help:";
       for (const std::string& help : WhatWouldHelp(axis, period_s, 1)) message += " " + help + ";";

@@ -13,8 +13,9 @@ struct LoopSection {
   std::vector<std::string> refused;  ///< why an axis may not be moved with its loop, one message each
 };
 
-/// Loops act where `full` gives torques; in csp the drive closes them. Of axes without `loop:` it says what
-/// would find one.
+/// Loops act where `full` gives torques and has friction linear (control.friction); in csp the drive closes
+/// them. Margins of a loop that is not in use are printed, and refuse nothing. Of axes without `loop:` it
+/// says what would find one.
 LoopSection JudgeLoops(const MachineConfig& machine);
 
 }  // namespace contour
