@@ -9,8 +9,6 @@ namespace {
 
 // A reading that stays the same for less is the encoder's step.
 constexpr std::uint32_t kSameAtLeast_periods = 3;
-// The same under our own loops, for a small change of force.
-constexpr std::uint32_t kSameForForce_periods = 20;
 // A spring so soft that it answers later than this answers never; whole numbers end somewhere.
 constexpr double kLongest_periods = 1e6;
 // Of the path after which a standing reading is one that stands still: no loop that follows is so far ahead.
@@ -19,20 +17,15 @@ constexpr double kSlipped = 3.0;
 constexpr std::uint32_t kMostHeld = 8;
 // Readings in a row that momentum must be missing in.
 constexpr std::uint32_t kBeyondAtLeast = 2;
-// A report is low-passed over so many periods, and must differ for as many more: drives filter it.
-constexpr double kReport_periods = 10.0;
-constexpr std::uint32_t kUndelivered_periods = 20;
 // Of a report's error, what it must have shown to be one.
 constexpr double kReportShows = 0.1;
 // Drives know their torque to that share of it.
 constexpr double kReportGain = 0.3;
 constexpr std::uint32_t kLearnEvery_readings = 8;
-// csp: less than this share of Coulomb friction is no torque, for so many periods.
+// csp: less than this share of Coulomb friction is no torque.
 constexpr double kNoTorque = 0.1;
-constexpr std::uint32_t kIdle_periods = 5;
 // Where a limit is exceeded anyway, so much of what may go unexplained is enough to doubt the encoder.
 constexpr double kInDoubt = 0.5;
-constexpr std::uint32_t kScaleApart = 3;
 // Readings whose second differences a SYNC is part of.
 constexpr std::uint32_t kReadingsOfASync = 3;
 // Lead errors of screws that are sold are well below half a millimetre per metre.
@@ -162,7 +155,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   }
   rest_least_N_ = std::min(rest_least_N_, slow_force_N_);
   rest_most_N_ = std::max(rest_most_N_, slow_force_N_);
-  const std::uint32_t rest_periods = axis_.in_cascade ? t_.rest_periods : kSameForForce_periods;
+  const std::uint32_t rest_periods = axis_.in_cascade ? t_.rest_periods : t_.force_periods;
   const bool at_rest =
       s.spring_N_m == 0.0 && same_ >= rest_periods && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
   // A reading that only flickers, along a path that goes on. A disturbance moves the axis, and only then may
@@ -193,7 +186,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   }
   const bool by_force =
       (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N) ||
-      (near_periods_ >= kSameForForce_periods && near_most_N_ - near_least_N_ > t_.flickering_force_N);
+      (near_periods_ >= t_.force_periods && near_most_N_ - near_least_N_ > t_.flickering_force_N);
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
   const auto gone = [&](std::uint32_t& periods, double from_m, const Standing& standing) {
     const double path_m = standing.Path_m(loop_N_m, settling_N);
@@ -273,14 +266,14 @@ Reason MotionMonitor::Doubt() const noexcept {
 // A report that has never shown the torque is none: some drives leave 0x6077 at zero.
 Reason MotionMonitor::Delivery(const MotionSample& s) noexcept {
   if (axis_.in_cascade) return DeliveryInCascade(s);
-  const double share = waited_periods_ / (kReport_periods + waited_periods_);
+  const double share = waited_periods_ / (t_.report_periods + waited_periods_);
   sent_N_ += share * (Acting_N() - sent_N_);
   reported_N_ += share * (s.reported_force_N - reported_N_);
   const double allowed_N = t_.delivery_N + kReportGain * std::abs(sent_N_);
   if (sent_N_ * reported_N_ > 0.0 && std::abs(reported_N_) > kReportShows * t_.delivery_N)
     report_seen_ = true;
   undelivered_ = std::abs(sent_N_ - reported_N_) > allowed_N ? undelivered_ + waited_periods_ : 0;
-  return report_seen_ && undelivered_ > kUndelivered_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
+  return report_seen_ && undelivered_ > t_.undelivered_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
 }
 
 // The torque that a drive's own loop wants is not known, but one that is behind by so much wants some.
@@ -294,7 +287,7 @@ Reason MotionMonitor::DeliveryInCascade(const MotionSample& s) noexcept {
       std::abs(velocity_m_s_) * (period_s_ + 1.0 / (2.0 * std::numbers::pi * axis_.loop_Hz));
   const bool idle = force_N <= none_N && t_.loop_N_m * behind_m > t_.friction_N + t_.external_N;
   undelivered_ = idle ? undelivered_ + waited_periods_ : 0;
-  return report_seen_ && undelivered_ >= kIdle_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
+  return report_seen_ && undelivered_ >= t_.idle_periods ? Reason::kTorqueNotDelivered : Reason::kNone;
 }
 
 Reason MotionMonitor::Scale(const MotionSample& s) noexcept {
@@ -307,11 +300,10 @@ Reason MotionMonitor::Scale(const MotionSample& s) noexcept {
   }
   const double travel_m = std::abs(s.position_m - scale_begin_m_);
   const double allowed_m = t_.windup_m + t_.reading_m + kLeadError_rel * travel_m;
-  // The scale comes in a message of its own, which may be lost or late.
   scale_apart_ = std::abs(apart_m - scale_offset_m_) > allowed_m ? scale_apart_ + 1 : 0;
   if (scale_apart_ == 0)
     scale_offset_m_ += waited_periods_ * period_s_ / kWarms_s * (apart_m - scale_offset_m_);
-  return scale_apart_ >= kScaleApart ? Reason::kScaleDisagrees : Reason::kNone;
+  return scale_apart_ >= t_.scale_samples ? Reason::kScaleDisagrees : Reason::kNone;
 }
 
 Reason MotionMonitor::Judge(const MotionSample& s) noexcept {

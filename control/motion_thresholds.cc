@@ -30,10 +30,25 @@ constexpr double kReportNoise = 0.2;
 constexpr double kRest_s = 0.5;
 // Time constants of the loop until it has answered.
 constexpr double kAnswer = 2.0;
+// How long a reading stands under our own loops before a small change of force must have moved it.
+constexpr double kSameForForce_s = 20e-3;
+// Drives filter their report: it is low-passed over as long, and must differ for the second.
+constexpr double kReport_s = 10e-3;
+constexpr double kUndelivered_s = 20e-3;
+// csp: an axis that is behind is without torque for no longer.
+constexpr double kIdle_s = 5e-3;
+// The scale comes in a message of its own, of which one or two may be lost or late.
+constexpr double kScaleApart_s = 3e-3;
+constexpr std::uint32_t kScaleSamples = 3;
 // Cycles by which a drive may answer later than stated.
 constexpr std::uint32_t kLaterThanStated = 1;
 // Noise of the filtered force by the encoder's steps, as a share of the outside force.
 constexpr double kNoiseShare = 0.2;
+
+// At least one.
+std::uint32_t Periods(double time_s, double period_s) noexcept {
+  return static_cast<std::uint32_t>(std::max(std::lround(time_s / period_s), 1L));
+}
 
 }  // namespace
 
@@ -83,6 +98,11 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));
   t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);
   t.begin_periods = a.delay_cycles + kLaterThanStated;
+  t.force_periods = Periods(kSameForForce_s, period_s);
+  t.report_periods = kReport_s / period_s;
+  t.undelivered_periods = Periods(kUndelivered_s, period_s);
+  t.idle_periods = Periods(kIdle_s, period_s);
+  t.scale_samples = std::max(Periods(kScaleApart_s, period_s), kScaleSamples);
   t.settling_filter = 1.0 - std::exp(-period_s / kSettlingBegin_s);
   t.settling_decay = std::exp(-period_s / kSettlingEnd_s);
   t.frozen_filter = 1.0 - std::exp(-1.0 / kChatter_periods);

@@ -47,21 +47,26 @@ struct MotionThresholds {
   double friction_N = 0.0;    ///< largest friction at rest
   double viscous_Ns_m = 0.0;  ///< largest viscous friction
   double external_N = 0.0;
-  double screw_share_1_kg = 0.0;    ///< of a force, acceleration of the motor beyond that of a rigid axis
-  double jitter_s = 0.0;            ///< of the time between two readings
-  double reading_m = 0.0;           ///< by which readings may be off, in an acceleration
-  double peak_decay = 0.0;          ///< per period, of a force that may still ring in the screw
-  double frozen_force_N = 0.0;      ///< change of force that must move the encoder
-  double flickering_force_N = 0.0;  ///< the same for a reading that stays within flicker_m
-  double flicker_m = 0.0;           ///< by which a reading may change and still be the same
-  Standing frozen;                  ///< a reading that is exactly the same
-  Standing flickering;              ///< one that stays within flicker_m
-  std::uint32_t loop_periods = 3;   ///< until the loop has answered a reference that begins to move
-  std::uint32_t begin_periods = 2;  ///< until a reference that jumps can show at all
-  double filter = 0.0;              ///< share of the new value in the filtered forces
-  double loop_N_m = 0.0;            ///< stiffness of the position loop, at least
-  double rest_force_N = 0.0;        ///< change of force that counts under a reading that stands
-  std::uint32_t rest_periods = 0;   ///< csp: from the end of a motion until it does
+  double screw_share_1_kg = 0.0;     ///< of a force, acceleration of the motor beyond that of a rigid axis
+  double jitter_s = 0.0;             ///< of the time between two readings
+  double reading_m = 0.0;            ///< by which readings may be off, in an acceleration
+  double peak_decay = 0.0;           ///< per period, of a force that may still ring in the screw
+  double frozen_force_N = 0.0;       ///< change of force that must move the encoder
+  double flickering_force_N = 0.0;   ///< the same for a reading that stays within flicker_m
+  double flicker_m = 0.0;            ///< by which a reading may change and still be the same
+  Standing frozen;                   ///< a reading that is exactly the same
+  Standing flickering;               ///< one that stays within flicker_m
+  std::uint32_t loop_periods = 3;    ///< until the loop has answered a reference that begins to move
+  std::uint32_t begin_periods = 2;   ///< until a reference that jumps can show at all
+  std::uint32_t force_periods = 20;  ///< our own loops: until a small change of force must have moved it
+  double report_periods = 10.0;      ///< low-pass of a drive's report
+  std::uint32_t undelivered_periods = 20;  ///< that it must differ for as many more
+  std::uint32_t idle_periods = 5;          ///< csp: that an axis that is behind may be without torque
+  std::uint32_t scale_samples = 3;         ///< in a row that scale and motor are apart
+  double filter = 0.0;                     ///< share of the new value in the filtered forces
+  double loop_N_m = 0.0;                   ///< stiffness of the position loop, at least
+  double rest_force_N = 0.0;               ///< change of force that counts under a reading that stands
+  std::uint32_t rest_periods = 0;          ///< csp: from the end of a motion until it does
   double rest_fade = 0.0;
   double settling_filter = 0.0;  ///< of the torque that a disturbance of before has changed
   double settling_decay = 0.0;

@@ -33,6 +33,7 @@ void Cycle::DoubtPosition() noexcept {
     case Reason::kFeedbackFrozen:
     case Reason::kFeedbackJump:
     case Reason::kFeedbackReversed:
+    case Reason::kTorqueWithoutMotion:  // of a standing reading under a torque that was not reported yet, too
     case Reason::kVelocityLimit:
       master_.DoubtPosition(axis);
       return;

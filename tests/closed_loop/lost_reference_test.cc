@@ -151,6 +151,21 @@ TEST_F(LostReference, AnEncoderThatIsCalledAbsoluteAndIsNotComesBackReadyAndWron
   EXPECT_GT(wrong_mm, 40.0);
 }
 
+/// A reading that stands under a torque which was not reported yet may be a frozen encoder as well as a motor
+/// without torque: what is named torque_without_motion costs the reference, too.
+TEST_F(LostReference, AReadingThatStandsUnderATorqueThatWasNeverReportedCostsIt) {
+  TellBoth();
+  machine_->Enable();
+  DriveFaults::Freeze(machine_->emulated(), 0);
+  machine_->Start(ParseProgram("{shape: line, dx_mm: 100, dy_mm: 0, feed_mm_min: 6000}", "line of the test",
+                               ProgramFormat::kYaml));
+  Ticks(600);
+  ASSERT_EQ(state(), MachineState::kFaulted);
+  ASSERT_EQ(machine_->record().reason, Reason::kTorqueWithoutMotion);
+  EXPECT_EQ(reference(0), ReferenceState::kLost);
+  EXPECT_EQ(reference(1), ReferenceState::kTold);
+}
+
 TEST_F(LostReference, AnAxisThatOnlyRanFromWhereItStoodLosesThat) {
   machine_->Enable();
   Move(2.0);

@@ -501,5 +501,53 @@ TEST(MotionMonitor, ATorqueThatGrowsUnderAReadingThatFlickersIsSeenAtRest) {
   EXPECT_LT(s.reported_force_N, 1.05 * most_N);
 }
 
+/// Seconds until the monitor speaks when `broken` begins, which it does one second after the start.
+template <class Broken>
+double TimeUntil(Reason expected, const MonitoredAxis& axis, double period_s, Broken&& broken) {
+  MotionMonitor monitor(axis, {}, period_s);
+  const int begin = static_cast<int>(std::lround(1.0 / period_s));
+  for (int i = 0; i < 2 * begin; ++i) {
+    MotionSample s;
+    s.enabled = s.fresh = true;
+    // Along at 10 mm/s, with friction.
+    s.position_m = s.reference_m = 0.01 * i * period_s;
+    s.sent_force_N = s.reported_force_N = 45.0;
+    if (i >= begin) broken(s, (i - begin) * period_s);
+    const Reason found = monitor.Step(s);
+    if (found == Reason::kNone) continue;
+    EXPECT_EQ(found, expected) << "at " << i;
+    return (i - begin + 1) * period_s;
+  }
+  ADD_FAILURE() << "nothing was seen";
+  return 0.0;
+}
+
+// Times that a drive's filters and messages are given are times whatever the cycle. Before: counts of
+// periods, half as long at 500 us and twice as long at 2 ms.
+TEST(MotionMonitor, TimesAreTheSameForEveryPeriod) {
+  MonitoredAxis own = Axis();
+  MonitoredAxis in_cascade = Axis();
+  in_cascade.in_cascade = true;
+  const auto reports_more = [](MotionSample& s, double) { s.reported_force_N = 300.0; };
+  const auto idle = [](MotionSample& s, double) {
+    s.reported_force_N = 0.0;
+    s.reference_m += 2e-3;
+  };
+  const double report_s = TimeUntil(Reason::kTorqueNotDelivered, own, 1e-3, reports_more);
+  const double idle_s = TimeUntil(Reason::kTorqueNotDelivered, in_cascade, 1e-3, idle);
+  EXPECT_NEAR(report_s, 0.025, 0.01);
+  EXPECT_NEAR(idle_s, 0.005, 0.001);
+  for (const double period_s : {0.25e-3, 0.5e-3, 2e-3}) {
+    EXPECT_NEAR(TimeUntil(Reason::kTorqueNotDelivered, own, period_s, reports_more), report_s, 2.5e-3)
+        << period_s;
+    EXPECT_NEAR(TimeUntil(Reason::kTorqueNotDelivered, in_cascade, period_s, idle), idle_s, 2e-3) << period_s;
+  }
+  // Messages of the scale that are lost or late are counted where cycles are long.
+  EXPECT_EQ(ThresholdsOf(own, {}, 0.25e-3).scale_samples, 12u);
+  EXPECT_EQ(ThresholdsOf(own, {}, 1e-3).scale_samples, 3u);
+  EXPECT_EQ(ThresholdsOf(own, {}, 2e-3).scale_samples, 3u);
+  EXPECT_EQ(ThresholdsOf(own, {}, 0.5e-3).force_periods, 40u);
+}
+
 }  // namespace
 }  // namespace contour

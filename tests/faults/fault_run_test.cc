@@ -3,12 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ostream>
 
 #include "tools/faults/campaign.h"
 #include "tools/faults/proof.h"
 #include "tools/faults/report.h"
 
 namespace contour::faults {
+
+/// What a test's name says of its parameter, instead of its bytes.
+void PrintTo(const Supervisor& supervisor, std::ostream* out) { *out << Name(supervisor.watch); }
+
 namespace {
 
 EmulatedMachineFile Example() {

@@ -20,6 +20,11 @@ class DriveFaults {
                      std::uint8_t error_register) noexcept {
     machine.axis(axis).SendEmergency(error_code, error_register);
   }
+  /// The encoder stands where it is, and the motor gives no torque; the drive reports none either.
+  static void Freeze(EmulatedMachine& machine, std::size_t axis) noexcept {
+    machine.axis(axis).tampering().Freeze();
+    machine.axis(axis).tampering().WeakenTorque(0.0, true);
+  }
   /// The drive's supply fails for a moment: it forgets what it was told, and says boot-up.
   static void Restart(EmulatedMachine& machine, std::size_t axis) noexcept {
     machine.axis(axis).InterruptSupply();
