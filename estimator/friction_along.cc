@@ -29,7 +29,7 @@ bool FrictionAlong::MovedOn(const AxisHorizon& reference, std::size_t count) con
 // `from` and `node` may be the same.
 void FrictionAlong::Lay(const ReferencePoint& point, const Node& from, const KnownEffects& known,
                         Node& node) noexcept {
-  FrictionMemory memory = from.memory;
+  FrictionTermsState memory = from.memory;
   basis_.Follow(point.position_m - from.position_m, point.position_m, point.velocity_m_s,
                 point.acceleration_m_s2, memory, node.terms);
   if (!known.neutral()) {

@@ -37,7 +37,7 @@ class FrictionAlong {
  private:
   struct Node {
     double position_m = 0.0, velocity_m_s = 0.0, acceleration_m_s2 = 0.0;
-    FrictionMemory memory;
+    FrictionTermsState memory;
     FrictionTerms terms{};
   };
   [[nodiscard]] const Node& At(std::size_t point) const noexcept {

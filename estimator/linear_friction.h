@@ -44,12 +44,12 @@ FrictionScale ScaleOf(const Friction& friction, double lead_m, double position_m
                       double position_max_m) noexcept;
 
 /// What of the past counts: four bristles, four stops, eight signs that bristles relax.
-struct FrictionMemory {
+struct FrictionTermsState {
   std::array<double, 4> dahl{};
   std::array<double, 4> stop{};
   std::array<double, 8> relaxed{};
 
-  friend bool operator==(const FrictionMemory&, const FrictionMemory&) = default;
+  friend bool operator==(const FrictionTermsState&, const FrictionTermsState&) = default;
 };
 
 /// Friction along a motion that is known in advance, linear in its parameters. Every length is a share of the
@@ -69,7 +69,7 @@ class LinearFriction {
 
   /// Moves on to `position_m`, `step_m` from where it was, and gives the terms there.
   void Follow(double step_m, double position_m, double velocity_m_s, double acceleration_m_s2,
-              FrictionMemory& memory, FrictionTerms& terms) const noexcept;
+              FrictionTermsState& memory, FrictionTerms& terms) const noexcept;
 
  private:
   FrictionScale scale_;

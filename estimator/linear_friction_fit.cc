@@ -80,7 +80,7 @@ class Sweep {
  private:
   const LinearFriction& basis_;
   const Friction& friction_;
-  FrictionMemory memory_;
+  FrictionTermsState memory_;
   FrictionTerms terms_{};
   double bristle_N_ = 0.0, position_m_ = 0.0;
 };

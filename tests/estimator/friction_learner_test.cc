@@ -52,7 +52,7 @@ class Bench {
  private:
   double level_N_;
   LinearFriction basis_;
-  FrictionMemory memory_;
+  FrictionTermsState memory_;
   double before_m_ = 0.0, found_N_ = 0.0;
   long cycle_ = 0;
 };

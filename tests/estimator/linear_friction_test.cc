@@ -41,7 +41,7 @@ struct Error {
 template <class Step>
 Error Compare(const LinearFriction& basis, const FrictionTerms& parameters, const Circle& c, double length,
               double time, Step&& law) {
-  FrictionMemory memory;
+  FrictionTermsState memory;
   FrictionTerms terms{};
   Error error;
   constexpr int kFine = 20;
@@ -126,7 +126,7 @@ TEST(LinearFriction, FitsMaxwellSlip) {
   LinearFrictionFit fit;
   for (const Circle& c : kCircles) {
     MaxwellSlip law(45.0);
-    FrictionMemory memory;
+    FrictionTermsState memory;
     FrictionTerms terms{};
     const double w = 2 * std::numbers::pi * c.frequency_Hz;
     const int turn = static_cast<int>(1e3 / c.frequency_Hz);
@@ -158,10 +158,10 @@ TEST(LinearFriction, FitsMaxwellSlip) {
 TEST(LinearFriction, AStandingAxisHoldsWhatItHas) {
   const Friction f = Law(45.0, 9e-6, 2e-3);
   const LinearFriction basis(ScaleOf(f, kLead_m, -0.2, 0.2));
-  FrictionMemory memory;
+  FrictionTermsState memory;
   FrictionTerms moving{}, standing{};
   for (int k = 1; k <= 20; ++k) basis.Follow(1e-6, k * 1e-6, 1e-9, 0.0, memory, moving);
-  const FrictionMemory before = memory;
+  const FrictionTermsState before = memory;
   for (int k = 0; k < 1000; ++k) basis.Follow(0.0, 20e-6, 0.0, 0.0, memory, standing);
   EXPECT_EQ(memory, before);
   for (std::size_t i = 0; i < friction_term::kTurn; ++i) EXPECT_NEAR(standing[i], moving[i], 1e-5) << i;
