@@ -32,7 +32,7 @@ class CornerFeeds(unittest.TestCase):
             for blended, stopping in zip(table[shape, "blended"][:2], table[shape, "exact_stop"][:2]):
                 error_um, time_s = map(float, blended.split(" / "))
                 self.assertLess(error_um, 5.0)
-                self.assertGreater(error_um, 2.5)
+                self.assertGreater(error_um, 2.0)  # uses the tolerance, rather than keep far below it
                 self.assertLess(time_s, float(stopping.split(" / ")[1]))
             self.assertEqual(table[shape, "blended"][2], "3000")
 
