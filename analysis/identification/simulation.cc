@@ -8,6 +8,7 @@
 
 #include "analysis/axis_model/linear_axis.h"
 #include "analysis/prediction_error/steady_gain.h"
+#include "estimator/exponential.h"
 
 namespace contour::identify {
 namespace {
@@ -126,7 +127,7 @@ double Simulation::Level_N(double v) const {
   const double fs = down ? f.Fs_minus : f.Fs_plus;
   const double speed = std::fabs(v) / f.vs;
   const double x = f.exponent == 1.0 ? speed : std::pow(speed, f.exponent);
-  const double g = x > kGone ? fc : fc + (fs - fc) * std::exp(-x);
+  const double g = x > kGone ? fc : fc + (fs - fc) * ExpOfNegative(-x);
   return std::max(1e-3, g * (down ? factor_minus_ : factor_plus_));
 }
 
@@ -137,7 +138,7 @@ void Simulation::MoveBristle(double from_z, double travel_m, double step_s) {
   } else if (x > kGone) {
     z_m_ = travel_m / x;
   } else {
-    const double gone = -std::expm1(-x);
+    const double gone = -Expm1OfNegative(-x);
     z_m_ = from_z * (1.0 - gone) + travel_m * gone / x;
   }
 }
@@ -147,7 +148,7 @@ double Simulation::BristleDamping_Ns_m(double v) const {
   const double x = v / f.vd;
   if (x * x > kGone || f.s1 <= 0.0) return 0.0;
   const double against = (v < 0.0 ? -1.0 : 1.0) * f.s0 * z_m_ / Level_N(v);
-  return f.s1 * std::exp(-x * x) * (1.0 - against);
+  return f.s1 * ExpOfNegative(-x * x) * (1.0 - against);
 }
 
 double Simulation::BristleForce_N() const {

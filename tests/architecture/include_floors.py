@@ -32,7 +32,7 @@ ANALYSIS = {
     "analysis/axis_model": ["core", "estimator", "config"],
     "analysis/prediction_error/simd": [],
     "analysis/prediction_error": ["analysis/parallel", *PREDICTION, "analysis/diagnosis/tuning"],
-    "analysis/identification": ["core", "config", "analysis/text", *PREDICTION],
+    "analysis/identification": ["core", "config", "estimator", "analysis/text", *PREDICTION],
     "analysis/diagnosis/result": ["analysis/recording", "analysis/diagnosis/tuning"],
     "analysis/diagnosis/tuning": [],
     "analysis/diagnosis/causes": ["config", "estimator", *PREDICTION, *diagnosis_floors(["result", "tuning"])],
