@@ -22,7 +22,4 @@ class Whitener {
   std::vector<double> taps_ = {1.0};
 };
 
-/// In place, length a power of two; forward without scale.
-void FourierTransform(std::vector<double>& re, std::vector<double>& im, bool inverse);
-
 }  // namespace contour::diagnosis

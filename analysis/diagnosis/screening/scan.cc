@@ -2,10 +2,12 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include "analysis/diagnosis/causes/waves.h"
 #include "analysis/diagnosis/screening/score.h"
+#include "analysis/prediction_error/fourier_transform.h"
 
 // Waves of the motor's angle and of time by matched filters: the response of the white innovation to a pulse
 // of torque (or of the reading) is that of the linear observer, friction left out; one transform gives all
@@ -31,11 +33,9 @@ Matched Match(const Problem& problem, bool reading, Signal gradient) {
   const std::vector<double> h = PulseResponse(problem, reading);
   Matched m;
   m.lambda = std::move(gradient);
-  std::vector<double> re(kTransfer, 0.0), im(kTransfer, 0.0);
-  std::copy(h.begin(), h.end(), re.begin());
-  FourierTransform(re, im, false);
-  m.transfer.resize(kTransfer / 2 + 1);
-  for (std::size_t i = 0; i < m.transfer.size(); ++i) m.transfer[i] = re[i] * re[i] + im[i] * im[i];
+  std::vector<double> padded(kTransfer, 0.0);
+  std::copy(h.begin(), h.end(), padded.begin());
+  for (const std::complex<double>& x : FourierTransform(padded)) m.transfer.push_back(std::norm(x));
   return m;
 }
 
@@ -75,7 +75,7 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   const double per_rev = std::exp2(std::ceil(std::log2(kScan.samples_per_period * highest)));
   const auto length = folded ? static_cast<std::size_t>(per_rev)
                              : std::bit_ceil(static_cast<std::size_t>(per_rev * revs * 2.0) + 2);
-  std::vector<double> re(length, 0.0), im(length, 0.0);
+  std::vector<double> gradient(length, 0.0);
   Histogram histogram;
   constexpr std::size_t kBins = kScan.speed_bins;
   histogram.weight.assign(kBins, 0.0);
@@ -92,11 +92,11 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   for (std::size_t k = 0; k < n; ++k) {
     if (problem.counted[k] == 0 || weight[k] == 0.0) continue;
     const auto bin = static_cast<std::size_t>((s.angle_rad[k] - *low) / kTwoPi * per_rev + 0.5);
-    re[bin & (length - 1)] += weight[k] * matched.lambda[k];
+    gradient[bin & (length - 1)] += weight[k] * matched.lambda[k];
     const auto b = std::min(kBins - 1, static_cast<std::size_t>(std::sqrt(speed[k] / fastest) * kBins));
     histogram.weight[b] += weight[k] * weight[k] * problem.root_weight[k] * problem.root_weight[k];
   }
-  FourierTransform(re, im, false);
+  const HalfSpectrum spectrum = FourierTransform(gradient);
   std::vector<Peak> out;
   const double step = per_rev / static_cast<double>(length);
   double info = 0.0, info_at = -1.0;
@@ -107,7 +107,7 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
       info = histogram.InformationAt(matched, order);
       info_at = order;
     }
-    if (info > 0.0) out.push_back({order, (re[i] * re[i] + im[i] * im[i]) / info});
+    if (info > 0.0) out.push_back({order, std::norm(spectrum[i]) / info});
   }
   return out;
 }
@@ -117,19 +117,19 @@ std::vector<double> Frequencies(const Problem& problem, const Matched& torque,
                                 const std::vector<double>& sliding) {
   const std::size_t n = problem.rows();
   const std::size_t length = std::bit_ceil(2 * n);
-  std::vector<double> re(length, 0.0), im(length, 0.0);
+  std::vector<double> gradient(length, 0.0);
   double moving = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
-    re[k] = sliding[k] * torque.lambda[k];
+    gradient[k] = sliding[k] * torque.lambda[k];
     moving += sliding[k] * problem.root_weight[k] * problem.root_weight[k];
   }
-  FourierTransform(re, im, false);
+  const HalfSpectrum spectrum = FourierTransform(gradient);
   std::vector<Peak> time;
   for (std::size_t i = 1; i < length / 2; ++i) {
     const double f = static_cast<double>(i) / static_cast<double>(length);
     if (f * static_cast<double>(n) < kScan.fewest_periods_of_time || f > kScan.highest_per_row) continue;
     time.push_back(
-        {f / problem.log.period_s, 2.0 * (re[i] * re[i] + im[i] * im[i]) / (moving * torque.At(f) + 1e-300)});
+        {f / problem.log.period_s, 2.0 * std::norm(spectrum[i]) / (moving * torque.At(f) + 1e-300)});
   }
   return Best(time, kScan.proposed, 2.0 / (static_cast<double>(n) * problem.log.period_s));
 }
