@@ -1,25 +1,13 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
+#include <unsupported/Eigen/MatrixFunctions>
 
 #include "analysis/axis_model/linear_axis.h"
 #include "analysis/prediction_error/forward_filter.h"
 #include "analysis/prediction_error/steady_gain.h"
 
 namespace contour::diagnosis {
-namespace {
-
-Eigen::MatrixXd Exponential(Eigen::MatrixXd a) {
-  const int halvings = 12;
-  a /= std::ldexp(1.0, halvings);
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(a.rows(), a.cols());
-  Eigen::MatrixXd e = one + a * (one + a / 2.0 * (one + a / 3.0 * (one + a / 4.0)));
-  for (int i = 0; i < halvings; ++i) e = (e * e).eval();
-  return e;
-}
-
-}  // namespace
-
 ObserverGain SteadyObserverGain(const AxisModel& m, double period_s, double bandwidth_Hz) {
   const LinearAxis axis = MakeLinearAxis(m, m.friction.s2);
   const int n = axis.states;
@@ -27,7 +15,7 @@ ObserverGain SteadyObserverGain(const AxisModel& m, double period_s, double band
   a.topLeftCorner(n, n) = axis.dynamics.topLeftCorner(n, n);
   a.col(n).head(n) = axis.motor.head(n);
   if (m.two_inertia) a.col(n + 1).head(n) = axis.load.head(n);
-  const Eigen::MatrixXd e = Exponential(a * period_s);
+  const Eigen::MatrixXd e = (a * period_s).exp();
   const Eigen::MatrixXd f = e.topLeftCorner(n, n);
   const Eigen::MatrixXd b = e.topRightCorner(n, n / 2);
   // A double integrator under white torque of sd s, read with unit noise, closes at about
