@@ -167,6 +167,15 @@ TEST(Effects, ViscousNonlinearWithAKneeAndFurtherCurves) {
               0.02);
 }
 
+TEST(Effects, AsymmetricViscous) {
+  EmulatedAxisConfig c = Plain();
+  c.friction.sigma2_Ns_m = 500.0;
+  c.effects.asymmetric_viscous = AsymmetricViscousEffect{0.4};
+  EXPECT_NEAR(Sliding_N(c, 0.0, 0.05), 40.0 + 500.0 * 1.2 * 0.05, 0.02);
+  EXPECT_NEAR(Sliding_N(c, 0.0, -0.05), -40.0 - 500.0 * 0.8 * 0.05, 0.02);
+  EXPECT_NEAR(Sliding_N(c, 0.0, 0.1) - Sliding_N(c, 0.0, 0.05), 500.0 * 1.2 * 0.05, 0.02);
+}
+
 TEST(Effects, TemperatureViscosity) {
   EmulatedAxisConfig c = Plain();
   c.friction.sigma2_Ns_m = 500.0;

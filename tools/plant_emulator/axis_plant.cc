@@ -167,12 +167,19 @@ double ViscousForce_N(const ViscousTerm& e, double speed_rad_s, double radius_m_
 }  // namespace
 
 double AxisPlant::ExtraFriction_N(double velocity_m_s) const noexcept {
-  const auto& e = p_.effects.viscous_nonlinear;
-  if (!e || velocity_m_s == 0.0) return 0.0;
-  const double speed_rad_s = std::fabs(velocity_m_s) / p_.radius_m_rad;
-  double force_N = ViscousForce_N(*e, speed_rad_s, p_.radius_m_rad);
-  for (const ViscousTerm& term : e->further) force_N += ViscousForce_N(term, speed_rad_s, p_.radius_m_rad);
-  return Sign(velocity_m_s) * force_N;
+  if (velocity_m_s == 0.0) return 0.0;
+  double force_N = 0.0;
+  if (const auto& e = p_.effects.viscous_nonlinear) {
+    const double speed_rad_s = std::fabs(velocity_m_s) / p_.radius_m_rad;
+    force_N = ViscousForce_N(*e, speed_rad_s, p_.radius_m_rad);
+    for (const ViscousTerm& term : e->further) force_N += ViscousForce_N(term, speed_rad_s, p_.radius_m_rad);
+  }
+  force_N *= Sign(velocity_m_s);
+  // More upwards by as much as it is less downwards: the same force in both.
+  if (const auto& e = p_.effects.asymmetric_viscous)
+    force_N +=
+        0.5 * e->difference_rel * p_.friction.base.sigma2_Ns_m * viscous_factor_ * std::fabs(velocity_m_s);
+  return force_N;
 }
 
 void AxisPlant::Step(double step_s, double torque_Nm) noexcept {

@@ -23,6 +23,16 @@ struct AsymmetricCoulombEffect {
   }
 };
 
+/// Viscous friction differs between the directions.
+struct AsymmetricViscousEffect {
+  double difference_rel = 0.0;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("difference_rel", difference_rel, Range{-1.9, 1.9},
+               "(sigma2 upwards - sigma2 downwards) / mean; the mean is the friction section's");
+  }
+};
+
 /// A torque that is always there: gravity, or an offset of the current sensor.
 struct ConstantTorqueEffect {
   double torque_Nm = 0.0;
@@ -391,6 +401,7 @@ struct EffectsConfig {
   std::optional<CoggingEffect> cogging;
   std::optional<TorqueRippleEffect> torque_ripple;
   std::optional<ViscousNonlinearEffect> viscous_nonlinear;
+  std::optional<AsymmetricViscousEffect> asymmetric_viscous;
   std::optional<TemperatureViscosityEffect> temperature_viscosity;
   std::optional<FrictionDriftEffect> friction_drift;
   std::optional<TorqueConstantEffect> torque_constant;
@@ -426,6 +437,8 @@ struct EffectsConfig {
     v.Optional("cogging", cogging, "detent torque");
     v.Optional("torque_ripple", torque_ripple, "torque constant that varies per turn");
     v.Optional("viscous_nonlinear", viscous_nonlinear, "viscous friction beyond the linear term");
+    v.Optional("asymmetric_viscous", asymmetric_viscous,
+               "viscous friction that differs between the directions");
     v.Optional("temperature_viscosity", temperature_viscosity,
                "viscous friction that changes with temperature");
     v.Optional("friction_drift", friction_drift, "friction that changes with time");

@@ -14,29 +14,9 @@ void ScaleLevels(double difference, AxisModel& m) {
   m.friction.Fs_minus *= 1.0 - 0.5 * difference;
 }
 
-/// Guides and wipers that drag in one direction do so at speed, too: a viscous term that differs with them.
-void Grid(const Problem& p, std::vector<SharedEffect>& out) {
-  const Signals& s = *p.signals;
-  const std::string kind(kName);
-  const SharedEffect levels = Custom({kind, "", 1}, {.steps = {2e-3}, .low = {-1.8}, .high = {1.8}},
-                                     [](const auto& a, AxisModel& m) { ScaleLevels(a[0], m); });
-  const auto direction = Make(p.rows(), [&](std::size_t k) {
-    return s.velocity[k] > 0.0 ? 1.0 : s.velocity[k] < 0.0 ? -1.0 : 0.0;
-  });
-  out.push_back(WithShorter(
-      Custom({kind, "and viscous", 1}, {.steps = {2e-3, 5e-3}, .low = {-1.8, -1.8}, .high = {1.8, 1.8}},
-             [direction](const auto& a, AxisModel& m) {
-               ScaleLevels(a[0], m);
-               m.viscous = Add(m.viscous, {direction}, {0.5 * a[1]});
-             }),
-      levels));
-}
-
-NamedValues Parameters(const FittedEffect& fitted) {
-  const std::vector<double>& a = fitted.amplitudes();
-  NamedValues v{{"difference_rel", a[0]}};
-  if (a.size() > 1) v["viscous_difference_rel"] = a[1];
-  return v;
+void Grid(const Problem&, std::vector<SharedEffect>& out) {
+  out.push_back(Custom({std::string(kName), "", 1}, {.steps = {2e-3}, .low = {-1.8}, .high = {1.8}},
+                       [](const auto& a, AxisModel& m) { ScaleLevels(a[0], m); }));
 }
 
 constexpr ModelError kErrors[] = {{"difference_rel", 0.02}};
@@ -87,7 +67,10 @@ constexpr CauseDefinition asymmetric_coulomb = {
     .wave = nullptr,
     .family = nullptr,
     .implausible = nullptr,
-    .parameters = Parameters,
+    .parameters =
+        [](const FittedEffect& fitted) {
+          return NamedValues{{"difference_rel", fitted.amplitudes()[0]}};
+        },
     .main_parameter = "difference_rel",
     .model_errors = kErrors,
     .shape = nullptr,
