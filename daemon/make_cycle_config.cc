@@ -3,14 +3,12 @@
 #include <algorithm>
 
 #include "config/extended_model.h"
-#include "control/monitored_axis.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
 namespace {
 
-CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const EstimatorConfig& estimator,
-                         const MonitorConfig& monitor) {
+CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const EstimatorConfig& estimator) {
   CycleAxisConfig out;
   out.name = name;
   const ExtendedModel model = Extended(axis.model);
@@ -24,10 +22,6 @@ CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const 
   if (stated != axis.model.uncertainty.end() && out.estimator.stiffness_std > 0.0)
     out.estimator.stiffness_std = stated->second;
   out.limits = axis.limits;
-  const double rated_N = axis.drive.rated_torque_Nm / out.mechanics.radius_m_rad;
-  out.estimator.external_force_N =
-      axis.limits.external_force_N > 0.0 ? axis.limits.external_force_N : kExternalShare * rated_N;
-  out.estimator.mass_error = monitor.mass_error_rel;
   // A delay of a fraction of a period does to the axis what a lag of that time constant does, to first order.
   out.lag_s = std::max(0.0, axis.drive.lag_ms * 1e-3 + model.added_lag_s + model.added_delay_s);
   out.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
@@ -45,7 +39,7 @@ CycleConfig MakeCycleConfig(const MachineConfig& machine, ControllerName control
   out.master.cycle_us = out.cycle_us;
   for (const auto& [name, bus] : machine.buses) out.master.buses.push_back(bus);
   for (const auto& [name, axis] : machine.axes) {
-    out.axes.push_back(MakeAxis(name, axis, machine.estimator, machine.control.monitor));
+    out.axes.push_back(MakeAxis(name, axis, machine.estimator));
     AxisDriveConfig drive{name, static_cast<std::uint8_t>(BusIndex(machine, axis.drive.bus)), axis.drive,
                           std::min(axis.limits.torque_Nm, axis.drive.peak_torque_Nm),
                           1e-3 * axis.limits.safe_travel_mm / out.axes.back().mechanics.radius_m_rad};

@@ -3,8 +3,6 @@
 #include <array>
 #include <cstddef>
 
-#include "estimator/filter_setup.h"
-
 namespace contour {
 
 /// Force on the motor that belongs to the angle of the screw whatever the direction: cogging, torque ripple.
@@ -18,7 +16,6 @@ class AngleForceMap {
     double rate =
         0.0;  ///< share of the error learnt at least per visit of a millisecond; 0: nothing is learnt
     double period_s = 1e-3;
-    AxisScale scale{};
   };
 
   AngleForceMap() noexcept = default;
@@ -44,11 +41,6 @@ class AngleForceMap {
   void LearnAt(std::size_t bin, double weight, double error_N) noexcept;
 
   double per_turn_1_m_ = 200.0;
-  double largest_N_ = 50.0;
-  double ripple_N2_ = 15.0;
-  double slow_m_s_ = 4e-3;
-  double fast_m_s_ = 0.15;
-  double quiet_m_s2_ = 1.0;
   double first_visits_ = 1.0;
   double rate_ = 0.0;
   double visit_ = 1.0;  // of a cycle, in milliseconds

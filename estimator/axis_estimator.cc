@@ -107,16 +107,16 @@ AxisEstimator::AxisEstimator(EstimatorKind kind, const Mechanics& mechanics, con
       break;
   }
   roll_ = FrictionRoll(period_s, cascade);
-  viscous_ = ViscousCorrection(
-      {setup.friction.sigma2_Ns_m, config.adapt ? config.viscous_rate : 0.0, period_s, setup.Scale()});
+  viscous_ =
+      ViscousCorrection({setup.friction.sigma2_Ns_m, config.adapt ? config.viscous_rate : 0.0, period_s});
   momentum_ = MomentumBalance({mechanics.mass_kg, period_s, config.adapt ? config.mass_rate : 0.0,
-                               config.adapt ? config.delay_rate : 0.0, setup.Scale()});
+                               config.adapt ? config.delay_rate : 0.0});
   lag_ = DriveLag<1>(period_s, lag_s);
   // A second difference of the position takes sqrt(1 + 4 + 1) of its noise.
   const double difference_N =
       std::sqrt(6.0) * setup.measurement_std_m * mechanics.mass_kg / (period_s * period_s);
   map_ = AngleForceMap({2.0 * std::numbers::pi * mechanics.radius_m_rad, difference_N,
-                        config.adapt ? config.cogging_rate : 0.0, period_s, setup.Scale()});
+                        config.adapt ? config.cogging_rate : 0.0, period_s});
   WindUpFit::Tuning screw;
   screw.period_s = period_s;
   screw.stiffness_N_m = mechanics.stiffness_N_m;
@@ -213,10 +213,6 @@ AxisEstimate AxisEstimator::UpdateFull(const Input& in) noexcept {
   } else {
     momentum_.Pause();
     wind_up_.Pause();
-    if (followed.at_rest) {
-      momentum_.Rest();
-      viscous_.Rest();
-    }
   }
   drive_N_ = force_N;
   return estimate;

@@ -8,7 +8,7 @@ namespace contour {
 DisturbanceObserver::DisturbanceObserver(const FilterSetup& setup) noexcept
     : setup_(setup),
       lag_(setup.period_s, setup.lag_s),
-      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}) {
+      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}, setup.Sudden_m()) {
   const double mass_kg = setup.mechanics.mass_kg;
   const double rate = setup.friction.sigma2_Ns_m / mass_kg;
   velocity_decay_ = Exp(-rate * setup.period_s);
@@ -53,7 +53,6 @@ AxisEstimate DisturbanceObserver::Update(const AxisEstimatorInput& in) noexcept 
         noise_);
     if (in.fresh) {
       Innovation innovation;
-      gate_.Expect(setup_.Sudden_m(in.force_N[1], in.force_N[2]));
       const UpdateResult result = core_.UpdateState0(in.position_m, setup_.measurement_std_m, gate_.gate(),
                                                      AllStates<3>(), innovation);
       gate_.After(innovation.value, innovation.std);

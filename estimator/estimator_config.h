@@ -1,30 +1,25 @@
 #pragma once
 
-#include <optional>
-
 #include "core/visit.h"
 
 namespace contour {
 
 /// Tuning of the estimator of one axis (`estimator:`; every key optional). Noise values are standard
-/// deviations of what one millisecond adds; other cycle times scale with the square root of the period. What
-/// is a share is one of the axis's own numbers: Coulomb friction Fc (mean of both directions), Fc / mass, the
-/// Stribeck velocity. The same in newtons or mm/s holds for every axis alike and is for one machine only.
+/// deviations of what one millisecond adds; other cycle times scale with the square root of the period.
 /// What each does and why it has its value: docs/estimator.md.
 struct EstimatorConfig {
   double position_noise_um = 1.5e-5;
-  double velocity_noise = 0.0069;
+  double velocity_noise_mm_s = 0.003;
   double timing_noise = 0.02;
-  double bristle_noise = 0.0102;
-  double level_noise = 3.85e-4;
-  double four_state_level_noise = 1.92e-3;
-  double disturbance_noise = 1.92e-3;
+  double bristle_noise_N = 0.4;
+  double level_noise_N = 0.015;
+  double four_state_level_noise_N = 0.075;
+  double disturbance_noise_N = 0.075;
   double log_sigma0_noise = 0.0003;
   double measurement_noise_um = 0.003;
   double disturbance_decay_ms = 200.0;
-  double motion_gate = 1.0;
-  double rest_noise = 0.1;
-  double rest_stiffness = 0.3;
+  double motion_gate_mm_s = 2.0;
+  double rest_noise = 0.03;
   double log_sigma0_range = 1.5;
   double level_range = 2.0;
   double innovation_gate_sigma = 12.0;
@@ -45,43 +40,27 @@ struct EstimatorConfig {
   double mass_std = 0.05;
   double stiffness_std = 0.1;
   bool adapt = true;
-  std::optional<double> velocity_noise_mm_s;
-  std::optional<double> bristle_noise_N;
-  std::optional<double> level_noise_N;
-  std::optional<double> four_state_level_noise_N;
-  std::optional<double> disturbance_noise_N;
-  std::optional<double> motion_gate_mm_s;
-  // No keys: what limits and supervision state, for a reading that is suddenly off.
-  double external_force_N = 0.0;  ///< what may push besides friction
-  double mass_error = 0.3;        ///< relative, of masses and torque
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Optional("position_noise_um", position_noise_um, kNotNegative, "process noise of the position");
-    v.Optional("velocity_noise", velocity_noise, kNotNegative,
-               "process noise of the velocity: an unknown force, as a share of Fc");
+    v.Optional("velocity_noise_mm_s", velocity_noise_mm_s, kNotNegative, "process noise of the velocity");
     v.Optional("timing_noise", timing_noise, kNotNegative,
                "process noise of the force, as a share of the change of torque from one cycle to the next");
-    v.Optional("bristle_noise", bristle_noise, kNotNegative,
-               "process noise of the bristle force, as a share of Fc");
-    v.Optional("level_noise", level_noise, kNotNegative,
-               "process noise of the friction levels, as a share of Fc");
-    v.Optional("four_state_level_noise", four_state_level_noise, kNotNegative,
-               "process noise of the one friction level of the four-state filter, as a share of Fc");
-    v.Optional("disturbance_noise", disturbance_noise, kNotNegative,
-               "process noise of the leaky disturbance, as a share of Fc");
+    v.Optional("bristle_noise_N", bristle_noise_N, kNotNegative, "process noise of the bristle force");
+    v.Optional("level_noise_N", level_noise_N, kNotNegative, "process noise of the friction levels");
+    v.Optional("four_state_level_noise_N", four_state_level_noise_N, kNotNegative,
+               "process noise of the one friction level of the four-state filter");
+    v.Optional("disturbance_noise_N", disturbance_noise_N, kNotNegative,
+               "process noise of the leaky disturbance");
     v.Optional("log_sigma0_noise", log_sigma0_noise, kNotNegative, "process noise of ln sigma0");
     v.Optional("measurement_noise_um", measurement_noise_um, kPositive,
                "position noise, at least the encoder's own step / sqrt(12)");
     v.Optional("disturbance_decay_ms", disturbance_decay_ms, kPositive, "time constant of the disturbance");
-    v.Optional("motion_gate", motion_gate, kPositive,
-               "speed from which the parameters take their full process noise, in Stribeck velocities");
+    v.Optional("motion_gate_mm_s", motion_gate_mm_s, kPositive,
+               "speed from which the parameters take their full process noise");
     v.Optional("rest_noise", rest_noise, Range{0.0, 1.0},
                "share of the bristle's process noise while the commanded velocity is zero");
-    v.Optional(
-        "rest_stiffness", rest_stiffness, Range{0.0, 1.0},
-        "share of the bristle's stiffness with which its force follows the position while the commanded "
-        "velocity is zero");
     v.Optional("log_sigma0_range", log_sigma0_range, kPositive, "bound of |ln(sigma0 / commissioned)|");
     v.Optional("level_range", level_range, Range{1.01, 100.0},
                "friction levels stay within this factor of their commissioned value");
@@ -98,12 +77,12 @@ struct EstimatorConfig {
     v.Optional(
         "stribeck_rate", stribeck_rate, Range{0.0, 1.0},
         "share of the error that the low-speed rise of the friction level learns per millisecond; 0 none");
+    v.Optional("mass_rate", mass_rate, Range{0.0, 1.0},
+               "share of the error that the correction of the moving mass learns per millisecond at 1 m/s^2, "
+               "once it has learnt the most; 0 none");
     v.Optional(
-        "mass_rate", mass_rate, Range{0.0, 1.0},
-        "share of the error that the correction of the moving mass learns per millisecond at 2.3 Fc / m "
-        "(1 m/s^2 on the example machine), once it has learnt the most; 0 none");
-    v.Optional("delay_rate", delay_rate, Range{0.0, 1.0},
-               "the same of the drive's delay, per millisecond in which the force changes by 2.6 Fc; 0 none");
+        "delay_rate", delay_rate, Range{0.0, 1.0},
+        "the same of the drive's delay, per millisecond in which the torque changes by 100 N / R; 0 none");
     v.Optional(
         "cogging_rate", cogging_rate, Range{0.0, 1.0},
         "share of the error that the map of forces by the screw's angle learns at least per visit of a "
@@ -130,17 +109,6 @@ struct EstimatorConfig {
         "relative uncertainty of the screw's stiffness where the model states none; 0: reversals do not "
         "correct the stiffness");
     v.Optional("adapt", adapt, kAny, "false: friction levels and stiffness keep their commissioned values");
-    v.Optional("velocity_noise_mm_s", velocity_noise_mm_s, kNotNegative,
-               "instead of velocity_noise, for every axis alike");
-    v.Optional("bristle_noise_N", bristle_noise_N, kNotNegative,
-               "instead of bristle_noise, for every axis alike");
-    v.Optional("level_noise_N", level_noise_N, kNotNegative, "instead of level_noise, for every axis alike");
-    v.Optional("four_state_level_noise_N", four_state_level_noise_N, kNotNegative,
-               "instead of four_state_level_noise, for every axis alike");
-    v.Optional("disturbance_noise_N", disturbance_noise_N, kNotNegative,
-               "instead of disturbance_noise, for every axis alike");
-    v.Optional("motion_gate_mm_s", motion_gate_mm_s, kPositive,
-               "instead of motion_gate, for every axis alike");
   }
 };
 

@@ -18,7 +18,7 @@ constexpr std::size_t kG = 3;
 FourStateFilter::FourStateFilter(const FilterSetup& setup) noexcept
     : setup_(setup),
       lag_(setup.period_s, setup.lag_s),
-      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}) {
+      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}, setup.Sudden_m()) {
   const Friction& f = setup.friction;
   const auto& c = setup.config;
   const double mass_kg = setup.mechanics.mass_kg;
@@ -26,10 +26,8 @@ FourStateFilter::FourStateFilter(const FilterSetup& setup) noexcept
   velocity_decay_ = Exp(-rate * setup.period_s);
   velocity_gain_ = rate > 0.0 ? -Expm1(-rate * setup.period_s) / (rate * mass_kg) : setup.period_s / mass_kg;
   level_N_ = 0.25 * (f.Fc_plus_N + f.Fc_minus_N + f.Fs_plus_N + f.Fs_minus_N);
-  const AxisNoise noise = setup.Noise();
-  gate_m_s_ = noise.gate_m_s;
-  noise_ = {setup.PerPeriod(c.position_noise_um * 1e-6), setup.PerPeriod(noise.velocity_m_s),
-            setup.PerPeriod(noise.bristle_N) / f.sigma0_N_m, setup.PerPeriod(noise.four_state_level_N)};
+  noise_ = {setup.PerPeriod(c.position_noise_um * 1e-6), setup.PerPeriod(c.velocity_noise_mm_s * 1e-3),
+            setup.PerPeriod(c.bristle_noise_N) / f.sigma0_N_m, setup.PerPeriod(c.four_state_level_noise_N)};
   initial_std_ = {setup.measurement_std_m, 1e-4, 0.5 * level_N_ / f.sigma0_N_m,
                   c.initial_level_std * level_N_};
   Reset(0.0);
@@ -104,7 +102,7 @@ AxisEstimate FourStateFilter::Update(const AxisEstimatorInput& in) noexcept {
     const bool adapted = !in.at_rest && c.adapt;
     if (!following_) {
       X noise = noise_;
-      const double moving = std::min(1.0, std::abs(core_.x[kV]) / gate_m_s_);
+      const double moving = std::min(1.0, std::abs(core_.x[kV]) / (c.motion_gate_mm_s * 1e-3));
       noise[kG] *= adapted ? moving : 0.0;
       const double force_N = lag_.Step(in.force_N[1])[0];
       core_.Predict<kG>(
@@ -117,7 +115,6 @@ AxisEstimate FourStateFilter::Update(const AxisEstimatorInput& in) noexcept {
     following_ = false;
     if (in.fresh) {
       Innovation innovation;
-      gate_.Expect(setup_.Sudden_m(in.force_N[1], in.force_N[2]));
       const auto result = core_.UpdateState0(in.position_m, setup_.measurement_std_m, gate_.gate(),
                                              {true, true, true, adapted}, innovation);
       gate_.After(innovation.value, innovation.std);

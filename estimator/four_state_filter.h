@@ -43,7 +43,6 @@ class FourStateFilter {
   double velocity_gain_ = 0.0;
   double friction_ahead_N_ = 0.0;
   SuddenGate gate_;
-  double gate_m_s_ = 0.0;  // speed from which parameters take all of their noise
   std::uint32_t gated_in_a_row_ = 0;
   bool following_ = true;
 };

@@ -25,13 +25,10 @@ struct InnovationGate {
 /// of a flipped bit; the next one tells. So the first is left out, and what lasts is believed.
 class SuddenGate {
  public:
-  explicit SuddenGate(const InnovationGate& gate) noexcept
-      : gate_{gate.sigmas, kTwoPeriods * gate.absolute}, first_{gate}, absolute_m_(gate.absolute) {}
+  SuddenGate(const InnovationGate& gate, double sudden_m) noexcept
+      : gate_{gate.sigmas, kTwoPeriods * gate.absolute},
+        first_{gate.sigmas, std::min(gate.absolute, sudden_m)} {}
 
-  SuddenGate(const InnovationGate& gate, double sudden_m) noexcept : SuddenGate(gate) { Expect(sudden_m); }
-
-  /// How far forces that are not known can take the axis in the period of the next reading.
-  void Expect(double sudden_m) noexcept { first_.absolute = std::min(absolute_m_, sudden_m); }
   [[nodiscard]] const InnovationGate& gate() const noexcept { return off_ ? gate_ : first_; }
   void After(double innovation_m, double std_m) noexcept {
     off_ = !(std::abs(innovation_m) <= std::max(first_.sigmas * std_m, first_.absolute));
@@ -44,7 +41,6 @@ class SuddenGate {
 
   InnovationGate gate_;
   InnovationGate first_;
-  double absolute_m_ = 0.0;
   bool off_ = false;  ///< the reading before was suddenly off
 };
 

@@ -1,7 +1,6 @@
 #include "estimator/momentum_balance.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "estimator/share_of_period.h"
 
@@ -12,15 +11,11 @@ namespace {
 constexpr double kLow = 0.1;         // low-pass of both: 10 ms
 constexpr double kSlowHigh = 0.005;  // high-pass for the mass: 200 ms
 constexpr double kFastHigh = 0.06;   // and for the delay: 16 ms
-// Units of what teaches: an acceleration and a change of force that stand out from friction.
-constexpr double kFrictions = 2.29;       // of Fc / m
-constexpr double kForceFrictions = 2.56;  // of Fc, per millisecond
-// Evidence that the commissioned mass weighs as much as, in such units ms, and the commissioned delay.
+// Evidence that the commissioned mass weighs as much as, (m/s^2)^2 ms, and the commissioned delay, (N/ms)^2
+// ms.
 constexpr double kMassPrior = 10.0;
-constexpr double kDelayPrior = 0.2;
+constexpr double kDelayPrior = 2e3;
 constexpr double kMost = 0.4;
-
-constexpr double Square(double x) noexcept { return x * x; }
 
 }  // namespace
 
@@ -28,8 +23,6 @@ MomentumBalance::MomentumBalance(const Tuning& tuning) noexcept
     : tuning_(tuning),
       shares_{ShareOfPeriod(kLow, tuning.period_s), ShareOfPeriod(kSlowHigh, tuning.period_s),
               ShareOfPeriod(kFastHigh, tuning.period_s)},
-      mass_unit_(Square(kFrictions * tuning.scale.acceleration_m_s2)),
-      delay_unit_(Square(kForceFrictions * tuning.scale.friction_N)),
       period_ms_(tuning.period_s / 1e-3) {}
 
 MomentumBalance::Bands MomentumBalance::Filter::Step(double value, const Shares& shares) noexcept {
@@ -68,22 +61,15 @@ void MomentumBalance::Learn(double position_m, double force_N, double friction_N
   LearnDelay(a.fast, a.fast_change, f.fast, mass_kg);
 }
 
-void MomentumBalance::Rest() noexcept {
-  Pause();
-  if (std::abs(extra_kg_) >= kAtBound * kMost * tuning_.mass_kg) extra_kg_ = mass_seen_ = 0.0;
-  if (delay_periods_ >= kAtBound) delay_periods_ = delay_seen_ = 0.0;
-}
-
 void MomentumBalance::LearnMass(double acceleration_m_s2, double change_m_s2, double force_N,
                                 double mass_kg) noexcept {
   if (!(tuning_.mass_rate > 0.0)) return;
   const double late_m_s2 = acceleration_m_s2 + delay_periods_ * change_m_s2;
   const double seen = period_ms_ * late_m_s2;
-  mass_seen_ = std::min(mass_seen_ + seen * late_m_s2, mass_unit_ / tuning_.mass_rate);
+  mass_seen_ = std::min(mass_seen_ + seen * late_m_s2, 1.0 / tuning_.mass_rate);
   const double most_kg = kMost * tuning_.mass_kg;
-  extra_kg_ =
-      std::clamp(extra_kg_ + seen * (force_N - mass_kg * late_m_s2) / (mass_seen_ + kMassPrior * mass_unit_),
-                 -most_kg, most_kg);
+  extra_kg_ = std::clamp(extra_kg_ + seen * (force_N - mass_kg * late_m_s2) / (mass_seen_ + kMassPrior),
+                         -most_kg, most_kg);
 }
 
 void MomentumBalance::LearnDelay(double acceleration_m_s2, double change_m_s2, double force_N,
@@ -91,9 +77,9 @@ void MomentumBalance::LearnDelay(double acceleration_m_s2, double change_m_s2, d
   if (!(tuning_.delay_rate > 0.0)) return;
   const double change_N = mass_kg * change_m_s2;
   // Periods times change per period are milliseconds times change per millisecond.
-  delay_seen_ = std::min(delay_seen_ + change_N * change_N / period_ms_, delay_unit_ / tuning_.delay_rate);
+  delay_seen_ = std::min(delay_seen_ + change_N * change_N / period_ms_, 1e4 / tuning_.delay_rate);
   const double error_N = force_N - mass_kg * (acceleration_m_s2 + delay_periods_ * change_m_s2);
-  const double more = change_N * error_N / (delay_seen_ + kDelayPrior * delay_unit_) / period_ms_;
+  const double more = change_N * error_N / (delay_seen_ + kDelayPrior) / period_ms_;
   delay_periods_ = std::clamp(delay_periods_ + more, 0.0, 1.0);
 }
 

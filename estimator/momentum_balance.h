@@ -1,7 +1,5 @@
 #pragma once
 
-#include "estimator/filter_setup.h"
-
 namespace contour {
 
 /// By how much the axis is heavier, and its drive later, than commissioned, learnt on line from what the
@@ -19,9 +17,8 @@ class MomentumBalance {
   struct Tuning {
     double mass_kg = 1.0;  ///< as commissioned
     double period_s = 1e-3;
-    double mass_rate = 0.0;   ///< share of the error learnt per ms at 2.3 Fc / m in the long run; 0: none
-    double delay_rate = 0.0;  ///< and per ms at a change of 2.6 Fc per ms
-    AxisScale scale{};
+    double mass_rate = 0.0;   ///< share of the error learnt per ms at 1 m/s^2 in the long run; 0: none
+    double delay_rate = 0.0;  ///< and per ms at 100 N of change per ms
   };
 
   MomentumBalance() noexcept = default;
@@ -38,9 +35,6 @@ class MomentumBalance {
     known_periods_ = 0;
     missing_.known = false;
   }
-
-  /// The axis rests: what has come to its bound is no answer, and the commissioned value holds again.
-  void Rest() noexcept;
 
   [[nodiscard]] double extra_kg() const noexcept { return extra_kg_; }
   /// Periods by which the drive acts later than commissioned, 0 to 1.
@@ -77,8 +71,6 @@ class MomentumBalance {
 
   Tuning tuning_;
   Shares shares_;
-  double mass_unit_ = 1.0;   // (m/s^2)^2
-  double delay_unit_ = 1.0;  // (N/ms)^2
   double period_ms_ = 1.0;
   double extra_kg_ = 0.0;
   double delay_periods_ = 0.0;

@@ -7,37 +7,44 @@
 namespace contour {
 namespace {
 
+// Presliding: the bristle is well below the level it would slip at.
+constexpr double kPreslidingShare = 0.7;
+// A bristle below this share of the level after so many presliding lengths of travel: the level is not there.
+// Even with a third of the commissioned stiffness a real one has come to 1 - exp(-4/3) = 0.74 by then.
+constexpr double kMissingShare = 0.3;
+constexpr double kSettledLengths = 4.0;
+constexpr double kSettled_s = 0.05;
+// By how much the level then comes down per presliding length.
+constexpr double kGivingUpShare = 0.3;
+// What must hold the axis back for a level that was given up to be taken back, in doubts.
+constexpr double kTakenBackDoubts = 4.0;
+// Standard deviation of a level, at most this share of it.
+constexpr double kLargestLevelStd = 0.25;
+// Lowest level, of the commissioned one: an axis may turn out to have hardly any friction.
+constexpr double kLowestLevelShare = 1e-4;
 // To a filter a level is a number like any other, and a jerk's innovation may take it to nothing at once. One
 // reading takes it to this share of the commissioned one, or to that of what it was.
 constexpr double kLeastByReading = 0.1;
 constexpr double kLeastLeft = 0.25;
 
-// Once there is a lasting force, all of the disturbance becomes part of it at this share per millisecond.
-constexpr double kLastingRate = 0.002;
-// Asymmetry moves over to it by this share of what is allowed per millisecond.
-constexpr double kShareRate = 0.02;
-
 // A drive reports rounded torque, of the instant of the sample: its mean over the period is less certain.
 constexpr double kReportedTorqueNoise = 3.0;
-
-// Of the velocity that an axis which begins to be followed has, in Stribeck velocities.
-constexpr double kInitialSpeed = 0.05;
 
 // Largest factor on the noise of parameters and disturbance for a coarse encoder.
 constexpr double kMostCoarse = 7.0;
 
-// One reading moves the stiffness no further than one that is off by so many standard deviations: beyond, it
-// is the model that is wrong, and not by its stiffness.
-constexpr double kMostInfluence = 3.0;
-// What is frozen leaves the learnt stiffness by this share per millisecond, and so does what rests one that
-// was not seen to its end.
+// Once there is a lasting force, all of the disturbance becomes part of it at this share per millisecond.
+constexpr double kLastingRate = 0.002;
+// Asymmetry moves over to it by this share of what is allowed per millisecond.
+constexpr double kShareRate = 0.02;
+constexpr double kGivenUpShare = 0.2;
+constexpr double kComingDownShare = 0.5;
+
+// What is frozen leaves the learnt stiffness by this share per millisecond.
 constexpr double kForgetShare = 0.02;
 
 // Mean of the squared, normalised innovations; share per millisecond.
 constexpr double kSurpriseShare = 0.01;
-// However well the filter predicts, its friction is no better known than by
-// 0.45 of what its covariance says.
-constexpr double kLeastSurprise = 0.2;
 
 // The centre of mass runs ahead of the table by (1 - Mt/m) of the wind-up F / K.
 double AheadOfTable(const Mechanics& m) noexcept {
@@ -52,9 +59,7 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
       model_(setup.friction, setup.mechanics.mass_kg, setup.period_s,
              setup.config.disturbance_decay_ms * 1e-3, AheadOfTable(setup.mechanics)),
       lag_(setup.period_s, setup.lag_s),
-      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}),
-      evidence_({setup.friction.sigma0_N_m, setup.mechanics.mass_kg, setup.config.mass_std,
-                 setup.config.timing_noise, setup.period_s}),
+      gate_({setup.config.innovation_gate_sigma, setup.config.innovation_gate_um * 1e-6}, setup.Sudden_m()),
       lasting_share_(ShareOfPeriod(kLastingRate, setup.period_s)),
       asymmetry_share_(ShareOfPeriod(kShareRate, setup.period_s)),
       surprise_share_(ShareOfPeriod(kSurpriseShare, setup.period_s)),
@@ -63,22 +68,20 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
   // A coarse encoder would slow the parameters down with the rest of the filter, more than their drift
   // allows.
   const double coarse = std::min(setup.measurement_std_m / (c.measurement_noise_um * 1e-6), kMostCoarse);
-  const AxisNoise noise = setup.Noise();
-  gate_m_s_ = noise.gate_m_s;
   noise_[kPosition] = setup.PerPeriod(c.position_noise_um * 1e-6);
-  noise_[kVelocity] = setup.PerPeriod(noise.velocity_m_s) * std::sqrt(coarse);
+  noise_[kVelocity] = setup.PerPeriod(c.velocity_noise_mm_s * 1e-3) * std::sqrt(coarse);
   if (setup.reported_torque) noise_[kVelocity] *= kReportedTorqueNoise;
-  noise_[kBristle] = setup.PerPeriod(noise.bristle_N);
-  noise_[kDisturbance] = setup.PerPeriod(noise.disturbance_N) * coarse;
-  noise_[kLevelPlus] = setup.PerPeriod(noise.level_N) * coarse;
+  noise_[kBristle] = setup.PerPeriod(c.bristle_noise_N);
+  noise_[kDisturbance] = setup.PerPeriod(c.disturbance_noise_N) * coarse;
+  noise_[kLevelPlus] = setup.PerPeriod(c.level_noise_N) * coarse;
   noise_[kLevelMinus] = noise_[kLevelPlus];
   noise_[kLogSigma0] = setup.PerPeriod(c.log_sigma0_noise) * coarse;
 
   const Friction& f = setup.friction;
   initial_std_[kPosition] = setup.measurement_std_m;
-  initial_std_[kVelocity] = kInitialSpeed * f.vs_m_s;
+  initial_std_[kVelocity] = 1e-4;
   initial_std_[kBristle] = 0.5 * std::max(f.Fs_plus_N, f.Fs_minus_N);
-  initial_std_[kDisturbance] = noise.disturbance_N;
+  initial_std_[kDisturbance] = c.disturbance_noise_N;
   initial_std_[kLevelPlus] = c.initial_level_std * f.Fc_plus_N;
   initial_std_[kLevelMinus] = c.initial_level_std * f.Fc_minus_N;
   initial_std_[kLogSigma0] = c.initial_log_sigma0_std;
@@ -98,7 +101,6 @@ void SevenStateFilter<Core>::Reset(double position_m) noexcept {
   core_.x[kLevelMinus] = setup_.friction.Fc_minus_N;
   core_.s = {};
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = initial_std_[i];
-  evidence_.Reset();
   last_position_m_ = position_m;
   periods_since_position_ = 1.0;
   Follow(position_m);
@@ -120,7 +122,6 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   lasting_N_ = 0.0;
   direction_ = travel_direction_ = 0;
   travel_m_ = travel_s_ = 0.0;
-  evidence_.Rest();
   lag_.Reset();
   at_ = model_.TermsAt(x[kVelocity]);
   predicted_ = x;
@@ -162,7 +163,7 @@ CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::TimeUpdate(const AxisEstimator
   auto& x = core_.x;
   Reverse(in.commanded_velocity_m_s);
   driving_N_ = driving_before_N_;
-  const double moving = std::min(1.0, std::abs(x[kVelocity]) / gate_m_s_);
+  const double moving = std::min(1.0, std::abs(x[kVelocity]) / (setup_.config.motion_gate_mm_s * 1e-3));
   X noise = noise_;
   noise[kDisturbance] *= moving;
   if (in.at_rest) noise[kBristle] *= setup_.config.rest_noise;
@@ -175,11 +176,6 @@ CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::TimeUpdate(const AxisEstimator
   const auto adapted = Adapted(in.at_rest);
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
 
-  // Where sigma0 does not show, nothing is to follow from what it is uncertain by: sigma points with other
-  // stiffnesses pull the mean of a bristle that turns round faster than it can be seen.
-  auto& row = core_.s[kLogSigma0];
-  const double log_sigma0_std = std::sqrt(core_.Variance(kLogSigma0));
-  if (!evidence_.matters()) row = {};
   const SevenStateInput input = Input(at_, lag_.Step(in.force_N[1]));
   if constexpr (requires { core_.Draw(std::declval<SigmaPoints<kSevenStates>&>()); }) {
     core_.template Predict<kMovingStates>(
@@ -190,24 +186,7 @@ CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::TimeUpdate(const AxisEstimator
         [&](X& mean, SquareMatrix<kSevenStates>& t) noexcept { model_.PropagateTangent(mean, t, input); },
         noise);
   }
-  if (!evidence_.matters()) row[kLogSigma0] = log_sigma0_std;
   at_ = model_.TermsAt(x[kVelocity]);
-}
-
-// A stiffness that nothing has confirmed is not what an axis is to stand on.
-template <class Core>
-void SevenStateFilter<Core>::JudgeStiffness(const AxisEstimatorInput& in, double surprise) noexcept {
-  double& log_sigma0 = core_.x[kLogSigma0];
-  if (frozen_) evidence_.Forget();
-  if (in.at_rest || !adapts()) {
-    evidence_.Rest();
-    if (in.at_rest && adapts()) LeaveBounds();
-    log_sigma0 += forget_share_ * (evidence_.kept() - log_sigma0);
-    return;
-  }
-  evidence_.See({LevelState() == kLevelPlus, core_.x[kBristle], Level_N(), core_.x[kVelocity], travel_m_,
-                 in.commanded_acceleration_m_s2, in.force_N[0] - in.force_N[1], surprise},
-                log_sigma0);
 }
 
 template <class Core>
@@ -218,7 +197,7 @@ StateMask<kSevenStates> SevenStateFilter<Core>::Adapted(bool at_rest) const noex
   const bool forward = x[kVelocity] >= 0.0;
   mask[kLevelPlus] = moving && forward;
   mask[kLevelMinus] = moving && !forward;
-  mask[kLogSigma0] = moving && evidence_.shows();
+  mask[kLogSigma0] = moving && std::abs(x[kBristle]) < kPreslidingShare * Level_N();
   return mask;
 }
 
@@ -230,17 +209,125 @@ UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput&
   const Friction& f = setup_.friction;
   const double least_plus_N = std::min(kLeastLeft * x[kLevelPlus], kLeastByReading * f.Fc_plus_N);
   const double least_minus_N = std::min(kLeastLeft * x[kLevelMinus], kLeastByReading * f.Fc_minus_N);
-  const double log_sigma0 = x[kLogSigma0];
-  gate_.Expect(setup_.Sudden_m(in.force_N[1], in.force_N[2]));
   const UpdateResult result =
       core_.UpdateState0(y, setup_.measurement_std_m, gate_.gate(), Adapted(in.at_rest), innovation);
-  const double off = std::abs(innovation.value), most = kMostInfluence * innovation.std;
-  if (off > most) x[kLogSigma0] = log_sigma0 + most / off * (x[kLogSigma0] - log_sigma0);
   gate_.After(innovation.value, innovation.std);
   x[kLevelPlus] = std::max(x[kLevelPlus], least_plus_N);
   x[kLevelMinus] = std::max(x[kLevelMinus], least_minus_N);
   at_ = model_.TermsAt(x[kVelocity]);
   return result;
+}
+
+// After some presliding lengths g / sigma0 of travel in one direction the bristle has come to the level:
+// F = g (1 - exp(-sigma0 x / g)). If it stays far below, there is not that much friction, but the filter
+// cannot see that by itself: far from the level, F does not depend on it (dF/dg = 0 at F = 0). So the level
+// comes down by travel. Nor does a level of nearly nothing come up again by itself: it is taken from what
+// holds the axis back.
+template <class Core>
+void SevenStateFilter<Core>::JudgeLevel(bool at_rest) noexcept {
+  auto& x = core_.x;
+  const int direction = LevelState() == kLevelPlus ? 1 : -1;
+  if (direction != travel_direction_) {
+    travel_direction_ = direction;
+    travel_m_ = travel_s_ = 0.0;
+  }
+  const double step_m = std::abs(x[kVelocity]) * setup_.period_s;
+  travel_m_ += step_m;
+  travel_s_ += setup_.period_s;
+  if (at_rest || !adapts()) return;
+  const double level_N = Level_N();
+  // By the commissioned stiffness: the estimated one goes down instead of the level when there is no
+  // friction.
+  const double length_m = level_N / setup_.friction.sigma0_N_m;
+  // A disturbance as small as an error of the level would be is an error of the level.
+  const double doubt_N = setup_.config.level_error * CommissionedLevel_N();
+  const double held_N =
+      direction * (x[kBristle] + std::clamp(x[kDisturbance] - lasting_N_, -doubt_N, doubt_N));
+  double& level = x[LevelState()];
+  // A jerk may take the axis over all the lengths before the filter has seen what held it back.
+  const bool settled = travel_m_ > kSettledLengths * length_m && travel_s_ > kSettled_s;
+  // A drive that holds the axis by itself, with a wrong mass in the model, looks like a missing level.
+  if (!setup_.reported_torque && settled && held_N <= kMissingShare * level_N) {
+    level *= std::exp(-kGivingUpShare * step_m / length_m);
+    // Nothing to act upon is left of it.
+    if (level < doubt_N) level = kLowestLevelShare * CommissionedLevel_N();
+    // The bristle comes down with its level; what it held besides was no friction.
+    const double lowered_N = Level_N();
+    const double excess_N = x[kBristle] - std::clamp(x[kBristle], -lowered_N, lowered_N);
+    x[kBristle] -= excess_N;
+    x[kDisturbance] += excess_N;
+  } else if (travel_m_ > kSettledLengths * CommissionedLevel_N() / setup_.friction.sigma0_N_m) {
+    TakeLevelBack(direction * (x[kBristle] + x[kDisturbance] - lasting_N_), kTakenBackDoubts * doubt_N);
+  }
+}
+
+template <class Core>
+void SevenStateFilter<Core>::TakeLevelBack(double held_N, double least_N) noexcept {
+  if (held_N < least_N || Level_N() > kMissingShare * held_N) return;
+  auto& x = core_.x;
+  const std::size_t i = LevelState();
+  x[i] *= held_N / Level_N();
+  x[kBristle] += x[kDisturbance] - lasting_N_;
+  x[kDisturbance] = lasting_N_;
+  const double share = initial_std_[i] / std::sqrt(core_.Variance(i));
+  for (double& s : core_.s[i]) s *= share;
+}
+
+// Beyond what an error of the level may be, a disturbance is a force from outside. It does not fade, or the
+// levels would have to take it up, of which one would come down to nothing.
+template <class Core>
+void SevenStateFilter<Core>::HoldLastingForce() noexcept {
+  const double room_N = setup_.config.lasting_force * CommissionedLevel_N();
+  const double beyond_N = core_.x[kDisturbance] - lasting_N_;
+  lasting_N_ += beyond_N - std::clamp(beyond_N, -room_N, room_N);
+  if (std::abs(lasting_N_) > room_N) lasting_N_ += lasting_share_ * (core_.x[kDisturbance] - lasting_N_);
+}
+
+// A force from outside and levels that differ by as much between the directions are the same to one encoder.
+// More asymmetry than a model may lack is such a force.
+template <class Core>
+void SevenStateFilter<Core>::ShareAsymmetry() noexcept {
+  auto& x = core_.x;
+  const Friction& f = setup_.friction;
+  const double most_N = setup_.config.level_asymmetry * 0.5 * (f.Fc_plus_N + f.Fc_minus_N);
+  const double asymmetry_N = 0.5 * ((x[kLevelPlus] - f.Fc_plus_N) - (x[kLevelMinus] - f.Fc_minus_N));
+  const double beyond_N = asymmetry_N - std::clamp(asymmetry_N, -most_N, most_N);
+  const double excess_N = std::clamp(beyond_N, -asymmetry_share_ * most_N, asymmetry_share_ * most_N);
+  x[kLevelPlus] -= excess_N;
+  x[kLevelMinus] += excess_N;
+  x[kBristle] -= excess_N;
+  x[kDisturbance] += excess_N;
+  lasting_N_ += excess_N;
+}
+
+template <class Core>
+bool SevenStateFilter<Core>::Bound() noexcept {
+  bool bounded = false;
+  const auto clamp = [&bounded](double& value, double low, double high) {
+    if (value < low || value > high) {
+      value = std::clamp(value, low, high);
+      bounded = true;
+    }
+  };
+  const auto& c = setup_.config;
+  const Friction& f = setup_.friction;
+  auto& x = core_.x;
+  clamp(x[kLevelPlus], f.Fc_plus_N * kLowestLevelShare, f.Fc_plus_N * c.level_range);
+  clamp(x[kLevelMinus], f.Fc_minus_N * kLowestLevelShare, f.Fc_minus_N * c.level_range);
+  clamp(x[kLogSigma0], -c.log_sigma0_range, c.log_sigma0_range);
+  // No bristle holds more than the largest level: the rest is a force from outside.
+  const double most_N = c.level_range * std::max(f.Fs_plus_N, f.Fs_minus_N);
+  const double rest_N = x[kBristle] - std::clamp(x[kBristle], -most_N, most_N);
+  x[kBristle] -= rest_N;
+  x[kDisturbance] += rest_N;
+  // A level is positive: its sigma points must be too. Scaling a row of S scales that state's deviation and
+  // keeps its correlations.
+  for (const auto i : {kLevelPlus, kLevelMinus}) {
+    const double share = kLargestLevelStd * x[i] / std::sqrt(core_.Variance(i));
+    if (share < 1.0)
+      for (double& s : core_.s[i]) s *= share;
+  }
+  return bounded;
 }
 
 template <class Core>
@@ -260,14 +347,13 @@ void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
 }
 
 // The covariance says what noise does. Innovations larger than it expects (a wrong model) widen the band in
-// proportion, smaller ones narrow it: process noise is stated for what an axis does at its worst, and a wrong
-// mass is seen by nothing but the acceleration it is multiplied with.
+// proportion, and a wrong mass is seen by nothing but the acceleration it is multiplied with.
 template <class Core>
 double SevenStateFilter<Core>::FrictionStd_N(double acceleration_m_s2) const noexcept {
   const double filter_N =
       core_.Std({0.0, model_.sigma2_Ns_m(), 1.0, 1.0, 0.0, 0.0, 0.0}, kVelocity, kLevelPlus);
   const double mass_N = setup_.config.mass_std * setup_.mechanics.mass_kg * acceleration_m_s2;
-  return std::sqrt(std::max(kLeastSurprise, surprise_) * filter_N * filter_N + mass_N * mass_N);
+  return std::sqrt(std::max(1.0, surprise_) * filter_N * filter_N + mass_N * mass_N);
 }
 
 template <class Core>
@@ -293,10 +379,22 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
     }
     out.innovation_m = innovation.value;
     out.innovation_std_m = innovation.std;
+    if (frozen_) core_.x[kLogSigma0] -= forget_share_ * core_.x[kLogSigma0];
     JudgeLevel(in.at_rest);
-    JudgeStiffness(in, innovation.std > 0.0 ? innovation.value / innovation.std : 0.0);
     const bool bounded = Bound();
-    if (!in.at_rest && adapts()) JudgeOutsideForce();
+    if (!in.at_rest && adapts()) {
+      const Friction& f = setup_.friction;
+      const double plus = core_.x[kLevelPlus] / f.Fc_plus_N, minus = core_.x[kLevelMinus] / f.Fc_minus_N;
+      // Without any level there is nothing to tell an outside force from: it may be friction that comes back.
+      if (std::max(plus, minus) < kGivenUpShare) {
+        lasting_N_ = 0.0;
+      } else {
+        HoldLastingForce();
+        // A level that comes down where there is no outside force is being given up; the other one will be
+        // next.
+        if (lasting_N_ != 0.0 || std::min(plus, minus) > kComingDownShare) ShareAsymmetry();
+      }
+    }
     if (bounded && out.limit == Reason::kNone) out.limit = Reason::kParameterBound;
   }
   if (in.fresh) {

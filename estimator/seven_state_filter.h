@@ -13,7 +13,6 @@
 #include "estimator/seven_state_model.h"
 #include "estimator/sqrt_ekf.h"
 #include "estimator/sqrt_ukf.h"
-#include "estimator/stiffness_evidence.h"
 
 namespace contour {
 
@@ -72,13 +71,7 @@ class SevenStateFilter {
   [[nodiscard]] SevenStateInput Input(const SpeedTerms& at,
                                       std::array<double, kSubsteps> force_N) const noexcept {
     for (double& f : force_N) f += driving_N_ - inertial_N_ - viscous_N_;
-    return {force_N,
-            factor_plus_,
-            factor_minus_,
-            at.sigma1_Ns_m,
-            at_rest_,
-            lasting_N_,
-            at_rest_ ? setup_.config.rest_stiffness : 1.0};
+    return {force_N, factor_plus_, factor_minus_, at.sigma1_Ns_m, at_rest_, lasting_N_};
   }
   [[nodiscard]] double Total_N(const X& x, const SpeedTerms& at) const noexcept {
     return model_.Friction_N(x, at, Input(at, {})) + viscous_N_;
@@ -96,14 +89,11 @@ class SevenStateFilter {
   CONTOUR_WIDE_VECTORS void TimeUpdate(const AxisEstimatorInput& in) noexcept;
   UpdateResult MeasurementUpdate(const AxisEstimatorInput& in, Innovation& innovation) noexcept;
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
-  void JudgeStiffness(const AxisEstimatorInput& in, double surprise) noexcept;
   void JudgeLevel(bool at_rest) noexcept;
   void TakeLevelBack(double held_N, double least_N) noexcept;
-  void JudgeOutsideForce() noexcept;
   void HoldLastingForce() noexcept;
   void ShareAsymmetry() noexcept;
   bool Bound() noexcept;
-  void LeaveBounds() noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
   [[nodiscard]] double WindUpShare_m(double total_N, double disturbance_N, double force_N) const noexcept;
@@ -112,9 +102,7 @@ class SevenStateFilter {
   SevenStateModel model_;
   DriveLag<kSubsteps> lag_;
   SuddenGate gate_;
-  StiffnessEvidence evidence_;
   X noise_{};
-  double gate_m_s_ = 0.0;       // speed from which parameters take all of theirs
   double lasting_share_ = 0.0;  // shares per period
   double asymmetry_share_ = 0.0;
   double surprise_share_ = 0.0;

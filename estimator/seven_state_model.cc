@@ -61,8 +61,7 @@ void SevenStateModel::Propagate(SigmaPoints<kSevenStates>& points, const SevenSt
   static_assert(Points::kCentre < kHalf);
   auto& r = points.row;
   alignas(32) Points::Row s0, low_speeds;
-  const double sigma0_N_m = in.stiffness * friction_.sigma0_N_m;
-  for (std::size_t k = 0; k < kHalf; ++k) s0[k] = sigma0_N_m * Exp(r[kLogSigma0][k]);
+  for (std::size_t k = 0; k < kHalf; ++k) s0[k] = friction_.sigma0_N_m * Exp(r[kLogSigma0][k]);
   const double square = s0[Points::kCentre] * s0[Points::kCentre];
   for (std::size_t k = 0; k < kHalf; ++k) s0[kHalf + k] = square / s0[k];
   alignas(32) std::array<double, 4> few{r[kVelocity][0], r[kVelocity][1], r[kVelocity][kHalf],
@@ -81,7 +80,7 @@ void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateIn
                                 double sigma0_N_m) const noexcept {
   using One = std::array<double, 1>;
   One p{x[kPosition]}, v{x[kVelocity]}, f{x[kBristle]}, d{x[kDisturbance]}, low_speeds{low_speed};
-  const One gp{x[kLevelPlus]}, gm{x[kLevelMinus]}, s0{in.stiffness * sigma0_N_m};
+  const One gp{x[kLevelPlus]}, gm{x[kLevelMinus]}, s0{sigma0_N_m};
   for (std::size_t i = 0; i < kSubsteps; ++i) {
     if (i > 0) LowSpeeds(v, 1, low_speeds);
     Substep(p, v, f, d, gp, gm, s0, low_speeds, in.force_N[i], in);
@@ -101,7 +100,7 @@ SpeedTerms SevenStateModel::TermsAt(double velocity_m_s) const noexcept {
 
 void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& t,
                                        const SevenStateInput& in) const noexcept {
-  const double s0 = in.stiffness * friction_.sigma0_N_m * Exp(x[kLogSigma0]);
+  const double s0 = friction_.sigma0_N_m * Exp(x[kLogSigma0]);
   const double h = step_s_;
   for (const double force_N : in.force_N) {
     const bool forward = x[kVelocity] >= 0.0;

@@ -33,7 +33,6 @@ struct SevenStateInput {
   double sigma1_Ns_m = 0.0;  ///< bristle damping at the speed of this period
   bool at_rest = false;      ///< the disturbance keeps its value: nothing tells it from the bristle now
   double lasting_N = 0.0;    ///< what the disturbance fades to
-  double stiffness = 1.0;    ///< share of sigma0 with which the bristle follows the motion
 };
 
 /// What of the law depends on the velocity alone.

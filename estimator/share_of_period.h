@@ -11,7 +11,4 @@ inline double ShareOfPeriod(double per_millisecond, double period_s) noexcept {
   return std::min(per_millisecond * (period_s / 1e-3), 1.0);
 }
 
-/// What is learnt on line counts as having come to its bound from this share of it on.
-inline constexpr double kAtBound = 0.98;
-
 }  // namespace contour

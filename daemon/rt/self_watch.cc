@@ -76,6 +76,7 @@ SelfWatch::SelfWatch(const CycleConfig& config)
       late_(InARowFor(config, config.control.supervision.late_ms)) {
   const SupervisionConfig& s = config.control.supervision;
   const EstimatorKind kind = EstimatorFor(config);
+  in_cascade_ = InCascade(config);
   friction_filter_ = kind != EstimatorKind::kKinematic && kind != EstimatorKind::kDisturbanceObserver;
   for (std::size_t i = 0; i < config.axes.size(); ++i) {
     oscillation_.push_back(OscillationDetector(OscillationBoundsFor(config, i)));
@@ -143,6 +144,8 @@ Softness SelfWatch::softness() const noexcept {
 
 FaultSeen SelfWatch::Stop() const noexcept {
   if (ladder_.step() != SupervisionStep::kStopped) return {};
+  // A drive's own loop is not ours to soften: what does not grow is told, not stopped.
+  if (in_cascade_ && ladder_.reason() == Reason::kOscillation) return {};
   return {ladder_.reason(), ladder_.where()};
 }
 

@@ -53,6 +53,7 @@ class SelfWatch {
   FaultSeen alarm_;
   FaultSeen growing_;
   bool friction_filter_ = false;
+  bool in_cascade_ = false;
   bool clean_ = true;
 };
 

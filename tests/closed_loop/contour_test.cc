@@ -54,8 +54,8 @@ TEST(Contour, WithoutFrictionCompensationDoesNoHarm) {
       none.push_back(std::string("emulator.axes.") + axis + ".friction." + key + "=0");
   const Program programs[] = {kSmall, Circle(0.1, 2, 0.125), Circle(10.0, 3, 0.7957747155)};
   // On the small circles only the encoder's steps and the drive's torque steps are left, and the largest of
-  // thousands of samples is chance: two counts of the encoder (5 mm / 2^20) are no difference.
-  constexpr double kCount_m = 2.0 * 5e-3 / 1048576;
+  // thousands of samples is chance: one count of the encoder (5 mm / 2^20) is no difference.
+  constexpr double kCount_m = 5e-3 / 1048576;
   for (const char* seed : {"1", "2", "3"}) {
     std::vector<std::string> with_seed = none;
     with_seed.push_back(std::string("emulator.seed=") + seed);

@@ -21,7 +21,8 @@ Program Text(const std::string& text) { return ParseProgram(text, "test.yaml", P
 struct Watched {
   std::map<Reason, int> shown;
   Reason ended = Reason::kNone;
-  double swing_m = 0.0;  ///< of the last second, the larger of both axes
+  double swing_m = 0.0;         ///< of the last second, the larger of both axes
+  double torque_step_Nm = 0.0;  ///< largest, in a cycle in which the ladder moved, at rest
 };
 
 Watched RunWatched(const EmulatedMachineFile& file, ControllerName controller, const Program& program) {
@@ -30,6 +31,8 @@ Watched RunWatched(const EmulatedMachineFile& file, ControllerName controller, c
   machine.Enable();
   Watched seen;
   std::array<std::vector<double>, 2> error_m;
+  std::array<double, 2> torque_Nm{};
+  std::array<Reason, 2> limit{};
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) {
     const CycleRecord& r = entry.output.record;
     if (r.state != MachineState::kRunning) {
@@ -40,6 +43,10 @@ Watched RunWatched(const EmulatedMachineFile& file, ControllerName controller, c
       const AxisRecord& a = r.axes[i];
       ++seen.shown[a.limit];
       error_m[i].push_back(a.following_error_m);
+      if (a.limit != limit[i] && (a.limit == Reason::kSoftened || a.limit == Reason::kFallenBack))
+        seen.torque_step_Nm = std::max(seen.torque_step_Nm, std::abs(a.torque_Nm - torque_Nm[i]));
+      torque_Nm[i] = a.torque_Nm;
+      limit[i] = a.limit;
     }
   });
   try {
@@ -55,45 +62,18 @@ Watched RunWatched(const EmulatedMachineFile& file, ControllerName controller, c
   return seen;
 }
 
-// An axis whose bristle is stated four times too stiff and believed at rest, too, swings by 8 um: it is
-// named, softened, fallen back from, and stands.
+// Before: y swings by 1.6 um at 16 Hz for as long as it stands, status Ready, not a word.
 TEST(SelfWatch, AStandingAxisThatSwingsIsNamedAndSoftenedUntilItStands) {
   const Watched seen = RunWatched(
-      ExampleMachine(
-          {"emulator.seed=2", "estimator.rest_stiffness=1", "axes.y.model.friction.sigma0_N_m=2e7"}),
-      ControllerName::kFull,
-      Text("{sequence: [{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 1, corners: continuous}, "
-           "{shape: hold, seconds: 6}]}"));
+      ExampleMachine({"emulator.seed=2"}), ControllerName::kFull,
+      Text("{sequence: [{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 4, corners: continuous}, "
+           "{shape: hold, seconds: 4}]}"));
   EXPECT_TRUE(seen.shown.contains(Reason::kOscillationNoticed));
   EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
   EXPECT_EQ(seen.ended, Reason::kNone);
-  EXPECT_LT(seen.swing_m, 0.3e-6);
-}
-
-// Before: in csp a swing that did not grow was told and never stopped, whatever it was.
-TEST(SelfWatch, ASwingThatLastsIsStoppedInBothModes) {
-  for (const std::string mode : {"cst", "csp"}) {
-    SelfWatch watch(
-        MakeCycleConfig(ExampleMachine({"axes.x.drive.mode=" + mode, "axes.y.drive.mode=" + mode}).machine,
-                        ControllerName::kFull));
-    AxisFeedback feedback;
-    feedback.fresh = true;
-    AxisEstimate estimate;
-    const ReferencePoint reference;
-    int cycles = 0;
-    for (; cycles < 10000 && watch.Stop().reason == Reason::kNone; ++cycles) {
-      const double phase = 2.0 * 3.14159265 * 16.0 * 1e-3 * cycles;
-      feedback.torque_Nm = 0.01 * std::cos(phase);
-      const SelfWatch::Seen seen{feedback, estimate, reference, 1e-6 * std::sin(phase), 7.96e-4};
-      watch.Look(0, seen);
-      watch.EndCycle(false);
-      if (watch.step() == SupervisionStep::kNoticed) {
-        EXPECT_EQ(watch.Limit(0), Reason::kOscillationNoticed);
-      }
-    }
-    EXPECT_EQ(watch.Stop().reason, Reason::kOscillation) << mode;
-    EXPECT_GT(cycles, 900) << mode << ": three steps of 0.3 s at least";
-  }
+  EXPECT_LT(seen.swing_m, 0.05e-6);
+  // 3 N at the table, in the middle of a swing of 6 N.
+  EXPECT_LT(seen.torque_step_Nm, 0.0024);
 }
 
 TEST(SelfWatch, ALoopInOrderIsLeftAlone) {

@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <vector>
 
 #include "tests/estimator/screw_axis.h"
 #include "tests/support/allocation_guard.h"
@@ -175,55 +173,6 @@ TEST(AxisEstimator, ResetForgetsEverything) {
     ASSERT_EQ(a.friction_N, b.friction_N) << k;
     ASSERT_EQ(a.g_plus_N, b.g_plus_N) << k;
   }
-}
-
-/// The friction estimate on an axis that is `factor` times the usual one in every mass and force, moving
-/// alike.
-std::vector<double> FrictionOf(double factor, const EstimatorConfig& config) {
-  Mechanics m = WrongMechanics();
-  FrictionConfig f = WrongFriction();
-  for (double* x :
-       {&m.mass_kg, &m.table_mass_kg, &m.stiffness_N_m, &m.damping_Ns_m, &f.Fs_plus_N, &f.Fs_minus_N,
-        &f.Fc_plus_N, &f.Fc_minus_N, &f.sigma0_N_m, &f.sigma1_Ns_m, &f.sigma2_Ns_m})
-    *x *= factor;
-  AxisEstimator estimator(EstimatorKind::kFull, m, f, config, 1e-3, 0.2e-3, 5e-3 / 1048576);
-  estimator.Reset(0.0);
-  AxisHorizon horizon(3);
-  FrictionPreview preview;
-  std::vector<double> friction_N;
-  for (int k = 0; k < 4000; ++k) {
-    const double phase = 2.0 * 3.14159265 * 0.5e-3 * k;
-    AxisEstimator::Input in;
-    in.position_m = 5e-3 * (1.0 - std::cos(phase));
-    in.commanded_velocity_m_s = 5e-3 * 3.14159265 * std::sin(phase);
-    in.commanded_acceleration_m_s2 = 5e-3 * 3.14159265 * 3.14159265 * std::cos(phase);
-    const double force_N =
-        factor * (95.0 * in.commanded_acceleration_m_s2 +
-                  std::copysign(50.0, in.commanded_velocity_m_s) * (1.0 + 0.2 * std::sin(9 * phase)));
-    in.force_N = {force_N, force_N, force_N};
-    in.fresh = in.enabled = true;
-    in.at_rest = false;
-    for (auto& r : horizon) r = {in.position_m, in.commanded_velocity_m_s, in.commanded_acceleration_m_s2};
-    friction_N.push_back(estimator.Update(in).friction_N / factor);
-    estimator.PreviewFriction(horizon, horizon.size(), preview);
-  }
-  return friction_N;
-}
-
-// Noise and thresholds are shares of the axis's own numbers. With the keys in newtons they were not.
-TEST(AxisEstimator, AnAxisEightTimesAsHeavyIsEstimatedTheSame) {
-  EstimatorConfig in_newtons;
-  in_newtons.bristle_noise_N = 0.4;
-  in_newtons.level_noise_N = 0.015;
-  in_newtons.disturbance_noise_N = 0.075;
-  const auto largest = [](const EstimatorConfig& config) {
-    const std::vector<double> one = FrictionOf(1.0, config), eight = FrictionOf(8.0, config);
-    double off_N = 0.0;
-    for (std::size_t k = 0; k < one.size(); ++k) off_N = std::max(off_N, std::abs(one[k] - eight[k]));
-    return off_N;
-  };
-  EXPECT_LT(largest({}), 0.01);
-  EXPECT_GT(largest(in_newtons), 1.0);
 }
 
 }  // namespace

@@ -123,22 +123,5 @@ TEST(MomentumBalance, NothingIsLearntFromNoMotionOrAcrossAGap) {
   EXPECT_EQ(balance.extra_kg(), 0.0);
 }
 
-// An axis that is twice as heavy as stated is beyond what may be learnt: at rest the commissioned mass holds
-// again. One that is 20 % heavier keeps what it has learnt.
-TEST(MomentumBalance, WhatHasComeToItsBoundIsGivenUpAtRest) {
-  Axis far{.mass_kg = 180.0};
-  MomentumBalance balance(kTuning);
-  Circle(far, balance, 6000);
-  EXPECT_NEAR(balance.extra_kg(), 36.0, 0.1);
-  balance.Rest();
-  EXPECT_EQ(balance.extra_kg(), 0.0);
-  Axis near{.mass_kg = 108.0};
-  MomentumBalance sound(kTuning);
-  Circle(near, sound, 6000);
-  const double learnt_kg = sound.extra_kg();
-  sound.Rest();
-  EXPECT_EQ(sound.extra_kg(), learnt_kg);
-}
-
 }  // namespace
 }  // namespace contour

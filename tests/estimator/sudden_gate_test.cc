@@ -14,8 +14,7 @@ bool Passes(const SuddenGate& gate, double innovation_m, double std_m) {
 
 TEST(SuddenGate, OneReadingIsLeftOutAndWhatLastsIsBelieved) {
   constexpr double kStd_m = 2e-8;
-  SuddenGate gate({12.0, 20e-6});
-  gate.Expect(4e-6);
+  SuddenGate gate({12.0, 20e-6}, 4e-6);
   EXPECT_TRUE(Passes(gate, 3e-6, kStd_m));
   EXPECT_FALSE(Passes(gate, 15e-6, kStd_m)) << "a SYNC that came late";
   gate.After(15e-6, kStd_m);

@@ -35,7 +35,7 @@ TEST(ViscousCorrection, IsBounded) {
   ViscousCorrection viscous({500.0, 0.1});
   const auto speed = [](int k) { return 0.1 + 0.05 * std::sin(0.01 * k); };
   for (int k = 0; k < 10000; ++k) viscous.Learn(1e6 * speed(k), speed(k), 1.0);
-  EXPECT_NEAR(viscous.extra_Ns_m(), 1100.0, 0.1);
+  EXPECT_DOUBLE_EQ(viscous.extra_Ns_m(), 1100.0);
   for (int k = 0; k < 10000; ++k) viscous.Learn(-1e6 * speed(k), speed(k), 1.0);
   EXPECT_DOUBLE_EQ(viscous.extra_Ns_m(), -500.0);  // no viscous friction at all
 }
