@@ -83,7 +83,7 @@ double FrictionLearner::Level_N(bool forward) const noexcept {
 }
 
 double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noexcept {
-  using namespace friction_term;
+  using namespace friction_term;  // NOLINT(google-build-using-namespace): names of terms only
   const std::array<double, 3> at = LinearFriction::StribeckAt(speed_m_s / setup_.vs_m_s);
   const double even_N = parameters_[kEvenStribeck] * at[2];
   return Level_N(forward) + parameters_[kStribeck] * at[0] + parameters_[kStribeck + 1] * at[1] +

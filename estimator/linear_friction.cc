@@ -48,7 +48,7 @@ std::array<double, 3> LinearFriction::StribeckAt(double speed) noexcept {
 CONTOUR_WIDE_VECTORS
 void LinearFriction::Follow(double step_m, double position_m, double velocity_m_s, double acceleration_m_s2,
                             FrictionTermsState& memory, FrictionTerms& terms) const noexcept {
-  using namespace friction_term;
+  using namespace friction_term;  // NOLINT(google-build-using-namespace): names of terms only
   const double travel_m = std::abs(step_m), speed_m_s = std::abs(velocity_m_s);
   const double fading = velocity_m_s / scale_.sigma1_decay_m_s, speed = speed_m_s / scale_.vs_m_s;
   // Eight exponentials side by side: what the bristles keep, then what speed leaves.

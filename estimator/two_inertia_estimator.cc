@@ -10,7 +10,7 @@
 namespace contour {
 namespace {
 
-using namespace friction_term;
+using namespace friction_term;  // NOLINT(google-build-using-namespace): names of terms only
 
 // Of the level, for each parameter on its own: how far real friction is from the commissioned law's shape.
 constexpr double kShape = 0.15;
@@ -108,7 +108,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       lead_({}, s.filter.period_s),
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
       surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
-      settle_(HalfSeen(s.loop.disturbance_response, found_N_.size() - 1)) {
+      settle_(HalfSeen(s.loop.disturbance_response, kFound - 1)) {
   const Friction& f = s.filter.friction;
   most_N_ = s.filter.config.level_range * std::max({f.Fs_plus_N, f.Fs_minus_N, f.Fc_plus_N, f.Fc_minus_N});
   Reset(0.0);

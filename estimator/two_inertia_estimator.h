@@ -82,7 +82,8 @@ class TwoInertiaEstimator {
   std::size_t settle_ = 1;       ///< periods in which the observer sees half of a force
 
   std::array<double, kLoopQueue + 1> given_N_{};  ///< to the drive, newest first
-  std::array<double, 16> found_N_{};              ///< disturbance at the samples before, a ring
+  static constexpr std::size_t kFound = 16;
+  std::array<double, kFound> found_N_{};  ///< disturbance at the samples before, a ring
   std::size_t newest_ = 0;
   double surprise_N2_ = 0.0;
   std::size_t elapsed_ = 0;  ///< samples since friction was laid along the reference
