@@ -6,15 +6,23 @@
 
 namespace contour {
 
+TwoInertiaAxis TwoInertiaAxisOf(const AxisConfig& axis) {
+  const ExtendedModel model = Extended(axis.model);
+  const Mechanics mechanics = ToSi(model.mechanics);
+  const double sigma2_Ns_m = ToSi(model.friction, mechanics.radius_m_rad).sigma2_Ns_m;
+  const double lag_s = std::max(0.0, 1e-3 * axis.drive.lag_ms + model.added_lag_s);
+  TwoInertiaAxis out = ToTwoInertiaAxis(mechanics, sigma2_Ns_m, lag_s, axis.drive.delay_cycles);
+  // The cycle cannot know of less than its own delay.
+  out.dead_time_s = std::max(0.0, model.added_delay_s);
+  return out;
+}
+
 LoopAxis LoopAxisOf(const AxisConfig& axis) {
   const ExtendedModel model = Extended(axis.model);
   const Mechanics mechanics = ToSi(model.mechanics);
   LoopAxis out;
   out.friction = ToSi(model.friction, mechanics.radius_m_rad);
-  const double lag_s = std::max(0.0, 1e-3 * axis.drive.lag_ms + model.added_lag_s);
-  out.axis = ToTwoInertiaAxis(mechanics, out.friction.sigma2_Ns_m, lag_s, axis.drive.delay_cycles);
-  // The cycle cannot know of less than its own delay.
-  out.axis.dead_time_s = std::max(0.0, model.added_delay_s);
+  out.axis = TwoInertiaAxisOf(axis);
   out.rated_force_N = axis.drive.rated_torque_Nm / mechanics.radius_m_rad;
   out.encoder_step_m = 1e-3 * model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
   if (kLoopTakesScale && axis.drive.linear_scale)

@@ -27,6 +27,9 @@ struct LoopAxis {
   double table_mass_std = 0.0;
 };
 
+/// The axis as the cycle's loop runs on it, with the model's extensions: what is judged is what runs.
+TwoInertiaAxis TwoInertiaAxisOf(const AxisConfig& axis);
+
 /// As the machine file states it, extensions of the model included.
 LoopAxis LoopAxisOf(const AxisConfig& axis);
 

@@ -4,8 +4,7 @@
 #include <string>
 #include <tuple>
 
-#include "config/extended_model.h"
-#include "core/two_inertia_axis.h"
+#include "config/loop_axis.h"
 #include "core/two_inertia_loop.h"
 #include "drivers/cia402/mode_for.h"
 
@@ -24,13 +23,8 @@ std::vector<ConfigProblem> CheckLoops(const MachineConfig& c) {
                           "tuning that `contour tune --from-model` writes"});
       continue;
     }
-    const ExtendedModel model = Extended(axis.model);
-    const Mechanics mechanics = ToSi(model.mechanics);
-    const double sigma2 = ToSi(model.friction, mechanics.radius_m_rad).sigma2_Ns_m;
     try {
-      std::ignore =
-          DesignLoop(ToTwoInertiaAxis(mechanics, sigma2, 1e-3 * axis.drive.lag_ms, axis.drive.delay_cycles),
-                     *axis.loop, 1e-6 * c.machine.cycle_us, false);
+      std::ignore = DesignLoop(TwoInertiaAxisOf(axis), *axis.loop, 1e-6 * c.machine.cycle_us, false);
     } catch (const std::invalid_argument& e) {
       problems.push_back({key, std::string("found a tuning that gives no loop: ") + e.what()});
     }

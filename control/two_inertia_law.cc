@@ -20,9 +20,15 @@ FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept
   return friction[std::min(index, friction.size() - 1)];
 }
 
+/// Of a force, by the drive's lag, over a share of the period.
+double Kept(const ControlledAxis& axis, double share, double period_s) {
+  return axis.lag_s > 0.0 ? std::exp(-share * period_s / axis.lag_s) : 0.0;
+}
+
 const TwoInertiaLoop& Required(const std::optional<TwoInertiaLoop>& loop) {
   if (!loop) throw std::invalid_argument("two inertias: an axis has no loop");
-  if (loop->queued == 0) throw std::invalid_argument("two inertias: a torque takes at least one period");
+  if (loop->whole_delay() == 0)
+    throw std::invalid_argument("two inertias: a torque takes at least one period");
   return *loop;
 }
 
@@ -34,7 +40,8 @@ TwoInertiaLaw::Axis::Axis(const ControlledAxis& axis, const ControllerOptions& o
       feedforward(axis, options, period_s),
       mechanics(axis.mechanics),
       force_limit_N(axis.limits.force_N),
-      lag_kept(axis.lag_s > 0.0 ? std::exp(-period_s / axis.lag_s) : 0.0),
+      lag_kept(Kept(axis, 1.0 - own.late_share, period_s)),
+      lag_kept_late(Kept(axis, own.late_share, period_s)),
       quiet_m(axis.torque_step_moves_m),
       settle(static_cast<int>(kSettles_s / period_s)),
       slow_share(
@@ -54,7 +61,7 @@ TwoInertiaLaw::TwoInertiaLaw(const PerAxis<ControlledAxis>& axes, const Controll
 }
 
 void TwoInertiaLaw::Axis::Forget() noexcept {
-  planned_N = sent_N = {};
+  planned_N = grid_N = sent_N = {};
   led_N = wound_m = lead_m = slow_N = 0.0;
   quiet = 0;
   filter = {};
@@ -70,23 +77,33 @@ void TwoInertiaLaw::Reset() noexcept {
 void TwoInertiaLaw::Advance(Axis& a, double sent_N) const noexcept {
   if (a.steps == 0) {
     a.planned_N.fill(sent_N);
+    a.grid_N.fill(sent_N);
     a.sent_N.fill(sent_N);
     a.led_N = sent_N;
     return;
   }
   std::shift_right(a.sent_N.begin(), a.sent_N.end(), 1);
   a.sent_N[0] = sent_N;
-  const double acted_N = a.planned_N[a.own.queued];
+  if (a.own.late_share > 0.0) {
+    const double late_N = a.planned_N[a.own.queued];
+    a.led_N = late_N + a.lag_kept_late * (a.led_N - late_N);
+  }
+  const double acted_N = a.planned_N[a.own.whole_delay()];
   a.led_N = acted_N + a.lag_kept * (a.led_N - acted_N);
 }
 
+// Planned for whole periods; what acts late by a share of one is of the two that it reaches into.
 double TwoInertiaLaw::Feedforward_N(Axis& a, const AxisHorizon& reference, const FrictionPreview& friction,
                                     double& target_m) const noexcept {
   AxisPlan plan;
-  const std::size_t queued = a.own.queued;
-  a.feedforward.Plan(reference, friction, a.planned_N[queued - 1] / a.mechanics.mass_kg, queued, plan);
+  const std::size_t last = a.own.whole_delay() - 1;
+  const double mass_kg = a.mechanics.mass_kg, late = a.own.late_share;
+  a.feedforward.Plan(reference, friction, a.grid_N[last] / mass_kg, a.own.queued, plan);
   target_m = plan.target_position_m;
-  return plan.command_m_s2[queued - 1] * a.mechanics.mass_kg;
+  const double grid_N = plan.command_m_s2[last] * mass_kg;
+  std::shift_right(a.grid_N.begin(), a.grid_N.end(), 1);
+  a.grid_N[0] = grid_N;
+  return late > 0.0 ? grid_N + late * (plan.command_m_s2[last + 1] * mass_kg - grid_N) : grid_N;
 }
 
 // Where the axis is to be at the sample, as the observer sees it: of a lead beside the commissioned wind-up

@@ -32,19 +32,21 @@ class TwoInertiaLaw final : public ControlLaw {
     Axis(const ControlledAxis& axis, const ControllerOptions& options, double period_s);
     void Forget() noexcept;
     void Keep(StateKeeper& keep) noexcept {
-      keep(planned_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, quiet, steps);
+      keep(planned_N, grid_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, quiet, steps);
     }
 
     TwoInertiaLoop own, softer;
     FlatFeedforward feedforward;
     Mechanics mechanics;
     double force_limit_N;
-    double lag_kept;    ///< of the drive's lag over a period
-    double quiet_m;     ///< an error that no torque which can be sent makes smaller
-    int settle;         ///< cycles with less than it until the axis counts as standing
-    double slow_share;  ///< of the disturbance that a softened loop answers
+    double lag_kept;       ///< of the drive's lag over a period, or what of it is left of a dead time
+    double lag_kept_late;  ///< over the part of a period that is dead time
+    double quiet_m;        ///< an error that no torque which can be sent makes smaller
+    int settle;            ///< cycles with less than it until the axis counts as standing
+    double slow_share;     ///< of the disturbance that a softened loop answers
 
     Commands planned_N{};  ///< feed-forward
+    Commands grid_N{};     ///< the same before a dead time of part of a period was allowed for
     Commands sent_N{};     ///< what became of it
     double led_N = 0.0;    ///< what the motor gives by the feed-forward at the sample
     double wound_m = 0.0;  ///< wind-up that was planned at the sample before

@@ -15,6 +15,8 @@ struct TwoInertiaAxis {
   double lag_s = 0.0;          ///< of the drive's current loop
   int delay_cycles = 1;        ///< from a sample to the torque computed from it
   double dead_time_s = 0.0;    ///< further delay, any
+
+  friend bool operator==(const TwoInertiaAxis&, const TwoInertiaAxis&) = default;
 };
 
 constexpr TwoInertiaAxis ToTwoInertiaAxis(const Mechanics& m, double viscous_Ns_m, double lag_s,

@@ -64,6 +64,7 @@ struct Step {
   SmallMatrix input;   ///< 5 x 2: of the command that still acts, and of the one that takes over
   SmallMatrix force;   ///< 5 x 2: of a force on the motor, and of one on the table
   std::size_t queued = 0;
+  double late_share = 0.0;
 };
 
 /// Exact motion over `share` of a period: columns are the motion, then command, force on motor and table.
@@ -103,6 +104,7 @@ Step StepOf(const TwoInertiaAxis& a, double period_s) {
     const SmallMatrix second = Over(a, period_s, 1.0 - rest);
     step.input.col(0) = second.block(0, 0, kMotion, kMotion) * first.block(0, kMotion, kMotion, 1);
     step.input.col(1) = second.block(0, kMotion, kMotion, 1);
+    step.late_share = rest;
     ++step.queued;
   }
   if (step.queued > kLoopQueue)
@@ -204,6 +206,7 @@ void PutMotion(const TwoInertiaAxis& a, const Step& step, double period_s, TwoIn
     loop.motion_from_disturbance[i] = -step.force(row, 1) * unit[i] / force;
   }
   loop.queued = step.queued;
+  loop.late_share = step.late_share;
 }
 
 /// The observer knows the commands, so what it finds does not depend on them.

@@ -44,6 +44,8 @@ struct TwoInertiaLoop {
   std::array<LoopMotion, 2> motion_from_input{};  ///< of input 0 and 1; the second without a dead time is 0
   LoopMotion motion_from_disturbance{};           ///< per newton that opposes positive motion
   std::size_t queued = 0;                         ///< commands under way at a sample
+  /// Of a period: the dead time beyond whole ones, for which the command before still acts.
+  double late_share = 0.0;
   bool scale = false;
 
   /// Rows p1, v1, p2, v2, u, b, d; columns encoder and scale. Without a scale, b and the second column are 0.
@@ -59,6 +61,9 @@ struct TwoInertiaLoop {
   Biquad filter{};
   /// From the force on the table over period j to d at sample j + i, in a loop of any regulator.
   std::array<double, kLoopTaps> disturbance_response{};
+
+  /// Periods until a command begins to act.
+  [[nodiscard]] std::size_t whole_delay() const noexcept { return late_share > 0.0 ? queued - 1 : queued; }
 };
 
 /// Frequency of the screw's mode: motor against table, both free.

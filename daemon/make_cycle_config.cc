@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "config/extended_model.h"
+#include "config/loop_axis.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
@@ -24,6 +25,7 @@ CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const 
   out.limits = axis.limits;
   // A delay of a fraction of a period does to the axis what a lag of that time constant does, to first order.
   out.lag_s = std::max(0.0, axis.drive.lag_ms * 1e-3 + model.added_lag_s + model.added_delay_s);
+  out.two_inertia = TwoInertiaAxisOf(axis);
   out.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
   out.loop = axis.loop;
   return out;

@@ -115,8 +115,8 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
 }
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
-  keep(along_, nodes_, observer_, learner_, wind_up_, lag_, lead_, given_N_, found_N_, newest_, surprise_N2_,
-       elapsed_, temperature_degC_, at_rest_, frozen_);
+  keep(along_, nodes_, observer_, learner_, wind_up_, lag_, lead_, given_N_, acted_N_, found_N_, newest_,
+       surprise_N2_, elapsed_, temperature_degC_, at_rest_, frozen_);
 }
 
 void TwoInertiaEstimator::Reset(double position_m) noexcept {
@@ -128,6 +128,7 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
   lag_.Reset();
   lead_.Reset();
   given_N_ = {};
+  acted_N_ = 0.0;
   found_N_ = {};
   surprise_N2_ = 0.0;
   elapsed_ = 0;
@@ -171,6 +172,11 @@ void TwoInertiaEstimator::Remember(const AxisEstimatorInput& in) noexcept {
   // What was reported is of the period that has passed.
   given_N_[0] = setup_.reported_torque ? in.force_N[1] : in.force_N[0];
   temperature_degC_ = in.temperature_degC;
+  // Whether anything is learnt or not: the drive's lag does not wait.
+  const TwoInertiaLoop& loop = observer_.loop();
+  const double acts_N = given_N_[loop.whole_delay()];
+  const double late_N = given_N_[loop.queued];
+  acted_N_ = lag_.Step(acts_N + loop.late_share * (late_N - acts_N))[0];
 }
 
 /// Of the period that begins at `period`; `ahead`: the one after the newest sample, not the one before.
@@ -234,13 +240,12 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
 }
 
 void TwoInertiaEstimator::LearnWindUp(const AxisEstimatorInput& in) noexcept {
-  const double force_N = lag_.Step(in.force_N[1])[0];
   if (!wind_up_.learns()) return;
   WindUpFit::Sample sample;
   const double velocity_m_s = along_.velocity_m_s(elapsed_ + 1);
   sample.alone = in.alone;
   sample.position_m = in.position_m;
-  sample.force_N = force_N + At(elapsed_).driving_N;
+  sample.force_N = acted_N_ + At(elapsed_).driving_N;
   sample.mass_kg = setup_.mechanics.mass_kg + learner_.parameters()[kMass];
   sample.direction = velocity_m_s > 0.0 ? 1 : velocity_m_s < 0.0 ? -1 : 0;
   if (wind_up_.NeedsLevels(sample.direction)) {

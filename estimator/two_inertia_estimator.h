@@ -44,6 +44,8 @@ class TwoInertiaEstimator {
   /// answers it, with that as far as it lasts.
   void PreviewFriction(const AxisHorizon& reference, std::size_t points, FrictionPreview& out) noexcept;
 
+  /// What the drive gave over the period that ended with the newest sample, by its lag; the mean.
+  [[nodiscard]] double acted_N() const noexcept { return acted_N_; }
   [[nodiscard]] const FrictionLearner& learner() const noexcept { return learner_; }
 
   void Keep(StateKeeper& keep) noexcept;
@@ -82,6 +84,7 @@ class TwoInertiaEstimator {
   std::size_t settle_ = 1;       ///< periods in which the observer sees half of a force
 
   std::array<double, kLoopQueue + 1> given_N_{};  ///< to the drive, newest first
+  double acted_N_ = 0.0;
   static constexpr std::size_t kFound = 16;
   std::array<double, kFound> found_N_{};  ///< disturbance at the samples before, a ring
   std::size_t newest_ = 0;

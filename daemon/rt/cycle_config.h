@@ -10,6 +10,7 @@
 #include "core/controller_name.h"
 #include "core/loop_tuning.h"
 #include "core/mechanics.h"
+#include "core/two_inertia_axis.h"
 #include "core/watch.h"
 #include "drivers/cia402/drive_master.h"
 #include "estimator/estimator_config.h"
@@ -26,7 +27,9 @@ struct CycleAxisConfig {
   KnownEffects known;
   EstimatorConfig estimator;
   AxisLimits limits;
+  /// Of the drive, a dead time of part of a period among it, for what knows one inertia.
   double lag_s = 0.0;
+  TwoInertiaAxis two_inertia;  ///< for what knows two
   double encoder_counts_per_rev = 0.0;
   std::optional<LoopTuning> loop;  ///< of the two-inertia loop, where the file has one
 };

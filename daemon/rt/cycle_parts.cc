@@ -33,17 +33,18 @@ constexpr LoopTuning kWatching{.regulator_Hz = 20.0,
                                .notch_pole_damping = 0.5,
                                .notch_zero_damping = 0.5};
 
-TwoInertiaAxis ToTwoInertia(const CycleConfig& config, std::size_t axis) {
-  const CycleAxisConfig& a = config.axes[axis];
-  const double sigma2 = ToSi(a.friction, a.mechanics.radius_m_rad).sigma2_Ns_m;
+TwoInertiaAxis AxisOfLoop(const CycleConfig& config, std::size_t axis) {
+  TwoInertiaAxis two = config.axes[axis].two_inertia;
+  if (!InCascade(config)) return two;
   // The torque that a drive reports is what it gave over the period that has passed.
-  if (InCascade(config)) return ToTwoInertiaAxis(a.mechanics, sigma2, 0.0, 0);
-  return ToTwoInertiaAxis(a.mechanics, sigma2, a.lag_s, config.master.axes[axis].drive.delay_cycles);
+  two.lag_s = two.dead_time_s = 0.0;
+  two.delay_cycles = 0;
+  return two;
 }
 
 TwoInertiaLoop LoopOf(const CycleConfig& config, std::size_t axis, double softer) {
   const double period_s = config.cycle_us * 1e-6;
-  const TwoInertiaAxis two = ToTwoInertia(config, axis);
+  const TwoInertiaAxis two = AxisOfLoop(config, axis);
   if (InCascade(config)) return DesignLoop(two, kWatching, period_s, false);
   if (!config.axes[axis].loop)
     throw std::invalid_argument("axis " + config.axes[axis].name +
@@ -68,6 +69,7 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
                         f.Fc_minus_N,
                         0.5 * (f.Fc_plus_N + f.Fc_minus_N) / f.sigma0_N_m};
     if (KnowsTwoInertias(config) && !InCascade(config)) {
+      axis.lag_s = a.two_inertia.lag_s;
       axis.loop = LoopOf(config, i, 1.0);
       axis.softer_loop = LoopOf(config, i, config.control.supervision.softer);
       axis.regulator_Hz = a.loop->regulator_Hz;
@@ -111,10 +113,10 @@ AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis) {
   if (kind != EstimatorKind::kTwoInertia)
     return {kind, a.mechanics, a.friction, a.estimator, period_s, a.lag_s, count_m, a.known};
   TwoInertiaEstimator::Setup setup;
-  setup.filter = AxisEstimator::SetupOf(a.mechanics, a.friction, a.estimator, period_s,
-                                        InCascade(config) ? 0.0 : a.lag_s, count_m);
+  setup.axis = AxisOfLoop(config, axis);
+  setup.filter =
+      AxisEstimator::SetupOf(a.mechanics, a.friction, a.estimator, period_s, setup.axis.lag_s, count_m);
   setup.filter.reported_torque = InCascade(config);
-  setup.axis = ToTwoInertia(config, axis);
   setup.loop = LoopOf(config, axis, 1.0);
   setup.position_min_m = 1e-3 * a.limits.position_mm[0];
   setup.position_max_m = 1e-3 * a.limits.position_mm[1];

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/loop_axis.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/rt/cycle.h"
 #include "tests/closed_loop/test_machine.h"
@@ -96,6 +97,16 @@ TEST(TwoInertia, StandsStillAfterASquare) {
       }
     }
   }
+}
+
+TEST(TwoInertia, TheLoopThatRunsIsTheOneThatIsJudged) {
+  std::vector<std::string> set = Linear("cst");
+  set.push_back("axes.x.model.extensions={input_delay: {delay_us: 60}, current_lag: {time_constant_us: 50}}");
+  const EmulatedMachineFile file = ExampleMachine(set);
+  const CycleConfig config = MakeCycleConfig(file.machine, ControllerName::kFull);
+  EXPECT_EQ(config.axes[0].two_inertia, LoopAxisOf(file.machine.axes.at("x")).axis);
+  EXPECT_NEAR(config.axes[0].two_inertia.dead_time_s, 60e-6, 1e-12);
+  EXPECT_NEAR(config.axes[0].two_inertia.lag_s, 250e-6, 1e-12);
 }
 
 // What has been learnt is in the state, and nothing beside it.

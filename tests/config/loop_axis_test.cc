@@ -55,5 +55,14 @@ TEST(LoopAxisOf, KnowsTheScaleAndWhatDiagnosisAdded) {
   EXPECT_NEAR(a.axis.lag_s, 0.35e-3, 1e-12);
 }
 
+// A loop that a check passes must be the one that runs.
+TEST(TwoInertiaAxisOf, IsTheAxisOfTheJudgedLoop) {
+  AxisConfig axis = Axis();
+  axis.model.extensions.input_delay = InputDelayExtension{.delay_us = 60.0};
+  axis.model.extensions.current_lag = CurrentLagExtension{.time_constant_us = 50.0};
+  EXPECT_EQ(TwoInertiaAxisOf(axis), LoopAxisOf(axis).axis);
+  EXPECT_NEAR(TwoInertiaAxisOf(axis).dead_time_s, 60e-6, 1e-12);
+}
+
 }  // namespace
 }  // namespace contour

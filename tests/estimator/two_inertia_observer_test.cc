@@ -98,5 +98,24 @@ TEST(TwoInertiaObserver, ASingleReadingThatIsFarOffIsNotBelieved) {
   EXPECT_FALSE(observer.Correct(0.0).gated);
 }
 
+// A lag of three periods: what was given while nothing was learnt still acts after it.
+TEST(TwoInertiaEstimator, KnowsWhatTheDriveGaveWhileNothingWasLearnt) {
+  TwoInertiaEstimator::Setup setup = test::EstimatorOf(test::kFamily[0], 1e-3, {});
+  setup.filter.lag_s = setup.axis.lag_s = 3e-3;
+  setup.loop = DesignLoop(setup.axis, test::kSteadyTuning, 1e-3, false);
+  TwoInertiaEstimator estimator(setup);
+  estimator.Reset(0.0);
+  AxisEstimatorInput in;
+  in.enabled = in.fresh = true;
+  in.force_N = {20.0, 20.0, 20.0};
+  estimator.Freeze(true);
+  for (int k = 0; k < 60; ++k) estimator.Update(in);
+  EXPECT_NEAR(estimator.acted_N(), 20.0, 0.01);
+  in.enabled = false;
+  in.force_N = {};
+  for (int k = 0; k < 60; ++k) estimator.Update(in);
+  EXPECT_NEAR(estimator.acted_N(), 0.0, 0.01);
+}
+
 }  // namespace
 }  // namespace contour
