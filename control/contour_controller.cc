@@ -12,6 +12,7 @@
 #include "control/mpc_law.h"
 #include "control/pid_law.h"
 #include "control/reference_planner.h"
+#include "control/spring_law.h"
 #include "control/two_inertia_law.h"
 #include "core/state_keeper.h"
 
@@ -78,6 +79,7 @@ ContourController::ContourController(ControllerName name, const ControllerConfig
   if (axes.empty()) throw std::invalid_argument("controller: there is no axis");
   if (!(period_s > 0.0)) throw std::invalid_argument("controller: the period must be positive");
   law_ = MakeLaw(name, config, axes, period_s, cascade);
+  if (!cascade) springs_ = std::make_unique<SpringLaw>(axes);
   if (name == ControllerName::kFull && config.planner.enabled) {
     planner_ = std::make_unique<ReferencePlanner>(config.planner, axes, period_s);
   }
@@ -92,7 +94,9 @@ void ContourController::Reset() noexcept {
   if (planner_) planner_->Reset();
 }
 
-void ContourController::Release(std::size_t axis) noexcept { law_->Release(axis); }
+bool ContourController::HoldsBySpring(const ControlInput& input, std::size_t axis) const noexcept {
+  return springs_ != nullptr && SpringLaw::Holds(input, axis);
+}
 
 void ContourController::Soften(Softness softness) noexcept { law_->Soften(softness); }
 
@@ -112,6 +116,11 @@ void ContourController::Step(const ControlInput& input, ControlOutput& output) n
   output.target_position_m.resize(axes);
   output.limit.resize(axes);
   law_->Step(input, output);
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    if (!HoldsBySpring(input, axis)) continue;
+    springs_->Step(axis, input, output);
+    law_->Release(axis);
+  }
 }
 
 void ContourController::Keep(StateKeeper& keep) noexcept { keep(law_, planner_); }

@@ -99,6 +99,7 @@ inline const PerAxis<AxisHorizon>& Reference(const ControlInput& input) noexcept
 class ControlLaw;
 class StateKeeper;
 class ReferencePlanner;
+class SpringLaw;
 
 /// Reference and estimate in, force out. Throws std::invalid_argument at construction only.
 class ContourController {
@@ -112,8 +113,9 @@ class ContourController {
 
   /// Forgets integrators, warm starts and the last command. To be called when the axes are enabled.
   void Reset() noexcept;
-  /// Another force than this controller's acts on the axis in this cycle: forgets what it holds of it.
-  void Release(std::size_t axis) noexcept;
+  /// In this cycle an experiment's spring holds the axis, and not the law. In CSP the drive itself holds it,
+  /// and goes on doing so.
+  [[nodiscard]] bool HoldsBySpring(const ControlInput& input, std::size_t axis) const noexcept;
   /// From the next Step on. The force may jump by what the gains differ: the caller blends it.
   void Soften(Softness softness) noexcept;
   /// Fills input.planned from input.reference: the same, or what the torque allows of it at corners. To be
@@ -142,6 +144,7 @@ class ContourController {
   double soft_loop_Hz_;
   std::unique_ptr<ControlLaw> law_;
   std::unique_ptr<ReferencePlanner> planner_;  ///< none: nothing is planned
+  std::unique_ptr<SpringLaw> springs_;         ///< none: the drives hold the axes
 };
 
 }  // namespace contour

@@ -1,30 +1,22 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <variant>
 
 #include "core/axis.h"
 #include "core/horizon.h"
 #include "core/mechanics.h"
 #include "core/state_keeper.h"
-#include "estimator/angle_force_map.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/disturbance_observer.h"
-#include "estimator/drive_lag.h"
 #include "estimator/estimator_config.h"
 #include "estimator/four_state_filter.h"
 #include "estimator/friction_config.h"
-#include "estimator/friction_preview.h"
+#include "estimator/full_estimator.h"
 #include "estimator/kinematic_observer.h"
 #include "estimator/known_effects.h"
-#include "estimator/level_correction.h"
-#include "estimator/momentum_balance.h"
 #include "estimator/seven_state_filter.h"
 #include "estimator/two_inertia_estimator.h"
-#include "estimator/viscous_correction.h"
-#include "estimator/wind_up_fit.h"
 
 namespace contour {
 
@@ -72,42 +64,13 @@ class AxisEstimator {
   /// or as many as the reference has. Zero for kKinematic.
   void PreviewFriction(const AxisHorizon& reference, std::size_t points, FrictionPreview& out) noexcept;
 
-  /// The extensions of the model stay as constructed.
-  void Keep(StateKeeper& keep) noexcept {
-    keep(filter_, roll_, correction_, viscous_, momentum_, map_, wind_up_, lag_, drive_N_, temperature_degC_,
-         at_rest_, frozen_, followed_, knows_followed_, two_inertia_);
-  }
+  void Keep(StateKeeper& keep) noexcept;
 
  private:
-  [[nodiscard]] bool is_full() const noexcept {
-    return kind_ == EstimatorKind::kFull || kind_ == EstimatorKind::kFullInCascade;
-  }
-  AxisEstimate UpdateFull(const Input& in) noexcept;
-  void LearnWindUp(double position_m, double velocity_m_s, double force_N, bool alone,
-                   const AxisEstimate& estimate) noexcept;
-
-  EstimatorKind kind_;
   std::variant<KinematicObserver, DisturbanceObserver, FourStateFilter,
-               SevenStateFilter<SqrtEkf<kSevenStates>>, SevenStateFilter<SqrtUkf<kSevenStates>>>
-      filter_;
-  FrictionRoll roll_;
-  LevelCorrection correction_;
-  ViscousCorrection viscous_;
-  MomentumBalance momentum_;
-  AngleForceMap map_;
-  WindUpFit wind_up_;
-  DriveLag<1> lag_;
-  double drive_N_ = 0.0;  // mean over the period before
-  double mass_kg_ = 0.0;
-  double table_mass_kg_ = 0.0;
-  KnownEffects known_;
-  double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();
-  bool at_rest_ = true;
-  bool frozen_ = false;
-  /// Of what is followed, at the next sample: where corners are planned it is not the program's own motion.
-  ReferencePoint followed_;
-  bool knows_followed_ = false;
-  std::unique_ptr<TwoInertiaEstimator> two_inertia_;  ///< does everything, where it is
+               SevenStateFilter<SqrtEkf<kSevenStates>>, SevenStateFilter<SqrtUkf<kSevenStates>>,
+               FullEstimator, TwoInertiaEstimator>
+      one_;
 };
 
 }  // namespace contour

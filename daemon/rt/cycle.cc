@@ -27,7 +27,6 @@ Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAx
       estimator(MakeEstimator(cycle, index)),
       observer(MakeObserver(cycle, index)),
       monitor(monitored, cycle.control.monitor, cycle.cycle_us * 1e-6, cycle.off),
-      mass_kg(cycle.axes[index].mechanics.mass_kg),
       unreferenced_travel_m(1e-3 * cycle.axes[index].limits.unreferenced_travel_mm),
       following_error_m(1e-3 * cycle.axes[index].limits.following_error_mm),
       position_min_m(1e-3 * cycle.axes[index].limits.position_mm[0]),
@@ -97,31 +96,21 @@ void Cycle::Step(const CycleInput& in, CycleOutput& out, StageSink* stages) noex
 }
 
 void Cycle::Act(const CycleInput& in, CycleOutput& out, StageSink* stages) noexcept CONTOUR_NONBLOCKING {
-  Observe(in);
-  Monitor();
-  Estimate(in.io);
-  WatchItself();
-  if (stages != nullptr) stages->Passed(CycleStage::kEstimated);
-  Orders orders = transitions_.Step(Assess(in));
+  const auto passed = [&](CycleStage stage) noexcept CONTOUR_NONBLOCKING {
+    if (stages != nullptr) stages->Passed(stage);
+  };
+  const Feedback& feedback = Observe(in);
+  const FaultSeen contradiction = Contradiction(feedback);
+  const Estimates& estimate = Estimate(feedback, in.io);
+  WatchItself(feedback, estimate);
+  passed(CycleStage::kEstimated);
+  Orders orders = transitions_.Step(Assess(in, estimate));
   CarryOut(orders, in.request);
-  Decide(orders);
-  if (stages != nullptr) stages->Passed(CycleStage::kDecided);
-  // What the monitor sees says more of the cause than a limit that is exceeded by it.
-  const FaultSeen exceeded = Guard(orders);
-  const FaultSeen fault = contradiction_.reason != Reason::kNone ? contradiction_ : exceeded;
-  // Without torque a fault of the guard moves nothing, and the enabling to come starts everything anew.
-  const bool enabling = contradiction_.reason != Reason::kNone && orders.goal == DriveGoal::kEnabled;
-  if (fault.reason != Reason::kNone && (orders.torque_allowed || enabling)) {
-    orders = transitions_.RaiseLate(fault);
-    CarryOut(orders, in.request);
-    Guard(orders);
-  }
-  // Seen together with another fault: that axis must not be braked by its encoder either.
-  if (transitions_.state() == MachineState::kFaulted && RampInDoubt(contradiction_.reason))
-    orders.voltage_off = contradiction_.where;
+  const ControlOutput& wanted = Decide(orders, estimate);
+  passed(CycleStage::kDecided);
+  const PerAxis<GuardedTorque>& limited = Limit(wanted, feedback, contradiction, in.request, orders);
   reasons_.Update(transitions_, master_);
-  guard_.Skip(skipped_);
-  Command(orders, out);
+  Send(orders, wanted, limited, out.frames);
   out.finished = orders.finished;
 }
 
@@ -164,7 +153,7 @@ bool Cycle::LoadState(std::span<const std::byte> from) noexcept {
   return loading.whole();
 }
 
-void Cycle::Observe(const CycleInput& in) noexcept {
+const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
   master_.Receive(in);
   for (const PathPoint& p : in.path) follower_.Accept(p);
   // Time has gone by at skipped grid points too, and with it the reference.
@@ -178,16 +167,17 @@ void Cycle::Observe(const CycleInput& in) noexcept {
     follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
   }
   if (stale && master_.operational()) ++stale_cycles_;
+  return master_.feedback();
 }
 
 /// Holds what the encoders say against the torque that acted, before anybody learns from it.
-void Cycle::Monitor() noexcept {
-  contradiction_ = {};
+FaultSeen Cycle::Contradiction(const Feedback& feedback) noexcept {
+  FaultSeen first;
   // While others are still being enabled, a drive that is holds its axis already.
   const bool holds = transitions_.holds_torque() || transitions_.state() == MachineState::kEnabling;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
-    const AxisFeedback& f = master_.feedback()[i];
+    const AxisFeedback& f = feedback[i];
     MotionSample s;
     s.enabled = holds && f.drive_state == DriveState::kOperationEnabled;
     s.fresh = f.fresh;
@@ -201,21 +191,43 @@ void Cycle::Monitor() noexcept {
     s.has_scale = f.has_scale;
     s.table_position_m = f.table_position_m;
     const Reason reason = axis.monitor.Step(s);
-    if (reason != Reason::kNone && contradiction_.reason == Reason::kNone)
-      contradiction_ = {reason, static_cast<std::uint8_t>(i)};
+    if (reason != Reason::kNone && first.reason == Reason::kNone)
+      first = {reason, static_cast<std::uint8_t>(i)};
   }
   skipped_before_ =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(master_.elapsed_cycles() - 1, kMostSkipped));
+  return first;
 }
 
-FaultSeen Cycle::Guard(const Orders& orders) noexcept {
+/// The torque limits. What contradicts itself, or goes beyond what it may, still changes this cycle's orders.
+const PerAxis<GuardedTorque>& Cycle::Limit(const ControlOutput& wanted, const Feedback& feedback,
+                                           const FaultSeen& contradiction, const Request& request,
+                                           Orders& orders) noexcept {
+  // What the monitor sees says more of the cause than a limit that is exceeded by it.
+  const FaultSeen exceeded = Guard(wanted, feedback, orders.torque_allowed);
+  const FaultSeen fault = contradiction.reason != Reason::kNone ? contradiction : exceeded;
+  // Without torque a fault of the guard moves nothing, and the enabling to come starts everything anew.
+  const bool enabling = contradiction.reason != Reason::kNone && orders.goal == DriveGoal::kEnabled;
+  if (fault.reason != Reason::kNone && (orders.torque_allowed || enabling)) {
+    orders = transitions_.RaiseLate(fault);
+    CarryOut(orders, request);
+    Guard(wanted, feedback, orders.torque_allowed);
+  }
+  // Seen together with another fault: that axis must not be braked by its encoder either.
+  if (transitions_.state() == MachineState::kFaulted && RampInDoubt(contradiction.reason))
+    orders.voltage_off = contradiction.where;
+  guard_.Skip(skipped_);
+  return guarded_;
+}
+
+FaultSeen Cycle::Guard(const ControlOutput& wanted, const Feedback& feedback, bool torque_allowed) noexcept {
   FaultSeen fault;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     // In CSP this is the torque offset; the drive's cascade makes the rest, and the guard watches the axis.
-    const double controller_Nm = control_out_.force_N[i] * axes_[i].radius_m_rad;
+    const double controller_Nm = wanted.force_N[i] * axes_[i].radius_m_rad;
     axes_[i].wanted_torque_Nm = controller_Nm + control_in_.reference[i][1].extra_torque_Nm;
-    guarded_[i] = guard_.Limit(i, axes_[i].wanted_torque_Nm, master_.feedback()[i], AtSample(i).position_m,
-                               orders.torque_allowed);
+    guarded_[i] =
+        guard_.Limit(i, axes_[i].wanted_torque_Nm, feedback[i], AtSample(i).position_m, torque_allowed);
     if (guarded_[i].fault != Reason::kNone && fault.reason == Reason::kNone) {
       fault = {guarded_[i].fault, static_cast<std::uint8_t>(i)};
       // An axis that runs away against its torque must not be braked by the encoder that says so.
@@ -227,18 +239,19 @@ FaultSeen Cycle::Guard(const Orders& orders) noexcept {
   return fault;
 }
 
-void Cycle::Command(const Orders& orders, CycleOutput& out) noexcept {
+void Cycle::Send(const Orders& orders, const ControlOutput& wanted, const PerAxis<GuardedTorque>& limited,
+                 FixedVector<StampedFrame, kMaxFramesSentPerCycle>& frames) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     AxisSetpoint& s = setpoints_[i];
     s.goal = i == orders.voltage_off ? DriveGoal::kDisabled : orders.goal;
-    s.torque_Nm = guarded_[i].torque_Nm;
+    s.torque_Nm = limited[i].torque_Nm;
     s.in_motion = control_in_.reference[i][0].velocity_m_s != 0.0;
     // Until the axis is held, the target follows the axis, so that a drive in CSP does not jump when enabled.
-    s.position_rad = (orders.torque_allowed ? control_out_.target_position_m[i] : axes_[i].position_m) /
-                     axes_[i].radius_m_rad;
+    s.position_rad =
+        (orders.torque_allowed ? wanted.target_position_m[i] : axes_[i].position_m) / axes_[i].radius_m_rad;
   }
-  out.frames.clear();
-  master_.Send(setpoints_, out.frames);
+  frames.clear();
+  master_.Send(setpoints_, frames);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     auto& sent = axes_[i].sent_force_N;
     sent = {master_.sent_torque_Nm()[i] / axes_[i].radius_m_rad, sent[0], sent[1]};

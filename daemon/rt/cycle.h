@@ -79,7 +79,6 @@ class Cycle {
     AxisEstimator estimator;
     AxisEstimator observer;  ///< to fall back to
     MotionMonitor monitor;
-    double mass_kg;
     std::array<double, 3> sent_force_N{};  ///< newest first
     double reported_N = 0.0;               ///< torque at the sample before, as the drive told it
     double wanted_torque_Nm = 0.0;         ///< before the guard
@@ -95,11 +94,26 @@ class Cycle {
     }
   };
 
+  using Feedback = PerAxis<AxisFeedback>;
+  using Estimates = PerAxis<AxisEstimate>;
+
   void Keep(StateKeeper& keep) noexcept;
-  void Observe(const CycleInput& in) noexcept;
-  void Estimate(const IoInput& io) noexcept;
-  [[nodiscard]] Situation Assess(const CycleInput& in) const noexcept;
-  [[nodiscard]] FaultSeen FindFault() const noexcept;
+
+  // What Act is made of, in its order:
+  const Feedback& Observe(const CycleInput& in) noexcept;
+  [[nodiscard]] FaultSeen Contradiction(const Feedback& feedback) noexcept;
+  const Estimates& Estimate(const Feedback& feedback, const IoInput& io) noexcept;
+  void WatchItself(const Feedback& feedback, const Estimates& estimate) noexcept;
+  [[nodiscard]] Situation Assess(const CycleInput& in, const Estimates& estimate) const noexcept;
+  void CarryOut(const Orders& orders, const Request& request) noexcept;
+  const ControlOutput& Decide(const Orders& orders, const Estimates& estimate) noexcept;
+  const PerAxis<GuardedTorque>& Limit(const ControlOutput& wanted, const Feedback& feedback,
+                                      const FaultSeen& contradiction, const Request& request,
+                                      Orders& orders) noexcept;
+  void Send(const Orders& orders, const ControlOutput& wanted, const PerAxis<GuardedTorque>& limited,
+            FixedVector<StampedFrame, kMaxFramesSentPerCycle>& frames) noexcept;
+
+  [[nodiscard]] FaultSeen FindFault(const Estimates& estimate) const noexcept;
   [[nodiscard]] FaultSeen FindLost(const CycleInput& in) const noexcept;
   [[nodiscard]] FaultSeen FindStop() const noexcept;
   [[nodiscard]] std::uint8_t FindStuck() const noexcept;
@@ -109,7 +123,6 @@ class Cycle {
   [[nodiscard]] std::uint8_t NotReferenced() const noexcept;
   void TellWhere(const Request& request) noexcept;
   void DoubtPosition() noexcept;
-  void CarryOut(const Orders& orders, const Request& request) noexcept;
   /// Nothing was sent at the skipped grid points, so the newest feedback is that much older, and the last
   /// torque has acted on since.
   [[nodiscard]] const ReferencePoint& AtSample(std::size_t axis) noexcept {
@@ -119,18 +132,13 @@ class Cycle {
   void CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept;
   void HoldHere() noexcept;
   void FollowFeedback() noexcept;
-  void Decide(const Orders& orders) noexcept;
-  void HoldBySprings() noexcept;
-  void WatchItself() noexcept;
   void Blend() noexcept;
   void TellLoop() noexcept;
   [[nodiscard]] bool fallen_back() const noexcept {
     return fallback_ != nullptr && watch_.step() >= SupervisionStep::kFallenBack;
   }
   [[nodiscard]] ContourController& controller() noexcept { return fallen_back() ? *fallback_ : controller_; }
-  void Monitor() noexcept;
-  FaultSeen Guard(const Orders& orders) noexcept;
-  void Command(const Orders& orders, CycleOutput& out) noexcept;
+  FaultSeen Guard(const ControlOutput& wanted, const Feedback& feedback, bool torque_allowed) noexcept;
   void RecordContourError(CycleRecord& record) noexcept;
   void RecordAxis(std::size_t i, AxisRecord& record) noexcept;
 
@@ -156,7 +164,6 @@ class Cycle {
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 
   ReferencePoint at_sample_;          ///< what AtSample gives, until the next
-  FaultSeen contradiction_;           ///< of this cycle, by the motion monitors
   std::uint32_t skipped_before_ = 0;  ///< in the cycle before: a SYNC was left out before the newest sample
   PerAxis<AxisEstimate> estimates_;
   ControlInput control_in_;

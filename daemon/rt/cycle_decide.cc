@@ -1,16 +1,11 @@
 #include "daemon/rt/cycle.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
-// The wanted force: the controller in use, what supervision makes of it, and what experiments put in its
-// place.
+// The wanted force: the controller in use, and what supervision makes of it.
 namespace contour {
 namespace {
-
-/// Damping ratio of an axis held by a spring, friction apart.
-constexpr double kSpringDamping = 0.7;
 
 /// Whether carrying these orders out touches what is followed.
 bool ChangesPath(const Orders& o) noexcept {
@@ -20,12 +15,12 @@ bool ChangesPath(const Orders& o) noexcept {
 }  // namespace
 
 // The ladder's step of this cycle, and what controllers and estimators have to do with it.
-void Cycle::WatchItself() noexcept {
+void Cycle::WatchItself(const Feedback& feedback, const Estimates& estimate) noexcept {
   const bool had_fallen_back = fallen_back();
   if (transitions_.holds_torque() && Acts(Watch::kSelfWatch)) {
     for (std::size_t i = 0; i < axes_.size(); ++i)
-      watch_.Look(i, {master_.feedback()[i], estimates_[i], AtSample(i), axes_[i].position_m,
-                      axes_[i].radius_m_rad, control_out_.limit[i] == Reason::kSolverCap});
+      watch_.Look(i, {feedback[i], estimate[i], AtSample(i), axes_[i].position_m, axes_[i].radius_m_rad,
+                      control_out_.limit[i] == Reason::kSolverCap});
     watch_.EndCycle(late_);
   } else {
     watch_.Reset();
@@ -51,7 +46,7 @@ void Cycle::TellLoop() noexcept {
   for (Axis& axis : axes_) axis.monitor.UseLoop(loop_Hz);
 }
 
-void Cycle::Decide(const Orders& orders) noexcept {
+const ControlOutput& Cycle::Decide(const Orders& orders, const Estimates& estimate) noexcept {
   // The path ahead is what Observe found, unless an order has just changed it.
   if (ChangesPath(orders))
     for (std::size_t i = 0; i < axes_.size(); ++i)
@@ -62,17 +57,17 @@ void Cycle::Decide(const Orders& orders) noexcept {
     AxisEstimator& estimator = fallen_back() ? axes_[i].observer : axes_[i].estimator;
     estimator.PreviewFriction(Reference(control_in_)[i], in_use.friction_points(), control_in_.friction[i]);
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
-    control_in_.estimate[i] = estimates_[i];
+    control_in_.estimate[i] = estimate[i];
   }
   if (orders.torque_allowed) {
     in_use.Step(control_in_, control_out_);
     Blend();
-    HoldBySprings();
   } else {
     // Whatever it found would not be sent, and axes that are moved by hand would keep its solver busy.
     in_use.Rest(control_out_);
     for (Axis& axis : axes_) axis.blend_N = 0.0;
   }
+  return control_out_;
 }
 
 // A change of controller takes over the force that is there; the difference fades.
@@ -80,26 +75,10 @@ void Cycle::Blend() noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     double& blend_N = axes_[i].blend_N;
     if (take_over_) blend_N = axes_[i].sent_force_N[0] - control_out_.force_N[i];
-    control_out_.force_N[i] += blend_N;
+    if (!controller().HoldsBySpring(control_in_, i)) control_out_.force_N[i] += blend_N;
     blend_N *= blend_kept_;
   }
   take_over_ = false;
-}
-
-/// Where an experiment asks for it, a damped spring towards the reference takes the controller's place: weak
-/// enough to let friction be felt, and no compensation answers the torque that is put on. In CSP the drive
-/// itself holds the axis, and goes on doing so.
-void Cycle::HoldBySprings() noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const ReferencePoint& ahead = control_in_.reference[i][1];
-    if (csp_ || !(ahead.spring_N_m > 0.0)) continue;
-    const double damping_Ns_m = 2.0 * kSpringDamping * std::sqrt(ahead.spring_N_m * axes_[i].mass_kg);
-    control_out_.force_N[i] = ahead.spring_N_m * (ahead.position_m - estimates_[i].predicted_position_m) +
-                              damping_Ns_m * (ahead.velocity_m_s - estimates_[i].predicted_velocity_m_s);
-    control_out_.feedforward_N[i] = 0.0;
-    control_out_.limit[i] = Reason::kNone;
-    controller_.Release(i);
-  }
 }
 
 }  // namespace contour

@@ -6,13 +6,13 @@
 // What the axes do and what holds them back, as of the newest feedback.
 namespace contour {
 
-void Cycle::Estimate(const IoInput& io) noexcept {
+const Cycle::Estimates& Cycle::Estimate(const Feedback& feedback, const IoInput& io) noexcept {
   const bool holds = transitions_.holds_torque();
   std::size_t moving = 0;
   for (std::size_t i = 0; i < axes_.size(); ++i) moving += AtSample(i).velocity_m_s != 0.0 ? 1u : 0u;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = axes_[i];
-    const AxisFeedback& f = master_.feedback()[i];
+    const AxisFeedback& f = feedback[i];
     const ReferencePoint& commanded = AtSample(i);
     AxisEstimatorInput input;
     input.position_m = axis.position_m;
@@ -38,6 +38,7 @@ void Cycle::Estimate(const IoInput& io) noexcept {
     }
     if (skipped_ != 0) CatchUp(axis, i, input);
   }
+  return estimates_;
 }
 
 // From the newest feedback to one period before the torque now being computed, under the torque that acted.

@@ -13,7 +13,7 @@ constexpr double kPathStartTolerance_m = 1e-6;
 
 }  // namespace
 
-Situation Cycle::Assess(const CycleInput& in) const noexcept {
+Situation Cycle::Assess(const CycleInput& in, const Estimates& estimate) const noexcept {
   Situation now;
   now.request = in.request;
   now.io = in.io;
@@ -21,7 +21,7 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
   now.bring_up_failed = master_.bring_up_failed();
   now.bring_up_active = master_.BringingUp();
   for (const AxisFeedback& f : master_.feedback()) now.drives.push_back(f.drive_state);
-  now.fault = FindFault();
+  now.fault = FindFault(estimate);
   now.lost = FindLost(in);
   now.stop = FindStop();
   now.stuck = FindStuck();
@@ -40,7 +40,7 @@ Situation Cycle::Assess(const CycleInput& in) const noexcept {
   return now;
 }
 
-FaultSeen Cycle::FindFault() const noexcept {
+FaultSeen Cycle::FindFault(const Estimates& estimate) const noexcept {
   const MachineState state = transitions_.state();
   if (skipped_ >= most_skipped_ && follower_.moving() && Acts(Watch::kGridPointsSkipped))
     return {Reason::kGridPointsSkipped, 0xFF};
@@ -60,7 +60,7 @@ FaultSeen Cycle::FindFault() const noexcept {
     if (state == MachineState::kEnabling && master_.feedback()[i].age_cycles >= most_skipped_ &&
         Acts(Watch::kStaleFeedback))
       return {Reason::kStaleFeedback, where};
-    if (estimates_[i].diverged) return {Reason::kEstimatorDiverged, where};
+    if (estimate[i].diverged) return {Reason::kEstimatorDiverged, where};
   }
   return watch_.Fault();
 }

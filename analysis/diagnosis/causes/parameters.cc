@@ -12,13 +12,13 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/stroke_shapes.h"
+#include "analysis/diagnosis/tuning/statistics.h"
 
 namespace contour::diagnosis {
 namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr int kDraws = 400;
-constexpr double kTail = 0.025;  // of a 95 % interval, either side
 
 void AddShape(const Problem& problem, const Fit& fit, std::size_t index, std::size_t first, Cause& cause) {
   const StrokeShape* shape = CauseNamed(fit.point.effects[index]->kind).shape;
@@ -71,7 +71,7 @@ void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, c
     if (name == "phase_rad")
       for (double& x : d) x = v + std::remainder(x - v, kTwoPi);
     std::sort(d.begin(), d.end());
-    const auto tail = static_cast<std::size_t>(count * kTail);
+    const auto tail = static_cast<std::size_t>(count * kTail95);
     const double low = d[tail], high = d[d.size() - 1 - tail];
     // A peak of noisy amplitudes is drawn too large on the average: turned over about the value. What is a
     // logarithm in the fit (a Stribeck speed, a stiffness) has its longer side upwards as drawn.

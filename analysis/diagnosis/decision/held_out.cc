@@ -9,6 +9,7 @@
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
+#include "analysis/diagnosis/tuning/statistics.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -18,8 +19,6 @@ constexpr std::size_t kUnseenBlocks = kBlocks;
 // Factors on a diagonal: one holds a parameter, one keeps a solver away from zero.
 constexpr double kHeld = 1e12, kRidge = 1.0 + 1e-12;
 constexpr unsigned kSeed = 77;
-// Of either side of an interval of 95 %.
-constexpr double kTail = 0.025;
 
 // A shape's own number, such as an instant, may be in one block only: it stays.
 void HoldShapes(const Fit& fit, Eigen::MatrixXd& normal) {
@@ -162,8 +161,8 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
     gains.push_back(1.0 - std::sqrt(y / std::max(x, 1e-300)));
   }
   std::sort(gains.begin(), gains.end());
-  cause.heldout_gain_low = gains[HeldOutDraw(kTail)];
-  cause.heldout_gain_high = gains[HeldOutDraw(1.0 - kTail)];
+  cause.heldout_gain_low = gains[HeldOutDraw(kTail95)];
+  cause.heldout_gain_high = gains[HeldOutDraw(1.0 - kTail95)];
 }
 
 }  // namespace contour::diagnosis

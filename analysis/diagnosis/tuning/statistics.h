@@ -5,6 +5,8 @@ namespace contour::diagnosis {
 
 /// Standard deviations that 95 % of a normal distribution lie within.
 inline constexpr double kNormal95 = 1.96;
+/// Of draws in order of size, what lies outside of either end of an interval of 95 %.
+inline constexpr double kTail95 = 0.025;
 /// Standard deviations that 90 % of cases stay within on one side.
 inline constexpr double kNormal90 = 1.2816;
 /// A normal distribution's deviation over its median absolute deviation.
