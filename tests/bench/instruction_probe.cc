@@ -4,9 +4,14 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include <unistd.h>
+#include <yaml-cpp/yaml.h>
 
 #include "daemon/make_cycle_config.h"
 #include "estimator/axis_estimator.h"
@@ -44,6 +49,25 @@ void SolveQps(int count) {
   bench::MakeContourProblems(20, static_cast<std::size_t>(count));
 }
 
+/// The same machine four times over: eight axes, two on each of four buses.
+std::string EightAxes(const std::string& file) {
+  YAML::Node machine = YAML::LoadFile(file);
+  const YAML::Node bus = machine["buses"]["main"];
+  const std::vector<std::string> names{"x", "y", "z", "u", "v", "w", "a", "b"};
+  for (std::size_t i = 2; i < names.size(); ++i) {
+    const std::string& like = names[i % 2];
+    const std::string on = "bus" + std::to_string(i / 2);
+    machine["axes"][names[i]] = YAML::Clone(machine["axes"][like]);
+    machine["axes"][names[i]]["drive"]["bus"] = on;
+    machine["emulator"]["axes"][names[i]] = YAML::Clone(machine["emulator"]["axes"][like]);
+    machine["buses"][on] = YAML::Clone(bus);
+  }
+  const std::string to =
+      std::filesystem::temp_directory_path() / ("eight_axes_" + std::to_string(::getpid()) + ".yaml");
+  std::ofstream(to) << machine << "\n";
+  return to;
+}
+
 /// Friction along the reference, and in torque mode the loop of two inertias.
 std::vector<std::string> Linear(const std::string& mode) {
   std::vector<std::string> set{"control.friction=linear"};
@@ -57,20 +81,32 @@ std::vector<std::string> Linear(const std::string& mode) {
   return set;
 }
 
-/// The first cycles of a run, stepped from its recorded inputs.
-void StepCycles(const std::string& file, const std::vector<std::string>& overrides, int count) {
+constexpr int kMostCycles = 400;
+
+/// The last cycles of a circle, or of a machine that holds all its axes, stepped from the recorded inputs.
+void StepCycles(const std::string& file, const std::vector<std::string>& overrides, int count, bool moves) {
   const EmulatedMachineFile machine_file = LoadEmulatedMachine(file, overrides);
   VirtualMachine machine(machine_file, ControllerName::kFull);
   std::vector<CycleInput> inputs;
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) { inputs.push_back(entry.input); });
   machine.BringUp();
   machine.Enable();
-  machine.Run(ParseProgram("{shape: circle, radius_mm: 0.1, frequency_hz: 2, turns: 1}", "circle",
-                           ProgramFormat::kYaml));
+  if (moves) {
+    machine.Run(ParseProgram("{shape: circle, radius_mm: 0.1, frequency_hz: 2, turns: 1}", "circle",
+                             ProgramFormat::kYaml));
+  } else {
+    for (int k = 0; k < kMostCycles; ++k) machine.Tick();
+  }
   Cycle cycle(MakeCycleConfig(machine_file.machine, ControllerName::kFull));
   auto output = std::make_unique<CycleOutput>();
-  const std::size_t last = inputs.size() - 400 + static_cast<std::size_t>(count);
+  const std::size_t last = inputs.size() - kMostCycles + static_cast<std::size_t>(count);
   for (std::size_t k = 0; k < last && k < inputs.size(); ++k) cycle.Step(inputs[k], *output);
+}
+
+void HoldEightAxes(const std::string& file, int count) {
+  const std::string eight = EightAxes(file);
+  StepCycles(eight, {}, count, false);
+  std::filesystem::remove(eight);
 }
 
 /// For callgrind to begin and end at.
@@ -127,9 +163,13 @@ int Probe(const std::string& what, int count, const std::string& file) {
   else if (what == "mpc20")
     SolveQps(count);
   else if (what == "cycle")
-    StepCycles(file, {}, count);
+    StepCycles(file, {}, count, true);
   else if (what == "cycle_linear" || what == "cycle_linear_csp")
-    StepCycles(file, Linear(what == "cycle_linear" ? "cst" : "csp"), count);
+    StepCycles(file, Linear(what == "cycle_linear" ? "cst" : "csp"), count, true);
+  else if (what == "hold_two")
+    StepCycles(file, {}, count, false);
+  else if (what == "hold_eight")
+    HoldEightAxes(file, count);
   else if (what == "cst" || what == "csp")
     ProfileCycles(file, what, count);
   else

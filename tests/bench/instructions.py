@@ -16,7 +16,9 @@ PROBE, MACHINE_FILE = sys.argv.pop(1), sys.argv.pop(1)
 # with a reason.
 BOUNDS = {"srukf4": 3500, "srukf7": 7050, "mpc20": 16800, "cycle": 43900, "cycle_linear": 39000, "cycle_linear_csp": 23400}
 COUNTS = {"srukf4": (1000, 2000), "srukf7": (1000, 2000), "mpc20": (500, 1000), "cycle": (100, 300),
-          "cycle_linear": (100, 300), "cycle_linear_csp": (100, 300)}
+          "cycle_linear": (100, 300), "cycle_linear_csp": (100, 300), "hold_two": (100, 300), "hold_eight": (100, 300)}
+# Of eight axes on four buses to two on one: four times the axes and some for what they share.
+MOST_OF_EIGHT_TO_TWO = 4.4
 
 
 def instructions(what, count):
@@ -31,9 +33,13 @@ def instructions(what, count):
 @unittest.skipUnless(shutil.which("valgrind"), "valgrind is not installed")
 @unittest.skipUnless(" avx2 " in Path("/proc/cpuinfo").read_text(), "the bounds are those of a processor with AVX2")
 class Instructions(unittest.TestCase):
-    def per_call(self, what):
+    @staticmethod
+    def counted(what):
         few, many = COUNTS[what]
-        per_call = (instructions(what, many) - instructions(what, few)) / (many - few)
+        return (instructions(what, many) - instructions(what, few)) / (many - few)
+
+    def per_call(self, what):
+        per_call = self.counted(what)
         print(f"{what}: {per_call:.0f} instructions, bound {BOUNDS[what]}", flush=True)
         self.assertLess(per_call, BOUNDS[what])
         self.assertGreater(per_call, BOUNDS[what] / 3, "the probe does nothing, or the bound is out of date")
@@ -55,6 +61,12 @@ class Instructions(unittest.TestCase):
 
     def test_the_same_where_the_drives_close_the_loop(self):
         self.per_call("cycle_linear_csp")
+
+    def test_eight_axes_to_two(self):
+        two, eight = self.counted("hold_two"), self.counted("hold_eight")
+        print(f"two axes {two:.0f}, eight {eight:.0f} instructions: {eight / two:.2f} times, bound {MOST_OF_EIGHT_TO_TWO}", flush=True)
+        self.assertLess(eight, MOST_OF_EIGHT_TO_TWO * two)
+        self.assertGreater(eight, 2.0 * two, "the axes are not there")
 
 
 if __name__ == "__main__":
