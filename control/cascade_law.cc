@@ -87,8 +87,12 @@ void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept
     };
     const std::array<double, 3> w{windup(0), windup(1), windup(2)};
     const double w_acceleration = (w[2] - 2.0 * w[1] + w[0]) / (period_s_ * period_s_);
-    const double wanted =
-        0.5 * (Ahead(friction, 0).mid_N + Ahead(friction, 1).mid_N) - m.table_mass_kg * w_acceleration;
+    // The drive moves the motor with its table; what winds the screw up moves the motor alone. It is half a
+    // period behind its targets: what acts from t(k) to t(k+1) belongs to node 1.
+    const double motor_m_s2 = PointAt(reference, 1).acceleration_m_s2 + w_acceleration;
+    const double wanted = 0.5 * (Ahead(friction, 0).mid_N + Ahead(friction, 1).mid_N) -
+                          m.table_mass_kg * w_acceleration +
+                          axes_[i].acceleration_share * m.mass_kg * motor_m_s2;
     const double limit = axes_[i].limits.force_N;
     const ReferencePoint& next = PointAt(reference, 2);
     output.feedforward_N[i] = wanted;

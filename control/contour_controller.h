@@ -69,6 +69,8 @@ struct ControlledAxis {
   /// The axis as two inertias and the loop around it, where it has one, and that of the softened machine.
   std::optional<TwoInertiaLoop> loop = std::nullopt, softer_loop = std::nullopt;
   double regulator_Hz = 0.0;  ///< of that loop
+  /// Of the torque of acceleration, what a drive that closes the loop itself has to be given.
+  double acceleration_share = 0.0;
   /// What one step of the drive's torque moves the axis by while friction has hold of it.
   double torque_step_moves_m = 0.0;
 };

@@ -68,6 +68,7 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
                         f.Fc_plus_N,
                         f.Fc_minus_N,
                         0.5 * (f.Fc_plus_N + f.Fc_minus_N) / f.sigma0_N_m};
+    axis.acceleration_share = config.master.axes[i].drive.csp_acceleration_share;
     if (KnowsTwoInertias(config) && !InCascade(config)) {
       axis.lag_s = a.two_inertia.lag_s;
       axis.loop = LoopOf(config, i, 1.0);

@@ -81,6 +81,7 @@ struct DriveConfig {
   int abort_connection_option = 3;
   int polarity = 0;
   bool csp_torque_offset = true;
+  double csp_acceleration_share = 0.0;
 
   double boot_up_ms = 1000.0;
   double sdo_ms = 200.0;
@@ -134,6 +135,10 @@ struct DriveConfig {
     v.Optional("polarity", polarity, Range{0, 255}, "expected 0x607E");
     v.Optional("csp_torque_offset", csp_torque_offset,
                "send a torque offset (0x60B2) with the target position in csp");
+    v.Optional(
+        "csp_acceleration_share", csp_acceleration_share, Range{0, 1},
+        "share of the torque of acceleration that goes into the torque offset (0x60B2), because the drive "
+        "does not feed it forward itself: 0, it does all of it; 1, it does none");
 
     v.Optional("boot_up_ms", boot_up_ms, kDeadline_ms, "deadline for the boot-up message after a reset");
     v.Optional("sdo_ms", sdo_ms, kDeadline_ms, "deadline for an SDO reply");

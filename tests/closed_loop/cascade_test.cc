@@ -52,6 +52,30 @@ TEST(FullInCascade, AStepOfCuttingForceCostsLessThanWithTorquesFromHere) {
   EXPECT_LT(2.0 * cascade.table_peak_m, from_here.table_peak_m);
 }
 
+/// Largest contour error at the encoder, square with rounded corners, m.
+double SquarePeak_m(const std::vector<std::string>& machine) {
+  VirtualMachine one(ExampleMachine(InCascade(machine)), ControllerName::kFull);
+  one.BringUp();
+  one.Enable();
+  double peak_m = 0.0;
+  one.SetObserver([&](const CycleEntry& entry, const TruthRow*) {
+    peak_m = std::max(peak_m, std::abs(entry.output.record.contour_error_m));
+  });
+  one.Run(ParseProgram("{shape: square, side_mm: 10, feed_mm_min: 3000, corner_tolerance_mm: 0.005}",
+                       "square", ProgramFormat::kYaml));
+  return peak_m;
+}
+
+TEST(FullInCascade, ADriveWithoutAccelerationFeedForwardIsMadeUpFor) {
+  const std::vector<std::string> without = OnBoth({"cascade.acceleration_feedforward=0"});
+  std::vector<std::string> given = without;
+  for (const char* axis : {"x", "y"})
+    given.push_back(std::string("axes.") + axis + ".drive.csp_acceleration_share=1");
+  const double with_m = SquarePeak_m({}), without_m = SquarePeak_m(without), given_m = SquarePeak_m(given);
+  EXPECT_LT(given_m, 1.1 * with_m);
+  EXPECT_GT(without_m, 1.3 * given_m);
+}
+
 TEST(FullInCascade, OnlyFullTakesTheModeOfTheMachineFile) {
   const MachineConfig machine = ExampleMachine(InCascade()).machine;
   for (const AxisDriveConfig& axis : MakeCycleConfig(machine, ControllerName::kFull).master.axes)

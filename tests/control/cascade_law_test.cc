@@ -25,9 +25,10 @@ ControlledAxis Stiff() {
   return axis;
 }
 
-PerAxis<ControlledAxis> OneAxis() {
+PerAxis<ControlledAxis> OneAxis(double acceleration_share = 0.0) {
   PerAxis<ControlledAxis> axes;
   axes.push_back(Stiff());
+  axes[0].acceleration_share = acceleration_share;
   return axes;
 }
 
@@ -48,7 +49,8 @@ struct Drive {
 };
 
 struct Loop {
-  explicit Loop(Drive d) : drive(d) {
+  explicit Loop(Drive d, double acceleration_share = 0.0)
+      : axes(OneAxis(acceleration_share)), law(axes, kPeriod_s), drive(d) {
     input.estimate.resize(1);
     input.reference.resize(1);
     input.friction.resize(1);
@@ -93,8 +95,8 @@ struct Loop {
     return sum_m / count;
   }
 
-  PerAxis<ControlledAxis> axes = OneAxis();
-  CascadeLaw law{axes, kPeriod_s};
+  PerAxis<ControlledAxis> axes;
+  CascadeLaw law;
   ControlInput input;
   ControlOutput output;
   Drive drive;
@@ -129,6 +131,19 @@ TEST(CascadeLaw, FrictionGoesIntoTheOffsetAndItsWindUpIntoTheTarget) {
   // The drive feeds the mass's acceleration forward itself: without friction the offset is that of the
   // wind-up alone.
   EXPECT_LT(std::abs(without.output.force_N[0]), 0.1);
+}
+
+TEST(CascadeLaw, ADriveThatDoesNotFeedAccelerationForwardIsGivenIt) {
+  Loop does({0.0, 0.0}), does_not({0.0, 0.0}, 1.0), by_half({0.0, 0.0}, 0.5);
+  for (int i = 0; i < 40; ++i)
+    for (Loop* loop : {&does, &does_not, &by_half}) loop->Step();
+  // Of the whole axis, for t(k): what acts from then on is half a period behind the targets.
+  const double acceleration_N = 80.0 * OnCircle((does.k - 1) * kPeriod_s).acceleration_m_s2;
+  ASSERT_GT(std::abs(acceleration_N), 100.0);
+  EXPECT_NEAR(does_not.output.force_N[0] - does.output.force_N[0], acceleration_N,
+              1e-3 * std::abs(acceleration_N));
+  EXPECT_NEAR(by_half.output.force_N[0] - does.output.force_N[0], 0.5 * acceleration_N,
+              1e-3 * std::abs(acceleration_N));
 }
 
 TEST(CascadeLaw, ABlowTeachesNothing) {
