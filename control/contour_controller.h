@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "control/control_config.h"
+#include "control/standstill.h"
 #include "core/axis.h"
 #include "core/controller_name.h"
 #include "core/horizon.h"
@@ -71,8 +72,7 @@ struct ControlledAxis {
   double regulator_Hz = 0.0;  ///< of that loop
   /// Of the torque of acceleration, what a drive that closes the loop itself has to be given.
   double acceleration_share = 0.0;
-  /// What one step of the drive's torque moves the axis by while friction has hold of it.
-  double torque_step_moves_m = 0.0;
+  StandstillBounds standstill{};  ///< how it is held at rest
 };
 
 /// Everything the controller sees of one cycle; see core/horizon.h for the time indices.

@@ -10,10 +10,6 @@ namespace {
 
 // A softened loop answers what its observer finds this much more slowly than it holds the axis.
 constexpr double kSlower = 0.5;
-// An axis at rest is let go on under the torque it has while its error is below what one step of torque
-// moves it by: answering it would step to and fro. Half of that begins it, held for that long.
-constexpr double kBeginsQuiet = 0.5, kEndsQuiet = 1.5;
-constexpr double kSettles_s = 0.03;
 
 FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept {
   if (friction.empty()) return {};
@@ -42,11 +38,9 @@ TwoInertiaLaw::Axis::Axis(const ControlledAxis& axis, const ControllerOptions& o
       force_limit_N(axis.limits.force_N),
       lag_kept(Kept(axis, 1.0 - own.late_share, period_s)),
       lag_kept_late(Kept(axis, own.late_share, period_s)),
-      quiet_m(axis.torque_step_moves_m),
-      settle(static_cast<int>(kSettles_s / period_s)),
-      slow_share(
-          1.0 - std::exp(-2.0 * std::numbers::pi * kSlower * options.softer * axis.regulator_Hz * period_s)) {
-}
+      slow_share(1.0 -
+                 std::exp(-2.0 * std::numbers::pi * kSlower * options.softer * axis.regulator_Hz * period_s)),
+      standstill(axis.standstill) {}
 
 TwoInertiaLaw::TwoInertiaLaw(const PerAxis<ControlledAxis>& axes, const ControllerOptions& options,
                              double period_s)
@@ -63,7 +57,7 @@ TwoInertiaLaw::TwoInertiaLaw(const PerAxis<ControlledAxis>& axes, const Controll
 void TwoInertiaLaw::Axis::Forget() noexcept {
   planned_N = grid_N = sent_N = {};
   led_N = wound_m = lead_m = slow_N = 0.0;
-  quiet = 0;
+  standstill.Forget();
   filter = {};
   steps = 0;
 }
@@ -150,16 +144,12 @@ double TwoInertiaLaw::Feedback_N(Axis& a, const LoopMotion& wanted,
   return filtered_N;
 }
 
-bool TwoInertiaLaw::Stands(Axis& a, const AxisHorizon& reference, const LoopMotion& wanted,
-                           const AxisEstimate& estimate) const noexcept {
-  bool moves = false;
+// Or an experiment pushes.
+bool TwoInertiaLaw::Moves(const AxisHorizon& reference) const noexcept {
   const std::size_t points = std::min(reference.size(), static_cast<std::size_t>(horizon_points_));
   for (std::size_t j = 0; j < points; ++j)
-    moves = moves || reference[j].velocity_m_s != 0.0 || reference[j].extra_torque_Nm != 0.0;
-  const double error_m = std::abs(estimate.motion[2] - wanted[2]);
-  const double most_m = (a.quiet >= a.settle ? kEndsQuiet : kBeginsQuiet) * a.quiet_m;
-  a.quiet = !moves && error_m < most_m ? std::min(a.quiet + 1, a.settle) : 0;
-  return a.quiet >= a.settle;
+    if (reference[j].velocity_m_s != 0.0 || reference[j].extra_torque_Nm != 0.0) return true;
+  return false;
 }
 
 void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
@@ -175,8 +165,9 @@ void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexc
     std::shift_right(a.planned_N.begin(), a.planned_N.end(), 1);
     a.planned_N[0] = planned_N;
     a.steps = 1;
-    const bool stands = Stands(a, reference, wanted, input.estimate[i]);
-    const double force_N = stands ? a.sent_N[0] : planned_N + feedback_N;
+    const double beyond_m = input.estimate[i].motion[2] - wanted[2];
+    const double force_N =
+        a.standstill.Step(beyond_m, a.sent_N[0], Moves(reference)).value_or(planned_N + feedback_N);
     output.feedforward_N[i] = planned_N;
     output.force_N[i] = std::clamp(force_N, -a.force_limit_N, a.force_limit_N);
     output.limit[i] = std::abs(force_N) > a.force_limit_N ? Reason::kTorqueLimit : Reason::kNone;

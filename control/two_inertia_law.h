@@ -6,6 +6,7 @@
 
 #include "control/control_law.h"
 #include "control/flat_feedforward.h"
+#include "control/standstill.h"
 #include "core/two_inertia_loop.h"
 
 namespace contour {
@@ -32,7 +33,7 @@ class TwoInertiaLaw final : public ControlLaw {
     Axis(const ControlledAxis& axis, const ControllerOptions& options, double period_s);
     void Forget() noexcept;
     void Keep(StateKeeper& keep) noexcept {
-      keep(planned_N, grid_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, quiet, steps);
+      keep(planned_N, grid_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, standstill, steps);
     }
 
     TwoInertiaLoop own, softer;
@@ -41,8 +42,6 @@ class TwoInertiaLaw final : public ControlLaw {
     double force_limit_N;
     double lag_kept;       ///< of the drive's lag over a period, or what of it is left of a dead time
     double lag_kept_late;  ///< over the part of a period that is dead time
-    double quiet_m;        ///< an error that no torque which can be sent makes smaller
-    int settle;            ///< cycles with less than it until the axis counts as standing
     double slow_share;     ///< of the disturbance that a softened loop answers
 
     Commands planned_N{};  ///< feed-forward
@@ -53,16 +52,15 @@ class TwoInertiaLaw final : public ControlLaw {
     double lead_m = 0.0;   ///< lead beside it, there
     double slow_N = 0.0;
     std::array<double, 4> filter{};  ///< x(j-1), x(j-2), y(j-1), y(j-2)
-    int quiet = 0;                   ///< cycles in a row that it has stood with no more than that
-    int steps = 0;                   ///< since it was forgotten, as far as they matter
+    Standstill standstill;
+    int steps = 0;  ///< since it was forgotten, as far as they matter
   };
 
   void Advance(Axis& axis, double sent_N) const noexcept;
   double Feedforward_N(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction,
                        double& target_m) const noexcept;
   LoopMotion Wanted(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction) const noexcept;
-  bool Stands(Axis& axis, const AxisHorizon& reference, const LoopMotion& wanted,
-              const AxisEstimate& estimate) const noexcept;
+  [[nodiscard]] bool Moves(const AxisHorizon& reference) const noexcept;
   double Feedback_N(Axis& axis, const LoopMotion& wanted, const AxisEstimate& estimate) const noexcept;
 
   std::vector<Axis> axes_;

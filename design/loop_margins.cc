@@ -81,22 +81,15 @@ double Peak(const std::vector<Complex>& loop) {
 
 }  // namespace
 
-LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s) {
-  const double unit_N = ForceUnit_N(member.axis, period_s);
-  const LinearSystem plant = MakePlant(member, period_s, unit_N).system;
-  const LinearSystem controller = MakeController(loop, unit_N);
-  const std::vector<double> f = Frequencies(kFrequenciesOfReport);
-  const std::vector<Complex> open = OpenLoop(Response(plant, 0, f), ResponseToBoth(controller, f));
+LoopMargins MarginsOf(const std::vector<Complex>& open, const std::vector<double>& frequencies_Hz) {
   LoopMargins m;
-  m.growth_per_cycle = Growth(Closed(plant, controller));
-  m.stable = m.growth_per_cycle < 1.0;
   m.gain_up = std::numeric_limits<double>::infinity();
   m.phase_deg = 180.0;
   for (std::size_t i = 0; i < open.size(); ++i) {
     const double peak = 1.0 / std::abs(1.0 + open[i]);
     if (peak > m.peak) {
       m.peak = peak;
-      m.peak_Hz = f[i] / period_s;
+      m.peak_Hz = frequencies_Hz[i];
     }
     if (i == 0) continue;
     const Complex a = open[i - 1], b = open[i];
@@ -109,9 +102,22 @@ LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, doub
     if ((std::abs(a) - 1.0) * (std::abs(b) - 1.0) < 0.0) {
       const double to_minus_one = 180.0 - std::fabs(std::arg(b)) * 180.0 / std::numbers::pi;
       m.phase_deg = std::min(m.phase_deg, to_minus_one);
-      if (m.bandwidth_Hz == 0.0 && std::abs(b) < 1.0) m.bandwidth_Hz = f[i] / period_s;
+      if (m.bandwidth_Hz == 0.0 && std::abs(b) < 1.0) m.bandwidth_Hz = frequencies_Hz[i];
     }
   }
+  return m;
+}
+
+LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s) {
+  const double unit_N = ForceUnit_N(member.axis, period_s);
+  const LinearSystem plant = MakePlant(member, period_s, unit_N).system;
+  const LinearSystem controller = MakeController(loop, unit_N);
+  std::vector<double> f = Frequencies(kFrequenciesOfReport);
+  const std::vector<Complex> open = OpenLoop(Response(plant, 0, f), ResponseToBoth(controller, f));
+  for (double& frequency : f) frequency /= period_s;
+  LoopMargins m = MarginsOf(open, f);
+  m.growth_per_cycle = Growth(Closed(plant, controller));
+  m.stable = m.growth_per_cycle < 1.0;
   return m;
 }
 

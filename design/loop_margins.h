@@ -20,6 +20,8 @@ struct LoopMargins {
   double phase_deg = 0.0;     ///< smallest distance of the phase from -180 degrees where |L| = 1
   double bandwidth_Hz = 0.0;  ///< lowest frequency at which |L| falls to 1
 };
+/// Of the loop opened at the torque, L of negative feedback at rising frequencies; stability is not asked.
+LoopMargins MarginsOf(const std::vector<Complex>& open, const std::vector<double>& frequencies_Hz);
 LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s);
 
 /// The table under a force that steps through a lag of 4 ms, on the stated axis, sliding, with nothing

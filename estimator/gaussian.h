@@ -22,26 +22,38 @@ struct InnovationGate {
 };
 
 /// Which gate a reading has to pass. One reading that is suddenly off may come of a SYNC that came late, or
-/// of a flipped bit; the next one tells. So the first is left out, and what lasts is believed.
+/// of a flipped bit; the next one tells. So the first is left out, and what lasts is believed, until readings
+/// have been as foretold for a while: to leave out one of every few would make a loop swing by itself.
 class SuddenGate {
  public:
   SuddenGate(const InnovationGate& gate, double sudden_m) noexcept
       : gate_{gate.sigmas, kTwoPeriods * gate.absolute},
         first_{gate.sigmas, std::min(gate.absolute, sudden_m)} {}
 
-  [[nodiscard]] const InnovationGate& gate() const noexcept { return off_ ? gate_ : first_; }
+  [[nodiscard]] const InnovationGate& gate() const noexcept { return off_ || lasts_ > 0 ? gate_ : first_; }
   void After(double innovation_m, double std_m) noexcept {
-    off_ = !(std::abs(innovation_m) <= std::max(first_.sigmas * std_m, first_.absolute));
+    const bool off = !(std::abs(innovation_m) <= std::max(first_.sigmas * std_m, first_.absolute));
+    if (off && (off_ || lasts_ > 0))
+      lasts_ = kBelieved;
+    else if (lasts_ > 0)
+      --lasts_;
+    off_ = off;
   }
-  void Reset() noexcept { off_ = false; }
+  void Reset() noexcept {
+    off_ = false;
+    lasts_ = 0;
+  }
 
  private:
   /// What a force has done in two periods, over one.
   static constexpr double kTwoPeriods = 4.0;
+  /// Readings in a row as foretold: more than a period of any swing of a loop.
+  static constexpr int kBelieved = 100;
 
   InnovationGate gate_;
   InnovationGate first_;
   bool off_ = false;  ///< the reading before was suddenly off
+  int lasts_ = 0;     ///< readings until one that is off is left out again
 };
 
 /// An encoder that disagrees for so long has really moved: filters start again from it.

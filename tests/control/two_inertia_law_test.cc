@@ -85,7 +85,8 @@ class Machine {
     a.viscous_Ns_m = setup.filter.friction.sigma2_Ns_m;
     a.loop = a.softer_loop = setup.loop;
     a.regulator_Hz = test::kSteadyTuning.regulator_Hz;
-    a.torque_step_moves_m = 1e-3 * member.rated_N / setup.filter.friction.sigma0_N_m;
+    a.standstill = {1e-3 * member.rated_N, 1e-3 * member.rated_N / setup.filter.friction.sigma0_N_m, 0.0,
+                    kPeriod_s};
     PerAxis<ControlledAxis> axes;
     axes.push_back(a);
     return {ControllerName::kFull, config, axes, kPeriod_s};

@@ -23,5 +23,20 @@ TEST(SuddenGate, OneReadingIsLeftOutAndWhatLastsIsBelieved) {
   EXPECT_FALSE(Passes(gate, 15e-6, kStd_m)) << "it was one reading, and so is the next";
 }
 
+// Before: of a swing every other reading or so was left out, which kept a loop swinging at half the sampling
+// frequency (300 kg, one more cycle of delay than stated: 20 % of rated torque, for good).
+TEST(SuddenGate, OfReadingsThatGoOnBeingOffNoneIsLeftOut) {
+  constexpr double kStd_m = 2e-8;
+  SuddenGate gate({12.0, 20e-6}, 2e-7);
+  int left_out = 0;
+  for (const double innovation_m : {1e-6, 1e-6, 1e-8, 1e-6, 1e-8, 1e-8, 1e-6, 5e-8, 1e-6}) {
+    left_out += Passes(gate, innovation_m, kStd_m) ? 0 : 1;
+    gate.After(innovation_m, kStd_m);
+  }
+  EXPECT_EQ(left_out, 1);
+  for (int i = 0; i < 1000; ++i) gate.After(1e-8, kStd_m);
+  EXPECT_FALSE(Passes(gate, 1e-6, kStd_m)) << "it is over";
+}
+
 }  // namespace
 }  // namespace contour

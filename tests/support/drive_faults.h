@@ -25,6 +25,10 @@ class DriveFaults {
     machine.axis(axis).tampering().Freeze();
     machine.axis(axis).tampering().WeakenTorque(0.0, true);
   }
+  /// So much is added to the torque that it is sent, from the next SYNC on: for measurements.
+  static void Push(EmulatedMachine& machine, std::size_t axis, double torque_Nm) noexcept {
+    machine.axis(axis).tampering().PushTarget(torque_Nm);
+  }
   /// The drive's supply fails for a moment: it forgets what it was told, and says boot-up.
   static void Restart(EmulatedMachine& machine, std::size_t axis) noexcept {
     machine.axis(axis).InterruptSupply();

@@ -492,7 +492,7 @@ void EmulatedAxis::ApplyTarget() noexcept {
     delayed_positions_[i] = delayed_positions_[i - 1];
   }
   const double per_mille = static_cast<double>(target_torque_->value + torque_offset_->value);
-  delayed_targets_[0] = 1e-3 * per_mille * p_.rated_torque_Nm;
+  delayed_targets_[0] = 1e-3 * per_mille * p_.rated_torque_Nm + tampering_.pushed_Nm();
   if (mode_display_->value == kModeCst) {
     Command_Nm(delayed_targets_[cycles]);
     return;

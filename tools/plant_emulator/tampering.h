@@ -39,6 +39,8 @@ class Tampering {
     reported_share_ = reported ? share : 1.0;
   }
   void MendTorque() noexcept { torque_share_ = reported_share_ = 1.0; }
+  /// The target torque is so much more than what was sent, from the next SYNC on.
+  void PushTarget(double torque_Nm) noexcept { pushed_Nm_ = torque_Nm; }
 
   // For the axis:
   std::int64_t Read(std::int64_t counts) noexcept {
@@ -52,6 +54,7 @@ class Tampering {
     return told_;
   }
   [[nodiscard]] double torque_share() const noexcept { return torque_share_; }
+  [[nodiscard]] double pushed_Nm() const noexcept { return pushed_Nm_; }
   [[nodiscard]] double reported_share() const noexcept { return reported_share_; }
 
  private:
@@ -65,6 +68,7 @@ class Tampering {
   std::int64_t told_ = 0;
   double torque_share_ = 1.0;
   double reported_share_ = 1.0;
+  double pushed_Nm_ = 0.0;
 };
 
 }  // namespace contour::plant

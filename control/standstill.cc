@@ -1,0 +1,113 @@
+#include "control/standstill.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+// In what a step of torque moves, or a count of the encoder if that is more: the axis is left alone from the
+// first on, the force is changed from the second on (one step then brings it nearer), and the third is for
+// the loop.
+constexpr double kBegins = 1.0, kCorrected = 0.7, kEnds = 4.0;
+// Of an error that is taken back at once: what is known of the friction's stiffness may be off by as much.
+constexpr double kPart = 0.7;
+// A step moves at least this share of what was stated.
+constexpr double kStiffest = 0.2;
+// For so long it has to be so, and so long an axis is left to come to rest after a step.
+constexpr double kSettles_s = 0.05;
+constexpr double kWatch_s = 0.07;
+// Means of error and force: over some periods of what the loop steps to and fro by.
+constexpr double kMean_s = 0.01;
+// From one step of torque to the next: some periods of an axis on its bristles (10 to 40 Hz).
+constexpr double kRamp_s = 0.1;
+
+int Cycles(double time_s, double period_s) noexcept {
+  return std::max(1, static_cast<int>(std::lround(time_s / period_s)));
+}
+
+}  // namespace
+
+Standstill::Standstill(const StandstillBounds& bounds) noexcept
+    : bounds_(bounds),
+      share_(std::min(1.0, bounds.period_s / kMean_s)),
+      settle_(Cycles(kSettles_s, bounds.period_s)),
+      watch_(Cycles(kWatch_s, bounds.period_s)) {
+  Forget();
+}
+
+void Standstill::Forget() noexcept {
+  unit_m_ = moves_m_ = std::max(bounds_.step_moves_m, bounds_.count_m);
+  quiet_ = since_ = 0;
+  sum_m_ = carry_N_ = 0.0;
+  steps_ = 0.0;
+  ramp_N_ = bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);
+  started_ = standing_ = false;
+}
+
+std::optional<double> Standstill::Step(double error_m, double sent_N, bool moves) noexcept {
+  if (moves || !(bounds_.step_moves_m > 0.0)) {
+    Forget();
+    return std::nullopt;
+  }
+  if (!started_) {
+    started_ = true;
+    mean_m_ = error_m;
+    mean_N_ = sent_N;
+  }
+  mean_m_ += share_ * (error_m - mean_m_);
+  mean_N_ += share_ * (sent_N - mean_N_);
+  const double size_m = std::abs(mean_m_);
+  if (standing_) {
+    if (size_m < kEnds * unit_m_) return Held_N(error_m, sent_N);
+    Forget();
+    return std::nullopt;
+  }
+  quiet_ = size_m < kBegins * unit_m_ ? quiet_ + 1 : 0;
+  if (quiet_ < settle_) return std::nullopt;
+  standing_ = true;
+  held_N_ = mean_N_;
+  target_N_ = bounds_.step_N * std::round(mean_N_ / bounds_.step_N);
+  return held_N_;
+}
+
+// Between two steps their shares in time make up the force: what rounding kept back comes with the next.
+double Standstill::Held_N(double error_m, double sent_N) noexcept {
+  if (held_N_ == target_N_) {
+    Watch(error_m);
+  } else {
+    carry_N_ += held_N_ - sent_N;
+    held_N_ += std::clamp(target_N_ - held_N_, -ramp_N_, ramp_N_);
+    since_ = 0;
+    if (held_N_ == target_N_) carry_N_ = 0.0;
+  }
+  return held_N_ + carry_N_;
+}
+
+// What is left of an error once a force has settled: of many readings, since a single one is no finer than
+// the encoder.
+void Standstill::Watch(double error_m) noexcept {
+  if (++since_ <= settle_) return;
+  sum_m_ += error_m;
+  if (since_ < settle_ + watch_) return;
+  Correct(sum_m_ / watch_);
+  since_ = 0;
+  sum_m_ = 0.0;
+}
+
+void Standstill::Correct(double mean_m) noexcept {
+  if (steps_ > 0.0) {
+    // Where friction is softer than stated a step moves more, and a smaller error is none; where it turns
+    // round it is stiffer, and where it gives way the other way, one step does little.
+    const double moved_m = (before_m_ > 0.0 ? before_m_ - mean_m : mean_m - before_m_) / steps_;
+    unit_m_ = std::max(unit_m_, moved_m);
+    moves_m_ = std::clamp(moved_m, kStiffest * unit_m_, unit_m_);
+  }
+  const double size_m = std::abs(mean_m);
+  steps_ = size_m > kCorrected * unit_m_ ? std::max(1.0, std::floor(kPart * size_m / moves_m_)) : 0.0;
+  before_m_ = mean_m;
+  target_N_ -= std::copysign(steps_ * bounds_.step_N, mean_m);
+  ramp_N_ = std::max(1.0, steps_) * bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);
+}
+
+}  // namespace contour

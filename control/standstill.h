@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+
+namespace contour {
+
+/// What an axis at rest can be held to, from its own numbers.
+struct StandstillBounds {
+  double step_N = 0.0;        ///< the smallest change of the force that can be sent
+  double step_moves_m = 0.0;  ///< what it moves an axis that friction holds; 0: the axis is never left alone
+  double count_m = 0.0;       ///< of the encoder
+  double period_s = 1e-3;
+};
+
+/// An axis at rest within friction. A loop that answers there what is smaller than a step of torque steps to
+/// and fro, friction gives way under that shaking, and the axis creeps or hunts. So it is held by a constant
+/// force. Where that leaves it off by more than a step moves, the force goes over to the next step, gently:
+/// the shares of both shift over some time, so that nothing rings. What is larger is for the loop.
+class Standstill {
+ public:
+  Standstill() noexcept = default;
+  explicit Standstill(const StandstillBounds& bounds) noexcept;
+
+  void Forget() noexcept;
+  /// Once per cycle. `error_m`: the table as the observer sees it, beyond where it is to be; `sent_N`: what
+  /// was sent last; `moves`: the reference is about to, or an experiment pushes. The force to hold it by;
+  /// nothing: the loop has to act.
+  std::optional<double> Step(double error_m, double sent_N, bool moves) noexcept;
+
+  [[nodiscard]] bool standing() const noexcept { return standing_; }
+
+ private:
+  [[nodiscard]] double Held_N(double error_m, double sent_N) noexcept;
+  void Watch(double error_m) noexcept;
+  void Correct(double mean_m) noexcept;
+
+  StandstillBounds bounds_;
+  double share_ = 1.0;          ///< of the means, per cycle
+  int settle_ = 1, watch_ = 1;  ///< cycles
+
+  double mean_m_ = 0.0;    ///< of the error
+  double mean_N_ = 0.0;    ///< of what was sent
+  double sum_m_ = 0.0;     ///< of errors while it is watched
+  double unit_m_ = 0.0;    ///< the most that a step moves, as far as it has been seen
+  double moves_m_ = 0.0;   ///< what one moved last
+  double before_m_ = 0.0;  ///< error before them
+  double steps_ = 0.0;     ///< of the last correction
+  double ramp_N_ = 0.0;    ///< per cycle
+  double target_N_ = 0.0;  ///< one that can be sent
+  double held_N_ = 0.0;    ///< on its way there
+  double carry_N_ = 0.0;   ///< what rounding has kept back of it
+  int quiet_ = 0;          ///< cycles in a row with a small error
+  int since_ = 0;          ///< cycles since the target was reached
+  bool started_ = false;
+  bool standing_ = false;
+};
+
+}  // namespace contour
