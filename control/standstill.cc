@@ -13,7 +13,11 @@ constexpr double kBegins = 1.0, kCorrected = 0.7, kEnds = 4.0;
 // Of an error that is taken back at once: what is known of the friction's stiffness may be off by as much.
 constexpr double kPart = 0.7;
 // A step moves at least this share of what was stated.
-constexpr double kStiffest = 0.2;
+constexpr double kStiffest = 0.1;
+// Friction may be so much softer than stated; what an axis at rest is let off with grows to that in this
+// time.
+constexpr double kSofter = 4.0;
+constexpr double kPatience_s = 1.5;
 // For so long it has to be so, and so long an axis is left to come to rest after a step.
 constexpr double kSettles_s = 0.05;
 constexpr double kWatch_s = 0.07;
@@ -32,17 +36,24 @@ Standstill::Standstill(const StandstillBounds& bounds) noexcept
     : bounds_(bounds),
       share_(std::min(1.0, bounds.period_s / kMean_s)),
       settle_(Cycles(kSettles_s, bounds.period_s)),
-      watch_(Cycles(kWatch_s, bounds.period_s)) {
+      watch_(Cycles(kWatch_s, bounds.period_s)),
+      patience_((kSofter - 1.0) * bounds.period_s / kPatience_s) {
   Forget();
 }
 
-void Standstill::Forget() noexcept {
-  unit_m_ = moves_m_ = std::max(bounds_.step_moves_m, bounds_.count_m);
+// For the loop, until it is near again; what was seen of friction stays true.
+void Standstill::Leave() noexcept {
   quiet_ = since_ = 0;
-  sum_m_ = carry_N_ = 0.0;
-  steps_ = 0.0;
+  sum_m_ = carry_N_ = steps_ = 0.0;
+  standing_ = false;
+}
+
+void Standstill::Forget() noexcept {
+  Leave();
+  unit_m_ = moves_m_ = std::max(bounds_.step_moves_m, bounds_.count_m);
+  waits_ = 1.0;
   ramp_N_ = bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);
-  started_ = standing_ = false;
+  started_ = false;
 }
 
 std::optional<double> Standstill::Step(double error_m, double sent_N, bool moves) noexcept {
@@ -60,12 +71,15 @@ std::optional<double> Standstill::Step(double error_m, double sent_N, bool moves
   const double size_m = std::abs(mean_m_);
   if (standing_) {
     if (size_m < kEnds * unit_m_) return Held_N(error_m, sent_N);
-    Forget();
+    Leave();
     return std::nullopt;
   }
-  quiet_ = size_m < kBegins * unit_m_ ? quiet_ + 1 : 0;
+  // One that has tried for long is let off with more: its friction may be softer than stated.
+  waits_ = std::min(waits_ + patience_, kSofter);
+  quiet_ = size_m < kBegins * waits_ * unit_m_ ? quiet_ + 1 : 0;
   if (quiet_ < settle_) return std::nullopt;
   standing_ = true;
+  unit_m_ = moves_m_ = std::max(unit_m_, size_m / kBegins);
   held_N_ = mean_N_;
   target_N_ = bounds_.step_N * std::round(mean_N_ / bounds_.step_N);
   return held_N_;

@@ -31,13 +31,16 @@ class Standstill {
 
  private:
   [[nodiscard]] double Held_N(double error_m, double sent_N) noexcept;
+  void Leave() noexcept;
   void Watch(double error_m) noexcept;
   void Correct(double mean_m) noexcept;
 
   StandstillBounds bounds_;
   double share_ = 1.0;          ///< of the means, per cycle
   int settle_ = 1, watch_ = 1;  ///< cycles
+  double patience_ = 0.0;       ///< per cycle
 
+  double waits_ = 1.0;     ///< how much more than a small error it is let off with
   double mean_m_ = 0.0;    ///< of the error
   double mean_N_ = 0.0;    ///< of what was sent
   double sum_m_ = 0.0;     ///< of errors while it is watched
