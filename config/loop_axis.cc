@@ -37,6 +37,9 @@ LoopAxis LoopAxisOf(const AxisConfig& axis) {
   out.stiffness_std = std_of("screw_stiffness_N_um");
   out.motor_mass_std = std_of("motor_inertia_kgm2");
   out.table_mass_std = std_of("table_mass_kg");
+  const auto share = axis.model.uncertainty.find("motor_share_rel");
+  if (share != axis.model.uncertainty.end()) out.motor_share_std = share->second;
+  out.side_modes = axis.model.side_modes;
   return out;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "config/machine_config.h"
 #include "core/loop_limits.h"
+#include "core/side_mode.h"
 #include "core/two_inertia_axis.h"
 #include "estimator/friction_config.h"
 
@@ -25,6 +27,8 @@ struct LoopAxis {
   double stiffness_std = 0.0;
   double motor_mass_std = 0.0;
   double table_mass_std = 0.0;
+  double motor_share_std = 0.0;  ///< of friction.motor_share, absolute
+  std::vector<SideMode> side_modes;
 };
 
 /// The axis as the cycle's loop runs on it, with the model's extensions: what is judged is what runs.

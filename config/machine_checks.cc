@@ -302,6 +302,17 @@ void CheckExtensions(const std::string& key, const ExtensionsConfig& e, Problems
                problems);
 }
 
+void CheckSideModes(const std::string& key, const std::vector<SideMode>& modes, Problems& problems) {
+  double swinging = 0.0;
+  for (const SideMode& mode : modes) swinging += mode.mass_share_rel;
+  if (modes.size() > kMostSideModes)
+    problems.Add(key, "found " + std::to_string(modes.size()) + ", expected at most " +
+                          std::to_string(kMostSideModes) + ": those that hold the most mass");
+  if (swinging > kMostSwinging)
+    problems.Add(key, "found " + Say(swinging) + " of the table on springs, expected less than " +
+                          Say(kMostSwinging) + ": what swings is none of the table that the screw drives");
+}
+
 void Append(std::vector<ConfigProblem> more, Problems& problems) {
   for (ConfigProblem& p : more) problems.Add(std::move(p.key), std::move(p.message));
 }
@@ -332,6 +343,7 @@ std::vector<ConfigProblem> Check(const ModelConfig& model, const std::string& ke
                        ": break-away friction is never below Coulomb friction");
   }
   CheckExtensions(Under(key, "extensions"), model.extensions, problems);
+  CheckSideModes(Under(key, "side_modes"), model.side_modes, problems);
   const std::set<std::string> known = ParameterKeys();
   for (const auto& [parameter, value] : model.uncertainty)
     if (!known.contains(parameter))

@@ -2,8 +2,10 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/mechanics.h"
+#include "core/side_mode.h"
 #include "core/visit.h"
 #include "estimator/extension_config.h"
 #include "estimator/friction_config.h"
@@ -15,6 +17,7 @@ namespace contour {
 struct ModelConfig {
   MechanicsConfig mechanics;
   FrictionConfig friction;
+  std::vector<SideMode> side_modes;
   /// Relative standard deviation of a parameter, by its key.
   std::map<std::string, double> uncertainty;
   /// Effects that diagnosis found beside the model.
@@ -24,8 +27,12 @@ struct ModelConfig {
   void Visit(Visitor& v) {
     mechanics.Visit(v);
     v.Required("friction", friction, "LuGre friction of the axis");
+    v.Optional(
+        "side_modes", side_modes,
+        "parts of the table that swing on springs of their own, two at most; margins of loops know them");
     v.Optional("uncertainty", uncertainty, Range{0.0, 10.0},
-               "relative standard deviation of a parameter of the model, by its key");
+               "relative standard deviation of a parameter of the model, by its key; of motor_share_rel, "
+               "which is a share already, absolute");
     v.Optional("extensions", extensions, "further effects, as diagnosis writes them");
   }
 };

@@ -209,8 +209,16 @@ void PutMotion(const TwoInertiaAxis& a, const Step& step, double period_s, TwoIn
   loop.late_share = step.late_share;
 }
 
-/// The observer knows the commands, so what it finds does not depend on them.
-void PutDisturbanceResponse(TwoInertiaLoop& loop) {
+}  // namespace
+
+double ModeFrequency_Hz(const TwoInertiaAxis& a) noexcept {
+  return std::sqrt(a.stiffness_N_m * (1.0 / a.motor_mass_kg + 1.0 / a.table_mass_kg)) / kTwoPi;
+}
+
+// The observer knows the commands, so what it finds does not depend on them.
+std::array<double, kLoopTaps> ResponseOfObserver(const TwoInertiaLoop& loop,
+                                                 const LoopMotion& motion_per_N) noexcept {
+  std::array<double, kLoopTaps> response{};
   LoopMotion error{};  // true motion minus the observer's
   double bias = 0.0, found = 0.0;
   for (std::size_t j = 0; j < kLoopTaps; ++j) {
@@ -221,21 +229,15 @@ void PutDisturbanceResponse(TwoInertiaLoop& loop) {
     for (std::size_t i = 0; i < kLoopMotion; ++i) error[i] -= share(i);
     bias += share(kObserverBias);
     found += share(kObserverDisturbance);
-    loop.disturbance_response[j] = found;
+    response[j] = found;
     LoopMotion next{};
-    const double unknown_N = (j == 0 ? 1.0 : 0.0) - found;
     for (std::size_t i = 0; i < kLoopMotion; ++i) {
-      next[i] = loop.motion_from_disturbance[i] * unknown_N;
+      next[i] = (j == 0 ? motion_per_N[i] : 0.0) - loop.motion_from_disturbance[i] * found;
       for (std::size_t k = 0; k < kLoopMotion; ++k) next[i] += loop.motion_from_motion[i][k] * error[k];
     }
     error = next;
   }
-}
-
-}  // namespace
-
-double ModeFrequency_Hz(const TwoInertiaAxis& a) noexcept {
-  return std::sqrt(a.stiffness_N_m * (1.0 / a.motor_mass_kg + 1.0 / a.table_mass_kg)) / kTwoPi;
+  return response;
 }
 
 TwoInertiaLoop LoopMotionOf(const TwoInertiaAxis& axis, double period_s) {
@@ -278,7 +280,7 @@ TwoInertiaLoop DesignLoop(const TwoInertiaAxis& axis, const LoopTuning& tuning, 
 
   loop.filter = FilterOf(tuning.notch_ratio * ModeFrequency_Hz(axis), tuning.notch_pole_damping,
                          tuning.notch_zero_damping, period_s);
-  PutDisturbanceResponse(loop);
+  loop.disturbance_response = ResponseOfObserver(loop, loop.motion_from_disturbance);
   return loop;
 }
 

@@ -73,6 +73,11 @@ struct TwoInertiaLoop {
 /// Throws std::invalid_argument with the name of a value that cannot be.
 TwoInertiaLoop LoopMotionOf(const TwoInertiaAxis& axis, double period_s);
 
+/// What the observer of a loop finds of a force, d at sample j + i per newton over period j. `motion_per_N`:
+/// what a newton that opposes positive motion does to the motion over one period.
+[[nodiscard]] std::array<double, kLoopTaps> ResponseOfObserver(const TwoInertiaLoop& loop,
+                                                               const LoopMotion& motion_per_N) noexcept;
+
 /// The whole loop. Throws std::invalid_argument with the name of a value that cannot be, or of the gain that
 /// no such loop has. That it is stable on an axis that is not quite as stated is for design/loop_margins.h.
 TwoInertiaLoop DesignLoop(const TwoInertiaAxis& axis, const LoopTuning& tuning, double period_s, bool scale);

@@ -1,5 +1,6 @@
 #include "design/loop_member.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "config/number_text.h"
@@ -17,6 +18,10 @@ constexpr double kMuchDamping = 2.0;
 // Right after a reversal the bristle is twice as stiff, since it unloads and loads.
 constexpr double kStiffestBristle = 2.0;
 
+// A mode beside the screw's is known by a peak: its frequency to this share.
+constexpr double kSideModeOff = 0.1;
+constexpr double kMostMotorShare = 0.9;
+
 struct Factors {
   double stiffness = 1.0;
   double motor = 1.0;
@@ -25,7 +30,7 @@ struct Factors {
 };
 
 LoopMember Vary(const LoopAxis& a, MemberKind kind, std::string name, const Factors& f) {
-  LoopMember m{std::move(name), kind, a.axis, {}};
+  LoopMember m{std::move(name), kind, a.axis, {}, 0.0, a.side_modes};
   m.axis.stiffness_N_m *= f.stiffness;
   m.axis.motor_mass_kg *= f.motor;
   m.axis.table_mass_kg *= f.table;
@@ -33,17 +38,37 @@ LoopMember Vary(const LoopAxis& a, MemberKind kind, std::string name, const Fact
   return m;
 }
 
-LoopMember Held(LoopMember m, double stiffness_N_m) {
-  m.bristle = {stiffness_N_m, 0.0, 1.0, 0.0};
+/// By the bristles of table and motor, `motor_share` of them the motor's.
+LoopMember Held(LoopMember m, double stiffness_N_m, double motor_share) {
+  m.bristle = {(1.0 - motor_share) * stiffness_N_m, 0.0, 1.0, 0.0};
+  m.motor_hold_N_m = motor_share * stiffness_N_m;
   return m;
 }
 
 std::string Percent(double share) { return RoundedText(100.0 * share) + " %"; }
 
+/// What is stated of the modes beside the screw's, off either way; with little damping.
+std::vector<LoopMember> WithSideModes(const LoopAxis& a) {
+  std::vector<LoopMember> set;
+  if (a.side_modes.empty()) return set;
+  for (const double sign : {-1.0, 1.0}) {
+    LoopMember m = Vary(a, MemberKind::kAsStated,
+                        std::string("side modes ") + (sign > 0.0 ? "+" : "-") + Percent(kSideModeOff) +
+                            ", half of their damping",
+                        {});
+    for (SideMode& mode : m.side_modes) {
+      mode.frequency_Hz *= 1.0 + sign * kSideModeOff;
+      mode.damping_ratio *= kLittleDamping;
+    }
+    set.push_back(std::move(m));
+  }
+  return set;
+}
+
 std::vector<LoopMember> AsStated(const LoopAxis& a) {
   constexpr MemberKind kKind = MemberKind::kAsStated;
   const double k = a.stiffness_std, m1 = a.motor_mass_std, m2 = a.table_mass_std;
-  const double sigma0 = a.friction.sigma0_N_m;
+  const double sigma0 = a.friction.sigma0_N_m, share = a.friction.motor_share;
   std::vector<LoopMember> set{SlidingMember(a)};
   for (const double sign : {1.0, -1.0}) {
     const std::string s = sign > 0.0 ? "+" : "-";
@@ -57,11 +82,22 @@ std::vector<LoopMember> AsStated(const LoopAxis& a) {
   set.push_back(Vary(a, kKind, "twice the screw's damping", {.damping = kMuchDamping}));
   const Factors little{.damping = kLittleDamping};
   set.push_back(
-      Held(Vary(a, kKind, "table held by the bristle, half of the screw's damping", little), sigma0));
+      Held(Vary(a, kKind, "table held by the bristle, half of the screw's damping", little), sigma0, share));
   set.push_back(Held(Vary(a, kKind, "table held by twice the bristle, half of the screw's damping", little),
-                     kStiffestBristle * sigma0));
-  for (const double share : kSlopeSpeeds) {
-    const double v_m_s = share * a.friction.vs_m_s;
+                     kStiffestBristle * sigma0, share));
+  // What is not known of the share is tried either way.
+  for (const double other : {share - a.motor_share_std, share + a.motor_share_std}) {
+    const double motors = std::clamp(other, 0.0, kMostMotorShare);
+    if (a.motor_share_std == 0.0 || motors == share) continue;
+    set.push_back(Held(
+        Vary(a, kKind,
+             "held by the bristle, " + Percent(motors) + " of it at the motor, half of the screw's damping",
+             little),
+        sigma0, motors));
+  }
+  for (LoopMember& m : WithSideModes(a)) set.push_back(std::move(m));
+  for (const double speed : kSlopeSpeeds) {
+    const double v_m_s = speed * a.friction.vs_m_s;
     LoopMember m = Vary(a, kKind, "on the Stribeck slope at " + RoundedText(1e3 * v_m_s) + " mm/s", {});
     m.bristle = BristleAt(a.friction, v_m_s);
     set.push_back(std::move(m));
@@ -73,22 +109,22 @@ std::vector<LoopMember> FarOff(const LoopAxis& a) {
   constexpr MemberKind kKind = MemberKind::kFarOff;
   const double low = 1.0 - a.limits.far_off, high = 1.0 + a.limits.far_off;
   const std::string minus = " -" + Percent(a.limits.far_off), plus = " +" + Percent(a.limits.far_off);
-  const double sigma0 = a.friction.sigma0_N_m;
-  return {
-      Vary(a, kKind, "stiffness" + minus, {.stiffness = low}),
-      Vary(a, kKind, "stiffness" + plus, {.stiffness = high}),
-      Vary(a, kKind, "table's mass" + minus, {.table = low}),
-      Vary(a, kKind, "table's mass" + plus, {.table = high}),
-      Vary(a, kKind, "both masses" + minus, {.motor = low, .table = low}),
-      Vary(a, kKind, "both masses" + plus, {.motor = high, .table = high}),
-      Vary(a, kKind, "stiffness" + minus + ", table's mass" + plus,
-           {.stiffness = low, .table = high, .damping = low}),
-      Vary(a, kKind, "stiffness" + plus + ", table's mass" + minus,
-           {.stiffness = high, .table = low, .damping = low}),
-      Held(Vary(a, kKind, "stiffness" + minus + ", table held by the bristle", {.stiffness = low}), sigma0),
-      Held(
-          Vary(a, kKind, "both masses" + minus + ", table held by the bristle", {.motor = low, .table = low}),
-          sigma0)};
+  const double sigma0 = a.friction.sigma0_N_m, share = a.friction.motor_share;
+  return {Vary(a, kKind, "stiffness" + minus, {.stiffness = low}),
+          Vary(a, kKind, "stiffness" + plus, {.stiffness = high}),
+          Vary(a, kKind, "table's mass" + minus, {.table = low}),
+          Vary(a, kKind, "table's mass" + plus, {.table = high}),
+          Vary(a, kKind, "both masses" + minus, {.motor = low, .table = low}),
+          Vary(a, kKind, "both masses" + plus, {.motor = high, .table = high}),
+          Vary(a, kKind, "stiffness" + minus + ", table's mass" + plus,
+               {.stiffness = low, .table = high, .damping = low}),
+          Vary(a, kKind, "stiffness" + plus + ", table's mass" + minus,
+               {.stiffness = high, .table = low, .damping = low}),
+          Held(Vary(a, kKind, "stiffness" + minus + ", table held by the bristle", {.stiffness = low}),
+               sigma0, share),
+          Held(Vary(a, kKind, "both masses" + minus + ", table held by the bristle",
+                    {.motor = low, .table = low}),
+               sigma0, share)};
 }
 
 }  // namespace
@@ -128,8 +164,9 @@ LoopMember SlidingMember(const LoopAxis& a) {
 }
 
 LoopMember RestingMember(const LoopAxis& a) {
-  LoopMember m = Held(Vary(a, MemberKind::kAsStated, "as stated, at rest", {}), a.friction.sigma0_N_m);
-  m.bristle.damping_Ns_m = a.friction.sigma1_Ns_m;
+  LoopMember m = Held(Vary(a, MemberKind::kAsStated, "as stated, at rest", {}), a.friction.sigma0_N_m,
+                      a.friction.motor_share);
+  m.bristle.damping_Ns_m = (1.0 - a.friction.motor_share) * a.friction.sigma1_Ns_m;
   return m;
 }
 

@@ -27,6 +27,8 @@ struct LoopMember {
   MemberKind kind = MemberKind::kAsStated;
   TwoInertiaAxis axis;
   TableBristle bristle;
+  double motor_hold_N_m = 0.0;  ///< of the friction before the screw, at rest
+  std::vector<SideMode> side_modes;
 };
 
 /// The stated axis, sliding.

@@ -11,9 +11,35 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr Index kStates = 6;  // p1 v1 p2 v2 u z
+constexpr Index kStates = 6;  // p1 v1 p2 v2 u z, then position and velocity of each part that swings
 // A drive without a lag has one of a thousandth of the period, as in core/two_inertia_loop.cc.
 constexpr double kLeastLag = 1e-3;
+
+/// Parts of the table on springs beside the screw. Their masses are the table's: its acceleration, which was
+/// that of all of it, becomes that of what is left.
+void AddSideModes(const LoopMember& m, double period_s, LoopMatrix& rate) {
+  double left = 1.0;
+  for (const SideMode& mode : m.side_modes) left -= mode.mass_share_rel;
+  rate.row(3) /= left;
+  for (std::size_t i = 0; i < m.side_modes.size(); ++i) {
+    const SideMode& mode = m.side_modes[i];
+    const Index p = kStates + 2 * static_cast<Index>(i), v = p + 1;
+    const double omega = 2.0 * std::numbers::pi * mode.frequency_Hz * period_s;
+    const double k = omega * omega, c = 2.0 * mode.damping_ratio * omega;
+    const double on_table = mode.mass_share_rel / left;
+    rate(p, v) = 1.0;
+    rate(v, 2) = k;
+    rate(v, 3) = c;
+    rate(v, p) = -k;
+    rate(v, v) = -c;
+    rate(3, 2) -= on_table * k;
+    rate(3, 3) -= on_table * c;
+    rate(3, p) += on_table * k;
+    rate(3, v) += on_table * c;
+  }
+}
+
+Index StatesOf(const LoopMember& m) { return kStates + 2 * static_cast<Index>(m.side_modes.size()); }
 
 /// Exact motion over a share of a period; columns after the states: command, force on the table. Time in
 /// periods, lengths in metres, forces in `force_N`.
@@ -31,16 +57,19 @@ LoopMatrix Over(const LoopMember& m, double period_s, double force_N, double sha
   const double by_state = sticks ? 0.0 : b.stiffness_N_m - b.damping_Ns_m * b.decay_1_s;
   const double by_position = sticks ? b.stiffness_N_m * b.rate : 0.0;
   const double decay = sticks ? 1.0 : b.decay_1_s * period_s;
-  LoopMatrix rate = LoopMatrix::Zero(8, 8);
+  const Index command = StatesOf(m), force = command + 1;
+  LoopMatrix rate = LoopMatrix::Zero(force + 1, force + 1);
   rate(0, 1) = 1.0;
-  rate.row(1) << -k1, -c1, k1, c1, f1, 0.0, 0.0, 0.0;
+  rate.row(1).head(5) << -k1 - m.motor_hold_N_m * t2 / a.motor_mass_kg, -c1, k1, c1, f1;
   rate(2, 3) = 1.0;
-  rate.row(3) << k2, c2, -k2 - by_position * t2 / a.table_mass_kg,
+  rate.row(3).head(6) << k2, c2, -k2 - by_position * t2 / a.table_mass_kg,
       -c2 - (a.viscous_Ns_m + b.damping_Ns_m * b.rate) * period_s / a.table_mass_kg, 0.0,
-      -by_state * t2 / a.table_mass_kg, 0.0, -f2;
+      -by_state * t2 / a.table_mass_kg;
+  rate(3, force) = -f2;
+  AddSideModes(m, period_s, rate);
   const double lag = std::max(a.lag_s / period_s, kLeastLag);
   rate(4, 4) = -1.0 / lag;
-  rate(4, 6) = 1.0 / lag;
+  rate(4, command) = 1.0 / lag;
   rate(5, 3) = sticks ? 0.0 : b.rate;
   rate(5, 5) = -decay;
   const LoopMatrix scaled = rate * share;
@@ -90,15 +119,16 @@ LoopPlant MakePlant(const LoopMember& m, double period_s, double force_N) {
   const double whole = std::floor(delay + 1e-9);
   const double rest = delay - whole > 1e-9 ? delay - whole : 0.0;
   const Index queued = static_cast<Index>(whole) + (rest > 0.0 ? 1 : 0);
+  const Index states = StatesOf(m);
   const LoopMatrix all = Over(m, period_s, force_N, 1.0);
   const LoopMatrix second = Over(m, period_s, force_N, 1.0 - rest);
-  LoopMatrix input = LoopMatrix::Zero(kStates, 2);
-  input.col(rest > 0.0 ? 1 : 0) = second.block(0, kStates, kStates, 1);
+  LoopMatrix input = LoopMatrix::Zero(states, 2);
+  input.col(rest > 0.0 ? 1 : 0) = second.block(0, states, states, 1);
   if (rest > 0.0)
     input.col(0) =
-        second.block(0, 0, kStates, kStates) * Over(m, period_s, force_N, rest).block(0, kStates, kStates, 1);
+        second.block(0, 0, states, states) * Over(m, period_s, force_N, rest).block(0, states, states, 1);
 
-  const Index n = kStates + queued;
+  const Index n = states + queued;
   LoopPlant plant;
   plant.force_N = force_N;
   LinearSystem& s = plant.system;
@@ -106,16 +136,16 @@ LoopPlant MakePlant(const LoopMember& m, double period_s, double force_N) {
   s.b = LoopMatrix::Zero(n, 2);
   s.c = LoopMatrix::Zero(2, n);
   s.d = LoopMatrix::Zero(2, 2);
-  s.a.topLeftCorner(kStates, kStates) = all.topLeftCorner(kStates, kStates);
+  s.a.topLeftCorner(states, states) = all.topLeftCorner(states, states);
   for (Index i = 0; i < 2; ++i) {
     if (i < queued)
-      s.a.block(0, kStates + i, kStates, 1) = input.col(i);
+      s.a.block(0, states + i, states, 1) = input.col(i);
     else if (i == queued)
-      s.b.block(0, 0, kStates, 1) += input.col(i);
+      s.b.block(0, 0, states, 1) += input.col(i);
   }
-  for (Index i = 0; i + 1 < queued; ++i) s.a(kStates + i, kStates + i + 1) = 1.0;
+  for (Index i = 0; i + 1 < queued; ++i) s.a(states + i, states + i + 1) = 1.0;
   if (queued > 0) s.b(n - 1, 0) = 1.0;
-  s.b.block(0, 1, kStates, 1) = all.block(0, kStates + 1, kStates, 1);
+  s.b.block(0, 1, states, 1) = all.block(0, states + 1, states, 1);
   s.c(0, 0) = s.c(1, 2) = 1.0;
   return plant;
 }

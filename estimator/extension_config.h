@@ -201,6 +201,28 @@ struct PitchErrorExtension {
   }
 };
 
+struct WobbleWave {
+  double amplitude_um = 0.0;
+  double order_per_rev = 1.0;
+  double phase_rad = 0.0;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("amplitude_um", amplitude_um, kAny, "peak");
+    v.Required("order_per_rev", order_per_rev, kPositive, "periods per motor turn");
+    v.Required("phase_rad", phase_rad, kAny, "phase at motor angle zero, of the sine");
+  }
+};
+
+/// The table stands the sum of amplitude_um sin(order_per_rev theta + phase_rad) beyond R theta.
+struct LeadWobbleExtension : WobbleWave {
+  std::vector<WobbleWave> further;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    WobbleWave::Visit(v);
+    v.Optional("further", further, "waves of other orders beside it");
+  }
+};
+
 /// `model.extensions`.
 struct ExtensionsConfig {
   std::optional<AsymmetricCoulombExtension> asymmetric_coulomb;
@@ -218,6 +240,7 @@ struct ExtensionsConfig {
   std::optional<InputDelayExtension> input_delay;
   std::optional<CurrentLagExtension> current_lag;
   std::optional<PitchErrorExtension> pitch_error;
+  std::optional<LeadWobbleExtension> lead_wobble;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -238,6 +261,8 @@ struct ExtensionsConfig {
     v.Optional("input_delay", input_delay, "delay of the command beyond the stated one");
     v.Optional("current_lag", current_lag, "lag of the current loop beyond the stated one");
     v.Optional("pitch_error", pitch_error, "error of the screw's lead along the stroke");
+    v.Optional("lead_wobble", lead_wobble,
+               "error of the screw's lead that repeats with every turn; contour circle-test finds it");
   }
 };
 

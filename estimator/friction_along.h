@@ -26,6 +26,7 @@ class FrictionAlong {
   /// what element 1 was in the cycle before.
   void Follow(const AxisHorizon& reference, std::size_t points, const KnownEffects& known) noexcept;
 
+  [[nodiscard]] const LinearFriction& basis() const noexcept { return basis_; }
   [[nodiscard]] std::size_t size() const noexcept { return known_; }
   [[nodiscard]] const FrictionTerms& terms(std::size_t point) const noexcept { return At(point).terms; }
   [[nodiscard]] double velocity_m_s(std::size_t point) const noexcept { return At(point).velocity_m_s; }

@@ -34,12 +34,14 @@ struct Friction {
   double sigma1_Ns_m = 0.0;
   double sigma1_decay_m_s = 0.0;
   double sigma2_Ns_m = 0.0;
+  double motor_share = 0.0;  ///< of all of it, that acts on the motor; the rest winds the screw up
 };
 
 /// `model.friction` of a machine file. Which of the two sets of numbers counts is said by acts_on.
 struct FrictionConfig {
   FrictionSide acts_on = FrictionSide::kTable;
   double stribeck_exponent = 1.0;
+  double motor_share_rel = 0.0;
 
   // acts_on: table
   double Fs_plus_N = 0.0;
@@ -67,6 +69,10 @@ struct FrictionConfig {
   void Visit(Visitor& v) {
     v.Optional("acts_on", acts_on, kAny, "whether the values below are at the table (N) or the motor (Nm)");
     v.Optional("stribeck_exponent", stribeck_exponent, Range{0.5, 4.0}, "n of exp(-(|v| / vs)^n)");
+    v.Optional(
+        "motor_share_rel", motor_share_rel, Range{0.0, 0.9},
+        "share of the friction that acts before the screw (motor, bearings, belt) and does not wind it "
+        "up; a circle that something else measured tells it (contour circle-test)");
     if (acts_on == FrictionSide::kTable) {
       v.Required("Fs_plus_N", Fs_plus_N, kPositive, "break-away friction, positive direction");
       v.Required("Fs_minus_N", Fs_minus_N, kPositive, "break-away friction, negative direction");
@@ -97,10 +103,10 @@ struct FrictionConfig {
 /// F = T / R, v = R omega, so stiffness and damping divide by R^2.
 constexpr Friction ToSi(const FrictionConfig& c, double radius_m_rad) noexcept {
   if (c.acts_on == FrictionSide::kTable) {
-    return {c.Fs_plus_N,  c.Fs_minus_N,     c.Fc_plus_N,
-            c.Fc_minus_N, c.vs_mm_s * 1e-3, c.stribeck_exponent,
-            c.sigma0_N_m, c.sigma1_Ns_m,    c.sigma1_decay_mm_s * 1e-3,
-            c.sigma2_Ns_m};
+    return {c.Fs_plus_N,   c.Fs_minus_N,     c.Fc_plus_N,
+            c.Fc_minus_N,  c.vs_mm_s * 1e-3, c.stribeck_exponent,
+            c.sigma0_N_m,  c.sigma1_Ns_m,    c.sigma1_decay_mm_s * 1e-3,
+            c.sigma2_Ns_m, c.motor_share_rel};
   }
   const double r = radius_m_rad;
   return {c.Fs_plus_Nm / r,
@@ -112,7 +118,8 @@ constexpr Friction ToSi(const FrictionConfig& c, double radius_m_rad) noexcept {
           c.sigma0_Nm_rad / (r * r),
           c.sigma1_Nms_rad / (r * r),
           c.sigma1_decay_rad_s * r,
-          c.sigma2_Nms_rad / (r * r)};
+          c.sigma2_Nms_rad / (r * r),
+          c.motor_share_rel};
 }
 
 }  // namespace contour

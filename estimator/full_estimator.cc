@@ -20,6 +20,7 @@ FullEstimator::FullEstimator(const FilterSetup& setup, KnownEffects known)
       lag_(setup.period_s, setup.lag_s),
       mass_kg_(setup.mechanics.mass_kg),
       table_mass_kg_(setup.mechanics.table_mass_kg),
+      before_screw_(setup.friction.motor_share),
       known_(std::move(known)) {}
 
 void FullEstimator::Reset(double position_m) noexcept {
@@ -140,7 +141,8 @@ void FullEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t po
   roll_.Run(filter_.model(), filter_.state(), learnt_.level, learnt_.viscous, known, at_rest_, reference,
             points, out);
   // The commissioned compliance is made up for where the reference is; what has been learnt of it, here.
-  const double extra_m_N = learnt_.wind_up.extra_compliance_m_N();
+  const double extra_m_N = learnt_.wind_up.extra_compliance_m_N() / (1.0 - before_screw_);
+  for (FrictionAhead& f : out) f.node_N -= before_screw_ * f.node_N;
   for (std::size_t j = 0; j < out.size(); ++j)
     out[j].lead_m += extra_m_N * (out[j].node_N + table_mass_kg_ * reference[j].acceleration_m_s2);
   knows_followed_ = reference.size() > 1;

@@ -49,6 +49,7 @@ class FullEstimator {
   DriveLag<1> lag_;
   double mass_kg_;
   double table_mass_kg_;
+  double before_screw_;  ///< share of the friction that acts there
   KnownEffects known_;
   double drive_N_ = 0.0;  ///< mean over the period before
   double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();

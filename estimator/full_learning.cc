@@ -25,7 +25,8 @@ AngleForceMap::Tuning Map(const FilterSetup& setup) {
 WindUpFit::Tuning Screw(const FilterSetup& setup) {
   WindUpFit::Tuning screw;
   screw.period_s = setup.period_s;
-  screw.stiffness_N_m = setup.mechanics.stiffness_N_m;
+  // All friction goes into it, and only the table's share winds the screw up.
+  screw.stiffness_N_m = setup.mechanics.stiffness_N_m / (1.0 - setup.friction.motor_share);
   screw.stiffness_std = Rate(setup, setup.config.stiffness_std);
   screw.vs_m_s = setup.friction.vs_m_s;
   screw.sigma1_Ns_m = setup.friction.sigma1_Ns_m;

@@ -35,7 +35,8 @@ KnownEffects::Table KnownEffects::MakeTable(const char* kind, const std::vector<
 
 KnownEffects::KnownEffects(const ExtensionsConfig& c, const Mechanics& mechanics, double viscous_Ns_m) {
   neutral_ = !(c.constant_torque || c.cogging || c.friction_ripple || c.ball_ripple || c.cable_spring ||
-               c.position_friction || c.pitch_error || c.viscous_nonlinear || c.temperature_viscosity);
+               c.position_friction || c.pitch_error || c.lead_wobble || c.viscous_nonlinear ||
+               c.temperature_viscosity);
   const double r = mechanics.radius_m_rad;
   // Forces of the real machine, in units of the torque that is asked for.
   const double lever_m_rad = r * (c.torque_constant ? c.torque_constant->ratio : 1.0);
@@ -60,6 +61,10 @@ KnownEffects::KnownEffects(const ExtensionsConfig& c, const Mechanics& mechanics
   if (const auto& e = c.position_friction)
     friction_rel_ = MakeTable("position_friction", e->position_mm, e->friction_rel, 1.0);
   if (const auto& e = c.pitch_error) pitch_m_ = MakeTable("pitch_error", e->position_mm, e->error_um, 1e-6);
+  if (const auto& e = c.lead_wobble) {
+    add(1e-6 * e->amplitude_um, e->order_per_rev, e->phase_rad, wobble_);
+    for (const WobbleWave& w : e->further) add(1e-6 * w.amplitude_um, w.order_per_rev, w.phase_rad, wobble_);
+  }
   const auto add_curve = [&](const ViscousCurve& e) {
     viscous_.push_back({e.torque_at_max_speed_Nm / lever_m_rad, e.max_speed_rad_s * r, e.exponent,
                         e.knee_rad_s / e.max_speed_rad_s});
@@ -119,6 +124,8 @@ double KnownEffects::Viscous_N(double velocity_m_s, double temperature_degC) con
   return force_N;
 }
 
-double KnownEffects::Lead_m(double position_m) const noexcept { return -pitch_m_.At(position_m); }
+double KnownEffects::Lead_m(double position_m) const noexcept {
+  return -pitch_m_.At(position_m) - Sum(wobble_, position_m);
+}
 
 }  // namespace contour

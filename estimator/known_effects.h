@@ -57,6 +57,7 @@ class KnownEffects {
   std::vector<Curve> viscous_;
   double viscous_rate_Ns_m_K_ = 0.0, reference_degC_ = 20.0;
   Table pitch_m_;
+  Waves wobble_;  ///< m
 };
 
 }  // namespace contour

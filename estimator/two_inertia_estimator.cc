@@ -28,6 +28,18 @@ constexpr double kSurprise_s = 0.2;
 constexpr double kMostStdInCascade = 0.25;
 constexpr double kSameLawInCascade = 0.3;
 
+// The share of friction that is the motor's shows in the observer as if it were the table's, a little sooner.
+std::array<double, kLoopTaps> ResponseToFriction(const TwoInertiaEstimator::Setup& s) {
+  const double share = s.filter.friction.motor_share;
+  std::array<double, kLoopTaps> response = s.loop.disturbance_response;
+  if (share == 0.0) return response;
+  LoopMotion motion = MotionFromMotorForce(s.axis, s.filter.period_s);
+  for (double& m : motion) m = -m;
+  const std::array<double, kLoopTaps> motors = ResponseOfObserver(s.loop, motion);
+  for (std::size_t i = 0; i < kLoopTaps; ++i) response[i] += share * (motors[i] - response[i]);
+  return response;
+}
+
 FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFriction& basis) {
   const EstimatorConfig& c = s.filter.config;
   const Friction& friction = s.filter.friction;
@@ -48,7 +60,7 @@ FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFri
   learner.std[kMass] = kMassStds * c.mass_std * s.filter.mechanics.mass_kg;
   learner.inertial_kg = kInertialPart * s.filter.mechanics.mass_kg;
   learner.level_std = c.initial_level_std;
-  learner.response = s.loop.disturbance_response;
+  learner.response = ResponseToFriction(s);
   learner.level_N = level_N;
   learner.vs_m_s = friction.vs_m_s;
   learner.level_range = c.level_range;
@@ -57,10 +69,12 @@ FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFri
   return FrictionLearner(learner);
 }
 
+// All friction goes into it, and only the table's share winds the screw up: what it finds is 1 / K less the
+// motor's share.
 WindUpFit MakeWindUp(const FilterSetup& s) {
   WindUpFit::Tuning t;
   t.period_s = s.period_s;
-  t.stiffness_N_m = s.mechanics.stiffness_N_m;
+  t.stiffness_N_m = s.mechanics.stiffness_N_m / (1.0 - s.friction.motor_share);
   t.stiffness_std = s.config.adapt ? s.config.stiffness_std : 0.0;
   t.vs_m_s = s.friction.vs_m_s;
   t.sigma1_Ns_m = s.friction.sigma1_Ns_m;
@@ -107,6 +121,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
       lead_({}, s.filter.period_s),
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
+      before_screw_(s.filter.friction.motor_share),
       surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
       settle_(HalfSeen(s.loop.disturbance_response, kFound - 1)) {
   const Friction& f = s.filter.friction;
@@ -135,19 +150,19 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
   at_rest_ = true;
 }
 
-// By the parameters of this moment: of the table beside sigma2 v, which the observer's own model has, and of
-// the motor. What the axis is heavier than commissioned belongs to both in the ratio of their masses.
+// By the parameters of this moment: friction beside sigma2 v, which the observer's own model has on the
+// table. What the axis is heavier than commissioned belongs to both in the ratio of their masses.
 void TwoInertiaEstimator::Lay() noexcept {
   const double extra_kg = learner_.parameters()[kMass];
   for (std::size_t j = 0; j < along_.size(); ++j) {
     const FrictionTerms& terms = along_.terms(j);
     Node& node = nodes_[j];
     node.heavier_N = extra_kg * terms[kMass];
-    const double all_N = Sum(learner_.parameters(), terms) - motor_share_ * node.heavier_N;
-    node.table_N = std::clamp(all_N, -most_N_, most_N_);
+    const double all_N = Sum(learner_.parameters(), terms) - node.heavier_N;
+    node.friction_N = std::clamp(all_N, -most_N_, most_N_);
     node.driving_N = 0.0;
     if (known_.neutral()) continue;
-    node.table_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
+    node.friction_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
     node.driving_N = known_.Force_N(along_.position_m(j));
   }
 }
@@ -156,15 +171,25 @@ const TwoInertiaEstimator::Node& TwoInertiaEstimator::At(std::size_t point) cons
   return nodes_[along_.size() == 0 ? 0 : std::min(point, along_.size() - 1)];
 }
 
+// Of sigma2 v, the motor's share has to be taken from the table.
+double TwoInertiaEstimator::BeforeScrew_N(std::size_t point) const noexcept {
+  return before_screw_ * (At(point).friction_N + setup_.friction.sigma2_Ns_m * along_.velocity_m_s(point));
+}
+double TwoInertiaEstimator::Table_N(std::size_t point) const noexcept {
+  const Node& node = At(point);
+  return node.friction_N + (1.0 - motor_share_) * node.heavier_N - BeforeScrew_N(point);
+}
+
 // Means over the period that begins at a point.
 double TwoInertiaEstimator::Heavier_N(std::size_t period) const noexcept {
   return 0.5 * (At(period).heavier_N + At(period + 1).heavier_N);
 }
 double TwoInertiaEstimator::Expected_N(std::size_t period) const noexcept {
-  return 0.5 * (At(period).table_N + At(period + 1).table_N);
+  return 0.5 * (Table_N(period) + Table_N(period + 1));
 }
 double TwoInertiaEstimator::Motor_N(std::size_t period) const noexcept {
-  return 0.5 * (At(period).driving_N + At(period + 1).driving_N) - motor_share_ * Heavier_N(period);
+  return 0.5 * (At(period).driving_N + At(period + 1).driving_N) - motor_share_ * Heavier_N(period) -
+         0.5 * (BeforeScrew_N(period) + BeforeScrew_N(period + 1));
 }
 
 void TwoInertiaEstimator::Remember(const AxisEstimatorInput& in) noexcept {
@@ -273,13 +298,19 @@ AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const n
   out.g_minus_N = learner_.Level_N(false);
   if (along_.size() > 0) {
     // A mass that is off is no friction.
-    const Node& here = At(elapsed_ + 1);
-    out.bristle_N = here.table_N - (1.0 - motor_share_) * here.heavier_N;
+    out.bristle_N = At(elapsed_ + 1).friction_N;
     out.friction_N = out.bristle_N + setup_.friction.sigma2_Ns_m * now[3] + out.disturbance_N;
   }
   out.friction_std_N = std::sqrt(surprise_N2_);
   out.diverged = !observer_.Sound();
   return out;
+}
+
+// Up to the friction level an unforeseen force is friction, and part of it the motor's; beyond, it comes from
+// outside and goes through the screw.
+double TwoInertiaEstimator::WindsUp_N(double unforeseen_N) const noexcept {
+  const double level_N = along_.basis().scale().level_N;
+  return unforeseen_N - before_screw_ * std::clamp(unforeseen_N, -level_N, level_N);
 }
 
 void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
@@ -294,12 +325,12 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
   double lead_N = 0.0;
   if (setup_.reported_torque) {
     lead_.Step(observer_.disturbance_N(), learner_.Level_N(along_.velocity_m_s(0) >= 0.0), at_rest_);
-    lead_N = lead_.lead_N();
+    lead_N = WindsUp_N(lead_.lead_N());
   }
-  const double extra_m_N = wind_up_.extra_compliance_m_N();
+  const double extra_m_N = wind_up_.extra_compliance_m_N() / (1.0 - before_screw_);
   for (std::size_t j = 0; j < size; ++j) {
     const double v = along_.velocity_m_s(j);
-    const double node_N = At(j).table_N + sigma2 * v;
+    const double node_N = Table_N(j) + sigma2 * v;
     // A drive that closes the loop feeds its mass forward, whatever it is.
     const double drives_N = setup_.reported_torque ? Heavier_N(j) : 0.0;
     const double middle_N =

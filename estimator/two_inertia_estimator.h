@@ -53,13 +53,16 @@ class TwoInertiaEstimator {
  private:
   /// At a point of the reference.
   struct Node {
-    double table_N = 0.0;    ///< friction
-    double heavier_N = 0.0;  ///< for what the axis is heavier than commissioned, all of it
-    double driving_N = 0.0;  ///< on the motor, beside the drive's
+    double friction_N = 0.0;  ///< of motor and table, but for sigma2 v
+    double heavier_N = 0.0;   ///< for what the axis is heavier than commissioned, all of it
+    double driving_N = 0.0;   ///< on the motor, beside the drive's
   };
   void Lay() noexcept;
   [[nodiscard]] const Node& At(std::size_t point) const noexcept;
   [[nodiscard]] PeriodForces Forces(std::size_t period, bool ahead) const noexcept;
+  [[nodiscard]] double BeforeScrew_N(std::size_t point) const noexcept;
+  [[nodiscard]] double Table_N(std::size_t point) const noexcept;
+  [[nodiscard]] double WindsUp_N(double unforeseen_N) const noexcept;
   [[nodiscard]] double Heavier_N(std::size_t period) const noexcept;
   [[nodiscard]] double Expected_N(std::size_t period) const noexcept;
   [[nodiscard]] double Motor_N(std::size_t period) const noexcept;
@@ -80,6 +83,7 @@ class TwoInertiaEstimator {
   CascadeLead lead_;
   double most_N_ = 0.0;          ///< that friction along the reference may be
   double motor_share_ = 0.0;     ///< of the mass
+  double before_screw_ = 0.0;    ///< share of the friction that acts there
   double surprise_share_ = 1.0;  ///< per period
   std::size_t settle_ = 1;       ///< periods in which the observer sees half of a force
 

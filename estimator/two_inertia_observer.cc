@@ -9,8 +9,9 @@ namespace {
 // Beyond these there is no axis: m, m/s, N.
 constexpr LoopMotion kLargest{1e2, 1e2, 1e2, 1e2, 1e7};
 
-// A force that acts on the motor at once.
-LoopMotion MotorForce(TwoInertiaAxis axis, double period_s) {
+}  // namespace
+
+LoopMotion MotionFromMotorForce(TwoInertiaAxis axis, double period_s) {
   axis.lag_s = axis.dead_time_s = 0.0;
   axis.delay_cycles = 0;
   LoopMotion motion = LoopMotionOf(axis, period_s).motion_from_input[0];
@@ -18,11 +19,9 @@ LoopMotion MotorForce(TwoInertiaAxis axis, double period_s) {
   return motion;
 }
 
-}  // namespace
-
 TwoInertiaObserver::TwoInertiaObserver(const Setup& setup)
     : loop_(setup.loop),
-      motion_from_motor_force_(MotorForce(setup.axis, setup.period_s)),
+      motion_from_motor_force_(MotionFromMotorForce(setup.axis, setup.period_s)),
       period_s_(setup.period_s),
       gate_(setup.gate, setup.sudden_m) {
   // The gain is (S - R) / S of the position, S the innovation's variance.

@@ -17,6 +17,9 @@ struct PeriodForces {
   double table_N = 0.0;             ///< on the table as far as known, against positive motion
 };
 
+/// What a newton on the motor, towards positive position, does to the motion over one period.
+[[nodiscard]] LoopMotion MotionFromMotorForce(TwoInertiaAxis axis, double period_s);
+
 /// Motor, screw and table: where they are by the motor's encoder and the torque that was given, and what
 /// force acts on the table beyond what is known. The stationary Kalman filter of TwoInertiaLoop, in
 /// positions: known forces, friction along the reference among them, are inputs, so that it finds deviations

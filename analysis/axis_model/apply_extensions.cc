@@ -71,6 +71,11 @@ void ApplyExtras(const ExtensionsConfig& x, StatedAxis& axis) {
   if (const auto& e = x.position_friction) out.friction_rel = Table(e->position_mm, e->friction_rel, 1.0);
   if (const auto& e = x.cable_spring) out.spring = Table(e->position_mm, e->torque_Nm, per_Nm);
   if (const auto& e = x.pitch_error) out.pitch_error_m = Table(e->position_mm, e->error_um, 1e-6);
+  if (const auto& e = x.lead_wobble) {
+    out.wobble_m.push_back({1e-6 * e->amplitude_um, e->order_per_rev, e->phase_rad});
+    for (const WobbleWave& w : e->further)
+      out.wobble_m.push_back({1e-6 * w.amplitude_um, w.order_per_rev, w.phase_rad});
+  }
   const auto add_drag = [&](const ViscousCurve& e) {
     out.drag.push_back(
         {per_Nm * e.torque_at_max_speed_Nm, e.max_speed_rad_s, e.exponent, e.knee_rad_s / e.max_speed_rad_s});

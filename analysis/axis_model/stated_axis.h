@@ -52,6 +52,7 @@ struct StatedExtras {
   StatedTable friction_rel;                              ///< of the friction level
   StatedTable spring;                                    ///< u, accelerates
   StatedTable pitch_error_m;                             ///< table beyond what the motor's angle says
+  std::vector<StatedWave> wobble_m;                      ///< the same, per turn
   std::vector<StatedDrag> drag;
   double viscous_rate_1_K = 0.0, reference_degC = 20.0;
 };

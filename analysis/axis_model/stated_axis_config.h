@@ -22,11 +22,14 @@ struct LooseFrictionConfig {
   double Fc_plus = 0.0, Fc_minus = 0.0;
   std::optional<double> Fs_plus, Fs_minus, vs, sigma0, sigma1, sigma1_decay;
   double sigma2 = 0.0;
+  double motor_share_rel = 0.0;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Optional("acts_on", acts_on, kAny, "whether the values below are at the table (N) or the motor (Nm)");
     v.Optional("stribeck_exponent", stribeck_exponent, Range{0.5, 4.0}, "n of exp(-(|v| / vs)^n)");
+    v.Optional("motor_share_rel", motor_share_rel, Range{0.0, 0.9},
+               "share of the friction that acts before the screw; for the controller, not used here");
     const bool table = acts_on == FrictionSide::kTable;
     v.Required(table ? "Fc_plus_N" : "Fc_plus_Nm", Fc_plus, kNotNegative,
                "Coulomb friction, positive direction");

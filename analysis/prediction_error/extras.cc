@@ -30,6 +30,18 @@ Signal Along(const std::vector<StatedWave>& waves, const Signals& s) {
   return sum;
 }
 
+/// Sum of the waves at the rows themselves: what a scale reads, not what acts over a row.
+Signal AtRows(const std::vector<StatedWave>& waves, const Signals& s) {
+  Signal sum;
+  if (waves.empty()) return sum;
+  for (const double angle_rad : s.angle_rad) {
+    double at = 0.0;
+    for (const StatedWave& w : waves) at += w.amplitude * std::sin(w.order_per_rev * angle_rad + w.phase_rad);
+    sum.push_back(at);
+  }
+  return sum;
+}
+
 SharedSignal Share(Signal s) {
   return s.empty() ? SharedSignal() : std::make_shared<const Signal>(std::move(s));
 }
@@ -70,7 +82,7 @@ void AddExtras(const StatedExtras& x, const Signals& s, AxisModel& m) {
   m.load_force = Share(std::move(on_load));
   m.level = Share(Joined(Joined(Along(x.friction_rel, s), Along(x.friction_ripple, s), both),
                          Along(x.ball_ripple, s), both));
-  m.scale_error_m = Share(Along(x.pitch_error_m, s));
+  m.scale_error_m = Share(Joined(Along(x.pitch_error_m, s), AtRows(x.wobble_m, s), sum));
   if (x.viscous_rate_1_K == 0.0 || s.temperature_K.empty()) return;
   Signal viscous;
   for (const double T : s.temperature_K)

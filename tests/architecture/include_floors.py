@@ -30,6 +30,7 @@ ANALYSIS = {
     "analysis/recording": BELOW_ANALYSIS,
     "analysis/metrics": BELOW_ANALYSIS,
     "analysis/axis_model": ["core", "estimator", "config"],
+    "analysis/circle_test": ["core", "estimator", "config"],
     "analysis/prediction_error/simd": [],
     "analysis/prediction_error": ["analysis/parallel", *PREDICTION, "analysis/diagnosis/tuning"],
     "analysis/identification": ["core", "config", "estimator", "analysis/text", *PREDICTION],

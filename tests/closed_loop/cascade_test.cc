@@ -76,6 +76,22 @@ TEST(FullInCascade, ADriveWithoutAccelerationFeedForwardIsMadeUpFor) {
   EXPECT_GT(without_m, 1.3 * given_m);
 }
 
+// Three tenths of the friction at the motor: what it bears does not wind the screw up. The screw is known.
+TEST(FullInCascade, FrictionBeforeTheScrewIsNoWindUp) {
+  for (const std::string law : {"srukf", "linear"}) {
+    std::vector<std::string> set = InCascade(OnBoth({"friction.motor_share_rel=0.3"}));
+    set.push_back("control.friction=" + law);
+    for (const char* axis : {"x", "y"})
+      set.push_back(std::string("axes.") + axis + ".model.screw_stiffness_N_um=40");
+    const double unknown_m = RunCircle(ExampleMachine(set), ControllerName::kFull, kSmall).table_peak_m;
+    for (const char* axis : {"x", "y"})
+      set.push_back(std::string("axes.") + axis + ".model.friction.motor_share_rel=0.3");
+    const double known_m = RunCircle(ExampleMachine(set), ControllerName::kFull, kSmall).table_peak_m;
+    EXPECT_GT(unknown_m, 0.3e-6) << law;
+    EXPECT_LT(2.5 * known_m, unknown_m) << law;
+  }
+}
+
 TEST(FullInCascade, OnlyFullTakesTheModeOfTheMachineFile) {
   const MachineConfig machine = ExampleMachine(InCascade()).machine;
   for (const AxisDriveConfig& axis : MakeCycleConfig(machine, ControllerName::kFull).master.axes)

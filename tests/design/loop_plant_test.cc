@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "tests/design/family_axes.h"
 
@@ -49,6 +51,80 @@ TEST(MakePlant, HeldTableGivesWayByScrewAndBristle) {
   const double sigma0 = axis.friction.sigma0_N_m;
   EXPECT_NEAR(response[0][1].real(), 1.0 / sigma0, 1e-3 / sigma0);
   EXPECT_NEAR(response[0][0].real(), 1.0 / sigma0 + 1.0 / axis.axis.stiffness_N_m, 1e-3 / sigma0);
+}
+
+TEST(MakePlant, FrictionBeforeTheScrewHoldsTheMotor) {
+  LoopAxis axis = AxisOf("base");
+  axis.friction.motor_share = 0.3;
+  const LinearSystem s = MakePlant(RestingMember(axis), kPeriod_s, 1.0).system;
+  const auto response = Response(s, 0, {1e-5});
+  const double motors = 0.3 * axis.friction.sigma0_N_m, tables = 0.7 * axis.friction.sigma0_N_m;
+  const double behind = 1.0 / (1.0 / tables + 1.0 / axis.axis.stiffness_N_m);
+  EXPECT_NEAR(response[0][0].real(), 1.0 / (motors + behind), 1e-3 / motors);
+}
+
+/// Motor, table and parts that swing, in steps of a thousandth of a period: the motor's force is the command.
+struct Swinging {
+  const LoopMember& m;
+  double p1 = 0, v1 = 0, p2 = 0, v2 = 0, u = 0;
+  std::vector<double> p = std::vector<double>(m.side_modes.size()), v = p;
+
+  void Step(double command_N, double step_s) {
+    const TwoInertiaAxis& a = m.axis;
+    u += (command_N - u) * step_s / a.lag_s;
+    const double screw = a.stiffness_N_m * (p1 - p2) + a.damping_Ns_m * (v1 - v2);
+    double table_kg = a.table_mass_kg, on_table = screw - a.viscous_Ns_m * v2;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const SideMode& s = m.side_modes[i];
+      const double kg = s.mass_share_rel * a.table_mass_kg, w = 2 * std::numbers::pi * s.frequency_Hz;
+      const double spring = kg * (w * w * (p[i] - p2) + 2 * s.damping_ratio * w * (v[i] - v2));
+      v[i] -= spring / kg * step_s;
+      on_table += spring;
+      table_kg -= kg;
+    }
+    v1 += (u - screw) / a.motor_mass_kg * step_s;
+    v2 += on_table / table_kg * step_s;
+    p1 += v1 * step_s;
+    p2 += v2 * step_s;
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] += v[i] * step_s;
+  }
+};
+
+TEST(MakePlant, PartsOfTheTableSwing) {
+  LoopAxis axis = AxisOf("t30");
+  axis.side_modes = {{175.0, 0.12, 0.02}, {90.0, 0.05, 0.05}};
+  const LoopMember member = SlidingMember(axis);
+  const LoopPlant plant = MakePlant(member, kPeriod_s, 1.0);
+  LoopMatrix x = LoopMatrix::Zero(plant.system.a.rows(), 1);
+  Swinging truth{member};
+  constexpr int kSteps = 2000;
+  double largest = 0.0, before = 0.0, now = 0.0;
+  for (int k = 0; k < 60; ++k) {
+    const double command = k % 9 < 4 ? 30.0 : -20.0;
+    // One period of delay: the plant's queue holds it, the truth gets it a period later.
+    for (int i = 0; i < kSteps; ++i) truth.Step(before, kPeriod_s / kSteps);
+    before = command;
+    LoopMatrix u = LoopMatrix::Zero(2, 1);
+    u(0, 0) = command;
+    x = (plant.system.a * x + plant.system.b * u).eval();
+    now = (plant.system.c * x)(1, 0);
+    largest = std::max(largest, std::abs(truth.p2));
+    EXPECT_NEAR(now, truth.p2, 2e-3 * largest + 1e-9) << k;
+  }
+  // They matter: the table alone goes elsewhere.
+  LoopAxis plain = axis;
+  plain.side_modes.clear();
+  EXPECT_NE(plant.system.a.rows(), MakePlant(SlidingMember(plain), kPeriod_s, 1.0).system.a.rows());
+}
+
+TEST(UncertaintySet, TriesSideModesOffAndTheShareEitherWay) {
+  LoopAxis axis = AxisOf("t30");
+  const std::size_t plain = UncertaintySet(axis).size();
+  axis.side_modes = {{175.0, 0.12, 0.02}};
+  EXPECT_EQ(UncertaintySet(axis).size(), plain + 2);
+  axis.friction.motor_share = 0.2;
+  axis.motor_share_std = 0.1;
+  EXPECT_EQ(UncertaintySet(axis).size(), plain + 4);
 }
 
 TEST(Response, HasTheModeOfTheScrew) {

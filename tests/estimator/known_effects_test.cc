@@ -20,6 +20,18 @@ TEST(KnownEffectsTest, NothingKnownIsNeutral) {
   EXPECT_EQ(none.Lead_m(0.1), 0.0);
 }
 
+TEST(KnownEffectsTest, TheMotorMakesUpForAWobbleOfTheLead) {
+  ExtensionsConfig c;
+  c.lead_wobble = LeadWobbleExtension{{0.3, 1.0, 0.7}, {{0.1, 2.0, -0.2}}};
+  const KnownEffects known(c, kMechanics, 500.0);
+  EXPECT_FALSE(known.neutral());
+  for (const double x : {-0.123, 0.0, 0.0501}) {
+    const double angle = x / kMechanics.radius_m_rad;
+    EXPECT_NEAR(known.Lead_m(x), -(0.3e-6 * std::sin(angle + 0.7) + 0.1e-6 * std::sin(2.0 * angle - 0.2)),
+                1e-12);
+  }
+}
+
 TEST(KnownEffectsTest, ForcesOnTheMotor) {
   ExtensionsConfig c;
   c.cogging = CoggingExtension{{0.02, 12.0, 0.7}, {}};

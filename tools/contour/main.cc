@@ -8,6 +8,7 @@
 #include "core/exit_status.h"
 #include "core/version.h"
 #include "tools/contour/check_command.h"
+#include "tools/contour/circle_test_command.h"
 #include "tools/contour/command.h"
 #include "tools/contour/commission_command.h"
 #include "tools/contour/contest_command.h"
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
   contour::AddRequestCommands(app, action);
   contour::AddExportCommand(app, action);
   contour::AddIdentifyCommand(app, action);
+  contour::AddCircleTestCommand(app, action);
   contour::AddCommissionCommand(app, action);
   contour::AddContestCommand(app, action);
   contour::AddTuneCommand(app, action);

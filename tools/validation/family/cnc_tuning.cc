@@ -15,7 +15,6 @@ namespace contour {
 namespace {
 
 /// None that the family is scored with.
-constexpr std::uint64_t kTuningSeed = 101;
 constexpr std::size_t kDualLoop = 9;
 constexpr double kStopped_um = 1000.0;
 constexpr double kSmallest_um = 1e-3;

@@ -16,6 +16,7 @@
 #include "tools/validation/family/cnc_tuning.h"
 #include "tools/validation/family/family_report.h"
 #include "tools/validation/family/family_run.h"
+#include "tools/validation/family/learned_circle.h"
 
 namespace contour {
 namespace {
@@ -33,6 +34,7 @@ struct Options {
   std::string model = "near";
   std::vector<std::string> set;
   bool maxwell_slip = false;
+  bool circle = false;
   bool tune_cnc = false;
   std::string tune_on = "C";
   int evaluations = 20;
@@ -95,6 +97,21 @@ void EnterCnc(const std::vector<CncTuned>& tuned, const Options& o, FamilySettin
   for (std::string& one : CncAssignments(*t)) setting.set.push_back(std::move(one));
 }
 
+/// What a circle of the machine as it is, unvaried, tells `full`; a machine that does not draw one tells
+/// nothing.
+void EnterCircle(const Options& o, const FamilyEntry& entry, FamilySetting& setting) {
+  FamilyCell cell{setting, entry};
+  cell.setting.variation.clear();
+  try {
+    for (std::string& one : LearnCircle(o.folder, cell)) {
+      std::fprintf(stderr, "%s: %s\n", setting.machine.c_str(), one.c_str());
+      setting.set.push_back(std::move(one));
+    }
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "%s: its circle tells nothing: %s\n", setting.machine.c_str(), e.what());
+  }
+}
+
 std::vector<FamilyCell> Plan(const Options& o) {
   const std::vector<FamilyEntry> entries = Entries(o);
   const bool cnc =
@@ -106,6 +123,7 @@ std::vector<FamilyCell> Plan(const Options& o) {
       for (const FamilyEntry& entry : entries) {
         FamilySetting setting = Setting(o, machine, variation);
         if (entry.controller == "cnc") EnterCnc(tuned, o, setting);
+        if (entry.controller == "full" && o.circle) EnterCircle(o, entry, setting);
         for (const char program : o.programs)
           for (const std::uint64_t seed : o.seeds) cells.push_back({setting, entry, program, seed});
       }
@@ -200,6 +218,8 @@ void AddOptions(CLI::App& app, Options& o) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--cnc", o.tuned, "What cnc was tuned to")->capture_default_str();
+  app.add_flag("--circle", o.circle,
+               "`full` knows what one measured circle tells of friction before the screw and of its lead");
   app.add_flag("--tune-cnc", o.tune_cnc, "Tune cnc on each machine's 10 mm circle instead");
   app.add_option("--tune-on", o.tune_on, "Another program than the 10 mm circle")
       ->check(CLI::IsMember({"B", "C", "S"}))

@@ -125,7 +125,9 @@ void RunHold(VirtualMachine& machine, FamilyResult& result) {
   result.hold_pp_um = score.Range_um();
 }
 
-EmulatedMachineFile Load(const std::string& folder, const FamilyCell& cell) {
+}  // namespace
+
+EmulatedMachineFile LoadFamilyCell(const std::string& folder, const FamilyCell& cell) {
   FamilySetting setting = cell.setting;
   setting.set.push_back("axes.*.drive.mode=" + cell.entry.mode);
   setting.set.push_back("machine.controller=" + cell.entry.controller);
@@ -134,8 +136,6 @@ EmulatedMachineFile Load(const std::string& folder, const FamilyCell& cell) {
   file.emulator.seed = cell.seed;
   return file;
 }
-
-}  // namespace
 
 std::string FamilyProgram(char letter) {
   switch (letter) {
@@ -158,7 +158,7 @@ FamilyResult RunFamilyCell(const std::string& folder, const FamilyCell& cell) {
       kMicro * WindUp_m(LoadEmulatedMachine(folder + "/" + cell.setting.machine + ".yaml").emulator);
   std::optional<EmulatedMachineFile> file;
   try {
-    file = Load(folder, cell);
+    file = LoadFamilyCell(folder, cell);
     VirtualMachine machine(*file, file->machine.machine.controller);
     machine.BringUp();
     machine.Enable();

@@ -37,6 +37,12 @@ struct FamilyResult {
 /// B, C and S with their texts in YAML.
 std::string FamilyProgram(char letter);
 
+/// Of every tuning: no seed of a comparison.
+inline constexpr std::uint64_t kTuningSeed = 101;
+
+/// The machine file of a cell. Throws ConfigError for what its checks refuse.
+EmulatedMachineFile LoadFamilyCell(const std::string& folder, const FamilyCell& cell);
+
 /// Runs the daemon's cycle on the emulated machine in virtual time. A machine that is refused or stops is a
 /// result; a program or name that does not exist throws ConfigError.
 FamilyResult RunFamilyCell(const std::string& folder, const FamilyCell& cell);
