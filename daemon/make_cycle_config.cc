@@ -17,6 +17,7 @@ CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const 
   out.friction = model.friction;
   out.known = KnownEffects(axis.model.extensions, out.mechanics,
                            ToSi(out.friction, out.mechanics.radius_m_rad).sigma2_Ns_m);
+  out.side_modes = axis.model.side_modes;
   out.estimator = estimator;
   // What is known well is not to be learnt anew.
   const auto stated = axis.model.uncertainty.find("screw_stiffness_N_um");

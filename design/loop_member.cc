@@ -18,8 +18,6 @@ constexpr double kMuchDamping = 2.0;
 // Right after a reversal the bristle is twice as stiff, since it unloads and loads.
 constexpr double kStiffestBristle = 2.0;
 
-// A mode beside the screw's is known by a peak: its frequency to this share.
-constexpr double kSideModeOff = 0.1;
 constexpr double kMostMotorShare = 0.9;
 
 struct Factors {
@@ -53,11 +51,11 @@ std::vector<LoopMember> WithSideModes(const LoopAxis& a) {
   if (a.side_modes.empty()) return set;
   for (const double sign : {-1.0, 1.0}) {
     LoopMember m = Vary(a, MemberKind::kAsStated,
-                        std::string("side modes ") + (sign > 0.0 ? "+" : "-") + Percent(kSideModeOff) +
-                            ", half of their damping",
+                        std::string("side modes ") + (sign > 0.0 ? "higher" : "lower") +
+                            " by what they are uncertain, half of their damping",
                         {});
     for (SideMode& mode : m.side_modes) {
-      mode.frequency_Hz *= 1.0 + sign * kSideModeOff;
+      mode.frequency_Hz *= 1.0 + sign * mode.frequency_std_rel;
       mode.damping_ratio *= kLittleDamping;
     }
     set.push_back(std::move(m));

@@ -27,6 +27,7 @@ WindUpFit::Tuning Screw(const FilterSetup& setup) {
   screw.period_s = setup.period_s;
   // All friction goes into it, and only the table's share winds the screw up.
   screw.stiffness_N_m = setup.mechanics.stiffness_N_m / (1.0 - setup.friction.motor_share);
+  screw.before_screw = setup.friction.motor_share;
   screw.stiffness_std = Rate(setup, setup.config.stiffness_std);
   screw.vs_m_s = setup.friction.vs_m_s;
   screw.sigma1_Ns_m = setup.friction.sigma1_Ns_m;

@@ -75,6 +75,7 @@ WindUpFit MakeWindUp(const FilterSetup& s) {
   WindUpFit::Tuning t;
   t.period_s = s.period_s;
   t.stiffness_N_m = s.mechanics.stiffness_N_m / (1.0 - s.friction.motor_share);
+  t.before_screw = s.friction.motor_share;
   t.stiffness_std = s.config.adapt ? s.config.stiffness_std : 0.0;
   t.vs_m_s = s.friction.vs_m_s;
   t.sigma1_Ns_m = s.friction.sigma1_Ns_m;
@@ -110,6 +111,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       axis_(s.axis),
       known_(s.known),
       along_(MakeBasis(s)),
+      side_(s.side_modes, s.axis.table_mass_kg, s.filter.period_s),
       observer_({s.axis,
                  s.loop,
                  s.filter.period_s,
@@ -130,13 +132,14 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
 }
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
-  keep(along_, nodes_, observer_, learner_, wind_up_, lag_, lead_, given_N_, acted_N_, found_N_, newest_,
-       surprise_N2_, elapsed_, temperature_degC_, at_rest_, frozen_);
+  keep(along_, side_, nodes_, observer_, learner_, wind_up_, lag_, lead_, given_N_, acted_N_, found_N_,
+       newest_, surprise_N2_, elapsed_, temperature_degC_, at_rest_, frozen_);
 }
 
 void TwoInertiaEstimator::Reset(double position_m) noexcept {
   observer_.Reset(position_m);
   along_.Reset();
+  side_.Reset();
   nodes_ = {};
   learner_.Reset();
   wind_up_.Reset();
@@ -177,7 +180,7 @@ double TwoInertiaEstimator::BeforeScrew_N(std::size_t point) const noexcept {
 }
 double TwoInertiaEstimator::Table_N(std::size_t point) const noexcept {
   const Node& node = At(point);
-  return node.friction_N + (1.0 - motor_share_) * node.heavier_N - BeforeScrew_N(point);
+  return node.friction_N + (1.0 - motor_share_) * node.heavier_N - BeforeScrew_N(point) + side_.At_N(point);
 }
 
 // Means over the period that begins at a point.
@@ -319,6 +322,7 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
   out.resize(size);
   if (size == 0) return;
   along_.Follow(reference, std::max<std::size_t>(size, 3), known_);
+  side_.Follow(reference, along_.size());
   elapsed_ = 0;
   Lay();
   const double sigma2 = setup_.friction.sigma2_Ns_m;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "core/axis.h"
 #include "core/horizon.h"
@@ -15,6 +16,7 @@
 #include "estimator/friction_along.h"
 #include "estimator/friction_learner.h"
 #include "estimator/known_effects.h"
+#include "estimator/side_mode_force.h"
 #include "estimator/two_inertia_observer.h"
 #include "estimator/wind_up_fit.h"
 
@@ -32,6 +34,7 @@ class TwoInertiaEstimator {
     TwoInertiaLoop loop;
     double position_min_m = -1.0, position_max_m = 1.0;
     KnownEffects known;
+    std::vector<SideMode> side_modes;
   };
 
   /// Throws std::invalid_argument when a value makes no sense.
@@ -75,6 +78,7 @@ class TwoInertiaEstimator {
   TwoInertiaAxis axis_;
   KnownEffects known_;
   FrictionAlong along_;
+  SideModeForce side_;
   std::array<Node, FrictionAlong::kMost> nodes_{};
   TwoInertiaObserver observer_;
   FrictionLearner learner_;

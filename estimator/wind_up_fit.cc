@@ -272,7 +272,8 @@ void WindUpFit::Conclude(double compliance_m_N, double std_m_N, double independe
   const double bristle_m_N = (kLawOfBristle + kLawAtSpeed * end_m_s_ / tuning_.vs_m_s) / sigma0_N_m_;
   // Of a soft bristle and a stiff screw, the law's errors drown the screw.
   if (!(bristle_m_N < kMostLaw * commissioned_m_N)) return;
-  const double screw_m_N = kLawOfScrew * compliance_m_N;
+  const double law = std::sqrt(kLawOfScrew * kLawOfScrew + tuning_.before_screw * tuning_.before_screw);
+  const double screw_m_N = law * compliance_m_N;
   const double whole = std::min(1.0, independence / kIndependent);
   const double certainty =
       whole * whole / (std_m_N * std_m_N + bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);

@@ -28,6 +28,9 @@ class WindUpFit {
     double sigma2_Ns_m = 0.0;
     /// What an answer may be uncertain by, as a share of the commissioned compliance.
     double most_std = 0.08;
+    /// Share of the friction that does not come through the screw. The law has none: a bristle on either side
+    /// is another one, and the answer counts less by as much.
+    double before_screw = 0.0;
     /// Share of the law's variance that is the same at every reversal: more of them do not make it less.
     double same_law = 0.0;
   };

@@ -10,6 +10,7 @@
 #include "core/controller_name.h"
 #include "core/loop_tuning.h"
 #include "core/mechanics.h"
+#include "core/side_mode.h"
 #include "core/two_inertia_axis.h"
 #include "core/watch.h"
 #include "drivers/cia402/drive_master.h"
@@ -25,6 +26,7 @@ struct CycleAxisConfig {
   Mechanics mechanics;
   FrictionConfig friction;
   KnownEffects known;
+  std::vector<SideMode> side_modes;
   EstimatorConfig estimator;
   AxisLimits limits;
   /// Of the drive, a dead time of part of a period among it, for what knows one inertia.

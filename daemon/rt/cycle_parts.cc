@@ -141,6 +141,7 @@ AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis) {
   setup.position_min_m = 1e-3 * a.limits.position_mm[0];
   setup.position_max_m = 1e-3 * a.limits.position_mm[1];
   setup.known = a.known;
+  setup.side_modes = a.side_modes;
   return AxisEstimator(setup);
 }
 

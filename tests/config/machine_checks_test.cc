@@ -178,6 +178,16 @@ TEST(MachineChecks, ModelMustMakeSense) {
   EXPECT_EQ(Only(c), "axes.x.model.uncertainty.colour: found a key that is no parameter of this model");
 }
 
+TEST(MachineChecks, PartsOfTheTableThatSwingAreTwoAndLessThanTheTable) {
+  MachineConfig c = Good();
+  c.axes.at("x").model.side_modes = {{170.0, 0.12}, {90.0, 0.1}};
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("x").model.side_modes.push_back({250.0, 0.1});
+  EXPECT_NE(Only(c).find("axes.x.model.side_modes: found 3, expected at most 2"), std::string::npos);
+  c.axes.at("x").model.side_modes = {{170.0, 0.5}, {90.0, 0.5}};
+  EXPECT_NE(Only(c).find("expected less than 0.9"), std::string::npos);
+}
+
 TEST(MachineChecks, ModeAndController) {
   MachineConfig c = Good();
   for (auto& [name, axis] : c.axes) axis.drive.mode = DriveMode::kCsp;

@@ -92,7 +92,7 @@ struct Swinging {
 
 TEST(MakePlant, PartsOfTheTableSwing) {
   LoopAxis axis = AxisOf("t30");
-  axis.side_modes = {{175.0, 0.12, 0.02}, {90.0, 0.05, 0.05}};
+  axis.side_modes = {{175.0, 0.12, 0.02, 0.0}, {90.0, 0.05, 0.05, 0.0}};
   const LoopMember member = SlidingMember(axis);
   const LoopPlant plant = MakePlant(member, kPeriod_s, 1.0);
   LoopMatrix x = LoopMatrix::Zero(plant.system.a.rows(), 1);

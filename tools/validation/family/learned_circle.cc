@@ -65,6 +65,8 @@ std::vector<CirclePoint> BallBar(const std::vector<std::array<double, kCircleAxe
 std::vector<std::string> LearnCircle(const std::string& folder, FamilyCell cell) {
   cell.program = kLargeCircle;
   cell.seed = kTuningSeed;
+  // The drives alone: what `full` compensates wrongly without this is not to be in the way of finding it.
+  cell.entry = {"csp", "csp"};
   const EmulatedMachineFile file = LoadFamilyCell(folder, cell);
   if (file.machine.axes.size() != kCircleAxes) throw std::runtime_error("a circle takes two axes");
   std::array<CircleAxis, kCircleAxes> axes;

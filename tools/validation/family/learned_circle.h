@@ -10,8 +10,8 @@
 namespace contour {
 
 /// What one measured circle tells `full` of this machine (analysis/circle_test), as assignments for its file:
-/// the large circle, drawn once with the seed and program that `cnc` is tuned on, its radius measured as by a
-/// ball bar. Throws std::runtime_error with what went wrong.
+/// the large circle, drawn once by the drives alone with the seed and program that `cnc` is tuned on, its
+/// radius measured as by a ball bar. Throws std::runtime_error with what went wrong.
 std::vector<std::string> LearnCircle(const std::string& folder, FamilyCell cell);
 
 /// A ball bar's record of whole turns: one reading per degree, the mean over it, in steps of its resolution.
