@@ -291,7 +291,7 @@ std::string WhatIsWrong(const CircleTestResult& result, const std::array<CircleA
     char text[200];
     const char* why = nullptr;
     if (!(share.std <= kMostShareStd))
-      why = "the circle does not tell it: a smaller or slower one has less beside friction";
+      why = "the circle does not tell it: a smaller or slower one has less but friction";
     else if (share.value < -kSigmas * share.std - 0.02)
       why = "less than none: the screw yields more than stated, or the measurement belongs to another circle";
     else if (share.value > kMostShare)

@@ -60,7 +60,7 @@ RowRange TurnsOfCircle(const std::vector<CircleRow>& rows);
 std::vector<CirclePoint> RadiiOf(const std::vector<std::array<double, kCircleAxes>>& table_m);
 
 /// Fits share and wobble of both axes to the measured circle; the wind-up's compliance is that of the stated
-/// K, so what is off in K is in the share. Rows beside the circle may be there: its longest stretch at full
+/// K, so what is off in K is in the share. Other rows may be there: its longest stretch at full
 /// speed is taken, but for the first of its turns where there are more. Throws std::invalid_argument with
 /// what is wrong with the records: no circle, less than a turn, points that do not go round.
 CircleTestResult FitCircle(const std::array<CircleAxis, kCircleAxes>& axes,

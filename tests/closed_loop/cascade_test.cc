@@ -87,7 +87,7 @@ TEST(FullInCascade, FrictionBeforeTheScrewIsNoWindUp) {
     for (const char* axis : {"x", "y"})
       set.push_back(std::string("axes.") + axis + ".model.friction.motor_share_rel=0.3");
     const double known_m = RunCircle(ExampleMachine(set), ControllerName::kFull, kSmall).table_peak_m;
-    EXPECT_GT(unknown_m, 0.3e-6) << law;
+    EXPECT_GT(unknown_m, 0.2e-6) << law;
     EXPECT_LT(2.5 * known_m, unknown_m) << law;
   }
 }

@@ -99,28 +99,28 @@ std::vector<CirclePoint> ReadMeasured(const std::string& file) {
   return points;
 }
 
-std::string Text(const char* format, double a, double b) {
-  char text[120];
-  std::snprintf(text, sizeof text, format, a, b);
+std::string Digits(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3f", value);
   return text;
 }
+std::string PlusMinus(double value, double std) { return Digits(value) + " +- " + Digits(std); }
 
 void Say(const CircleTestResult& found, const Axes& axes) {
   for (std::size_t i = 0; i < kCircleAxes; ++i) {
     const CircleAxisFound& axis = found.axes[i];
-    std::cout << "axis " << axes[i].name << ": "
-              << Text("share of friction before the screw %.3f +- %.3f", axis.motor_share.value,
-                      axis.motor_share.std);
+    std::cout << "axis " << axes[i].name << ": share of friction before the screw "
+              << PlusMinus(axis.motor_share.value, axis.motor_share.std);
     if (axis.wobble_seen)
-      std::cout << Text(", wobble of the lead %.3f +- %.3f um",
-                        1e6 * std::hypot(axis.wobble_sine.value, axis.wobble_cosine.value),
-                        1e6 * std::max(axis.wobble_sine.std, axis.wobble_cosine.std));
+      std::cout << ", wobble of the lead "
+                << PlusMinus(1e6 * std::hypot(axis.wobble_sine.value, axis.wobble_cosine.value),
+                             1e6 * std::max(axis.wobble_sine.std, axis.wobble_cosine.std))
+                << " um\n";
     else
-      std::cout << "; the circle is too small for a wobble of the lead";
-    std::cout << "\n";
+      std::cout << "; the circle is too small for a wobble of the lead\n";
   }
-  std::cout << Text("the model left %.3f um rms of the measured radius, with this %.3f um\n",
-                    1e6 * found.before_m, 1e6 * found.after_m);
+  std::cout << "the model left " << Digits(1e6 * found.before_m)
+            << " um rms of the measured radius, with this " << Digits(1e6 * found.after_m) << " um\n";
 }
 
 void Write(const Options& o, const std::string& name, const ModelConfig& model) {
