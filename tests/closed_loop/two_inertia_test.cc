@@ -99,6 +99,21 @@ TEST(TwoInertia, StandsStillAfterASquare) {
   }
 }
 
+// Three tenths of the friction at the motor, K as it is. In torque mode the loop has it on the motor, too.
+TEST(TwoInertia, FrictionBeforeTheScrewIsTheMotors) {
+  std::vector<std::string> set = Linear("cst");
+  for (const std::string axis : {"x", "y"}) {
+    set.push_back("emulator.axes." + axis + ".friction.motor_share_rel=0.3");
+    set.push_back("axes." + axis + ".model.screw_stiffness_N_um=40");
+  }
+  const Program circle = Circle(0.1, 4, 0.7854);
+  const double unknown_m = RunCircle(ExampleMachine(set), ControllerName::kFull, circle).table_peak_m;
+  for (const std::string axis : {"x", "y"})
+    set.push_back("axes." + axis + ".model.friction.motor_share_rel=0.3");
+  const double known_m = RunCircle(ExampleMachine(set), ControllerName::kFull, circle).table_peak_m;
+  EXPECT_LT(known_m, 0.9 * unknown_m);
+}
+
 TEST(TwoInertia, TheLoopThatRunsIsTheOneThatIsJudged) {
   std::vector<std::string> set = Linear("cst");
   set.push_back("axes.x.model.extensions={input_delay: {delay_us: 60}, current_lag: {time_constant_us: 50}}");

@@ -33,6 +33,18 @@ TEST(Extras, NothingStatedIsNoSignal) {
   EXPECT_FALSE(m.motor_force || m.load_force || m.level || m.viscous || m.scale_error_m);
 }
 
+TEST(Extras, TheScaleReadsTheWobbleOfTheLeadAtTheRows) {
+  StatedExtras x;
+  x.wobble_m = {{0.3e-6, 1.0, 0.4}};
+  AxisModel m = TwoBodies();
+  const Signals s = Slide();
+  AddExtras(x, s, m);
+  ASSERT_TRUE(m.scale_error_m);
+  ASSERT_EQ(m.scale_error_m->size(), kRows);
+  for (std::size_t k = 0; k < kRows; ++k)
+    EXPECT_NEAR((*m.scale_error_m)[k], 0.3e-6 * std::sin(s.angle_rad[k] + 0.4), 1e-15);
+}
+
 TEST(Extras, CoggingActsOnTheMotorWithBothEndsOfARow) {
   StatedExtras x;
   x.cogging = {{0.02, 3.0, 0.4}, {0.01, 1.0, 0.0}};
