@@ -157,6 +157,7 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
 // table. What the axis is heavier than commissioned belongs to both in the ratio of their masses.
 void TwoInertiaEstimator::Lay() noexcept {
   const double extra_kg = learner_.parameters()[kMass];
+  const double sigma2_Ns_m = setup_.friction.sigma2_Ns_m;
   for (std::size_t j = 0; j < along_.size(); ++j) {
     const FrictionTerms& terms = along_.terms(j);
     Node& node = nodes_[j];
@@ -164,9 +165,14 @@ void TwoInertiaEstimator::Lay() noexcept {
     const double all_N = Sum(learner_.parameters(), terms) - node.heavier_N;
     node.friction_N = std::clamp(all_N, -most_N_, most_N_);
     node.driving_N = 0.0;
-    if (known_.neutral()) continue;
-    node.friction_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
-    node.driving_N = known_.Force_N(along_.position_m(j));
+    if (!known_.neutral()) {
+      node.friction_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
+      node.driving_N = known_.Force_N(along_.position_m(j));
+    }
+    // Of sigma2 v, the motor's share has to be taken from the table.
+    const double before_N = before_screw_ * (node.friction_N + sigma2_Ns_m * along_.velocity_m_s(j));
+    node.table_N = node.friction_N + (1.0 - motor_share_) * node.heavier_N - before_N + side_.At_N(j);
+    node.motor_N = node.driving_N - motor_share_ * node.heavier_N - before_N;
   }
 }
 
@@ -174,25 +180,15 @@ const TwoInertiaEstimator::Node& TwoInertiaEstimator::At(std::size_t point) cons
   return nodes_[along_.size() == 0 ? 0 : std::min(point, along_.size() - 1)];
 }
 
-// Of sigma2 v, the motor's share has to be taken from the table.
-double TwoInertiaEstimator::BeforeScrew_N(std::size_t point) const noexcept {
-  return before_screw_ * (At(point).friction_N + setup_.friction.sigma2_Ns_m * along_.velocity_m_s(point));
-}
-double TwoInertiaEstimator::Table_N(std::size_t point) const noexcept {
-  const Node& node = At(point);
-  return node.friction_N + (1.0 - motor_share_) * node.heavier_N - BeforeScrew_N(point) + side_.At_N(point);
-}
-
 // Means over the period that begins at a point.
 double TwoInertiaEstimator::Heavier_N(std::size_t period) const noexcept {
   return 0.5 * (At(period).heavier_N + At(period + 1).heavier_N);
 }
 double TwoInertiaEstimator::Expected_N(std::size_t period) const noexcept {
-  return 0.5 * (Table_N(period) + Table_N(period + 1));
+  return 0.5 * (At(period).table_N + At(period + 1).table_N);
 }
 double TwoInertiaEstimator::Motor_N(std::size_t period) const noexcept {
-  return 0.5 * (At(period).driving_N + At(period + 1).driving_N) - motor_share_ * Heavier_N(period) -
-         0.5 * (BeforeScrew_N(period) + BeforeScrew_N(period + 1));
+  return 0.5 * (At(period).motor_N + At(period + 1).motor_N);
 }
 
 void TwoInertiaEstimator::Remember(const AxisEstimatorInput& in) noexcept {
@@ -334,7 +330,7 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
   const double extra_m_N = wind_up_.extra_compliance_m_N() / (1.0 - before_screw_);
   for (std::size_t j = 0; j < size; ++j) {
     const double v = along_.velocity_m_s(j);
-    const double node_N = Table_N(j) + sigma2 * v;
+    const double node_N = At(j).table_N + sigma2 * v;
     // A drive that closes the loop feeds its mass forward, whatever it is.
     const double drives_N = setup_.reported_torque ? Heavier_N(j) : 0.0;
     const double middle_N =

@@ -58,13 +58,13 @@ class TwoInertiaEstimator {
   struct Node {
     double friction_N = 0.0;  ///< of motor and table, but for sigma2 v
     double heavier_N = 0.0;   ///< for what the axis is heavier than commissioned, all of it
-    double driving_N = 0.0;   ///< on the motor, beside the drive's
+    double driving_N = 0.0;   ///< known on the motor, beside the drive's
+    double table_N = 0.0;     ///< of all of it on the table, against positive motion, but for sigma2 v
+    double motor_N = 0.0;     ///< on the motor, towards positive position
   };
   void Lay() noexcept;
   [[nodiscard]] const Node& At(std::size_t point) const noexcept;
   [[nodiscard]] PeriodForces Forces(std::size_t period, bool ahead) const noexcept;
-  [[nodiscard]] double BeforeScrew_N(std::size_t point) const noexcept;
-  [[nodiscard]] double Table_N(std::size_t point) const noexcept;
   [[nodiscard]] double WindsUp_N(double unforeseen_N) const noexcept;
   [[nodiscard]] double Heavier_N(std::size_t period) const noexcept;
   [[nodiscard]] double Expected_N(std::size_t period) const noexcept;
