@@ -10,11 +10,13 @@ namespace contour {
 namespace {
 
 // Of the level: what remains in a sample that friction along the reference does not know of. Errors of
-// neighbouring samples hang together, so it is far above what one of them is off by.
-constexpr double kNoise = 0.1;
-// Variance that a millisecond of motion adds, as a share of the one at the start: a fifth of its standard
+// neighbouring samples hang together, so it is far above what one of them is off by: with less, terms of
+// short lengths, which the observer hardly sees, take what the motion is off by at a reversal
+// (docs/laboratory/two_inertia_loop.md).
+constexpr double kNoise = 0.25;
+// Variance that a millisecond of motion adds, as a share of the one at the start: a third of its standard
 // deviation in ten seconds.
-constexpr double kDrift_1_ms = 3e-6;
+constexpr double kDrift_1_ms = 1e-5;
 // In Stribeck velocities: below the first the axis as good as stands and nothing is told apart, from the
 // second on parameters drift at their full rate.
 constexpr double kSlowest = 0.0025, kFull = 0.1;
@@ -53,7 +55,7 @@ FrictionLearner::FrictionLearner(const Setup& setup) noexcept
   for (std::size_t i = 0; i < kFrictionTerms; ++i) {
     for (std::size_t j = 0; j < kFrictionTerms; ++j) {
       initial_[i][j] = setup.level_std * setup.parameters[i] * setup.level_std * setup.parameters[j] +
-                       setup.per_std[i] * setup.per_std[j];
+                       setup.per_std[i] * setup.per_std[j] + setup.per_law[i] * setup.per_law[j];
     }
     initial_[i][i] += setup.std[i] * setup.std[i];
     drift_[i] = kDrift_1_ms * 1e3 * setup.period_s * setup.std[i] * setup.std[i];
@@ -72,6 +74,7 @@ void FrictionLearner::Reset() noexcept {
 
 void FrictionLearner::Forget() noexcept {
   for (FrictionTerms& terms : past_) terms.fill(0.0);
+  used_N_.fill(0.0);
   newest_ = 0;
   wait_cycles_ = waited_cycles_ = 0;
 }
@@ -91,12 +94,15 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
 }
 
 // The newest period shows at this sample with tap 1.
-[[gnu::always_inline]] inline void FrictionLearner::Filter(FrictionTerms& filtered) const noexcept {
+[[gnu::always_inline]] inline void FrictionLearner::Filter(FrictionTerms& filtered,
+                                                           double& used_N) const noexcept {
   Quads sum{};
+  used_N = 0.0;
   std::size_t at = newest_;
   for (std::size_t tap = 1; tap < kLoopTaps; ++tap) {
     const double h = setup_.response[tap];
     const double* terms = past_[at].data();
+    used_N += h * used_N_[at];
     for (std::size_t q = 0; q < kQuads; ++q) {
       wide::Quad term;
       wide::Load(terms + 4 * q, term);
@@ -138,22 +144,19 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
 }
 
 [[gnu::always_inline]] inline void FrictionLearner::Update(const FrictionTerms& filtered,
-                                                           double disturbance_N, double moving,
-                                                           double& explained_N) noexcept {
+                                                           double unexplained_N, double moving) noexcept {
   FrictionTerms along;  // covariance times terms
   Along(filtered, along);
   // What a force that accelerates the axis is off by is no friction.
   const double inertial_N = setup_.inertial_kg * filtered[friction_term::kMass];
   const double per_variance = 1.0 / (noise_N2_ + inertial_N * inertial_N + Sum(filtered, along));
-  const double gain = disturbance_N * per_variance;
-  FrictionTerms step{};
+  const double gain = unexplained_N * per_variance;
   bounded_ = false;
   for (std::size_t i = 0; i < kFrictionTerms; ++i) {
     const double wanted = parameters_[i] + gain * along[i], from = setup_.parameters[i] - bound_[i],
                  to = setup_.parameters[i] + bound_[i];
     const double next = std::min(std::max(wanted, from), to);
     bounded_ = bounded_ || next != wanted;
-    step[i] = next - parameters_[i];
     parameters_[i] = next;
   }
   // Each factor on its own, so that rounding keeps it symmetric.
@@ -163,7 +166,6 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
   // What nothing excites does not become less known than it was at the start.
   for (std::size_t i = 0; i < kFrictionTerms; ++i)
     if (covariance_[i][i] < initial_[i][i]) covariance_[i][i] += moving * drift_[i];
-  explained_N = Sum(filtered, step);
 }
 
 // What commissioned parameters would have left of the same samples.
@@ -191,24 +193,29 @@ bool FrictionLearner::Sound() const noexcept {
 }
 
 CONTOUR_WIDE_VECTORS
-double FrictionLearner::Learn(const FrictionTerms& terms, double disturbance_N, double speed_m_s,
-                              bool may) noexcept {
+double FrictionLearner::Learn(const FrictionTerms& terms, double used_N, double disturbance_N,
+                              double speed_m_s, bool may) noexcept {
   newest_ = newest_ + 1 == kLoopTaps ? 0 : newest_ + 1;
   past_[newest_] = terms;
+  used_N_[newest_] = used_N;
+  FrictionTerms filtered;
+  double shown_N = 0.0;
+  Filter(filtered, shown_N);
+  const double found_N = disturbance_N + shown_N;
+  const double unexplained_N = found_N - Sum(parameters_, filtered);
   if (!setup_.learns || !may || speed_m_s < kSlowest * setup_.vs_m_s) {
     if (wait_cycles_ > 0) --wait_cycles_;
-    return 0.0;
+    return unexplained_N;
   }
-  FrictionTerms filtered;
-  Filter(filtered);
-  Judge(filtered, disturbance_N);
-  if (Waits(disturbance_N)) return 0.0;
-  double explained_N = 0.0;
-  Update(filtered, disturbance_N, std::min(1.0, speed_m_s / (kFull * setup_.vs_m_s)), explained_N);
-  if (Sound()) return explained_N;
-  Reset();
-  ++brought_back_;
-  return 0.0;
+  Judge(filtered, unexplained_N);
+  if (Waits(unexplained_N)) return unexplained_N;
+  Update(filtered, unexplained_N, std::min(1.0, speed_m_s / (kFull * setup_.vs_m_s)));
+  if (!Sound()) {
+    Reset();
+    ++brought_back_;
+    return disturbance_N;
+  }
+  return found_N - Sum(parameters_, filtered);
 }
 
 void FrictionLearner::Rest() noexcept {

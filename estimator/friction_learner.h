@@ -22,6 +22,7 @@ class FrictionLearner {
     FrictionTerms std{};         ///< of each on its own; 0: it keeps its value
     double level_std = 0.0;      ///< relative, of all together
     FrictionTerms per_std{};  ///< what one more standard deviation of another number makes of them: of sigma0
+    FrictionTerms per_law{};  ///< and of another law of friction
     std::array<double, kLoopTaps> response{};  ///< TwoInertiaLoop::disturbance_response
     double level_N = 1.0;                      ///< Coulomb level
     double vs_m_s = 1.0;
@@ -42,7 +43,8 @@ class FrictionLearner {
   /// A period has passed along which the terms were these, and at its end the observer finds
   /// `disturbance_N`, positive against positive motion. Returns how much of it is explained from now on: to
   /// be taken off the observer's. `may`: enabled, moved by nothing but the controller.
-  double Learn(const FrictionTerms& terms, double disturbance_N, double speed_m_s, bool may) noexcept;
+  double Learn(const FrictionTerms& terms, double used_N, double disturbance_N, double speed_m_s,
+               bool may) noexcept;
   /// The axis stands: parameters that explain less than the commissioned ones go back to those.
   void Rest() noexcept;
 
@@ -60,16 +62,15 @@ class FrictionLearner {
 
   /// Constants stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
-    keep(parameters_, covariance_, past_, newest_, with_N2_, without_N2_, wait_cycles_, waited_cycles_,
-         brought_back_, bounded_);
+    keep(parameters_, covariance_, past_, used_N_, newest_, with_N2_, without_N2_, wait_cycles_,
+         waited_cycles_, brought_back_, bounded_);
   }
 
  private:
-  void Filter(FrictionTerms& filtered) const noexcept;
+  void Filter(FrictionTerms& filtered, double& used_N) const noexcept;
   void Along(const FrictionTerms& filtered, FrictionTerms& along) const noexcept;
   void Shrink(const FrictionTerms& along) noexcept;
-  void Update(const FrictionTerms& filtered, double disturbance_N, double moving,
-              double& explained_N) noexcept;
+  void Update(const FrictionTerms& filtered, double unexplained_N, double moving) noexcept;
   void Judge(const FrictionTerms& filtered, double disturbance_N) noexcept;
   bool Waits(double disturbance_N) noexcept;
   [[nodiscard]] bool Sound() const noexcept;
@@ -87,6 +88,7 @@ class FrictionLearner {
   FrictionTerms parameters_{};
   FrictionMatrix covariance_{};
   std::array<FrictionTerms, kLoopTaps> past_{};  // a ring
+  std::array<double, kLoopTaps> used_N_{};       // beside them
   std::size_t newest_ = 0;
   double with_N2_ = 0.0, without_N2_ = 0.0;  // mean squares of what is not explained, learnt and commissioned
   int wait_cycles_ = 0;

@@ -27,6 +27,24 @@ constexpr double kSurprise_s = 0.2;
 // of them together are farther off.
 constexpr double kMostStdInCascade = 0.25;
 constexpr double kSameLawInCascade = 0.3;
+// By a torque that noisy another kind of friction may pass for a screw of half the stiffness.
+constexpr double kMostChangeInCascade = 0.3;
+constexpr double kMostChangeStds = 4.0;
+
+/// What a standard deviation towards the other law makes of the commissioned one: bristles that give way one
+/// after the other in place of one that gives way smoothly. Their shares make them as stiff together.
+FrictionTerms TowardsMaxwellSlip(const FrictionTerms& lugre) {
+  constexpr double kOtherLaw = 0.5;
+  constexpr std::array<double, 4> kShares{0.05, 0.15, 0.4, 0.4};
+  FrictionTerms other{};
+  double bristles_N = 0.0;
+  for (std::size_t i = kDahl; i < kStop; ++i) {
+    bristles_N += lugre[i];
+    other[i] = -kOtherLaw * lugre[i];
+  }
+  for (std::size_t i = 0; i < kShares.size(); ++i) other[kStop + i] = kOtherLaw * kShares[i] * bristles_N;
+  return other;
+}
 
 // The share of friction that is the motor's shows in the observer as if it were the table's, a little sooner.
 std::array<double, kLoopTaps> ResponseToFriction(const TwoInertiaEstimator::Setup& s) {
@@ -53,6 +71,7 @@ FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFri
     learner.std[i] = kShape * level_N;
     learner.per_std[i] = other[i] - learner.parameters[i];
   }
+  learner.per_law = TowardsMaxwellSlip(learner.parameters);
   for (std::size_t i = kTurn; i < kStroke; ++i) learner.std[i] = kTurnPart * level_N;
   learner.std[kStroke] = kStrokePart * level_N;
   learner.std[kViscous] = kShape * level_N + kViscousPart * friction.sigma2_Ns_m *
@@ -84,6 +103,7 @@ WindUpFit MakeWindUp(const FilterSetup& s) {
   if (s.reported_torque) {
     t.most_std = kMostStdInCascade;
     t.same_law = kSameLawInCascade;
+    t.most_change = std::max(kMostChangeInCascade, kMostChangeStds * t.stiffness_std);
   }
   return WindUpFit(t);
 }
@@ -133,7 +153,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
   keep(along_, side_, nodes_, observer_, learner_, wind_up_, lag_, lead_, given_N_, acted_N_, found_N_,
-       newest_, surprise_N2_, elapsed_, temperature_degC_, at_rest_, frozen_);
+       newest_, surprise_N2_, unexplained_N_, elapsed_, temperature_degC_, at_rest_, frozen_);
 }
 
 void TwoInertiaEstimator::Reset(double position_m) noexcept {
@@ -148,7 +168,7 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
   given_N_ = {};
   acted_N_ = 0.0;
   found_N_ = {};
-  surprise_N2_ = 0.0;
+  surprise_N2_ = unexplained_N_ = 0.0;
   elapsed_ = 0;
   at_rest_ = true;
 }
@@ -164,6 +184,7 @@ void TwoInertiaEstimator::Lay() noexcept {
     node.heavier_N = extra_kg * terms[kMass];
     const double all_N = Sum(learner_.parameters(), terms) - node.heavier_N;
     node.friction_N = std::clamp(all_N, -most_N_, most_N_);
+    node.learnt_N = node.friction_N + node.heavier_N;
     node.driving_N = 0.0;
     if (!known_.neutral()) {
       node.friction_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
@@ -219,6 +240,7 @@ AxisEstimate TwoInertiaEstimator::Update(const AxisEstimatorInput& in) noexcept 
   if (!in.enabled) {
     if (in.fresh) observer_.Reset(in.position_m);
     learner_.Forget();
+    unexplained_N_ = 0.0;
     at_rest_ = true;
     wind_up_.Pause();
   } else {
@@ -248,11 +270,11 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
   FrictionTerms terms;
   for (std::size_t i = 0; i < kFrictionTerms; ++i)
     terms[i] = 0.5 * (along_.terms(period)[i] + along_.terms(period + 1)[i]);
-  const double explained_N =
-      learner_.Learn(terms, observer_.disturbance_N(), std::abs(velocity_m_s), may && !at_rest_);
-  observer_.Explain(explained_N);
+  const double used_N = 0.5 * (At(period).learnt_N + At(period + 1).learnt_N);
+  unexplained_N_ =
+      learner_.Learn(terms, used_N, observer_.disturbance_N(), std::abs(velocity_m_s), may && !at_rest_);
   newest_ = (newest_ + 1) % found_N_.size();
-  found_N_[newest_] = observer_.disturbance_N();
+  found_N_[newest_] = unexplained_N_;
   const double before_N = found_N_[(newest_ + found_N_.size() - settle_) % found_N_.size()];
   const double change_N = found_N_[newest_] - before_N;
   surprise_N2_ += surprise_share_ * (change_N * change_N - surprise_N2_);
@@ -291,7 +313,7 @@ AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const n
   out.predicted_position_m = next[0];
   out.predicted_velocity_m_s = next[1];
   out.motion = now;
-  out.disturbance_N = observer_.disturbance_N();
+  out.disturbance_N = unexplained_N_;
   out.sigma0_N_m = setup_.friction.sigma0_N_m;
   out.g_plus_N = learner_.Level_N(true);
   out.g_minus_N = learner_.Level_N(false);
@@ -324,7 +346,7 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
   const double sigma2 = setup_.friction.sigma2_Ns_m;
   double lead_N = 0.0;
   if (setup_.reported_torque) {
-    lead_.Step(observer_.disturbance_N(), learner_.Level_N(along_.velocity_m_s(0) >= 0.0), at_rest_);
+    lead_.Step(unexplained_N_, learner_.Level_N(along_.velocity_m_s(0) >= 0.0), at_rest_);
     lead_N = WindsUp_N(lead_.lead_N());
   }
   const double extra_m_N = wind_up_.extra_compliance_m_N() / (1.0 - before_screw_);

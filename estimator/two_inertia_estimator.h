@@ -58,6 +58,7 @@ class TwoInertiaEstimator {
   struct Node {
     double friction_N = 0.0;  ///< of motor and table, but for sigma2 v
     double heavier_N = 0.0;   ///< for what the axis is heavier than commissioned, all of it
+    double learnt_N = 0.0;    ///< all that follows from what is learnt
     double driving_N = 0.0;   ///< known on the motor, beside the drive's
     double table_N = 0.0;     ///< of all of it on the table, against positive motion, but for sigma2 v
     double motor_N = 0.0;     ///< on the motor, towards positive position
@@ -97,7 +98,8 @@ class TwoInertiaEstimator {
   std::array<double, kFound> found_N_{};  ///< disturbance at the samples before, a ring
   std::size_t newest_ = 0;
   double surprise_N2_ = 0.0;
-  std::size_t elapsed_ = 0;  ///< samples since friction was laid along the reference
+  double unexplained_N_ = 0.0;  ///< disturbance, had what is known by now been known all along
+  std::size_t elapsed_ = 0;     ///< samples since friction was laid along the reference
   double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();
   bool at_rest_ = true;
   bool frozen_ = false;

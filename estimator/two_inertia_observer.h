@@ -49,8 +49,6 @@ class TwoInertiaObserver {
   Seen Correct(double position_m) noexcept;
   /// Where the next sample will find the axis.
   [[nodiscard]] LoopMotion Ahead(const PeriodForces& forces) const noexcept;
-  /// So much of the unknown force is known from now on.
-  void Explain(double force_N) noexcept { disturbance_N_ -= force_N; }
 
   [[nodiscard]] const LoopMotion& motion() const noexcept { return motion_; }
   [[nodiscard]] double disturbance_N() const noexcept { return disturbance_N_; }

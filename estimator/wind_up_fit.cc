@@ -29,9 +29,8 @@ constexpr double kMostLevelError = 2.0;
 constexpr double kLawOfBristle = 0.01;
 constexpr double kLawAtSpeed = 0.03;  // per Stribeck velocity at the end of the window
 constexpr double kLawOfScrew = 0.05;
-constexpr double kMostLaw = 0.25;    // of the commissioned compliance
-constexpr double kMostSpeed = 0.4;   // Stribeck velocities at the end of the window
-constexpr double kMostChange = 2.0;  // of the compliance, and the inverse
+constexpr double kMostLaw = 0.25;   // of the commissioned compliance
+constexpr double kMostSpeed = 0.4;  // Stribeck velocities at the end of the window
 // Standard deviations that an axis moving alone stays short by.
 constexpr double kDoubts = 5.0;
 // What is stated may be quite wrong: its tails are those of a Student distribution.
@@ -266,8 +265,8 @@ bool WindUpFit::Follows(double independence) noexcept {
 void WindUpFit::Conclude(double compliance_m_N, double std_m_N, double independence) noexcept {
   const double commissioned_m_N = 1.0 / tuning_.stiffness_N_m;
   if (!(std_m_N < tuning_.most_std * commissioned_m_N)) return;
-  if (!(compliance_m_N > commissioned_m_N / (1.0 + kMostChange) &&
-        compliance_m_N < commissioned_m_N * (1.0 + kMostChange)))
+  if (!(compliance_m_N > commissioned_m_N / (1.0 + tuning_.most_change) &&
+        compliance_m_N < commissioned_m_N * (1.0 + tuning_.most_change)))
     return;
   const double bristle_m_N = (kLawOfBristle + kLawAtSpeed * end_m_s_ / tuning_.vs_m_s) / sigma0_N_m_;
   // Of a soft bristle and a stiff screw, the law's errors drown the screw.

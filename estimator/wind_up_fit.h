@@ -31,6 +31,8 @@ class WindUpFit {
     /// Share of the friction that does not come through the screw. The law has none: a bristle on either side
     /// is another one, and the answer counts less by as much.
     double before_screw = 0.0;
+    /// What an answer may be off by, as a share of the commissioned compliance or of the answer.
+    double most_change = 2.0;
     /// Share of the law's variance that is the same at every reversal: more of them do not make it less.
     double same_law = 0.0;
   };

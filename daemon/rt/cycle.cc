@@ -27,6 +27,10 @@ Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAx
       estimator(MakeEstimator(cycle, index)),
       observer(MakeObserver(cycle, index)),
       monitor(monitored, cycle.control.monitor, cycle.cycle_us * 1e-6, cycle.off),
+      in_period(cycle.cycle_us * 1e-6, cycle.axes[index].lag_s),
+      acts_after(std::min<std::size_t>(
+          static_cast<std::size_t>(std::max(1, cycle.master.axes[index].drive.delay_cycles)) - 1,
+          sent_force_N.size() - 1)),
       unreferenced_travel_m(1e-3 * cycle.axes[index].limits.unreferenced_travel_mm),
       following_error_m(1e-3 * cycle.axes[index].limits.following_error_mm),
       position_min_m(1e-3 * cycle.axes[index].limits.position_mm[0]),
@@ -45,6 +49,7 @@ Cycle::Cycle(const CycleConfig& config)
       guard_(config.control.guard, GuardedAxes(config), period_s_, config.off),
       csp_(InCascade(config)),
       by_reported_torque_(csp_ && config.controller == ControllerName::kFull),
+      two_inertias_(KnowsTwoInertias(config)),
       off_(config.off),
       most_skipped_(static_cast<std::uint32_t>(config.control.guard.stale_cycles)),
       estimates_(config.axes.size()),

@@ -22,6 +22,7 @@
 #include "drivers/cia301/bus_traffic.h"
 #include "drivers/cia402/drive_master.h"
 #include "estimator/axis_estimator.h"
+#include "estimator/torque_in_period.h"
 
 namespace contour {
 
@@ -81,6 +82,8 @@ class Cycle {
     MotionMonitor monitor;
     std::array<double, 3> sent_force_N{};  ///< newest first
     double reported_N = 0.0;               ///< torque at the sample before, as the drive told it
+    TorqueInPeriod in_period;              ///< what it made of that, in csp
+    std::size_t acts_after = 0;            ///< index into sent_force_N of what acted over the period
     double wanted_torque_Nm = 0.0;         ///< before the guard
     double position_m = 0.0;
     double blend_N = 0.0;          ///< what a change of controller must not make of the force, fading away
@@ -90,7 +93,8 @@ class Cycle {
     double position_max_m;
 
     void Keep(StateKeeper& keep) noexcept {
-      keep(estimator, observer, monitor, sent_force_N, reported_N, wanted_torque_Nm, position_m, blend_N);
+      keep(estimator, observer, monitor, sent_force_N, reported_N, in_period, wanted_torque_Nm, position_m,
+           blend_N);
     }
   };
 
@@ -158,8 +162,9 @@ class Cycle {
   double blend_kept_ = 0.0;  // per cycle
   TorqueGuard guard_;
   bool csp_;
-  bool by_reported_torque_;  // the estimators are told what the drives report instead of what they were sent
-  WatchesOff off_;           ///< none, but in tests
+  bool by_reported_torque_;
+  bool two_inertias_;  // the estimators are told what the drives report instead of what they were sent
+  WatchesOff off_;     ///< none, but in tests
   std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 

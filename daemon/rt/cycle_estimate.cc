@@ -21,7 +21,9 @@ const Cycle::Estimates& Cycle::Estimate(const Feedback& feedback, const IoInput&
     if (by_reported_torque_) {
       // What the drive's own loops made of it, at the ends of the period that has passed.
       const double now_N = f.torque_Nm / axis.radius_m_rad;
-      input.force_N = {now_N, 0.5 * (now_N + axis.reported_N), axis.reported_N};
+      const double acted_N = axis.sent_force_N[axis.acts_after];
+      const double mean_N = axis.in_period.Mean_N(axis.reported_N, now_N, acted_N);
+      input.force_N = {now_N, two_inertias_ ? mean_N : 0.5 * (now_N + axis.reported_N), axis.reported_N};
       axis.reported_N = now_N;
     }
     input.commanded_velocity_m_s = commanded.velocity_m_s;

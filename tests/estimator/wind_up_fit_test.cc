@@ -129,6 +129,16 @@ TEST(WindUpFit, WhatIsFoundOutweighsWhatWasStatedQuiteWrong) {
 }
 
 // Being late along the path is no error of the contour, going past its ends is.
+TEST(WindUpFit, AnAnswerThatIsFartherOffThanMayBeTeachesNothing) {
+  WindUpFit::Tuning tuning = Tuning();
+  tuning.most_change = 0.4;
+  WindUpFit far(tuning), near(tuning);
+  Drive(far, LuGre(kSigma0_N_m, kLevel_N), {.stiffness_N_m = 22e6, .seconds = 3.0});
+  EXPECT_EQ(far.extra_compliance_m_N(), 0.0);
+  Drive(near, LuGre(kSigma0_N_m, kLevel_N), {.stiffness_N_m = 36e6});
+  EXPECT_NEAR(Found_N_m(near), 36e6, 0.06 * 36e6);
+}
+
 TEST(WindUpFit, AnAxisThatMovesAloneStaysShort) {
   for (const double truth_N_m : {30e6, 40e6, 60e6}) {
     for (const double seconds : {0.5, 3.0, 20.0}) {
