@@ -17,12 +17,7 @@ std::vector<ConfigProblem> CheckLoops(const MachineConfig& c) {
   for (const auto& [name, axis] : c.axes) {
     if (ModeFor(c.machine.controller, axis.drive) == DriveMode::kCsp) continue;
     const std::string key = "axes." + name + ".loop";
-    if (!axis.loop) {
-      problems.push_back({key,
-                          "found nothing, but control.friction is linear and drive.mode cst: expected the "
-                          "tuning that `contour tune --from-model` writes"});
-      continue;
-    }
+    if (!axis.loop) continue;  // design/loop_choice.h finds one, or says why there is none
     try {
       std::ignore = DesignLoop(TwoInertiaAxisOf(axis), *axis.loop, 1e-6 * c.machine.cycle_us, false);
     } catch (const std::invalid_argument& e) {

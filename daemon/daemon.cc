@@ -34,6 +34,7 @@
 #include "daemon/service_notifier.h"
 #include "daemon/supervisor.h"
 #include "daemon/telemetry/telemetry_hub.h"
+#include "design/loop_choice.h"
 #include "drivers/cia301/messages.h"
 #include "tools/machine/load_emulated_machine.h"
 
@@ -402,6 +403,9 @@ int RunDaemon(const DaemonOptions& options) {
   const MachineConfig stated = LoadMachine(options.config, overrides);
   FrictionMemory memory(stated, MemoryDirectory(stated.memory));
   for (const std::string& learnt : memory.Overrides()) overrides.push_back(learnt);
+  // In the log, too: a replay has the same.
+  const std::vector<std::string> loops = LoopsThatAreMissing(stated);
+  overrides.insert(overrides.end(), loops.begin(), loops.end());
   const MaybeEmulatedMachineFile file = LoadFile(options, overrides);
   const MachineSource source = ReadSource(options.config, overrides);
   // Before any thread starts, so that all inherit it.
@@ -410,6 +414,9 @@ int RunDaemon(const DaemonOptions& options) {
   logging.level = ToSpdlog(file.machine.logging.level);
   if (!file.machine.logging.file.empty()) logging.file = file.machine.logging.file;
   SetUpLogging(logging);
+  for (const std::string& loop : loops)
+    spdlog::info("chosen, as the machine file has none: {}; contour tune --from-model finds a better one",
+                 loop);
   for (const std::string& text : memory.used()) spdlog::info("{}", text);
   for (const std::string& text : memory.refused()) spdlog::warn("{}", text);
   // What is thrown from here on is for main to print: the signals end the process again, should that be

@@ -91,12 +91,7 @@ class Box {
 std::vector<std::vector<double>> Starts(const Box& box, const LoopSearchOptions& options, double period_s) {
   std::vector<std::vector<double>> starts;
   if (options.start) starts.push_back(box.PointOf(*options.start));
-  for (const LoopTuning& t : kOthers) {
-    LoopTuning here = t;
-    for (const Parameter& p : kParameters)
-      if (p.frequency) here.*p.value *= 1e-3 / period_s;
-    starts.push_back(box.PointOf(here));
-  }
+  for (const LoopTuning& t : LoopsOfOtherAxes(period_s)) starts.push_back(box.PointOf(t));
   PortableRandom random(1);
   for (int i = 0; i < options.random_starts; ++i) {
     std::vector<double> point(box.size());
@@ -120,6 +115,14 @@ double LoopCost(const LoopVerdict& v, double limit_slope) {
   // An unstable loop's error says nothing.
   const double cost = std::isfinite(error_um) ? std::min(std::log(error_um), 20.0) : 20.0;
   return std::min(cost + limit_slope * excess, kHopeless);
+}
+
+std::vector<LoopTuning> LoopsOfOtherAxes(double period_s) {
+  std::vector<LoopTuning> loops(kOthers.begin(), kOthers.end());
+  for (LoopTuning& t : loops)
+    for (const Parameter& p : kParameters)
+      if (p.frequency) t.*p.value *= 1e-3 / period_s;
+  return loops;
 }
 
 FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOptions& options) {

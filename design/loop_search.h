@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "core/loop_tuning.h"
 #include "design/loop_margins.h"
@@ -29,6 +30,9 @@ struct FoundLoop {
 /// What the search makes small: the logarithm of the table's error under a force step (peak and twice the
 /// mean, in micrometres), and `limit_slope` per share beyond a limit.
 double LoopCost(const LoopVerdict& verdict, double limit_slope);
+
+/// What was found on other axes, with all frequencies in those of this sampling.
+std::vector<LoopTuning> LoopsOfOtherAxes(double period_s);
 
 /// Searches the tuning of one axis. Deterministic. Whether what was found keeps the limits is for Acceptable
 /// to say. Throws std::invalid_argument when the axis itself cannot be.

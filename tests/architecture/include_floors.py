@@ -63,7 +63,7 @@ MAY_INCLUDE = {
     "design": [*BELOW_ANALYSIS, "analysis"],
     # The emulated machine shares no code with the estimator it is to test, nor with what judges its recordings.
     "tools/plant_emulator": ["core", "drivers", "config"],
-    "tools/machine": ["core", "drivers", "config", "tools/plant_emulator"],
+    "tools/machine": ["core", "drivers", "config", "design", "tools/plant_emulator"],
     "tools/doctor": ["core"],
     "tools/replay": BELOW_ANALYSIS,
     "tools/simulate": [*BELOW_ANALYSIS, "analysis/metrics", "tools/plant_emulator", "tools/machine"],
@@ -84,6 +84,8 @@ MAY_INCLUDE = {
 EMULATED_MACHINE = ["tools/plant_emulator", "tools/machine"]
 PROGRAM_FILES = ["daemon/main.cc", "daemon/daemon.cc", "daemon/machine_buses.cc", "daemon/machine_buses.h", "daemon/truth_relay.h"]
 PROGRAMS_MAY_INCLUDE = {name: EMULATED_MACHINE for name in PROGRAM_FILES}
+# A machine file without loops gets them before the cycle is made.
+PROGRAMS_MAY_INCLUDE["daemon/daemon.cc"] = [*EMULATED_MACHINE, "design"]
 
 # The real-time side: what would allocate, lock, wait or talk stays out.
 REALTIME = ["core", *RT_DRIVERS, "estimator", "control", "daemon/rt"]

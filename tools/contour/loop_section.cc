@@ -3,10 +3,30 @@
 #include <stdexcept>
 
 #include "config/loop_axis.h"
+#include "design/loop_choice.h"
 #include "design/loop_report.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
+
+namespace {
+
+/// Of an axis without a loop: what it will get.
+void Chosen(const MachineConfig& machine, const std::string& name, const AxisConfig& config,
+            LoopSection& section) {
+  const LoopAxis axis = LoopAxisOf(config);
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  if (const std::optional<LoopTuning> tuning = ChooseLoop(axis, period_s)) {
+    section.text += "  axis " + name +
+                    ": no loop: in the file, so this one is chosen at start; contour tune --from-model "
+                    "finds a better one\n" +
+                    Describe(ReportOn(axis, *tuning, period_s));
+    return;
+  }
+  section.refused.push_back(WhyNoLoop(name, axis, period_s));
+}
+
+}  // namespace
 
 LoopSection JudgeLoops(const MachineConfig& machine) {
   LoopSection section;
@@ -15,6 +35,10 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
   const bool used = machine.control.friction == FrictionKind::kLinear;
   for (const auto& [name, config] : machine.axes) {
     if (ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
+    if (!config.loop && used) {
+      Chosen(machine, name, config, section);
+      continue;
+    }
     if (!config.loop) {
       section.text += "  axis " + name + ": no loop: tuning; contour tune --from-model finds it\n";
       continue;

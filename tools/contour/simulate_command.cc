@@ -10,6 +10,7 @@
 #include "core/exit_status.h"
 #include "daemon/make_log_header.h"
 #include "daemon/program/program.h"
+#include "design/loop_choice.h"
 #include "tools/machine/load_emulated_machine.h"
 #include "tools/simulate/simulation_run.h"
 
@@ -29,7 +30,13 @@ struct Options {
 
 int RunSimulate(const Options& options) {
   SimulationRequest request;
-  request.file = LoadEmulatedMachine(options.config, options.set);
+  std::vector<std::string> set = options.set;
+  // Named wrongly, it is for the lines below to say.
+  if (ControllerName named{}; FromName(options.controller, named))
+    set.push_back("machine.controller=" + options.controller);
+  for (std::string& loop : LoopsThatAreMissing(LoadMaybeEmulatedMachine(options.config, set).machine))
+    set.push_back(std::move(loop));
+  request.file = LoadEmulatedMachine(options.config, set);
   if (options.seed) request.file.emulator.seed = *options.seed;
   request.controller = request.file.machine.machine.controller;
   if (!options.controller.empty() && !FromName(options.controller, request.controller)) {
@@ -46,7 +53,6 @@ int RunSimulate(const Options& options) {
   request.passes = options.passes;
   request.out = options.out;
   if (!options.log.empty()) {
-    std::vector<std::string> set = options.set;
     if (options.seed) set.push_back("emulator.seed=" + std::to_string(*options.seed));
     set.push_back("machine.controller=" + std::string(Name(request.controller)));
     request.log = options.log;

@@ -60,7 +60,7 @@ bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneL
   options.threads = ThreadsOf(static_cast<int>(asked.threads));
   if (asked.evaluations > 0)
     options.evaluations_per_run = options.evaluations_per_refinement = asked.evaluations;
-  options.start = config.loop;
+  // Not from what the file has: the same model gives the same loop.
   FoundLoop found = SearchLoop(axis, period_s, options);
   Rounding rounding;
   found.tuning.Visit(rounding);

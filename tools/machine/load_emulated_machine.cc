@@ -5,6 +5,7 @@
 #include "config/config_error.h"
 #include "config/load_machine.h"
 #include "config/yaml_reader.h"
+#include "design/loop_choice.h"
 
 namespace contour {
 namespace {
@@ -41,6 +42,11 @@ MaybeEmulatedMachineFile LoadMaybeEmulatedMachine(const std::string& path,
 
 EmulatedMachineFile LoadEmulatedMachine(const std::string& path, const std::vector<std::string>& overrides) {
   MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(path, overrides);
+  std::vector<std::string> with_loops = LoopsThatAreMissing(file.machine);
+  if (!with_loops.empty()) {
+    with_loops.insert(with_loops.begin(), overrides.begin(), overrides.end());
+    file = LoadMaybeEmulatedMachine(path, with_loops);
+  }
   if (!file.has_emulator)
     throw ConfigError({path + ": emulator: missing, expected a map of keys: the machine to emulate"});
   return {std::move(file.machine), std::move(file.emulator)};

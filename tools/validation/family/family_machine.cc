@@ -33,7 +33,7 @@ double Mode_Hz(const EmulatedAxisConfig& axis, double lead_mm) {
   return std::sqrt(1e6 * axis.screw_stiffness_N_um * per_mass) / (2.0 * std::numbers::pi);
 }
 
-void AddRoughness(const EmulatedMachineFile& file, std::vector<std::string>& set) {
+void AddRoughness(const MaybeEmulatedMachineFile& file, std::vector<std::string>& set) {
   for (const auto& [name, axis] : file.emulator.axes) {
     const double lead_mm = axis.lead_mm.value_or(file.machine.axes.at(name).model.mechanics.lead_mm);
     const std::string key = "emulator.axes." + name + ".";
@@ -78,7 +78,7 @@ std::vector<std::string> FamilyMachines(const std::string& folder) {
 std::vector<std::string> FamilyAssignments(const std::string& folder, const FamilySetting& setting) {
   const std::string path = folder + "/" + setting.machine + ".yaml";
   const YamlValue tree = OpenMachineFile(path, {});
-  const EmulatedMachineFile file = LoadEmulatedMachine(path);
+  const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(path);
   std::vector<std::string> wanted;
   if (setting.model == FamilyModel::kNear) {
     // The model is off by what it states and no more: the seed varies noise, phases and the start.

@@ -160,7 +160,7 @@ int TuneAll(const Options& o) {
   ParallelFor(tuned.size(), o.jobs, [&](std::size_t i) {
     CncTask task{o.machines[i], plant, false, o.tune_on.front(), o.evaluations};
     tuned[i] = TuneCnc(o.folder, task);
-    const EmulatedMachineFile file = LoadEmulatedMachine(o.folder + "/" + o.machines[i] + ".yaml");
+    const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(o.folder + "/" + o.machines[i] + ".yaml");
     const bool scale = std::all_of(file.machine.axes.begin(), file.machine.axes.end(), [](const auto& axis) {
       return axis.second.drive.linear_scale.has_value();
     });

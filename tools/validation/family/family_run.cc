@@ -155,7 +155,7 @@ FamilyResult RunFamilyCell(const std::string& folder, const FamilyCell& cell) {
       ParseProgram(FamilyProgram(cell.program), std::string(1, cell.program), ProgramFormat::kYaml);
   FamilyResult result;
   result.wind_up_um =
-      kMicro * WindUp_m(LoadEmulatedMachine(folder + "/" + cell.setting.machine + ".yaml").emulator);
+      kMicro * WindUp_m(LoadMaybeEmulatedMachine(folder + "/" + cell.setting.machine + ".yaml").emulator);
   std::optional<EmulatedMachineFile> file;
   try {
     file = LoadFamilyCell(folder, cell);

@@ -1,0 +1,117 @@
+#include "design/loop_choice.h"
+
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+
+#include "config/config_error.h"
+#include "design/loop_report.h"
+#include "design/loop_search.h"
+#include "drivers/cia402/mode_for.h"
+
+namespace contour {
+namespace {
+
+// Of regulator and observer: slower ones bear more.
+constexpr std::array<double, 5> kSofter{1.0, 0.85, 0.7, 0.5, 0.35};
+
+// Evaluations of a search that begins there: some tenths of a second.
+constexpr int kPolish = 80;
+
+double Error_m(const LoopVerdict& v) { return v.step.peak_m + 2.0 * v.step.mean_m; }
+
+/// With three digits, as it stands in a file; the loop is judged as it is written.
+class Writer {
+ public:
+  template <class... T>
+  void Required(std::string_view key, double& value, T...) {
+    Put(key, value);
+  }
+  template <class... T>
+  void Optional(std::string_view key, double& value, T...) {
+    Put(key, value);
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void Put(std::string_view key, double& value) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.3g", value);
+    value = std::stod(number);
+    text_ += (text_.empty() ? "" : ", ") + std::string(key) + ": " + number;
+  }
+  std::string text_;
+};
+
+}  // namespace
+
+std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
+  const bool scale = axis.scale_step_m.has_value();
+  const LoopJudge judge(axis, period_s);
+  std::optional<LoopTuning> best;
+  double least_m = 0.0;
+  for (LoopTuning known : LoopsOfOtherAxes(period_s)) {
+    for (const double softer : kSofter) {
+      LoopTuning tuning = known;
+      tuning.regulator_Hz *= softer;
+      tuning.disturbance_Hz *= softer;
+      Writer rounding;
+      tuning.Visit(rounding);
+      try {
+        const LoopVerdict verdict = judge.Judge(DesignLoop(axis.axis, tuning, period_s, scale));
+        if (!Acceptable(verdict)) continue;
+        const double error_m = Error_m(verdict);
+        if (!best || error_m < least_m) {
+          best = tuning;
+          least_m = error_m;
+        }
+        break;  // softer forms of it only answer a force more slowly
+      } catch (const std::invalid_argument&) {
+        continue;
+      }
+    }
+  }
+  LoopSearchOptions brief;
+  brief.random_starts = 0;
+  brief.runs = brief.refinements = 1;
+  brief.evaluations_per_run = brief.evaluations_per_refinement = kPolish;
+  brief.start = best;
+  FoundLoop found = SearchLoop(axis, period_s, brief);
+  Writer rounding;
+  found.tuning.Visit(rounding);
+  found.verdict = judge.Judge(DesignLoop(axis.axis, found.tuning, period_s, scale));
+  if (Acceptable(found.verdict) && (!best || Error_m(found.verdict) < least_m)) best = found.tuning;
+  return best;
+}
+
+std::string WhyNoLoop(const std::string& name, const LoopAxis& axis, double period_s) {
+  std::string text = "axes." + name +
+                     ".loop: missing, and none of the loops that are tried without one keeps its limits; "
+                     "expected what `contour tune --from-model` writes after a search; what would help:";
+  for (const std::string& help : WhatWouldHelp(axis, period_s, 1)) text += " " + help + ";";
+  text.pop_back();
+  return text;
+}
+
+std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine) {
+  std::vector<std::string> assignments, errors;
+  if (machine.machine.controller != ControllerName::kFull ||
+      machine.control.friction != FrictionKind::kLinear)
+    return assignments;
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  for (const auto& [name, config] : machine.axes) {
+    if (config.loop || ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
+    const LoopAxis axis = LoopAxisOf(config);
+    if (std::optional<LoopTuning> tuning = ChooseLoop(axis, period_s)) {
+      Writer writer;
+      tuning->Visit(writer);
+      assignments.push_back("axes." + name + ".loop={" + writer.text() + "}");
+    } else {
+      errors.push_back(WhyNoLoop(name, axis, period_s));
+    }
+  }
+  if (!errors.empty()) throw ConfigError(std::move(errors));
+  return assignments;
+}
+
+}  // namespace contour

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/loop_axis.h"
+#include "config/machine_config.h"
+#include "core/loop_tuning.h"
+
+namespace contour {
+
+/// A loop at once for an axis that has none: solutions of the search on other axes, which are in units of the
+/// axis's own mode, masses and period, and softer forms of them. The one with the least error under a force
+/// step of those that keep every limit; none when none does. The search finds a better one.
+std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s);
+
+/// Why there is none, and what would help.
+std::string WhyNoLoop(const std::string& name, const LoopAxis& axis, double period_s);
+
+/// A loop for every axis that needs one and has none, as assignments `axes.<name>.loop={...}` to put on top
+/// of the machine file. Throws ConfigError, with the reason and what would help, when there is none for an
+/// axis.
+std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine);
+
+}  // namespace contour
