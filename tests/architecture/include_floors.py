@@ -65,7 +65,7 @@ MAY_INCLUDE = {
     "tools/plant_emulator": ["core", "drivers", "config"],
     "tools/machine": ["core", "drivers", "config", "design", "tools/plant_emulator"],
     "tools/doctor": ["core"],
-    "tools/replay": BELOW_ANALYSIS,
+    "tools/replay": [*BELOW_ANALYSIS, "design"],
     "tools/simulate": [*BELOW_ANALYSIS, "analysis/metrics", "tools/plant_emulator", "tools/machine"],
     "tools/faults": [*BELOW_ANALYSIS, "analysis/parallel", *SIMULATED],
     # Each way of validation is blind to the others.

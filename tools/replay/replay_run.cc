@@ -13,6 +13,7 @@
 #include "daemon/rt/cycle_parts.h"
 #include "daemon/telemetry/log_format.h"
 #include "daemon/telemetry/tuning_note.h"
+#include "design/loop_choice.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/replay/output_quantities.h"
 
@@ -163,6 +164,9 @@ bool Passed(ReplayVerdict verdict) {
 ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
   MachineSource source = SourceOf(log.header());
   source.overrides.insert(source.overrides.end(), options.set.begin(), options.set.end());
+  // Of another controller than the one that ran.
+  for (std::string& loop : LoopsThatAreMissing(LoadMachine(source)))
+    source.overrides.push_back(std::move(loop));
   const MachineConfig machine = LoadMachine(source);
   CycleConfig config = MakeCycleConfig(machine, machine.machine.controller);
   if (log.header().format_version < kLogFormatVersion) config.master.start_up = StartUp::kOfLogFormat4;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include "config/config_error.h"
@@ -46,6 +47,15 @@ void AddRoughness(const MaybeEmulatedMachineFile& file, std::vector<std::string>
   }
 }
 
+/// The loop that belongs to a machine's near models, as one line of YAML; empty when it has none.
+std::string NearLoop(const std::string& folder, const std::string& machine) {
+  std::ifstream in(folder + "/near/" + machine + "_loop.yaml");
+  std::string line;
+  while (std::getline(in, line))
+    if (line.starts_with('{')) return line;
+  return {};
+}
+
 }  // namespace
 
 const std::vector<FamilyVariation>& FamilyVariations() {
@@ -83,8 +93,11 @@ std::vector<std::string> FamilyAssignments(const std::string& folder, const Fami
   if (setting.model == FamilyModel::kNear) {
     // The model is off by what it states and no more: the seed varies noise, phases and the start.
     wanted.push_back("emulator.parameter_variation_rel=0");
-    for (const auto& [name, axis] : file.machine.axes)
+    const std::string loop = NearLoop(folder, setting.machine);
+    for (const auto& [name, axis] : file.machine.axes) {
       wanted.push_back("axes." + name + ".model=near/" + setting.machine + "_" + name + ".yaml");
+      if (!loop.empty()) wanted.push_back("axes." + name + ".loop=" + loop);
+    }
   }
   if (setting.plant == FamilyPlant::kRough) AddRoughness(file, wanted);
   if (setting.maxwell_slip) wanted.push_back("emulator.axes.*.friction.law=maxwell_slip");

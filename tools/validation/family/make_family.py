@@ -142,7 +142,20 @@ def emulated_lines(m, axis):
     return ["      " + line for line in lines] + friction_lines(LEVELS[axis], m.size, 8, more)
 
 
-def machine_file(m, near=False):
+def loop_numbers(m, model):
+    """What tune_loops.py has found, or None."""
+    if not (HERE / "loops.csv").exists():
+        return None
+    rows = [row for row in read(HERE / "loops.csv") if (row["name"], row["model"]) == (m.name, model)]
+    return {key: value for key, value in rows[0].items() if key not in ("name", "model")} if rows else None
+
+
+def near_loop(m):
+    numbers = ", ".join(f"{key}: {value}" for key, value in loop_numbers(m, "near").items())
+    return f"# The loop of {m.name} in torque mode with its near models, as contour tune --from-model finds it.\n{{{numbers}}}\n"
+
+
+def machine_file(m, near=False, with_loops=True):
     lines = [f"# {m.name}: {m.what}. One of the family (docs/laboratory/family.md), written by tools/validation/family/make_family.py: change the tables there.",
              f"# Motor {number(m.motor_kg)} kg at the table, mode {number(m.mode_Hz)} Hz, F/K {number(1e6 * m.friction_N / m.stiffness)} um.", "",
              f"machine: {{name: {m.name}, cycle_us: 1000, controller: full}}", # A scale's reading makes the frames longer.
@@ -155,6 +168,9 @@ def machine_file(m, near=False):
             lines += [f"    model: near/{m.name}_{axis}.yaml"]
         else:
             lines += ["    # From catalogues: masses, stiffness of the screw, friction by preload; nothing was measured.", "    model:", *catalogue_model(m, 6)]
+        loop = loop_numbers(m, "near" if near else "catalogue") if with_loops else None
+        if loop:
+            lines += ["    loop:", *(f"      {key}: {value}" for key, value in loop.items())]
     lines += ["", "# What the emulated machine really is.", "emulator:", "  seed: 1", "  axes:"]
     for axis in LEVELS:
         lines += [f"    {axis}:", *emulated_lines(m, axis)]
@@ -166,11 +182,13 @@ def read(path):
         return list(csv.DictReader(text))
 
 
-def files(folder=FAMILY, near=False):
+def files(folder=FAMILY, near=False, with_loops=True):
     gains = {row["name"]: row for row in read(HERE / "drive_gains.csv")}
     for row in read(HERE / "machines.csv"):
         m = Machine(row, gains[row["name"]])
-        yield folder / f"{m.name}.yaml", machine_file(m, near)
+        yield folder / f"{m.name}.yaml", machine_file(m, near, with_loops)
+        if with_loops and loop_numbers(m, "near"):
+            yield folder / "near" / f"{m.name}_loop.yaml", near_loop(m)
         for axis in LEVELS:
             yield folder / "near" / f"{m.name}_{axis}.yaml", near_model(m, axis)
 
