@@ -25,12 +25,12 @@ TEST(LoopChoice, GivesEveryBallScrewALoopThatKeepsItsLimits) {
   }
 }
 
-TEST(LoopChoice, GoesByTheAxissOwnPeriod) {
+TEST(LoopChoice, GoesByThePeriodOfTheCycle) {
   const LoopAxis axis = AxisOf("t20");
-  const std::optional<LoopTuning> chosen = ChooseLoop(axis, 2.0 * kPeriod_s);
+  const std::optional<LoopTuning> chosen = ChooseLoop(axis, 0.5 * kPeriod_s);
   ASSERT_TRUE(chosen);
   EXPECT_TRUE(Acceptable(
-      LoopJudge(axis, 2.0 * kPeriod_s).Judge(DesignLoop(axis.axis, *chosen, 2.0 * kPeriod_s, false))));
+      LoopJudge(axis, 0.5 * kPeriod_s).Judge(DesignLoop(axis.axis, *chosen, 0.5 * kPeriod_s, false))));
 }
 
 TEST(LoopChoice, HasNoneForABeltAndSaysWhatWouldHelp) {
