@@ -74,7 +74,6 @@ void FrictionLearner::Reset() noexcept {
 
 void FrictionLearner::Forget() noexcept {
   for (FrictionTerms& terms : past_) terms.fill(0.0);
-  used_N_.fill(0.0);
   newest_ = 0;
   wait_cycles_ = waited_cycles_ = 0;
 }
@@ -94,15 +93,12 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
 }
 
 // The newest period shows at this sample with tap 1.
-[[gnu::always_inline]] inline void FrictionLearner::Filter(FrictionTerms& filtered,
-                                                           double& used_N) const noexcept {
+[[gnu::always_inline]] inline void FrictionLearner::Filter(FrictionTerms& filtered) const noexcept {
   Quads sum{};
-  used_N = 0.0;
   std::size_t at = newest_;
   for (std::size_t tap = 1; tap < kLoopTaps; ++tap) {
     const double h = setup_.response[tap];
     const double* terms = past_[at].data();
-    used_N += h * used_N_[at];
     for (std::size_t q = 0; q < kQuads; ++q) {
       wide::Quad term;
       wide::Load(terms + 4 * q, term);
@@ -197,11 +193,11 @@ double FrictionLearner::Learn(const FrictionTerms& terms, double used_N, double 
                               double speed_m_s, bool may) noexcept {
   newest_ = newest_ + 1 == kLoopTaps ? 0 : newest_ + 1;
   past_[newest_] = terms;
-  used_N_[newest_] = used_N;
+  past_[newest_][friction_term::kUsed] = used_N;
   FrictionTerms filtered;
-  double shown_N = 0.0;
-  Filter(filtered, shown_N);
-  const double found_N = disturbance_N + shown_N;
+  Filter(filtered);
+  const double found_N = disturbance_N + filtered[friction_term::kUsed];
+  filtered[friction_term::kUsed] = 0.0;
   const double unexplained_N = found_N - Sum(parameters_, filtered);
   if (!setup_.learns || !may || speed_m_s < kSlowest * setup_.vs_m_s) {
     if (wait_cycles_ > 0) --wait_cycles_;

@@ -62,12 +62,12 @@ class FrictionLearner {
 
   /// Constants stay as constructed.
   void Keep(StateKeeper& keep) noexcept {
-    keep(parameters_, covariance_, past_, used_N_, newest_, with_N2_, without_N2_, wait_cycles_,
-         waited_cycles_, brought_back_, bounded_);
+    keep(parameters_, covariance_, past_, newest_, with_N2_, without_N2_, wait_cycles_, waited_cycles_,
+         brought_back_, bounded_);
   }
 
  private:
-  void Filter(FrictionTerms& filtered, double& used_N) const noexcept;
+  void Filter(FrictionTerms& filtered) const noexcept;
   void Along(const FrictionTerms& filtered, FrictionTerms& along) const noexcept;
   void Shrink(const FrictionTerms& along) noexcept;
   void Update(const FrictionTerms& filtered, double unexplained_N, double moving) noexcept;
@@ -87,8 +87,9 @@ class FrictionLearner {
 
   FrictionTerms parameters_{};
   FrictionMatrix covariance_{};
-  std::array<FrictionTerms, kLoopTaps> past_{};  // a ring
-  std::array<double, kLoopTaps> used_N_{};       // beside them
+  // A ring. In the place that no term has, what was expected of them.
+  std::array<FrictionTerms, kLoopTaps> past_{};
+  static_assert(friction_term::kUsed < kFrictionTerms);
   std::size_t newest_ = 0;
   double with_N2_ = 0.0, without_N2_ = 0.0;  // mean squares of what is not explained, learnt and commissioned
   int wait_cycles_ = 0;
