@@ -19,6 +19,8 @@ constexpr double kExplained = 0.5;
 constexpr double kHysteresis = 0.2;
 // So many of the slowest half waves after a motion, the axis is at rest.
 constexpr double kSettledHalfWaves = 2.0;
+// Force that goes to and fro from cycle to cycle is looked at over this time.
+constexpr double kChatter_s = 0.05;
 constexpr std::uint32_t kLongAgo = 1U << 30;
 
 // A mean that follows up to half the lowest frequency looked for, per cycle.
@@ -37,6 +39,7 @@ OscillationDetector::OscillationDetector(const OscillationBounds& bounds) noexce
 
 void OscillationDetector::Reset() noexcept {
   started_ = false;
+  chatter_N_ = 0.0;
   sign_ = 0;
   now_ = {};
   before_ = {};
@@ -54,7 +57,7 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
   if (!started_) {
     started_ = true;
     mean_m_ = now.following_error_m;
-    mean_N_ = now.force_N;
+    mean_N_ = before_N_ = now.force_N;
     reference_velocity_m_s_ = now.reference_velocity_m_s;
   }
   // In a corner at full feed the velocity jumps: what rings after it was struck by the path.
@@ -85,7 +88,18 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
   now_.peak_N = std::max(now_.peak_N, std::abs(now.force_N - mean_N_));
   highest_m_s2_ = std::max(highest_m_s2_, reference_m_s2);
   lowest_m_s2_ = std::min(lowest_m_s2_, reference_m_s2);
+  if (Chatters(now.force_N) && found == Oscillation::kNone) found = Oscillation::kLasting;
   return found;
+}
+
+// A step of the force, in a corner at full feed, is one change among many.
+bool OscillationDetector::Chatters(double force_N) noexcept {
+  if (!(bounds_.chatter_N > 0.0)) return false;
+  chatter_N_ += std::min(1.0, bounds_.period_s / kChatter_s) * (std::abs(force_N - before_N_) - chatter_N_);
+  before_N_ = force_N;
+  if (chatter_N_ < bounds_.chatter_N) return false;
+  chatter_N_ = 0.0;
+  return true;
 }
 
 // Against the half wave of the same side: friction and outside forces make the two sides differ.

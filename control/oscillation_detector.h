@@ -17,6 +17,9 @@ struct OscillationBounds {
   double mass_kg = 1.0;
   double growing_m = 1e-4;  ///< amplitude above which growing is a danger
   int half_waves = 12;      ///< in a row; 0: not watched
+  /// Mean change of the force from cycle to cycle beyond what is any use: a swing too fast for half waves to
+  /// be told apart; 0: not watched.
+  double chatter_N = 0.0;
 };
 
 struct OscillationSample {
@@ -50,6 +53,7 @@ class OscillationDetector {
     double peak_N = 0.0;
   };
   [[nodiscard]] Oscillation EndHalfWave() noexcept;
+  [[nodiscard]] bool Chatters(double force_N) noexcept;
   [[nodiscard]] bool GoesOn(const HalfWave& before) const noexcept;
 
   OscillationBounds bounds_;
@@ -58,6 +62,8 @@ class OscillationDetector {
   double reference_velocity_m_s_ = 0.0;
   double mean_m_ = 0.0;
   double mean_N_ = 0.0;
+  double before_N_ = 0.0;
+  double chatter_N_ = 0.0;
   bool started_ = false;
   int sign_ = 0;
   HalfWave now_;

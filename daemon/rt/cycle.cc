@@ -48,6 +48,7 @@ Cycle::Cycle(const CycleConfig& config)
       blend_kept_(std::exp(-period_s_ / kBlend_s)),
       guard_(config.control.guard, GuardedAxes(config), period_s_, config.off),
       csp_(InCascade(config)),
+      same_law_(KnowsTwoInertias(config) && !csp_),
       by_reported_torque_(csp_ && config.controller == ControllerName::kFull),
       two_inertias_(KnowsTwoInertias(config)),
       off_(config.off),

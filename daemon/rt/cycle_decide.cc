@@ -34,7 +34,10 @@ void Cycle::WatchItself(const Feedback& feedback, const Estimates& estimate) noe
   }
   if (fallen_back() != had_fallen_back) controller().Reset();
   // To be noticed changes nothing.
-  take_over_ = transitions_.holds_torque() && std::max(acted_, watch_.step()) >= SupervisionStep::kSoftened;
+  // The loop of two inertias stays the same law with the same observer. What it sent last in a swing is no
+  // force to go on from.
+  take_over_ = !same_law_ && transitions_.holds_torque() &&
+               std::max(acted_, watch_.step()) >= SupervisionStep::kSoftened;
   acted_ = watch_.step();
   TellLoop();
 }

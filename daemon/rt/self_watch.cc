@@ -67,6 +67,8 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
   b.mass_kg = m.mass_kg;
   b.growing_m = kDangerousShare * a.limits.following_error_mm * 1e-3;
   b.half_waves = config.control.supervision.half_waves;
+  // Its regulator answers fast enough to swing from cycle to cycle; rivals' swings are slower.
+  if (KnowsTwoInertias(config) && !InCascade(config)) b.chatter_N = b.swing_moving_N;
   return b;
 }
 

@@ -11,6 +11,7 @@
 #include "daemon/make_cycle_config.h"
 #include "daemon/rt/cycle_parts.h"
 #include "tests/closed_loop/test_machine.h"
+#include "tests/closed_loop/tuned_loops.h"
 
 namespace contour::test {
 namespace {
@@ -74,6 +75,61 @@ TEST(SelfWatch, AStandingAxisThatSwingsIsNamedAndSoftenedUntilItStands) {
   EXPECT_LT(seen.swing_m, 0.05e-6);
   // 3 N at the table, in the middle of a swing of 6 N.
   EXPECT_LT(seen.torque_step_Nm, 0.0024);
+}
+
+/// control.friction: linear with the first axis's regulator so much faster than what was found for it.
+EmulatedMachineFile TooFast(const std::string& regulator_Hz, const std::string& softer) {
+  std::vector<std::string> set = TunedExample("cst");
+  set.push_back("axes.x.loop.regulator_Hz=" + regulator_Hz);
+  set.push_back("control.supervision.softer=" + softer);
+  return ExampleMachine(set);
+}
+
+// Before: it swung between the torque limits from cycle to cycle, too fast for half waves, and nobody said
+// so.
+TEST(SelfWatch, ALinearLoopThatSwingsIsNamedAndSoftenedAtRestAndInMotion) {
+  for (const char* program :
+       {"{shape: hold, seconds: 5}", "{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 5}"}) {
+    const Watched seen = RunWatched(TooFast("300", "0.2"), ControllerName::kFull, Text(program));
+    EXPECT_TRUE(seen.shown.contains(Reason::kOscillationNoticed)) << program;
+    EXPECT_TRUE(seen.shown.contains(Reason::kSoftened)) << program;
+    EXPECT_EQ(seen.ended, Reason::kNone) << program;
+  }
+}
+
+// From limit to limit, so that rows show the torque limit until the loop is softened; and softening is off.
+TEST(SelfWatch, ALinearLoopThatSwingsOnSoftenedIsStopped) {
+  for (const char* program :
+       {"{shape: hold, seconds: 9}", "{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 9}"}) {
+    const Watched seen = RunWatched(TooFast("500", "1"), ControllerName::kFull, Text(program));
+    EXPECT_TRUE(seen.shown.contains(Reason::kSoftened)) << program;
+    EXPECT_EQ(seen.ended, Reason::kOscillation) << program << ' ' << Name(seen.ended);
+  }
+}
+
+// The drive's own loop swings: it is told; only what grows is stopped.
+TEST(SelfWatch, ADriveThatSwingsUnderALinearLoopIsNamed) {
+  std::vector<std::string> set = TunedExample("csp");
+  set.push_back("emulator.axes.x.cascade.velocity_gain_1_s=8000");
+  set.push_back("emulator.axes.x.cascade.rest_window_counts=0");
+  const Watched seen =
+      RunWatched(ExampleMachine(set), ControllerName::kFull, Text("{shape: hold, seconds: 6}"));
+  EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
+  EXPECT_EQ(seen.ended, Reason::kNone);
+}
+
+TEST(SelfWatch, ALinearLoopInOrderIsLeftAlone) {
+  for (const std::string mode : {"cst", "csp"})
+    for (const char* program :
+         {"{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 2}",
+          "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 2}", "{shape: hold, seconds: 3}"}) {
+      const Watched seen =
+          RunWatched(ExampleMachine(TunedExample(mode)), ControllerName::kFull, Text(program));
+      EXPECT_EQ(seen.ended, Reason::kNone) << program;
+      for (const Reason r :
+           {Reason::kOscillationNoticed, Reason::kSoftened, Reason::kFallenBack, Reason::kInnovationGated})
+        EXPECT_FALSE(seen.shown.contains(r)) << mode << ' ' << program << ' ' << Name(r);
+    }
 }
 
 TEST(SelfWatch, ALoopInOrderIsLeftAlone) {

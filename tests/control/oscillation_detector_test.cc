@@ -131,5 +131,19 @@ TEST(OscillationDetector, ExperimentsAreNotWatchedAndZeroSwitchesOff) {
             0);
 }
 
+// To and fro from cycle to cycle there are no half waves to be told apart; a step of the force is none.
+TEST(OscillationDetector, FindsAForceThatChangesFromCycleToCycle) {
+  OscillationBounds bounds;
+  bounds.chatter_N = 100.0;
+  OscillationDetector detector(bounds);
+  int found = 0;
+  for (int k = 0; k < 1000; ++k)
+    found += detector.Step({.force_N = k % 2 == 0 ? 80.0 : -80.0}) == Oscillation::kLasting ? 1 : 0;
+  EXPECT_GE(found, 5);
+  detector.Reset();
+  for (int k = 0; k < 1000; ++k)
+    EXPECT_EQ(detector.Step({.force_N = k % 200 < 100 ? 800.0 : -800.0}), Oscillation::kNone) << k;
+}
+
 }  // namespace
 }  // namespace contour

@@ -148,7 +148,9 @@ double AxisPlant::TableForce_N() const noexcept {
   if (const auto& e = p_.effects.cutting_force) {
     double since_s = time_s_ - e->start_s;
     if (e->every_s > 0.0 && since_s > 0.0) since_s -= e->every_s * std::floor(since_s / e->every_s);
-    if (since_s >= 0.0 && since_s < e->end_s - e->start_s) force += e->force_N;
+    if (since_s >= 0.0 && since_s < e->end_s - e->start_s)
+      force +=
+          e->lag_ms > 0.0 ? e->force_N * (1.0 - portable::Exp(-since_s / (1e-3 * e->lag_ms))) : e->force_N;
   }
   const double beyond_m = std::fabs(table_m_) - p_.half_stroke_m - kBumperClearance_m;
   if (beyond_m > 0.0)

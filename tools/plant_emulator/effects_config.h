@@ -379,12 +379,14 @@ struct CuttingForceEffect {
   double start_s = 0.0;
   double end_s = 1e9;
   double every_s = 0.0;
+  double lag_ms = 0.0;
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Required("force_N", force_N, kAny, "force on the table, positive towards positive position");
     v.Optional("start_s", start_s, kNotNegative, "when it begins, in the machine's time");
     v.Optional("end_s", end_s, kNotNegative, "when it ends");
     v.Optional("every_s", every_s, kNotNegative, "it comes again after so long, from start to end; 0: once");
+    v.Optional("lag_ms", lag_ms, Range{0.0, 1000.0}, "time constant with which it rises");
   }
 };
 

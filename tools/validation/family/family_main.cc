@@ -16,6 +16,7 @@
 #include "tools/validation/family/cnc_tuning.h"
 #include "tools/validation/family/family_report.h"
 #include "tools/validation/family/family_run.h"
+#include "tools/validation/family/force_step.h"
 #include "tools/validation/family/learned_circle.h"
 
 namespace contour {
@@ -36,6 +37,8 @@ struct Options {
   bool maxwell_slip = false;
   bool circle = false;
   bool tune_cnc = false;
+  double force_step = 0.0;
+  double phase_deg = 0.0;
   std::string tune_on = "C";
   int evaluations = 20;
   int jobs = 1;
@@ -179,10 +182,22 @@ int TuneAll(const Options& o) {
   return kExitDone;
 }
 
+int StepForces(const Options& o) {
+  std::vector<FamilyCell> cells = Plan(o);
+  std::erase_if(cells, [&](const FamilyCell& c) { return c.program != o.programs.front(); });
+  std::vector<ForceStepResult> results(cells.size());
+  ParallelFor(cells.size(), o.jobs, [&](std::size_t i) {
+    results[i] = RunForceStep(o.folder, cells[i], {o.force_step, o.phase_deg});
+  });
+  WriteForceSteps(std::cout, cells, results);
+  return kExitDone;
+}
+
 int Run(Options o) {
   CheckNames(o);
   o.jobs = ThreadsOf(o.jobs);
   if (o.tune_cnc) return TuneAll(o);
+  if (o.force_step > 0.0) return StepForces(o);
   const std::vector<FamilyCell> cells = Plan(o);
   const Progress progress(cells.size());
   const std::vector<FamilyResult> results =
@@ -217,6 +232,12 @@ void AddOptions(CLI::App& app, Options& o) {
   app.add_option("--set", o.set, "KEY=VALUE on top of the machine file, axes.* for every axis; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--force-step", o.force_step,
+                 "Instead: what a force across the path, in that of rated torque, moves the table during C")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--phase", o.phase_deg, "Of the third turn of C at which that force comes, degrees from +X")
+      ->check(CLI::Range(0.0, 360.0))
+      ->capture_default_str();
   app.add_option("--cnc", o.tuned, "What cnc was tuned to")->capture_default_str();
   app.add_flag("--circle", o.circle,
                "`full` knows what one measured circle tells of friction before the screw and of its lead");
