@@ -14,7 +14,6 @@ constexpr double kBegins = 1.0, kCorrected = 0.7, kEnds = 4.0;
 constexpr double kPart = 0.7;
 // A step moves at least this share of what was stated.
 constexpr double kStiffest = 0.1;
-constexpr double kFirstSteps = 2.0;
 // Friction may be so much softer than stated; what an axis at rest is let off with grows to that in this
 // time.
 constexpr double kSofter = 4.0;
@@ -119,9 +118,7 @@ void Standstill::Correct(double mean_m) noexcept {
     moves_m_ = std::clamp(moved_m, kStiffest * unit_m_, unit_m_);
   }
   const double size_m = std::abs(mean_m);
-  // Twice as many as before if those were too few: what a step moves is hardly known.
-  const double most = steps_ > 0.0 && before_m_ * mean_m > 0.0 ? 2.0 * steps_ : kFirstSteps;
-  steps_ = size_m > kCorrected * unit_m_ ? std::clamp(std::floor(kPart * size_m / moves_m_), 1.0, most) : 0.0;
+  steps_ = size_m > kCorrected * unit_m_ ? std::max(1.0, std::floor(kPart * size_m / moves_m_)) : 0.0;
   before_m_ = mean_m;
   target_N_ -= std::copysign(steps_ * bounds_.step_N, mean_m);
   ramp_N_ = std::max(1.0, steps_) * bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);
