@@ -162,6 +162,7 @@ class Cycle {
   double blend_kept_ = 0.0;  // per cycle
   TorqueGuard guard_;
   bool csp_;
+  bool scale_watched_;  // the estimators see when a linear scale is silent
   bool by_reported_torque_;
   bool two_inertias_;  // the estimators are told what the drives report instead of what they were sent
   WatchesOff off_;     ///< none, but in tests
