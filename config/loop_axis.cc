@@ -25,8 +25,6 @@ LoopAxis LoopAxisOf(const AxisConfig& axis) {
   out.axis = TwoInertiaAxisOf(axis);
   out.rated_force_N = axis.drive.rated_torque_Nm / mechanics.radius_m_rad;
   out.encoder_step_m = 1e-3 * model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
-  if (kLoopTakesScale && axis.drive.linear_scale)
-    out.scale_step_m = 1e-3 / axis.drive.linear_scale->counts_per_mm;
   out.limits = axis.loop_limits;
   const auto std_of = [&](const char* key) {
     const auto stated = axis.model.uncertainty.find(key);
@@ -40,6 +38,13 @@ LoopAxis LoopAxisOf(const AxisConfig& axis) {
   const auto share = axis.model.uncertainty.find("motor_share_rel");
   if (share != axis.model.uncertainty.end()) out.motor_share_std = share->second;
   out.side_modes = axis.model.side_modes;
+  return out;
+}
+
+std::optional<LoopAxis> ScaleLoopAxisOf(const AxisConfig& axis) {
+  if (!axis.drive.linear_scale) return std::nullopt;
+  LoopAxis out = LoopAxisOf(axis);
+  out.scale_step_m = 1e-3 / axis.drive.linear_scale->counts_per_mm;
   return out;
 }
 

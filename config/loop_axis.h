@@ -11,10 +11,6 @@
 
 namespace contour {
 
-/// Whether the cycle's law of two inertias takes a linear scale into its loop. While it does not, a loop is
-/// designed and judged without, whatever the drive has.
-inline constexpr bool kLoopTakesScale = false;
-
 /// All that the design of an axis's loop goes by, SI units at the table.
 struct LoopAxis {
   TwoInertiaAxis axis;
@@ -34,7 +30,9 @@ struct LoopAxis {
 /// The axis as the cycle's loop runs on it, with the model's extensions: what is judged is what runs.
 TwoInertiaAxis TwoInertiaAxisOf(const AxisConfig& axis);
 
-/// As the machine file states it, extensions of the model included.
+/// As the machine file states it, extensions of the model included, for the loop that goes by the motor.
 LoopAxis LoopAxisOf(const AxisConfig& axis);
+/// The same for the loop that goes by the linear scale as well; none where the drive has none.
+std::optional<LoopAxis> ScaleLoopAxisOf(const AxisConfig& axis);
 
 }  // namespace contour

@@ -43,6 +43,7 @@ struct AxisConfig {
   AxisLimits limits;
   ModelConfig model;
   std::optional<LoopTuning> loop;
+  std::optional<LoopTuning> scale_loop;
   LoopLimits loop_limits;
 
   template <class Visitor>
@@ -51,6 +52,9 @@ struct AxisConfig {
     v.Required("limits", limits, "what the axis may do");
     v.Required("model", model, "what is believed of the axis; or the name of a file that holds it");
     v.Optional("loop", loop, "tuning of the two-inertia loop, as `contour tune --from-model` finds it");
+    v.Optional("scale_loop", scale_loop,
+               "the same with the linear scale in the loop, which then controls the table; `loop` holds the "
+               "axis when the scale fails");
     v.Optional("loop_limits", loop_limits, "what the two-inertia loop must bear");
   }
 };

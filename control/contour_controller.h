@@ -72,6 +72,8 @@ struct ControlledAxis {
   double regulator_Hz = 0.0;  ///< of that loop
   /// Of the torque of acceleration, what a drive that closes the loop itself has to be given.
   double acceleration_share = 0.0;
+  /// The same two with the linear scale, where it is in the loop.
+  std::optional<TwoInertiaLoop> scale_loop = std::nullopt, softer_scale_loop = std::nullopt;
   StandstillBounds standstill{};  ///< how it is held at rest
 };
 

@@ -10,6 +10,8 @@ namespace {
 
 // A softened loop answers what its observer finds this much more slowly than it holds the axis.
 constexpr double kSlower = 0.5;
+// In which what two loops' forces differ by fades.
+constexpr double kLeaves_s = 0.03;
 
 FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept {
   if (friction.empty()) return {};
@@ -33,9 +35,12 @@ const TwoInertiaLoop& Required(const std::optional<TwoInertiaLoop>& loop) {
 TwoInertiaLaw::Axis::Axis(const ControlledAxis& axis, const ControllerOptions& options, double period_s)
     : own(Required(axis.loop)),
       softer(Required(axis.softer_loop)),
+      scale(axis.scale_loop),
+      softer_scale(axis.softer_scale_loop),
       feedforward(axis, options, period_s),
       mechanics(axis.mechanics),
       force_limit_N(axis.limits.force_N),
+      left_kept(std::exp(-period_s / kLeaves_s)),
       lag_kept(Kept(axis, 1.0 - own.late_share, period_s)),
       lag_kept_late(Kept(axis, own.late_share, period_s)),
       slow_share(1.0 -
@@ -58,6 +63,8 @@ void TwoInertiaLaw::Axis::Forget() noexcept {
   planned_N = grid_N = sent_N = {};
   led_N = wound_m = lead_m = slow_N = 0.0;
   standstill.Forget();
+  left_N = 0.0;
+  by_scale = false;
   filter = {};
   steps = 0;
 }
@@ -101,30 +108,31 @@ double TwoInertiaLaw::Feedforward_N(Axis& a, const AxisHorizon& reference, const
 }
 
 // Where the axis is to be at the sample, as the observer sees it: of a lead beside the commissioned wind-up
-// it does not know, and takes it for the table's.
-LoopMotion TwoInertiaLaw::Wanted(Axis& a, const AxisHorizon& reference,
-                                 const FrictionPreview& friction) const noexcept {
+// it does not know, and takes it for the table's; with the scale it knows the table.
+LoopMotion TwoInertiaLaw::Wanted(Axis& a, const AxisHorizon& reference, const FrictionPreview& friction,
+                                 bool by_scale) const noexcept {
   const Mechanics& m = a.mechanics;
   const auto wound_m = [&](std::size_t n) {
     return (Ahead(friction, n).node_N + m.table_mass_kg * PointAt(reference, n).acceleration_m_s2) /
            m.stiffness_N_m;
   };
-  const double now_m = wound_m(0), lead_m = Ahead(friction, 0).lead_m;
+  const double now_m = wound_m(0), lead_now_m = Ahead(friction, 0).lead_m;
   const double before_m = a.steps == 0 ? now_m : a.wound_m;
-  const double lead_before_m = a.steps == 0 ? lead_m : a.lead_m;
+  const double lead_before_m = a.steps == 0 ? lead_now_m : a.lead_m;
   const double span_s = a.steps == 0 ? period_s_ : 2.0 * period_s_;
   const double winding_m_s = (wound_m(1) - before_m) / span_s;
-  const double leading_m_s = (Ahead(friction, 1).lead_m - lead_before_m) / span_s;
+  const double leading_m_s = by_scale ? 0.0 : (Ahead(friction, 1).lead_m - lead_before_m) / span_s;
   a.wound_m = now_m;
-  a.lead_m = lead_m;
+  a.lead_m = lead_now_m;
+  const double lead_m = by_scale ? 0.0 : lead_now_m;
   const ReferencePoint& r = PointAt(reference, 0);
   const double table_m = r.position_m + lead_m, table_m_s = r.velocity_m_s + leading_m_s;
   return {table_m + now_m, table_m_s + winding_m_s, table_m, table_m_s, a.led_N};
 }
 
-double TwoInertiaLaw::Feedback_N(Axis& a, const LoopMotion& wanted,
-                                 const AxisEstimate& estimate) const noexcept {
-  const TwoInertiaLoop& loop = softer_ ? a.softer : a.own;
+double TwoInertiaLaw::Feedback_N(Axis& a, const LoopMotion& wanted, const AxisEstimate& estimate,
+                                 bool begins) const noexcept {
+  const TwoInertiaLoop& loop = a.Loop(estimate.by_scale, softer_);
   a.slow_N += a.slow_share * (estimate.disturbance_N - a.slow_N);
   double force_N = loop.disturbance_to_command * (softer_ ? a.slow_N : estimate.disturbance_N);
   for (std::size_t i = 0; i < kLoopMotion; ++i)
@@ -135,13 +143,18 @@ double TwoInertiaLaw::Feedback_N(Axis& a, const LoopMotion& wanted,
   }
   const Biquad& b = loop.filter;
   auto& [x1, x2, y1, y2] = a.filter;
-  if (a.steps == 0) x1 = x2 = y1 = y2 = force_N;
+  if (begins) x1 = x2 = y1 = y2 = force_N;
   const double filtered_N = b.b0 * force_N + b.b1 * x1 + b.b2 * x2 - b.a1 * y1 - b.a2 * y2;
   x2 = x1;
   x1 = force_N;
   y2 = y1;
   y1 = filtered_N;
   return filtered_N;
+}
+
+void TwoInertiaLaw::LeaveScale(Axis& a, double force_N) const noexcept {
+  a.left_N = a.sent_N[0] - force_N;
+  a.standstill.Forget();
 }
 
 // Or an experiment pushes.
@@ -159,12 +172,17 @@ void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexc
     const AxisHorizon& reference = Reference(input)[i];
     const FrictionPreview& friction = input.friction[i];
     Advance(a, input.previous_force_N[i]);
-    const LoopMotion wanted = Wanted(a, reference, friction);
-    const double feedback_N = Feedback_N(a, wanted, input.estimate[i]);
+    const LoopMotion wanted = Wanted(a, reference, friction, input.estimate[i].by_scale);
+    const bool leaves = a.by_scale && !input.estimate[i].by_scale;
+    a.by_scale = input.estimate[i].by_scale;
+    double feedback_N = Feedback_N(a, wanted, input.estimate[i], a.steps == 0 || leaves);
     const double planned_N = Feedforward_N(a, reference, friction, output.target_position_m[i]);
     std::shift_right(a.planned_N.begin(), a.planned_N.end(), 1);
     a.planned_N[0] = planned_N;
     a.steps = 1;
+    if (leaves) LeaveScale(a, planned_N + feedback_N);
+    feedback_N += a.left_N;
+    a.left_N *= a.left_kept;
     const double beyond_m = input.estimate[i].motion[2] - wanted[2];
     const double force_N =
         a.standstill.Step(beyond_m, a.sent_N[0], Moves(reference)).value_or(planned_N + feedback_N);

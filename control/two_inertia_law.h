@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "control/control_law.h"
@@ -33,13 +34,21 @@ class TwoInertiaLaw final : public ControlLaw {
     Axis(const ControlledAxis& axis, const ControllerOptions& options, double period_s);
     void Forget() noexcept;
     void Keep(StateKeeper& keep) noexcept {
-      keep(planned_N, grid_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, standstill, steps);
+      keep(planned_N, grid_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, standstill, steps, by_scale,
+           left_N);
+    }
+
+    [[nodiscard]] const TwoInertiaLoop& Loop(bool scaled, bool soft) const noexcept {
+      if (scaled && scale) return soft ? *softer_scale : *scale;
+      return soft ? softer : own;
     }
 
     TwoInertiaLoop own, softer;
+    std::optional<TwoInertiaLoop> scale, softer_scale;
     FlatFeedforward feedforward;
     Mechanics mechanics;
     double force_limit_N;
+    double left_kept;      ///< of left_N, per cycle
     double lag_kept;       ///< of the drive's lag over a period, or what of it is left of a dead time
     double lag_kept_late;  ///< over the part of a period that is dead time
     double slow_share;     ///< of the disturbance that a softened loop answers
@@ -53,15 +62,21 @@ class TwoInertiaLaw final : public ControlLaw {
     double slow_N = 0.0;
     std::array<double, 4> filter{};  ///< x(j-1), x(j-2), y(j-1), y(j-2)
     Standstill standstill;
-    int steps = 0;  ///< since it was forgotten, as far as they matter
+    int steps = 0;          ///< since it was forgotten, as far as they matter
+    bool by_scale = false;  ///< at the sample before
+    double left_N = 0.0;    ///< what leaving the scale must not make of the force, fading away
   };
 
   void Advance(Axis& axis, double sent_N) const noexcept;
   double Feedforward_N(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction,
                        double& target_m) const noexcept;
-  LoopMotion Wanted(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction) const noexcept;
+  LoopMotion Wanted(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction,
+                    bool by_scale) const noexcept;
   [[nodiscard]] bool Moves(const AxisHorizon& reference) const noexcept;
-  double Feedback_N(Axis& axis, const LoopMotion& wanted, const AxisEstimate& estimate) const noexcept;
+  /// The loop without the scale takes over, from the force that acts.
+  void LeaveScale(Axis& axis, double force_N) const noexcept;
+  double Feedback_N(Axis& axis, const LoopMotion& wanted, const AxisEstimate& estimate,
+                    bool begins) const noexcept;
 
   std::vector<Axis> axes_;
   double period_s_;

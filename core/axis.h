@@ -35,6 +35,7 @@ struct AxisFeedback {
   bool valid = false;  ///< has ever arrived since bring-up
   bool has_scale = false;
   std::uint32_t age_cycles = 0;  ///< 0 when fresh; counts up without feedback
+  bool scale_fresh = false;      ///< table_position_m belongs to the last SYNC; not in the log
 };
 
 /// What the cycle sends to a drive.
@@ -74,6 +75,10 @@ struct AxisEstimate {
   double innovation_std_m = 0.0;
   /// Of motor and table, where the estimator tells them apart: TwoInertiaLoop's motion at the sample.
   std::array<double, 5> motion{};
+  /// The linear scale is fused into it: the table is the scale's, and what screw and encoder are off by is
+  /// out of it. Not in the log, as the next.
+  bool by_scale = false;
+  Reason scale = Reason::kNone;  ///< why the linear scale is not believed: kScaleLost, kScaleDoubted
   Reason limit = Reason::kNone;  ///< kInnovationGated, kParameterBound or kNone
   bool diverged = false;         ///< the numbers are not to be used
 };

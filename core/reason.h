@@ -54,6 +54,8 @@ enum class Reason : std::uint16_t {
   kSolverCapLasting = 68,
   kCyclesLate = 69,
   kNotReferenced = 70,  ///< the axis does not know where it is: a program is refused
+  kScaleLost = 71,      ///< the linear scale in the loop is silent; the axis goes on by its motor, and stops
+  kScaleDoubted = 72,   ///< motor and torque contradict the linear scale in the loop; the same
   // Limits: the output is held back, the machine goes on.
   kTorqueLimit = 96,
   kTorqueRateLimit = 97,
@@ -180,6 +182,10 @@ constexpr std::string_view Name(Reason r) noexcept {
       return "cycles_late";
     case Reason::kNotReferenced:
       return "not_referenced";
+    case Reason::kScaleLost:
+      return "scale_lost";
+    case Reason::kScaleDoubted:
+      return "scale_doubted";
     case Reason::kTorqueConstantChanged:
       return "torque_constant_changed";
     case Reason::kOscillationNoticed:

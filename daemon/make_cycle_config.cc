@@ -29,6 +29,8 @@ CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const 
   out.two_inertia = TwoInertiaAxisOf(axis);
   out.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
   out.loop = axis.loop;
+  out.has_scale = axis.drive.linear_scale.has_value();
+  if (out.has_scale) out.scale_loop = axis.scale_loop;
   return out;
 }
 

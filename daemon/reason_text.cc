@@ -144,6 +144,15 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
       return axis +
              ": linear scale and motor differ by more than the screw can wind up; voltage off. Check scale, "
              "read head and coupling";
+    case Reason::kScaleLost:
+      return axis +
+             ": the linear scale in the loop is silent; the motor's encoder held the axis, and the machine "
+             "stopped on the path. Check read head, cable and TPDO2, then reset";
+    case Reason::kScaleDoubted:
+      return axis +
+             ": motor and torque contradict the linear scale in the loop; the motor's encoder held the axis, "
+             "and the machine stopped on the path. Check scale, read head, coupling and counts_per_mm, then "
+             "reset";
     case Reason::kModeChanged:
       return axis +
              ": the drive left the mode of operation that was set (0x6061); quick stop. Look for another "

@@ -53,6 +53,13 @@ class AxisEstimator {
   /// Starts anew at a position, at rest; friction parameters as commissioned.
   void Reset(double position_m) noexcept;
 
+  /// Where the axis is for who places a reference: its table by a linear scale that is believed, or else the
+  /// motor, which is at `position_m`.
+  [[nodiscard]] double StandsAt_m(double position_m) const noexcept {
+    const auto* two = std::get_if<TwoInertiaEstimator>(&one_);
+    return two != nullptr ? two->StandsAt_m(position_m) : position_m;
+  }
+
   /// From now on nothing is learnt, and the bristle's stiffness goes back to the commissioned one; false:
   /// learning goes on from there. Only where there is something that is learnt.
   void Freeze(bool frozen) noexcept;

@@ -9,6 +9,8 @@ namespace contour {
 struct AxisEstimatorInput {
   double position_m = 0.0;  ///< R theta of the newest feedback, latched at t(k-1)
   bool fresh = false;       ///< false: no new feedback; the filter only predicts
+  double scale_m = 0.0;     ///< reading of the linear scale at the same instant, from a zero of its own
+  bool scale_fresh = false;
   /// Torque commands over R as really sent (limited, rounded to the drive's steps), newest first:
   /// u(k-1), which acts over [t(k-1), t(k)), then u(k-2), u(k-3).
   std::array<double, 3> force_N{};

@@ -46,14 +46,20 @@ FrictionTerms TowardsMaxwellSlip(const FrictionTerms& lugre) {
   return other;
 }
 
+/// The loop by which a force is found.
+const TwoInertiaLoop& FirstLoop(const TwoInertiaEstimator::Setup& s) {
+  return s.scale_loop ? *s.scale_loop : s.loop;
+}
+
 // The share of friction that is the motor's shows in the observer as if it were the table's, a little sooner.
 std::array<double, kLoopTaps> ResponseToFriction(const TwoInertiaEstimator::Setup& s) {
   const double share = s.filter.friction.motor_share;
-  std::array<double, kLoopTaps> response = s.loop.disturbance_response;
+  const TwoInertiaLoop& loop = FirstLoop(s);
+  std::array<double, kLoopTaps> response = loop.disturbance_response;
   if (share == 0.0) return response;
   LoopMotion motion = MotionFromMotorForce(s.axis, s.filter.period_s);
   for (double& m : motion) m = -m;
-  const std::array<double, kLoopTaps> motors = ResponseOfObserver(s.loop, motion);
+  const std::array<double, kLoopTaps> motors = ResponseOfObserver(loop, motion);
   for (std::size_t i = 0; i < kLoopTaps; ++i) response[i] += share * (motors[i] - response[i]);
   return response;
 }
@@ -137,7 +143,8 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
                  s.filter.period_s,
                  s.filter.measurement_std_m,
                  {s.filter.config.innovation_gate_sigma, s.filter.config.innovation_gate_um * 1e-6},
-                 s.filter.Sudden_m()}),
+                 s.filter.Sudden_m(),
+                 s.scale_loop}),
       learner_(MakeLearner(s, MakeBasis(s))),
       wind_up_(MakeWindUp(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
@@ -145,19 +152,23 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
       before_screw_(s.filter.friction.motor_share),
       surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
-      settle_(HalfSeen(s.loop.disturbance_response, kFound - 1)) {
+      settle_(HalfSeen(FirstLoop(s).disturbance_response, kFound - 1)) {
   const Friction& f = s.filter.friction;
   most_N_ = s.filter.config.level_range * std::max({f.Fs_plus_N, f.Fs_minus_N, f.Fc_plus_N, f.Fc_minus_N});
+  loop_takes_scale_ = s.has_scale && s.scale_loop;
+  scale_ = MakeScale(s, MakeBasis(s).scale().level_N, most_N_);
   Reset(0.0);
 }
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
-  keep(along_, side_, nodes_, observer_, learner_, wind_up_, lag_, lead_, given_N_, acted_N_, found_N_,
-       newest_, surprise_N2_, unexplained_N_, elapsed_, temperature_degC_, at_rest_, frozen_);
+  keep(along_, side_, nodes_, observer_, learner_, wind_up_, lag_, scale_, by_scale_, lead_, given_N_,
+       acted_N_, found_N_, newest_, surprise_N2_, unexplained_N_, elapsed_, temperature_degC_, at_rest_,
+       frozen_);
 }
 
 void TwoInertiaEstimator::Reset(double position_m) noexcept {
-  observer_.Reset(position_m);
+  if (scale_) scale_->Reset();
+  Begin(position_m);
   along_.Reset();
   side_.Reset();
   nodes_ = {};
@@ -194,11 +205,20 @@ void TwoInertiaEstimator::Lay() noexcept {
     const double before_N = before_screw_ * (node.friction_N + sigma2_Ns_m * along_.velocity_m_s(j));
     node.table_N = node.friction_N + (1.0 - motor_share_) * node.heavier_N - before_N + side_.At_N(j);
     node.motor_N = node.driving_N - motor_share_ * node.heavier_N - before_N;
+    if (by_scale_)
+      node.beyond_m =
+          known_.Lead_m(along_.position_m(j)) + scale_->Beyond_m(along_.position_m(j), Wound_N(j));
   }
 }
 
 const TwoInertiaEstimator::Node& TwoInertiaEstimator::At(std::size_t point) const noexcept {
   return nodes_[along_.size() == 0 ? 0 : std::min(point, along_.size() - 1)];
+}
+
+// Through the screw at a point, by what is expected.
+double TwoInertiaEstimator::Wound_N(std::size_t point) const noexcept {
+  return At(point).table_N + setup_.friction.sigma2_Ns_m * along_.velocity_m_s(point) +
+         axis_.table_mass_kg * along_.terms(point)[kMass];
 }
 
 // Means over the period that begins at a point.
@@ -236,18 +256,19 @@ PeriodForces TwoInertiaEstimator::Forces(std::size_t period, bool ahead) const n
 
 AxisEstimate TwoInertiaEstimator::Update(const AxisEstimatorInput& in) noexcept {
   Remember(in);
+  ReadScale(in);
   AxisEstimate out;
   if (!in.enabled) {
-    if (in.fresh) observer_.Reset(in.position_m);
+    if (in.fresh) Begin(in.position_m);
     learner_.Forget();
     unexplained_N_ = 0.0;
     at_rest_ = true;
     wind_up_.Pause();
   } else {
     const std::size_t period = elapsed_;
-    observer_.Predict(Forces(period, false));
+    observer_.Predict(Forces(period, false), At(period + 1).beyond_m - At(period).beyond_m);
     TwoInertiaObserver::Seen seen;
-    if (in.fresh) seen = observer_.Correct(in.position_m);
+    if (in.fresh) seen = Correct(in);
     out.innovation_m = seen.innovation_m;
     out.innovation_std_m = in.fresh ? seen.innovation_std_m : 0.0;
     if (seen.gated) out.limit = Reason::kInnovationGated;
@@ -279,7 +300,7 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
   const double change_N = found_N_[newest_] - before_N;
   surprise_N2_ += surprise_share_ * (change_N * change_N - surprise_N2_);
   if (at_rest_) learner_.Rest();
-  if (may && !at_rest_)
+  if (may && !at_rest_ && !scale_)
     LearnWindUp(in);
   else
     wind_up_.Pause();
@@ -308,11 +329,14 @@ AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const n
   const LoopMotion& now = observer_.motion();
   const LoopMotion next =
       in.enabled ? observer_.Ahead(Forces(elapsed_ + 1, true)) : LoopMotion{now[0], 0.0, now[2], 0.0, 0.0};
-  out.position_m = now[0];
+  const double beyond_m = observer_.beyond_m();
+  out.position_m = now[0] + beyond_m;
   out.velocity_m_s = now[1];
-  out.predicted_position_m = next[0];
+  out.predicted_position_m = next[0] + beyond_m;
   out.predicted_velocity_m_s = next[1];
   out.motion = now;
+  out.by_scale = by_scale_;
+  if (scale_ && in.enabled) out.scale = scale_->told();
   out.disturbance_N = unexplained_N_;
   out.sigma0_N_m = setup_.friction.sigma0_N_m;
   out.g_plus_N = learner_.Level_N(true);
@@ -350,6 +374,9 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
     lead_N = WindsUp_N(lead_.lead_N());
   }
   const double extra_m_N = wind_up_.extra_compliance_m_N() / (1.0 - before_screw_);
+  const auto beyond_m = [&](std::size_t j, double wound_N) {
+    return scale_ ? scale_->Beyond_m(along_.position_m(j), wound_N) : extra_m_N * wound_N;
+  };
   for (std::size_t j = 0; j < size; ++j) {
     const double v = along_.velocity_m_s(j);
     const double node_N = At(j).table_N + sigma2 * v;
@@ -358,7 +385,7 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
     const double middle_N =
         Expected_N(j) + 0.5 * sigma2 * (v + along_.velocity_m_s(j + 1)) - Motor_N(j) - drives_N;
     const double wound_N = node_N + lead_N + setup_.mechanics.table_mass_kg * reference[j].acceleration_m_s2;
-    out[j] = {node_N + lead_N, middle_N, known_.Lead_m(along_.position_m(j)) + extra_m_N * wound_N};
+    out[j] = {node_N + lead_N, middle_N, known_.Lead_m(along_.position_m(j)) + beyond_m(j, wound_N)};
   }
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/axis.h"
@@ -17,6 +19,7 @@
 #include "estimator/friction_learner.h"
 #include "estimator/known_effects.h"
 #include "estimator/side_mode_force.h"
+#include "estimator/table_scale.h"
 #include "estimator/two_inertia_observer.h"
 #include "estimator/wind_up_fit.h"
 
@@ -35,6 +38,9 @@ class TwoInertiaEstimator {
     double position_min_m = -1.0, position_max_m = 1.0;
     KnownEffects known;
     std::vector<SideMode> side_modes;
+    double acceleration_m_s2 = 10.0;  ///< of paths, at most
+    bool has_scale = false;
+    std::optional<TwoInertiaLoop> scale_loop{};  ///< of the loop that goes by the linear scale
   };
 
   /// Throws std::invalid_argument when a value makes no sense.
@@ -50,6 +56,10 @@ class TwoInertiaEstimator {
   /// What the drive gave over the period that ended with the newest sample, by its lag; the mean.
   [[nodiscard]] double acted_N() const noexcept { return acted_N_; }
   [[nodiscard]] const FrictionLearner& learner() const noexcept { return learner_; }
+  /// Where the axis is for who places a reference: its table by the linear scale, or else the motor.
+  [[nodiscard]] double StandsAt_m(double position_m) const noexcept {
+    return scale_ && scale_->believed() ? scale_->table_m() : position_m;
+  }
 
   void Keep(StateKeeper& keep) noexcept;
 
@@ -62,6 +72,7 @@ class TwoInertiaEstimator {
     double driving_N = 0.0;   ///< known on the motor, beside the drive's
     double table_N = 0.0;     ///< of all of it on the table, against positive motion, but for sigma2 v
     double motor_N = 0.0;     ///< on the motor, towards positive position
+    double beyond_m = 0.0;    ///< of the motor before the table beyond the commissioned wind-up
   };
   void Lay() noexcept;
   [[nodiscard]] const Node& At(std::size_t point) const noexcept;
@@ -70,7 +81,14 @@ class TwoInertiaEstimator {
   [[nodiscard]] double Heavier_N(std::size_t period) const noexcept;
   [[nodiscard]] double Expected_N(std::size_t period) const noexcept;
   [[nodiscard]] double Motor_N(std::size_t period) const noexcept;
+  [[nodiscard]] double Wound_N(std::size_t point) const noexcept;
   void Remember(const AxisEstimatorInput& in) noexcept;
+  // In two_inertia_scale.cc:
+  static std::unique_ptr<TableScale> MakeScale(const Setup& setup, double level_N, double most_N);
+  void Begin(double position_m) noexcept;
+  void ReadScale(const AxisEstimatorInput& in) noexcept;
+  TwoInertiaObserver::Seen Correct(const AxisEstimatorInput& in) noexcept;
+  void LeaveScale(double position_m) noexcept;
   void Learn(const AxisEstimatorInput& in, bool may) noexcept;
   void LearnWindUp(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] AxisEstimate Believed(const AxisEstimatorInput& in) const noexcept;
@@ -85,6 +103,9 @@ class TwoInertiaEstimator {
   FrictionLearner learner_;
   WindUpFit wind_up_;
   DriveLag<1> lag_;
+  std::unique_ptr<TableScale> scale_;  ///< none: there is no linear scale
+  bool loop_takes_scale_ = false;
+  bool by_scale_ = false;  ///< the observer goes by it
   CascadeLead lead_;
   double most_N_ = 0.0;          ///< that friction along the reference may be
   double motor_share_ = 0.0;     ///< of the mass

@@ -21,19 +21,32 @@ LoopMotion MotionFromMotorForce(TwoInertiaAxis axis, double period_s) {
 
 TwoInertiaObserver::TwoInertiaObserver(const Setup& setup)
     : loop_(setup.loop),
+      scale_gain_(setup.scale_loop ? setup.scale_loop->gain : Gain{}),
+      stiffness_N_m_(setup.axis.stiffness_N_m),
       motion_from_motor_force_(MotionFromMotorForce(setup.axis, setup.period_s)),
       period_s_(setup.period_s),
       gate_(setup.gate, setup.sudden_m) {
   // The gain is (S - R) / S of the position, S the innovation's variance.
   const double left = std::max(1.0 - loop_.gain[0][0], 1e-6);
   innovation_std_m_ = setup.measurement_std_m / std::sqrt(left);
+  const double both = 1.0 - scale_gain_[0][0] - scale_gain_[kObserverBias][0];
+  scale_innovation_std_m_ = setup.measurement_std_m / std::sqrt(std::max(both, 1e-6));
 }
 
-void TwoInertiaObserver::Reset(double position_m) noexcept {
-  motion_ = {position_m, 0.0, position_m, 0.0, 0.0};
+void TwoInertiaObserver::Reset(double position_m) noexcept { Reset(position_m, position_m); }
+
+void TwoInertiaObserver::Reset(double position_m, double table_m) noexcept {
+  motion_ = {table_m, 0.0, table_m, 0.0, 0.0};
+  beyond_m_ = position_m - table_m;
   disturbance_N_ = 0.0;
   gated_in_a_row_ = 0;
   gate_.Reset();
+}
+
+void TwoInertiaObserver::GoOnByMotor(double position_m, double screw_N, double disturbance_N) noexcept {
+  motion_ = {position_m, motion_[1], position_m - screw_N / stiffness_N_m_, motion_[1], motion_[4]};
+  beyond_m_ = 0.0;
+  disturbance_N_ = disturbance_N;
 }
 
 LoopMotion TwoInertiaObserver::Ahead(const PeriodForces& f) const noexcept {
@@ -53,16 +66,22 @@ LoopMotion TwoInertiaObserver::Ahead(const PeriodForces& f) const noexcept {
   return next;
 }
 
-void TwoInertiaObserver::Predict(const PeriodForces& forces) noexcept { motion_ = Ahead(forces); }
+void TwoInertiaObserver::Predict(const PeriodForces& forces, double beyond_m) noexcept {
+  motion_ = Ahead(forces);
+  beyond_m_ += beyond_m;
+}
+
+TwoInertiaObserver::Seen TwoInertiaObserver::Judge(double innovation_m, double std_m) noexcept {
+  Seen seen{innovation_m, std_m, false};
+  const InnovationGate gate = gate_.gate();
+  const double size_m = std::abs(innovation_m);
+  seen.gated = !(size_m <= std::max(gate.sigmas * std_m, gate.absolute));
+  gate_.After(innovation_m, std_m);
+  return seen;
+}
 
 TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m) noexcept {
-  Seen seen;
-  seen.innovation_m = position_m - motion_[0];
-  seen.innovation_std_m = innovation_std_m_;
-  const InnovationGate gate = gate_.gate();
-  const double size_m = std::abs(seen.innovation_m);
-  seen.gated = !(size_m <= std::max(gate.sigmas * innovation_std_m_, gate.absolute));
-  gate_.After(seen.innovation_m, innovation_std_m_);
+  const Seen seen = Judge(position_m - motion_[0], innovation_std_m_);
   if (seen.gated) {
     if (StartsAgain(++gated_in_a_row_, period_s_)) Reset(position_m);
     return seen;
@@ -70,6 +89,25 @@ TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m) noexcept
   gated_in_a_row_ = 0;
   for (std::size_t i = 0; i < kLoopMotion; ++i) motion_[i] += loop_.gain[i][0] * seen.innovation_m;
   disturbance_N_ += loop_.gain[kObserverDisturbance][0] * seen.innovation_m;
+  return seen;
+}
+
+TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m,
+                                                     std::optional<double> table_m) noexcept {
+  const Seen seen = Judge(position_m - beyond_m_ - motion_[0], scale_innovation_std_m_);
+  if (seen.gated) {
+    if (StartsAgain(++gated_in_a_row_, period_s_))
+      Reset(position_m, table_m.value_or(position_m - beyond_m_));
+    return seen;
+  }
+  gated_in_a_row_ = 0;
+  const std::array<double, 2> innovation_m{seen.innovation_m, table_m ? *table_m - motion_[2] : 0.0};
+  const auto share = [&](std::size_t i) {
+    return scale_gain_[i][0] * innovation_m[0] + scale_gain_[i][1] * innovation_m[1];
+  };
+  for (std::size_t i = 0; i < kLoopMotion; ++i) motion_[i] += share(i);
+  beyond_m_ += share(kObserverBias);
+  disturbance_N_ += share(kObserverDisturbance);
   return seen;
 }
 

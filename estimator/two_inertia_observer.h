@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "core/state_keeper.h"
 #include "core/two_inertia_axis.h"
@@ -23,7 +25,8 @@ struct PeriodForces {
 /// Motor, screw and table: where they are by the motor's encoder and the torque that was given, and what
 /// force acts on the table beyond what is known. The stationary Kalman filter of TwoInertiaLoop, in
 /// positions: known forces, friction along the reference among them, are inputs, so that it finds deviations
-/// from what was expected.
+/// from what was expected. With a linear scale the table is where the scale has it, and the motor where the
+/// commissioned screw puts it from there; what the encoder is off by beyond is a state of its own.
 class TwoInertiaObserver {
  public:
   struct Setup {
@@ -32,7 +35,8 @@ class TwoInertiaObserver {
     double period_s = 1e-3;
     double measurement_std_m = 1e-8;
     InnovationGate gate;
-    double sudden_m = 0.0;  ///< see SuddenGate
+    double sudden_m = 0.0;                       ///< see SuddenGate
+    std::optional<TwoInertiaLoop> scale_loop{};  ///< with the linear scale
   };
   struct Seen {
     double innovation_m = 0.0;
@@ -44,27 +48,43 @@ class TwoInertiaObserver {
 
   /// At rest there, under no force.
   void Reset(double position_m) noexcept;
-  /// To the next sample.
-  void Predict(const PeriodForces& forces) noexcept;
+  /// The same with the table there, by the scale.
+  void Reset(double position_m, double table_m) noexcept;
+  /// The scale is not believed any more: the motor is where its encoder is, its velocity as it was, the table
+  /// behind by the wind-up of the force through the screw, under `disturbance_N`.
+  void GoOnByMotor(double position_m, double screw_N, double disturbance_N) noexcept;
+  /// To the next sample. What encoder and scale are apart by beyond the wind-up changes by `beyond_m`.
+  void Predict(const PeriodForces& forces, double beyond_m = 0.0) noexcept;
   Seen Correct(double position_m) noexcept;
+  /// By both. No reading of the scale in this cycle: the table is where it was expected.
+  Seen Correct(double position_m, std::optional<double> table_m) noexcept;
   /// Where the next sample will find the axis.
   [[nodiscard]] LoopMotion Ahead(const PeriodForces& forces) const noexcept;
 
   [[nodiscard]] const LoopMotion& motion() const noexcept { return motion_; }
+  /// Encoder before the motor of motion(); 0 without a scale.
+  [[nodiscard]] double beyond_m() const noexcept { return beyond_m_; }
   [[nodiscard]] double disturbance_N() const noexcept { return disturbance_N_; }
   [[nodiscard]] const TwoInertiaLoop& loop() const noexcept { return loop_; }
   [[nodiscard]] bool Sound() const noexcept;
 
-  void Keep(StateKeeper& keep) noexcept { keep(motion_, disturbance_N_, gate_, gated_in_a_row_); }
+  void Keep(StateKeeper& keep) noexcept { keep(motion_, disturbance_N_, beyond_m_, gate_, gated_in_a_row_); }
 
  private:
+  using Gain = std::array<std::array<double, 2>, kObserverStates>;
+  Seen Judge(double innovation_m, double std_m) noexcept;
+
   TwoInertiaLoop loop_;
+  Gain scale_gain_{};
+  double stiffness_N_m_;
   LoopMotion motion_from_motor_force_{};
   double period_s_;
   double innovation_std_m_;
+  double scale_innovation_std_m_;
   SuddenGate gate_;
   LoopMotion motion_{};
   double disturbance_N_ = 0.0;
+  double beyond_m_ = 0.0;
   std::uint32_t gated_in_a_row_ = 0;
 };
 

@@ -194,7 +194,7 @@ FaultSeen Cycle::Contradiction(const Feedback& feedback) noexcept {
     s.reported_force_N = f.torque_Nm / axis.radius_m_rad;
     s.reference_m = AtSample(i).position_m;
     s.spring_N_m = csp_ ? 0.0 : control_in_.reference[i][1].spring_N_m;
-    s.has_scale = f.has_scale;
+    s.has_scale = f.has_scale && (f.scale_fresh || !two_inertias_);
     s.table_position_m = f.table_position_m;
     const Reason reason = axis.monitor.Step(s);
     if (reason != Reason::kNone && first.reason == Reason::kNone)

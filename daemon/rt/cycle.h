@@ -163,9 +163,10 @@ class Cycle {
   TorqueGuard guard_;
   bool csp_;
   bool same_law_;  ///< a softened loop is the same one: nothing takes over
-  bool by_reported_torque_;
-  bool two_inertias_;  // the estimators are told what the drives report instead of what they were sent
-  WatchesOff off_;     ///< none, but in tests
+  bool
+      by_reported_torque_;  ///< the estimators are told what the drives report instead of what they were sent
+  bool two_inertias_;       ///< motor and table are known apart; so is when a linear scale is silent
+  WatchesOff off_;          ///< none, but in tests
   std::uint32_t most_skipped_;  ///< an axis in motion may go without control for fewer periods than this
   std::uint32_t skipped_ = 0;   ///< grid points just before this one at which nothing was sent
 

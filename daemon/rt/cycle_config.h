@@ -34,6 +34,8 @@ struct CycleAxisConfig {
   TwoInertiaAxis two_inertia;  ///< for what knows two
   double encoder_counts_per_rev = 0.0;
   std::optional<LoopTuning> loop;  ///< of the two-inertia loop, where the file has one
+  bool has_scale = false;
+  std::optional<LoopTuning> scale_loop;  ///< of the one that goes by the linear scale
 };
 
 /// All the cycle needs to know; it never sees a file.

@@ -17,6 +17,8 @@ const Cycle::Estimates& Cycle::Estimate(const Feedback& feedback, const IoInput&
     AxisEstimatorInput input;
     input.position_m = axis.position_m;
     input.fresh = f.fresh && axis.monitor.believed();
+    input.scale_m = f.table_position_m;
+    input.scale_fresh = f.scale_fresh;
     input.force_N = axis.sent_force_N;
     if (by_reported_torque_) {
       // What the drive's own loops made of it, at the ends of the period that has passed.
@@ -48,7 +50,7 @@ void Cycle::CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noe
   const AxisEstimate measured = estimates_[index];
   AxisEstimator& estimator = fallen_back() ? axis.observer : axis.estimator;
   const double held_N = input.force_N[0];
-  input.fresh = false;
+  input.fresh = input.scale_fresh = false;
   input.force_N = {held_N, held_N, held_N};
   for (std::uint32_t s = 1; s <= skipped_; ++s) {
     const ReferencePoint commanded = follower_.Near(index, static_cast<int>(s) - static_cast<int>(skipped_));
@@ -61,6 +63,7 @@ void Cycle::CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noe
   now.innovation_m = measured.innovation_m;
   now.innovation_std_m = measured.innovation_std_m;
   if (now.limit == Reason::kNone) now.limit = measured.limit;
+  if (now.scale == Reason::kNone) now.scale = measured.scale;
   now.diverged = now.diverged || measured.diverged;
 }
 

@@ -52,8 +52,8 @@ void Cycle::TellWhere(const Request& request) noexcept {
 void Cycle::HoldHere() noexcept {
   PerAxis<double> here;
   for (Axis& axis : axes_) {
-    here.push_back(axis.position_m);
     axis.estimator.Reset(axis.position_m);
+    here.push_back(axis.estimator.StandsAt_m(axis.position_m));
     axis.sent_force_N = {};
   }
   follower_.Hold(here);
@@ -70,7 +70,7 @@ void Cycle::HoldHere() noexcept {
 
 void Cycle::FollowFeedback() noexcept {
   PerAxis<double> here;
-  for (const Axis& axis : axes_) here.push_back(axis.position_m);
+  for (const Axis& axis : axes_) here.push_back(axis.estimator.StandsAt_m(axis.position_m));
   follower_.Hold(here);
 }
 

@@ -45,6 +45,17 @@ TwoInertiaAxis AxisOfLoop(const CycleConfig& config, std::size_t axis) {
   return two;
 }
 
+bool LoopTakesScale(const CycleConfig& config, std::size_t axis) {
+  return !InCascade(config) && config.axes[axis].has_scale && config.axes[axis].scale_loop;
+}
+
+/// Of an axis whose loop takes its scale.
+TwoInertiaLoop ScaleLoopOf(const CycleConfig& config, std::size_t axis, double softer) {
+  LoopTuning tuning = *config.axes[axis].scale_loop;
+  tuning.regulator_Hz *= softer;
+  return DesignLoop(AxisOfLoop(config, axis), tuning, config.cycle_us * 1e-6, true);
+}
+
 TwoInertiaLoop LoopOf(const CycleConfig& config, std::size_t axis, double softer) {
   const double period_s = config.cycle_us * 1e-6;
   const TwoInertiaAxis two = AxisOfLoop(config, axis);
@@ -95,6 +106,10 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
       axis.softer_loop = LoopOf(config, i, config.control.supervision.softer);
       axis.regulator_Hz = a.loop->regulator_Hz;
       axis.standstill = StandstillOf(config, i);
+      if (LoopTakesScale(config, i)) {
+        axis.scale_loop = ScaleLoopOf(config, i, 1.0);
+        axis.softer_scale_loop = ScaleLoopOf(config, i, config.control.supervision.softer);
+      }
     }
     axes.push_back(axis);
   }
@@ -142,6 +157,9 @@ AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis) {
   setup.position_max_m = 1e-3 * a.limits.position_mm[1];
   setup.known = a.known;
   setup.side_modes = a.side_modes;
+  setup.acceleration_m_s2 = 1e-3 * a.limits.acceleration_mm_s2;
+  setup.has_scale = a.has_scale;
+  if (LoopTakesScale(config, axis)) setup.scale_loop = ScaleLoopOf(config, axis, 1.0);
   return AxisEstimator(setup);
 }
 

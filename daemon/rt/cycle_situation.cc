@@ -89,6 +89,10 @@ FaultSeen Cycle::FindStop() const noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i)
     if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath && Acts(Watch::kDriveEmergency))
       return {Reason::kDriveEmergency, static_cast<std::uint8_t>(i)};
+  // The axis goes on by its motor alone: there is time to stop on the path.
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (estimates_[i].scale != Reason::kNone && Acts(Watch::kScale))
+      return {estimates_[i].scale, static_cast<std::uint8_t>(i)};
   return watch_.Stop();
 }
 

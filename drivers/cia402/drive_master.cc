@@ -75,7 +75,7 @@ void DriveMaster::StartBringUp() noexcept {
       axes_[i].last_seen_rad = feedback_[i].position_rad;
     }
     status_[i] = {};
-    feedback_[i].valid = feedback_[i].fresh = feedback_[i].has_scale = false;
+    feedback_[i].valid = feedback_[i].fresh = feedback_[i].has_scale = feedback_[i].scale_fresh = false;
     feedback_[i].drive_state = DriveState::kUnknown;
     feedback_[i].age_cycles = 0;
     axes_[i].walk.Reset();

@@ -20,7 +20,7 @@ void DriveMaster::Receive(const CycleInput& in) noexcept {
   grid_ns_ = in.grid_time_ns;
   seen_cycle_ = true;
 
-  for (AxisFeedback& f : feedback_) f.fresh = false;
+  for (AxisFeedback& f : feedback_) f.fresh = f.scale_fresh = false;
   for (const StampedFrame& frame : in.frames) OnFrame(frame);
   for (std::size_t b = 0; b < buses_.size() && b < in.buses.size(); ++b) {
     if (in.buses[b].up && !in.buses[b].bus_off) continue;
@@ -52,7 +52,7 @@ void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
         AxisFeedback& f = feedback_[axis];
         f.table_position_m = static_cast<double>(axes_[axis].scale_unwrap.Update(DecodeScale(frame))) *
                              axes_[axis].scale_m_per_count;
-        f.has_scale = true;
+        f.has_scale = f.scale_fresh = true;
       }
       return;
     case cob::kHeartbeat:

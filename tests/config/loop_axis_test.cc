@@ -48,9 +48,11 @@ TEST(LoopAxisOf, KnowsTheScaleAndWhatDiagnosisAdded) {
   axis.drive.linear_scale = LinearScaleConfig{.counts_per_mm = 200000.0};
   axis.model.extensions.input_delay = InputDelayExtension{.delay_us = 60.0};
   axis.model.extensions.current_lag = CurrentLagExtension{.time_constant_us = 50.0};
-  const LoopAxis a = LoopAxisOf(axis);
-  ASSERT_EQ(a.scale_step_m.has_value(), kLoopTakesScale);
-  EXPECT_DOUBLE_EQ(a.scale_step_m.value_or(5e-9), 5e-9);
+  EXPECT_FALSE(ScaleLoopAxisOf(Axis()));
+  EXPECT_FALSE(LoopAxisOf(axis).scale_step_m);
+  ASSERT_TRUE(ScaleLoopAxisOf(axis));
+  const LoopAxis a = *ScaleLoopAxisOf(axis);
+  EXPECT_DOUBLE_EQ(a.scale_step_m.value_or(0.0), 5e-9);
   EXPECT_NEAR(a.axis.dead_time_s, 60e-6, 1e-12);
   EXPECT_NEAR(a.axis.lag_s, 0.35e-3, 1e-12);
 }

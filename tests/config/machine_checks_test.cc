@@ -53,6 +53,23 @@ TEST(MachineChecks, LearningNeedsAScaleOnEveryAxis) {
       "axes.y.drive.linear_scale: found none, but learning.enabled is true; expected a scale on every axis");
 }
 
+TEST(MachineChecks, ALoopWithAScaleNeedsOneAndNumbersThatGiveALoop) {
+  MachineConfig c = Good();
+  c.control.friction = FrictionKind::kLinear;
+  const LoopTuning loop{20.0, 0.4, 0.18, 200.0, 400.0, 400.0, 0.77, 0.7, 0.3};
+  for (const char* axis : {"x", "y"}) c.axes.at(axis).loop = loop;
+  c.axes.at("x").scale_loop = loop;
+  EXPECT_EQ(
+      Only(c),
+      "axes.x.scale_loop: found a tuning with a linear scale in the loop, but the drive has none; expected "
+      "drive.linear_scale, or no scale_loop");
+  c.axes.at("x").drive.linear_scale.emplace().counts_per_mm = 10000;
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("x").scale_loop->bias_Hz = 0.0;
+  EXPECT_EQ(Only(c),
+            "axes.x.scale_loop: found a tuning that gives no loop: bias_Hz: expected a positive number");
+}
+
 // A loop that is missing is no fault of the file: one is chosen at start (design/loop_choice.h).
 TEST(MachineChecks, ALoopInTorqueModeMustBeOne) {
   MachineConfig c = Good();

@@ -50,6 +50,37 @@ TEST(TwoInertiaObserver, FindsAForceOnTheTableAsItsResponseSays) {
   }
 }
 
+TEST(TwoInertiaObserver, ByTheScaleItFindsTheTableWhateverTheEncoderIsOffBy) {
+  for (const test::FamilyAxis& member : test::kFamily) {
+    TwoInertiaObserver::Setup setup = test::ObserverOf(member, kPeriod_s);
+    LoopTuning tuning = test::kSteadyTuning;
+    tuning.bias_Hz = 100.0;
+    setup.scale_loop = DesignLoop(setup.axis, tuning, kPeriod_s, true);
+    TwoInertiaObserver observer(setup);
+    OwnAxis axis(setup.axis);
+    // Encoder and scale begin a micrometre apart, and drift by as much again.
+    observer.Reset(1e-6, 0.0);
+    double beyond_m = 0.0;
+    for (std::size_t k = 0; k < 400; ++k) {
+      beyond_m = 1e-6 * (1.0 + static_cast<double>(k) / 400.0);
+      const double input_N = 40.0 * std::sin(0.05 * static_cast<double>(k));
+      if (k > 0) observer.Predict({{input_N, 0.0}, 0.0, 0.0});
+      observer.Correct(axis.x[0] + beyond_m, axis.x[2]);
+      if (k > 50) {
+        EXPECT_NEAR(observer.motion()[2], axis.x[2], 10e-9) << member.name << " " << k;
+      }
+      axis.Step(40.0 * std::sin(0.05 * static_cast<double>(k + 1)), 0.0);
+    }
+    EXPECT_NEAR(observer.beyond_m(), beyond_m, 0.35e-6) << member.name;
+    // The scale is gone: the motor is where its encoder is, the table behind by the wind-up.
+    observer.GoOnByMotor(5e-6, 40.0, 7.0);
+    EXPECT_DOUBLE_EQ(observer.motion()[0], 5e-6);
+    EXPECT_DOUBLE_EQ(observer.motion()[2], 5e-6 - 40.0 / setup.axis.stiffness_N_m);
+    EXPECT_EQ(observer.beyond_m(), 0.0);
+    EXPECT_EQ(observer.disturbance_N(), 7.0);
+  }
+}
+
 TEST(TwoInertiaObserver, WhatIsKnownIsNotFound) {
   const test::FamilyAxis& member = test::kFamily[1];
   const TwoInertiaObserver::Setup setup = test::ObserverOf(member, kPeriod_s);

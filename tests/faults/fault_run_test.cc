@@ -102,6 +102,28 @@ TEST(FaultRun, DrivesAndResetOnceFailed) {
   }
 }
 
+// In its loops (cst) or behind them (csp): the axis goes on by its motor and stops on the path, and where a
+// scale at rest is not missed it has to be seen once the axis moves.
+TEST(FaultRun, AScaleThatFailsNeverTurnsIntoMotion) {
+  const EmulatedMachineFile file = Machine("scaled");
+  for (const Fault fault :
+       {Fault::kScaleSilent, Fault::kScaleFrozen, Fault::kScaleReversed, Fault::kScaleJump})
+    for (const Phase phase : {Phase::kEnabling, Phase::kReady, Phase::kConstant, Phase::kReversal})
+      for (const double feed_mm_s : {0.02, 1.0, 50.0})
+        for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
+          if (!Moves(phase) && feed_mm_s > 0.02) continue;
+          const FaultCase c = Case(fault, phase, feed_mm_s, mode);
+          const RunResult r = RunFault(c, {&file, 1});
+          EXPECT_EQ(All(r), "") << Key(c) << " " << feed_mm_s;
+          // Readings that contradict the motor displace the axis by what they may be off by, or are braked.
+          EXPECT_LT(r.departure_m, 0.6e-3) << Key(c) << " " << feed_mm_s;
+          // At a crawl it takes longer to show than a run lasts.
+          if (phase == Phase::kConstant && feed_mm_s >= 1.0) {
+            EXPECT_TRUE(r.stopped) << Key(c) << " " << feed_mm_s;
+          }
+        }
+}
+
 class WithoutSupervisor : public ::testing::TestWithParam<Supervisor> {};
 
 /// The campaign on the fault that the supervisor is there for: holds with it, fails without it.

@@ -26,6 +26,35 @@ void Chosen(const MachineConfig& machine, const std::string& name, const AxisCon
   section.refused.push_back(WhyNoLoop(name, axis, period_s));
 }
 
+/// A loop of an axis and the key that has its tuning.
+struct Judged {
+  std::string key;
+  std::string title;
+  LoopAxis axis;
+  LoopTuning tuning;
+};
+
+void Judge(const Judged& loop, double period_s, bool used, LoopSection& section) {
+  try {
+    const LoopReport report = ReportOn(loop.axis, loop.tuning, period_s);
+    section.text += loop.title + "\n" + Describe(report);
+    const std::string wrong = WhatIsWrong(report.verdict);
+    if (wrong.empty()) return;
+    // A loop that nothing uses is no danger.
+    if (!used) {
+      section.text += "  NOT within its limits (" + wrong + "); control.friction: linear would be refused\n";
+      return;
+    }
+    std::string message = loop.key + "found a loop that does not keep its limits (" + wrong +
+                          "), expected one that does; what would help:";
+    for (const std::string& help : WhatWouldHelp(loop.axis, period_s, 1)) message += " " + help + ";";
+    message.pop_back();
+    section.refused.push_back(std::move(message));
+  } catch (const std::invalid_argument& e) {
+    section.refused.push_back(loop.key + e.what());
+  }
+}
+
 }  // namespace
 
 LoopSection JudgeLoops(const MachineConfig& machine) {
@@ -43,27 +72,19 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
       section.text += "  axis " + name + ": no loop: tuning; contour tune --from-model finds it\n";
       continue;
     }
-    // A loop that nothing uses is no danger.
-    const std::string key = "axes." + name + ".loop: ";
-    const LoopAxis axis = LoopAxisOf(config);
-    try {
-      const LoopReport report = ReportOn(axis, *config.loop, period_s);
-      section.text += "  axis " + name + "\n" + Describe(report);
-      const std::string wrong = WhatIsWrong(report.verdict);
-      if (wrong.empty()) continue;
-      if (!used) {
-        section.text +=
-            "  NOT within its limits (" + wrong + "); control.friction: linear would be refused\n";
-        continue;
-      }
-      std::string message = key + "found a loop that does not keep its limits (" + wrong +
-                            "), expected one that does; what would help:";
-      for (const std::string& help : WhatWouldHelp(axis, period_s, 1)) message += " " + help + ";";
-      message.pop_back();
-      section.refused.push_back(std::move(message));
-    } catch (const std::invalid_argument& e) {
-      section.refused.push_back(key + e.what());
+    Judge({"axes." + name + ".loop: ", "  axis " + name, LoopAxisOf(config), *config.loop}, period_s, used,
+          section);
+    const std::optional<LoopAxis> with = ScaleLoopAxisOf(config);
+    if (!with) continue;
+    if (!config.scale_loop) {
+      section.text += "  axis " + name +
+                      ": its linear scale is not in the loop, there is no scale_loop: tuning; contour tune "
+                      "--from-model finds it\n";
+      continue;
     }
+    Judge({"axes." + name + ".scale_loop: ", "  axis " + name + ", with its linear scale", *with,
+           *config.scale_loop},
+          period_s, used, section);
   }
   if (!section.text.empty()) section.text = "\nLoops in torque mode\n" + section.text;
   return section;

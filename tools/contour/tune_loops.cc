@@ -49,11 +49,17 @@ std::string Head(const std::string& name, const LoopAxis& a) {
   return text;
 }
 
-/// False when there is no loop for this axis.
-bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneLoopsOptions& asked,
+/// What an axis has a tuning for: a key of its own.
+struct Asked {
+  std::string name;  ///< of the axis
+  const char* key;
+  LoopAxis axis;
+};
+
+/// False when there is no such loop.
+bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOptions& asked,
               std::string& text) {
-  const AxisConfig& config = machine.axes.at(name);
-  const LoopAxis axis = LoopAxisOf(config);
+  const auto& [name, key, axis] = loop;
   const double period_s = 1e-6 * machine.machine.cycle_us;
   std::cout << Head(name, axis) << std::flush;
   LoopSearchOptions options;
@@ -74,7 +80,7 @@ bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneL
     return false;
   }
   const std::string block = WriteYaml(found.tuning);
-  std::cout << "  axes." << name << ".loop:\n";
+  std::cout << "  axes." << name << "." << key << ":\n";
   std::string line;
   for (const char c : block) {
     if (line.empty()) line = "    ";
@@ -83,8 +89,17 @@ bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneL
     std::cout << line;
     line.clear();
   }
-  if (!text.empty()) text = WithAxisBlock(text, asked.machine, name, "loop", block);
+  if (!text.empty()) text = WithAxisBlock(text, asked.machine, name, key, block);
   return true;
+}
+
+/// With a linear scale also for the loop that goes by it.
+bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneLoopsOptions& asked,
+              std::string& text) {
+  const AxisConfig& config = machine.axes.at(name);
+  if (!TuneLoop(machine, {name, "loop", LoopAxisOf(config)}, asked, text)) return false;
+  const std::optional<LoopAxis> with = ScaleLoopAxisOf(config);
+  return !with || TuneLoop(machine, {name, "scale_loop", *with}, asked, text);
 }
 
 }  // namespace

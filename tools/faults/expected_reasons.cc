@@ -57,6 +57,10 @@ constexpr std::array kRows{
     Expectation{F::kGridPointsSkipped,       kMayStop, kStops,   {R::kGridPointsSkipped, R::kFeedbackJump}},
     Expectation{F::kCyclesLate,              kStops,   kStops,   {R::kCyclesLate, R::kFollowingError}},
     Expectation{F::kPositionBitTop,          kMayStop, kMayStop, {R::kFeedbackJump, R::kVelocityLimit}},
+    Expectation{F::kScaleSilent,             kStops,   kStops,   {R::kScaleLost}},
+    Expectation{F::kScaleFrozen,             kMayStop, kMayStop, {R::kScaleDoubted, R::kScaleDisagrees}},
+    Expectation{F::kScaleReversed,           kMayStop, kMayStop, {R::kScaleDoubted, R::kScaleDisagrees}},
+    Expectation{F::kScaleJump,               kStops,   kStops,   {R::kScaleDoubted, R::kScaleDisagrees}},
 };
 // clang-format on
 

@@ -60,6 +60,11 @@ enum class Fault : std::uint8_t {
   kGridPointsSkipped,
   kCyclesLate,
   kPositionBitTop,
+  // The linear scale, on machines that have one.
+  kScaleSilent,
+  kScaleFrozen,
+  kScaleReversed,
+  kScaleJump,
 };
 
 struct FaultName {
@@ -124,10 +129,16 @@ inline constexpr std::array kFaults{
     FaultName{Fault::kCyclesLate, "cycles_late", "the frames of every cycle leave late"},
     FaultName{Fault::kPositionBitTop, "position_bit_top",
               "the highest bit but one of one position is flipped"},
+    FaultName{Fault::kScaleSilent, "scale_silent", "all readings of the linear scale are lost"},
+    FaultName{Fault::kScaleFrozen, "scale_frozen", "the count of the linear scale stands still"},
+    FaultName{Fault::kScaleReversed, "scale_reversed", "the count of the linear scale runs the wrong way"},
+    FaultName{Fault::kScaleJump, "scale_jump",
+              "the count of the linear scale jumps by a tenth of the safe travel"},
 };
 inline constexpr std::size_t kFaultCount = kFaults.size();
 
-/// Those that show what a supervisor is good for are planned only when they are asked for by name.
+/// Those that show what a supervisor is good for, or concern a linear scale, which few machines have, are
+/// planned only when they are asked for by name.
 constexpr bool IsPlanned(Fault fault) noexcept { return fault < Fault::kGridPointsSkipped; }
 
 constexpr const FaultName& Named(Fault fault) noexcept { return kFaults[static_cast<std::size_t>(fault)]; }

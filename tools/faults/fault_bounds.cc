@@ -61,6 +61,10 @@ Promise PromiseOf(Fault fault) {
     case Fault::kEmergencyLostMaster:
     case Fault::kEmergencyExternal:
     case Fault::kEmergencyMaker:
+    case Fault::kScaleSilent:
+    case Fault::kScaleFrozen:
+    case Fault::kScaleReversed:
+    case Fault::kScaleJump:
       return Promise::kPathStop;
     case Fault::kEncoderReversed:
     case Fault::kEncoderJump:
@@ -79,6 +83,9 @@ Promise PromiseOf(Fault fault) {
 constexpr double kModeRead_s = 0.15;
 /// Feeds of an axis that does not move evenly, in steps of this ratio.
 constexpr double kFeedStep = 1.3;
+/// Of the lead: what scale and motor are off by before it is a lie; and time besides.
+constexpr double kScaleOff_rel = 3e-3;
+constexpr double kScaleSeen_s = 0.1;
 
 const AxisConfig& AxisOf(const MachineConfig& machine, std::size_t axis) {
   return std::next(machine.axes.begin(), static_cast<std::ptrdiff_t>(axis))->second;
@@ -188,6 +195,14 @@ RunBound MotionBound(const MachineConfig& machine, const FaultCase& c) {
   return bound;
 }
 
+/// A scale that stands or counts backwards is seen once it is off by more than a screw can explain.
+double ScaleSeen_s(const MachineConfig& machine, const FaultCase& c) {
+  if (c.fault != Fault::kScaleFrozen && c.fault != Fault::kScaleReversed) return 0.0;
+  const AxisConfig& axis = AxisOf(machine, c.axis);
+  const double seen_mm = kScaleOff_rel * axis.model.mechanics.lead_mm + 4e3 * SettledError_m(axis);
+  return seen_mm / c.feed_mm_s + kScaleSeen_s;
+}
+
 }  // namespace
 
 bool ShownByMotion(Fault fault) { return PromiseOf(fault) == Promise::kMotion; }
@@ -199,7 +214,7 @@ bool Crawls(const MachineConfig& machine, const FaultCase& c) {
 
 double JumpSize_mm(const MachineConfig& machine, const FaultCase& c) {
   const double safe_mm = AxisOf(machine, c.axis).limits.safe_travel_mm;
-  if (c.fault == Fault::kEncoderJump) return 0.1 * safe_mm;
+  if (c.fault == Fault::kEncoderJump || c.fault == Fault::kScaleJump) return 0.1 * safe_mm;
   if (c.fault == Fault::kEncoderJumpLarge) return 3.0 * safe_mm;
   return 0.0;
 }
@@ -215,7 +230,9 @@ bool JumpIsSeen(const MachineConfig& machine, const FaultCase& c) {
 RunBound RunBoundOf(const MachineConfig& machine, const FaultCase& c) {
   const Promise promise = PromiseOf(c.fault);
   if (promise == Promise::kMotion) return MotionBound(machine, c);
-  return Bound(machine, promise, c.axis);
+  RunBound bound = Bound(machine, promise, c.axis);
+  bound.time_s += ScaleSeen_s(machine, c);
+  return bound;
 }
 
 RunBound BoundOfOthers(const MachineConfig& machine, const FaultCase& c, std::size_t axis) {

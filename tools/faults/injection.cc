@@ -76,6 +76,7 @@ void Injection::Break() {
   Intrude();
   BreakDrive(axis);
   BreakEncoder(axis);
+  BreakScale(axis.scale_tampering());
 }
 
 void Injection::BreakBus() {
@@ -109,6 +110,8 @@ void Injection::BreakBus() {
       return BreakFrames({What::kDrop, setpoint, 1});
     case Fault::kSetpointsLost:
       return BreakFrames({What::kDrop, setpoint});
+    case Fault::kScaleSilent:
+      return BreakFrames({What::kDrop, Id(cob::kTpdo1 + 0x100)});
     case Fault::kHeartbeatsLost:
       return BreakFrames({What::kDrop, Id(cob::kHeartbeat)});
     case Fault::kBusDown:
@@ -229,12 +232,28 @@ void Injection::BreakEncoder(plant::EmulatedAxis& axis) {
   }
 }
 
+void Injection::BreakScale(plant::Tampering& t) {
+  switch (c_.fault) {
+    case Fault::kScaleFrozen:
+      return t.Freeze();
+    case Fault::kScaleReversed:
+      return t.Scale(-1.0);
+    case Fault::kScaleJump:
+      if (drive_.linear_scale)
+        t.Jump(std::llround(JumpSize_mm(config_, c_) * drive_.linear_scale->counts_per_mm));
+      return;
+    default:
+      return;
+  }
+}
+
 void Injection::Mend() {
   broken_ = false;
   for (auto& b : buses_) b->End();
   for (auto& i : intruders_) i->End();
   plant::EmulatedAxis& axis = MachineTamper::Axis(machine_->emulated(), c_.axis);
   axis.tampering().MendEncoder();
+  axis.scale_tampering().MendEncoder();
   axis.tampering().MendTorque();
   if (c_.fault == Fault::kDriveWrongMode) axis.ChangeMode(c_.mode == DriveMode::kCst ? 10 : 8);
   if (c_.fault == Fault::kBusDown) machine_->bus(bus_).SetLink(now_ns(), true);

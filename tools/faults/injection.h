@@ -8,6 +8,7 @@
 #include "tools/faults/intruder.h"
 #include "tools/faults/meddling_bus.h"
 #include "tools/plant_emulator/random.h"
+#include "tools/plant_emulator/tampering.h"
 #include "tools/simulate/virtual_machine.h"
 
 namespace contour::faults {
@@ -42,6 +43,7 @@ class Injection {
   void BreakBus();
   void BreakDrive(plant::EmulatedAxis& axis);
   void BreakEncoder(plant::EmulatedAxis& axis);
+  void BreakScale(plant::Tampering& scale);
   void Intrude();
   void Flood(bool forever);
 

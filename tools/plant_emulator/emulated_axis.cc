@@ -305,8 +305,8 @@ void EmulatedAxis::Sense() noexcept {
 }
 
 std::int64_t EmulatedAxis::ReadScale() noexcept {
-  return static_cast<std::int64_t>(
-      std::floor(plant_.table_position_m() * p_.scale_counts_per_m + 0.5 + 0.3 * scale_noise_.Normal()));
+  return scale_tampering_.Read(static_cast<std::int64_t>(
+      std::floor(plant_.table_position_m() * p_.scale_counts_per_m + 0.5 + 0.3 * scale_noise_.Normal())));
 }
 
 void EmulatedAxis::Tick() noexcept {

@@ -49,6 +49,8 @@ class EmulatedAxis final : private SlaveDevice {
   // Other things that drives do unasked:
   /// Encoder and motor lie.
   [[nodiscard]] Tampering& tampering() noexcept { return tampering_; }
+  /// The same of the linear scale; only what concerns an encoder matters.
+  [[nodiscard]] Tampering& scale_tampering() noexcept { return scale_tampering_; }
   /// EMCY and nothing else: the drive goes on.
   void SendEmergency(std::uint16_t code, std::uint8_t register_bits) noexcept {
     slave_.Emergency(code, register_bits);
@@ -111,6 +113,7 @@ class EmulatedAxis final : private SlaveDevice {
   CurrentLoop current_;
   Encoder encoder_;
   Tampering tampering_;
+  Tampering scale_tampering_;
   Random scale_noise_;
   Random torque_noise_;
   double tick_noise_Nm_;

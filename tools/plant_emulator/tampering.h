@@ -6,9 +6,9 @@
 
 namespace contour::plant {
 
-/// What is broken in an emulated axis besides its mechanics: an encoder that lies, a motor that gives another
-/// torque than its current asks for. All faults may be had together; without any, nothing is changed by a
-/// bit.
+/// What is broken in an emulated axis besides its mechanics: an encoder (or a linear scale) that lies, a
+/// motor that gives another torque than its current asks for. All faults may be had together; without any,
+/// nothing is changed by a bit.
 class Tampering {
  public:
   // The encoder. What it tells goes to the drive's own loops too.
