@@ -166,6 +166,12 @@ void WriteModelFile(const std::filesystem::path& file, const ModelConfig& model,
   if (const FittedParameter* offset = Find(id, "offset_N"))
     text += FormatText("# Constant torque: %.5f +- %.5f Nm, no key of the model.\n",
                        a.offset * a.radius_m_rad, offset->sigma * a.radius_m_rad);
+  if (const FittedParameter* share = Find(id, "motor_friction_share"))
+    text += FormatText("# Share of the friction that acts on the motor: %.2f +- %.2f, no key of the model.\n",
+                       a.motor_friction_share, share->sigma);
+  if (a.side.share > 0.0)
+    text += FormatText("# %.0f %% of the table's mass swings at %.0f Hz, no key of the model.\n",
+                       100.0 * a.side.share, a.side.frequency_Hz);
   text += FormatText("# Encoder: one step is %.4g um of travel, noise of a reading %.4g um.\n",
                      id.encoder.step_m * 1e6, id.encoder.noise_m * 1e6);
   for (const std::string& n : id.notes) text += "# Note: " + n + "\n";
