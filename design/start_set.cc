@@ -28,7 +28,7 @@ std::string Name(const Corner& c) {
 }
 
 LoopMember At(const LoopAxis& a, const Corner& c, double damping) {
-  LoopMember m{Name(c), MemberKind::kLate, a.axis, {}};
+  LoopMember m{Name(c), MemberKind::kLate, a.axis, {}, 0.0, a.side_modes};
   m.axis.stiffness_N_m *= c.stiffness;
   m.axis.motor_mass_kg *= c.motor;
   m.axis.table_mass_kg *= c.table;

@@ -1,5 +1,6 @@
 #include "analysis/identification/table_axis.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -54,6 +55,12 @@ void IntoConfig(const TableAxis& axis, ModelConfig& model) {
   m.screw_stiffness_N_um = axis.stiffness * 1e-6;
   m.screw_damping_Ns_m = axis.damping;
   CoggingInto(axis, model);
+  if (axis.two_inertia && axis.friction_on_load)
+    model.friction.motor_share_rel = std::round(1e3 * axis.motor_friction_share) * 1e-3;
+  if (axis.side.share > 0.0)
+    model.side_modes = {{std::round(10.0 * axis.side.frequency_Hz) * 0.1,
+                         std::round(1e3 * axis.side.share) * 1e-3,
+                         std::clamp(std::round(1e4 * axis.side.damping_ratio) * 1e-4, 0.0, 1.0)}};
   const diagnosis::StatedFriction& f = axis.friction;
   FrictionConfig& c = model.friction;
   c.stribeck_exponent = f.exponent;
