@@ -37,7 +37,8 @@ constexpr double kLeastGain_log = 5e-3;
 /// when it foresees so much better.
 constexpr double kSideShares[] = {0.05, 0.12, 0.25};
 constexpr double kNextSide = 1.08;
-constexpr std::size_t kSidesRefined = 2;
+constexpr std::size_t kSidesRefined = 3;
+constexpr double kSidesApart = 0.15;
 constexpr double kLeastSideGain_log = 1e-2;
 
 double Hz(double stiffness, double mass) { return std::sqrt(stiffness / mass) / (2.0 * std::numbers::pi); }
@@ -216,9 +217,17 @@ void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& s
     }
   }
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  if (starts.size() > kSidesRefined) starts.resize(kSidesRefined);
-  const double alone = best.first;
+  // The best of each neighbourhood.
+  std::vector<TableAxis> chosen;
   for (const auto& [error, start] : starts) {
+    const bool near = std::any_of(chosen.begin(), chosen.end(), [&start = start](const TableAxis& c) {
+      return std::fabs(std::log(c.side.frequency_Hz / start.side.frequency_Hz)) < kSidesApart;
+    });
+    if (!near) chosen.push_back(start);
+    if (chosen.size() == kSidesRefined) break;
+  }
+  const double alone = best.first;
+  for (const TableAxis& start : chosen) {
     const auto found = FollowBasin(start, segments, threads);
     // What lies beyond the shaking is no finding.
     const double side_Hz = found.second.side.frequency_Hz;
