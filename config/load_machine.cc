@@ -11,11 +11,11 @@
 namespace contour {
 namespace {
 
-// A model file holds the keys of a model, or one key `model` with them below.
-YamlValue ModelOf(YamlValue root) {
-  if (root.entries.size() == 1 && root.entries.front().key == "model") {
-    YamlValue model = std::move(root.entries.front().value);
-    return model;
+// A file of a model or a loop holds its keys, or one key `model` or `loop` with them below.
+YamlValue Below(const std::string& key, YamlValue root) {
+  if (root.entries.size() == 1 && root.entries.front().key == key) {
+    YamlValue below = std::move(root.entries.front().value);
+    return below;
   }
   return root;
 }
@@ -23,27 +23,29 @@ YamlValue ModelOf(YamlValue root) {
 /// Gives a file that a machine file names, as it names it.
 using OpenNamed = std::function<YamlValue(const std::string& name)>;
 
-// `model: some_file.yaml`, relative to the machine file.
-void PlaceModelFiles(YamlValue& root, const OpenNamed& open) {
+// `model: some_file.yaml` and `loop: some_file.yaml`, relative to the machine file.
+void PlaceFiles(YamlValue& root, const OpenNamed& open) {
   YamlEntry* axes = root.Find("axes");
   if (axes == nullptr) return;
   for (YamlEntry& axis : axes->value.entries) {
-    YamlEntry* model = axis.value.Find("model");
-    if (model == nullptr || model->value.kind != YamlValue::Kind::kScalar) continue;
-    try {
-      model->value = ModelOf(open(model->value.text));
-    } catch (const ConfigError& e) {
-      throw ConfigError({model->where + ": axes." + axis.key + ".model: " + e.what()});
+    for (const std::string key : {"model", "loop"}) {
+      YamlEntry* entry = axis.value.Find(key);
+      if (entry == nullptr || entry->value.kind != YamlValue::Kind::kScalar) continue;
+      try {
+        entry->value = Below(key, open(entry->value.text));
+      } catch (const ConfigError& e) {
+        throw ConfigError({entry->where + ": axes." + axis.key + "." + key + ": " + e.what()});
+      }
     }
   }
 }
 
 YamlValue Assemble(YamlValue tree, const std::vector<std::string>& overrides, const OpenNamed& open) {
   // Twice: a model named on the command line, and values put on top of a model that came from a file.
-  PlaceModelFiles(tree, open);
+  PlaceFiles(tree, open);
   for (const std::string& assignment : overrides) {
     ApplyOverride(tree, assignment);
-    PlaceModelFiles(tree, open);
+    PlaceFiles(tree, open);
   }
   return tree;
 }
@@ -102,7 +104,7 @@ MachineConfig LoadMachine(const std::string& path, const std::vector<std::string
 }
 
 ModelConfig LoadModel(const std::string& path, const std::vector<std::string>& overrides) {
-  YamlValue tree = ModelOf(ParseYamlFile(path));
+  YamlValue tree = Below("model", ParseYamlFile(path));
   for (const std::string& assignment : overrides) ApplyOverride(tree, assignment);
   std::vector<std::string> errors;
   ModelConfig model;

@@ -51,7 +51,10 @@ struct AxisConfig {
     v.Required("drive", drive, "the CiA 402 drive of this axis");
     v.Required("limits", limits, "what the axis may do");
     v.Required("model", model, "what is believed of the axis; or the name of a file that holds it");
-    v.Optional("loop", loop, "tuning of the two-inertia loop, as `contour tune --from-model` finds it");
+    v.Optional(
+        "loop", loop,
+        "tuning of the two-inertia loop, as `contour tune --from-model` finds it; or the name of a file that "
+        "holds it");
     v.Optional("scale_loop", scale_loop,
                "the same with the linear scale in the loop, which then controls the table; `loop` holds the "
                "axis when the scale fails");

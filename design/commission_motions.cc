@@ -1,6 +1,8 @@
 #include "design/commission_motions.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "analysis/text/format_text.h"
@@ -11,9 +13,18 @@ namespace {
 /// Strokes and speeds stay this far inside what is allowed: a controller with a wrong model overshoots.
 constexpr double kMargin_mm = 0.15;
 constexpr double kShareOfTop = 0.95;
-/// Force of each line of the multisine, at the table.
-constexpr double kLine_N = 2.0;
+/// Forces in those of rated torque: of the chirp, and of each line of the multisine.
+constexpr double kChirpOfRated = 0.075;
+constexpr double kLineOfRated = 0.0025;
 constexpr int kLines = 12;
+/// Where the chirp begins: in the stated mode of motor against table, which a catalogue knows to a factor of
+/// 1.5, and at the highest.
+constexpr double kBelowMode = 0.3;
+constexpr double kHighestBegin_Hz = 100.0;
+/// The chirp moves the axis to and fro by this share of the slowest stroke's speed at most, should the masses
+/// be as light as a catalogue allows: the bristle must not turn back.
+constexpr double kShareOfSlide = 0.6;
+constexpr double kLightest = 0.7;
 
 /// Torques in steps up to beyond break-away, both ways: shares of the stated level.
 std::string TorqueSteps(double level_Nm, double most_Nm) {
@@ -22,6 +33,10 @@ std::string TorqueSteps(double level_Nm, double most_Nm) {
     for (const double sign : {1.0, -1.0})
       list += (list.empty() ? "" : ", ") + FormatText("%.5f", sign * std::min(share * level_Nm, most_Nm));
   return list;
+}
+
+double RatedForce_N(const AxisConfig& axis) {
+  return axis.drive.rated_torque_Nm / ToSi(axis.model.mechanics).radius_m_rad;
 }
 
 /// What the motions are made of, and where they have room.
@@ -73,18 +88,19 @@ class Motions {
         FormatText("shape: hold\nseconds: 4\ntorque: {axis: %s, kind: multisine, "
                    "amplitude_Nm: %.6f, frequency_min_hz: 8, "
                    "frequency_max_hz: 120, lines: %d}\n",
-                   name_.c_str(), kLine_N * mechanics_.radius_m_rad, kLines));
-    const double top_Hz = std::min(480.0, 0.48e6 / cycle_us);
+                   name_.c_str(), kLineOfRated * axis_.drive.rated_torque_Nm, kLines));
+    const double top_Hz = 0.48e6 / cycle_us;
     // Fast enough that a controller which swings, its mass being wrong, does not turn the axis back.
     const double travel = limits_.travel_mm;
     std::vector<double> slides;
     for (const double speed : {std::max(3.0, travel / 4.0), 0.75 * travel, travel})
       slides.push_back(std::min(speed, 0.8 * top_mm_s_));
-    BothWays(FormatText("chirp while sliding, 100 to %.0f Hz", top_Hz), slides,
-             FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: 100, "
+    const double begin_Hz = ChirpBegin_Hz(1e-3 * *std::min_element(slides.begin(), slides.end()));
+    BothWays(FormatText("chirp while sliding, %.0f to %.0f Hz", begin_Hz, top_Hz), slides,
+             FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: %.1f, "
                         "frequency_max_hz: %.0f, "
                         "period_s: 0.5}\n",
-                        name_.c_str(), kCommissionChirp_N * mechanics_.radius_m_rad, top_Hz));
+                        name_.c_str(), CommissionChirp_N(axis_) * mechanics_.radius_m_rad, begin_Hz, top_Hz));
   }
 
   std::vector<CommissionMotion> Take() { return std::move(motions_); }
@@ -98,6 +114,16 @@ class Motions {
   }
 
   void Add(std::string what, std::string yaml) { motions_.push_back({std::move(what), std::move(yaml)}); }
+
+  [[nodiscard]] double ChirpBegin_Hz(double slowest_m_s) const {
+    const Mechanics& m = mechanics_;
+    const double motor_kg = m.mass_kg - m.table_mass_kg;
+    const double mode_Hz =
+        std::sqrt(m.stiffness_N_m * m.mass_kg / (motor_kg * m.table_mass_kg)) / (2.0 * std::numbers::pi);
+    const double least_Hz = CommissionChirp_N(axis_) /
+                            (kLightest * m.mass_kg * 2.0 * std::numbers::pi * kShareOfSlide * slowest_m_s);
+    return std::min(kHighestBegin_Hz, std::max(kBelowMode * mode_Hz, least_Hz));
+  }
 
   void BothWays(const std::string& what, const std::vector<double>& speeds, const std::string& torque) {
     if (up_mm_ > kLeastCommissionStroke_mm) Add(what + ", upwards", Creep(up_mm_, speeds) + torque);
@@ -114,6 +140,8 @@ class Motions {
 };
 
 }  // namespace
+
+double CommissionChirp_N(const AxisConfig& axis) { return kChirpOfRated * RatedForce_N(axis); }
 
 std::vector<CommissionMotion> CommissionMotions(const CommissionPlan& plan, const AxisConfig& axis,
                                                 double position_mm, double cycle_us) {

@@ -6,8 +6,8 @@
 
 namespace contour {
 
-/// Force of the chirp at the table.
-inline constexpr double kCommissionChirp_N = 60.0;
+/// Force of the chirp at the table: a share of the rated one, which a catalogue states exactly.
+double CommissionChirp_N(const AxisConfig& axis);
 /// Less room than this on one side is none.
 inline constexpr double kLeastCommissionStroke_mm = 1.0;
 

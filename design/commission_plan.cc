@@ -7,7 +7,6 @@
 #include "config/config_error.h"
 #include "config/machine_checks.h"
 #include "design/commission_motions.h"
-#include "drivers/cia402/mode_for.h"
 
 namespace contour {
 namespace {
@@ -57,7 +56,7 @@ double LargestTorque_Nm(const AxisConfig& axis, const CommissionLimits& limits) 
   const double moving_N = std::max(
       friction_N, std::max(f.Fc_plus_N, f.Fc_minus_N) + f.sigma2_Ns_m * limits.max_speed_mm_s * 1e-3);
   const double ramp_N = m.mass_kg * axis.limits.acceleration_mm_s2 * 1e-3;
-  return m.radius_m_rad * kDoubt * std::max(ramp_N + moving_N, kCommissionChirp_N + friction_N);
+  return m.radius_m_rad * kDoubt * std::max(ramp_N + moving_N, CommissionChirp_N(axis) + friction_N);
 }
 
 }  // namespace
@@ -72,8 +71,6 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
                                  const CommissionLimits& limits) {
   Require(machine.axes.contains(name), "--axis: there is no axis \"" + name + "\" in this machine");
   const AxisConfig& axis = machine.axes.at(name);
-  Require(ModeFor(machine.machine.controller, axis.drive) == DriveMode::kCst,
-          "axis " + name + ": commissioning takes a drive in torque mode (drive.mode: cst)");
   CheckLimits(name, axis, limits);
   const AxisLimits& l = axis.limits;
   CommissionPlan plan;

@@ -34,7 +34,8 @@ struct CommissionPlan {
 
 /// The motions for an axis that stands at `position_mm`. Slow ones come first, and nothing of it needs the
 /// model to be right: friction and inertia may be half as large again, or half. Throws ConfigError when the
-/// limits do not fit the axis or leave too little to identify anything.
+/// limits do not fit the axis or leave too little to identify anything. In csp the drive's loop leads the
+/// axis, and what is added is an offset of its torque (0x60B2).
 CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string& axis, double position_mm,
                                  const CommissionLimits& limits);
 

@@ -161,12 +161,15 @@ const WorstMember& Binding(const LoopVerdict& v) {
 }
 
 LoopJudge::LoopJudge(const LoopAxis& axis, double period_s)
+    : LoopJudge(axis, period_s, UncertaintySet(axis)) {}
+
+LoopJudge::LoopJudge(const LoopAxis& axis, double period_s, const std::vector<LoopMember>& members)
     : axis_(axis), period_s_(period_s), frequencies_(Frequencies(kFrequencies)) {
   const double unit_N = ForceUnit_N(axis.axis, period_s);
-  for (LoopMember& m : UncertaintySet(axis)) {
+  for (const LoopMember& m : members) {
     LinearSystem plant = MakePlant(m, period_s, unit_N).system;
     auto response = Response(plant, 0, frequencies_);
-    members_.push_back({std::move(m), std::move(plant), std::move(response)});
+    members_.push_back({m, std::move(plant), std::move(response)});
   }
 }
 

@@ -59,6 +59,8 @@ struct LoopVerdict {
 class LoopJudge {
  public:
   LoopJudge(const LoopAxis& axis, double period_s);
+  /// On these members; the first is the axis as stated.
+  LoopJudge(const LoopAxis& axis, double period_s, const std::vector<LoopMember>& members);
   [[nodiscard]] LoopVerdict Judge(const TwoInertiaLoop& loop) const;
 
  private:

@@ -21,7 +21,8 @@ constexpr LoopSearchOptions kShortSearch{.random_starts = 30,
                                          .refinements = 1,
                                          .evaluations_per_refinement = 300,
                                          .threads = 1,
-                                         .start = {}};
+                                         .start = {},
+                                         .members = {}};
 
 std::string Fixed(double value, int decimals) {
   std::array<char, 64> text{};
@@ -53,6 +54,7 @@ std::string Describe(const LoopReport& r) {
   std::string text = Line("sliding", r.sliding) + Line("at rest", r.rest);
   for (std::size_t i = 0; i < kMemberKinds; ++i) {
     const WorstMember& w = r.verdict.worst[i];
+    if (w.name.empty()) continue;  // the set has no member of this kind
     text += std::string("  worst of the axis ") + kKinds[i] + ": " +
             (w.stable ? "peak " + Fixed(w.peak, 2) + ", limit " + Fixed(w.limit, 2) : "unstable") + " (" +
             w.name + ")\n";

@@ -128,7 +128,7 @@ std::vector<LoopTuning> LoopsOfOtherAxes(double period_s) {
 FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOptions& options) {
   const bool scale = axis.scale_step_m.has_value();
   LoopMotionOf(axis.axis, period_s);  // throws when the axis cannot be
-  const LoopJudge judge(axis, period_s);
+  const LoopJudge judge(axis, period_s, options.members.empty() ? UncertaintySet(axis) : options.members);
   const Box box(period_s, scale);
   const auto cost = [&](const std::vector<double>& point, double slope) {
     try {

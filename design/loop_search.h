@@ -17,6 +17,7 @@ struct LoopSearchOptions {
   int evaluations_per_refinement = 1500;
   int threads = 1;
   std::optional<LoopTuning> start;  ///< for instance, the one that the machine has
+  std::vector<LoopMember> members;  ///< what it must bear; empty: UncertaintySet
 };
 
 /// The tuning found, and how good it is.

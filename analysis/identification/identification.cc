@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "analysis/identification/cogging_fit.h"
 #include "analysis/text/format_text.h"
 
 namespace contour::identify {
@@ -14,17 +15,26 @@ constexpr int kHalfWidth = 4;  ///< samples of the average of Kinematics, to eit
 constexpr std::size_t kStride = 4;
 constexpr double kLargestLoop_m = 60e-6;
 constexpr double kOverlay_s = 20.0;
+constexpr double kDriveOff_s = 1.0;
 constexpr double kLeastWindUpSigma = 0.003;
 /// A rigid axis: the stiffness written over the least that it must have, and how unsure that is.
 constexpr double kRigidBeyondLeast = 2.0;
 constexpr double kRigidSigma = 0.5;
+
+/// With what goes with the motor's angle as a force of its own.
+std::vector<Instant> InstantsOf(const Measured& r, const TableAxis& axis, std::size_t stride) {
+  std::vector<double> cogging_N;
+  if (axis.cogging.front().order > 0.0)
+    for (const double x : r.position_m) cogging_N.push_back(std::isfinite(x) ? Cogging_N(axis, x) : 0.0);
+  return Kinematics(r, axis.delay_s, axis.lag_s, kHalfWidth, stride, cogging_N);
+}
 
 std::vector<Instant> AllInstants(const std::vector<Measured>& records, const TableAxis& axis,
                                  std::size_t stride) {
   std::vector<Instant> all;
   double offset_s = 0.0;
   for (const Measured& r : records) {
-    for (Instant i : Kinematics(r, axis.delay_s, axis.lag_s, kHalfWidth, stride)) {
+    for (Instant i : InstantsOf(r, axis, stride)) {
       i.time_s += offset_s;
       all.push_back(i);
     }
@@ -62,6 +72,27 @@ EncoderFindings LookAtEncoder(const std::vector<Measured>& records) {
   return e;
 }
 
+/// Grid points without a sample between others. What is longer than kDriveOff_s is no loss: the drive was
+/// off.
+double MissingShare(const std::vector<Measured>& records) {
+  std::size_t there = 0, missing = 0;
+  for (const Measured& r : records) {
+    std::size_t gap = 0;
+    bool begun = false;
+    for (const std::uint8_t present : r.present) {
+      if (present == 0) {
+        ++gap;
+        continue;
+      }
+      if (begun && static_cast<double>(gap) * r.period_s < kDriveOff_s) missing += gap;
+      begun = true;
+      gap = 0;
+      ++there;
+    }
+  }
+  return there > 0 ? static_cast<double>(missing) / static_cast<double>(there + missing) : 1.0;
+}
+
 void SetMass(TableAxis& axis, double mass_kg) {
   const double factor = mass_kg / axis.mass_kg();
   axis.motor_inertia *= factor;
@@ -78,6 +109,7 @@ void TakeScrew(Identification& id, const std::vector<Measured>& records, int thr
     axis.load_inertia = s.axis.load_inertia;
     axis.stiffness = s.axis.stiffness;
     axis.damping = s.axis.damping;
+    axis.side = s.axis.side;
     axis.delay_s = s.axis.delay_s;
     axis.lag_s = s.axis.lag_s;
     // The bristle, too: sliding and shaken, it is a spring and a relaxation of some 100 Hz.
@@ -104,6 +136,9 @@ void TakeSteps(Identification& id, const std::vector<Measured>& records, int thr
   TableAxis& axis = id.stepwise;
   const std::vector<Instant> coarse = AllInstants(records, axis, kStride);
   id.sliding = FitSliding(coarse, axis.friction.exponent, axis.radius_m_rad);
+  axis.cogging = FindCogging(coarse, axis, id.sliding, (2 * kHalfWidth + 1) * records.front().period_s);
+  if (axis.cogging.front().order > 0.0)
+    id.sliding = FitSliding(AllInstants(records, axis, kStride), axis.friction.exponent, axis.radius_m_rad);
   if (!id.sliding.found) throw std::runtime_error("cannot identify friction: " + id.sliding.why_not);
   diagnosis::StatedFriction& f = axis.friction;
   SetMass(axis, id.sliding.mass_kg);
@@ -127,8 +162,9 @@ void TakeSteps(Identification& id, const std::vector<Measured>& records, int thr
   id.break_aways = BreakAways(fine, axis);
 }
 
-const std::vector<std::string> kScrewKeys = {"table_mass_kg", "screw_stiffness_N_um", "screw_damping_Ns_m",
-                                             "delay_s", "lag_s"};
+const std::vector<std::string> kScrewKeys = {
+    "table_mass_kg", "screw_stiffness_N_um", "screw_damping_Ns_m", "delay_s",
+    "lag_s",         "side_share",           "side_frequency_Hz",  "side_damping"};
 
 /// The whole record says more of the screw than the shaken strokes only if they agree; and its curvature does
 /// not show how the fit may jump where the axis comes to rest a cycle sooner or later. So nothing of the
@@ -210,7 +246,7 @@ void LookAgain(Identification& id, const std::vector<Measured>& records) {
       friction[k + 1] = simulation.friction_N();
       place[k + 1] = simulation.table_m();
     }
-    const std::vector<Instant> instants = Kinematics(r, axis.delay_s, axis.lag_s, kHalfWidth, 1);
+    const std::vector<Instant> instants = InstantsOf(r, axis, 1);
     for (const Instant& i : instants) {
       double mean = 0.0;
       for (std::size_t j = i.row - kHalfWidth; j <= i.row + kHalfWidth; ++j)
@@ -269,6 +305,7 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
     }
     id.seconds += static_cast<double>(log.size()) * log.period_s;
   }
+  id.missing_share = MissingShare(records);
   id.encoder = LookAtEncoder(records);
   id.period_s = records.front().period_s;
   for (Measured& r : records)

@@ -44,8 +44,9 @@ struct Identification {
   ScrewWindUp wind_up;
   EncoderFindings encoder;
   std::vector<OverlayPoint> overlay;
-  double seconds = 0.0;   ///< of record
-  double period_s = 0.0;  ///< of its samples
+  double seconds = 0.0;        ///< of record
+  double missing_share = 0.0;  ///< of its cycles
+  double period_s = 0.0;       ///< of its samples
 };
 
 struct IdentifyOptions {

@@ -14,6 +14,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kFollow_Hz = 60.0;
+/// Of the longest length: as few say how far they scatter.
+constexpr Eigen::Index kFewestBlocks = 5;
 
 /// What two methods of stepping the same axis, this simulation and the emulated machine, were found to differ
 /// by in these parameters (docs/commissioning.md): nothing is known better than that. Relative.
@@ -47,7 +49,8 @@ Parameters ScrewParameters() {
   };
 }
 
-Parameters FrictionParameters() {
+Parameters FrictionParameters(const TableAxis& axis) {
+  const double level_N = 0.5 * (axis.friction.Fc_plus + axis.friction.Fc_minus);
   return {
       Factor(
           "Fs_plus_N", [](TableAxis& a) { return &a.friction.Fs_plus; }, 1.0, 2e-3),
@@ -68,7 +71,7 @@ Parameters FrictionParameters() {
       Factor(
           "sigma2_Ns_m", [](TableAxis& a) { return &a.friction.s2; }, 1.0, 2e-3),
       Number(
-          "offset_N", [](TableAxis& a) { return &a.offset; }, 10.0, 0.02),
+          "offset_N", [](TableAxis& a) { return &a.offset; }, 0.25 * level_N, 5e-4 * level_N),
   };
 }
 
@@ -99,8 +102,39 @@ Parameters VariationParameters() {
   };
 }
 
+template <std::size_t I>
+void AddWave(const TableAxis& axis, double level_N, Parameters& p) {
+  if (axis.cogging[I].order <= 0.0) return;
+  const std::string number = std::to_string(I + 1);
+  p.push_back({"cogging_cos" + number, [](TableAxis& a) { return &a.cogging[I].cosine_N; }, false,
+               0.5 * level_N, 1e-3 * level_N});
+  p.push_back({"cogging_sin" + number, [](TableAxis& a) { return &a.cogging[I].sine_N; }, false,
+               0.5 * level_N, 1e-3 * level_N});
+}
+
+/// What the model of the machine file has no keys for.
+Parameters Besides(const TableAxis& axis) {
+  const double level_N = 0.5 * (axis.friction.Fc_plus + axis.friction.Fc_minus);
+  Parameters p;
+  if (axis.two_inertia && axis.friction_on_load)
+    p.push_back(Number(
+        "motor_friction_share", [](TableAxis& a) { return &a.motor_friction_share; }, 0.3, 5e-3));
+  if (axis.side.share > 0.0) {
+    p.push_back(Number(
+        "side_share", [](TableAxis& a) { return &a.side.share; }, 0.2, 1e-3));
+    p.push_back(Factor(
+        "side_frequency_Hz", [](TableAxis& a) { return &a.side.frequency_Hz; }, 0.3, 1e-3));
+    p.push_back(Factor(
+        "side_damping", [](TableAxis& a) { return &a.side.damping_ratio; }, 1.0, 1e-2));
+  }
+  AddWave<0>(axis, level_N, p);
+  AddWave<1>(axis, level_N, p);
+  AddWave<2>(axis, level_N, p);
+  return p;
+}
+
 /// What the fit moves, with its scale.
-Parameters FreeParameters(const FitOptions& options) {
+Parameters FreeParameters(const TableAxis& axis, const FitOptions& options) {
   Parameters p = {Factor(
       "motor_inertia_kgm2", [](TableAxis& a) { return &a.motor_inertia; }, 1.0, 5e-4)};
   const auto add = [&](const Parameters& more) { p.insert(p.end(), more.begin(), more.end()); };
@@ -108,8 +142,9 @@ Parameters FreeParameters(const FitOptions& options) {
   if (options.stiffness)
     add({Factor(
         "screw_stiffness_N_um", [](TableAxis& a) { return &a.stiffness; }, options.stiffness_prior, 5e-4)});
-  add(FrictionParameters());
+  add(FrictionParameters(axis));
   add(VariationParameters());
+  add(Besides(axis));
   const auto in = [](const std::vector<std::string>& keys, const std::string& key) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   };
@@ -119,10 +154,22 @@ Parameters FreeParameters(const FitOptions& options) {
   return p;
 }
 
+/// Median over blocks of time: nothing of it is what happens when the axis comes to rest.
+double TypicalRms(const VectorXd& errors, std::size_t block) {
+  const auto length = static_cast<Eigen::Index>(block);
+  std::vector<double> rms;
+  for (Eigen::Index b = 0; b + length <= errors.size(); b += length)
+    rms.push_back(errors.segment(b, length).norm() / std::sqrt(static_cast<double>(length)));
+  if (rms.empty())
+    return errors.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(1, errors.size())));
+  std::nth_element(rms.begin(), rms.begin() + static_cast<std::ptrdiff_t>(rms.size() / 2), rms.end());
+  return rms[rms.size() / 2];
+}
+
 class Fit {
  public:
   Fit(const TableAxis& start, const std::vector<Measured>& records, const FitOptions& options)
-      : start_(start), records_(records), options_(options), free_(FreeParameters(options)) {
+      : start_(start), records_(records), options_(options), free_(FreeParameters(start, options)) {
     for (const Measured& r : records_) size_ += r.size();
     block_ = static_cast<std::size_t>(std::max(1.0, options.block_s / records_.front().period_s));
   }
@@ -139,6 +186,9 @@ class Fit {
     }
     if (!options_.screw) axis.load_inertia *= axis.motor_inertia / start_.motor_inertia;
     axis.lag_s = std::max(0.0, axis.lag_s);
+    // Shares have no sign.
+    axis.motor_friction_share = std::min(0.9, std::fabs(axis.motor_friction_share));
+    axis.side.share = std::min(0.9, std::fabs(axis.side.share));
     axis.friction.Fs_plus = std::max(axis.friction.Fs_plus, axis.friction.Fc_plus);
     axis.friction.Fs_minus = std::max(axis.friction.Fs_minus, axis.friction.Fc_minus);
     return axis;
@@ -155,6 +205,10 @@ class Fit {
   }
   [[nodiscard]] diagnosis::LeastSquares WhiteErrors() const;
   VectorXd StepFrom(const VectorXd& x);
+  [[nodiscard]] VectorXd Scatter(const MatrixXd& jacobian, const VectorXd& r, const MatrixXd& inverse,
+                                 Eigen::Index block) const;
+  [[nodiscard]] bool Polish(const VectorXd& step, const VectorXd& r, VectorXd& x) const;
+  void FindSpread(VectorXd x, const VectorXd& raw, JointFit& result);
 
   TableAxis start_;
   const std::vector<Measured>& records_;
@@ -196,6 +250,71 @@ VectorXd Fit::StepFrom(const VectorXd& x) {
   return -problem.Normal(jacobian).ldlt().solve(jacobian.transpose() * r);
 }
 
+/// Variance of each parameter by the scatter of the gradient over blocks of so many samples, and one block's
+/// worth of doubt about so few blocks.
+VectorXd Fit::Scatter(const MatrixXd& jacobian, const VectorXd& r, const MatrixXd& inverse,
+                      Eigen::Index block) const {
+  VectorXd variance = VectorXd::Zero(inverse.rows());
+  int blocks = 0;
+  for (Eigen::Index b = 0; b < r.size(); b += block) {
+    const Eigen::Index n = std::min<Eigen::Index>(block, r.size() - b);
+    variance += (inverse * (jacobian.middleRows(b, n).transpose() * r.segment(b, n))).cwiseAbs2();
+    ++blocks;
+  }
+  // Student's 95 % interval over that of a normal distribution, to first order.
+  return variance * std::pow(1.0 + 1.2 / std::max(1.0, blocks - 1.5), 2);
+}
+
+/// Takes a step where it lowers the cost; `r` is the residual at x.
+bool Fit::Polish(const VectorXd& step, const VectorXd& r, VectorXd& x) const {
+  const diagnosis::LeastSquares problem = WhiteErrors();
+  const VectorXd there = x + step;
+  const double cost = whitening_.Apply(Raw(there)).squaredNorm() + problem.PriorAt(there);
+  if (!(cost < r.squaredNorm() + problem.PriorAt(x))) return false;
+  x = there;
+  return true;
+}
+
+/// Standard deviations: the sandwich of curvature and the blocks' gradients. What a model leaves unexplained
+/// hangs together for as long as an experiment lasts, so blocks of many lengths are tried, up to those of
+/// whole motions (other places, speeds and directions), and the widest counts.
+void Fit::FindSpread(VectorXd x, const VectorXd& raw, JointFit& result) {
+  whitening_.Learn(raw, block_, 12, records_.front().position_step_m);
+  const VectorXd r = whitening_.Apply(raw);
+  const diagnosis::LeastSquares problem = WhiteErrors();
+  const MatrixXd jacobian = problem.Jacobian(x, r);
+  evaluations_ += static_cast<int>(x.size());
+  const MatrixXd h = problem.Normal(jacobian);
+  const MatrixXd inverse = h.ldlt().solve(MatrixXd::Identity(x.size(), x.size()));
+  const double noise = r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size() - x.size()));
+  result.covariance = noise * inverse;
+  VectorXd variance = result.covariance.diagonal();
+  const auto shortest = static_cast<Eigen::Index>(2 * block_);
+  for (Eigen::Index block = shortest; block <= std::max(shortest, r.size() / kFewestBlocks); block *= 2)
+    variance = variance.cwiseMax(Scatter(jacobian, r, inverse, block));
+  // How far the fit is from its least, in its own standard deviations.
+  const VectorXd gradient = jacobian.transpose() * r + x.cwiseQuotient(problem.sigma.cwiseAbs2());
+  VectorXd left = inverse * gradient;
+  if (Polish(-left, r, x)) {
+    left.setZero();
+    result.axis = At(x);
+  }
+  result.unsettled = left.cwiseAbs().cwiseQuotient(variance.cwiseSqrt()).maxCoeff();
+  // How far the answer would move if the simulation followed the measurement more loosely or more closely:
+  // not at all if the model were the axis. One step of Gauss and Newton says it.
+  VectorXd method = left.cwiseAbs();
+  for (const double follow_Hz : {0.5 * kFollow_Hz, 2.0 * kFollow_Hz}) {
+    gain_ = MakeFollowGain(At(x), records_.front().period_s, follow_Hz);
+    method = method.cwiseMax(StepFrom(x).cwiseAbs());
+  }
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double all = variance(k) + method(k) * method(k) + std::pow(Stepping(free_[i].key), 2);
+    result.parameters.push_back(
+        {free_[i].key, *free_[i].at(result.axis), std::sqrt(all), free_[i].logarithmic});
+  }
+}
+
 JointFit Fit::Run() {
   VectorXd x = VectorXd::Zero(static_cast<Eigen::Index>(free_.size()));
   JointFit result;
@@ -209,6 +328,7 @@ JointFit Fit::Run() {
     if (options_.progress) options_.progress((round + 1.0) / options_.rounds);
   }
   const VectorXd raw = Raw(x);
+  result.error_typical_m = TypicalRms(raw, block_);
   result.error_rms_m = std::sqrt(raw.squaredNorm() / static_cast<double>(size_));
   result.axis = At(x);
   result.evaluations = evaluations_;
@@ -217,40 +337,7 @@ JointFit Fit::Run() {
       result.parameters.push_back({f.key, *f.at(result.axis), 0.0, f.logarithmic});
     return result;
   }
-  // Spread: the sandwich of curvature and the blocks' gradients.
-  whitening_.Learn(raw, block_, 12, records_.front().position_step_m);
-  const VectorXd r = whitening_.Apply(raw);
-  const diagnosis::LeastSquares problem = WhiteErrors();
-  const MatrixXd jacobian = problem.Jacobian(x, r);
-  evaluations_ += static_cast<int>(x.size());
-  const MatrixXd h = problem.Normal(jacobian);
-  MatrixXd scatter = MatrixXd::Zero(x.size(), x.size());
-  int blocks = 0;
-  for (Eigen::Index b = 0; b < r.size(); b += static_cast<Eigen::Index>(2 * block_)) {
-    const Eigen::Index n = std::min<Eigen::Index>(static_cast<Eigen::Index>(2 * block_), r.size() - b);
-    const VectorXd g = jacobian.middleRows(b, n).transpose() * r.segment(b, n);
-    scatter += g * g.transpose();
-    ++blocks;
-  }
-  const double few =
-      blocks > x.size() + 1 ? static_cast<double>(blocks) / static_cast<double>(blocks - x.size()) : 4.0;
-  const MatrixXd inverse = h.ldlt().solve(MatrixXd::Identity(x.size(), x.size()));
-  const double noise = r.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(1, r.size() - x.size()));
-  result.covariance = few * inverse * scatter * inverse;
-  // How far the answer would move if the simulation followed the measurement more loosely or more closely:
-  // not at all if the model were the axis. One step of Gauss and Newton says it.
-  VectorXd method = VectorXd::Zero(x.size());
-  for (const double follow_Hz : {0.5 * kFollow_Hz, 2.0 * kFollow_Hz}) {
-    gain_ = MakeFollowGain(At(x), records_.front().period_s, follow_Hz);
-    method = method.cwiseMax(StepFrom(x).cwiseAbs());
-  }
-  for (std::size_t i = 0; i < free_.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const double variance = std::max(result.covariance(k, k), noise * inverse(k, k)) + method(k) * method(k) +
-                            std::pow(Stepping(free_[i].key), 2);
-    result.parameters.push_back(
-        {free_[i].key, *free_[i].at(result.axis), std::sqrt(variance), free_[i].logarithmic});
-  }
+  FindSpread(x, raw, result);
   result.evaluations = evaluations_;
   return result;
 }

@@ -50,12 +50,15 @@ struct JointFit {
   Eigen::MatrixXd covariance;  ///< in steps of the parameters
   double error_rms_m = 0.0;    ///< of the prediction
   double error_rms_before_m = 0.0;
+  double error_typical_m = 0.0;  ///< rms of the middle block of time
+  double unsettled = 0.0;        ///< standard deviations to the least of the cost, of the worst parameter
   int evaluations = 0;
 };
 
 /// Fits the model to all records at once: least squares of whitened prediction errors, by Levenberg and
 /// Marquardt with finite differences. Standard deviations come from the scatter of the gradient over blocks
-/// of time (a sandwich estimate), so they hold what the model leaves unexplained, not only noise.
+/// of time of several lengths (a sandwich estimate), so they hold what the model leaves unexplained, not only
+/// noise.
 JointFit FitJointly(const TableAxis& start, const std::vector<Measured>& records, const FitOptions& options);
 
 }  // namespace contour::identify

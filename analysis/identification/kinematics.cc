@@ -21,7 +21,7 @@ double Acting(const Measured& d, std::size_t k, std::size_t whole, double older_
 }  // namespace
 
 std::vector<Instant> Kinematics(const Measured& d, double delay_s, double lag_s, int half_width,
-                                std::size_t stride) {
+                                std::size_t stride, const std::vector<double>& direct_N) {
   const double t = d.period_s;
   const double in_periods = (delay_s + lag_s) / t;
   const auto whole = static_cast<std::size_t>(in_periods + 1e-9);
@@ -39,6 +39,7 @@ std::vector<Instant> Kinematics(const Measured& d, double delay_s, double lag_s,
     rows[k].velocity = (d.position_m[k + 1] - d.position_m[k - 1]) / (2.0 * t);
     rows[k].acceleration = (d.position_m[k + 1] - 2.0 * d.position_m[k] + d.position_m[k - 1]) / (t * t);
     rows[k].force = 0.5 * (Acting(d, k - 1, whole, share) + Acting(d, k, whole, share));
+    if (!direct_N.empty()) rows[k].force += direct_N[k];
   }
   double reversal_m = d.position_m[0];
   int direction = 0;

@@ -22,7 +22,8 @@ struct Instant {
 
 /// Instants where all samples of the average are there, every `stride` rows. The second difference is the
 /// mean of the acceleration under a triangle of two periods, so force goes through the same triangle.
+/// `direct_N`, one per row or none, acts on the motor besides, at the row itself.
 std::vector<Instant> Kinematics(const Measured& data, double delay_s, double lag_s, int half_width,
-                                std::size_t stride);
+                                std::size_t stride, const std::vector<double>& direct_N = {});
 
 }  // namespace contour::identify

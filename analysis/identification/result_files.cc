@@ -144,6 +144,12 @@ ModelConfig ToModel(const Identification& id, ModelConfig model) {
   for (const FittedParameter& p : id.fit.parameters)
     if (p.relative && IsModelKey(p.key))
       model.uncertainty[ModelKey(p.key, model.friction.acts_on)] = std::min(10.0, Rounded(p.sigma));
+  // A share has no relative deviation.
+  if (const FittedParameter* share = Find(id, "motor_friction_share"))
+    model.uncertainty["motor_share_rel"] = std::min(10.0, Rounded(share->sigma));
+  if (const FittedParameter* side = Find(id, "side_frequency_Hz");
+      side != nullptr && !model.side_modes.empty())
+    model.side_modes.front().frequency_std_rel = std::min(0.5, Rounded(side->sigma));
   // The table goes with the motor when only the sum could be seen.
   if (Find(id, "table_mass_kg") == nullptr && id.fit.axis.two_inertia) {
     double& table = model.uncertainty["table_mass_kg"];
@@ -166,6 +172,12 @@ void WriteModelFile(const std::filesystem::path& file, const ModelConfig& model,
   if (const FittedParameter* offset = Find(id, "offset_N"))
     text += FormatText("# Constant torque: %.5f +- %.5f Nm, no key of the model.\n",
                        a.offset * a.radius_m_rad, offset->sigma * a.radius_m_rad);
+  if (const FittedParameter* share = Find(id, "motor_friction_share"))
+    text += FormatText("# Share of the friction that acts on the motor: %.2f +- %.2f.\n",
+                       a.motor_friction_share, share->sigma);
+  if (a.side.share > 0.0)
+    text += FormatText("# %.0f %% of the table's mass swings at %.0f Hz.\n", 100.0 * a.side.share,
+                       a.side.frequency_Hz);
   text += FormatText("# Encoder: one step is %.4g um of travel, noise of a reading %.4g um.\n",
                      id.encoder.step_m * 1e6, id.encoder.noise_m * 1e6);
   for (const std::string& n : id.notes) text += "# Note: " + n + "\n";

@@ -12,8 +12,9 @@ namespace {
 
 constexpr std::size_t kSegment = 512;
 /// Where the chirp may be: below, friction and mass say everything; above, little is left of the position.
-constexpr double kLowest_Hz = 100.0;
-constexpr double kHighest_share = 0.48;  ///< of the sampling rate
+/// Shares of the sampling rate.
+constexpr double kLowest_share = 0.04;
+constexpr double kHighest_share = 0.48;
 constexpr int kFewestSegments = 4;
 
 struct Spectra {
@@ -70,7 +71,7 @@ std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records) {
   const double t = records.front().period_s;
   for (std::size_t b = 1; b < s.xx.size(); ++b) {
     const double frequency = static_cast<double>(b) / (kSegment * t);
-    if (frequency < kLowest_Hz || frequency > kHighest_share / t) continue;
+    if (frequency < kLowest_share / t || frequency > kHighest_share / t) continue;
     const double coherence = std::norm(s.xf[b]) / std::max(1e-300, s.xx[b] * s.ff[b]);
     response.push_back({frequency, std::abs(s.xf[b]) / s.ff[b], coherence});
   }

@@ -16,8 +16,8 @@ struct ResponsePoint {
 /// Coherence from which a point of the response says something.
 inline constexpr double kGoodCoherence = 0.7;
 
-/// From 100 Hz to nearly half the sampling rate, of records that are shaken there throughout; empty when they
-/// are shorter than some windows of half a second.
+/// From a twenty-fifth to nearly half of the sampling rate, of records that are shaken there throughout;
+/// empty when they are shorter than some windows of half a second.
 std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records);
 
 }  // namespace contour::identify

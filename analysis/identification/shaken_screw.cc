@@ -16,7 +16,8 @@ constexpr double kFlank_s = 0.003;
 /// What shakes, rms, in shares of the Coulomb level.
 constexpr double kLeastShaking = 0.2;
 constexpr double kLeast_s = 1.0;  ///< of shaken sliding, all segments together
-constexpr double kLowest_Hz = 100.0;
+/// The highest frequency that shook the axis over the lowest: less of a range shows no screw.
+constexpr double kLeastRange = 2.0;
 constexpr double kFollow_Hz = 60.0;
 /// Starts: antiresonances a twentieth apart, shares of the table in the whole mass.
 constexpr double kNextStart = 1.05;
@@ -32,12 +33,28 @@ constexpr int kLongestDescent = 5;
 constexpr double kKnownStiffness = 0.2;
 constexpr double kLeastGain_log = 5e-3;
 
+/// A part of the table that swings: tried from these shares of it, at frequencies so far apart; it is one
+/// when it foresees so much better.
+constexpr double kSideShares[] = {0.05, 0.12, 0.25};
+constexpr double kNextSide = 1.08;
+constexpr std::size_t kSidesRefined = 3;
+constexpr double kSidesApart = 0.15;
+constexpr double kLeastSideGain_log = 1e-2;
+
 double Hz(double stiffness, double mass) { return std::sqrt(stiffness / mass) / (2.0 * std::numbers::pi); }
 
-/// The quick part of the force: second differences, whose gain is 4 sin^2(pi f T), 1 at a sixth of the rate.
-double Quick_N(const Measured& d, std::size_t k) {
-  return d.force_N[k] - 2.0 * d.force_N[k - 1] + d.force_N[k - 2];
+/// The quick part of the force, mean square: second differences of `width` rows, whose gain is
+/// 4 sin^2(pi f width T). Next rows show what is quick, rows further apart what is slower; a ramp shows in
+/// neither.
+double Quick_N2(const Measured& d, std::size_t begin, std::size_t end, std::size_t width) {
+  double sum = 0.0;
+  for (std::size_t k = std::max(begin, 2 * width); k < end; ++k)
+    sum += std::pow(d.force_N[k] - 2.0 * d.force_N[k - width] + d.force_N[k - 2 * width], 2);
+  return sum / static_cast<double>(end - begin);
 }
+constexpr std::size_t kFurther = 4;
+/// The corner of a ramp is that much larger over four rows.
+constexpr double kOfFurther = 1.0 / 9.0;
 
 Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
   Measured s;
@@ -88,6 +105,9 @@ FitOptions Options(bool screw, bool spread, int threads) {
             "sigma1_Ns_m",
             "sigma1_decay_mm_s",
             "sigma2_Ns_m",
+            "side_share",
+            "side_frequency_Hz",
+            "side_damping",
             "vs_mm_s",
             "place_1",
             "turn_plus_cos1",
@@ -134,19 +154,27 @@ double Travel(const Measured& d, std::size_t at, std::size_t window) {
   return travel;
 }
 
-double HighestGood_Hz(const std::vector<ResponsePoint>& response) {
-  double highest = 0.0;
-  for (const ResponsePoint& p : response)
-    if (p.coherence > kGoodCoherence) highest = std::max(highest, p.frequency_Hz);
-  return highest;
+struct Band {
+  double low_Hz = 0.0, high_Hz = 0.0;
+};
+
+/// Where shaking showed something.
+Band GoodBand(const std::vector<ResponsePoint>& response) {
+  Band band;
+  for (const ResponsePoint& p : response) {
+    if (p.coherence <= kGoodCoherence) continue;
+    if (band.low_Hz == 0.0) band.low_Hz = p.frequency_Hz;
+    band.high_Hz = p.frequency_Hz;
+  }
+  return band;
 }
 
 /// The best of each antiresonance, the best first.
 std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured>& segments,
-                              double highest_Hz) {
+                              const Band& band) {
   const double mass = start.mass_kg();
   std::vector<std::pair<double, TableAxis>> starts;
-  for (double f = kLowest_Hz; f < 1.5 * highest_Hz; f *= kNextStart) {
+  for (double f = band.low_Hz; f < 1.5 * band.high_Hz; f *= kNextStart) {
     std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
     for (const double share : kShares) {
       TableAxis a = start;
@@ -173,6 +201,41 @@ std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured
   return chosen;
 }
 
+/// The two masses with a part of the table on a spring of its own, where that foresees better.
+void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& segments, const Band& band,
+              int threads) {
+  std::vector<std::pair<double, TableAxis>> starts;
+  for (double f = band.low_Hz; f < band.high_Hz; f *= kNextSide) {
+    for (const double share : kSideShares) {
+      // Two masses alone have taken what swings off the table, and put it to the motor: the antiresonance
+      // that they found, and the whole mass, are right.
+      TableAxis a = best.second;
+      a.load_inertia /= 1.0 - share;
+      a.motor_inertia = best.second.mass_kg() - a.load_inertia;
+      a.side = {share, f, 0.02};
+      if (a.motor_inertia > 0.0) starts.emplace_back(LogError(a, segments), a);
+    }
+  }
+  std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  // The best of each neighbourhood.
+  std::vector<TableAxis> chosen;
+  for (const auto& [error, start] : starts) {
+    const bool near = std::any_of(chosen.begin(), chosen.end(), [&start = start](const TableAxis& c) {
+      return std::fabs(std::log(c.side.frequency_Hz / start.side.frequency_Hz)) < kSidesApart;
+    });
+    if (!near) chosen.push_back(start);
+    if (chosen.size() == kSidesRefined) break;
+  }
+  const double alone = best.first;
+  for (const TableAxis& start : chosen) {
+    const auto found = FollowBasin(start, segments, threads);
+    // What lies beyond the shaking is no finding.
+    const double side_Hz = found.second.side.frequency_Hz;
+    const bool seen = side_Hz > band.low_Hz && side_Hz < band.high_Hz;
+    if (seen && alone - found.first > kLeastSideGain_log && found.first < best.first) best = found;
+  }
+}
+
 }  // namespace
 
 std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const TableAxis& axis) {
@@ -188,9 +251,8 @@ std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, cons
       begin = end = 0;
     };
     for (std::size_t at = 2; at + window < d.size(); at += window) {
-      double quick = 0.0;
-      for (std::size_t k = at; k < at + window; ++k)
-        quick += std::pow(Quick_N(d, k), 2) / static_cast<double>(window);
+      const double quick =
+          std::max(Quick_N2(d, at, at + window, 1), kOfFurther * Quick_N2(d, at, at + window, kFurther));
       const double travel = Travel(d, at, window);
       const bool slides = travel * before > 0.0;
       before = travel;
@@ -211,20 +273,22 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
   const std::vector<Measured> segments = ShakenStretches(records, start);
   for (const Measured& d : segments) s.seconds += static_cast<double>(d.size()) * d.period_s;
   if (!segments.empty()) s.response = MotorResponse(segments);
-  s.highest_Hz = HighestGood_Hz(s.response);
-  if (s.seconds < kLeast_s || s.highest_Hz < 2.0 * kLowest_Hz) {
-    s.why_not = "nothing shakes the axis above 100 Hz while it slides: the screw needs a chirp";
+  const Band band = GoodBand(s.response);
+  s.highest_Hz = band.high_Hz;
+  if (s.seconds < kLeast_s || s.highest_Hz < kLeastRange * band.low_Hz || s.highest_Hz <= 0.0) {
+    s.why_not = "nothing shakes the axis quickly while it slides: the screw needs a chirp";
     return s;
   }
   const TableAxis rigid = FitJointly(Rigid(start), segments, Options(false, false, threads)).axis;
   const double rigid_error = LogError(rigid, segments);
   std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
-  for (const TableAxis& from : Starts(start, segments, s.highest_Hz)) {
+  for (const TableAxis& from : Starts(start, segments, band)) {
     const auto found = FollowBasin(from, segments, threads);
     const bool same = std::fabs(found.first - best.first) < kFoundAgain;
     if (found.first < best.first) best = found;
     if (same) break;
   }
+  TakeSide(best, segments, band, threads);
   FitOptions last = Options(true, true, threads);
   last.refine = true;
   last.rounds = 1;

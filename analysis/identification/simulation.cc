@@ -29,21 +29,26 @@ struct Discrete {
   Eigen::Vector4d table;    ///< per N at the mass that rubs
   Eigen::Vector4d delayed;  ///< per N behind the lag at the beginning
   Eigen::Vector4d command;  ///< per N commanded
+  Eigen::Vector4d motor;    ///< per N at the motor, at once
   double lag_left = 0.0;
 };
 
 /// Everything linear over a step, with the current loop df/dt = (command - f) / lag in it: exact.
 Discrete Over(const TableAxis& p, double viscous_Ns_m, double step_s) {
-  const diagnosis::LinearAxis linear = diagnosis::MakeLinearAxis(p, viscous_Ns_m);
+  const double on_motor = p.two_inertia && p.friction_on_load ? p.motor_friction_share : 0.0;
+  diagnosis::LinearAxis linear = diagnosis::MakeLinearAxis(p, (1.0 - on_motor) * viscous_Ns_m);
+  linear.dynamics(1, 1) -= on_motor * viscous_Ns_m / p.motor_inertia;
   const double lag = std::max(p.lag_s, kShortestLag_s);
-  Eigen::Matrix<double, 7, 7> all = Eigen::Matrix<double, 7, 7>::Zero();
+  Eigen::Matrix<double, 8, 8> all = Eigen::Matrix<double, 8, 8>::Zero();
   all.topLeftCorner<4, 4>() = linear.dynamics;
   all.block<4, 1>(0, 4) = p.two_inertia ? linear.load : linear.motor;
   all.block<4, 1>(0, 5) = linear.motor;
   all(5, 5) = -1.0 / lag;
   all(5, 6) = 1.0 / lag;
-  const Eigen::Matrix<double, 7, 7> e = (all * step_s).exp();
-  return {e.topLeftCorner<4, 4>(), e.block<4, 1>(0, 4), e.block<4, 1>(0, 5), e.block<4, 1>(0, 6), e(5, 5)};
+  all.block<4, 1>(0, 7) = linear.motor;
+  const Eigen::Matrix<double, 8, 8> e = (all * step_s).exp();
+  return {e.topLeftCorner<4, 4>(), e.block<4, 1>(0, 4), e.block<4, 1>(0, 5),
+          e.block<4, 1>(0, 6),     e.block<4, 1>(0, 7), e(5, 5)};
 }
 
 double Harmonics(const std::array<double, 2 * LevelVariation::kHarmonics>& c, double cos1, double sin1) {
@@ -83,22 +88,47 @@ FollowGain MakeFollowGain(const TableAxis& axis, double period_s, double bandwid
 }
 
 Simulation::Simulation(const TableAxis& axis, const Measured& data, const FollowGain& gain)
-    : axis_(axis),
-      data_(data),
-      gain_(gain),
-      place_(axis.friction_on_load ? 2 : 0),
-      speed_(place_ + 1),
-      rubbing_mass_kg_(axis.friction_on_load ? axis.load_inertia : axis.motor_inertia) {
-  const double delay = std::max(0.0, axis.delay_s);
-  whole_delay_ = static_cast<std::size_t>(delay / data.period_s + 1e-9);
-  const double edge_s = delay - static_cast<double>(whole_delay_) * data.period_s;
+    : axis_(axis), data_(data), gain_(gain) {
+  TableAxis stiff = axis;
+  if (axis.two_inertia && axis.side.share > 0.0) {
+    const double omega = 2.0 * std::numbers::pi * axis.side.frequency_Hz;
+    side_.mass_kg = axis.side.share * axis.load_inertia;
+    side_.stiffness_N_m = side_.mass_kg * omega * omega;
+    side_.damping_Ns_m = 2.0 * axis.side.damping_ratio * side_.mass_kg * omega;
+    stiff.load_inertia -= side_.mass_kg;
+  }
+  table_mass_kg_ = stiff.load_inertia;
+  const bool on_table = axis.friction_on_load;
+  const double on_motor = axis.two_inertia && on_table ? axis.motor_friction_share : 0.0;
+  Rubbing main;
+  main.place = on_table ? 2 : 0;
+  main.speed = main.place + 1;
+  main.share = 1.0 - on_motor;
+  main.mass_kg = on_table ? stiff.load_inertia : stiff.motor_inertia;
+  rubbing_.push_back(main);
+  if (on_motor > 0.0) {
+    Rubbing motor;
+    motor.share = on_motor;
+    motor.mass_kg = stiff.motor_inertia;
+    rubbing_.push_back(motor);
+  }
+  for (const MotorWave& w : axis.cogging) cogs_ = cogs_ || w.order > 0.0;
+  MakePieces(stiff);
+  cogging_N_.assign(pieces_.size(), 0.0);
+}
+
+void Simulation::MakePieces(const TableAxis& stiff) {
+  const double delay = std::max(0.0, axis_.delay_s);
+  whole_delay_ = static_cast<std::size_t>(delay / data_.period_s + 1e-9);
+  const double edge_s = delay - static_cast<double>(whole_delay_) * data_.period_s;
   // Sub-steps of a period, one of them cut in two where the command changes.
-  const double h = data.period_s / kSubSteps;
+  const double h = data_.period_s / kSubSteps;
+  const Discrete whole = Over(stiff, axis_.friction.s2, h);
   const auto add = [&](double step_s, bool older) {
     if (step_s < kNoStep_s) return;
-    const Discrete d = Over(axis, axis.friction.s2, step_s);
+    const Discrete d = step_s == h ? whole : Over(stiff, axis_.friction.s2, step_s);
     // Behind the lag the offset is a torque like any other.
-    pieces_.push_back({step_s, d.a, d.delayed, d.command, d.lag_left, older});
+    pieces_.push_back({step_s, d.a, d.delayed, d.command, d.motor, d.lag_left, older});
   };
   for (int i = 0; i < kSubSteps; ++i) {
     const double older_s = std::clamp(edge_s - i * h, 0.0, h);
@@ -113,9 +143,14 @@ void Simulation::Start() {
   state_ << here, 0.0, !axis_.two_inertia ? here : here - force_N_ / axis_.stiffness, 0.0;
   if (k_ > 0 && data_.present[k_ - 1] != 0)
     state_(1) = state_(3) = (here - data_.position_m[k_ - 1]) / data_.period_s;
-  z_m_ = force_N_ / axis_.friction.s0;
   const double most = std::min(axis_.friction.Fc_plus, axis_.friction.Fc_minus) / axis_.friction.s0;
-  z_m_ = std::clamp(z_m_, -most, most);
+  for (Rubbing& r : rubbing_) {
+    r.z_m = std::clamp(force_N_ / axis_.friction.s0, -most, most);
+    r.force_N = BristleForce_N(r);
+  }
+  side_.place_m = state_(2);
+  side_.speed_m_s = state_(3);
+  side_.force_N = 0.0;
   running_ = true;
   to_settle_ = static_cast<int>(kSettle_s / data_.period_s);
 }
@@ -131,35 +166,109 @@ double Simulation::Level_N(double v) const {
   return std::max(1e-3, g * (down ? factor_minus_ : factor_plus_));
 }
 
-void Simulation::MoveBristle(double from_z, double travel_m, double step_s) {
+void Simulation::MoveBristle(Rubbing& r, double from_z, double travel_m, double step_s) const {
   const double x = axis_.friction.s0 * std::fabs(travel_m) / Level_N(travel_m / step_s);
   if (x < 1e-9) {
-    z_m_ = from_z + travel_m;
+    r.z_m = from_z + travel_m;
   } else if (x > kGone) {
-    z_m_ = travel_m / x;
+    r.z_m = travel_m / x;
   } else {
     const double gone = -Expm1OfNegative(-x);
-    z_m_ = from_z * (1.0 - gone) + travel_m * gone / x;
+    r.z_m = from_z * (1.0 - gone) + travel_m * gone / x;
   }
 }
 
-double Simulation::BristleDamping_Ns_m(double v) const {
+double Simulation::BristleDamping_Ns_m(const Rubbing& r, double v) const {
   const diagnosis::StatedFriction& f = axis_.friction;
   const double x = v / f.vd;
   if (x * x > kGone || f.s1 <= 0.0) return 0.0;
-  const double against = (v < 0.0 ? -1.0 : 1.0) * f.s0 * z_m_ / Level_N(v);
-  return f.s1 * ExpOfNegative(-x * x) * (1.0 - against);
+  const double against = (v < 0.0 ? -1.0 : 1.0) * f.s0 * r.z_m / Level_N(v);
+  return r.share * f.s1 * ExpOfNegative(-x * x) * (1.0 - against);
 }
 
-double Simulation::BristleForce_N() const {
-  return axis_.friction.s0 * z_m_ + BristleDamping_Ns_m(state_(speed_)) * state_(speed_);
+double Simulation::BristleForce_N(const Rubbing& r) const {
+  const double v = state_(r.speed);
+  return r.share * axis_.friction.s0 * r.z_m + BristleDamping_Ns_m(r, v) * v;
 }
 
-double Simulation::friction_N() const { return BristleForce_N() + axis_.friction.s2 * state_(speed_); }
+double Simulation::friction_N() const {
+  double sum = 0.0;
+  for (const Rubbing& r : rubbing_) sum += BristleForce_N(r) + r.share * axis_.friction.s2 * state_(r.speed);
+  return sum;
+}
 
 void Simulation::Prepare() {
-  factor_plus_ = LevelFactor(axis_, state_(0), state_(place_), true);
-  factor_minus_ = LevelFactor(axis_, state_(0), state_(place_), false);
+  factor_plus_ = LevelFactor(axis_, state_(0), table_m(), true);
+  factor_minus_ = LevelFactor(axis_, state_(0), table_m(), false);
+  for (Rubbing& r : rubbing_) {
+    r.z_before_m = r.z_m;
+    r.place_before_m = state_(r.place);
+    r.force_N = BristleForce_N(r);
+  }
+  if (cogs_) PrepareCogging();
+}
+
+/// At the middle of each piece, as if the motor went on at its speed: a rotation from piece to piece.
+void Simulation::PrepareCogging() {
+  std::fill(cogging_N_.begin(), cogging_N_.end(), 0.0);
+  const double h = data_.period_s / kSubSteps;
+  for (const MotorWave& w : axis_.cogging) {
+    if (w.order <= 0.0) continue;
+    const double per_m = w.order * 2.0 * std::numbers::pi / axis_.turn_m;
+    const double first = per_m * (state_(0) + 0.5 * h * state_(1));
+    const double turn = per_m * h * state_(1);
+    double c = std::cos(first), s = std::sin(first);
+    const double dc = std::cos(turn), ds = std::sin(turn);
+    double from_s = 0.0;
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      cogging_N_[i] += w.cosine_N * c + w.sine_N * s;
+      from_s += pieces_[i].step_s;
+      // Both parts of the sub-step that the delay cuts have the same.
+      if (std::fmod(from_s + kNoStep_s, h) > 2.0 * kNoStep_s) continue;
+      const double next = c * dc - s * ds;
+      s = s * dc + c * ds;
+      c = next;
+    }
+  }
+}
+
+/// Half a step of what swings on the table, and of the table under it.
+void Simulation::Swing(double half_step_s) {
+  side_.force_N =
+      side_.stiffness_N_m * (state_(2) - side_.place_m) + side_.damping_Ns_m * (state_(3) - side_.speed_m_s);
+  side_.speed_m_s += half_step_s / side_.mass_kg * side_.force_N;
+  state_(3) -= half_step_s / table_mass_kg_ * side_.force_N;
+}
+
+void Simulation::Advance(const Piece& p, double command_N, double motor_N) {
+  if (side_.mass_kg > 0.0) {
+    Swing(0.5 * p.step_s);
+    side_.place_m += 0.5 * p.step_s * side_.speed_m_s;
+  }
+  double from_m[2];
+  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+    const Rubbing& r = rubbing_[i];
+    state_(r.speed) -= 0.5 * p.step_s / r.mass_kg * r.force_N;
+    from_m[i] = state_(r.place);
+  }
+  state_ = p.flow * state_ + p.delayed * force_N_ + p.command * command_N;
+  if (cogs_) state_ += p.motor * motor_N;
+  force_N_ = command_N + (force_N_ - command_N) * p.lag_left;
+  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+    Rubbing& r = rubbing_[i];
+    const double kick = 0.5 * p.step_s / r.mass_kg;
+    MoveBristle(r, r.z_m, state_(r.place) - from_m[i], p.step_s);
+    // Damping takes the velocity after the kick, or the scheme would be of first order in it.
+    const double elastic = r.share * axis_.friction.s0 * r.z_m;
+    const double before = state_(r.speed);
+    const double damping = BristleDamping_Ns_m(r, before - kick * elastic);
+    state_(r.speed) = (before - kick * elastic) / (1.0 + kick * damping);
+    r.force_N = elastic + damping * state_(r.speed);
+  }
+  if (side_.mass_kg > 0.0) {
+    side_.place_m += 0.5 * p.step_s * side_.speed_m_s;
+    Swing(0.5 * p.step_s);
+  }
 }
 
 double Simulation::Next() {
@@ -172,27 +281,11 @@ double Simulation::Next() {
     }
   }
   Prepare();
-  const double z_before = z_m_;
-  const double x_before = state_(place_);
   const std::size_t now = k >= whole_delay_ ? k - whole_delay_ : 0;
   const double newer = data_.force_N[now] + axis_.offset;
   const double older = data_.force_N[now > 0 ? now - 1 : 0] + axis_.offset;
-  double rubbing = BristleForce_N();
-  for (const Piece& p : pieces_) {
-    const double kick = 0.5 * p.step_s / rubbing_mass_kg_;
-    state_(speed_) -= kick * rubbing;
-    const double command = p.older ? older : newer;
-    const double x_from = state_(place_);
-    state_ = p.flow * state_ + p.delayed * force_N_ + p.command * command;
-    force_N_ = command + (force_N_ - command) * p.lag_left;
-    MoveBristle(z_m_, state_(place_) - x_from, p.step_s);
-    // Damping takes the velocity after the kick, or the scheme would be of first order in it.
-    const double elastic = axis_.friction.s0 * z_m_;
-    const double before = state_(speed_);
-    const double damping = BristleDamping_Ns_m(before - kick * elastic);
-    state_(speed_) = (before - kick * elastic) / (1.0 + kick * damping);
-    rubbing = elastic + damping * state_(speed_);
-  }
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    Advance(pieces_[i], pieces_[i].older ? older : newer, cogging_N_[i]);
   ++k_;
   if (k_ >= data_.size() || data_.present[k_] == 0) {
     // Nobody knows what was commanded in a long gap: begin anew behind it.
@@ -201,25 +294,36 @@ double Simulation::Next() {
   }
   absent_ = 0;
   const double error = data_.position_m[k_] - state_(0);
-  const double travel_m = state_(place_) - x_before;
-  state_ += gain_ * error;
-  if (std::fabs(travel_m) > kMoving_m_s * data_.period_s) {
-    // The correction is a little more, or less, of the travel just made.
-    const double spent = axis_.friction.s0 * z_m_ / Level_N(travel_m / data_.period_s);
-    z_m_ += gain_(place_) * error * (1.0 - (travel_m < 0.0 ? -spent : spent));
-  } else {
-    // Standing: the period's travel once more, to where the correction puts the mass. As a travel of its own
-    // the correction's noise would relax the bristle.
-    MoveBristle(z_before, state_(place_) - x_before, data_.period_s);
-  }
-  // While the axis stands, trembling relaxes the bristle a little otherwise than predicted, and no travel
-  // would ever show it: the lasting error that this leaves pulls it back, within some 50 ms.
-  z_m_ -= kBristleCorrection * error;
+  Correct(error);
   if (to_settle_ > 0) {
     --to_settle_;
     return kNoValue;
   }
   return error;
+}
+
+void Simulation::Correct(double error_m) {
+  const Eigen::Vector4d predicted = state_;
+  state_ += gain_ * error_m;
+  if (side_.mass_kg > 0.0) {
+    side_.place_m += gain_(2) * error_m;
+    side_.speed_m_s += gain_(3) * error_m;
+  }
+  for (Rubbing& r : rubbing_) {
+    const double travel_m = predicted(r.place) - r.place_before_m;
+    if (std::fabs(travel_m) > kMoving_m_s * data_.period_s) {
+      // The correction is a little more, or less, of the travel just made.
+      const double spent = axis_.friction.s0 * r.z_m / Level_N(travel_m / data_.period_s);
+      r.z_m += gain_(r.place) * error_m * (1.0 - (travel_m < 0.0 ? -spent : spent));
+    } else {
+      // Standing: the period's travel once more, to where the correction puts the mass. As a travel of its
+      // own the correction's noise would relax the bristle.
+      MoveBristle(r, r.z_before_m, state_(r.place) - r.place_before_m, data_.period_s);
+    }
+    // While the axis stands, trembling relaxes the bristle a little otherwise than predicted, and no travel
+    // would ever show it: the lasting error that this leaves pulls it back, within some 50 ms.
+    r.z_m -= kBristleCorrection * error_m;
+  }
 }
 
 double LevelFactor(const TableAxis& axis, double motor_m, double table_m, bool up) {

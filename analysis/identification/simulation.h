@@ -40,41 +40,65 @@ class Simulation {
   double Next();
 
   // At the grid point reached, after the correction: the mass that rubs.
-  [[nodiscard]] double table_m() const { return state_(place_); }
-  [[nodiscard]] double table_velocity_m_s() const { return state_(speed_); }
-  /// Bristle and viscous friction.
+  [[nodiscard]] double table_m() const { return state_(rubbing_[0].place); }
+  [[nodiscard]] double table_velocity_m_s() const { return state_(rubbing_[0].speed); }
+  /// Bristle and viscous friction of the whole axis.
   [[nodiscard]] double friction_N() const;
 
  private:
+  /// A bristle, its share of all friction, and the mass it holds.
+  struct Rubbing {
+    Eigen::Index place = 0, speed = 1;  ///< in state_
+    double share = 1.0;
+    double mass_kg = 1.0;
+    double z_m = 0.0;
+    double force_N = 0.0;
+    double z_before_m = 0.0, place_before_m = 0.0;  ///< when the period began
+  };
+  /// A mass on a spring on the table; no mass: none.
+  struct Swinging {
+    double mass_kg = 0.0, stiffness_N_m = 0.0, damping_Ns_m = 0.0;
+    double place_m = 0.0, speed_m_s = 0.0;
+    double force_N = 0.0;  ///< on it
+  };
   void Start();
+  void MakePieces(const TableAxis& stiff);
   [[nodiscard]] double Level_N(double velocity_m_s) const;
-  void MoveBristle(double from_z, double travel_m, double step_s);
-  [[nodiscard]] double BristleForce_N() const;
-  [[nodiscard]] double BristleDamping_Ns_m(double velocity_m_s) const;
+  void MoveBristle(Rubbing& r, double from_z, double travel_m, double step_s) const;
+  [[nodiscard]] double BristleForce_N(const Rubbing& r) const;
+  [[nodiscard]] double BristleDamping_Ns_m(const Rubbing& r, double velocity_m_s) const;
   void Prepare();
+  void PrepareCogging();
+  void Swing(double half_step_s);
+  void Correct(double error_m);
 
   const TableAxis& axis_;
   const Measured& data_;
   const FollowGain gain_;
-  const Eigen::Index place_, speed_;  ///< of the mass that rubs, in state_
-  const double rubbing_mass_kg_;
   /// One step of the linear part; the command is the older one before the delay's edge.
   struct Piece {
     double step_s;
     Eigen::Matrix4d flow;
     Eigen::Vector4d delayed, command;  ///< per N
+    Eigen::Vector4d motor;             ///< per N that acts at once
     double lag_left;
     bool older;
   };
+  void Advance(const Piece& piece, double command_N, double motor_N);
+
   std::vector<Piece> pieces_;
+  std::vector<Rubbing> rubbing_;  ///< the table first
+  Swinging side_;
+  double table_mass_kg_ = 0.0;  ///< without what swings
   Eigen::Vector4d state_ = Eigen::Vector4d::Zero();
-  double z_m_ = 0.0;
   double force_N_ = 0.0;  ///< behind the lag
   std::size_t k_ = 0;
   bool running_ = false;
   int to_settle_ = 0;
   int absent_ = 0;                                 ///< grid points without a sample, up to here
   double factor_plus_ = 1.0, factor_minus_ = 1.0;  ///< of the levels, at this period's place
+  bool cogs_ = false;
+  std::vector<double> cogging_N_;  ///< over the pieces of this period
   std::size_t whole_delay_ = 0;
 };
 

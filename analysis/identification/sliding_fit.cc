@@ -20,10 +20,6 @@ constexpr double kConstantSpeed_1_s = 0.2;
 constexpr double kConstantSpeed_m_s2 = 2e-3;
 constexpr double kShortestTravel_m = 0.15e-3;
 
-bool Slides(const Instant& i) {
-  return std::fabs(i.velocity_m_s) > kSlowest_m_s && i.since_reversal_m > kBeyondPresliding_m;
-}
-
 constexpr Eigen::Index kColumns = 12;
 
 /// Columns: a, v, level +, level -, Stribeck +, Stribeck -, turn cos/sin of each direction, place of each.
@@ -48,6 +44,10 @@ Eigen::MatrixXd Regressors(const std::vector<const Instant*>& rows, double vs, d
 }
 
 }  // namespace
+
+bool Slides(const Instant& i) {
+  return std::fabs(i.velocity_m_s) > kSlowest_m_s && i.since_reversal_m > kBeyondPresliding_m;
+}
 
 SlidingFit FitSliding(const std::vector<Instant>& instants, double exponent, double radius_m_rad) {
   SlidingFit fit;

@@ -20,6 +20,8 @@ struct SlidingFit {
   double sigma2_Ns_m = 0.0;
   double residual_rms_N = 0.0;
 };
+/// Sliding for certain: fast enough, and far enough from the last reversal.
+bool Slides(const Instant& instant);
 SlidingFit FitSliding(const std::vector<Instant>& instants, double stribeck_exponent, double radius_m_rad);
 
 /// One speed of the Stribeck curve: mean friction of the runs at (nearly) constant speed, as it is at the

@@ -1,10 +1,22 @@
 #include "analysis/identification/table_axis.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "analysis/axis_model/seen_with_lever.h"
 
 namespace contour::identify {
+
+double Cogging_N(const TableAxis& axis, double motor_m) {
+  double sum_N = 0.0;
+  for (const MotorWave& w : axis.cogging) {
+    if (w.order <= 0.0) continue;
+    const double angle = w.order * 2.0 * std::numbers::pi * motor_m / axis.turn_m;
+    sum_N += w.cosine_N * std::cos(angle) + w.sine_N * std::sin(angle);
+  }
+  return sum_N;
+}
 
 TableAxis FromStated(const diagnosis::StatedAxis& stated) {
   const double r = stated.linear ? 1.0 : (stated.table_per_q > 0.0 ? stated.table_per_q : 1.0);
@@ -16,6 +28,25 @@ TableAxis FromStated(const diagnosis::StatedAxis& stated) {
   return axis;
 }
 
+namespace {
+
+CoggingWave WaveOf(const MotorWave& w, double radius_m_rad) {
+  return {radius_m_rad * std::hypot(w.cosine_N, w.sine_N), w.order, std::atan2(w.cosine_N, w.sine_N)};
+}
+
+/// What goes with the motor's angle is an extension of the model, which the estimators feed forward. What was
+/// stated stays where nothing was found.
+void CoggingInto(const TableAxis& axis, ModelConfig& model) {
+  if (axis.cogging.front().order <= 0.0) return;
+  CoggingExtension found;
+  static_cast<CoggingWave&>(found) = WaveOf(axis.cogging.front(), axis.radius_m_rad);
+  for (std::size_t i = 1; i < axis.cogging.size(); ++i)
+    if (axis.cogging[i].order > 0.0) found.further.push_back(WaveOf(axis.cogging[i], axis.radius_m_rad));
+  model.extensions.cogging = found;
+}
+
+}  // namespace
+
 void IntoConfig(const TableAxis& axis, ModelConfig& model) {
   const double r = axis.radius_m_rad;
   MechanicsConfig& m = model.mechanics;
@@ -23,6 +54,13 @@ void IntoConfig(const TableAxis& axis, ModelConfig& model) {
   m.table_mass_kg = axis.load_inertia;
   m.screw_stiffness_N_um = axis.stiffness * 1e-6;
   m.screw_damping_Ns_m = axis.damping;
+  CoggingInto(axis, model);
+  if (axis.two_inertia && axis.friction_on_load)
+    model.friction.motor_share_rel = std::round(1e3 * axis.motor_friction_share) * 1e-3;
+  if (axis.side.share > 0.0)
+    model.side_modes = {{std::round(10.0 * axis.side.frequency_Hz) * 0.1,
+                         std::round(1e3 * axis.side.share) * 1e-3,
+                         std::clamp(std::round(1e4 * axis.side.damping_ratio) * 1e-4, 0.0, 1.0)}};
   const diagnosis::StatedFriction& f = axis.friction;
   FrictionConfig& c = model.friction;
   c.stribeck_exponent = f.exponent;

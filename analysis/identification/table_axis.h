@@ -21,6 +21,20 @@ struct LevelVariation {
   std::array<double, 2 * kHarmonics> turn_minus{};
 };
 
+/// A torque of the motor that goes with its angle and not with what is commanded: cogging. Seen at the table,
+/// positive accelerates towards positive position.
+struct MotorWave {
+  double order = 0.0;  ///< per turn; 0: none
+  double cosine_N = 0.0, sine_N = 0.0;
+};
+inline constexpr std::size_t kMostWaves = 3;
+
+/// A part of the table that swings on a spring along the axis.
+struct SideMass {
+  double share = 0.0;  ///< of the table's mass; 0: none
+  double frequency_Hz = 0.0, damping_ratio = 0.02;
+};
+
 /// An axis as identification sees it: the axis model of diagnosis with the table's travel as its coordinate
 /// (q in m, u in N, inertias in kg; the motor is R theta with the mass Jm / R^2), and what only
 /// identification asks for. One mass (not two_inertia): motor_inertia is everything.
@@ -28,9 +42,16 @@ struct TableAxis : diagnosis::AxisModel {
   double radius_m_rad = 0.0;  ///< table travel per unit of the recorded position
   double turn_m = 0.0;        ///< travel of a motor turn; 0: there is none to look for
   LevelVariation variation;
+  /// Share of all friction that acts on the motor; where friction_on_load.
+  double motor_friction_share = 0.0;
+  std::array<MotorWave, kMostWaves> cogging{};
+  SideMass side;
 
   [[nodiscard]] double mass_kg() const { return motor_inertia + load_inertia; }
 };
+
+/// Force of the motor's waves at a place of the motor.
+double Cogging_N(const TableAxis& axis, double motor_m);
 
 /// Rotary axes without a lead are taken as having 1 m/rad: then kg is kg m^2 and N is Nm.
 TableAxis FromStated(const diagnosis::StatedAxis& stated);

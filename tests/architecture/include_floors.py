@@ -74,6 +74,7 @@ MAY_INCLUDE = {
     # The family has the contest's way with assignments and costs.
     "tools/validation/family": [*BELOW_ANALYSIS, "analysis", "design", "tools/validation/contest", *SIMULATED],
     "tools/validation/hidden": [*BELOW_ANALYSIS, "analysis", *SIMULATED],
+    "tools/validation/commissioning": [*BELOW_ANALYSIS, "analysis", "design", *SIMULATED],
     "tools/contour_gain": [*BELOW_ANALYSIS, "analysis", "tools/validation/contest", *SIMULATED],
     # The programs know everything.
     "tools/bench": [*BELOW_ANALYSIS, *SIMULATED],

@@ -111,6 +111,20 @@ TEST(LoadModel, StandsAloneInAFile) {
   EXPECT_THROW(LoadModel(WriteTestFile("wrong.yaml", keys + "colour: red\n")), ConfigError);
 }
 
+TEST(LoadMachine, AnAxisMayNameALoopFile) {
+  const std::string keys =
+      "regulator_Hz: 20\nwindup_weight: 0.4\nvelocity_weight: 0.2\ndisturbance_Hz: 200\nmotor_force_Hz: "
+      "400\ntable_force_Hz: 400\nnotch_ratio: 0.8\nnotch_pole_damping: 0.7\nnotch_zero_damping: 0.3\n";
+  const std::string file = WriteTestFile("loop.yaml", keys);
+  const std::string machine =
+      WriteTestFile("machine_with_loop.yaml", ReadText(ExampleMachine("single_axis.yaml")));
+  const std::string name = file.substr(file.rfind('/') + 1);
+  EXPECT_EQ(LoadMachine(machine, {"axes.x.loop=" + name}).axes.at("x").loop->regulator_Hz, 20.0);
+  const std::vector<std::string> missing = Errors(machine, {"axes.x.loop=nowhere.yaml"});
+  ASSERT_EQ(missing.size(), 1U);
+  EXPECT_NE(missing[0].find("axes.x.loop: "), std::string::npos) << missing[0];
+}
+
 TEST(LoadModel, AMachineMayNameAModelFile) {
   const ModelConfig model = LoadMachine(ExampleMachine("single_axis.yaml")).axes.at("x").model;
   std::string keys = WriteYaml(model);

@@ -15,8 +15,8 @@
 
 #include "analysis/axis_model/read_stated_axis.h"
 #include "analysis/identification/result_files.h"
-#include "tests/design/virtual_commissioning.h"
 #include "tools/simulate/simulation_run.h"
+#include "tools/validation/commissioning/virtual_commissioning.h"
 
 namespace contour::test {
 namespace {

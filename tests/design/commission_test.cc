@@ -7,7 +7,7 @@
 #include "analysis/identification/result_files.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
-#include "tests/design/virtual_commissioning.h"
+#include "tools/validation/commissioning/virtual_commissioning.h"
 
 namespace contour::test {
 namespace {

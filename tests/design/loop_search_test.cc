@@ -17,7 +17,8 @@ const LoopSearchOptions kShort{.random_starts = 20,
                                .refinements = 1,
                                .evaluations_per_refinement = 200,
                                .threads = 2,
-                               .start = {}};
+                               .start = {},
+                               .members = {}};
 
 class EveryBallScrew : public testing::TestWithParam<FamilyAxis> {};
 

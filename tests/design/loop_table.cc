@@ -1,5 +1,5 @@
 // Searches the loop of every axis of the family and prints what was found, as docs/laboratory/loop_designs.md
-// has it; the last column is processor time: loop_table [--scale] [AXIS...]
+// has it; the last column is processor time: loop_table [--scale] [--start] [AXIS...]
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "design/loop_search.h"
+#include "design/start_set.h"
 #include "tests/design/family_axes.h"
 
 namespace contour {
@@ -35,11 +36,14 @@ void Print(const std::string& name, const FoundLoop& f, const LoopMargins& m, do
 int main(int argc, char** argv) {
   using namespace contour;
   bool scale = false;
+  bool start = false;
   std::vector<std::string> names;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--scale")
       scale = true;
+    else if (argument == "--start")
+      start = true;
     else
       names.push_back(argument);
   }
@@ -47,7 +51,9 @@ int main(int argc, char** argv) {
     if (!names.empty() && std::find(names.begin(), names.end(), f.name) == names.end()) continue;
     const LoopAxis axis = AxisOf(f, scale);
     const double begin_s = Cpu_s();
-    const FoundLoop found = SearchLoop(axis, 1e-3);
+    LoopSearchOptions options;
+    if (start) options.members = StartSet(axis, {});
+    const FoundLoop found = SearchLoop(axis, 1e-3, options);
     const double seconds = Cpu_s() - begin_s;
     const TwoInertiaLoop loop = DesignLoop(axis.axis, found.tuning, 1e-3, scale);
     Print(f.name, found, MarginsOn(SlidingMember(axis), loop, 1e-3), seconds);

@@ -19,7 +19,10 @@
 #include "config/load_machine.h"
 #include "daemon/control_socket/base64.h"
 #include "design/commission_plan.h"
+#include "design/start_loop.h"
+#include "drivers/cia402/mode_for.h"
 #include "drivers/lcm/cycle_messages.h"
+#include "tools/contour/commission_loop.h"
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/identification_report.h"
 
@@ -34,6 +37,7 @@ struct Options {
   std::optional<double> travel_mm, max_speed_mm_s, max_torque_Nm;
   std::string out;
   std::string report;
+  std::string loop;
   bool yes = false;
 };
 
@@ -57,8 +61,9 @@ MachineConfig AskForMachine(ControlClient& client) {
 /// Takes every cycle from the daemon and watches that the axis keeps to what the operator allowed.
 class Watchman {
  public:
-  Watchman(ControlClient& client, std::size_t axis, double period_s, const CommissionPlan& plan)
-      : axis_(axis), plan_(plan), recorder_(axis, period_s) {
+  Watchman(ControlClient& client, std::size_t axis, double period_s, const RecordedTorque& torque,
+           const CommissionPlan& plan)
+      : axis_(axis), reported_(torque.reported), plan_(plan), recorder_(axis, period_s, torque) {
     client.OnMessage([this](const json& message) { OnMessage(message); });
     AskOrThrow(client, {{"request", "rows"}, {"on", true}});
   }
@@ -87,8 +92,9 @@ class Watchman {
     const AxisRecord& a = record.axes[axis_];
     char text[160];
     text[0] = '\0';
-    if (std::fabs(a.torque_Nm) > plan_.limits.max_torque_Nm)
-      std::snprintf(text, sizeof text, "torque of %.3f Nm is beyond --max_torque_Nm", a.torque_Nm);
+    const double torque_Nm = reported_ ? a.feedback.torque_Nm : a.torque_Nm;
+    if (std::fabs(torque_Nm) > plan_.limits.max_torque_Nm)
+      std::snprintf(text, sizeof text, "torque of %.3f Nm is beyond --max_torque_Nm", torque_Nm);
     if (a.position_m < plan_.low_mm * 1e-3 || a.position_m > plan_.high_mm * 1e-3)
       std::snprintf(text, sizeof text, "position %.3f mm is beyond --travel_mm", a.position_m * 1e3);
     if (std::fabs(a.reference.velocity_m_s) > plan_.limits.max_speed_mm_s * 1.001e-3)
@@ -98,6 +104,7 @@ class Watchman {
   }
 
   std::size_t axis_;
+  bool reported_;  ///< the drive makes the torque
   const CommissionPlan& plan_;
   AxisRecorder recorder_;
   CycleEntry entry_;
@@ -150,43 +157,52 @@ bool Confirmed(const Options& options) {
   return answer == "yes";
 }
 
-int RunCommission(const Options& options) {
-  ControlClient client = ConnectToDaemon(options.socket);
-  const MachineConfig machine = AskForMachine(client);
+/// The place of the axis among those of the status.
+std::size_t NumberOf(const json& status, const std::string& axis) {
+  std::size_t number = 0;
+  while (status.at("axes").at(number).at("name") != axis) ++number;
+  return number;
+}
+
+/// What must hold before anything moves; throws with what does not.
+void CheckBeforehand(MachineConfig& machine, const json& status, const Options& options) {
   if (!machine.axes.contains(options.axis))
     throw ConfigError({"--axis: the daemon's machine has no axis \"" + options.axis + "\""});
-  json status = Status(client);
   const std::string state = status.at("state");
   if (state != "Idle" && state != "Ready")
     throw std::runtime_error("commissioning begins from Idle or Ready, but the machine is " +
                              StateSentence(status));
-  if (status.at("controller") == "csp")
-    throw ConfigError(
-        {"the daemon runs the controller csp, in which the drive makes the torque: start it with another"});
-  std::size_t number = 0;
-  while (status.at("axes").at(number).at("name") != options.axis) ++number;
-  const AxisConfig& axis = machine.axes.at(options.axis);
-  CommissionLimits limits = DefaultCommissionLimits(axis);
+  const std::string controller = status.at("controller");
+  if (!FromName(controller, machine.machine.controller))
+    throw std::runtime_error("the daemon runs a controller that this program does not know: " + controller);
+  if (const std::string wrong = WhyLoopsMayNotStart(machine); !wrong.empty()) throw ConfigError({wrong});
+}
+
+CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const Options& options) {
+  CommissionLimits limits = DefaultCommissionLimits(machine.axes.at(options.axis));
   if (options.travel_mm) limits.travel_mm = *options.travel_mm;
   if (options.max_speed_mm_s) limits.max_speed_mm_s = *options.max_speed_mm_s;
   if (options.max_torque_Nm) limits.max_torque_Nm = *options.max_torque_Nm;
-  const double position_mm = 1e3 * status.at("axes").at(number).at("position_m").get<double>();
-  const CommissionPlan plan = PlanCommissioning(machine, options.axis, position_mm, limits);
-  std::cout << Describe(plan);
-  if (status.at("controller") != "mpc_observer")
-    std::cout << "note: the controller " << status.at("controller").get<std::string>()
-              << " may swing where the model is far off; mpc_observer does not: contourd --controller "
-                 "mpc_observer\n";
-  if (!Confirmed(options)) {
-    std::cout << "nothing was moved\n";
-    return kExitFailed;
-  }
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
+  const json& axis = status.at("axes").at(NumberOf(status, options.axis));
+  return PlanCommissioning(machine, options.axis, 1e3 * axis.at("position_m").get<double>(), limits);
+}
 
-  Watchman watchman(client, number, machine.machine.cycle_us * 1e-6, plan);
+/// Says so where the controller believes a model that may be far off.
+void Advise(const MachineConfig& machine) {
+  const ControllerName controller = machine.machine.controller;
+  const bool certain =
+      controller == ControllerName::kMpcObserver ||
+      (controller == ControllerName::kFull && machine.control.friction == FrictionKind::kLinear);
+  if (!certain)
+    std::cout << "note: the controller " << Name(controller)
+              << " may swing where the model is far off; full with control.friction: linear and the loop of "
+                 "contour tune --from-model FILE --catalogue does not\n";
+}
+
+/// Enables, moves, takes the torque off; the record is the watchman's.
+void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& plan) {
   AskOrThrow(client, {{"request", "enable"}});
-  status = WaitForStatus(
+  const json status = WaitForStatus(
       client, [](const json& s) { return s.at("state") != "Enabling" && s.at("state") != "Idle"; },
       kEnableLimit);
   if (status.at("state") != "Ready")
@@ -214,15 +230,39 @@ int RunCommission(const Options& options) {
                 static_cast<unsigned long long>(watchman.lost()));
   std::printf("\n");
   std::fflush(stdout);
+}
+
+int RunCommission(const Options& options) {
+  ControlClient client = ConnectToDaemon(options.socket);
+  MachineConfig machine = AskForMachine(client);
+  const json status = Status(client);
+  CheckBeforehand(machine, status, options);
+  const CommissionPlan plan = PlanFor(machine, status, options);
+  std::cout << Describe(plan);
+  Advise(machine);
+  if (!Confirmed(options)) {
+    std::cout << "nothing was moved\n";
+    return kExitFailed;
+  }
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  const DriveConfig& drive = machine.axes.at(options.axis).drive;
+  const RecordedTorque torque{ModeFor(machine.machine.controller, drive) == DriveMode::kCsp,
+                              static_cast<std::size_t>(drive.delay_cycles), 1e-3 * drive.lag_ms};
+  Watchman watchman(client, NumberOf(status, options.axis), machine.machine.cycle_us * 1e-6, torque, plan);
+  MoveAxis(client, watchman, plan);
 
   IdentificationJob job;
   job.stated = diagnosis::ToStatedAxis(machine, options.axis);
-  job.model = axis.model;
+  job.model = machine.axes.at(options.axis).model;
   job.logs.push_back(watchman.recorder().Take());
+  job.lost_cycles = watchman.lost();
   job.sources = {"commissioning of axis " + options.axis + " of " + machine.machine.name};
   job.out = options.out.empty() ? options.axis + "_model.yaml" : options.out;
   job.report = options.report.empty() ? options.axis + "_commissioning" : options.report;
-  IdentifyAndReport(job);
+  const ModelConfig model = IdentifyAndReport(job);
+  FindAndWriteLoop(machine, options.axis, model,
+                   options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
   return kExitDone;
 }
 
@@ -242,6 +282,7 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
   sub->add_option("--max_torque_Nm", options->max_torque_Nm,
                   "Torque at which it stops (default: 60 % of the axis's limit)");
   sub->add_option("--out", options->out, "Model file to write (default: NAME_model.yaml)");
+  sub->add_option("--loop", options->loop, "Loop file to write (default: NAME_loop.yaml)");
   sub->add_option("--report", options->report, "Directory of the report (default: NAME_commissioning)");
   sub->add_flag("--yes", options->yes, "Do not ask before the axis is enabled and moves");
   sub->footer(

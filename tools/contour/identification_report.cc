@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -9,6 +10,7 @@
 
 #include "analysis/identification/identification.h"
 #include "analysis/identification/result_files.h"
+#include "analysis/identification/usable.h"
 #include "analysis/parallel/parallel_for.h"
 
 namespace contour {
@@ -49,24 +51,29 @@ void Draw(const std::filesystem::path& directory) {
 
 }  // namespace
 
-void IdentifyAndReport(const IdentificationJob& job) {
+ModelConfig IdentifyAndReport(const IdentificationJob& job) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   identify::IdentifyOptions options;
   options.threads = ThreadsOf(job.threads);
   options.progress = [&](const std::string& doing, double share) {
     if (terminal) std::fprintf(stderr, "\r\x1b[Kidentifying  %3.0f %%  %s", 100.0 * share, doing.c_str());
   };
-  const identify::Identification id = identify::Identify(job.stated, job.logs, options);
+  identify::Identification id = identify::Identify(job.stated, job.logs, options);
   if (terminal) std::fputs("\r\x1b[K", stderr);
+  const double cycles = id.seconds / id.period_s;
+  id.missing_share = std::max(id.missing_share, static_cast<double>(job.lost_cycles) / std::max(1.0, cycles));
+  if (const std::string why = identify::WhyUnusable(id); !why.empty())
+    throw std::runtime_error("no model was written: " + why);
   const ModelConfig model = identify::ToModel(id, job.model);
   identify::WriteModelFile(job.out, model, id, job.sources);
   std::cout << identify::ResultTable(id, job.model, model) << "wrote " << job.out.string() << "\n";
-  if (job.report.empty()) return;
+  if (job.report.empty()) return model;
   std::error_code error;
   std::filesystem::create_directories(job.report, error);
   if (error) throw std::runtime_error("cannot make " + job.report.string() + ": " + error.message());
   identify::WriteIdentificationJson(job.report / "identification.json", id, job.sources);
   Draw(job.report);
+  return model;
 }
 
 }  // namespace contour

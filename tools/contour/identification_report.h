@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,10 +20,12 @@ struct IdentificationJob {
   std::filesystem::path out;         ///< the model
   std::filesystem::path report;      ///< directory; empty: none
   int threads = 0;                   ///< 0: one per processor
+  std::uint64_t lost_cycles = 0;     ///< that a record should have and has not
 };
 
 /// Identifies, with progress on a terminal; writes the model, and with a report directory identification.json
-/// and its pictures; prints the table of results.
-void IdentifyAndReport(const IdentificationJob& job);
+/// and its pictures; prints the table of results. Throws std::runtime_error, with nothing written, where the
+/// result must not be used (WhyUnusable). Gives the model.
+ModelConfig IdentifyAndReport(const IdentificationJob& job);
 
 }  // namespace contour

@@ -29,6 +29,7 @@ struct Options {
   std::string out;
   std::string from_model;
   std::string axis;
+  bool catalogue = false;
 };
 
 std::vector<TunedController> Chosen(const TuneConfig& config, const std::vector<std::string>& names) {
@@ -52,7 +53,8 @@ void Print(const TunedResult& r) {
 
 int RunTune(const Options& options) {
   if (!options.from_model.empty())
-    return TuneLoops({options.from_model, options.axis, options.out, options.workers, options.evaluations});
+    return TuneLoops({options.from_model, options.axis, options.out, options.workers, options.evaluations,
+                      options.catalogue});
   if (options.out.empty()) throw ConfigError({"contour: --out: missing, expected a file for the tuned keys"});
   const ContestConfig config = LoadContest(options.contest);
   if (config.tune.controllers.empty())
@@ -92,6 +94,8 @@ void AddTuneCommand(CLI::App& app, Action& action) {
   sub->add_option("--from-model", options->from_model,
                   "Machine file: search the two-inertia loop of each axis from its model, print margins");
   sub->add_option("--axis", options->axis, "Only this axis (with --from-model)");
+  sub->add_flag("--catalogue", options->catalogue,
+                "With --from-model: a loop to commission with, stable for all that the model leaves open");
   sub->add_option("--config", options->config, "Machine file with an emulator: section")
       ->capture_default_str();
   sub->add_option("--contest", options->contest, "What is tuned, and on what")->capture_default_str();

@@ -15,6 +15,7 @@
 #include "core/exit_status.h"
 #include "design/loop_report.h"
 #include "design/loop_search.h"
+#include "design/start_loop.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour {
@@ -67,12 +68,17 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
   if (asked.evaluations > 0)
     options.evaluations_per_run = options.evaluations_per_refinement = asked.evaluations;
   // Not from what the file has: the same model gives the same loop.
+  if (asked.catalogue) options.members = StartSet(axis, DoubtOf(config.model));
   FoundLoop found = SearchLoop(axis, period_s, options);
   Rounding rounding;
   found.tuning.Visit(rounding);
-  const LoopReport report = ReportOn(axis, found.tuning, period_s);
+  LoopReport report = ReportOn(axis, found.tuning, period_s);
+  if (asked.catalogue) report.verdict = found.verdict;
   std::cout << Describe(report);
-  if (const std::string wrong = WhatIsWrong(report.verdict); !wrong.empty()) {
+  const std::string wrong = asked.catalogue
+                                ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(config.model))
+                                : WhatIsWrong(report.verdict);
+  if (!wrong.empty()) {
     std::cout << "  NO stable loop in torque mode within the limits was found; the best of "
               << found.evaluations << ": " << wrong << "\n";
     for (const std::string& help : WhatWouldHelp(axis, period_s, options.threads))

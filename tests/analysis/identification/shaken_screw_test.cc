@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "tests/analysis/identification/generated_axis.h"
 
@@ -52,6 +53,24 @@ TEST(ShakenScrewTest, FindsScrewsWhereverTheirResonanceIs) {
     EXPECT_NEAR(found.axis.load_inertia / screw.table_mass_kg, 1.0, 0.03) << stiffness_N_um;
     EXPECT_NEAR(found.antiresonance_Hz, std::sqrt(screw.stiffness_N_m / screw.table_mass_kg) / kTwoPi, 3.0);
   }
+}
+
+TEST(ShakenScrewTest, APartThatSwingsIsNotTakenForTheScrew) {
+  // The part swings at 0.55 of the mode.
+  for (const auto& [table_kg, side_Hz] : {std::pair{10.0, 186.0}}) {
+    plant::AxisParameters truth = PlainAxis();
+    truth.table_mass_kg = table_kg;
+    const double omega = kTwoPi * side_Hz, side_kg = 0.12 * table_kg;
+    truth.side_modes = {{side_kg, side_kg * omega * omega, 0.04 * side_kg * omega}};
+    const auto found = identify::FitShakenScrew(RoughStart(truth), {ShakenRecord(truth)});
+    ASSERT_EQ(found.verdict, identify::ShakenScrew::Verdict::kFound) << table_kg;
+    EXPECT_NEAR(found.axis.side.share, 0.12, 0.03) << table_kg;
+    EXPECT_NEAR(found.axis.side.frequency_Hz, side_Hz, 4.0) << table_kg;
+    EXPECT_NEAR(found.axis.load_inertia / truth.table_mass_kg, 1.0, 0.08) << table_kg;
+    EXPECT_NEAR(found.axis.stiffness / truth.stiffness_N_m, 1.0, 0.05) << table_kg;
+  }
+  EXPECT_EQ(identify::FitShakenScrew(RoughStart(PlainAxis()), {ShakenRecord(PlainAxis())}).axis.side.share,
+            0.0);
 }
 
 TEST(ShakenScrewTest, AStiffScrewIsRigidAndNotInvented) {

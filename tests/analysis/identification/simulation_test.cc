@@ -52,6 +52,36 @@ TEST(SimulationTest, EveryPartOfTheModelMatters) {
   }
 }
 
+TEST(SimulationTest, ForeseesCoggingFrictionOnTheMotorAndASwingingPart) {
+  const auto record = [](const plant::AxisParameters& p) {
+    const std::vector<double> speeds = {1e-3, 10e-3, 50e-3};
+    const GeneratedAxis axis{p};
+    return axis.Drive(StrokesDuration_s(5e-3, speeds), Strokes(5e-3, speeds),
+                      [](double t) { return 30.0 * std::sin(700.0 * t); });
+  };
+  const auto error_m = [](const Measured& data, const TableAxis& model) {
+    return Rms_m(identify::PredictionErrors_m(model, data, identify::MakeFollowGain(model, 1e-3, 60.0)));
+  };
+  plant::AxisParameters cogging = PlainAxis(), motor = PlainAxis(), side = PlainAxis();
+  cogging.effects.cogging = CoggingEffect{};
+  cogging.effects.cogging->amplitude_Nm = 6e-3;
+  cogging.effects.cogging->phase_rad = 0.5;
+  motor.motor_friction_share = 0.3;
+  const double omega = 2.0 * 3.14159265358979 * 180.0;
+  side.side_modes = {{2.0, 2.0 * omega * omega, 0.04 * 2.0 * omega}};
+  TableAxis with_cogging = Exactly(cogging), with_motor = Exactly(motor), with_side = Exactly(side);
+  const double force_N = 6e-3 / cogging.radius_m_rad;
+  with_cogging.cogging[0] = {12.0, force_N * std::sin(0.5), force_N * std::cos(0.5)};
+  with_motor.motor_friction_share = 0.3;
+  with_side.side = {0.2, 180.0, 0.02};
+  for (const auto& [truth, model] :
+       {std::pair{cogging, with_cogging}, std::pair{motor, with_motor}, std::pair{side, with_side}}) {
+    const Measured data = record(truth);
+    EXPECT_LT(error_m(data, model), 6e-9);
+    EXPECT_GT(error_m(data, Exactly(truth)), 2.0 * error_m(data, model));
+  }
+}
+
 TEST(SimulationTest, MissingRowsLeaveAGapAndNothingElse) {
   Measured record = Everything();
   for (std::size_t k = 5000; k < 5040; ++k) {

@@ -6,6 +6,7 @@
 
 #include "analysis/axis_model/read_stated_axis.h"
 #include "config/load_machine.h"
+#include "tests/analysis/identification/generated_axis.h"
 #include "tests/config/test_files.h"
 
 namespace contour::identify {
@@ -43,6 +44,26 @@ TEST(TableAxis, GoesBackIntoTheModelItCameFrom) {
   EXPECT_NEAR(after.friction.Fs_plus_N, before.friction.Fs_plus_N, 1e-9);
   EXPECT_NEAR(after.friction.sigma1_Ns_m, before.friction.sigma1_Ns_m, 1e-9);
   EXPECT_NEAR(after.friction.sigma1_decay_mm_s, before.friction.sigma1_decay_mm_s, 1e-9);
+}
+
+TEST(TableAxis, CoggingSwingingPartsAndFrictionOnTheMotorGoIntoTheModel) {
+  TableAxis axis = test::Exactly(test::PlainAxis());
+  axis.cogging[0] = {12.0, 0.0, 4.0};
+  axis.cogging[1] = {18.0, 2.0, 0.0};
+  axis.motor_friction_share = 0.3;
+  axis.side = {0.12, 186.0, 0.02};
+  ModelConfig model;
+  model.friction.acts_on = FrictionSide::kTable;
+  IntoConfig(axis, model);
+  ASSERT_TRUE(model.extensions.cogging);
+  EXPECT_NEAR(model.extensions.cogging->amplitude_Nm, 4.0 * axis.radius_m_rad, 1e-12);
+  EXPECT_NEAR(model.extensions.cogging->phase_rad, 0.0, 1e-12);
+  ASSERT_EQ(model.extensions.cogging->further.size(), 1U);
+  EXPECT_NEAR(model.extensions.cogging->further[0].phase_rad, 0.5 * std::numbers::pi, 1e-12);
+  EXPECT_NEAR(model.friction.motor_share_rel, 0.3, 1e-12);
+  ASSERT_EQ(model.side_modes.size(), 1U);
+  EXPECT_NEAR(model.side_modes[0].frequency_Hz, 186.0, 1e-9);
+  EXPECT_NEAR(model.side_modes[0].mass_share_rel, 0.12, 1e-9);
 }
 
 TEST(TableAxis, FrictionStatedAtTheMotorIsWrittenAtTheMotor) {

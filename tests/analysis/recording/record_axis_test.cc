@@ -68,6 +68,21 @@ TEST(AxisRecorder, KeepsALinearScaleAndIsEmptyAfterwards) {
   EXPECT_EQ(recorder.log().size(), 0U);
 }
 
+TEST(AxisRecorder, TakesWhatADriveInCspReportsForTheCommand) {
+  // The drive's own loop gives 2 Nm more every cycle; the offset is 0.1 Nm times the cycle. What it reports
+  // is both, the offset being that of two cycles before.
+  AxisRecorder recorder(1, 1e-3, {true, 1, 0.2e-3});
+  for (std::uint64_t cycle = 10; cycle < 20; ++cycle) {
+    CycleRecord record = Cycle(cycle);
+    const auto n = static_cast<double>(cycle);
+    record.axes[1].feedback.torque_Nm = 2.0 * n + 0.1 * (n - 2.0);
+    recorder.Add(record);
+  }
+  const diagnosis::AxisLog log = recorder.Take();
+  // Row 5 is cycle 15: its command acts between the readings of cycles 16 and 17.
+  EXPECT_NEAR(log.command[5], 1.5 + 2.0 * 16.5 + 0.2 * 2.0, 1e-9);
+}
+
 TEST(AxisRecorder, AnAxisThatTheMachineHasNotIsNotRecorded) {
   AxisRecorder recorder(5, 1e-3);
   recorder.Add(Cycle(8));

@@ -9,7 +9,7 @@
 #include "design/commission_plan.h"
 #include "tools/machine/load_emulated_machine.h"
 
-namespace contour::test {
+namespace contour {
 
 /// The example machine of a seed whose model is wrong: every friction value by `friction_rel`, both inertias
 /// by `inertia_rel` (one way), each value up or down as the seed says.
@@ -34,4 +34,4 @@ VirtualCommissioning Commission(const EmulatedMachineFile& file, const std::stri
 /// The same parameters as Truth(), of a result.
 std::map<std::string, identify::FittedParameter> Found(const identify::Identification& id);
 
-}  // namespace contour::test
+}  // namespace contour

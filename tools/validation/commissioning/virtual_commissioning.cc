@@ -1,4 +1,4 @@
-#include "tests/design/virtual_commissioning.h"
+#include "tools/validation/commissioning/virtual_commissioning.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,12 @@
 #include <stdexcept>
 
 #include "analysis/recording/record_axis.h"
+#include "drivers/cia402/mode_for.h"
 #include "tools/machine/placements.h"
 #include "tools/plant_emulator/axis_parameters.h"
 #include "tools/simulate/virtual_machine.h"
 
-namespace contour::test {
+namespace contour {
 namespace {
 
 constexpr std::uint64_t kStreamsPerAxis = 4;  // of the emulated machine
@@ -88,7 +89,10 @@ VirtualCommissioning Commission(const EmulatedMachineFile& file, const std::stri
   const AxisConfig& config = file.machine.axes.at(axis);
   const double start_m = machine.record().axes[number].position_m;
   run.plan = PlanCommissioning(file.machine, axis, start_m * 1e3, DefaultCommissionLimits(config));
-  AxisRecorder recorder(number, file.machine.machine.cycle_us * 1e-6);
+  const bool csp = ModeFor(name, config.drive) == DriveMode::kCsp;
+  AxisRecorder recorder(
+      number, file.machine.machine.cycle_us * 1e-6,
+      {csp, static_cast<std::size_t>(config.drive.delay_cycles), 1e-3 * config.drive.lag_ms});
   run.low_m = run.high_m = start_m;
   std::uint64_t cycles = 0;
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
@@ -96,7 +100,8 @@ VirtualCommissioning Commission(const EmulatedMachineFile& file, const std::stri
     recorder.Add(r);
     ++cycles;
     const AxisRecord& a = r.axes[number];
-    run.largest_torque_Nm = std::max(run.largest_torque_Nm, std::fabs(a.torque_Nm));
+    run.largest_torque_Nm =
+        std::max(run.largest_torque_Nm, std::fabs(csp ? a.feedback.torque_Nm : a.torque_Nm));
     run.largest_following_error_m = std::max(run.largest_following_error_m, std::fabs(a.following_error_m));
     if (truth == nullptr) return;
     run.low_m = std::min(run.low_m, truth->axes[number].table_position_m);
@@ -118,4 +123,4 @@ std::map<std::string, identify::FittedParameter> Found(const identify::Identific
   return found;
 }
 
-}  // namespace contour::test
+}  // namespace contour

@@ -1,0 +1,96 @@
+#include "analysis/identification/usable.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/text/format_text.h"
+
+namespace contour::identify {
+namespace {
+
+/// Of all cycles. What was commanded in a lost one nobody knows, and each gap costs the simulation its state.
+constexpr double kMostMissing = 0.01;
+/// Standard deviations from the least of the cost.
+constexpr double kMostUnsettled = 3.0;
+/// Prediction errors over what encoder and torque steps explain. Axes that are as the model has them have 1
+/// to 6; cogging of 0.5 % of rated torque that nothing knows of, 100 (docs/laboratory/commissioning.md).
+constexpr double kFarAboveNoise = 40.0;
+/// Largest over smallest accelerance of a shaken axis that counts as rigid.
+constexpr double kLeastDip = 2.5;
+constexpr double kSeen = 0.6;  ///< coherence
+
+std::string Numbers(const Identification& id) {
+  for (const FittedParameter& p : id.fit.parameters) {
+    if (!std::isfinite(p.value) || !std::isfinite(p.sigma))
+      return p.key +
+             " came out as no number: the record does not fit the model at all; are torque and position "
+             "of one axis, and their signs right?";
+    if (!(p.sigma > 0.0))
+      return p.key +
+             " has an interval of no width, which no measurement has: the record says nothing of it; "
+             "commission with the whole plan of motions";
+  }
+  return {};
+}
+
+std::string Holes(const Identification& id) {
+  if (id.missing_share <= kMostMissing) return {};
+  return FormatText(
+      "%.1f %% of the cycles are missing: give this computer less to do, or take the log of "
+      "contourd --log and contour identify",
+      100.0 * id.missing_share);
+}
+
+std::string Misfit(const Identification& id) {
+  const double noise_m = std::max(id.encoder.noise_m, 0.3 * id.encoder.step_m);
+  if (!(noise_m > 0.0) || id.fit.error_typical_m <= kFarAboveNoise * noise_m) return {};
+  return FormatText(
+      "the model foresees the motion to %.3g um only, %.0f times the encoder's noise: the axis has "
+      "what the model has not; contour diagnose names it",
+      1e6 * id.fit.error_typical_m, id.fit.error_typical_m / noise_m);
+}
+
+std::string Antiresonance(const Identification& id) {
+  if (id.shaken.verdict != ShakenScrew::Verdict::kRigid) return {};
+  const std::optional<ResponsePoint> dip = VisibleAntiresonance(id.shaken.response);
+  if (!dip) return {};
+  return FormatText(
+      "the fit calls the axis rigid, but shaken it shows an antiresonance near %.0f Hz: what "
+      "hides the screw from the fit (cogging, a part that swings) has to be found first; contour "
+      "diagnose names it",
+      dip->frequency_Hz);
+}
+
+}  // namespace
+
+std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoint>& response) {
+  std::optional<ResponsePoint> low;
+  double high = 0.0;
+  for (std::size_t i = 1; i + 1 < response.size(); ++i) {
+    ResponsePoint p = response[i];
+    double coherence = 1.0;
+    p.accelerance_1_kg = 0.0;
+    for (std::size_t j = i - 1; j <= i + 1; ++j) {
+      p.accelerance_1_kg += response[j].accelerance_1_kg / 3.0;
+      coherence = std::min(coherence, response[j].coherence);
+    }
+    if (coherence < kSeen) continue;
+    if (!low || p.accelerance_1_kg < low->accelerance_1_kg) low = p;
+    high = std::max(high, p.accelerance_1_kg);
+  }
+  if (!low || high < kLeastDip * low->accelerance_1_kg) return std::nullopt;
+  return low;
+}
+
+std::string WhyUnusable(const Identification& id) {
+  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), Misfit(id)})
+    if (!why.empty()) return why;
+  if (id.fit.unsettled > kMostUnsettled)
+    return FormatText(
+        "the fit did not settle: it is still %.0f standard deviations from its best; begin with "
+        "a model that is nearer, or commission again",
+        id.fit.unsettled);
+  return {};
+}
+
+}  // namespace contour::identify

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/identification/identification.h"
+
+namespace contour::identify {
+
+/// Why nothing of a result may be used, in plain words and with what to do; empty: it may. Numbers that are
+/// none, intervals of no width, a fit that did not settle, a record with holes, errors of prediction far
+/// above the encoder's noise, an axis called rigid whose shaking shows an antiresonance.
+std::string WhyUnusable(const Identification& id);
+
+/// The deepest point of a response that no rigid axis has; none where it is flat.
+std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoint>& response);
+
+}  // namespace contour::identify

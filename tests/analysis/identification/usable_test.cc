@@ -1,0 +1,94 @@
+#include "analysis/identification/usable.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace contour::test {
+namespace {
+
+using identify::Identification;
+using identify::ResponsePoint;
+using identify::ShakenScrew;
+using identify::WhyUnusable;
+
+Identification Good() {
+  Identification id;
+  id.fit.parameters = {{"motor_inertia_kgm2", 80.0, 0.01, true}, {"offset_N", 0.0, 0.1, false}};
+  id.fit.error_typical_m = 5e-9;
+  id.fit.unsettled = 0.5;
+  id.encoder = {4.8e-9, 2e-9};
+  id.shaken.verdict = ShakenScrew::Verdict::kFound;
+  return id;
+}
+
+bool Says(const Identification& id, const char* what) {
+  return WhyUnusable(id).find(what) != std::string::npos;
+}
+
+/// 1 / 90 kg but for an antiresonance and a resonance of this depth.
+std::vector<ResponsePoint> Response(double depth) {
+  std::vector<ResponsePoint> response;
+  for (double f = 100.0; f < 480.0; f += 2.0) {
+    const double at = (f - 320.0) / 12.0;
+    const double dip = 1.0 - depth * std::exp(-at * at);
+    const double up = 1.0 + depth * std::exp(-(at - 2.0) * (at - 2.0));
+    response.push_back({f, dip * up / 90.0, 0.95});
+  }
+  return response;
+}
+
+TEST(WhyUnusable, SaysNothingOfAGoodResult) { EXPECT_EQ(WhyUnusable(Good()), ""); }
+
+TEST(WhyUnusable, RefusesWhatIsNoNumber) {
+  for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Identification id = Good();
+    id.fit.parameters[0].sigma = value;
+    EXPECT_TRUE(Says(id, "no number"));
+    id = Good();
+    id.fit.parameters[1].value = value;
+    EXPECT_TRUE(Says(id, "no number"));
+  }
+}
+
+TEST(WhyUnusable, RefusesIntervalsOfNoWidth) {
+  Identification id = Good();
+  id.fit.parameters[0].sigma = 0.0;
+  EXPECT_TRUE(Says(id, "no width"));
+}
+
+TEST(WhyUnusable, RefusesARecordWithHoles) {
+  Identification id = Good();
+  id.missing_share = 0.126;
+  EXPECT_TRUE(Says(id, "12.6 % of the cycles are missing"));
+  id.missing_share = 0.001;
+  EXPECT_EQ(WhyUnusable(id), "");
+}
+
+TEST(WhyUnusable, RefusesErrorsFarAboveTheEncodersNoise) {
+  Identification id = Good();
+  id.fit.error_typical_m = 200e-9;
+  EXPECT_TRUE(Says(id, "100 times the encoder's noise"));
+}
+
+TEST(WhyUnusable, RefusesAFitThatDidNotSettle) {
+  Identification id = Good();
+  id.fit.unsettled = 12.0;
+  EXPECT_TRUE(Says(id, "did not settle"));
+}
+
+TEST(WhyUnusable, RefusesToCallAnAxisRigidThatShowsAnAntiresonance) {
+  Identification id = Good();
+  id.shaken.verdict = ShakenScrew::Verdict::kRigid;
+  id.shaken.response = Response(0.1);
+  EXPECT_EQ(WhyUnusable(id), "");
+  id.shaken.response = Response(0.7);
+  EXPECT_TRUE(Says(id, "antiresonance near 3")) << WhyUnusable(id);
+  // What nothing shook says nothing.
+  for (ResponsePoint& p : id.shaken.response) p.coherence = 0.3;
+  EXPECT_EQ(WhyUnusable(id), "");
+}
+
+}  // namespace
+}  // namespace contour::test

@@ -1,0 +1,43 @@
+#include "tools/contour/commission_loop.h"
+
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+
+#include "analysis/parallel/parallel_for.h"
+#include "config/loop_axis.h"
+#include "config/yaml_writer.h"
+#include "design/loop_report.h"
+#include "design/loop_search.h"
+
+namespace contour {
+
+void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, const ModelConfig& model,
+                      const std::filesystem::path& file) {
+  AxisConfig config = machine.axes.at(axis);
+  config.model = model;
+  const LoopAxis loop_axis = LoopAxisOf(config);
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  LoopSearchOptions options;
+  options.threads = ThreadsOf(0);
+  options.start = config.loop;
+  const FoundLoop found = SearchLoop(loop_axis, period_s, options);
+  const LoopReport report = ReportOn(loop_axis, found.tuning, period_s);
+  std::cout << "the loop of axis " << axis << " (control.friction: linear, drive.mode: cst)\n"
+            << Describe(report);
+  if (const std::string wrong = WhatIsWrong(report.verdict); !wrong.empty()) {
+    std::cout << "no loop in torque mode keeps its limits (" << wrong << "); none was written\n";
+    for (const std::string& help : WhatWouldHelp(loop_axis, period_s, options.threads))
+      std::cout << "  what would help: " << help << "\n";
+    return;
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << "# Found by contour commission from the model of axis " << axis << ": axes." << axis
+      << ".loop of a machine file, or its file.\n"
+      << WriteYaml(found.tuning);
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + file.string());
+  std::cout << "wrote " << file.string() << "\n";
+}
+
+}  // namespace contour

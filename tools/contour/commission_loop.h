@@ -1,0 +1,15 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "config/machine_config.h"
+
+namespace contour {
+
+/// The loop of the axis with the model that commissioning found, printed with its margins and written to
+/// `file`. Nothing is written where there is none that keeps its limits; then it is said what would help.
+void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, const ModelConfig& model,
+                      const std::filesystem::path& file);
+
+}  // namespace contour

@@ -1,0 +1,76 @@
+#include "tools/validation/commissioning/commissioning_case.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/text/format_text.h"
+#include "config/config_error.h"
+
+namespace contour {
+namespace {
+
+constexpr double kMotorFrictionShare = 0.3;
+constexpr double kSideModeOfMode = 0.55;
+constexpr double kSideModeMassShare = 0.12;
+constexpr double kWobble_um = 0.3;
+constexpr double kRipple = 0.02;
+constexpr double kRatedOfCogging_Nm = 0.637;
+
+double Mode_Hz(const EmulatedAxisConfig& axis, double lead_mm) {
+  const double radius_m = 1e-3 * lead_mm / (2.0 * std::numbers::pi);
+  const double per_mass = radius_m * radius_m / axis.motor_inertia_kgm2 + 1.0 / axis.table_mass_kg;
+  return std::sqrt(1e6 * axis.screw_stiffness_N_um * per_mass) / (2.0 * std::numbers::pi);
+}
+
+std::string Cogging(const AxisConfig& axis, double of_small_motor_Nm, std::uint64_t seed) {
+  // Poles and slots as the seed draws them.
+  constexpr int kOrders[] = {12, 6, 18, 24, 10};
+  return FormatText("effects.cogging={amplitude_Nm: %.6g, order_per_rev: %d, phase_rad: %.4g}",
+                    of_small_motor_Nm * axis.drive.rated_torque_Nm / kRatedOfCogging_Nm, kOrders[seed % 5],
+                    std::fmod(2.4 * static_cast<double>(seed), 6.28));
+}
+
+std::vector<std::string> Assignments(const EmulatedMachineFile& file, const CommissioningCase& c) {
+  std::vector<std::string> set{"emulator.seed=" + std::to_string(c.seed)};
+  for (const auto& [name, axis] : file.emulator.axes) {
+    const AxisConfig& config = file.machine.axes.at(name);
+    const double lead_mm = axis.lead_mm.value_or(config.model.mechanics.lead_mm);
+    set.push_back("axes." + name + ".drive.mode=" + c.mode);
+    const std::string key = "emulator.axes." + name + ".";
+    if (c.effect == "cogging3") set.push_back(key + Cogging(config, 3e-3, c.seed));
+    if (c.effect == "cogging6") set.push_back(key + Cogging(config, 6e-3, c.seed));
+    if (c.effect == "ripple")
+      set.push_back(key + FormatText("effects.torque_ripple={amplitude_rel: %g, order_per_rev: 6}", kRipple));
+    if (c.effect == "wobble")
+      set.push_back(key + FormatText("effects.pitch_error={amplitude_um: %g, periods_per_stroke: %.6g}",
+                                     kWobble_um, axis.stroke_mm / lead_mm));
+    if (c.effect == "motor_friction")
+      set.push_back(key + FormatText("friction.motor_share_rel=%g", kMotorFrictionShare));
+    if (c.effect == "side_mode")
+      set.push_back(key + FormatText("side_modes=[{frequency_Hz: %.6g, mass_share_rel: %g}]",
+                                     kSideModeOfMode * Mode_Hz(axis, lead_mm), kSideModeMassShare));
+  }
+  return set;
+}
+
+}  // namespace
+
+const std::vector<std::string>& CommissioningEffects() {
+  static const std::vector<std::string> all{"none",   "cogging3",       "cogging6", "ripple",
+                                            "wobble", "motor_friction", "side_mode"};
+  return all;
+}
+
+EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known) {
+  const auto& effects = CommissioningEffects();
+  if (std::find(effects.begin(), effects.end(), c.effect) == effects.end())
+    throw ConfigError({"--effects: there is no effect \"" + c.effect + "\""});
+  const std::string path = std::string(CONTOUR_CONFIG_DIR) +
+                           (c.machine == "base" ? "/xy_emulated.yaml" : "/family/" + c.machine + ".yaml");
+  EmulatedMachineFile file = LoadEmulatedMachine(path, Assignments(LoadEmulatedMachine(path), c));
+  StateCatalogue(file, c.seed, known);
+  return file;
+}
+
+}  // namespace contour

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/validation/commissioning/catalogue.h"
+#include "tools/validation/commissioning/virtual_commissioning.h"
+
+namespace contour {
+
+/// One emulated machine to commission.
+struct CommissioningCase {
+  std::string machine;  ///< base (config/xy_emulated.yaml), or one of config/family
+  std::string effect;   ///< a name of CommissioningEffects()
+  std::uint64_t seed = 1;
+  std::string axis = "x";
+  std::string mode = "cst";  ///< of the drives: cst or csp
+};
+
+/// What the axes have besides screw and friction: none, cogging3, cogging6 (thousandths of a Nm for a motor
+/// of 0.637 Nm, the same share of rated torque for others), ripple, wobble, motor_friction, side_mode.
+const std::vector<std::string>& CommissioningEffects();
+
+/// The machine with its effect, its model from a catalogue, its loops to begin with.
+EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known);
+
+}  // namespace contour
