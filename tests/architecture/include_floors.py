@@ -28,6 +28,7 @@ ANALYSIS = {
     "analysis/text": [],
     "analysis/parallel": [],
     "analysis/recording": BELOW_ANALYSIS,
+    "analysis/drive_loop": ["core"],
     "analysis/metrics": BELOW_ANALYSIS,
     "analysis/axis_model": ["core", "estimator", "config"],
     "analysis/circle_test": ["core", "estimator", "config"],

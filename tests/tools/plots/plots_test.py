@@ -121,6 +121,18 @@ class CommandTest(FolderTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertIn("ring_contour_error.png", result.stdout)
 
+    def test_picture_of_a_drives_loop(self):
+        lines = [{"frequency_Hz": f, "compliance_um_N": 0.03, "phase_deg": -20.0, "scatter_rel": 0.01 * f, "model_um_N": 0.031,
+                  "model_phase_deg": -19.0} for f in range(3, 100)]
+        drive = {"axis": "x", "sensitivity_peak": 1.6, "bandwidth_Hz": 110.0, "response": lines}
+        (self.path / "x_drive.json").write_text(json.dumps(drive), encoding="utf-8")
+        result = self.command("plot_drive.py", self.path / "x_drive.json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertGreater((self.path / "x_drive.png").stat().st_size, 10000)
+        del drive["response"]
+        (self.path / "x_drive.json").write_text(json.dumps(drive), encoding="utf-8")
+        self.assertEqual(self.command("plot_drive.py", self.path / "x_drive.json").returncode, 2)
+
     def test_a_corner_is_drawn_at_the_passage_asked_for(self):
         runs = [write_run(self.path / name, "full", 3e-7) for name in ("stop", "blend")]
         top = [-0.1, 0.1]  # a quarter of a turn after the start

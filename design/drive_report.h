@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "design/drive_fit.h"
+#include "design/drive_loop.h"
+
+namespace contour {
+
+/// What was measured of a drive's loop, and what it does on its axis.
+struct DriveReport {
+  std::string axis;
+  DriveFit fit;
+  DriveLoopFigures figures;
+  AccelerationShare acceleration;
+  double given_share = 0.0;  ///< csp_acceleration_share while it was measured
+  double step_N = 0.0;       ///< a tenth of the rated force
+  /// The table under the same force with torques from here (cst), where the axis has a loop for it.
+  std::optional<double> torque_mode_peak_m;
+};
+
+/// Lines for people.
+std::string Describe(const DriveReport& report);
+
+/// What to do about it, a sentence each: keys, and gains of the drive.
+std::string Advice(const DriveReport& report);
+
+/// Of the torque of acceleration, the share that the drive should be given: csp_acceleration_share.
+double AdvisedShare(const DriveReport& report);
+
+/// Whether the measurement is one. Empty, or the reason and what to do.
+std::string WhyUnusable(const DriveFit& fit);
+
+}  // namespace contour
