@@ -12,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "analysis/axis_model/read_stated_axis.h"
 #include "analysis/recording/record_axis.h"
@@ -19,9 +20,11 @@
 #include "config/load_machine.h"
 #include "daemon/control_socket/base64.h"
 #include "design/commission_plan.h"
+#include "design/drive_motions.h"
 #include "design/start_loop.h"
 #include "drivers/cia402/mode_for.h"
 #include "drivers/lcm/cycle_messages.h"
+#include "tools/contour/commission_drive.h"
 #include "tools/contour/commission_loop.h"
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/identification_report.h"
@@ -38,6 +41,7 @@ struct Options {
   std::string out;
   std::string report;
   std::string loop;
+  bool drive = false;
   bool yes = false;
 };
 
@@ -62,8 +66,12 @@ MachineConfig AskForMachine(ControlClient& client) {
 class Watchman {
  public:
   Watchman(ControlClient& client, std::size_t axis, double period_s, const RecordedTorque& torque,
-           const CommissionPlan& plan)
-      : axis_(axis), reported_(torque.reported), plan_(plan), recorder_(axis, period_s, torque) {
+           const CommissionPlan& plan, double radius_m_rad)
+      : axis_(axis),
+        reported_(torque.reported),
+        plan_(plan),
+        recorder_(axis, period_s, torque),
+        drive_recorder_(axis, radius_m_rad) {
     client.OnMessage([this](const json& message) { OnMessage(message); });
     AskOrThrow(client, {{"request", "rows"}, {"on", true}});
   }
@@ -71,6 +79,7 @@ class Watchman {
   [[nodiscard]] std::uint64_t newest_cycle() const { return newest_cycle_; }
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
   AxisRecorder& recorder() { return recorder_; }
+  [[nodiscard]] const std::vector<DriveSample>& drive_samples() const { return drive_recorder_.samples(); }
 
  private:
   void OnMessage(const json& message) {
@@ -84,6 +93,7 @@ class Watchman {
             "contourd sends rows that this program cannot read; are they of one version?");
       newest_cycle_ = entry_.output.record.cycle;
       recorder_.Add(entry_.output.record);
+      drive_recorder_.Add(entry_.output.record);
       Watch(entry_.output.record);
     }
   }
@@ -107,6 +117,7 @@ class Watchman {
   bool reported_;  ///< the drive makes the torque
   const CommissionPlan& plan_;
   AxisRecorder recorder_;
+  DriveRecorder drive_recorder_;
   CycleEntry entry_;
   std::string offence_;
   std::uint64_t newest_cycle_ = 0;
@@ -176,6 +187,12 @@ void CheckBeforehand(MachineConfig& machine, const json& status, const Options& 
   if (!FromName(controller, machine.machine.controller))
     throw std::runtime_error("the daemon runs a controller that this program does not know: " + controller);
   if (const std::string wrong = WhyLoopsMayNotStart(machine); !wrong.empty()) throw ConfigError({wrong});
+  const bool drive_holds =
+      ModeFor(machine.machine.controller, machine.axes.at(options.axis).drive) == DriveMode::kCsp;
+  if (options.drive && !drive_holds)
+    throw ConfigError({"--drive: axis " + options.axis +
+                       " is held from here, not by its drive: run contourd with --set axes." + options.axis +
+                       ".drive.mode=csp"});
 }
 
 CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const Options& options) {
@@ -184,7 +201,11 @@ CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const O
   if (options.max_speed_mm_s) limits.max_speed_mm_s = *options.max_speed_mm_s;
   if (options.max_torque_Nm) limits.max_torque_Nm = *options.max_torque_Nm;
   const json& axis = status.at("axes").at(NumberOf(status, options.axis));
-  return PlanCommissioning(machine, options.axis, 1e3 * axis.at("position_m").get<double>(), limits);
+  const double position_mm = 1e3 * axis.at("position_m").get<double>();
+  CommissionPlan plan = PlanCommissioning(machine, options.axis, position_mm, limits);
+  if (options.drive)
+    plan.motions = DriveMotions(plan, machine.axes.at(options.axis), position_mm, machine.machine.cycle_us);
+  return plan;
 }
 
 /// Says so where the controller believes a model that may be far off.
@@ -232,26 +253,8 @@ void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& p
   std::fflush(stdout);
 }
 
-int RunCommission(const Options& options) {
-  ControlClient client = ConnectToDaemon(options.socket);
-  MachineConfig machine = AskForMachine(client);
-  const json status = Status(client);
-  CheckBeforehand(machine, status, options);
-  const CommissionPlan plan = PlanFor(machine, status, options);
-  std::cout << Describe(plan);
-  Advise(machine);
-  if (!Confirmed(options)) {
-    std::cout << "nothing was moved\n";
-    return kExitFailed;
-  }
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  const DriveConfig& drive = machine.axes.at(options.axis).drive;
-  const RecordedTorque torque{ModeFor(machine.machine.controller, drive) == DriveMode::kCsp,
-                              static_cast<std::size_t>(drive.delay_cycles), 1e-3 * drive.lag_ms};
-  Watchman watchman(client, NumberOf(status, options.axis), machine.machine.cycle_us * 1e-6, torque, plan);
-  MoveAxis(client, watchman, plan);
-
+/// The model of what was recorded, and the axis's loop for it.
+void IdentifyAxis(const MachineConfig& machine, Watchman& watchman, const Options& options) {
   IdentificationJob job;
   job.stated = diagnosis::ToStatedAxis(machine, options.axis);
   job.model = machine.axes.at(options.axis).model;
@@ -263,6 +266,32 @@ int RunCommission(const Options& options) {
   const ModelConfig model = IdentifyAndReport(job);
   FindAndWriteLoop(machine, options.axis, model,
                    options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
+}
+
+int RunCommission(const Options& options) {
+  ControlClient client = ConnectToDaemon(options.socket);
+  MachineConfig machine = AskForMachine(client);
+  const json status = Status(client);
+  CheckBeforehand(machine, status, options);
+  const CommissionPlan plan = PlanFor(machine, status, options);
+  std::cout << Describe(plan);
+  if (!options.drive) Advise(machine);
+  if (!Confirmed(options)) {
+    std::cout << "nothing was moved\n";
+    return kExitFailed;
+  }
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  const AxisConfig& axis = machine.axes.at(options.axis);
+  const RecordedTorque torque{ModeFor(machine.machine.controller, axis.drive) == DriveMode::kCsp,
+                              static_cast<std::size_t>(axis.drive.delay_cycles), 1e-3 * axis.drive.lag_ms};
+  Watchman watchman(client, NumberOf(status, options.axis), machine.machine.cycle_us * 1e-6, torque, plan,
+                    ToSi(axis.model.mechanics).radius_m_rad);
+  MoveAxis(client, watchman, plan);
+  if (options.drive)
+    return ReportOnDrive(machine, options.axis, watchman.drive_samples(),
+                         options.out.empty() ? options.axis + "_drive.json" : options.out);
+  IdentifyAxis(machine, watchman, options);
   return kExitDone;
 }
 
@@ -284,6 +313,10 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
   sub->add_option("--out", options->out, "Model file to write (default: NAME_model.yaml)");
   sub->add_option("--loop", options->loop, "Loop file to write (default: NAME_loop.yaml)");
   sub->add_option("--report", options->report, "Directory of the report (default: NAME_commissioning)");
+  sub->add_flag(
+      "--drive", options->drive,
+      "Measure the loop that the drive closes (csp), and what it can do, instead of the axis; --out "
+      "is then NAME_drive.json");
   sub->add_flag("--yes", options->yes, "Do not ask before the axis is enabled and moves");
   sub->footer(
       "Enables the machine, runs its motions one after the other, and takes the torque off at the end. An "

@@ -61,6 +61,7 @@ struct Asked {
 bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOptions& asked,
               std::string& text) {
   const auto& [name, key, axis] = loop;
+  const ModelConfig& model = machine.axes.at(name).model;
   const double period_s = 1e-6 * machine.machine.cycle_us;
   std::cout << Head(name, axis) << std::flush;
   LoopSearchOptions options;
@@ -68,16 +69,15 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
   if (asked.evaluations > 0)
     options.evaluations_per_run = options.evaluations_per_refinement = asked.evaluations;
   // Not from what the file has: the same model gives the same loop.
-  if (asked.catalogue) options.members = StartSet(axis, DoubtOf(config.model));
+  if (asked.catalogue) options.members = StartSet(axis, DoubtOf(model));
   FoundLoop found = SearchLoop(axis, period_s, options);
   Rounding rounding;
   found.tuning.Visit(rounding);
   LoopReport report = ReportOn(axis, found.tuning, period_s);
   if (asked.catalogue) report.verdict = found.verdict;
   std::cout << Describe(report);
-  const std::string wrong = asked.catalogue
-                                ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(config.model))
-                                : WhatIsWrong(report.verdict);
+  const std::string wrong = asked.catalogue ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(model))
+                                            : WhatIsWrong(report.verdict);
   if (!wrong.empty()) {
     std::cout << "  NO stable loop in torque mode within the limits was found; the best of "
               << found.evaluations << ": " << wrong << "\n";
