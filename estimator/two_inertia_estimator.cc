@@ -222,9 +222,6 @@ double TwoInertiaEstimator::Wound_N(std::size_t point) const noexcept {
 }
 
 // Means over the period that begins at a point.
-double TwoInertiaEstimator::Heavier_N(std::size_t period) const noexcept {
-  return 0.5 * (At(period).heavier_N + At(period + 1).heavier_N);
-}
 double TwoInertiaEstimator::Expected_N(std::size_t period) const noexcept {
   return 0.5 * (At(period).table_N + At(period + 1).table_N);
 }
@@ -377,15 +374,20 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
   const auto beyond_m = [&](std::size_t j, double wound_N) {
     return scale_ ? scale_->Beyond_m(along_.position_m(j), wound_N) : extra_m_N * wound_N;
   };
+  const bool neutral = known_.neutral();
   for (std::size_t j = 0; j < size; ++j) {
+    const Node& here = At(j);
+    const Node& next = At(j + 1);
     const double v = along_.velocity_m_s(j);
-    const double node_N = At(j).table_N + sigma2 * v;
+    const double node_N = here.table_N + sigma2 * v;
     // A drive that closes the loop feeds its mass forward, whatever it is.
-    const double drives_N = setup_.reported_torque ? Heavier_N(j) : 0.0;
-    const double middle_N =
-        Expected_N(j) + 0.5 * sigma2 * (v + along_.velocity_m_s(j + 1)) - Motor_N(j) - drives_N;
+    const double drives_N = setup_.reported_torque ? 0.5 * (here.heavier_N + next.heavier_N) : 0.0;
+    const double middle_N = 0.5 * (here.table_N + next.table_N) +
+                            0.5 * sigma2 * (v + along_.velocity_m_s(j + 1)) -
+                            0.5 * (here.motor_N + next.motor_N) - drives_N;
     const double wound_N = node_N + lead_N + setup_.mechanics.table_mass_kg * reference[j].acceleration_m_s2;
-    out[j] = {node_N + lead_N, middle_N, known_.Lead_m(along_.position_m(j)) + beyond_m(j, wound_N)};
+    const double led_m = neutral ? 0.0 : known_.Lead_m(along_.position_m(j));
+    out[j] = {node_N + lead_N, middle_N, led_m + beyond_m(j, wound_N)};
   }
 }
 

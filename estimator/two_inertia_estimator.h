@@ -78,7 +78,6 @@ class TwoInertiaEstimator {
   [[nodiscard]] const Node& At(std::size_t point) const noexcept;
   [[nodiscard]] PeriodForces Forces(std::size_t period, bool ahead) const noexcept;
   [[nodiscard]] double WindsUp_N(double unforeseen_N) const noexcept;
-  [[nodiscard]] double Heavier_N(std::size_t period) const noexcept;
   [[nodiscard]] double Expected_N(std::size_t period) const noexcept;
   [[nodiscard]] double Motor_N(std::size_t period) const noexcept;
   [[nodiscard]] double Wound_N(std::size_t point) const noexcept;

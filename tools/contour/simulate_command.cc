@@ -10,7 +10,6 @@
 #include "core/exit_status.h"
 #include "daemon/make_log_header.h"
 #include "daemon/program/program.h"
-#include "design/loop_choice.h"
 #include "tools/machine/load_emulated_machine.h"
 #include "tools/simulate/simulation_run.h"
 
@@ -31,11 +30,9 @@ struct Options {
 int RunSimulate(const Options& options) {
   SimulationRequest request;
   std::vector<std::string> set = options.set;
-  // Named wrongly, it is for the lines below to say.
-  if (ControllerName named{}; FromName(options.controller, named))
-    set.push_back("machine.controller=" + options.controller);
-  for (std::string& loop : LoopsThatAreMissing(LoadMaybeEmulatedMachine(options.config, set).machine))
-    set.push_back(std::move(loop));
+  // The file's own controller judges what the file allows: in a simulation a softer rival hurts nobody. But
+  // `full` may need loops that the file has no use for.
+  if (options.controller == Name(ControllerName::kFull)) set.push_back("machine.controller=full");
   request.file = LoadEmulatedMachine(options.config, set);
   if (options.seed) request.file.emulator.seed = *options.seed;
   request.controller = request.file.machine.machine.controller;

@@ -35,7 +35,7 @@ TEST(ExtendedFileTest, AMachineFileKeepsEveryLineAndComment) {
   EXPECT_FALSE(machine.axes.at("y").model.extensions.cogging);
   // Without the new block it is the old file.
   const std::size_t from = text.find("      extensions:");
-  const std::size_t to = text.find("\n\n  y:", from);
+  const std::size_t to = text.find("\n    loop:", from);
   ASSERT_NE(from, std::string::npos);
   ASSERT_NE(to, std::string::npos);
   std::string without = text;
