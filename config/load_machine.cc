@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "config/config_error.h"
+#include "config/friction_choice.h"
 #include "config/machine_checks.h"
 #include "config/yaml_reader.h"
 
@@ -91,6 +92,9 @@ MachineConfig ReadMachine(const YamlValue& tree, std::vector<std::string>& error
   const std::size_t before = errors.size();
   ReadYaml(without_emulator, config, "", errors);
   if (errors.size() != before) return config;
+  const YamlEntry* control = without_emulator.Find("control");
+  if (control == nullptr || control->value.Find("friction") == nullptr)
+    config.control.friction = ChooseFriction(config);
   for (const ConfigProblem& p : Check(config))
     errors.push_back(WhereIs(without_emulator, p.key) + ": " + p.key + ": " + p.message);
   return config;

@@ -195,5 +195,24 @@ TEST(LoadEmulatedMachine, NeedsTheSection) {
   EXPECT_FALSE(LoadMaybeEmulatedMachine(path).has_emulator);
 }
 
+TEST(LoadMachine, FrictionIsKnownByWhatTheScrewsModeAllowsUnlessTheFileSays) {
+  const std::string file = std::string(SOURCE_DIR) + "/config/xy_emulated.yaml";
+  const auto friction = [&](std::vector<std::string> set) {
+    set.insert(set.end(), {"axes.x.limits.safe_travel_mm=4", "axes.y.limits.safe_travel_mm=4"});
+    for (const char* axis : {"x", "y"})
+      set.push_back(std::string("axes.") + axis +
+                    ".loop_limits={peak_as_stated: 10, peak_far_off: 10, peak_late: 10}");
+    return LoadMachine(file, set).control.friction;
+  };
+  const std::string csp_x = "axes.x.drive.mode=csp", csp_y = "axes.y.drive.mode=csp";
+  const std::string heavy = "axes.x.model.table_mass_kg=30", soft = "axes.x.model.screw_stiffness_N_um=4";
+  EXPECT_EQ(friction({}), FrictionKind::kSrukf) << "326 Hz";
+  EXPECT_EQ(friction({heavy}), FrictionKind::kLinear) << "216 Hz";
+  EXPECT_EQ(friction({heavy, "control.friction=srukf"}), FrictionKind::kSrukf);
+  EXPECT_EQ(friction({heavy, csp_x, csp_y}), FrictionKind::kSrukf);
+  EXPECT_EQ(friction({soft, csp_x, csp_y}), FrictionKind::kLinear) << "100 Hz";
+  EXPECT_EQ(friction({"control.friction=linear"}), FrictionKind::kLinear);
+}
+
 }  // namespace
 }  // namespace contour
