@@ -52,15 +52,19 @@ def main():
             assert status()["state"] == "Idle", Path(f"{scratch}/daemon.txt").read_text(encoding="utf-8")
 
             commission = [contour, "commission", "--axis", "x", "--socket", socket, "--out", f"{scratch}/model.yaml",
-                          "--report", f"{scratch}/report"]
+                          "--report", f"{scratch}/report", "--loop", f"{scratch}/loop.yaml"]
             refused = subprocess.run(commission, stdin=subprocess.DEVNULL, capture_output=True, text=True)
             assert refused.returncode == 2 and "--yes" in refused.stderr, refused
             assert status()["state"] == "Idle"
             refused = subprocess.run([*commission, "--yes", "--travel_mm", "1000"], capture_output=True, text=True)
             assert refused.returncode == 2 and "--travel_mm: found 1000" in refused.stderr, refused
 
-            done = subprocess.run([*commission, "--yes"], capture_output=True, text=True)
-            print(done.stdout)
+            # In lock-step the machine goes as fast as it can: a busy host may lose rows, which is refused.
+            for _ in range(5):
+                done = subprocess.run([*commission, "--yes"], capture_output=True, text=True)
+                print(done.stdout)
+                if "cycles are missing" not in done.stderr:
+                    break
             assert done.returncode == 0, (done.returncode, done.stderr, done.stdout)
             for _ in range(100):
                 if status()["state"] == "Idle":
