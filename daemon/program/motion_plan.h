@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/axis.h"
+#include "daemon/program/path_walk.h"
 #include "daemon/program/program.h"
 
 namespace contour {
@@ -65,6 +66,12 @@ class MotionPlan {
 
   /// Does this axis do anything?
   [[nodiscard]] virtual bool Moves(std::size_t axis) const = 0;
+
+  /// Is the end later than this? Long programs are planned no further than needed to know.
+  [[nodiscard]] virtual bool GoesOnAfter(double time_s) const { return time_s < duration_s(); }
+
+  /// A way along it whose feed may be changed, which keeps the plan alive; null: its feed is fixed.
+  [[nodiscard]] virtual std::unique_ptr<PathWalk> Walk() const { return nullptr; }
 };
 
 /// Places a program where the machine stands and checks it against the limits: position range, velocity,

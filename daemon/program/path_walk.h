@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+
+#include "core/axis.h"
+
+namespace contour {
+
+/// Goes along a plan whose feed may change on the way: from rest at its start to rest at its end. Where it is
+/// depends on the time since it began and on the changes made so far, and on nothing else, so that the same
+/// calls give the same points. Velocity, acceleration and jerk of every axis stay within the plan's limits at
+/// every instant, also while the feed changes, stops and comes back. Plans ahead when it is asked for a time;
+/// not for the real-time thread, not for two threads at once.
+///
+///   auto walk = plan->Walk();               // null: a plan whose feed is fixed (YAML shapes)
+///   walk->At(t, axes);                      // points, in any order
+///   double from_s = walk->ChangeFeed(t, 0); // hold: points up to from_s stay what they were
+///   double rest_s = walk->rests_from_s();   // when it will be at rest, on the path
+///   walk->ChangeFeed(rest_s + pause_s, 1);  // resume: it stands until then
+///
+/// A change concerns everything after `time_s`: points handed out for later times are void and have to be
+/// asked for again. So whoever keeps a queue changes the feed from the oldest point that can still be taken
+/// back.
+class PathWalk {
+ public:
+  virtual ~PathWalk() = default;
+
+  /// Reference at a time since the start, held at the end, or where it rests.
+  virtual void At(double time_s, PerAxis<ReferencePoint>& axes) = 0;
+
+  /// Is the end of the program later than this? Never false while it rests on the way.
+  [[nodiscard]] virtual bool GoesOnAfter(double time_s) = 0;
+
+  /// Feed times `scale` (0 to 2) as soon after `time_s` as the axes' limits allow; 0: to rest on the path, as
+  /// soon as they allow. Rapids are scaled down, but never up. Returns the time up to which nothing has
+  /// changed, a few milliseconds after `time_s`. While it comes to rest, a new scale above 0 counts from
+  /// where it rests, if that is later than `time_s`.
+  virtual double ChangeFeed(double time_s, double scale) = 0;
+
+  /// From when on it rests on the way, by a ChangeFeed to 0; infinite: it does not.
+  [[nodiscard]] virtual double rests_from_s() const = 0;
+
+  /// Line of the program under way at a time; 0: none.
+  [[nodiscard]] virtual int Line(double time_s) = 0;
+};
+
+}  // namespace contour
