@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace contour {
@@ -35,18 +36,93 @@ bool Covers(const CurvePiece& arc, double angle_rad) {
   return wrapped <= std::abs(arc.sweep_rad);
 }
 
+/// How far the axes beside the plane are from the start along the helix's axis, and the square of their
+/// distance from it. `direction` is zero in a flat arc.
+struct Beside {
+  double along_m = 0.0;
+  double squared_m2 = 0.0;
+};
+
+Beside BesidePlane(const CurvePiece& arc, const PerAxis<double>& point) {
+  Beside beside;
+  double slope_squared = 0.0, projected = 0.0;
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    if (i == arc.axis[0] || i == arc.axis[1]) continue;
+    const double away = point[i] - arc.start_m[i];
+    beside.squared_m2 += away * away;
+    projected += away * arc.direction[i];
+    slope_squared += arc.direction[i] * arc.direction[i];
+  }
+  if (slope_squared == 0.0) return beside;
+  beside.along_m = projected / std::sqrt(slope_squared);
+  beside.squared_m2 = std::max(0.0, beside.squared_m2 - beside.along_m * beside.along_m);
+  return beside;
+}
+
+/// Square of the distance from a helix at the angle phi since its start, with its first two derivatives.
+struct HelixDistance {
+  double radius_m, point_radius_m, point_rad, rise_m_rad, along_m;
+  [[nodiscard]] double Squared(double phi) const {
+    const double up = along_m - rise_m_rad * phi;
+    return radius_m * radius_m + point_radius_m * point_radius_m -
+           2.0 * radius_m * point_radius_m * std::cos(phi - point_rad) + up * up;
+  }
+  [[nodiscard]] double NewtonStep(double phi) const {
+    const double moment = radius_m * point_radius_m;
+    const double slope = moment * std::sin(phi - point_rad) - rise_m_rad * (along_m - rise_m_rad * phi);
+    const double bend = moment * std::cos(phi - point_rad) + rise_m_rad * rise_m_rad;
+    return -slope / std::max(bend, 0.1 * (moment + rise_m_rad * rise_m_rad));
+  }
+  /// Least square near phi, within 0 to turn.
+  [[nodiscard]] double LeastNear(double phi, double turn_rad) const {
+    constexpr int kNewtonSteps = 20;
+    constexpr double kThere_rad = 1e-12;
+    double least = Squared(phi);
+    for (int k = 0; k < kNewtonSteps; ++k) {
+      const double next = std::clamp(phi + NewtonStep(phi), 0.0, turn_rad);
+      least = std::min(least, Squared(next));
+      if (std::abs(next - phi) < kThere_rad) break;
+      phi = next;
+    }
+    return least;
+  }
+};
+
+/// The nearest point lies within a turn of where the helix is as high as the point, or of the end next to
+/// that: tried from every start that is lower than its neighbours.
+double DistanceToHelix_m(const CurvePiece& arc, const PerAxis<double>& point) {
+  constexpr int kStarts = 24;
+  const double dx = point[arc.axis[0]] - arc.centre_m[0], dy = point[arc.axis[1]] - arc.centre_m[1];
+  const double turn = std::abs(arc.sweep_rad), sense = arc.sweep_rad < 0.0 ? -1.0 : 1.0;
+  const double rise = std::sqrt(std::max(0.0, 1.0 - arc.round_share * arc.round_share)) * arc.length_m / turn;
+  const Beside beside = BesidePlane(arc, point);
+  const HelixDistance distance{arc.radius_m, std::hypot(dx, dy), sense * (std::atan2(dy, dx) - arc.start_rad),
+                               rise, beside.along_m};
+  const double level = std::clamp(beside.along_m / rise, 0.0, turn);
+  const auto start = [&](int k) {
+    return std::clamp(level + 3.0 * kTurn_rad * (static_cast<double>(k) / kStarts - 0.5), 0.0, turn);
+  };
+  double best = std::min(distance.Squared(0.0), distance.Squared(turn));
+  double before = std::numeric_limits<double>::infinity(), here = distance.Squared(start(0));
+  for (int k = 0; k <= kStarts; ++k) {
+    const double after =
+        k == kStarts ? std::numeric_limits<double>::infinity() : distance.Squared(start(k + 1));
+    if (here <= before && here <= after) best = std::min(best, distance.LeastNear(start(k), turn));
+    before = here;
+    here = after;
+  }
+  return std::sqrt(std::max(0.0, best) + beside.squared_m2);
+}
+
 double DistanceToArc_m(const CurvePiece& arc, const PerAxis<double>& point) {
+  if (arc.round_share < 1.0) return DistanceToHelix_m(arc, point);
   const double dx = point[arc.axis[0]] - arc.centre_m[0];
   const double dy = point[arc.axis[1]] - arc.centre_m[1];
   if (!Covers(arc, std::atan2(dy, dx))) {
     return std::sqrt(std::min(SquaredDistance(point, arc.start_m),
                               SquaredDistance(point, PointAt(arc, arc.length_m).position_m)));
   }
-  double squared = std::pow(std::hypot(dx, dy) - arc.radius_m, 2);
-  for (std::size_t i = 0; i < point.size(); ++i) {
-    if (i != arc.axis[0] && i != arc.axis[1]) squared += std::pow(point[i] - arc.start_m[i], 2);
-  }
-  return std::sqrt(squared);
+  return std::sqrt(std::pow(std::hypot(dx, dy) - arc.radius_m, 2) + BesidePlane(arc, point).squared_m2);
 }
 
 double DistanceToSine_m(const CurvePiece& sine, const PerAxis<double>& point) {
@@ -58,15 +134,21 @@ double DistanceToSine_m(const CurvePiece& sine, const PerAxis<double>& point) {
 
 CurvePoint PointOnArc(const CurvePiece& arc, double s_m, CurvePoint p) {
   const double sense = arc.sweep_rad < 0.0 ? -1.0 : 1.0;
-  const double angle = arc.start_rad + sense * s_m / arc.radius_m;
+  const double share = arc.round_share;
+  const double angle = arc.start_rad + sense * share * s_m / arc.radius_m;
   const double c = std::cos(angle);
   const double s = std::sin(angle);
   p.position_m[arc.axis[0]] = arc.centre_m[0] + arc.radius_m * c;
   p.position_m[arc.axis[1]] = arc.centre_m[1] + arc.radius_m * s;
-  p.tangent[arc.axis[0]] = -sense * s;
-  p.tangent[arc.axis[1]] = sense * c;
-  p.curvature_1_m[arc.axis[0]] = -c / arc.radius_m;
-  p.curvature_1_m[arc.axis[1]] = -s / arc.radius_m;
+  p.tangent[arc.axis[0]] = -sense * share * s;
+  p.tangent[arc.axis[1]] = sense * share * c;
+  p.curvature_1_m[arc.axis[0]] = -share * share * c / arc.radius_m;
+  p.curvature_1_m[arc.axis[1]] = -share * share * s / arc.radius_m;
+  for (std::size_t i = 0; i < p.position_m.size() && share < 1.0; ++i) {
+    if (i == arc.axis[0] || i == arc.axis[1]) continue;
+    p.position_m[i] += s_m * arc.direction[i];
+    p.tangent[i] = arc.direction[i];
+  }
   return p;
 }
 
@@ -101,6 +183,21 @@ CurvePiece ArcPiece(const PerAxis<double>& from_m, std::array<std::size_t, 2> pl
   piece.start_rad = std::atan2(dy, dx);
   piece.sweep_rad = sweep_rad;
   piece.length_m = piece.radius_m * std::abs(sweep_rad);
+  return piece;
+}
+
+CurvePiece HelixPiece(const PerAxis<double>& from_m, const PerAxis<double>& to_m,
+                      std::array<std::size_t, 2> plane, std::array<double, 2> centre_m, double sweep_rad) {
+  CurvePiece piece = ArcPiece(from_m, plane, centre_m, sweep_rad);
+  const double round_m = piece.length_m;
+  double squared = 0.0;
+  for (std::size_t i = 0; i < from_m.size(); ++i)
+    if (i != plane[0] && i != plane[1]) squared += (to_m[i] - from_m[i]) * (to_m[i] - from_m[i]);
+  if (squared == 0.0) return piece;
+  piece.length_m = std::sqrt(round_m * round_m + squared);
+  piece.round_share = round_m / piece.length_m;
+  for (std::size_t i = 0; i < from_m.size(); ++i)
+    if (i != plane[0] && i != plane[1]) piece.direction[i] = (to_m[i] - from_m[i]) / piece.length_m;
   return piece;
 }
 

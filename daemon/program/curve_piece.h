@@ -20,12 +20,13 @@ struct CurvePiece {
   Kind kind = Kind::kPoint;
   PerAxis<double> start_m;
   double length_m = 0.0;
-  PerAxis<double> direction;          ///< line: unit vector
+  PerAxis<double> direction;          ///< line: unit vector; helix: of the axes beside its plane, per s
   std::array<std::size_t, 2> axis{};  ///< arc: its plane; sine: [0] is its axis
   std::array<double, 2> centre_m{};   ///< arc
   double radius_m = 0.0;              ///< arc; sine: amplitude
   double start_rad = 0.0;             ///< arc: angle of the start point about the centre
   double sweep_rad = 0.0;             ///< arc: signed, positive counter-clockwise
+  double round_share = 1.0;           ///< arc: way in its plane per s; below 1 in a helix
 };
 
 CurvePiece PointPiece(const PerAxis<double>& at_m);
@@ -33,6 +34,10 @@ CurvePiece LinePiece(const PerAxis<double>& from_m, const PerAxis<double>& to_m)
 /// Starts at `from`; its radius is the distance of `from` to the centre.
 CurvePiece ArcPiece(const PerAxis<double>& from_m, std::array<std::size_t, 2> plane,
                     std::array<double, 2> centre_m, double sweep_rad);
+/// An arc whose other axes move evenly from start to end: a helix. In the plane the arc decides where it
+/// ends.
+CurvePiece HelixPiece(const PerAxis<double>& from_m, const PerAxis<double>& to_m,
+                      std::array<std::size_t, 2> plane, std::array<double, 2> centre_m, double sweep_rad);
 /// p = start + amplitude sin(s / amplitude) on one axis.
 CurvePiece SinePiece(const PerAxis<double>& middle_m, std::size_t axis, double amplitude_m, int cycles);
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -7,8 +9,19 @@
 
 namespace contour {
 
-/// Reads RS-274 G-code as far as docs/programs.md lists it. `name` stands for the file in messages.
-/// Throws ProgramError, with the line, for anything else.
-GcodeMoves ParseGcode(std::string_view text, const std::string& name);
+struct GcodeSettings {
+  bool block_delete = false;  ///< leave lines out that begin with a slash
+  /// Where program zero is in the machine's coordinates, for X Y Z U V W; nothing: the machine is not
+  /// referenced, and G28, G30 and G53 are refused.
+  std::optional<std::array<double, 6>> zero_m;
+};
+
+/// Reads RS-274 G-code as docs/programs.md lists it. `name` stands for the file in messages.
+/// Throws ProgramError, with line and column, for anything else.
+GcodeMoves ParseGcode(std::string_view text, const std::string& name, const GcodeSettings& settings = {});
+
+/// The same as canonical moves, one a line: what the program asks for, whatever its modal words. Millimetres
+/// from program zero.
+std::string CanonicalText(std::string_view text, const std::string& name, const GcodeSettings& settings = {});
 
 }  // namespace contour

@@ -24,6 +24,15 @@ std::string Number(double value) {
                      " is beyond the limit of " + Number(limit) + " " + unit);
 }
 
+bool InPlane(const CurvePiece& curve, std::size_t axis) {
+  return axis == curve.axis[0] || axis == curve.axis[1];
+}
+
+/// Of the curve in its plane, per s: a helix bends less than its circle.
+double Curvature_1_m(const CurvePiece& curve) {
+  return curve.radius_m > 0.0 ? curve.round_share * curve.round_share / curve.radius_m : 0.0;
+}
+
 /// Largest share of the speed along the piece that one axis takes.
 double Share(const CurvePiece& curve, std::size_t axis) {
   switch (curve.kind) {
@@ -32,8 +41,9 @@ double Share(const CurvePiece& curve, std::size_t axis) {
     case CurvePiece::Kind::kLine:
       return std::abs(curve.direction[axis]);
     case CurvePiece::Kind::kArc:
+      return InPlane(curve, axis) ? curve.round_share : std::abs(curve.direction[axis]);
     case CurvePiece::Kind::kSine:
-      return axis == curve.axis[0] || axis == curve.axis[1] ? 1.0 : 0.0;
+      return InPlane(curve, axis) ? 1.0 : 0.0;
   }
   return 0.0;
 }
@@ -59,7 +69,7 @@ void CheckPiece(const PieceRequest& request, const PerAxis<PlanLimits>& limits) 
   CheckRange(request, limits);
   const CurvePiece& curve = request.curve;
   const double v = request.speed_m_s;
-  const double curvature = curve.radius_m > 0.0 ? 1.0 / curve.radius_m : 0.0;
+  const double curvature = Curvature_1_m(curve);
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const double share = Share(curve, i);
     if (share == 0.0) continue;
@@ -68,12 +78,13 @@ void CheckPiece(const PieceRequest& request, const PerAxis<PlanLimits>& limits) 
     if (v * share > l.velocity_m_s * allowed) {
       Refuse(request, l.axis, "velocity", v * share * 1e3, l.velocity_m_s * 1e3, "mm/s");
     }
+    if (curvature == 0.0 || !InPlane(curve, i)) continue;
     const double centripetal = v * v * curvature;
     if (centripetal > l.acceleration_m_s2 * allowed) {
       Refuse(request, l.axis, "acceleration of the curve", centripetal * 1e3, l.acceleration_m_s2 * 1e3,
              "mm/s^2");
     }
-    const double jerk = centripetal * v * curvature;
+    const double jerk = centripetal * v * curve.round_share / curve.radius_m;
     if (jerk > Jerk(l) * allowed) {
       Refuse(request, l.axis, "jerk of the curve", jerk * 1e3, Jerk(l) * 1e3, "mm/s^3");
     }
@@ -98,8 +109,9 @@ RampLimits RampLimitsOf(const PieceRequest& request, const PerAxis<PlanLimits>& 
     acceleration = std::min(acceleration, limits[i].acceleration_m_s2 / share);
     jerk = std::min(jerk, Jerk(limits[i]) / share);
   }
-  const double radius = request.curve.radius_m;
-  if (radius > 0.0) {
+  const double curvature = Curvature_1_m(request.curve);
+  if (curvature > 0.0) {
+    const double radius = 1.0 / curvature;
     // With a_t = dv/dt, the acceleration is (a_t, v^2/r) along and across, the jerk (da_t/dt - v^3/r^2,
     // 3 v a_t / r). Each of the two parts of the jerk gets what makes their sum of squares fit.
     const double v = request.speed_m_s;

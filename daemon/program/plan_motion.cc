@@ -33,14 +33,17 @@ std::string AxisList(const Place& place) {
   return list;
 }
 
-std::size_t Find(const Place& place, const std::string& axis) {
+std::size_t Find(const Place& place, const std::string& axis, const std::string& where) {
   const auto found = std::find_if(place.limits.begin(), place.limits.end(),
                                   [&](const PlanLimits& l) { return l.axis == axis; });
   if (found == place.limits.end()) {
-    throw ProgramError(place.program.name + ": axis " + axis + ": the machine has no such axis, but " +
-                       AxisList(place));
+    throw ProgramError(where + ": axis " + axis + ": the machine has no such axis, but " + AxisList(place));
   }
   return static_cast<std::size_t>(found - place.limits.begin());
+}
+
+std::size_t Find(const Place& place, const std::string& axis) {
+  return Find(place, axis, place.program.name);
 }
 
 Plane FindPlane(const Place& place, const PlaneAxes& axes) {
@@ -245,10 +248,18 @@ std::shared_ptr<const MotionPlan> Plan(const TogetherShape& shape, const Place& 
   return std::make_shared<TogetherPlan>(std::move(plans), place.limits, place.program.name);
 }
 
+CurvePiece Helix(const Place& place, const PerAxis<double>& at, const PerAxis<double>& target,
+                 const Plane& plane, const GcodeMove& move) {
+  return HelixPiece(at, target, plane,
+                    {place.start_m[plane[0]] + move.centre_m[0], place.start_m[plane[1]] + move.centre_m[1]},
+                    move.sweep_rad);
+}
+
 std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& place) {
   std::vector<std::size_t> axis;
-  for (const char letter : program.letters) {
-    axis.push_back(Find(place, std::string(1, static_cast<char>(letter - 'A' + 'a'))));
+  for (std::size_t k = 0; k < program.letters.size(); ++k) {
+    const std::string where = place.program.name + ":" + std::to_string(program.letter_lines[k]);
+    axis.push_back(Find(place, std::string(1, static_cast<char>(program.letters[k] - 'A' + 'a')), where));
   }
   std::vector<PieceRequest> requests;
   PerAxis<double> at = place.start_m;
@@ -270,10 +281,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
         request.curve = LinePiece(at, target);
         break;
       case GcodeMove::Kind::kArc:
-        request.curve =
-            ArcPiece(at, {axis[0], axis[1]},
-                     {place.start_m[axis[0]] + move.centre_m[0], place.start_m[axis[1]] + move.centre_m[1]},
-                     move.sweep_rad);
+        request.curve = Helix(place, at, target, {axis[move.plane[0]], axis[move.plane[1]]}, move);
         break;
     }
     requests.push_back(request);

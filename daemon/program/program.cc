@@ -229,17 +229,22 @@ Program ParseProgram(std::string_view text, const std::string& name, ProgramForm
 
 ProgramFormat FormatOf(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
-  const bool gcode = extension == ".ngc" || extension == ".nc" || extension == ".gcode";
+  const bool gcode =
+      extension == ".ngc" || extension == ".nc" || extension == ".gcode" || extension == ".tap";
   return gcode ? ProgramFormat::kGcode : ProgramFormat::kYaml;
 }
 
-Program LoadProgram(const std::filesystem::path& file) {
+std::string ReadProgramText(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::stringstream text;
   if (std::filesystem::is_directory(file) || !in || !(text << in.rdbuf())) {
     throw ProgramError(file.string() + ": cannot be read");
   }
-  return ParseProgram(text.str(), file.string(), FormatOf(file));
+  return text.str();
+}
+
+Program LoadProgram(const std::filesystem::path& file) {
+  return ParseProgram(ReadProgramText(file), file.string(), FormatOf(file));
 }
 
 }  // namespace contour

@@ -34,10 +34,13 @@ struct Program {
 /// Reads a program from text; `name` stands for the file in messages. Throws ProgramError.
 Program ParseProgram(std::string_view text, const std::string& name, ProgramFormat format);
 
+/// A file's text. Throws ProgramError.
+std::string ReadProgramText(const std::filesystem::path& file);
+
 /// Reads a program from a file, in the format of its name. Throws ProgramError.
 Program LoadProgram(const std::filesystem::path& file);
 
-/// G-code when the name ends in .ngc, .nc or .gcode, YAML otherwise.
+/// G-code when the name ends in .ngc, .nc, .gcode or .tap, YAML otherwise.
 ProgramFormat FormatOf(const std::filesystem::path& file);
 
 }  // namespace contour

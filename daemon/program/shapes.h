@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -270,7 +272,8 @@ struct TogetherShape {
   std::vector<Program> parts;
 };
 
-/// One move of a G-code program, in metres relative to where the program began.
+/// One move of a G-code program, in metres from program zero. It carries all that it needs: whoever begins in
+/// the middle of a program needs the end of the move before and nothing else.
 struct GcodeMove {
   enum class Kind { kRapid, kLine, kArc, kDwell };
   enum class Corner {
@@ -280,19 +283,34 @@ struct GcodeMove {
     kBlended,     ///< G64 P: the next move begins before this one has ended, within a tolerance
   };
   Kind kind = Kind::kLine;
-  int line = 0;                             ///< of the source text
-  std::vector<double> target_m;             ///< per letter of GcodeMoves::letters
-  std::array<double, 2> centre_m = {0, 0};  ///< arc: in X and Y
-  double sweep_rad = 0.0;                   ///< arc: positive counter-clockwise, a full circle is 2 pi
-  double feed_m_s = 0.0;                    ///< line, arc: speed along the path
+  Corner corner = Corner::kContinuous;         ///< what happens at the end of the move
+  bool in_sub = false;                         ///< its line is in a sub, and may be run more than once
+  std::array<std::uint8_t, 2> plane = {0, 1};  ///< arc: indices into GcodeMoves::letters
+  int line = 0;                                ///< of the source text
+  std::array<double, 6> target_m{};            ///< per letter of GcodeMoves::letters
+  std::array<double, 2> centre_m = {0, 0};     ///< arc: in its plane; other axes move along evenly
+  double sweep_rad =
+      0.0;  ///< arc: positive from the first axis of the plane to the second; a full circle is 2 pi
+  double feed_m_s = 0.0;  ///< line, arc: speed along the path, of all axes
   double dwell_s = 0.0;
-  Corner corner = Corner::kContinuous;  ///< what happens at the end of the move
-  double tolerance_m = 0.0;             ///< kBlended: largest distance from the programmed path
+  double tolerance_m = 0.0;  ///< kBlended: largest distance from the programmed path
+};
+
+/// What a program asks for besides motion: M0 and M1 (hold), M3 to M9, S and T.
+struct GcodeEvent {
+  std::size_t before_move = 0;  ///< index of the move that it precedes
+  int line = 0;
+  char letter = 'M';   ///< M, S or T
+  int code = 0;        ///< of M
+  double value = 0.0;  ///< of S and T
+  [[nodiscard]] bool holds() const { return letter == 'M' && code <= 1; }
 };
 
 struct GcodeMoves {
-  std::string letters;  ///< axis letters in use, X and Y always first; letter X is the machine's axis `x`
+  std::string letters;            ///< axis letters in use; letter X is the machine's axis `x`
+  std::vector<int> letter_lines;  ///< where each of them is used first
   std::vector<GcodeMove> moves;
+  std::vector<GcodeEvent> events;  ///< in their order; the move before a hold ends in a stop
 };
 
 }  // namespace contour

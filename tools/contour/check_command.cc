@@ -11,6 +11,8 @@
 #include "config/key_table.h"
 #include "config/load_machine.h"
 #include "config/yaml_tree.h"
+#include "daemon/program/gcode_parser.h"
+#include "daemon/program/program.h"
 #include "tools/contour/check_report.h"
 #include "tools/contour/loop_section.h"
 #include "tools/machine/load_emulated_machine.h"
@@ -22,6 +24,8 @@ struct Options {
   std::string file;
   bool describe = false;
   bool markdown = false;
+  std::string canon;
+  bool block_delete = false;
   std::vector<std::string> set;
 };
 
@@ -62,7 +66,15 @@ std::vector<std::string> WithPlaces(const Options& options, const std::vector<st
   return placed;
 }
 
+int PrintCanonicalMoves(const Options& options) {
+  GcodeSettings settings;
+  settings.block_delete = options.block_delete;
+  std::cout << CanonicalText(ReadProgramText(options.canon), options.canon, settings);
+  return kExitDone;
+}
+
 int RunCheck(const Options& options) {
+  if (!options.canon.empty()) return PrintCanonicalMoves(options);
   if (options.describe || options.markdown) {
     std::cout << (options.markdown ? kReferenceHead + MarkdownReference(AllKeys()) : TextTable(AllKeys()));
     if (options.file.empty()) return kExitDone;
@@ -84,13 +96,19 @@ void AddCheckCommand(CLI::App& app, Action& action) {
   sub->add_flag("--describe", options->describe, "Print the reference table of all keys");
   sub->add_flag("--markdown", options->markdown,
                 "Print it as Markdown, as docs/configuration_keys.md holds it");
+  sub->add_option("--canon", options->canon,
+                  "Print what a G-code program asks for, move by move, as LinuxCNC's rs274 does")
+      ->type_name("PROGRAM");
+  sub->add_flag("--block-delete", options->block_delete,
+                "With --canon: leave lines out that begin with a slash");
   sub->add_option("--set", options->set, "Put KEY=VALUE on top of the file; any number of times")
       ->type_name("KEY=VALUE")
       ->expected(1)
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->callback([options, file, &action] {
-    if (file->count() == 0 && !options->describe && !options->markdown) throw CLI::RequiredError("file");
+    const bool alone = options->describe || options->markdown || !options->canon.empty();
+    if (file->count() == 0 && !alone) throw CLI::RequiredError("file");
     action = [options] { return RunCheck(*options); };
   });
 }

@@ -81,5 +81,74 @@ TEST(CurvePiece, ExtentTouchesThePiece) {
   }
 }
 
+PerAxis<double> InSpace(double x, double y, double z) {
+  PerAxis<double> p(3);
+  p[0] = x;
+  p[1] = y;
+  p[2] = z;
+  return p;
+}
+
+/// Helices of every plane, steep and flat, of less than a turn and of several.
+std::vector<CurvePiece> Helices() {
+  std::vector<CurvePiece> helices;
+  for (const std::array<std::size_t, 2> plane : {std::array<std::size_t, 2>{0, 1}, {2, 0}, {1, 2}}) {
+    const PerAxis<double> from = InSpace(1.0, 2.0, -1.0);
+    const std::size_t normal = 3 - plane[0] - plane[1];
+    for (const double rise : {0.02, -0.7, 9.0}) {
+      for (const double sweep : {0.8, -2.5 * kPi, 6.0 * kPi}) {
+        PerAxis<double> to = from;
+        to[normal] += rise;
+        helices.push_back(HelixPiece(from, to, plane, {from[plane[0]] - 0.6, from[plane[1]] + 0.8}, sweep));
+      }
+    }
+  }
+  return helices;
+}
+
+TEST(CurvePiece, HelicesRunByArcLengthToTheirEnd) {
+  for (const CurvePiece& helix : Helices()) {
+    constexpr double kStep = 1e-4;
+    for (double s = kStep; s < helix.length_m; s += helix.length_m / 37.0) {
+      const CurvePoint before = PointAt(helix, s - kStep), at = PointAt(helix, s),
+                       after = PointAt(helix, s + kStep);
+      double squared = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(at.tangent[i], (after.position_m[i] - before.position_m[i]) / (2 * kStep), 1e-7);
+        EXPECT_NEAR(at.curvature_1_m[i], (after.tangent[i] - before.tangent[i]) / (2 * kStep), 1e-7);
+        squared += at.tangent[i] * at.tangent[i];
+      }
+      EXPECT_NEAR(squared, 1.0, 1e-12);
+    }
+  }
+  const CurvePiece flat = HelixPiece(InSpace(1, 0, 3), InSpace(1, 0, 3), {0, 1}, {0.0, 0.0}, kPi);
+  EXPECT_EQ(flat.round_share, 1.0);
+  const CurvePiece climbing = HelixPiece(InSpace(1, 0, 3), InSpace(-1, 0, 5), {0, 1}, {0.0, 0.0}, kPi);
+  EXPECT_NEAR(PointAt(climbing, climbing.length_m).position_m[0], -1.0, 1e-12);
+  EXPECT_NEAR(PointAt(climbing, climbing.length_m).position_m[2], 5.0, 1e-12);
+}
+
+TEST(CurvePiece, DistanceFromAHelixIsThatOfTheNearestOfManyPoints) {
+  for (const CurvePiece& helix : Helices()) {
+    constexpr int kPoints = 8000;
+    const Extent extent = ExtentOf(helix);
+    for (int k = 0; k < 60; ++k) {
+      const auto share = [&](double factor) { return std::fmod(k * factor, 1.0) * 1.4 - 0.2; };
+      PerAxis<double> point(3);
+      const double shares[] = {share(0.618034), share(0.754878), share(0.569840)};
+      for (std::size_t i = 0; i < 3; ++i)
+        point[i] = extent.min_m[i] + shares[i] * (extent.max_m[i] - extent.min_m[i] + 0.1);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (int i = 0; i <= kPoints; ++i) {
+        const auto p = PointAt(helix, helix.length_m * i / kPoints).position_m;
+        nearest = std::min(nearest, std::hypot(p[0] - point[0], p[1] - point[1], p[2] - point[2]));
+      }
+      const double distance = Distance_m(helix, point);
+      EXPECT_LE(distance, nearest + 1e-12);
+      EXPECT_GE(distance, nearest - helix.length_m / kPoints - 1e-12);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace contour

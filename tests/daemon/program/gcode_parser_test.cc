@@ -16,16 +16,23 @@ const double kPi = std::numbers::pi;
 
 GcodeMoves Parse(const std::string& text) { return ParseGcode(text, "part.ngc"); }
 
+/// Where a move ends, in millimetres, of the letters in use.
+std::vector<double> EndOf_mm(const GcodeMoves& p, std::size_t move) {
+  std::vector<double> end;
+  for (std::size_t k = 0; k < p.letters.size(); ++k) end.push_back(p.moves.at(move).target_m[k] * 1e3);
+  return end;
+}
+
 TEST(GcodeParser, ModesLastUntilTheyAreChanged) {
   const GcodeMoves p = Parse("G21 G90 F600\nG1 X10 Y5\nX20\nG91 y-5\nG0 X-20 Y0\n");
   ASSERT_EQ(p.letters, "XY");
   ASSERT_EQ(p.moves.size(), 4u);
-  EXPECT_EQ(p.moves[0].target_m, (std::vector<double>{0.01, 0.005}));
-  EXPECT_EQ(p.moves[1].target_m, (std::vector<double>{0.02, 0.005}));
+  EXPECT_EQ(EndOf_mm(p, 0), (std::vector<double>{10, 5}));
+  EXPECT_EQ(EndOf_mm(p, 1), (std::vector<double>{20, 5}));
   EXPECT_EQ(p.moves[2].kind, Kind::kLine);
-  EXPECT_EQ(p.moves[2].target_m, (std::vector<double>{0.02, 0.0}));
+  EXPECT_EQ(EndOf_mm(p, 2), (std::vector<double>{20, 0}));
   EXPECT_EQ(p.moves[3].kind, Kind::kRapid);
-  EXPECT_EQ(p.moves[3].target_m, (std::vector<double>{0.0, 0.0}));
+  EXPECT_EQ(EndOf_mm(p, 3), (std::vector<double>{0, 0}));
   EXPECT_DOUBLE_EQ(p.moves[0].feed_m_s, 0.01);
   EXPECT_EQ(p.moves[3].line, 5);
 }
@@ -37,7 +44,7 @@ TEST(GcodeParser, InchesScaleWayAndFeed) {
 }
 
 TEST(GcodeParser, CommentsNumbersAndBlanksAreIgnored) {
-  const GcodeMoves p = Parse("%\n; all of it G5\nN10 (G1 X99) g 1 X 1 . 5 F100 ; Y3\n\n%\n");
+  const GcodeMoves p = Parse("%\n; all of it G5\nN10 (G1 X99) g 1 X 1 . 5 F100 ; Y3\n\n%\nG1 nonsense\n");
   ASSERT_EQ(p.moves.size(), 1u);
   EXPECT_DOUBLE_EQ(p.moves[0].target_m[0], 0.0015);
   EXPECT_EQ(p.letters, "X");
@@ -75,7 +82,7 @@ TEST(GcodeParser, PathControlAndDwell) {
 
 TEST(GcodeParser, ToleranceOfG64IsModalInTheUnitsInForce) {
   const GcodeMoves p =
-      Parse("G64 P0.005 G1 X1 F100\nX2\nG20 G64 P0.001 X3\nG64 X4\nG61 X5\nG64 P1 G21\nX6\n");
+      Parse("G64 P0.005 G1 X1 F100\nX2\nG20 G64 P0.001 X3\nG64 P0 X4\nG61 X5\nG64 P1 G21\nX6\n");
   ASSERT_EQ(p.moves.size(), 6u);
   for (const std::size_t k : {0u, 1u, 2u, 5u}) EXPECT_EQ(p.moves[k].corner, Corner::kBlended) << k;
   EXPECT_EQ(p.moves[1].tolerance_m, 5e-6);
@@ -85,45 +92,194 @@ TEST(GcodeParser, ToleranceOfG64IsModalInTheUnitsInForce) {
   EXPECT_EQ(p.moves[5].tolerance_m, 1e-3);
 }
 
-TEST(GcodeParser, ErrorsNameTheLine) {
+TEST(GcodeParser, ErrorsNameLineAndColumn) {
   const struct {
     const char* text;
     const char* message;
   } wrong[] = {
-      {"G1 X1 F100\nG5 X2\n", "part.ngc:2: G5 is not supported"},
-      {"G1.04 X1 F100\n", "part.ngc:1: G1.04 is not supported"},
-      {"G99999999999999999999 X1 F100\n", "part.ngc:1: G1e+20 is not supported"},
-      {"G1 X1\n", "part.ngc:1: a feed (F) is missing"},
-      {"X1\n", "part.ngc:1: a position without"},
-      {"G1 X F100\n", "part.ngc:1: a number is missing after X"},
-      {"G1 X1 X2 F100\n", "part.ngc:1: word X is given twice"},
-      {"G0 G1 X1 F100\n", "part.ngc:1: G1: a second motion"},
-      {"G2 X10 I5 R5 F100\n", "part.ngc:1: an arc takes either"},
-      {"G2 X10 F100\n", "part.ngc:1: an arc takes either"},
-      {"G2 X10 I4 F100\n", "part.ngc:1: the arc's end is 6 mm from its centre"},
-      {"G2 X10 R4 F100\n", "part.ngc:1: R 4 mm is too small"},
-      {"G2 R4 F100\n", "part.ngc:1: an arc with R needs an end"},
-      {"G3 X0 Y20 Z3 J10 F100\n", "part.ngc:1: helical arcs"},
-      {"G1 X1 F0\n", "part.ngc:1: F: expected a feed above zero"},
-      {"G4\n", "part.ngc:1: G4: expected P"},
-      {"G64 P0\nG1 X1 F100\n", "part.ngc:1: G64: expected P with a tolerance above zero"},
-      {"G64 P-0.01\nG1 X1 F100\n", "part.ngc:1: G64: expected P with a tolerance above zero"},
-      {"G1 X1 F100 P0.01\n", "part.ngc:1: P belongs to G4 and G64"},
-      {"G61 P0.01\nG1 X1 F100\n", "part.ngc:1: P belongs to G4 and G64"},
-      {"G64 G4 P0.01\n", "part.ngc:1: G4 and G64 in the same block"},
-      {"G61 G64 P0.01\n", "part.ngc:1: G64: a second path control"},
-      {"M3 S100\n", "part.ngc:1: M3 is not supported"},
-      {"G1 X1 F100 T1\n", "part.ngc:1: T1 is not supported"},
-      {"G1 X1 (open\n", "part.ngc:1: comment is not closed"},
-      {"G1 X1 I3 F100\n", "part.ngc:1: I, J and R belong to G2 and G3"},
-      {"G1 X1e3 F100\n", "part.ngc:1: E3 is not supported"},
-      {"G1 X#1 F100\n", "part.ngc:1: a number is missing after X"},
+      {"G1 X1 F100\nG5 X2\n", "part.ngc:2:1: G5 is not supported: splines"},
+      {"G1.04 X1 F100\n", "part.ngc:1:1: expected a G code with at most one decimal"},
+      {"G99999999999999999999 X1 F100\n", "part.ngc:1:1: expected a G code"},
+      {"G1 X1\n", "part.ngc:1:1: a feed (F) is missing"},
+      {"G1 X1 F0\n", "part.ngc:1:1: a feed (F) is missing, or is zero"},
+      {"F100\n  G94 G1 X1\n", "part.ngc:2:7: a feed (F) is missing, or is zero; G94 forgets"},
+      {"G93 G1 X1 F2\nX2\n", "part.ngc:2:1: a feed (F) is missing: G93 needs it"},
+      {"X1\n", "part.ngc:1:1: a position without"},
+      {"G80 X1\n", "part.ngc:1:1: G80 takes no axis words"},
+      {"G1 X F100\n", "part.ngc:1:6: expected a number"},
+      {"G1 X1 X2 F100\n", "part.ngc:1:7: word X is given twice"},
+      {"G0 G1 X1 F100\n", "part.ngc:1:4: G1: a second code of the same modal group"},
+      {"G61 G64 P0.01\n", "part.ngc:1:5: G64: a second code of the same modal group"},
+      {"M7 M8\n", "part.ngc:1:4: M8: a second code of the same modal group"},
+      {"G92 X0 G1\n", "part.ngc:1:8: G1 and G92 would both use the axis words"},
+      {"G2 X10 I5 R5 F100\n", "part.ngc:1:1: an arc takes either I and J, or R"},
+      {"F100 G18 G2 X10\n", "part.ngc:1:10: an arc takes either I and K, or R"},
+      {"G2 X10 I5 K1 F100\n", "part.ngc:1:11: K is not in the plane of the arc"},
+      {"G90.1 G2 X10 I5 F100\n", "part.ngc:1:7: G90.1: expected both"},
+      {"G2 X10 I4 F100\n", "part.ngc:1:1: the arc's end is 6 mm from its centre, its start 4 mm"},
+      {"G2 X10 R4 F100\n", "part.ngc:1:8: R 4 mm is too small for an arc over 10 mm"},
+      {"G2 R4 F100\n", "part.ngc:1:4: an arc with R needs an end"},
+      {"G2 X10 I5 P0 F100\n", "part.ngc:1:11: P of an arc: expected at least one turn"},
+      {"G17.1 G1 U1 F1\n", "part.ngc:1:1: G17.1 is not supported: planes of U, V and W"},
+      {"G4\n", "part.ngc:1:1: G4: expected P"},
+      {"G4 P1 G2 X1 I.5 F1\n", "part.ngc:1:7: G4 and an arc"},
+      {"G64 P-0.01\nG1 X1 F100\n", "part.ngc:1:5: G64: expected a tolerance"},
+      {"G1 X1 F100 P0.01\n", "part.ngc:1:12: P belongs to G2, G3, G4, G10 and G64"},
+      {"G1 X1 F100 Q0.01\n", "part.ngc:1:12: Q belongs to G64"},
+      {"G1 X1 F100 H1\n", "part.ngc:1:12: H belongs to G43"},
+      {"G43 H1\n", "part.ngc:1:5: G43: expected H0"},
+      {"G41 D1\n", "part.ngc:1:1: G41 is not supported: cutter compensation"},
+      {"G81 X1 Z1\n", "part.ngc:1:1: G81 is not supported: canned cycles"},
+      {"G95\n", "part.ngc:1:1: G95 is not supported: feed per revolution"},
+      {"G10 L1 P1 X1\n", "part.ngc:1:5: G10: expected L2 or L20"},
+      {"G10 L2 P1 R5\n", "part.ngc:1:1: G10: a rotation"},
+      {"G53 G0 X1\n",
+       "part.ngc:1:1: G53 counts from the machine's own zero, and the machine is not referenced"},
+      {"G28\n", "part.ngc:1:1: G28 counts"},
+      {"M62 P1\n", "part.ngc:1:1: M62 is not supported: inputs and outputs"},
+      {"M333\n", "part.ngc:1:1: M333 is not supported"},
+      {"G0 A90\n", "part.ngc:1:4: A: rotary axes are not supported"},
+      {"G1 X1 (open\n", "part.ngc:1:7: comment is not closed"},
+      {"G1 (a (b)\n", "part.ngc:1:7: a comment inside a comment"},
+      {"G1 X(a)1\n", "part.ngc:1:5: expected a number"},
+      {"G1 X1 I3 F100\n", "part.ngc:1:7: I, J, K and R belong to G2 and G3"},
+      {"G1 X1e3 F100\n", "part.ngc:1:6: E words are not supported; a number has no exponent"},
+      {"G1 X1.2.3 F100\n", "part.ngc:1:5: a number with two decimal points"},
+      {"G1 X1-2 F100\n", "part.ngc:1:6: found '-', expected a word"},
+      {"G1 X1 N5 F100\n", "part.ngc:1:7: found 'n', expected a word"},
+      {"N10 /G1 X1 F100\n", "part.ngc:1:5: found '/', expected a word"},
+      {"G0 X#<hole>\n", "part.ngc:1:5: parameter #<hole> has not been set"},
+      {"G0 X[1/0]\n", "part.ngc:1:9: division by zero"},
+      {"G0 X[1+2\n", "part.ngc:1:9: expected an operator or ']'"},
+      {"G0 X1\n%\n", "part.ngc:2:1: found '%', expected a word"},
+      {"%\nG0 X1\n", "part.ngc:2:1: the file begins with a percent sign"},
+      {"o1 if [1]\nG0 X1\n", "part.ngc:1:1: O1: this is not closed"},
+      {"o1 endsub\n", "part.ngc:1:1: O1: this does not belong"},
+      {"o<hole> call\n", "part.ngc:1:13: there is no sub Ohole"},
+      {"o1 sub\nG0 X1 (\no1 endsub\no1 call\n", "part.ngc:2:7: comment is not closed"},
       {"M2\n", "part.ngc: the program does not move"},
   };
   for (const auto& w : wrong) {
     const std::string error = testing::ErrorOf([&] { Parse(w.text); });
     EXPECT_EQ(error.rfind(w.message, 0), 0u) << w.text << "gave: " << error;
   }
+}
+
+TEST(GcodeParser, HelicesAndPlanes) {
+  const GcodeMoves p =
+      Parse("F100 G3 X0 Y20 J10 Z5 P2\nG18 G2 X10 Z5 I5\nG19 G3 Y30 J5\nG17.0 G2 X20 Y30 R5 Z1\n");
+  ASSERT_EQ(p.letters, "XYZ");
+  EXPECT_NEAR(p.moves[0].sweep_rad, 3.0 * kPi, 1e-12);
+  EXPECT_DOUBLE_EQ(p.moves[0].target_m[2], 0.005);
+  // Seen with Z to the right and X upwards, clockwise about (5, 5) from (Z5, X0).
+  EXPECT_EQ(p.moves[1].plane, (std::array<std::uint8_t, 2>{2, 0}));
+  EXPECT_NEAR(p.moves[1].centre_m[0], 0.005, 1e-15);
+  EXPECT_NEAR(p.moves[1].centre_m[1], 0.005, 1e-15);
+  EXPECT_NEAR(p.moves[1].sweep_rad, -kPi, 1e-12);
+  EXPECT_EQ(p.moves[2].plane, (std::array<std::uint8_t, 2>{1, 2}));
+  EXPECT_DOUBLE_EQ(p.moves[3].target_m[2], 0.001);
+}
+
+TEST(GcodeParser, OffsetsCountFromProgramZero) {
+  const GcodeMoves p = Parse(
+      "G0 X5\nG92 X1\nG0 X2\nG10 L2 P2 X100\nG55 G0 X2\nG92.2\nX2\nG92.3\nX2\nG92.1 G54\nX2\n"
+      "G10 L20 P1 X10\nX11\n");
+  std::vector<double> x;
+  for (std::size_t k = 0; k < p.moves.size(); ++k) x.push_back(EndOf_mm(p, k)[0]);
+  ASSERT_EQ(x.size(), 7u);
+  const double wanted[] = {5, 6, 106, 102, 106, 2, 3};
+  for (std::size_t k = 0; k < x.size(); ++k) EXPECT_NEAR(x[k], wanted[k], 1e-12) << k;
+}
+
+TEST(GcodeParser, MachineCoordinatesOfAReferencedMachine) {
+  GcodeSettings settings;
+  settings.zero_m = {0.1, 0.0, 0.0, 0.0, 0.0, 0.0};
+  const GcodeMoves p = ParseGcode("G92 X-3\nG53 G0 X101\nG28 X7\n", "part.ngc", settings);
+  EXPECT_NEAR(p.moves[0].target_m[0], 0.001, 1e-15);
+  EXPECT_NEAR(p.moves[1].target_m[0], 0.010, 1e-15);
+  EXPECT_NEAR(p.moves[2].target_m[0], -0.1, 1e-15);
+}
+
+TEST(GcodeParser, FeedsStandForTheToolAndInverseTimeForTheMove) {
+  // The tool goes 3 mm while U goes 4: the path in all axes is 5 mm at 5/3 of the feed.
+  const GcodeMoves p = Parse("G1 X3 U4 F60\nU8\nG93 X13 F2\nF1 G94 X14\nG20\nF1\nG21 X15\n");
+  EXPECT_NEAR(p.moves[0].feed_m_s, 1e-3 * 5.0 / 3.0, 1e-15);
+  EXPECT_NEAR(p.moves[1].feed_m_s, 1e-3, 1e-15);
+  EXPECT_NEAR(p.moves[2].feed_m_s, 10e-3 * 2.0 / 60.0, 1e-15);
+  // F is read before the units of its block, and stays what it was when they change.
+  EXPECT_NEAR(p.moves[3].feed_m_s, 1e-3 / 60.0, 1e-15);
+  EXPECT_NEAR(p.moves[4].feed_m_s, 25.4e-3 / 60.0, 1e-15);
+}
+
+TEST(GcodeParser, ArcsWithRoundedEndsMeetThemSmoothly) {
+  // 20 um between the radii at start and end: two arcs that meet, without a bend between them.
+  for (const char* text : {"G0 X10\nG3 X0 Y-10.02 I-10 J0 F100\n", "G0 X10\nG3 X0 Y10.02 I-10 J0 F100\n",
+                           "G0 X10\nG2 X9.98 Y0 I-10 J0 P3 F100\n"}) {
+    const GcodeMoves q = Parse(text);
+    for (std::size_t k = 1; k < q.moves.size(); ++k) {
+      const GcodeMove& m = q.moves[k];
+      const auto& from = q.moves[k - 1].target_m;
+      const double r = std::hypot(from[0] - m.centre_m[0], from[1] - m.centre_m[1]);
+      const double begin = std::atan2(from[1] - m.centre_m[1], from[0] - m.centre_m[0]);
+      EXPECT_NEAR(m.centre_m[0] + r * std::cos(begin + m.sweep_rad), m.target_m[0], 1e-15) << text;
+      EXPECT_NEAR(m.centre_m[1] + r * std::sin(begin + m.sweep_rad), m.target_m[1], 1e-15) << text;
+      EXPECT_NEAR(std::hypot(m.centre_m[0], m.centre_m[1]), 0.0, 25e-6);
+      if (k < 2) continue;
+      // Both centres and the point between are on one line.
+      const auto& c = q.moves[k - 1].centre_m;
+      EXPECT_NEAR((from[0] - c[0]) * (from[1] - m.centre_m[1]) - (from[1] - c[1]) * (from[0] - m.centre_m[0]),
+                  0.0, 1e-15);
+    }
+    EXPECT_NEAR(std::abs(q.moves.back().target_m[0]), std::abs(Parse(text).moves.back().target_m[0]), 1e-15);
+  }
+}
+
+TEST(GcodeParser, WholeTurnsSurviveRounding) {
+  const GcodeMoves p = Parse("G91 G1 X0.1 F100\nX0.2\nG90 G3 X0.3 Y0 I5\nX0.3 Y0.0000001 I5\n");
+  EXPECT_NEAR(p.moves[2].sweep_rad, 2.0 * kPi, 1e-9);
+}
+
+TEST(GcodeParser, EventsStandBetweenMoves) {
+  const GcodeMoves p = Parse("T1 M6\nG0 X1\nM3 S1000\nG1 X2 F100\nM0\nX3\nX4 M8 M1\n");
+  ASSERT_EQ(p.events.size(), 7u);
+  const std::size_t before[] = {0, 0, 1, 1, 2, 3, 4};
+  for (std::size_t k = 0; k < p.events.size(); ++k) EXPECT_EQ(p.events[k].before_move, before[k]) << k;
+  EXPECT_EQ(p.events[2].letter, 'S');
+  EXPECT_EQ(p.events[2].value, 1000.0);
+  EXPECT_TRUE(p.events[4].holds());
+  EXPECT_EQ(p.moves[1].corner, Corner::kExactStop);
+  EXPECT_EQ(p.moves[2].corner, Corner::kContinuous);
+  EXPECT_EQ(p.moves[3].corner, Corner::kExactStop);
+}
+
+TEST(GcodeParser, ParametersExpressionsAndSubs) {
+  const GcodeMoves p = Parse(
+      "O1000 (number of the program)\n"
+      "o<step> sub\n#<way>=[#1*2]\nG91 G1 X#<way> Y[-sin[30]*#1]\no<step> endsub\n"
+      "F100 #31=1\no2 while [#31 le 3]\no<step> call [#31]\n#31=[#31+1]\no2 endwhile\n"
+      "o3 repeat [2]\nZ1\no3 endrepeat\n"
+      "o4 if [#31 gt 5]\nZ50\no4 elseif [#31 eq 4]\nZ5\no4 else\nZ70\no4 endif\n"
+      "o5 do\nZ-1\no5 while [#5422 gt 5]\n");
+  ASSERT_EQ(p.moves.size(), 8u);
+  EXPECT_NEAR(p.moves[2].target_m[0], 12e-3, 1e-15);
+  EXPECT_NEAR(p.moves[2].target_m[1], -3e-3, 1e-15);
+  EXPECT_TRUE(p.moves[2].in_sub);
+  EXPECT_FALSE(p.moves[3].in_sub);
+  EXPECT_EQ(p.moves[2].line, 4);
+  EXPECT_NEAR(p.moves[5].target_m[2], 7e-3, 1e-15);
+  EXPECT_NEAR(p.moves[7].target_m[2], 5e-3, 1e-15);
+}
+
+TEST(GcodeParser, BlockDeleteLeavesLinesOut) {
+  GcodeSettings settings;
+  EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "XY");
+  settings.block_delete = true;
+  EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "Y");
+}
+
+TEST(GcodeParser, ProgramsThatDoNotEndAreRefused) {
+  const std::string error = testing::ErrorOf([] { Parse("o1 while [1]\n#1=2\no1 endwhile\n"); });
+  EXPECT_NE(error.find("does it end?"), std::string::npos) << error;
 }
 
 }  // namespace

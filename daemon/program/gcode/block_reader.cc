@@ -1,0 +1,119 @@
+#include "daemon/program/gcode/block_reader.h"
+
+#include <cmath>
+
+#include "daemon/program/gcode/value_reader.h"
+
+namespace contour {
+namespace {
+
+// How far a code may be from a tenth.
+constexpr double kNearlyTenth = 1e-3;
+constexpr double kLargestCode = 1000.0;
+
+class BlockReader {
+ public:
+  BlockReader(LineText& text, const Parameters& parameters, Block& block)
+      : text_(text), values_(text, parameters), block_(block) {}
+
+  void Item() {
+    const SourcePlace place = text_.place();
+    const char letter = text_.Take();
+    if (letter == '(') return;
+    block_.sets_something = true;
+    if (letter == '#') {
+      Parameter(place);
+    } else if (letter == 'g') {
+      CodeG(place);
+    } else if (letter == 'm') {
+      CodeM(place);
+    } else {
+      Word(letter, place);
+    }
+  }
+
+ private:
+  void Parameter(const SourcePlace& place) {
+    Assignment assignment;
+    if (text_.Peek() == '<') {
+      assignment.name = values_.Name();
+    } else {
+      assignment.number = values_.Whole("#");
+      if (!Parameters::Assignable(assignment.number))
+        Refuse(place, "parameter #" + std::to_string(assignment.number) +
+                          " cannot be set: expected #1 to #5000 or #<name>");
+    }
+    if (!text_.TakeIf('=')) text_.Fail("expected '=' behind the parameter that is to be set");
+    assignment.value = values_.Value();
+    block_.assignments.push_back(std::move(assignment));
+  }
+
+  void CodeG(const SourcePlace& place) {
+    const double value = values_.Value();
+    const double tenfold = value * 10.0;
+    if (value < 0.0 || value >= kLargestCode || std::abs(tenfold - std::round(tenfold)) > 10.0 * kNearlyTenth)
+      Refuse(place, "expected a G code with at most one decimal");
+    const int code = static_cast<int>(std::lround(tenfold));
+    Put(GroupOfG(code), NameOfG(code), code, place, block_.g);
+  }
+
+  void CodeM(const SourcePlace& place) {
+    const int code = values_.Whole("M");
+    ++block_.m_count;
+    Put(GroupOfM(code), "M" + std::to_string(code), code, place, block_.m);
+  }
+
+  template <class Groups>
+  void Put(const CodeGroup& group, const std::string& name, int code, const SourcePlace& place,
+           Groups& groups) {
+    if (!group.known) {
+      Refuse(place,
+             group.refused ? name + " is not supported: " + group.refused : name + " is not supported");
+    }
+    Block::Code& slot = groups[group.group];
+    if (slot.code != kNoCode) Refuse(place, name + ": a second code of the same modal group in this block");
+    slot = {code, place.column};
+  }
+
+  void Word(char letter, const SourcePlace& place) {
+    constexpr std::string_view kLetters = "dfhijklpqrstuvwxyz";
+    const std::string name(1, static_cast<char>(letter - 'a' + 'A'));
+    if (letter == 'a' || letter == 'b' || letter == 'c')
+      Refuse(place, name + ": rotary axes are not supported");
+    if (letter == 'e') Refuse(place, "E words are not supported; a number has no exponent");
+    if (letter == '@' || letter == '^') Refuse(place, "polar coordinates are not supported");
+    if (letter == '$') Refuse(place, "a choice of spindles is not supported");
+    if (kLetters.find(letter) == std::string_view::npos)
+      Refuse(place, std::string("found '") + letter + "', expected a word such as X10");
+    auto& word = block_.words[static_cast<std::size_t>(letter - 'a')];
+    if (word) Refuse(place, "word " + name + " is given twice");
+    const double value = values_.Value();
+    if (value < 0.0 && (letter == 'f' || letter == 's' || letter == 't' || letter == 'h'))
+      Refuse(place, name + ": expected a number that is not negative");
+    word = Block::Word{value, place.column};
+  }
+
+  LineText& text_;
+  ValueReader values_;
+  Block& block_;
+};
+
+}  // namespace
+
+void ReadBlock(LineText& text, const Parameters& parameters, const std::string& name, Block& block) {
+  block = Block{};
+  block.name = &name;
+  block.line = text.number();
+  BlockReader reader(text, parameters, block);
+  while (!text.AtEnd()) reader.Item();
+}
+
+bool TakeBlockDelete(LineText& text) { return text.TakeIf('/'); }
+
+void TakeBlockNumber(LineText& text) {
+  if (!text.TakeIf('n')) return;
+  if (text.Peek() < '0' || text.Peek() > '9') text.Fail("N: expected a block number");
+  while ((text.Peek() >= '0' && text.Peek() <= '9') || text.Peek() == '.') text.Skip(1);
+}
+
+}  // namespace contour

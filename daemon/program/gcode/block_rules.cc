@@ -1,0 +1,112 @@
+#include "daemon/program/gcode/block_rules.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace contour {
+namespace {
+
+constexpr int kMostMCodes = 4;
+constexpr double kNearlyWhole = 1e-3;
+
+bool IsArc(int motion) { return motion == 20 || motion == 30; }
+
+bool TakesAxes(int nonmodal) {
+  return nonmodal == 100 || nonmodal == 280 || nonmodal == 300 || nonmodal == 520 || nonmodal == 920;
+}
+
+bool NeedsAxes(int nonmodal) { return nonmodal == 520 || nonmodal == 920; }
+
+void FindMotion(Block& block, int modal_motion) {
+  const bool axes = block.HasAny(kGcodeAxes);
+  const int nonmodal = block.G(kNonModal);
+  const int own = block.G(kMotion);
+  if (!axes && NeedsAxes(nonmodal) && (own == kNoCode || own == 800))
+    block.FailAtG(kNonModal, NameOfG(nonmodal) + ": expected axis words");
+  if (own == 800 && axes && !TakesAxes(nonmodal)) block.FailAtG(kMotion, "G80 takes no axis words");
+  if (own != kNoCode && own != 800 && TakesAxes(nonmodal)) {
+    block.FailAtG(kMotion, NameOfG(own) + " and " + NameOfG(nonmodal) + " would both use the axis words");
+  }
+  block.motion = own;
+  if (own != kNoCode || TakesAxes(nonmodal)) return;
+  if (axes) {
+    if (modal_motion == kNoCode || modal_motion == 800) {
+      for (const char letter : kGcodeAxes)
+        if (block.Has(letter)) block.FailAtWord(letter, "a position without G0, G1, G2 or G3 before it");
+    }
+    block.motion = modal_motion;
+  } else if (block.HasAny("ijk") && IsArc(modal_motion)) {
+    block.motion = modal_motion;
+  }
+}
+
+bool Whole(double value) { return std::abs(value - std::round(value)) <= kNearlyWhole; }
+
+void CheckG10(const Block& block) {
+  const auto& l = block.Get('l');
+  if (!l || (l->value != 2.0 && l->value != 20.0)) {
+    const int column = l ? l->column : block.g[kNonModal].column;
+    block.FailAt(column, "G10: expected L2 or L20, the only ones that are supported");
+  }
+  if (block.HasAny("rij")) block.FailAtG(kNonModal, "G10: a rotation of coordinates is not supported");
+  const auto& p = block.Get('p');
+  if (!p || !Whole(p->value) || p->value < -kNearlyWhole || p->value > 9.0 + kNearlyWhole) {
+    const int column = p ? p->column : block.g[kNonModal].column;
+    block.FailAt(column, "G10: expected P0 to P9, the number of a coordinate system");
+  }
+}
+
+void CheckNonModal(const Block& block, const RuleContext& context) {
+  const int code = block.G(kNonModal);
+  if (code == 40) {
+    if (!block.Has('p') || block.Get('p')->value < 0.0)
+      block.FailAtG(kNonModal, "G4: expected P with a time in seconds");
+    if (IsArc(block.G(kMotion))) block.FailAtG(kMotion, "G4 and an arc in the same block both use P");
+  }
+  if (code == 100) CheckG10(block);
+  if (code == 530) {
+    if (block.motion != 0 && block.motion != 10) block.FailAtG(kNonModal, "G53 needs G0 or G1");
+    const int distance = block.G(kDistance);
+    if (distance == 910 || (distance == kNoCode && !context.absolute))
+      block.FailAtG(kNonModal, "G53 needs absolute positions (G90)");
+  }
+  const bool in_machine = code == 280 || code == 300 || code == 530;
+  if (in_machine && !context.referenced) {
+    block.FailAtG(kNonModal,
+                  NameOfG(code) + " counts from the machine's own zero, and the machine is not referenced");
+  }
+}
+
+void CheckWords(const Block& block) {
+  const bool arc = IsArc(block.motion);
+  const bool g64 = block.G(kPathControl) == 640;
+  const bool g10 = block.G(kNonModal) == 100;
+  for (const char letter : {'i', 'j', 'k', 'r'})
+    if (block.Has(letter) && !arc) block.FailAtWord(letter, "I, J, K and R belong to G2 and G3");
+  if (block.Has('d')) block.FailAtWord('d', "D belongs to G41 and G42, which are not supported");
+  if (block.Has('h') && block.G(kToolLength) != 430) block.FailAtWord('h', "H belongs to G43");
+  if (block.Has('l') && !g10) block.FailAtWord('l', "L belongs to G10");
+  if (block.Has('q') && !g64) block.FailAtWord('q', "Q belongs to G64");
+  if (!block.Has('p')) return;
+  if (!g10 && !g64 && !arc && block.G(kNonModal) != 40)
+    block.FailAtWord('p', "P belongs to G2, G3, G4, G10 and G64");
+  const double p = block.Get('p')->value;
+  if (arc && !Whole(p)) block.FailAtWord('p', "P of an arc: expected a whole number of turns");
+  if (arc && std::round(p) < 1.0) block.FailAtWord('p', "P of an arc: expected at least one turn");
+}
+
+}  // namespace
+
+void CheckBlock(Block& block, const RuleContext& context) {
+  FindMotion(block, context.modal_motion);
+  CheckNonModal(block, context);
+  if (block.m_count > kMostMCodes) {
+    const auto last = std::max_element(block.m.begin(), block.m.end(),
+                                       [](const auto& a, const auto& b) { return a.column < b.column; });
+    block.FailAt(last->column, "more than four M codes in a block");
+  }
+  CheckWords(block);
+}
+
+}  // namespace contour

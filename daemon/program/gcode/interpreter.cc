@@ -1,0 +1,284 @@
+#include "daemon/program/gcode/interpreter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+constexpr double kInch_m = 0.0254;
+constexpr double kMillimetre_m = 1e-3;
+constexpr double kMinute_s = 60.0;
+// The slowest feed that inverse time may come to, in units per minute.
+constexpr double kSlowestInverse = 0.1;
+
+double Norm(const AxisValues& a, const AxisValues& b, std::size_t from, std::size_t to) {
+  double squared = 0.0;
+  for (std::size_t k = from; k < to; ++k) squared += (a[k] - b[k]) * (a[k] - b[k]);
+  return std::sqrt(squared);
+}
+
+/// Length of a straight move as feeds count it: of X Y Z, or of U V W where X Y Z rest.
+double FeedLength_m(const AxisValues& from, const AxisValues& to) {
+  const double xyz = Norm(from, to, 0, 3);
+  return xyz > 0.0 ? xyz : Norm(from, to, 3, kGcodeAxisCount);
+}
+
+unsigned Named(const Block& block) {
+  unsigned named = 0;
+  for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
+    if (block.Has(kGcodeAxes[k])) named |= 1U << k;
+  return named;
+}
+
+}  // namespace
+
+void GcodeInterpreter::Execute(Block& block, bool in_sub) {
+  line_ = block.line;
+  in_sub_ = in_sub;
+  CheckBlock(block, {motion_, absolute_, settings_.zero_m.has_value()});
+  FeedMode(block);
+  Feed(block);
+  Events(block);
+  if (block.G(kNonModal) == 40) {
+    CanonicalMove dwell = NewMove(CanonicalMove::Kind::kDwell, position_m_);
+    dwell.dwell_s = block.Get('p')->value;
+    sink_(dwell);
+  }
+  Modes(block);
+  NonModal(block);
+  Motion(block);
+  const int stop = block.m[kStopping].code;
+  if (stop == 0 || stop == 1) Event(block, 'M', stop, 0.0);
+  ended_ = ended_ || stop == 2 || stop == 30;
+}
+
+void GcodeInterpreter::FeedMode(const Block& block) {
+  const int mode = block.G(kFeedMode);
+  if (mode == kNoCode) return;
+  inverse_time_ = mode == 930;
+  if (mode == 940) feed_m_s_ = 0.0;  // a feed has to be stated anew
+}
+
+void GcodeInterpreter::Feed(const Block& block) {
+  if (block.Has('f') && !inverse_time_) feed_m_s_ = block.Get('f')->value * unit_m_ / kMinute_s;
+}
+
+void GcodeInterpreter::Events(const Block& block) {
+  if (block.Has('s')) Event(block, 'S', 0, block.Get('s')->value);
+  if (block.Has('t')) Event(block, 'T', 0, block.Get('t')->value);
+  for (const MGroup group : {kToolChange, kSpindle, kCoolant})
+    if (block.m[group].code != kNoCode) Event(block, 'M', block.m[group].code, 0.0);
+}
+
+void GcodeInterpreter::Event(const Block& block, char letter, int code, double value) {
+  CanonicalMove move = NewMove(CanonicalMove::Kind::kEvent, position_m_);
+  move.event = {0, block.line, letter, code, value};
+  sink_(move);
+}
+
+void GcodeInterpreter::Modes(const Block& block) {
+  if (block.G(kPlane) != kNoCode) plane_ = block.G(kPlane);
+  if (block.G(kUnits) != kNoCode) unit_m_ = block.G(kUnits) == 200 ? kInch_m : kMillimetre_m;
+  if (block.G(kToolLength) == 430 && block.Has('h') && block.Get('h')->value != 0.0)
+    block.FailAtWord('h', "G43: expected H0, as there is no table of tools");
+  if (block.G(kToolLength) == 430 && !block.Has('h')) block.FailAtG(kToolLength, "G43: expected H0");
+  if (block.G(kCoordinateSystem) != kNoCode) offsets_.Select(block.G(kCoordinateSystem));
+  PathControl(block);
+  if (block.G(kDistance) != kNoCode) absolute_ = block.G(kDistance) == 900;
+  if (block.G(kCentreDistance) != kNoCode) absolute_centres_ = block.G(kCentreDistance) == 901;
+}
+
+void GcodeInterpreter::PathControl(const Block& block) {
+  switch (block.G(kPathControl)) {
+    case 610:
+      corner_ = GcodeMove::Corner::kExactPath;
+      return;
+    case 611:
+      corner_ = GcodeMove::Corner::kExactStop;
+      return;
+    case 640:
+      break;
+    default:
+      return;
+  }
+  for (const char letter : {'p', 'q'})
+    if (block.Has(letter) && block.Get(letter)->value < 0.0)
+      block.FailAtWord(letter, "G64: expected a tolerance that is not negative");
+  tolerance_m_ = block.Has('p') ? block.Get('p')->value * unit_m_ : 0.0;
+  corner_ = tolerance_m_ > 0.0 ? GcodeMove::Corner::kBlended : GcodeMove::Corner::kContinuous;
+}
+
+void GcodeInterpreter::NonModal(const Block& block) {
+  switch (block.G(kNonModal)) {
+    case 100:
+      SetSystem(block);
+      break;
+    case 280:
+    case 300:
+      GoHome(block);
+      break;
+    case 520:
+    case 920:
+      for (std::size_t k = 0; k < kGcodeAxisCount; ++k) {
+        if (!block.Has(kGcodeAxes[k])) continue;
+        const double value_m = block.Get(kGcodeAxes[k])->value * unit_m_;
+        const bool g52 = block.G(kNonModal) == 520;
+        offsets_.SetG92(k, g52 ? value_m : position_m_[k] - offsets_.system_m(k) - value_m);
+      }
+      offsets_.KeepG92();
+      break;
+    case 921:
+      offsets_.ForgetG92();
+      break;
+    case 922:
+      offsets_.SuspendG92();
+      break;
+    case 923:
+      offsets_.RestoreG92();
+      break;
+    default:
+      break;
+  }
+}
+
+void GcodeInterpreter::SetSystem(const Block& block) {
+  const int number = static_cast<int>(std::lround(block.Get('p')->value));
+  const bool from_position = block.Get('l')->value == 20.0;
+  for (std::size_t k = 0; k < kGcodeAxisCount; ++k) {
+    if (!block.Has(kGcodeAxes[k])) continue;
+    const double value_m = block.Get(kGcodeAxes[k])->value * unit_m_;
+    offsets_.SetSystem(number, k, from_position ? position_m_[k] - offsets_.G92(k) - value_m : value_m);
+  }
+}
+
+/// To the machine's zero, for all axes or those that are named, through the position that is named.
+void GcodeInterpreter::GoHome(const Block& block) {
+  const bool some = block.HasAny(kGcodeAxes);
+  const AxisValues through = Target(block);
+  sink_(NewMove(CanonicalMove::Kind::kTraverse, through));
+  position_m_ = through;
+  for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
+    if (!some || block.Has(kGcodeAxes[k])) position_m_[k] = -(*settings_.zero_m)[k];
+  sink_(NewMove(CanonicalMove::Kind::kTraverse, position_m_));
+}
+
+void GcodeInterpreter::Motion(const Block& block) {
+  if (block.motion == kNoCode) return;
+  motion_ = block.motion;
+  if (motion_ == 0 || motion_ == 10) Straight(block);
+  if (motion_ == 20 || motion_ == 30) Arc(block);
+}
+
+AxisValues GcodeInterpreter::Target(const Block& block) const {
+  AxisValues target = position_m_;
+  const bool in_machine = block.G(kNonModal) == 530;
+  for (std::size_t k = 0; k < kGcodeAxisCount; ++k) {
+    if (!block.Has(kGcodeAxes[k])) continue;
+    const double value_m = block.Get(kGcodeAxes[k])->value * unit_m_;
+    if (in_machine) {
+      target[k] = value_m - (*settings_.zero_m)[k];
+    } else {
+      target[k] = value_m + (absolute_ ? offsets_.Of(k) : position_m_[k]);
+    }
+  }
+  return target;
+}
+
+CanonicalMove GcodeInterpreter::NewMove(CanonicalMove::Kind kind, const AxisValues& target_m) const {
+  CanonicalMove move;
+  move.kind = kind;
+  move.line = line_;
+  move.in_sub = in_sub_;
+  move.target_m = target_m;
+  move.corner = corner_;
+  if (corner_ == GcodeMove::Corner::kBlended) move.tolerance_m = tolerance_m_;
+  return move;
+}
+
+double GcodeInterpreter::FeedOf_m_s(const Block& block, double length_m) const {
+  if (!inverse_time_) {
+    if (feed_m_s_ == 0.0) {
+      const int column = std::max(block.g[kMotion].column, 1);
+      block.FailAt(column, "a feed (F) is missing, or is zero; G94 forgets the feed before it");
+    }
+    return feed_m_s_;
+  }
+  if (!block.Has('f'))
+    block.FailAt(std::max(block.g[kMotion].column, 1),
+                 "a feed (F) is missing: G93 needs it in every block that moves at feed");
+  return std::max(kSlowestInverse * unit_m_, length_m * block.Get('f')->value) / kMinute_s;
+}
+
+void GcodeInterpreter::Straight(const Block& block) {
+  const AxisValues target = Target(block);
+  const bool rapid = motion_ == 0;
+  CanonicalMove move = NewMove(rapid ? CanonicalMove::Kind::kTraverse : CanonicalMove::Kind::kFeed, target);
+  if (!rapid) move.feed_m_s = FeedOf_m_s(block, FeedLength_m(position_m_, target));
+  move.named = Named(block);
+  sink_(move);
+  position_m_ = target;
+}
+
+std::array<std::uint8_t, 3> GcodeInterpreter::PlaneAxes() const {
+  if (plane_ == 180) return {2, 0, 1};
+  if (plane_ == 190) return {1, 2, 0};
+  return {0, 1, 2};
+}
+
+void GcodeInterpreter::Arc(const Block& block) {
+  const std::array<std::uint8_t, 3> axes = PlaneAxes();
+  const AxisValues target = Target(block);
+  const ArcEnds ends{
+      {position_m_[axes[0]], position_m_[axes[1]]}, {target[axes[0]], target[axes[1]]}, motion_ == 30};
+  CanonicalMove move = NewMove(CanonicalMove::Kind::kArc, target);
+  move.plane = {axes[0], axes[1]};
+  move.centre_m = ArcCentre(block, ends);
+  const int turns = block.Has('p') ? static_cast<int>(std::lround(block.Get('p')->value)) : 1;
+  move.turns = ends.ccw ? turns : -turns;
+  const double round_m = std::hypot(ends.from_m[0] - move.centre_m[0], ends.from_m[1] - move.centre_m[1]) *
+                         SweepOf_rad(ends, move.centre_m, move.turns);
+  move.named = Named(block);
+  move.feed_m_s = FeedOf_m_s(block, std::hypot(round_m, target[axes[2]] - position_m_[axes[2]]));
+  sink_(move);
+  position_m_ = target;
+}
+
+PlanePoint GcodeInterpreter::ArcCentre(const Block& block, const ArcEnds& ends) const {
+  constexpr std::string_view kCentres = "ijk";
+  const std::array<std::uint8_t, 3> axes = PlaneAxes();
+  const char first = kCentres[axes[0]], second = kCentres[axes[1]], normal = kCentres[axes[2]];
+  const ArcTolerance tolerance = ToleranceOfArcs(unit_m_ == kInch_m);
+  const int column = std::max(block.g[kMotion].column, 1);
+  const auto capital = [](char letter) { return std::string(1, static_cast<char>(letter - 'a' + 'A')); };
+  if (block.Has('r') == block.HasAny(kCentres)) {
+    block.FailAt(column, "an arc takes either " + capital(std::min(first, second)) + " and " +
+                             capital(std::max(first, second)) + ", or R");
+  }
+  std::optional<std::string> wrong;
+  if (block.Has('r')) {
+    const PlanePoint centre = CentreByRadius(ends, block.Get('r')->value * unit_m_, tolerance, wrong);
+    if (wrong) block.FailAtWord('r', *wrong);
+    return centre;
+  }
+  if (block.Has(normal)) block.FailAtWord(normal, capital(normal) + " is not in the plane of the arc");
+  if (absolute_centres_ && !(block.Has(first) && block.Has(second)))
+    block.FailAt(column, "G90.1: expected both words of the arc's centre");
+  PlanePoint centre = ends.from_m;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto& word = block.Get(kCentres[axes[k]]);
+    const double value_m = word ? word->value * unit_m_ : 0.0;
+    centre[k] = value_m + (absolute_centres_ ? offsets_.Of(axes[k]) : ends.from_m[k]);
+  }
+  wrong = WrongCentre(ends, centre, tolerance);
+  if (wrong) block.FailAt(column, *wrong);
+  return centre;
+}
+
+void GcodeInterpreter::PutPosition(std::array<double, 9>& position) const {
+  constexpr std::array<std::size_t, kGcodeAxisCount> kPlaces = {0, 1, 2, 6, 7, 8};
+  for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
+    position[kPlaces[k]] = (position_m_[k] - offsets_.Of(k)) / unit_m_;
+}
+
+}  // namespace contour

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "daemon/program/gcode/arc_geometry.h"
+#include "daemon/program/gcode/block.h"
+#include "daemon/program/gcode/block_rules.h"
+#include "daemon/program/gcode/canonical_move.h"
+#include "daemon/program/gcode/work_offsets.h"
+#include "daemon/program/gcode_parser.h"
+
+namespace contour {
+
+/// The modal state of a program, and what each block makes of it, in LinuxCNC's order of execution.
+class GcodeInterpreter {
+ public:
+  using Sink = std::function<void(const CanonicalMove&)>;
+
+  GcodeInterpreter(const GcodeSettings& settings, Sink sink) : settings_(settings), sink_(std::move(sink)) {}
+
+  /// Throws ProgramError with the place. The block's motion is found here.
+  void Execute(Block& block, bool in_sub);
+
+  [[nodiscard]] bool ended() const { return ended_; }  ///< by M2 or M30
+
+  /// Present position in the coordinates and units in force, as #5420 has it.
+  void PutPosition(std::array<double, 9>& position) const;
+
+ private:
+  void FeedMode(const Block& block);
+  void Feed(const Block& block);
+  void Events(const Block& block);
+  void Event(const Block& block, char letter, int code, double value);
+  void Modes(const Block& block);
+  void PathControl(const Block& block);
+  void NonModal(const Block& block);
+  void SetSystem(const Block& block);
+  void GoHome(const Block& block);
+  void Motion(const Block& block);
+  void Straight(const Block& block);
+  void Arc(const Block& block);
+  [[nodiscard]] PlanePoint ArcCentre(const Block& block, const ArcEnds& ends) const;
+  [[nodiscard]] AxisValues Target(const Block& block) const;
+  [[nodiscard]] double FeedOf_m_s(const Block& block, double length_m) const;
+  [[nodiscard]] CanonicalMove NewMove(CanonicalMove::Kind kind, const AxisValues& target_m) const;
+  [[nodiscard]] std::array<std::uint8_t, 3> PlaneAxes() const;  ///< first, second, normal
+
+  const GcodeSettings& settings_;
+  Sink sink_;
+  bool ended_ = false;
+  int line_ = 0;
+  bool in_sub_ = false;
+
+  AxisValues position_m_{};  ///< from program zero
+  WorkOffsets offsets_;
+  double unit_m_ = 1e-3;
+  bool absolute_ = true;
+  bool absolute_centres_ = false;
+  bool inverse_time_ = false;
+  double feed_m_s_ = 0.0;
+  int plane_ = 170;
+  int motion_ = kNoCode;
+  GcodeMove::Corner corner_ = GcodeMove::Corner::kContinuous;
+  double tolerance_m_ = 0.0;
+};
+
+}  // namespace contour

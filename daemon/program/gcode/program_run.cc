@@ -1,0 +1,248 @@
+#include "daemon/program/gcode/program_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace contour {
+namespace {
+
+using Kind = OWord::Kind;
+
+constexpr std::size_t kDeepestCalls = 10;
+// A program that runs through so many lines more than it has does not end.
+constexpr std::int64_t kMostLines = 5'000'000;
+constexpr double kMostRepeats = 1e9;
+
+bool IsFrame(std::string_view line) {
+  const std::size_t at = line.find_first_not_of(" \t\r");
+  return at != std::string_view::npos && line[at] == '%' &&
+         line.find_first_not_of(" \t\r", at + 1) == std::string_view::npos;
+}
+
+bool IsEmpty(std::string_view line) { return line.find_first_not_of(" \t\r") == std::string_view::npos; }
+
+}  // namespace
+
+ProgramRun::ProgramRun(std::string_view text, const std::string& name, const GcodeSettings& settings,
+                       GcodeInterpreter::Sink sink)
+    : source_(text),
+      name_(name),
+      settings_(settings),
+      text_(name),
+      values_(text_, parameters_),
+      interpreter_(settings, std::move(sink)) {
+  FindLines();
+  FindOWords();
+}
+
+std::string_view ProgramRun::Line(std::size_t index) const {
+  const std::string_view line = source_.substr(begins_[index], begins_[index + 1] - begins_[index]);
+  return line.ends_with('\n') ? line.substr(0, line.size() - 1) : line;
+}
+
+/// Where lines begin, up to the end of the text or of its frame of percent signs.
+void ProgramRun::FindLines() {
+  std::size_t at = 0;
+  bool begun = false;
+  while (at < source_.size()) {
+    const std::size_t end = std::min(source_.find('\n', at), source_.size() - 1) + 1;
+    const std::string_view line = source_.substr(at, end - at);
+    const std::string_view text = line.ends_with('\n') ? line.substr(0, line.size() - 1) : line;
+    if (begun && framed_ && IsFrame(text)) {
+      closed_ = true;
+      break;
+    }
+    begins_.push_back(at);
+    if (!begun && !IsEmpty(text)) {
+      begun = true;
+      framed_ = IsFrame(text);
+      first_ = framed_ ? begins_.size() : 0;
+    }
+    at = end;
+  }
+  begins_.push_back(at);
+}
+
+void ProgramRun::FindOWords() {
+  std::vector<OWord> words;
+  for (std::size_t i = first_; i + 1 < begins_.size(); ++i) {
+    if (!BeginsWithO(Line(i))) continue;
+    try {
+      text_.Assign(Line(i), static_cast<int>(i) + 1);
+      if (TakeBlockDelete(text_) && settings_.block_delete) continue;
+      TakeBlockNumber(text_);
+      OWord word = ReadOWord(text_);
+      word.line = i;
+      words.push_back(std::move(word));
+    } catch (const ProgramError&) {
+      // It may lie behind the end of the program, where anything may stand. Otherwise it is refused when it
+      // runs.
+    }
+  }
+  o_words_ = OWords(std::move(words), name_);
+}
+
+void ProgramRun::Run() {
+  const std::size_t lines = begins_.size() - 1;
+  std::int64_t done = 0;
+  for (std::size_t at = first_; at < lines && !interpreter_.ended();) {
+    text_.Assign(Line(at), static_cast<int>(at) + 1);
+    if (++done > kMostLines + static_cast<std::int64_t>(lines))
+      text_.Fail("the program runs through more lines than it may: does it end?");
+    if (TakeBlockDelete(text_) && settings_.block_delete) {
+      ++at;
+      continue;
+    }
+    TakeBlockNumber(text_);
+    if (text_.AtEnd()) {
+      ++at;
+      continue;
+    }
+    interpreter_.PutPosition(parameters_.position());
+    if (text_.Peek() == 'o') {
+      at = Flow(at);
+      continue;
+    }
+    ReadBlock(text_, parameters_, name_, block_);
+    for (const Assignment& assignment : block_.assignments) parameters_.Set(assignment);
+    if (block_.sets_something) interpreter_.Execute(block_, parameters_.depth() > 0);
+    ++at;
+  }
+  if (framed_ && !closed_ && !interpreter_.ended()) {
+    Refuse(
+        {&name_, static_cast<int>(lines), 1},
+        "the file begins with a percent sign and has neither another nor M2 or M30 at its end: is it whole?");
+  }
+}
+
+/// Puts the text behind the keyword of an O word that is not the one at work.
+void ProgramRun::OpenOWord(std::size_t at) {
+  text_.Assign(Line(at), static_cast<int>(at) + 1);
+  TakeBlockDelete(text_);
+  TakeBlockNumber(text_);
+  ReadOWord(text_);
+}
+
+bool ProgramRun::Condition() {
+  const bool holds = values_.Bracketed() != 0.0;
+  EndOfLine();
+  return holds;
+}
+
+void ProgramRun::EndOfLine() {
+  while (text_.TakeIf('(')) {
+  }
+  if (!text_.AtEnd()) text_.Fail("nothing more is expected in this line");
+}
+
+std::size_t ProgramRun::CloseOf(std::size_t at) const {
+  std::size_t close = at;
+  for (const OWord* word = o_words_.At(at); word && word->next != OWord::kNone; word = o_words_.At(close))
+    close = word->next;
+  return close;
+}
+
+/// The line after an O word.
+std::size_t ProgramRun::Flow(std::size_t at) {
+  ReadOWord(text_);
+  const OWord& word = *o_words_.At(at);
+  switch (word.kind) {
+    case Kind::kNumber:
+      return at + 1;
+    case Kind::kSub:
+      return CloseOf(at) + 1;  // it runs when it is called
+    case Kind::kCall:
+      return Call(word, at);
+    case Kind::kReturn:
+    case Kind::kEndSub:
+      return LeaveSub();
+    case Kind::kIf:
+      return Choose(at);
+    case Kind::kElseIf:
+    case Kind::kElse:
+      return CloseOf(at) + 1;  // the branch before it has run
+    case Kind::kEndIf:
+    case Kind::kDo:
+      EndOfLine();
+      return at + 1;
+    case Kind::kWhile:
+      return Condition() ? at + 1 : CloseOf(at) + 1;
+    case Kind::kEndWhile:
+      EndOfLine();
+      return word.begin;
+    case Kind::kDoWhile:
+      return Condition() ? word.begin + 1 : at + 1;
+    case Kind::kRepeat:
+    case Kind::kEndRepeat:
+      return Repeat(word, at);
+    case Kind::kBreak:
+      EndOfLine();
+      repeats_.erase(word.begin);
+      return CloseOf(word.begin) + 1;
+    case Kind::kContinue:
+      EndOfLine();
+      return CloseOf(word.begin);
+  }
+  return at + 1;
+}
+
+std::size_t ProgramRun::Call(const OWord& word, std::size_t at) {
+  std::vector<double> arguments;
+  while (text_.Peek() == '[') arguments.push_back(values_.Bracketed());
+  EndOfLine();
+  const OWord* sub = o_words_.Sub(word.label);
+  if (sub == nullptr)
+    text_.Fail("there is no sub O" + word.label + " in this program; other files are not read");
+  if (returns_.size() >= kDeepestCalls) text_.Fail("more than ten subs inside each other");
+  returns_.push_back({at + 1, std::exchange(repeats_, {})});
+  parameters_.EnterSub(arguments);
+  return sub->line + 1;
+}
+
+std::size_t ProgramRun::LeaveSub() {
+  if (text_.Peek() == '[') {
+    const double value = values_.Bracketed();
+    parameters_.Set({0, "_value", value});
+  }
+  EndOfLine();
+  const Return back = returns_.back();
+  returns_.pop_back();
+  repeats_ = back.repeats;
+  parameters_.LeaveSub();
+  return back.line;
+}
+
+/// From an if to the branch that is to run.
+std::size_t ProgramRun::Choose(std::size_t at) {
+  for (;;) {
+    const OWord* word = o_words_.At(at);
+    if (word->kind == Kind::kElse || word->kind == Kind::kEndIf) {
+      EndOfLine();
+      return at + 1;
+    }
+    if (Condition()) return at + 1;
+    at = word->next;
+    OpenOWord(at);
+  }
+}
+
+std::size_t ProgramRun::Repeat(const OWord& word, std::size_t at) {
+  if (word.kind == Kind::kRepeat) {
+    const SourcePlace place = text_.place();
+    const double passes = values_.Bracketed();
+    EndOfLine();
+    if (!(passes < kMostRepeats)) Refuse(place, "repeat: more passes than a program may have");
+    if (passes < 1.0) return CloseOf(at) + 1;
+    repeats_[at] = static_cast<std::int64_t>(passes);
+    return at + 1;
+  }
+  EndOfLine();
+  const auto left = repeats_.find(word.begin);
+  if (left == repeats_.end()) return at + 1;
+  if (--left->second > 0) return word.begin + 1;
+  repeats_.erase(left);
+  return at + 1;
+}
+
+}  // namespace contour

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+
+#include "daemon/program/gcode/block.h"
+
+namespace contour {
+
+/// G54 to G59.3 and G92, in metres. A position of the program is a position from program zero less both.
+class WorkOffsets {
+ public:
+  [[nodiscard]] double Of(std::size_t axis) const { return systems_m_[active_][axis] + g92_m_[axis]; }
+  [[nodiscard]] double G92(std::size_t axis) const { return g92_m_[axis]; }
+
+  /// Tenfold: 540 to 590, 591, 592, 593.
+  void Select(int g) { active_ = static_cast<std::size_t>(g < 590 ? (g - 540) / 10 : 5 + g - 590); }
+
+  /// Number 1 is G54; 0 the one in force.
+  void SetSystem(int number, std::size_t axis, double offset_m) {
+    systems_m_[number == 0 ? active_ : static_cast<std::size_t>(number - 1)][axis] = offset_m;
+  }
+  [[nodiscard]] double system_m(std::size_t axis) const { return systems_m_[active_][axis]; }
+
+  void SetG92(std::size_t axis, double offset_m) { g92_m_[axis] = offset_m; }
+  void KeepG92() { kept_m_ = g92_m_; }
+  void SuspendG92() { g92_m_ = {}; }           ///< G92.2
+  void RestoreG92() { g92_m_ = kept_m_; }      ///< G92.3
+  void ForgetG92() { g92_m_ = kept_m_ = {}; }  ///< G92.1
+
+ private:
+  std::array<AxisValues, 9> systems_m_{};
+  std::size_t active_ = 0;
+  AxisValues g92_m_{};
+  AxisValues kept_m_{};
+};
+
+}  // namespace contour
