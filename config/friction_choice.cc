@@ -1,10 +1,10 @@
 #include "config/friction_choice.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "config/loop_axis.h"
+#include "core/two_inertia_loop.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
@@ -16,20 +16,13 @@ namespace {
 constexpr double kLowestInTorqueMode_Hz = 300.0;
 constexpr double kLowestInCascade_Hz = 125.0;
 
-/// Of motor against table.
-double Mode_Hz(const AxisConfig& axis) {
-  const Mechanics m = ToSi(axis.model.mechanics);
-  const double motor_kg = m.mass_kg - m.table_mass_kg;
-  return std::sqrt(m.stiffness_N_m * m.mass_kg / (motor_kg * m.table_mass_kg)) / (2.0 * std::numbers::pi);
-}
-
 }  // namespace
 
 FrictionKind ChooseFriction(const MachineConfig& machine) {
   double lowest_Hz = std::numeric_limits<double>::infinity();
   bool cascade = false, tuned = true;
   for (const auto& [name, axis] : machine.axes) {
-    lowest_Hz = std::min(lowest_Hz, Mode_Hz(axis));
+    lowest_Hz = std::min(lowest_Hz, ModeFrequency_Hz(TwoInertiaAxisOf(axis)));
     tuned = tuned && axis.loop.has_value();
     cascade = cascade || ModeFor(ControllerName::kFull, axis.drive) == DriveMode::kCsp;
   }

@@ -6,13 +6,12 @@
 #include <utility>
 
 #include "analysis/text/format_text.h"
+#include "config/loop_axis.h"
+#include "core/two_inertia_loop.h"
 
 namespace contour {
 namespace {
 
-/// Strokes and speeds stay this far inside what is allowed: a controller with a wrong model overshoots.
-constexpr double kMargin_mm = 0.15;
-constexpr double kShareOfTop = 0.95;
 /// Forces in those of rated torque: of the chirp, and of each line of the multisine.
 constexpr double kChirpOfRated = 0.075;
 constexpr double kLineOfRated = 0.0025;
@@ -24,7 +23,6 @@ constexpr double kHighestBegin_Hz = 100.0;
 /// The chirp moves the axis to and fro by this share of the slowest stroke's speed at most, should the masses
 /// be as light as a catalogue allows: the bristle must not turn back.
 constexpr double kShareOfSlide = 0.6;
-constexpr double kLightest = 0.7;
 
 /// Torques in steps up to beyond break-away, both ways: shares of the stated level.
 std::string TorqueSteps(double level_Nm, double most_Nm) {
@@ -48,10 +46,10 @@ class Motions {
         limits_(plan.limits),
         mechanics_(ToSi(axis.model.mechanics)),
         friction_(ToSi(axis.model.friction, mechanics_.radius_m_rad)),
-        top_mm_s_(kShareOfTop * plan.limits.max_speed_mm_s),
+        top_mm_s_(kCommissionShareOfTop * plan.limits.max_speed_mm_s),
         // Every program ends where it began, so the axis goes up from its place and down from it.
-        up_mm_(plan.high_mm - kMargin_mm - position_mm),
-        down_mm_(plan.low_mm + kMargin_mm - position_mm) {}
+        up_mm_(plan.high_mm - kCommissionMargin_mm - position_mm),
+        down_mm_(plan.low_mm + kCommissionMargin_mm - position_mm) {}
 
   void Slide() {
     // The shorter strokes go where there is room.
@@ -107,21 +105,16 @@ class Motions {
 
  private:
   std::string Creep(double stroke_mm, const std::vector<double>& speeds) const {
-    std::string list;
-    for (const double v : speeds) list += (list.empty() ? "" : ", ") + FormatText("%g", v);
-    return FormatText("shape: creep\naxis: %s\nstroke_mm: %.6f\nvelocities_mm_s: [%s]\ndwell_s: 0.1\n",
-                      name_.c_str(), stroke_mm, list.c_str());
+    return CreepProgram(name_, stroke_mm, speeds, 0.1);
   }
 
   void Add(std::string what, std::string yaml) { motions_.push_back({std::move(what), std::move(yaml)}); }
 
   [[nodiscard]] double ChirpBegin_Hz(double slowest_m_s) const {
     const Mechanics& m = mechanics_;
-    const double motor_kg = m.mass_kg - m.table_mass_kg;
-    const double mode_Hz =
-        std::sqrt(m.stiffness_N_m * m.mass_kg / (motor_kg * m.table_mass_kg)) / (2.0 * std::numbers::pi);
-    const double least_Hz = CommissionChirp_N(axis_) /
-                            (kLightest * m.mass_kg * 2.0 * std::numbers::pi * kShareOfSlide * slowest_m_s);
+    const double mode_Hz = ModeFrequency_Hz(TwoInertiaAxisOf(axis_));
+    const double least_Hz = CommissionChirp_N(axis_) / (kLightestOfCatalogue * m.mass_kg * 2.0 *
+                                                        std::numbers::pi * kShareOfSlide * slowest_m_s);
     return std::min(kHighestBegin_Hz, std::max(kBelowMode * mode_Hz, least_Hz));
   }
 
@@ -140,6 +133,14 @@ class Motions {
 };
 
 }  // namespace
+
+std::string CreepProgram(const std::string& axis, double stroke_mm, const std::vector<double>& speeds_mm_s,
+                         double dwell_s) {
+  std::string list;
+  for (const double v : speeds_mm_s) list += (list.empty() ? "" : ", ") + FormatText("%g", v);
+  return FormatText("shape: creep\naxis: %s\nstroke_mm: %.6f\nvelocities_mm_s: [%s]\ndwell_s: %g\n",
+                    axis.c_str(), stroke_mm, list.c_str(), dwell_s);
+}
 
 double CommissionChirp_N(const AxisConfig& axis) { return kChirpOfRated * RatedForce_N(axis); }
 

@@ -6,15 +6,15 @@
 #include <string>
 
 #include "analysis/text/format_text.h"
+#include "design/commission_motions.h"
 
 namespace contour {
 namespace {
 
-/// Strokes and speeds stay this far inside what is allowed.
-constexpr double kMargin_mm = 0.15;
-constexpr double kShareOfTop = 0.95;
 /// Seconds per stroke of the slow ones: several periods of the chirp each.
 constexpr double kStrokeTimes_s[] = {4.0, 6.0};
+/// At either end of a stroke.
+constexpr double kDwell_s = 0.2;
 constexpr double kLowest_Hz = 3.0;
 constexpr double kHighest_Hz = 400.0;
 /// Of the cycle's rate: above it a held torque is no sine any more.
@@ -23,41 +23,29 @@ constexpr double kOfRate = 0.4;
 /// frequency at which drives' loops begin to let go, and the masses as light as a catalogue allows.
 constexpr double kShareOfSlide = 0.5;
 constexpr double kLetGo_Hz = 15.0;
-constexpr double kLightest = 0.7;
-/// And no more than this share of the rated force.
-constexpr double kOfRated = 0.075;
-
-std::string Creep(const std::string& axis, double stroke_mm, const std::string& speeds) {
-  return FormatText("shape: creep\naxis: %s\nstroke_mm: %.6f\nvelocities_mm_s: [%s]\ndwell_s: 0.2\n",
-                    axis.c_str(), stroke_mm, speeds.c_str());
-}
 
 }  // namespace
 
 std::vector<CommissionMotion> DriveMotions(const CommissionPlan& plan, const AxisConfig& axis,
                                            double position_mm, double cycle_us) {
-  const double up_mm = plan.high_mm - kMargin_mm - position_mm;
-  const double down_mm = plan.low_mm + kMargin_mm - position_mm;
+  const double up_mm = plan.high_mm - kCommissionMargin_mm - position_mm;
+  const double down_mm = plan.low_mm + kCommissionMargin_mm - position_mm;
   const double way_mm = up_mm >= -down_mm ? up_mm : down_mm;
-  const double top_mm_s = kShareOfTop * plan.limits.max_speed_mm_s;
+  const double top_mm_s = kCommissionShareOfTop * plan.limits.max_speed_mm_s;
   std::vector<CommissionMotion> motions;
   motions.push_back(
-      {"strokes with ramps", Creep(plan.axis, way_mm, FormatText("%g, %g", 0.3 * top_mm_s, top_mm_s))});
-  std::string slow;
-  double slowest_mm_s = top_mm_s;
-  for (const double time_s : kStrokeTimes_s) {
-    const double speed = std::min(std::abs(way_mm) / time_s, 0.8 * top_mm_s);
-    slowest_mm_s = std::min(slowest_mm_s, speed);
-    slow += FormatText(slow.empty() ? "%g" : ", %g", speed);
-  }
+      {"strokes with ramps", CreepProgram(plan.axis, way_mm, {0.3 * top_mm_s, top_mm_s}, kDwell_s)});
+  std::vector<double> slow;
+  for (const double time_s : kStrokeTimes_s)
+    slow.push_back(std::min(std::abs(way_mm) / time_s, 0.8 * top_mm_s));
+  const double slowest_mm_s = *std::min_element(slow.begin(), slow.end());
   const Mechanics m = ToSi(axis.model.mechanics);
-  const double weak_N =
-      kShareOfSlide * 1e-3 * slowest_mm_s * kLightest * m.mass_kg * 2.0 * std::numbers::pi * kLetGo_Hz;
-  const double amplitude_Nm =
-      m.radius_m_rad * std::min(weak_N, kOfRated * axis.drive.rated_torque_Nm / m.radius_m_rad);
+  const double weak_N = kShareOfSlide * 1e-3 * slowest_mm_s * kLightestOfCatalogue * m.mass_kg * 2.0 *
+                        std::numbers::pi * kLetGo_Hz;
+  const double amplitude_Nm = m.radius_m_rad * std::min(weak_N, CommissionChirp_N(axis));
   motions.push_back(
       {FormatText("chirp of %.3g Nm on the torque offset while sliding", amplitude_Nm),
-       Creep(plan.axis, way_mm, slow) +
+       CreepProgram(plan.axis, way_mm, slow, kDwell_s) +
            FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: %g, "
                       "frequency_max_hz: %.0f, period_s: %g}\n",
                       plan.axis.c_str(), amplitude_Nm, kLowest_Hz,

@@ -81,17 +81,17 @@ void TableScale::Filter(const Sample& s) noexcept {
   const double apart_m = 0.5 * (before_m + s.position_m - (s.scale_m - zero_m_));
   const std::array<double, kSignals> now{apart_m,   s.force_N, velocity_m_s, s.position_m - zero_at_m_,
                                          angle.cos, angle.sin, s.lead_m};
-  const double velocity_before_m_s = low_[kVelocity];
+  const double velocity_before_m_s = low_[kRate];
   if (!filtering_) {
     low_ = now;
-    quick_ = {now[kApart], now[kForce], now[kVelocity]};
+    quick_ = {now[kApart], now[kForce], now[kRate]};
     quick_m_s2_ = 0.0;
     acceleration_m_s2_ = 0.0;
     filtering_ = true;
     return;
   }
   for (std::size_t i = 0; i < kSignals; ++i) low_[i] += share_ * (now[i] - low_[i]);
-  acceleration_m_s2_ = (low_[kVelocity] - velocity_before_m_s) / setup_.period_s;
+  acceleration_m_s2_ = (low_[kRate] - velocity_before_m_s) / setup_.period_s;
   quick_m_s2_ = -quick_[2] / setup_.period_s;
   for (std::size_t i = 0; i < quick_.size(); ++i) quick_[i] += kQuickShare * (now[i] - quick_[i]);
   quick_m_s2_ += quick_[2] / setup_.period_s;

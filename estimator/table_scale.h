@@ -74,7 +74,7 @@ class TableScale {
 
  private:
   // Low-passed alike.
-  enum Signal : std::uint8_t { kApart, kForce, kVelocity, kTravel, kCos, kSin, kLead, kSignals };
+  enum Signal : std::uint8_t { kApart, kForce, kRate, kTravel, kCos, kSin, kLead, kSignals };
   void SettleZero(const Sample& s, double apart_m) noexcept;
   void Filter(const Sample& s) noexcept;
   [[nodiscard]] double Allowed_m(double screw_N, double acceleration_m_s2) const noexcept;

@@ -22,12 +22,6 @@ namespace {
 constexpr double kStepOfRated = 0.1;
 constexpr double kDegrees = 57.29577951308232;
 
-TwoInertiaAxis StatedAxis(const AxisConfig& axis) {
-  const Mechanics m = ToSi(axis.model.mechanics);
-  return ToTwoInertiaAxis(m, ToSi(axis.model.friction, m.radius_m_rad).sigma2_Ns_m, 1e-3 * axis.drive.lag_ms,
-                          axis.drive.delay_cycles);
-}
-
 nlohmann::json ToJson(const DriveReport& r, const DriveResponse& response, double period_s) {
   nlohmann::json lines = nlohmann::json::array();
   const DriveLoopOn on(r.fit.axis, r.fit.loop);
@@ -67,7 +61,7 @@ int ReportOnDrive(const MachineConfig& machine, const std::string& name,
                   const std::vector<DriveSample>& samples, const std::filesystem::path& file) {
   const AxisConfig& axis = machine.axes.at(name);
   const double period_s = 1e-6 * machine.machine.cycle_us;
-  const TwoInertiaAxis stated = StatedAxis(axis);
+  const TwoInertiaAxis stated = TwoInertiaAxisOf(axis);
   const DriveResponse response =
       MeasureDrive(samples, period_s, static_cast<std::size_t>(std::lround(kDrivePeriod_s / period_s)));
   DriveReport report;
