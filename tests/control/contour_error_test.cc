@@ -102,6 +102,34 @@ TEST(ContourError, OneAndThreeAxes) {
   EXPECT_NEAR(FindContourError(q, space, kPeriod).contour_m, std::numbers::sqrt2 * 1e-6, 1e-15);
 }
 
+// A helix of 10 mm and 3 mm a turn: errors along its normal and its binormal count as they are, those along
+// it do not.
+TEST(ContourError, InSpaceItIsTheDistanceFromAHelix) {
+  constexpr double kRadius = 0.01, kOmega = 5.0, kClimb = kOmega * 3e-3 / (2.0 * std::numbers::pi);
+  PerAxis<AxisHorizon> reference = CircleFrom(kRadius, kOmega, 0, 20);
+  reference.resize(3);
+  reference[2].clear();
+  for (int j = 0; j < 20; ++j) reference[2].push_back({kClimb * kPeriod * j, kClimb, 0.0});
+  const double speed = std::hypot(kRadius * kOmega, kClimb);
+  for (const double ahead : {-2.0, 0.0, 0.6, 5.0}) {
+    const double phi = kOmega * kPeriod * ahead;
+    const double normal[] = {std::cos(phi), std::sin(phi), 0.0};
+    const double share = kClimb / speed;
+    const double binormal[] = {share * std::sin(phi), -share * std::cos(phi), kRadius * kOmega / speed};
+    for (const double off : {-20e-6, 3e-6}) {
+      PerAxis<double> beside(3), above(3);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double on = i == 2 ? kClimb * kPeriod * ahead : kRadius * normal[i];
+        beside[i] = on + off * normal[i];
+        above[i] = on + off * binormal[i];
+      }
+      EXPECT_NEAR(FindContourError(beside, reference, kPeriod).contour_m, std::abs(off), 1e-9);
+      EXPECT_NEAR(FindContourError(above, reference, kPeriod).contour_m, std::abs(off), 1e-9);
+      EXPECT_NEAR(FindContourError(above, reference, kPeriod).nearest_periods, ahead, 0.01);
+    }
+  }
+}
+
 TEST(ContourPath, TangentAndCurvatureOfACircle) {
   const PerAxis<AxisHorizon> reference = CircleFrom(0.01, 5.0, 0, 20);
   const ContourPath path(reference, kPeriod);
