@@ -44,7 +44,7 @@ TEST(LoadMachine, DefaultSendDeadlineIsAFifthOfTheCycle) {
 }
 
 TEST(LoadMachine, WrittenOutAndReadBackItIsTheSame) {
-  for (const char* name : {"xy_emulated.yaml", "xy_vcan.yaml", "single_axis.yaml"}) {
+  for (const char* name : {"xy_emulated.yaml", "xy_vcan.yaml", "single_axis.yaml", "xyz_emulated.yaml"}) {
     const MachineConfig c = LoadMachine(
         ExampleMachine(name), {"axes.x.model.extensions={cogging: {amplitude_Nm: 0.1, order_per_rev: 12, "
                                "phase_rad: 1, further: [{amplitude_Nm: 0.05, order_per_rev: 24, phase_rad: "
