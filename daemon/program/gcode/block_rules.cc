@@ -8,6 +8,7 @@ namespace contour {
 namespace {
 
 constexpr int kMostMCodes = 4;
+constexpr double kMostTurns = 1e6;
 constexpr double kNearlyWhole = 1e-3;
 
 bool IsArc(int motion) { return motion == 20 || motion == 30; }
@@ -93,6 +94,7 @@ void CheckWords(const Block& block) {
     block.FailAtWord('p', "P belongs to G2, G3, G4, G10 and G64");
   const double p = block.Get('p')->value;
   if (arc && !Whole(p)) block.FailAtWord('p', "P of an arc: expected a whole number of turns");
+  if (arc && p > kMostTurns) block.FailAtWord('p', "P of an arc: more turns than an arc may have");
   if (arc && std::round(p) < 1.0) block.FailAtWord('p', "P of an arc: expected at least one turn");
 }
 

@@ -11,7 +11,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 // Two numbers nearer than this are EQ.
 constexpr double kEqual = 1e-4;
 constexpr double kNearlyWhole = 1e-4;
-// Brackets inside brackets; more is no program but an attack on the stack.
+// Values inside values; more is no program but an attack on the stack.
 constexpr int kDeepest = 100;
 
 enum Operation { kPower, kTimes, kOver, kMod, kPlus, kMinus, kEq, kNe, kGt, kGe, kLt, kLe, kAnd, kOr, kXor };
@@ -47,18 +47,21 @@ double ValueReader::Value() {
 }
 
 double ValueReader::Operand() {
+  if (++depth_ > kDeepest) text_.Fail("too many brackets, signs or parameters inside each other");
+  const double value = Term();
+  --depth_;
+  return value;
+}
+
+double ValueReader::Term() {
   const char c = text_.Peek();
   if (c == '[') return Bracketed();
   if (c == '#') return Parameter();
   if (c >= 'a' && c <= 'z') return Function();
-  if (c == '+' || c == '-') {
-    if (++depth_ > kDeepest) text_.Fail("too many signs in a row");
-    text_.Skip(1);
-    const double value = Operand();
-    --depth_;
-    return c == '-' ? -value : value;
-  }
-  return Number();
+  if (c != '+' && c != '-') return Number();
+  text_.Skip(1);
+  const double value = Operand();
+  return c == '-' ? -value : value;
 }
 
 double ValueReader::Number() {
@@ -151,9 +154,7 @@ double ValueReader::Function() {
 
 double ValueReader::Bracketed() {
   if (!text_.TakeIf('[')) text_.Fail("expected '['");
-  if (++depth_ > kDeepest) text_.Fail("too many brackets inside each other");
   const double value = Expression(1);
-  --depth_;
   if (!text_.TakeIf(']')) text_.Fail("expected an operator or ']'");
   return value;
 }

@@ -28,6 +28,7 @@ class ValueReader {
   double Exists();
   double Expression(int least_precedence);
   double Operand();
+  double Term();
   double Apply(int op, double left, double right) const;
 
   LineText& text_;

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 
+#include "daemon/program/gcode/ignored_events.h"
 #include "tests/daemon/program/on_a_table.h"
 
 namespace contour {
@@ -275,6 +277,46 @@ TEST(GcodeParser, BlockDeleteLeavesLinesOut) {
   EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "XY");
   settings.block_delete = true;
   EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "Y");
+}
+
+TEST(GcodeParser, WordsThatNothingListensToAreNamedOnce) {
+  EXPECT_EQ(IgnoredEvents(Parse("G0 X1\nM3 S900\nX2\nM0\nM3 S100 M8\n"), "part.ngc"),
+            "part.ngc:2: no output listens to M3, M8, S: ignored, here and below");
+  EXPECT_EQ(IgnoredEvents(Parse("G0 X1\nM0\n"), "part.ngc"), "");
+}
+
+// Whatever comes over the socket is read or refused.
+TEST(GcodeParser, NonsenseIsRefusedAndNothingWorse) {
+  const std::string sound =
+      "%\nG21 G18 F500\nG2 X4 Z2 I2 K1 P3\n#<a>=[1+sin[30]*2**3/##1]\no1 sub\nG1 X#<a> Y-[3.5]\no1 endsub\n"
+      "o1 call [2] [3]\no2 repeat [3]\nG10 L20 P2 X1 G55\no2 endrepeat\nG64 P0.01\nG4 P1 (c)\n%\n";
+  const std::string signs = "GMXYZIJKRPFNO#<>[]()%/;*+-.0123456789 eE\n\r\t\x01\xff";
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int k = 0; k < 3000; ++k) {
+    std::string text = sound;
+    for (int changes = 1 + k % 4; changes > 0; --changes) {
+      const std::size_t at = random() % text.size();
+      const char sign = signs[random() % signs.size()];
+      if (random() % 3 == 0) {
+        text.erase(at, 1 + random() % 5);
+      } else if (random() % 2 == 0) {
+        text.insert(at, 1 + random() % 3, sign);
+      } else {
+        text[at] = sign;
+      }
+      if (text.empty()) text = "G";
+    }
+    if (!testing::ErrorOf([&] { Parse(text); }).empty()) ++refused;
+  }
+  EXPECT_GT(refused, 300);
+  for (const char* deep : {"[", "#", "-", "sin["}) {
+    std::string text = "G0 X";
+    for (int k = 0; k < 200000; ++k) text += deep;
+    EXPECT_NE(testing::ErrorOf([&] { Parse(text); }).find("inside each other"), std::string::npos) << deep;
+  }
+  EXPECT_NE(testing::ErrorOf([&] { Parse("F1 G2 I1 P9" + std::string(200, '0')); }).find("more turns"),
+            std::string::npos);
 }
 
 TEST(GcodeParser, ProgramsThatDoNotEndAreRefused) {
