@@ -21,7 +21,7 @@ import make_family
 LOOPS = make_family.HERE / "loops.csv"
 KEYS = ["regulator_Hz", "windup_weight", "velocity_weight", "disturbance_Hz", "motor_force_Hz", "table_force_Hz", "notch_ratio",
         "notch_pole_damping", "notch_zero_damping", "scale_noise_ratio", "bias_Hz"]
-EXAMPLES = ["xy_emulated", "xy_vcan", "single_axis"]
+EXAMPLES = ["xy_emulated", "xy_vcan", "single_axis", "xyz_emulated"]
 
 
 def found_loops(contour, file, *more):
