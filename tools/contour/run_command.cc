@@ -1,4 +1,5 @@
 #include "tools/contour/run_command.h"
+#include "tools/contour/ignored_words.h"
 
 #include <unistd.h>
 
@@ -187,6 +188,7 @@ int RunRun(const Options& options) {
     std::cerr << e.what() << "\n";
     return kExitBadUsage;
   }
+  WarnOfIgnoredWords(options.program);
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
   ControlClient client = ConnectToDaemon(options.socket);

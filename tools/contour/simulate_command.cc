@@ -10,6 +10,7 @@
 #include "core/exit_status.h"
 #include "daemon/make_log_header.h"
 #include "daemon/program/program.h"
+#include "tools/contour/ignored_words.h"
 #include "tools/machine/load_emulated_machine.h"
 #include "tools/simulate/simulation_run.h"
 
@@ -48,6 +49,7 @@ int RunSimulate(const Options& options) {
     return kExitBadUsage;
   }
   request.passes = options.passes;
+  WarnOfIgnoredWords(options.program);
   request.out = options.out;
   if (!options.log.empty()) {
     if (options.seed) set.push_back("emulator.seed=" + std::to_string(*options.seed));

@@ -279,10 +279,15 @@ TEST(GcodeParser, BlockDeleteLeavesLinesOut) {
   EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "Y");
 }
 
-TEST(GcodeParser, WordsThatNothingListensToAreNamedOnce) {
-  EXPECT_EQ(IgnoredEvents(Parse("G0 X1\nM3 S900\nX2\nM0\nM3 S100 M8\n"), "part.ngc"),
+TEST(GcodeParser, WordsThatDoNothingAreNamedOnce) {
+  const auto warning = [](const char* text) { return IgnoredEvents(Parse(text), "part.ngc"); };
+  EXPECT_EQ(warning("G0 X1\nM3 S900\nX2\nM3 S100 M8\n"),
             "part.ngc:2: no output listens to M3, M8, S: ignored, here and below");
-  EXPECT_EQ(IgnoredEvents(Parse("G0 X1\nM0\n"), "part.ngc"), "");
+  EXPECT_EQ(warning("G0 X1\nM0\n"), "part.ngc:2: M0 and M1 stop for an instant and do not hold");
+  EXPECT_EQ(warning("T1\nG0 X1\nM1\n"),
+            "part.ngc:1: no output listens to T: ignored, here and below; M0 and M1 stop for an instant and "
+            "do not hold");
+  EXPECT_EQ(warning("G0 X1\n"), "");
 }
 
 // Whatever comes over the socket is read or refused.

@@ -1,0 +1,22 @@
+#include "tools/contour/ignored_words.h"
+
+#include <iostream>
+
+#include "daemon/program/gcode/ignored_events.h"
+#include "daemon/program/gcode_parser.h"
+#include "daemon/program/program.h"
+
+namespace contour {
+
+void WarnOfIgnoredWords(const std::filesystem::path& program) {
+  if (FormatOf(program) != ProgramFormat::kGcode) return;
+  try {
+    const std::string warning =
+        IgnoredEvents(ParseGcode(ReadProgramText(program), program.string()), program.string());
+    if (!warning.empty()) std::cerr << "warning: " << warning << "\n";
+  } catch (const ProgramError&) {
+    // Whoever runs the program says what is wrong with it.
+  }
+}
+
+}  // namespace contour

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+
+namespace contour {
+
+/// Says once, on stderr, which words of a G-code program do nothing here. A program that cannot be read is
+/// not this function's business.
+void WarnOfIgnoredWords(const std::filesystem::path& program);
+
+}  // namespace contour
