@@ -28,12 +28,16 @@ struct MachineSection {
   std::string name;
   std::int32_t cycle_us = 1000;
   ControllerName controller = ControllerName::kFull;
+  double path_tolerance_mm = 0.01;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Required("name", name, "name of the machine, in telemetry and logs");
     v.Optional("cycle_us", cycle_us, Range{250, 20000}, "period of the cycle");
     v.Optional("controller", controller, "controller used unless another is asked for");
+    v.Optional("path_tolerance_mm", path_tolerance_mm, kPositive,
+               "how far the table may leave the path of a program that does not say so itself: corners of "
+               "G-code with G0 and with G64 without P, of squares without corners");
   }
 };
 

@@ -23,6 +23,8 @@ struct PlanLimits {
   double following_error_m = 0.0;
   double radius_m_rad = 0.0;
   double mass_kg = 0.0;  ///< everything that moves, seen at the table
+  /// How far the table may leave the path of a program that says nothing about it; the smallest of the axes'.
+  double path_tolerance_m = 1e-5;
 };
 
 /// The commanded circle of a circle program.

@@ -12,15 +12,17 @@ constexpr double kRounding = 1e-6;
 
 PathGenerator::PathGenerator(const Program& program, const PerAxis<double>& start_m,
                              const PerAxis<PlanLimits>& limits, double period_s, std::uint32_t program_id)
-    : plan_(PlanMotion(program, start_m, limits)),
-      period_s_(period_s),
-      program_id_(program_id),
-      points_(static_cast<std::uint64_t>(std::ceil(plan_->duration_s() / period_s - kRounding)) + 1) {}
+    : plan_(PlanMotion(program, start_m, limits)), period_s_(period_s), program_id_(program_id) {}
+
+std::uint64_t PathGenerator::points() const {
+  return static_cast<std::uint64_t>(std::ceil(plan_->duration_s() / period_s_ - kRounding)) + 1;
+}
 
 bool PathGenerator::Next(PathPoint& point) {
-  if (next_ == points_) return false;
+  if (done_) return false;
   point.program_id = program_id_;
-  point.last = next_ + 1 == points_;
+  point.last = !plan_->GoesOnAfter((static_cast<double>(next_) + kRounding) * period_s_);
+  done_ = point.last;
   // The last grid point lies on the end of the path or after it.
   const double time_s = point.last ? plan_->duration_s() : static_cast<double>(next_) * period_s_;
   plan_->At(time_s, point.axes);

@@ -25,7 +25,8 @@ class PathGenerator {
   /// The next grid point; false when the last one has been handed out.
   bool Next(PathPoint& point);
 
-  [[nodiscard]] std::uint64_t points() const { return points_; }  ///< altogether
+  /// Altogether; plans all of the program.
+  [[nodiscard]] std::uint64_t points() const;
   [[nodiscard]] std::uint64_t points_done() const { return next_; }
   [[nodiscard]] double duration_s() const { return plan_->duration_s(); }
   [[nodiscard]] const std::shared_ptr<const MotionPlan>& plan() const { return plan_; }
@@ -34,7 +35,7 @@ class PathGenerator {
   std::shared_ptr<const MotionPlan> plan_;
   double period_s_;
   std::uint32_t program_id_;
-  std::uint64_t points_;
+  bool done_ = false;
   std::uint64_t next_ = 0;
   std::shared_ptr<const PathOffsets> offsets_;
 };

@@ -50,6 +50,8 @@ double Share(const CurvePiece& curve, std::size_t axis) {
 
 double Jerk(const PlanLimits& limits) { return limits.jerk_m_s3 > 0.0 ? limits.jerk_m_s3 : kInfinite; }
 
+}  // namespace
+
 void CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits) {
   const Extent extent = ExtentOf(request.curve);
   for (std::size_t i = 0; i < limits.size(); ++i) {
@@ -62,8 +64,6 @@ void CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits) 
     }
   }
 }
-
-}  // namespace
 
 void CheckPiece(const PieceRequest& request, const PerAxis<PlanLimits>& limits) {
   CheckRange(request, limits);

@@ -9,6 +9,9 @@ namespace contour {
 /// jerk of a curve followed at this speed. Throws ProgramError naming axis, value and limit.
 void CheckPiece(const PieceRequest& request, const PerAxis<PlanLimits>& limits);
 
+/// Its part about the position range.
+void CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits);
+
 /// Largest speed along the piece that the axes' velocity limits allow.
 double LargestSpeed_m_s(const CurvePiece& curve, const PerAxis<PlanLimits>& limits);
 

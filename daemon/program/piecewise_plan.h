@@ -22,6 +22,7 @@ struct PieceRequest {
   double tolerance_m = 0.0;                                  ///< of a blended corner
   double shortest_ramp_s = 0.0;
   std::string origin;  ///< "file" or "file:line", begins messages
+  int line = 0;        ///< of the program; 0: none
 };
 
 /// What else is known of the whole path.

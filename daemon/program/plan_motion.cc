@@ -6,6 +6,7 @@
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/oscillation_plan.h"
 #include "daemon/program/piecewise_plan.h"
+#include "daemon/program/stretch_plan.h"
 #include "daemon/program/torque_plan.h"
 #include "daemon/program/torque_steps_plan.h"
 
@@ -26,6 +27,10 @@ struct Place {
   const PerAxis<double>& start_m;
   const PerAxis<PlanLimits>& limits;
 };
+
+[[noreturn]] void RefuseDuration(const Program& program) {
+  throw ProgramError(program.name + ": the program would take more than three years");
+}
 
 std::string AxisList(const Place& place) {
   std::string list;
@@ -98,15 +103,22 @@ std::shared_ptr<const MotionPlan> Plan(const CircleShape& shape, const Place& pl
   return std::make_shared<PiecewisePlan>(std::vector{RoundPiece(place, arc, speed)}, traits, place.limits);
 }
 
+/// Where the program gives none.
+double PathTolerance_m(const PerAxis<PlanLimits>& limits) {
+  double tolerance_m = limits[0].path_tolerance_m;
+  for (const PlanLimits& l : limits) tolerance_m = std::min(tolerance_m, l.path_tolerance_m);
+  return tolerance_m;
+}
+
 /// A closed polygon with the given sides, counter-clockwise; clockwise mirrors it at the X axis.
 std::shared_ptr<const MotionPlan> PlanSquare(const SquareShape& shape, const Place& place,
                                              double turned_rad) {
   const Plane plane = FindPlane(place, shape.axes);
   const double side = shape.side_mm * 1e-3;
   const double mirror = shape.direction == Direction::kCcw ? 1.0 : -1.0;
-  GcodeMove::Corner corner = GcodeMove::Corner::kContinuous;
+  GcodeMove::Corner corner = GcodeMove::Corner::kBlended;
   if (shape.corners == Corners::kExactStop) corner = GcodeMove::Corner::kExactStop;
-  if (shape.corner_tolerance_mm) corner = GcodeMove::Corner::kBlended;
+  if (shape.corners == Corners::kVelocityJump) corner = GcodeMove::Corner::kContinuous;
   PathTraits traits;
   traits.turn_length_m = 4.0 * side;
   traits.speed_in_one_turn = corner == GcodeMove::Corner::kContinuous;
@@ -122,7 +134,8 @@ std::shared_ptr<const MotionPlan> PlanSquare(const SquareShape& shape, const Pla
     request.curve = LinePiece(corners[k % 4], corners[(k + 1) % 4]);
     request.speed_m_s = Speed_m_s(shape.feed, traits.turn_length_m);
     request.corner = corner;
-    request.tolerance_m = shape.corner_tolerance_mm.value_or(0.0) * 1e-3;
+    request.tolerance_m =
+        shape.corner_tolerance_mm ? *shape.corner_tolerance_mm * 1e-3 : PathTolerance_m(place.limits);
     request.origin = place.program.name;
     requests.push_back(request);
   }
@@ -262,6 +275,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     axis.push_back(Find(place, std::string(1, static_cast<char>(program.letters[k] - 'A' + 'a')), where));
   }
   std::vector<PieceRequest> requests;
+  double longest_s = 0.0;
   PerAxis<double> at = place.start_m;
   for (const GcodeMove& move : program.moves) {
     PerAxis<double> target = at;
@@ -270,8 +284,10 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     request.origin = place.program.name + ":" + std::to_string(move.line);
     request.speed_m_s = move.kind == GcodeMove::Kind::kRapid ? 0.0 : move.feed_m_s;
     request.dwell_s = move.dwell_s;
+    request.line = move.line;
     request.corner = move.corner;
-    request.tolerance_m = move.tolerance_m;
+    request.tolerance_m =
+        move.corner == GcodeMove::Corner::kBlended ? move.tolerance_m : PathTolerance_m(place.limits);
     switch (move.kind) {
       case GcodeMove::Kind::kDwell:
         request.curve = PointPiece(at);
@@ -285,9 +301,13 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
         break;
     }
     requests.push_back(request);
-    at = target;
+    // An arc's end may miss its target by a few decimals; the next move begins where it ended.
+    at = move.kind == GcodeMove::Kind::kArc ? PointAt(request.curve, request.curve.length_m).position_m
+                                            : target;
+    longest_s += move.dwell_s + (request.speed_m_s > 0.0 ? request.curve.length_m / request.speed_m_s : 0.0);
   }
-  return std::make_shared<PiecewisePlan>(std::move(requests), PathTraits{}, place.limits);
+  if (!(longest_s <= kLongest_s)) RefuseDuration(place.program);
+  return std::make_shared<StretchPlan>(requests, place.limits);
 }
 
 }  // namespace
@@ -300,9 +320,9 @@ std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAx
   const Place place{program, start_m, limits};
   std::shared_ptr<const MotionPlan> plan =
       std::visit([&](const auto& shape) { return Plan(shape, place); }, program.shape);
-  if (!(plan->duration_s() <= kLongest_s)) {
-    throw ProgramError(program.name + ": the program would take more than three years");
-  }
+  // G-code is planned while it runs, and was asked before.
+  const bool gcode = std::holds_alternative<GcodeMoves>(program.shape);
+  if (!gcode && !(plan->duration_s() <= kLongest_s)) RefuseDuration(program);
   if (program.torque) {
     plan = std::make_shared<TorquePlan>(std::move(plan), *program.torque, Find(place, program.torque->axis),
                                         limits, program.name);

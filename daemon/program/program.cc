@@ -58,6 +58,12 @@ Shape ReadPlane(const YamlValue& root, const std::string& name) {
 
 template <class Shape>
 Shape ReadPolygon(const YamlValue& root, const std::string& name) {
+  for (const YamlEntry& entry : root.entries) {
+    if (entry.key == "corners" && entry.value.text == "continuous")
+      throw ProgramError(entry.where +
+                         ": corners: continuous is velocity_jump now, an experiment beyond the axes' limits; "
+                         "without corners they are blended within the machine's path_tolerance_mm");
+  }
   auto shape = ReadPlane<Shape>(root, name);
   if (shape.corners && shape.corner_tolerance_mm) {
     throw ProgramError(WhereIs(root, "corner_tolerance_mm") +

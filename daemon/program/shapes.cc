@@ -13,16 +13,16 @@ std::string_view Name(Direction direction) { return direction == Direction::kCcw
 std::string_view Choices(Direction) { return "ccw, cw"; }
 
 bool FromName(std::string_view name, Corners& corners) {
-  if (name != "continuous" && name != "exact_stop") return false;
-  corners = name == "continuous" ? Corners::kContinuous : Corners::kExactStop;
+  if (name != "velocity_jump" && name != "exact_stop") return false;
+  corners = name == "velocity_jump" ? Corners::kVelocityJump : Corners::kExactStop;
   return true;
 }
 
 std::string_view Name(Corners corners) {
-  return corners == Corners::kContinuous ? "continuous" : "exact_stop";
+  return corners == Corners::kVelocityJump ? "velocity_jump" : "exact_stop";
 }
 
-std::string_view Choices(Corners) { return "continuous, exact_stop"; }
+std::string_view Choices(Corners) { return "exact_stop, velocity_jump"; }
 
 bool FromName(std::string_view name, TorqueSignalKind& kind) {
   for (const auto k : {TorqueSignalKind::kChirp, TorqueSignalKind::kMultisine, TorqueSignalKind::kPulses}) {

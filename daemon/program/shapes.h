@@ -20,8 +20,8 @@ std::string_view Name(Direction direction);
 std::string_view Choices(Direction);
 
 enum class Corners {
-  kContinuous,  ///< full feed through every corner: the velocity of the reference jumps there
-  kExactStop,   ///< the reference stops in every corner
+  kVelocityJump,  ///< full feed through every corner, beyond all limits: an experiment on controllers
+  kExactStop,     ///< the reference stops in every corner
 };
 bool FromName(std::string_view name, Corners& corners);
 std::string_view Name(Corners corners);
@@ -66,7 +66,7 @@ struct SquareShape {
   double side_mm = 0.0;
   int turns = 1;
   Direction direction = Direction::kCcw;
-  std::optional<Corners> corners;  ///< as programmed; kContinuous when neither this nor a tolerance is
+  std::optional<Corners> corners;  ///< none, and no tolerance: the machine's tolerance
   std::optional<double> corner_tolerance_mm;
   Feed feed;
   PlaneAxes axes;
@@ -76,9 +76,10 @@ struct SquareShape {
     v.Required("side_mm", side_mm, kPositive, "length of a side");
     v.Optional("turns", turns, kPolygonCount, "whole turns");
     v.Optional("direction", direction, "ccw or cw");
-    v.Optional("corners", corners, "full feed through the corners, or a stop in each");
+    v.Optional("corners", corners, "a stop in each, or, as an experiment, full feed through them");
     v.Optional("corner_tolerance_mm", corner_tolerance_mm, kPositive,
-               "instead: corners blended within this distance from the path");
+               "instead: corners blended within this distance from the path; without either, within the "
+               "machine's path_tolerance_mm");
     feed.Visit(v);
     v.Optional("axes", axes, "the two axes of the plane");
   }

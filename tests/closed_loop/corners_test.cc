@@ -62,7 +62,7 @@ TEST(Corners, AtFullFeedWithinTheRatedTorque) {
           Draw(ExampleMachine({seed, "axes.x.limits.torque_Nm=0.637", "axes.y.limits.torque_Nm=0.637",
                                "axes.x.drive.quick_stop_deceleration_rad_s2=9000",
                                "axes.y.drive.quick_stop_deceleration_rad_s2=9000"}),
-               shape, "corners: continuous");
+               shape, "corners: velocity_jump");
       EXPECT_LT(result.scored_peak_m, 10e-6) << shape << ", " << seed;
       EXPECT_LE(result.torque_peak_Nm, kRatedTorque_Nm) << shape << ", " << seed;
       EXPECT_GT(result.torque_peak_Nm, 0.3) << shape << ", " << seed << ": nothing slows down";
@@ -74,7 +74,7 @@ TEST(Corners, AtFullFeedWithinTheRatedTorque) {
 // an error of the friction level, but not for an axis without friction, which then hunts.
 TEST(Corners, AJerkDoesNotTakeTheFrictionForMissing) {
   for (const char* seed : {"emulator.seed=3", "emulator.seed=6", "emulator.seed=7"}) {
-    const CornerResult result = Draw(ExampleMachine({seed}), "square", "corners: continuous", 1000);
+    const CornerResult result = Draw(ExampleMachine({seed}), "square", "corners: velocity_jump", 1000);
     EXPECT_LT(result.scored_peak_m, 20e-6) << seed;
   }
 }

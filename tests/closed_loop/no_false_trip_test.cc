@@ -84,7 +84,7 @@ std::vector<std::string> Round(const SoundMachine& machine, int round, bool is_l
   if (machine.axes.size() > 1) {
     parts.push_back("{shape: circle, radius_mm: 0.1, frequency_hz: 0.7853981634, turns: 3}");
     parts.push_back("{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 2}");
-    parts.push_back("{shape: square, side_mm: 10, feed_mm_min: 600, turns: 1, corners: continuous}");
+    parts.push_back("{shape: square, side_mm: 10, feed_mm_min: 600, turns: 1, corners: velocity_jump}");
     parts.push_back("{shape: diamond, side_mm: 5, feed_mm_min: 1200, turns: 1, corners: exact_stop}");
   }
   parts.push_back("{shape: hold, seconds: " + std::string(is_long ? "180" : "5") + "}");
@@ -159,7 +159,7 @@ const std::vector<ContestRun> kContest{
      {"emulator.axes.x.friction.sigma0_N_m=15e6", "emulator.axes.y.friction.sigma0_N_m=15e6"}},
     {"filter_of_a_rival_delay",
      ControllerName::kMpcSrukf4,
-     "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 6}",
+     "{shape: square, side_mm: 10, feed_mm_min: 3000, corners: velocity_jump, turns: 6}",
      {"emulator.axes.x.delay_cycles=2", "emulator.axes.y.delay_cycles=2"}},
     {"filter_of_a_rival_inertia",
      ControllerName::kMpcSrukf4,
@@ -168,16 +168,16 @@ const std::vector<ContestRun> kContest{
       "emulator.axes.y.motor_inertia_kgm2=3.5e-5", "emulator.axes.y.table_mass_kg=7"}},
     {"struck_in_corners",
      ControllerName::kPid,
-     "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 3}",
+     "{shape: square, side_mm: 10, feed_mm_min: 3000, corners: velocity_jump, turns: 3}",
      {"emulator.axes.x.motor_inertia_kgm2=6.5e-5", "emulator.axes.x.table_mass_kg=13",
       "emulator.axes.y.motor_inertia_kgm2=6.5e-5", "emulator.axes.y.table_mass_kg=13"}},
     {"torque_on_its_way",
      ControllerName::kPid,
-     "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 15}",
+     "{shape: square, side_mm: 10, feed_mm_min: 3000, corners: velocity_jump, turns: 15}",
      {"emulator.axes.x.delay_cycles=2", "emulator.axes.y.delay_cycles=2"}},
     {"start_with_a_jump",
      ControllerName::kCsp,
-     "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 2}",
+     "{shape: square, side_mm: 10, feed_mm_min: 3000, corners: velocity_jump, turns: 2}",
      {"emulator.axes.x.delay_cycles=2", "emulator.axes.y.delay_cycles=2"}}};
 
 void PrintTo(const ContestRun& run, std::ostream* out) { *out << run.name; }

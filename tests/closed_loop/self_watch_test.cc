@@ -67,7 +67,7 @@ Watched RunWatched(const EmulatedMachineFile& file, ControllerName controller, c
 TEST(SelfWatch, AStandingAxisThatSwingsIsNamedAndSoftenedUntilItStands) {
   const Watched seen = RunWatched(
       ExampleMachine({"emulator.seed=2"}), ControllerName::kFull,
-      Text("{sequence: [{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 4, corners: continuous}, "
+      Text("{sequence: [{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 4, corners: velocity_jump}, "
            "{shape: hold, seconds: 4}]}"));
   EXPECT_TRUE(seen.shown.contains(Reason::kOscillationNoticed));
   EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
@@ -122,7 +122,8 @@ TEST(SelfWatch, ALinearLoopInOrderIsLeftAlone) {
   for (const std::string mode : {"cst", "csp"})
     for (const char* program :
          {"{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 2}",
-          "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 2}", "{shape: hold, seconds: 3}"}) {
+          "{shape: square, side_mm: 10, feed_mm_min: 3000, corners: velocity_jump, turns: 2}",
+          "{shape: hold, seconds: 3}"}) {
       const Watched seen =
           RunWatched(ExampleMachine(TunedExample(mode)), ControllerName::kFull, Text(program));
       EXPECT_EQ(seen.ended, Reason::kNone) << program;
@@ -135,7 +136,8 @@ TEST(SelfWatch, ALinearLoopInOrderIsLeftAlone) {
 TEST(SelfWatch, ALoopInOrderIsLeftAlone) {
   for (const char* program :
        {"{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 2}",
-        "{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 2}", "{shape: hold, seconds: 3}"}) {
+        "{shape: square, side_mm: 10, feed_mm_min: 3000, corners: velocity_jump, turns: 2}",
+        "{shape: hold, seconds: 3}"}) {
     const Watched seen = RunWatched(ExampleMachine(), ControllerName::kFull, Text(program));
     EXPECT_EQ(seen.ended, Reason::kNone) << program;
     for (const Reason r :

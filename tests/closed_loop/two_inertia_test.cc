@@ -70,7 +70,7 @@ TEST(TwoInertia, WorksWhereTheDriveClosesTheLoop) {
 // A bristle stiffness learnt in corners once let `srukf` swing there by 1.5 um for good, with seed 2.
 TEST(TwoInertia, StandsStillAfterASquare) {
   const Program square = ParseProgram(
-      "{sequence: [{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 4, corners: continuous}, "
+      "{sequence: [{shape: square, side_mm: 10, feed_mm_min: 3000, turns: 4, corners: velocity_jump}, "
       "{shape: hold, seconds: 6}]}",
       "square of the test", ProgramFormat::kYaml);
   for (const std::uint64_t seed : {2u, 3u}) {

@@ -40,7 +40,7 @@ TEST(NoSystemCall, InAnyStepOfAnEventfulRun) {
   run.machine().SetRecorder([&](const CycleEntry& entry) { inputs.push_back(entry.input); });
   run.BringUp();
   run.Enable();
-  run.Start("{shape: square, side_mm: 0.4, feed_mm_min: 1200}", 150);
+  run.Start("{shape: square, side_mm: 0.4, feed_mm_min: 1200, corners: velocity_jump}", 150);
   run.Stop();
   run.Start("{shape: circle, radius_mm: 10, turns: 2, feed_mm_min: 900}", 100);
   run.EmergencyStop();

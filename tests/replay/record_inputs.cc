@@ -34,7 +34,7 @@ void Record(const std::string& config, ControllerName controller, const std::fil
   run.Enable();
   if (controller != ControllerName::kCsp)
     run.Start("{shape: circle, radius_mm: 0.1, turns: 1, frequency_hz: 4}", 330);
-  run.Start("{shape: square, side_mm: 0.5, feed_mm_min: 1200}", 80);
+  run.Start("{shape: square, side_mm: 0.5, feed_mm_min: 1200, corners: velocity_jump}", 80);
   run.EmergencyStop();
   encoder.Flush(sinks);
   writer.Close();

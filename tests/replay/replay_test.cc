@@ -405,7 +405,7 @@ TEST_P(CycleState, GoesOnElsewhereAsIfItHadBeenThere) {
   run.machine().SetRecorder([&](const CycleEntry& entry) { entries.push_back(entry); });
   run.BringUp();
   run.Enable();
-  run.Start("{shape: square, side_mm: 0.4, feed_mm_min: 300}", 150);
+  run.Start("{shape: square, side_mm: 0.4, feed_mm_min: 300, corners: velocity_jump}", 150);
   run.Stop();
   run.Start("{shape: circle, radius_mm: 10, turns: 2, feed_mm_min: 900}", 300);
   run.EmergencyStop();

@@ -47,7 +47,7 @@ TEST(ProgramText, ErrorsNamePlaceAndExpectation) {
       {"radius_mm: 1\n", "test.yaml: shape: missing"},
       {"shape: square\nside_mm: 1\nfeed_mm_min: 100\ncorner_tolerance_mm: 0\n",
        "test.yaml:4: corner_tolerance_mm"},
-      {"shape: square\nside_mm: 1\nfeed_mm_min: 100\ncorners: continuous\ncorner_tolerance_mm: 0.1\n",
+      {"shape: square\nside_mm: 1\nfeed_mm_min: 100\ncorners: velocity_jump\ncorner_tolerance_mm: 0.1\n",
        "test.yaml:5: corner_tolerance_mm: corners is given as well"},
       {"shape: circle\nradius_mm: 1\nfeed_mm_min: 100\ncorner_tolerance_mm: 0.1\n",
        "test.yaml:4: corner_tolerance_mm"},

@@ -79,8 +79,8 @@ def main():
     parser.add_argument("--feeds", type=float, nargs="+", default=[500, 1000, 2000, 3000, 4500, 6000, 9000, 12000],
                         help="mm/min, rising")
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2, 3, 4, 5])
-    parser.add_argument("--kinds", nargs="+", choices=[BLENDED, "continuous", "exact_stop"],
-                        default=[BLENDED, "continuous", "exact_stop"])
+    parser.add_argument("--kinds", nargs="+", choices=[BLENDED, "velocity_jump", "exact_stop"],
+                        default=[BLENDED, "velocity_jump", "exact_stop"])
     parser.add_argument("--controller", default="full")
     parser.add_argument("--set", nargs="+", default=[], metavar="KEY=VALUE", help="on top of the machine file")
     arguments = parser.parse_args()

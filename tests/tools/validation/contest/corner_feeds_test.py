@@ -43,8 +43,8 @@ class CornerFeeds(unittest.TestCase):
         self.assertEqual(rows(result)["square", "blended"][1], "none")
 
     def test_a_feed_beyond_the_limits_is_named(self):
-        result = corner_feeds("--feeds", 30000, "--kinds", "continuous")
-        self.assertEqual(rows(result)["square", "continuous"], ["refused", "none"], result.stderr)
+        result = corner_feeds("--feeds", 30000, "--kinds", "velocity_jump")
+        self.assertEqual(rows(result)["square", "velocity_jump"], ["refused", "none"], result.stderr)
 
     def test_a_wrong_machine_file_is_an_error(self):
         result = corner_feeds("--feeds", 3000, "--set", "axes.x.limits.velocity_mm_s=fast")

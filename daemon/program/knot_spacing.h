@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "daemon/program/programmed_path.h"
+
+namespace contour {
+
+/// A corner between straight moves that are long enough for it to be rounded by itself.
+struct LoneCorner {
+  double at_m = 0.0;
+  double half_width_m = 0.0;  ///< of way, to either side
+};
+
+/// How far apart the knots of a smooth path may be along a programmed one. Where the path bends by itself
+/// (arcs, corners between moves that are short for the tolerance) this is a guess that whoever fits the path
+/// corrects.
+class KnotSpacing {
+ public:
+  explicit KnotSpacing(const ProgrammedPath& path);
+
+  [[nodiscard]] const std::vector<LoneCorner>& corners() const { return corners_; }
+
+  /// Knots from start to end, lone corners in the middle of three.
+  [[nodiscard]] std::vector<double> Knots() const;
+
+  /// Largest change of the unit tangent at one of the junctions before..end of moves.
+  [[nodiscard]] double LargestTurn(std::size_t before, std::size_t end) const;
+
+  /// To be multiplied by `factor` near this way, when Shrink() is called; the smallest factor counts.
+  void Note(double way_m, double reach_m, double factor);
+  void Shrink();
+
+ private:
+  struct Control {
+    double at_m = 0.0;
+    double spacing_m = 0.0;
+    double factor = 1.0;
+  };
+  void AddJunction(const ProgrammedPath& path, std::size_t before);
+  void AddArc(const ProgrammedPath& path, std::size_t move);
+  void LimitSlope();
+  void Fill(double from_m, double to_m, std::size_t& control, std::vector<double>& knots) const;
+
+  double length_m_;
+  std::vector<double> turns_;  ///< change of the unit tangent after each move
+  std::vector<LoneCorner> corners_;
+  std::vector<Control> controls_;  ///< in order of way
+};
+
+}  // namespace contour

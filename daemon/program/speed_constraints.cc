@@ -1,0 +1,86 @@
+#include "daemon/program/speed_constraints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace contour {
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+// Of the limits: between the places where they are kept exactly they may be missed by a little.
+constexpr double kUsed = 0.995;
+// The constant speed to start from, of the largest one.
+constexpr double kFloorShare = 0.3;
+
+double Squared(double x) { return x * x; }
+
+/// Caps by the axes' velocity and the feed of the move to one side of the node.
+void LimitSpeed(const Stretch& stretch, const SpeedGoal& goal, double feed_m_s,
+                SpeedConstraints::Place& node) {
+  double squared = 0.0;
+  double axes = kInfinite;
+  for (std::size_t i = 0; i < stretch.limits.size(); ++i) {
+    squared += Squared(node.first[i]);
+    axes = std::min(axes, Squared(stretch.limits[i].velocity_m_s / node.first[i]));
+  }
+  node.cap = std::min(node.cap, axes);
+  // A rapid has no feed of its own: scaled down, it is a share of what the axes allow.
+  const double scale = goal.feed_scale;
+  const double feed =
+      feed_m_s > 0.0 ? Squared(scale * feed_m_s) / squared : axes * Squared(std::min(1.0, scale));
+  double& cap = goal.feed_may_exceed ? node.feed_cap : node.cap;
+  cap = std::min(cap, feed);
+}
+
+}  // namespace
+
+SpeedConstraints ConstraintsOf(const Stretch& stretch, const RestMap& map, const SpeedGoal& goal,
+                               const SpeedSpline& speed, std::size_t first_node, std::size_t last_node) {
+  SpeedConstraints c;
+  c.intervals.resize(last_node - first_node);
+  for (const PlanLimits& l : stretch.limits) {
+    c.acceleration.push_back(kUsed * l.acceleration_m_s2);
+    c.jerk.push_back(kUsed * l.jerk_m_s3);
+  }
+  const ProgrammedPath& path = stretch.programmed;
+  for (std::size_t k = 0; k < c.intervals.size(); ++k) {
+    const double from = speed.u[first_node + k], to = speed.u[first_node + k + 1];
+    const double middle = 0.5 * (from + to);
+    const double feed = path.move(path.MoveAt(map.At(middle).way_m)).feed_m_s;
+    for (std::size_t m = 0; m < 3; ++m) {
+      const double u = m == 0 ? from : m == 1 ? middle : to;
+      const ParameterDerivatives x = AtParameter(stretch, map, u, middle);
+      c.intervals[k][m] = {kInfinite, kInfinite, 0.5 * (to - from), x.first, x.second, x.third};
+      LimitSpeed(stretch, goal, feed, c.intervals[k][m]);
+    }
+    if (k == 0) continue;
+    // A node is the end of one interval and the begin of the next.
+    SpeedConstraints::Place& end = c.intervals[k - 1][2];
+    SpeedConstraints::Place& begin = c.intervals[k][0];
+    begin.cap = end.cap = std::min(begin.cap, end.cap);
+    begin.feed_cap = end.feed_cap = std::min(begin.feed_cap, end.feed_cap);
+  }
+  return c;
+}
+
+double SafeFloor(const Stretch& stretch, const RestMap& map, const SpeedSpline& speed,
+                 const SpeedGoal& goal) {
+  double floor = kInfinite;
+  constexpr std::size_t kBlock = 1024;
+  for (std::size_t begin = 0; begin + 1 < speed.u.size(); begin += kBlock) {
+    const std::size_t end = std::min(begin + kBlock, speed.u.size() - 1);
+    const SpeedConstraints c = ConstraintsOf(stretch, map, goal, speed, begin, end);
+    for (const auto& places : c.intervals) {
+      for (const SpeedConstraints::Place& p : places) {
+        floor = std::min(floor, p.cap);
+        for (std::size_t i = 0; i < p.first.size(); ++i)
+          floor = std::min({floor, c.acceleration[i] / std::abs(p.second[i]),
+                            std::pow(c.jerk[i] / std::abs(p.third[i]), 2.0 / 3.0)});
+      }
+    }
+  }
+  return kFloorShare * floor;
+}
+
+}  // namespace contour

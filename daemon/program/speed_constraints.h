@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "daemon/program/speed_optimiser.h"
+
+namespace contour {
+
+/// The path about a window of nodes, and what holds there. Speed is a quadratic between nodes, so that what
+/// holds at begin, middle and end of an interval hardly fails in between.
+struct SpeedConstraints {
+  struct Place {
+    double cap = 0.0;       ///< of w, hard
+    double feed_cap = 0.0;  ///< of w, soft; infinite: none
+    double width_u = 0.0;   ///< that it stands for
+    PerAxis<double> first, second, third;
+  };
+  /// Begin, middle and end of every interval between nodes; the third derivative is the interval's own.
+  std::vector<std::array<Place, 3>> intervals;
+  PerAxis<double> acceleration, jerk;
+};
+
+SpeedConstraints ConstraintsOf(const Stretch& stretch, const RestMap& map, const SpeedGoal& goal,
+                               const SpeedSpline& speed, std::size_t first_node, std::size_t last_node);
+
+}  // namespace contour

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "daemon/program/path_tree.h"
+#include "daemon/program/piecewise_plan.h"
+#include "daemon/program/stretch_walk.h"
+
+namespace contour {
+
+/// G-code on a machine: smooth paths from stop to stop within the tolerance, as fast as feeds and axes allow,
+/// velocity, acceleration and jerk of every axis within its limits. Planned as far as it is asked for.
+class StretchPlan : public MotionPlan {
+ public:
+  /// Throws ProgramError when a move leaves an axis's range.
+  StretchPlan(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits);
+
+  [[nodiscard]] std::size_t axis_count() const override { return program_->start_m().size(); }
+  [[nodiscard]] double duration_s() const override;
+  void At(double time_s, PerAxis<ReferencePoint>& axes) const override;
+  [[nodiscard]] double Distance_m(const PerAxis<double>& point_m) const override;
+  [[nodiscard]] double Turns(double) const override { return 0.0; }
+  [[nodiscard]] bool Scored(double time_s) const override;
+  [[nodiscard]] std::optional<CommandedCircle> circle() const override { return std::nullopt; }
+  [[nodiscard]] bool is_hold() const override { return tree_.empty(); }
+  [[nodiscard]] bool Moves(std::size_t axis) const override;
+  [[nodiscard]] bool GoesOnAfter(double time_s) const override;
+  [[nodiscard]] std::unique_ptr<PathWalk> Walk() const override;
+
+ private:
+  std::shared_ptr<const StretchProgram> program_;
+  PathTree tree_;
+  mutable std::mutex mutex_;  ///< of what is planned so far
+  mutable StretchWalk walk_;
+};
+
+}  // namespace contour

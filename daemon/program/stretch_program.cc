@@ -1,0 +1,75 @@
+#include "daemon/program/stretch_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "daemon/program/blended_runs.h"
+#include "daemon/program/piece_limits.h"
+
+namespace contour {
+namespace {
+
+// Exact path: a stop where the direction changes by more; programs written with a few decimals meet their
+// tangents no better.
+constexpr double kTangentAngle_rad = 0.02;
+// And where it changes by less, or the curvature jumps, this share of the tolerance is enough.
+constexpr double kExactShare = 0.1;
+// A path that turns back by more than 170 degrees stops there, unless it is no more than a slip of the
+// tolerance's size.
+constexpr double kTurnsBack = 1.992;
+constexpr double kSlip = 2.0;
+
+double Turn(const CurvePiece& before, const CurvePiece& after) {
+  const CurvePoint end = PointAt(before, before.length_m), begin = PointAt(after, 0.0);
+  double squared = 0.0;
+  for (std::size_t i = 0; i < end.tangent.size(); ++i)
+    squared += std::pow(end.tangent[i] - begin.tangent[i], 2);
+  return std::sqrt(squared);
+}
+
+double Deviation_m(const PieceRequest& request) {
+  const double share_m = BlendDeviation_m(request.tolerance_m);
+  return request.corner == GcodeMove::Corner::kExactPath ? kExactShare * share_m : share_m;
+}
+
+bool StopsBetween(const PieceRequest& before, const PieceRequest& after) {
+  if (before.dwell_s > 0.0 || before.corner == GcodeMove::Corner::kExactStop) return true;
+  const double turn = Turn(before.curve, after.curve);
+  if (before.corner == GcodeMove::Corner::kExactPath) return turn > kTangentAngle_rad;
+  const double shorter_m = std::min(before.curve.length_m, after.curve.length_m);
+  return turn > kTurnsBack && shorter_m > kSlip * before.tolerance_m;
+}
+
+}  // namespace
+
+StretchProgram::StretchProgram(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits)
+    : limits_(WithJerk(limits)), start_m_(requests.front().curve.start_m) {
+  const PieceRequest* last = nullptr;
+  moves_.reserve(requests.size());
+  for (const PieceRequest& r : requests) {
+    CheckRange(r, limits);
+    if (r.curve.length_m == 0.0) {
+      // A dwell, or an exact stop that does not move.
+      if (r.dwell_s == 0.0) continue;
+      if (parts_.empty()) parts_.push_back({moves_.size(), moves_.size(), 0.0});
+      parts_.back().dwell_s += r.dwell_s;
+      last = nullptr;
+      continue;
+    }
+    if (last == nullptr || StopsBetween(*last, r)) parts_.push_back({moves_.size(), moves_.size(), 0.0});
+    moves_.push_back({r.curve, r.speed_m_s, Deviation_m(r), r.line});
+    parts_.back().end = moves_.size();
+    parts_.back().dwell_s = r.dwell_s;
+    last = &r;
+  }
+  if (parts_.empty()) parts_.push_back({});
+}
+
+std::shared_ptr<const Stretch> StretchProgram::MakeStretch(const Part& part) const {
+  const auto at = [&](std::size_t i) { return moves_.begin() + static_cast<std::ptrdiff_t>(i); };
+  return std::make_shared<const Stretch>(
+      ProgrammedPath(std::vector<ProgrammedMove>(at(part.first), at(part.end))), limits_);
+}
+
+}  // namespace contour

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "daemon/program/piecewise_plan.h"
+#include "daemon/program/stretch.h"
+
+namespace contour {
+
+/// A program of straight moves and arcs, divided into stretches that are driven without a stop.
+class StretchProgram {
+ public:
+  struct Part {
+    std::size_t first = 0;
+    std::size_t end = 0;  ///< moves first..end; none: only a dwell
+    double dwell_s = 0.0;
+  };
+
+  /// Checks the way of every move against the axes' ranges; feeds are as fast as the axes follow. Throws
+  /// ProgramError.
+  StretchProgram(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits);
+
+  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  [[nodiscard]] const std::vector<ProgrammedMove>& moves() const { return moves_; }
+  [[nodiscard]] const PerAxis<double>& start_m() const { return start_m_; }
+  [[nodiscard]] std::shared_ptr<const Stretch> MakeStretch(const Part& part) const;
+
+ private:
+  PerAxis<PlanLimits> limits_;
+  PerAxis<double> start_m_;
+  std::vector<ProgrammedMove> moves_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace contour

@@ -1,0 +1,142 @@
+#include "daemon/program/stretch_walk.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace contour {
+namespace {
+
+constexpr double kNever_s = std::numeric_limits<double>::infinity();
+// Laws kept besides those that cannot be made again.
+constexpr std::size_t kHeld = 4;
+
+}  // namespace
+
+StretchWalk::StretchWalk(std::shared_ptr<const StretchProgram> program)
+    : program_(std::move(program)), rests_from_s_(kNever_s) {
+  Append(0, 0.0, 0.0);
+}
+
+void StretchWalk::Append(std::size_t part, double from_m, double begin_s) {
+  legs_.push_back({part, from_m, scale_, begin_s, false, nullptr});
+}
+
+TimeLaw* StretchWalk::LawOf(std::size_t leg) {
+  Leg& l = legs_[leg];
+  const StretchProgram::Part& part = program_->parts()[l.part];
+  if (part.first == part.end) return nullptr;
+  if (!l.law) {
+    // What is left of a stretch is the same stretch.
+    std::shared_ptr<const Stretch> stretch;
+    for (const std::size_t other : held_)
+      if (other < legs_.size() && legs_[other].law && legs_[other].part == l.part)
+        stretch = legs_[other].law->shared_stretch();
+    if (!stretch) stretch = program_->MakeStretch(part);
+    l.law = std::make_unique<TimeLaw>(std::move(stretch), l.from_m, l.scale);
+    held_.push_back(leg);
+    if (held_.size() > kHeld) {
+      const std::size_t oldest = held_.front();
+      held_.erase(held_.begin());
+      if (oldest < legs_.size() && oldest != leg && !legs_[oldest].changed) legs_[oldest].law.reset();
+    }
+  }
+  return l.law.get();
+}
+
+void StretchWalk::Extend(double time_s) {
+  while (!complete_ && !(rests_from_s_ < kNever_s)) {
+    const std::size_t last = legs_.size() - 1;
+    if (legs_[last].begin_s > time_s) return;
+    TimeLaw* law = LawOf(last);
+    const double since = time_s - legs_[last].begin_s;
+    if (law != nullptr && law->GoesOnAfter(since)) return;
+    const Leg& leg = legs_[last];
+    const double moved_s = leg.begin_s + (law != nullptr ? law->duration_s() : 0.0);
+    const bool on_the_way = law != nullptr && law->stops_on_the_way();
+    const bool ends = !on_the_way && leg.part + 1 == program_->parts().size();
+    const double dwelt_s = moved_s + (on_the_way ? 0.0 : program_->parts()[leg.part].dwell_s);
+    if (ends) {
+      complete_ = true;
+      end_s_ = dwelt_s;
+    } else if (scale_ == 0.0) {
+      rests_from_s_ = moved_s;
+    } else if (on_the_way) {
+      const double way_m = law->At(law->duration_s()).way_m;
+      Append(leg.part, way_m, std::max(moved_s, not_before_s_));
+    } else {
+      Append(leg.part + 1, 0.0, std::max(dwelt_s, not_before_s_));
+    }
+  }
+}
+
+std::size_t StretchWalk::LegAt(double time_s) {
+  const auto after = std::upper_bound(legs_.begin(), legs_.end(), time_s,
+                                      [](double t, const Leg& l) { return t < l.begin_s; });
+  return after == legs_.begin() ? 0 : static_cast<std::size_t>(after - legs_.begin()) - 1;
+}
+
+PerAxis<double> StretchWalk::StartOf(const StretchProgram::Part& part) const {
+  if (part.first == 0) return program_->start_m();
+  const CurvePiece& before = program_->moves()[part.first - 1].curve;
+  return PointAt(before, before.length_m).position_m;
+}
+
+void StretchWalk::At(double time_s, PerAxis<ReferencePoint>& axes) {
+  Extend(time_s);
+  const std::size_t leg = LegAt(time_s);
+  TimeLaw* law = LawOf(leg);
+  axes.resize(program_->start_m().size());
+  std::fill(axes.begin(), axes.end(), ReferencePoint{});
+  if (law == nullptr) {
+    const PerAxis<double> at_m = StartOf(program_->parts()[legs_[leg].part]);
+    for (std::size_t i = 0; i < axes.size(); ++i) axes[i].position_m = at_m[i];
+    return;
+  }
+  const TimeLaw::State s = law->At(time_s - legs_[leg].begin_s);
+  const PathDerivatives q = law->stretch().smooth.At(s.way_m);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    axes[i].position_m = q.position_m[i];
+    axes[i].velocity_m_s = q.first[i] * s.speed_m_s;
+    axes[i].acceleration_m_s2 = q.second[i] * s.speed_m_s * s.speed_m_s + q.first[i] * s.acceleration_m_s2;
+  }
+}
+
+bool StretchWalk::GoesOnAfter(double time_s) {
+  Extend(time_s);
+  return !complete_ || time_s < end_s_;
+}
+
+double StretchWalk::duration_s() {
+  Extend(kNever_s);
+  return complete_ ? end_s_ : kNever_s;
+}
+
+double StretchWalk::ChangeFeed(double time_s, double scale) {
+  Extend(time_s);
+  complete_ = false;
+  while (legs_.size() > 1 && legs_.back().begin_s > time_s) legs_.pop_back();
+  scale_ = scale;
+  not_before_s_ = scale > 0.0 ? std::max(time_s, 0.0) : 0.0;
+  rests_from_s_ = kNever_s;
+  const std::size_t last = legs_.size() - 1;
+  TimeLaw* law = LawOf(last);
+  double from_s = time_s;
+  if (law != nullptr) {
+    legs_[last].changed = true;
+    from_s = legs_[last].begin_s + law->ChangeFeed(time_s - legs_[last].begin_s, scale);
+  }
+  if (scale == 0.0) Extend(legs_[last].begin_s + (law != nullptr ? law->duration_s() : 0.0) + 1.0);
+  return from_s;
+}
+
+int StretchWalk::Line(double time_s) {
+  Extend(time_s);
+  const std::size_t leg = LegAt(time_s);
+  TimeLaw* law = LawOf(leg);
+  if (law == nullptr) return 0;
+  const ProgrammedPath& path = law->stretch().programmed;
+  return path.move(path.MoveAt(law->At(time_s - legs_[leg].begin_s).way_m)).line;
+}
+
+}  // namespace contour

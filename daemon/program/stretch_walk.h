@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "daemon/program/path_walk.h"
+#include "daemon/program/stretch_program.h"
+#include "daemon/program/time_law.h"
+
+namespace contour {
+
+/// Along the stretches of a program, one leg after the other: a leg is a stretch, or what is left of one
+/// after a stop on the way.
+class StretchWalk : public PathWalk {
+ public:
+  explicit StretchWalk(std::shared_ptr<const StretchProgram> program);
+
+  void At(double time_s, PerAxis<ReferencePoint>& axes) override;
+  [[nodiscard]] bool GoesOnAfter(double time_s) override;
+  double ChangeFeed(double time_s, double scale) override;
+  [[nodiscard]] double rests_from_s() const override { return rests_from_s_; }
+  [[nodiscard]] int Line(double time_s) override;
+
+  /// Of all of it, at the feed as it is.
+  double duration_s();
+
+ private:
+  struct Leg {
+    std::size_t part = 0;
+    double from_m = 0.0;
+    double scale = 1.0;
+    double begin_s = 0.0;
+    bool changed = false;  ///< its law cannot be made again
+    std::unique_ptr<TimeLaw> law;
+  };
+  void Append(std::size_t part, double from_m, double begin_s);
+  void Extend(double time_s);
+  [[nodiscard]] std::size_t LegAt(double time_s);
+  /// The law of a leg, made again where it was given up; null: only a dwell.
+  TimeLaw* LawOf(std::size_t leg);
+  [[nodiscard]] PerAxis<double> StartOf(const StretchProgram::Part& part) const;
+
+  std::shared_ptr<const StretchProgram> program_;
+  std::vector<Leg> legs_;
+  std::vector<std::size_t> held_;  ///< legs with a law that can be made again, newest use last
+  bool complete_ = false;          ///< the last leg ends the program
+  double end_s_ = 0.0;             ///< of the program when complete
+  double scale_ = 1.0;
+  double not_before_s_ = 0.0;  ///< the next leg begins
+  double rests_from_s_;
+};
+
+}  // namespace contour

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "daemon/program/speed_optimiser.h"
+#include "daemon/program/stretch.h"
+
+namespace contour {
+
+/// When a stretch is where: from rest at some place on it to rest at its end, as fast as feed and axes allow.
+/// Planned in windows, no further than asked for; a window looks ahead far enough for what it settles to be
+/// what a plan of the whole stretch would be. Its feed can be changed on the way.
+class TimeLaw {
+ public:
+  TimeLaw(std::shared_ptr<const Stretch> stretch, double from_m, double feed_scale);
+
+  struct State {
+    double way_m = 0.0;
+    double speed_m_s = 0.0;
+    double acceleration_m_s2 = 0.0;
+  };
+  /// Since the start, held at the end.
+  State At(double time_s);
+  /// Is the end later than this?
+  bool GoesOnAfter(double time_s);
+  /// Plans all of it.
+  double duration_s();
+
+  /// As PathWalk::ChangeFeed. After a change to 0 the law ends where it rests, which is not the stretch's end
+  /// but for chance.
+  double ChangeFeed(double time_s, double scale);
+  [[nodiscard]] bool stops_on_the_way() const { return stops_; }
+
+  [[nodiscard]] const Stretch& stretch() const { return *stretch_; }
+  [[nodiscard]] const std::shared_ptr<const Stretch>& shared_stretch() const { return stretch_; }
+
+ private:
+  void PlanWindow();
+  void PlanTo(double time_s);
+  void Settle(std::size_t node);
+  void EndBySlowing();
+  [[nodiscard]] State AtNode(std::size_t node) const;
+  [[nodiscard]] double TimeWithin(std::size_t i, double since_u) const;
+
+  std::shared_ptr<const Stretch> stretch_;
+  RestMap map_;
+  SpeedGoal goal_;
+  SpeedSpline speed_;
+  std::vector<double> time_s_;  ///< of the nodes that are settled
+  bool stops_ = false;
+  // Having slowed down enough, it comes to rest by a last ramp:
+  State last_;
+  double last_s_ = 0.0;
+  double tail_s_ = 0.0;
+  double tail_jerk_m_s3_ = 0.0;
+};
+
+}  // namespace contour
