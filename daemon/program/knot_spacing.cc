@@ -11,14 +11,18 @@ namespace {
 constexpr double kCornerWidth = 6.0;
 // The corner itself may be missed by more than the path, in a sharp corner by this much.
 constexpr double kCornerMiss = 2.0;
+// Of the two triangles: share of the wide one, and width of the narrow one.
+// (Measured on squares, diamonds and zigzags: docs/laboratory/motion_planning.md.)
+constexpr double kWideShare = 0.5;
+constexpr double kNarrow = 0.6;
 // First guess where the curvature jumps; a smooth path's error there goes with jump and width squared.
 constexpr double kBendWidth = 20.0;
 // Knots on an arc: no farther apart than this share of the radius, and its error, h^4 / (100 R^3), is this
 // share of the tolerance. The third derivative is constant between knots, and half of the first share off.
 constexpr double kArcShare = 0.1;
 constexpr double kArcTolerance = 0.05;
-// Of a tolerance: what a change of direction is worth that needs no knots.
-constexpr double kNegligible = 0.01;
+// A change of direction that comes from rounding. Larger ones count, as many of them may follow each other.
+constexpr double kRounding_rad = 1e-8;
 // How fast spacing may change along the path.
 constexpr double kSlope = 0.5;
 
@@ -66,19 +70,33 @@ void KnotSpacing::AddJunction(const ProgrammedPath& path, std::size_t before) {
   const double turn = Difference(end.tangent, begin.tangent);
   turns_.push_back(turn);
   const double bend = Difference(end.curvature_1_m, begin.curvature_1_m);
-  const double shorter = std::min(a.length_m, b.length_m);
-  if (turn * shorter < kNegligible * tolerance && bend * shorter * shorter < kNegligible * tolerance) return;
-  const bool straight = a.kind == CurvePiece::Kind::kLine && b.kind == CurvePiece::Kind::kLine;
-  const double cosine = std::sqrt(std::max(0.0, 1.0 - 0.25 * turn * turn));
-  const double miss = tolerance / std::max(cosine, 1.0 / kCornerMiss);
-  const double lone_m = turn > 0.0 ? kCornerWidth * miss / turn : length_m_;
-  if (straight && lone_m <= 0.5 * shorter) {
-    corners_.push_back({at, lone_m});
-    return;
-  }
+  if (turn < kRounding_rad && bend * std::min(a.length_m, b.length_m) < kRounding_rad) return;
+  PerAxis<double> change = begin.tangent;
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= end.tangent[i];
+  if (AddLone(path, before, change)) return;
   double spacing = turn > 0.0 ? kCornerWidth * tolerance / turn : length_m_;
   if (bend > 0.0) spacing = std::min(spacing, std::sqrt(kBendWidth * tolerance / bend));
   controls_.push_back({at, std::min(spacing, length_m_)});
+}
+
+bool KnotSpacing::AddLone(const ProgrammedPath& path, std::size_t before, const PerAxis<double>& change) {
+  const CurvePiece& a = path.move(before).curve;
+  const CurvePiece& b = path.move(before + 1).curve;
+  if (a.kind != CurvePiece::Kind::kLine || b.kind != CurvePiece::Kind::kLine) return false;
+  double turn = 0.0;
+  for (const double x : change) turn = std::hypot(turn, x);
+  if (turn == 0.0) return false;
+  const double cosine = std::sqrt(std::max(0.0, 1.0 - 0.25 * turn * turn));
+  const double miss_m = path.move(before).tolerance_m / std::max(cosine, 1.0 / kCornerMiss);
+  LoneCorner corner;
+  corner.at_m = path.begin_m(before + 1);
+  corner.outer_m = kCornerWidth * miss_m / (turn * (kWideShare + (1.0 - kWideShare) * kNarrow));
+  corner.inner_m = kNarrow * corner.outer_m;
+  if (corner.outer_m > 0.5 * std::min(a.length_m, b.length_m)) return false;
+  const double pull = kWideShare * corner.outer_m * (1.0 - kNarrow * kNarrow) / 3.0;
+  for (const double x : change) corner.pull_m.push_back(0.5 * pull * x);
+  corners_.push_back(corner);
+  return true;
 }
 
 void KnotSpacing::AddArc(const ProgrammedPath& path, std::size_t move) {
@@ -169,10 +187,8 @@ std::vector<double> KnotSpacing::Knots() const {
     if (knot > knots.back() + 1e-12) knots.push_back(knot);
   };
   for (const LoneCorner& c : corners_) {
-    Fill(knots.back(), c.at_m - c.half_width_m, control, knots);
-    add(c.at_m - c.half_width_m);
-    add(c.at_m);
-    add(c.at_m + c.half_width_m);
+    Fill(knots.back(), c.at_m - c.outer_m, control, knots);
+    for (const double side_m : {-c.outer_m, -c.inner_m, 0.0, c.inner_m, c.outer_m}) add(c.at_m + side_m);
   }
   Fill(knots.back(), length_m_, control, knots);
   while (knots.size() > 4 && knots.back() > length_m_ * (1.0 - 1e-12)) knots.pop_back();

@@ -6,10 +6,16 @@
 
 namespace contour {
 
-/// A corner between straight moves that are long enough for it to be rounded by itself.
+/// A corner between straight moves that are long enough for it to be rounded by itself. With the way s from
+/// the corner, a the mean of the two directions and b half their difference, the programmed path is a s + b
+/// |s|, and the smooth one a s + b g(s): g'' is the sum of two triangles about the corner, a wide and a
+/// narrow one, because the corner itself is passed slowest. That is a cubic spline with five knots whose
+/// coefficients lie on the moves but for the one in the middle.
 struct LoneCorner {
   double at_m = 0.0;
-  double half_width_m = 0.0;  ///< of way, to either side
+  double outer_m = 0.0;  ///< to the knots next to it, of way
+  double inner_m = 0.0;
+  PerAxis<double> pull_m;  ///< of the coefficient in the middle, from the corner inwards
 };
 
 /// How far apart the knots of a smooth path may be along a programmed one. Where the path bends by itself
@@ -21,7 +27,7 @@ class KnotSpacing {
 
   [[nodiscard]] const std::vector<LoneCorner>& corners() const { return corners_; }
 
-  /// Knots from start to end, lone corners in the middle of three.
+  /// Knots from start to end, lone corners in the middle of five.
   [[nodiscard]] std::vector<double> Knots() const;
 
   /// Largest change of the unit tangent at one of the junctions before..end of moves.
@@ -37,6 +43,7 @@ class KnotSpacing {
     double spacing_m = 0.0;
     double factor = 1.0;
   };
+  [[nodiscard]] bool AddLone(const ProgrammedPath& path, std::size_t before, const PerAxis<double>& change);
   void AddJunction(const ProgrammedPath& path, std::size_t before);
   void AddArc(const ProgrammedPath& path, std::size_t move);
   void LimitSlope();

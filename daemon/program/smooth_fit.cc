@@ -11,6 +11,7 @@ namespace {
 constexpr double kLeastFactor = 0.5;
 constexpr double kMostFactor = 0.9;
 constexpr int kRounds = 60;
+constexpr int kLooks = 10;  // places on a piece
 // By how much a piece may turn (rad) when single moves turn by less than this share of it.
 constexpr double kTurnOfPiece = 0.15;
 constexpr double kSmoothShare = 0.3;
@@ -27,18 +28,18 @@ double Distance_m(const PerAxis<double>& a, const PerAxis<double>& b) {
 struct Sample {
   double at_m = 0.0;
   double variance_m2 = 0.0;  ///< of spline and mean together: what curvature they take off
-  bool corner = false;
+  const LoneCorner* corner = nullptr;
   PerAxis<double> mean_m;
 };
 
-bool IsCorner(const std::vector<LoneCorner>& corners, std::size_t& next, double middle_m) {
+const LoneCorner* CornerAt(const std::vector<LoneCorner>& corners, std::size_t& next, double middle_m) {
   while (next < corners.size() && corners[next].at_m < middle_m) ++next;
-  return next < corners.size() && corners[next].at_m == middle_m;
+  return next < corners.size() && corners[next].at_m == middle_m ? &corners[next] : nullptr;
 }
 
 /// Coefficients of the spline that reproduces straight lines exactly, and curves to the fourth order of the
-/// knots' distance: means of the path less what spline and mean take off its curvature. A lone corner is its
-/// coefficient itself.
+/// knots' distance: means of the path less what spline and mean take off its curvature. A lone corner has
+/// coefficients on its moves and one inside.
 std::vector<PerAxis<double>> Coefficients(const ProgrammedPath& path, const std::vector<double>& knots,
                                           const std::vector<LoneCorner>& corners) {
   const std::size_t count = knots.size() - 4;
@@ -47,9 +48,9 @@ std::vector<PerAxis<double>> Coefficients(const ProgrammedPath& path, const std:
   for (std::size_t j = 0; j < count; ++j) {
     const double a = knots[j + 1], b = knots[j + 2], c = knots[j + 3];
     Sample& s = samples[j];
-    s.corner = IsCorner(corners, corner, b);
-    s.at_m = s.corner ? b : (a + b + c) / 3.0;
-    const double half_m = s.corner ? 0.0 : 0.25 * (c - a);
+    s.corner = CornerAt(corners, corner, b);
+    s.at_m = s.corner != nullptr ? b : (a + b + c) / 3.0;
+    const double half_m = s.corner != nullptr ? 0.0 : 0.25 * (c - a);
     s.mean_m = half_m > 0.0 ? path.Mean(s.at_m - half_m, s.at_m + half_m) : path.At(s.at_m);
     s.variance_m2 =
         ((a - b) * (a - b) + (a - c) * (a - c) + (b - c) * (b - c)) / 18.0 + half_m * half_m / 3.0;
@@ -58,7 +59,9 @@ std::vector<PerAxis<double>> Coefficients(const ProgrammedPath& path, const std:
   for (std::size_t j = 0; j < count; ++j) {
     const Sample& s = samples[j];
     coefficients[j] = s.mean_m;
-    if (s.corner || j == 0 || j + 1 == count) continue;
+    if (s.corner != nullptr)
+      for (std::size_t i = 0; i < s.mean_m.size(); ++i) coefficients[j][i] += s.corner->pull_m[i];
+    if (s.corner != nullptr || j == 0 || j + 1 == count) continue;
     const Sample& before = samples[j - 1];
     const Sample& after = samples[j + 1];
     for (std::size_t i = 0; i < s.mean_m.size(); ++i) {
@@ -83,9 +86,9 @@ class Inspection {
     const auto& corners = spacing_.corners();
     for (std::size_t piece = 0; piece < smooth_.pieces(); ++piece) {
       const double from = smooth_.break_m(piece), to = smooth_.break_m(piece + 1);
-      while (corner < corners.size() && corners[corner].at_m < from) ++corner;
-      const bool lone =
-          corner < corners.size() && (corners[corner].at_m == from || corners[corner].at_m == to);
+      const double middle = 0.5 * (from + to);
+      while (corner < corners.size() && corners[corner].at_m + corners[corner].outer_m < middle) ++corner;
+      const bool lone = corner < corners.size() && middle > corners[corner].at_m - corners[corner].outer_m;
       while (move + 1 < path_.size() && path_.begin_m(move + 1) <= from) ++move;
       if (!lone) Look(piece, move);
     }
@@ -95,7 +98,7 @@ class Inspection {
  private:
   void Look(std::size_t piece, std::size_t move) {
     const double from = smooth_.break_m(piece), to = smooth_.break_m(piece + 1);
-    for (int k = 1; k <= 4; ++k) LookAt(from + 0.25 * k * (to - from), piece);
+    for (int k = 1; k <= kLooks; ++k) LookAt(from + k * (1.0 / kLooks) * (to - from), piece);
     std::size_t end = move;
     for (; end + 1 < path_.size() && path_.begin_m(end + 1) < to; ++end)
       if (path_.begin_m(end + 1) > from) LookAt(path_.begin_m(end + 1), piece);

@@ -10,6 +10,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Of the limits: between the places where they are kept exactly they may be missed by a little.
 constexpr double kUsed = 0.995;
+constexpr double kJerkUsed = 0.985;
 // The constant speed to start from, of the largest one.
 constexpr double kFloorShare = 0.3;
 
@@ -41,22 +42,24 @@ SpeedConstraints ConstraintsOf(const Stretch& stretch, const RestMap& map, const
   c.intervals.resize(last_node - first_node);
   for (const PlanLimits& l : stretch.limits) {
     c.acceleration.push_back(kUsed * l.acceleration_m_s2);
-    c.jerk.push_back(kUsed * l.jerk_m_s3);
+    c.jerk.push_back(kJerkUsed * l.jerk_m_s3);
   }
   const ProgrammedPath& path = stretch.programmed;
   for (std::size_t k = 0; k < c.intervals.size(); ++k) {
     const double from = speed.u[first_node + k], to = speed.u[first_node + k + 1];
     const double middle = 0.5 * (from + to);
     const double feed = path.move(path.MoveAt(map.At(middle).way_m)).feed_m_s;
-    for (std::size_t m = 0; m < 3; ++m) {
-      const double u = m == 0 ? from : m == 1 ? middle : to;
+    for (std::size_t m = 0; m < kSpeedPlaces; ++m) {
+      const double u =
+          m + 1 == kSpeedPlaces ? to : from + (to - from) * static_cast<double>(m) / (kSpeedPlaces - 1);
       const ParameterDerivatives x = AtParameter(stretch, map, u, middle);
-      c.intervals[k][m] = {kInfinite, kInfinite, 0.5 * (to - from), x.first, x.second, x.third};
+      c.intervals[k][m] = {kInfinite, kInfinite, (to - from) / (kSpeedPlaces - 1),
+                           x.first,   x.second,  x.third};
       LimitSpeed(stretch, goal, feed, c.intervals[k][m]);
     }
     if (k == 0) continue;
     // A node is the end of one interval and the begin of the next.
-    SpeedConstraints::Place& end = c.intervals[k - 1][2];
+    SpeedConstraints::Place& end = c.intervals[k - 1].back();
     SpeedConstraints::Place& begin = c.intervals[k][0];
     begin.cap = end.cap = std::min(begin.cap, end.cap);
     begin.feed_cap = end.feed_cap = std::min(begin.feed_cap, end.feed_cap);

@@ -8,7 +8,7 @@
 namespace contour {
 
 /// The path about a window of nodes, and what holds there. Speed is a quadratic between nodes, so that what
-/// holds at begin, middle and end of an interval hardly fails in between.
+/// holds at some places of an interval hardly fails between them.
 struct SpeedConstraints {
   struct Place {
     double cap = 0.0;       ///< of w, hard
@@ -16,8 +16,8 @@ struct SpeedConstraints {
     double width_u = 0.0;   ///< that it stands for
     PerAxis<double> first, second, third;
   };
-  /// Begin, middle and end of every interval between nodes; the third derivative is the interval's own.
-  std::vector<std::array<Place, 3>> intervals;
+  /// Evenly from begin to end of every interval between nodes; the third derivative is the interval's own.
+  std::vector<std::array<Place, kSpeedPlaces>> intervals;
   PerAxis<double> acceleration, jerk;
 };
 

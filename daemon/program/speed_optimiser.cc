@@ -92,7 +92,7 @@ class Window {
     System system(local_.beta.size() + 1);
     std::vector<double> step(local_.beta.size() + 1), here = local_.beta, there = here;
     const double count =
-        static_cast<double>((10 * constraints_.acceleration.size() + 3) * constraints_.intervals.size());
+        static_cast<double>((18 * constraints_.acceleration.size() + 5) * constraints_.intervals.size());
     double weight = count / Cost(here);
     double merit = Evaluate(here, weight, &system);
     for (int i = 0; i < kMostSteps; ++i) {
@@ -124,7 +124,7 @@ class Window {
   /// Where a lowered feed is kept already, it stays kept.
   void Soften() {
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-      for (std::size_t m = 0; m < 3; ++m) {
+      for (std::size_t m = 0; m < kSpeedPlaces; ++m) {
         SpeedConstraints::Place& p = constraints_.intervals[i][m];
         if (!(Dot(local_.beta, i, weights_[i].value[m]) < 0.999 * p.feed_cap)) continue;
         p.cap = std::min(p.cap, p.feed_cap);
@@ -244,8 +244,9 @@ class Window {
     }
     for (std::size_t i = 0; i < weights_.size(); ++i) {
       sum += weight * CostOf(beta, i, weight, system);
-      for (std::size_t m = 0; m < 3; ++m) {
-        if (m < 2 || i + 1 == weights_.size()) sum += SpeedTerms(beta, i, m, weight, system);
+      for (std::size_t m = 0; m < kSpeedPlaces; ++m) {
+        // The end of one interval is the begin of the next.
+        if (m + 1 < kSpeedPlaces || i + 1 == weights_.size()) sum += SpeedTerms(beta, i, m, weight, system);
         sum += JerkTerms(beta, i, m, system);
       }
       if (!(sum < kInfinite)) return kInfinite;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -30,14 +31,28 @@ struct SpeedSpline {
   [[nodiscard]] double Slope(std::size_t node) const { return SlopeOf(node) * (beta[node + 1] - beta[node]); }
   /// Second derivative within an interval.
   [[nodiscard]] double Bend(std::size_t i) const { return (Slope(i + 1) - Slope(i)) / width(i); }
+
+  /// Another node within interval i; the spline stays what it is.
+  void Insert(std::size_t i, double at_u) {
+    const double a = (at_u - u[i == 0 ? 0 : i - 1]) / (u[i + 1] - u[i == 0 ? 0 : i - 1]);
+    const double b = (at_u - u[i]) / (u[std::min(i + 2, u.size() - 1)] - u[i]);
+    const double left = (1.0 - a) * beta[i] + a * beta[i + 1];
+    const double right = (1.0 - b) * beta[i + 1] + b * beta[i + 2];
+    beta[i + 1] = left;
+    beta.insert(beta.begin() + static_cast<std::ptrdiff_t>(i) + 2, right);
+    u.insert(u.begin() + static_cast<std::ptrdiff_t>(i) + 1, at_u);
+  }
 };
 
 /// Weights of an interval's three coefficients in something linear.
 using SpeedWeights = std::array<double, 3>;
 
-/// Of value and slope at begin, middle and end of an interval, and of the second derivative within it.
+/// Places of an interval that are looked at, from its begin to its end.
+inline constexpr std::size_t kSpeedPlaces = 5;
+
+/// Of value and slope at these places, and of the second derivative within the interval.
 struct IntervalWeights {
-  std::array<SpeedWeights, 3> value, slope;
+  std::array<SpeedWeights, kSpeedPlaces> value, slope;
   SpeedWeights bend;
 
   [[nodiscard]] SpeedWeights ValueAt(double since_u) const {
@@ -54,10 +69,13 @@ inline IntervalWeights WeightsOf(const SpeedSpline& s, std::size_t i) {
   w.bend = {d / h, -(d + e) / h, e / h};
   w.value[0] = {a, 1.0 - a, 0.0};
   w.slope[0] = {-d, d, 0.0};
-  w.value[1] = w.ValueAt(0.5 * h);
-  for (std::size_t k = 0; k < 3; ++k) w.slope[1][k] = w.slope[0][k] + 0.5 * h * w.bend[k];
-  w.value[2] = {0.0, b, 1.0 - b};
-  w.slope[2] = {0.0, -e, e};
+  for (std::size_t m = 1; m + 1 < kSpeedPlaces; ++m) {
+    const double since = h * static_cast<double>(m) / (kSpeedPlaces - 1);
+    w.value[m] = w.ValueAt(since);
+    for (std::size_t k = 0; k < 3; ++k) w.slope[m][k] = w.slope[0][k] + since * w.bend[k];
+  }
+  w.value[kSpeedPlaces - 1] = {0.0, b, 1.0 - b};
+  w.slope[kSpeedPlaces - 1] = {0.0, -e, e};
   return w;
 }
 

@@ -29,6 +29,8 @@ class StretchPlan : public MotionPlan {
   [[nodiscard]] bool GoesOnAfter(double time_s) const override;
   [[nodiscard]] std::unique_ptr<PathWalk> Walk() const override;
 
+  [[nodiscard]] const StretchProgram& program() const { return *program_; }
+
  private:
   std::shared_ptr<const StretchProgram> program_;
   PathTree tree_;

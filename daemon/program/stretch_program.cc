@@ -50,8 +50,8 @@ StretchProgram::StretchProgram(const std::vector<PieceRequest>& requests, const 
   for (const PieceRequest& r : requests) {
     CheckRange(r, limits);
     if (r.curve.length_m == 0.0) {
-      // A dwell, or an exact stop that does not move.
-      if (r.dwell_s == 0.0) continue;
+      if (r.curve.kind != CurvePiece::Kind::kPoint) continue;
+      // A dwell, of whatever time, is a stop.
       if (parts_.empty()) parts_.push_back({moves_.size(), moves_.size(), 0.0});
       parts_.back().dwell_s += r.dwell_s;
       last = nullptr;

@@ -1,7 +1,6 @@
 #include "daemon/program/time_law.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -18,11 +17,13 @@ constexpr std::size_t kSettled = 500;
 // A last ramp to rest may use so much of the limits, as the path may bend there.
 constexpr double kTailShare = 0.4;
 
-// Gauss-Legendre, six points on 0..1.
-constexpr std::array<double, 6> kPoint = {0.033765242898423986, 0.169395306766867743, 0.380690406958401546,
-                                          0.619309593041598454, 0.830604693233132257, 0.966234757101576014};
-constexpr std::array<double, 6> kWeight = {0.085662246189585173, 0.180380786524069304, 0.233956967286345524,
-                                           0.233956967286345524, 0.180380786524069304, 0.085662246189585173};
+/// artanh(z) / z by the square of z, which may be negative: then it is arctan(|z|) / |z|.
+double ArtanhOverArgument(double squared) {
+  if (std::abs(squared) < 1e-3)
+    return 1.0 + squared * (1.0 / 3 + squared * (1.0 / 5 + squared * (1.0 / 7 + squared / 9)));
+  const double z = std::sqrt(std::abs(squared));
+  return (squared > 0.0 ? std::atanh(z) : std::atan(z)) / z;
+}
 
 }  // namespace
 
@@ -36,12 +37,11 @@ TimeLaw::TimeLaw(std::shared_ptr<const Stretch> stretch, double from_m, double f
 
 double TimeLaw::TimeWithin(std::size_t i, double since_u) const {
   const double value = speed_.Value(i), slope = speed_.Slope(i), bend = speed_.Bend(i);
-  double sum = 0.0;
-  for (std::size_t k = 0; k < kPoint.size(); ++k) {
-    const double e = kPoint[k] * since_u;
-    sum += kWeight[k] / std::sqrt(value + e * (slope + 0.5 * e * bend));
-  }
-  return sum * since_u;
+  // The integral of 1 / sqrt(w) over a quadratic w, by the half angle of its hyperbolic or circular
+  // functions.
+  const double end = value + since_u * (slope + 0.5 * since_u * bend);
+  const double mean = since_u / (std::sqrt(value) + std::sqrt(end));
+  return 2.0 * mean * ArtanhOverArgument(0.5 * bend * mean * mean);
 }
 
 void TimeLaw::Settle(std::size_t node) {
