@@ -53,8 +53,8 @@ SpeedConstraints ConstraintsOf(const Stretch& stretch, const RestMap& map, const
       const double u =
           m + 1 == kSpeedPlaces ? to : from + (to - from) * static_cast<double>(m) / (kSpeedPlaces - 1);
       const ParameterDerivatives x = AtParameter(stretch, map, u, middle);
-      c.intervals[k][m] = {kInfinite, kInfinite, (to - from) / (kSpeedPlaces - 1),
-                           x.first,   x.second,  x.third};
+      c.intervals[k][m] = {kInfinite, kInfinite, (to - from) / (kSpeedPlaces - 1), 1.0, x.first,
+                           x.second,  x.third};
       LimitSpeed(stretch, goal, feed, c.intervals[k][m]);
     }
     if (k == 0) continue;

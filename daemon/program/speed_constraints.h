@@ -11,9 +11,10 @@ namespace contour {
 /// holds at some places of an interval hardly fails between them.
 struct SpeedConstraints {
   struct Place {
-    double cap = 0.0;       ///< of w, hard
-    double feed_cap = 0.0;  ///< of w, soft; infinite: none
-    double width_u = 0.0;   ///< that it stands for
+    double cap = 0.0;        ///< of w, hard
+    double feed_cap = 0.0;   ///< of w, soft; infinite: none
+    double width_u = 0.0;    ///< that it stands for
+    double allowance = 1.0;  ///< times the limits, where the motion to begin with is a little beyond them
     PerAxis<double> first, second, third;
   };
   /// Evenly from begin to end of every interval between nodes; the third derivative is the interval's own.

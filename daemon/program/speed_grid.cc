@@ -110,13 +110,13 @@ std::vector<double> Places(const Stretch& stretch, const RestMap& map) {
   return places;
 }
 
-Part MakePart(const Stretch& stretch, const RestMap& map, double from, double to) {
+Part MakePart(const Stretch& stretch, const RestMap& map, double feed_scale, double from, double to) {
   Part part;
   part.from = from;
   part.to = to;
   const double middle = 0.5 * (from + to);
   const double way = map.At(middle).way_m;
-  const double feed = Feed_m_s(stretch, way);
+  const double feed = feed_scale * Feed_m_s(stretch, way);
   part.begin = CapsAt(stretch, AtParameter(stretch, map, from, middle), feed);
   part.end = CapsAt(stretch, AtParameter(stretch, map, to, middle), feed);
   part.reach = ReachAt(stretch, way);
@@ -174,10 +174,14 @@ void CountCruise(std::vector<Part>& parts) {
   }
 }
 
+double StepTime_s(const Reach& reach, double speed_m_s) {
+  return kStepOfRise *
+         std::min(reach.acceleration_m_s2 / reach.jerk_m_s3, std::sqrt(speed_m_s / reach.jerk_m_s3));
+}
+
 double Step(const Part& p, double u) {
   const double speed = std::max(p.Speed(u), 1e-9);
-  double time = kStepOfRise *
-                std::min(p.reach.acceleration_m_s2 / p.reach.jerk_m_s3, std::sqrt(speed / p.reach.jerk_m_s3));
+  double time = StepTime_s(p.reach, speed);
   const double begin = p.CruiseBegin(), end = p.CruiseEnd();
   if (u > begin && u < end) {
     const double since = (begin <= p.from ? p.since_s : 0.0) + (u - std::max(begin, p.from)) / speed;
@@ -205,6 +209,10 @@ void Divide(const Part& p, std::vector<double>& grid) {
 
 }  // namespace
 
+double StepTime_s(const Stretch& stretch, double way_m, double speed_m_s) {
+  return StepTime_s(ReachAt(stretch, way_m), speed_m_s);
+}
+
 RestMap RestMapFor(const Stretch& stretch, double from_m) {
   const double to_m = stretch.smooth.length_m();
   const auto width = [&](double way, double inside) {
@@ -221,11 +229,11 @@ RestMap RestMapFor(const Stretch& stretch, double from_m) {
   return {from_m, to_m, width(from_m, from_m), width(to_m, to_m)};
 }
 
-std::vector<double> SpeedGrid(const Stretch& stretch, const RestMap& map) {
+std::vector<double> SpeedGrid(const Stretch& stretch, const RestMap& map, double feed_scale) {
   const std::vector<double> places = Places(stretch, map);
   std::vector<Part> parts;
   for (std::size_t i = 0; i + 1 < places.size(); ++i)
-    parts.push_back(MakePart(stretch, map, places[i], places[i + 1]));
+    parts.push_back(MakePart(stretch, map, feed_scale, places[i], places[i + 1]));
   GuessSpeeds(parts);
   CountCruise(parts);
   std::vector<double> grid{0.0};

@@ -20,6 +20,9 @@ constexpr double kRough = 0.02;
 constexpr double kFine = 1e-4;
 // Of the time that exceeding a lowered feed twice over costs.
 constexpr double kPenalty = 1e3;
+// A stop shall come to rest; and room that is left where a motion is beyond a limit.
+constexpr double kStopGap = 1e-7;
+constexpr double kAllowed = 1.005;
 
 /// Gradient and the three diagonals of a symmetric matrix.
 struct System {
@@ -86,6 +89,7 @@ class Window {
     local_.beta.assign(speed.beta.begin() + static_cast<std::ptrdiff_t>(first_node),
                        speed.beta.begin() + static_cast<std::ptrdiff_t>(last_node + 2));
     Soften();
+    Allow();
   }
 
   void Optimise() {
@@ -107,7 +111,7 @@ class Window {
         next = kInfinite;
       }
       if (next < kInfinite) std::swap(here, there);
-      const bool last = count / weight <= kGap * Cost(here);
+      const bool last = count / weight <= (stopping() ? kStopGap : kGap) * Cost(here);
       const bool stuck = !(next < kInfinite);
       if (last && (stuck || decrement < kFine * count)) break;
       if (!last && (stuck || (length == 1.0 && decrement < kRough * count))) weight *= kWeightGrowth;
@@ -129,6 +133,27 @@ class Window {
         if (!(Dot(local_.beta, i, weights_[i].value[m]) < 0.999 * p.feed_cap)) continue;
         p.cap = std::min(p.cap, p.feed_cap);
         p.feed_cap = kInfinite;
+      }
+    }
+  }
+
+  /// What the motion to begin with needs, it may have: nodes may have been added where it was not looked at.
+  void Allow() {
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      for (std::size_t m = 0; m < kSpeedPlaces; ++m) {
+        SpeedConstraints::Place& p = constraints_.intervals[i][m];
+        const double w = Dot(local_.beta, i, weights_[i].value[m]);
+        const double s = Dot(local_.beta, i, weights_[i].slope[m]);
+        const double b = Dot(local_.beta, i, weights_[i].bend);
+        double used = 0.0;
+        for (std::size_t a = 0; a < p.first.size(); ++a) {
+          used = std::max(
+              {used, std::abs(p.second[a] * w + 0.5 * p.first[a] * s) / constraints_.acceleration[a],
+               std::sqrt(w) * std::abs(p.third[a] * w + 1.5 * p.second[a] * s + 0.5 * p.first[a] * b) /
+                   constraints_.jerk[a]});
+        }
+        p.allowance = std::max(1.0, kAllowed * used);
+        p.cap = std::max(p.cap, kAllowed * w);
       }
     }
   }
@@ -188,8 +213,9 @@ class Window {
     double sum = 0.0;
     if (p.cap < kInfinite) sum += Barrier(1.0 - w / p.cap, i, Sum(value, -1.0 / p.cap, slope, 0.0), system);
     for (std::size_t a = 0; a < p.first.size(); ++a) {
-      const double x1 = 0.5 * p.first[a] / constraints_.acceleration[a];
-      const double x2 = p.second[a] / constraints_.acceleration[a];
+      const double limit = p.allowance * constraints_.acceleration[a];
+      const double x1 = 0.5 * p.first[a] / limit;
+      const double x2 = p.second[a] / limit;
       if (x1 == 0.0 && x2 == 0.0) continue;
       const double used = x2 * w + x1 * s;
       const SpeedWeights g = Sum(value, x2, slope, x1);
@@ -215,7 +241,7 @@ class Window {
     const double room = 1.0 / std::sqrt(w);
     double sum = 0.0;
     for (std::size_t a = 0; a < p.first.size(); ++a) {
-      const double j = constraints_.jerk[a];
+      const double j = p.allowance * constraints_.jerk[a];
       const double x1 = 0.5 * p.first[a] / j, x2 = 1.5 * p.second[a] / j, x3 = p.third[a] / j;
       if (x1 == 0.0 && x2 == 0.0 && x3 == 0.0) continue;
       const double used = x3 * w + x2 * s + x1 * b;

@@ -6,6 +6,7 @@
 
 #include "daemon/program/jerk_ramp.h"
 #include "daemon/program/speed_grid.h"
+#include "daemon/program/speed_refinement.h"
 
 namespace contour {
 namespace {
@@ -14,8 +15,18 @@ namespace {
 // ahead: at five nodes to a rise of acceleration several times the way to rest.
 constexpr std::size_t kWindow = 800;
 constexpr std::size_t kSettled = 500;
+// A change of feed waits so long for a node.
+constexpr double kSoon_s = 2e-3;
 // A last ramp to rest may use so much of the limits, as the path may bend there.
 constexpr double kTailShare = 0.4;
+// It begins where it takes a few cycles only.
+constexpr double kTail_s = 3e-3;
+constexpr double kTailSteps = 0.5;
+constexpr double kEven_s = 1e-4;
+constexpr double kNoLimit_m_s2 = 1e12;
+// Nodes for a change of feed at once, and how often those of a stop are found anew.
+constexpr std::size_t kChange = 250;
+constexpr int kStopRounds = 3;
 
 /// artanh(z) / z by the square of z, which may be negative: then it is arctan(|z|) / |z|.
 double ArtanhOverArgument(double squared) {
@@ -30,7 +41,7 @@ double ArtanhOverArgument(double squared) {
 TimeLaw::TimeLaw(std::shared_ptr<const Stretch> stretch, double from_m, double feed_scale)
     : stretch_(std::move(stretch)), map_(RestMapFor(*stretch_, from_m)), time_s_{0.0} {
   goal_.feed_scale = feed_scale;
-  speed_.u = SpeedGrid(*stretch_, map_);
+  speed_.u = SpeedGrid(*stretch_, map_, feed_scale);
   goal_.floor = SafeFloor(*stretch_, map_, speed_, goal_);
   speed_.beta.assign(speed_.u.size() + 1, goal_.floor);
 }
@@ -49,8 +60,16 @@ void TimeLaw::Settle(std::size_t node) {
     time_s_.push_back(time_s_.back() + TimeWithin(i, speed_.width(i)));
 }
 
+void TimeLaw::Refine(std::size_t node) {
+  if (grid_.empty()) return;
+  RefineByGrid(grid_, node, kWindow, speed_);
+  // Where the feed was kept before, it changes now.
+  if (node == changed_) RefineForChange(*stretch_, map_, node, kChange, 0.0, speed_);
+}
+
 void TimeLaw::PlanWindow() {
   const std::size_t settled = time_s_.size() - 1;
+  Refine(settled);
   const std::size_t end = speed_.u.size() - 1;
   // The state at a node is that of its two coefficients; at the very start both are free.
   const std::size_t first = settled == 0 ? 0 : settled + 2;
@@ -87,7 +106,7 @@ TimeLaw::State TimeLaw::At(double time_s) {
   if (stops_ && time_s > last_s_) {
     // The ramp counts the speed that is lost.
     const JerkRamp ramp({0.0, -last_.acceleration_m_s2}, last_.speed_m_s,
-                        {kTailShare * 1e9, tail_jerk_m_s3_, 0.0});
+                        {kNoLimit_m_s2, tail_jerk_m_s3_, 0.0});
     const double since = std::min(time_s - last_s_, tail_s_);
     const AlongCurve lost = ramp.At(since);
     if (since == tail_s_) return {last_.way_m + last_.speed_m_s * since - lost.s_m, 0.0, 0.0};
@@ -97,57 +116,88 @@ TimeLaw::State TimeLaw::At(double time_s) {
   if (time_s >= time_s_.back()) return {map_.At(speed_.u.back()).way_m, 0.0, 0.0};
   const auto after = std::upper_bound(time_s_.begin(), time_s_.end(), time_s);
   const auto i = static_cast<std::size_t>(after - time_s_.begin()) - 1;
-  const double since = time_s - time_s_[i];
+  const double e = SinceNode(i, time_s - time_s_[i]);
+  const RestMap::Derivatives s = map_.At(speed_.u[i] + e, speed_.u[i] + 0.5 * speed_.width(i));
+  const double bend = speed_.Bend(i);
+  const double slope = speed_.Slope(i) + e * bend;
+  const double w = speed_.Value(i) + e * (slope - 0.5 * e * bend);
+  return {s.way_m, s.first * std::sqrt(w), s.second * w + 0.5 * s.first * slope};
+}
+
+double TimeLaw::SinceNode(std::size_t i, double since_s) const {
   const double width = speed_.width(i);
   const double value = speed_.Value(i), slope = speed_.Slope(i), bend = speed_.Bend(i);
-  const auto squared = [&](double e) { return value + e * (slope + 0.5 * e * bend); };
-  double e = width * since / (time_s_[i + 1] - time_s_[i]);
+  double e = width * since_s / (time_s_[i + 1] - time_s_[i]);
   for (int k = 0; k < 8; ++k) {
-    const double off = since - TimeWithin(i, e);
-    e = std::clamp(e + off * std::sqrt(squared(e)), 0.0, width);
-    if (std::abs(off) < 1e-13) break;
+    const double off_s = since_s - TimeWithin(i, e);
+    e = std::clamp(e + off_s * std::sqrt(value + e * (slope + 0.5 * e * bend)), 0.0, width);
+    if (std::abs(off_s) < 1e-13) break;
   }
-  const RestMap::Derivatives s = map_.At(speed_.u[i] + e, speed_.u[i] + 0.5 * width);
-  const double w = squared(e);
-  return {s.way_m, s.first * std::sqrt(w), s.second * w + 0.5 * s.first * (slope + e * bend)};
+  return e;
+}
+
+std::size_t TimeLaw::NodeAfter(double time_s) {
+  const auto after = std::lower_bound(time_s_.begin(), time_s_.end(), std::max(0.0, time_s));
+  const auto node = static_cast<std::size_t>(after - time_s_.begin());
+  if (node == 0 || *after - time_s < kSoon_s) return node;
+  const double at_u = speed_.u[node - 1] + SinceNode(node - 1, time_s - time_s_[node - 1]);
+  time_s_.insert(after, time_s);
+  speed_.Insert(node - 1, at_u);
+  return node;
 }
 
 double TimeLaw::ChangeFeed(double time_s, double scale) {
   PlanTo(time_s);
   if (stops_ ? time_s >= last_s_ : time_s >= time_s_.back()) return time_s;
-  const auto node = static_cast<std::size_t>(
-      std::lower_bound(time_s_.begin(), time_s_.end(), std::max(0.0, time_s)) - time_s_.begin());
+  const std::size_t node = NodeAfter(time_s);
   if (node + 1 >= speed_.u.size()) return duration_s();
   time_s_.resize(node + 1);
   stops_ = false;
   goal_.feed_may_exceed = scale < goal_.feed_scale || goal_.feed_may_exceed;
   goal_.feed_scale = scale;
+  changed_ = node;
+  if (scale > 0.0) grid_ = SpeedGrid(*stretch_, map_, scale);
   if (scale == 0.0) EndBySlowing();
   return time_s_[node];
 }
 
+bool TimeLaw::EndWithin(std::size_t from, double slow_m_s, double jerk_m_s3) {
+  for (std::size_t i = std::max<std::size_t>(from, 1); i + 1 < time_s_.size(); ++i) {
+    const State s = AtNode(i);
+    const double rounding = 0.5 * s.acceleration_m_s2 * s.acceleration_m_s2 / jerk_m_s3;
+    // Almost at rest it may creep on evenly.
+    const bool slows = s.acceleration_m_s2 <= kEven_s * jerk_m_s3;
+    if (s.speed_m_s > slow_m_s || !slows || rounding > s.speed_m_s) continue;
+    stops_ = true;
+    time_s_.resize(i + 1);
+    last_ = s;
+    last_.acceleration_m_s2 = std::min(0.0, s.acceleration_m_s2);
+    last_s_ = time_s_.back();
+    tail_jerk_m_s3_ = jerk_m_s3;
+    tail_s_ =
+        JerkRamp({0.0, -last_.acceleration_m_s2}, s.speed_m_s, {kNoLimit_m_s2, jerk_m_s3, 0.0}).duration_s();
+    return true;
+  }
+  return false;
+}
+
 void TimeLaw::EndBySlowing() {
-  const double cycle_s = 1e-3;
   double jerk = std::numeric_limits<double>::infinity();
   for (const PlanLimits& l : stretch_->limits) jerk = std::min(jerk, kTailShare * l.jerk_m_s3);
-  // Slow enough to rest within a few cycles.
-  const double slow_m_s = jerk * 4.0 * cycle_s * cycle_s;
-  while (time_s_.size() < speed_.u.size()) {
-    const std::size_t from = time_s_.size() - 1;
+  const std::size_t from = time_s_.size() - 1;
+  const State now = AtNode(from);
+  const double step_s = StepTime_s(*stretch_, now.way_m, now.speed_m_s);
+  const double tail_s = std::isfinite(step_s) ? std::max(kTail_s, kTailSteps * step_s) : kTail_s;
+  const double slow_m_s = jerk * tail_s * tail_s;
+  // The place of rest shows once it has been planned, and then needs nodes.
+  for (int round = 0; round < kStopRounds; ++round) {
+    time_s_.resize(from + 1);
+    RefineForChange(*stretch_, map_, from, kWindow, 0.25 * slow_m_s, speed_);
     PlanWindow();
-    for (std::size_t i = std::max<std::size_t>(from, 1); i + 1 < time_s_.size(); ++i) {
-      const State s = AtNode(i);
-      const double rounding = 0.5 * s.acceleration_m_s2 * s.acceleration_m_s2 / jerk;
-      if (s.speed_m_s > slow_m_s || s.acceleration_m_s2 > 0.0 || rounding > s.speed_m_s) continue;
-      stops_ = true;
-      time_s_.resize(i + 1);
-      last_ = s;
-      last_s_ = time_s_.back();
-      tail_jerk_m_s3_ = jerk;
-      tail_s_ =
-          JerkRamp({0.0, -s.acceleration_m_s2}, s.speed_m_s, {kTailShare * 1e9, jerk, 0.0}).duration_s();
-      return;
-    }
+  }
+  for (std::size_t next = from; !EndWithin(next, slow_m_s, jerk) && time_s_.size() < speed_.u.size();) {
+    next = time_s_.size() - 1;
+    PlanWindow();
   }
 }
 

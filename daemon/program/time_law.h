@@ -39,17 +39,25 @@ class TimeLaw {
 
  private:
   void PlanWindow();
+  void Refine(std::size_t node);
   void PlanTo(double time_s);
   void Settle(std::size_t node);
   void EndBySlowing();
+  bool EndWithin(std::size_t from, double slow_m_s, double jerk_m_s3);
   [[nodiscard]] State AtNode(std::size_t node) const;
   [[nodiscard]] double TimeWithin(std::size_t i, double since_u) const;
+  /// How far after node i it is at a time since then.
+  [[nodiscard]] double SinceNode(std::size_t i, double since_s) const;
+  /// The first node after a time, made there if need be.
+  std::size_t NodeAfter(double time_s);
 
   std::shared_ptr<const Stretch> stretch_;
   RestMap map_;
   SpeedGoal goal_;
   SpeedSpline speed_;
+  std::vector<double> grid_;    ///< nodes for a feed that was changed to; empty: it was not
   std::vector<double> time_s_;  ///< of the nodes that are settled
+  std::size_t changed_ = 0;     ///< node from which the present feed counts
   bool stops_ = false;
   // Having slowed down enough, it comes to rest by a last ramp:
   State last_;
