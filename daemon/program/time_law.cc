@@ -140,6 +140,8 @@ std::size_t TimeLaw::NodeAfter(double time_s) {
   const auto after = std::lower_bound(time_s_.begin(), time_s_.end(), std::max(0.0, time_s));
   const auto node = static_cast<std::size_t>(after - time_s_.begin());
   if (node == 0 || *after - time_s < kSoon_s) return node;
+  // Not next to the node before.
+  time_s += 0.5 * kSoon_s;
   const double at_u = speed_.u[node - 1] + SinceNode(node - 1, time_s - time_s_[node - 1]);
   time_s_.insert(after, time_s);
   speed_.Insert(node - 1, at_u);
