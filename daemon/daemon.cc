@@ -7,7 +7,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <future>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -23,15 +22,17 @@
 #include "daemon/lanes/slow_lane.h"
 #include "daemon/last_resort.h"
 #include "daemon/learning/program_learning.h"
+#include "daemon/loaded_model.h"
 #include "daemon/logging/logging.h"
 #include "daemon/machine_buses.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/make_log_header.h"
 #include "daemon/memory/friction_memory.h"
 #include "daemon/pump.h"
+#include "daemon/realtime_thread.h"
 #include "daemon/rt/loop.h"
-#include "daemon/rt/thread_setup.h"
 #include "daemon/service_notifier.h"
+#include "daemon/start_again.h"
 #include "daemon/supervisor.h"
 #include "daemon/telemetry/telemetry_hub.h"
 #include "design/loop_choice.h"
@@ -69,6 +70,7 @@ std::vector<std::string> Overrides(const DaemonOptions& options) {
     for (std::size_t i = 0; i < names.size(); ++i)
       set.push_back("buses." + names[i] + ".interface=" + options.buses[i]);
   }
+  for (const std::string& model : options.models) set.push_back(ModelOverride(model));
   return set;
 }
 
@@ -123,57 +125,6 @@ int SignalCame(const sigset_t& set) {
   return sigtimedwait(&set, nullptr, &wait);
 }
 
-/// Real time as the machine file asks for it, or why not. Lock-step needs none.
-class RealtimeThread {
- public:
-  RealtimeThread(Loop& loop, const RealtimeConfig& config, bool lockstep) : loop_(loop), lockstep_(lockstep) {
-    request_ = {config.priority, config.cpu, config.lock_memory};
-  }
-  ~RealtimeThread() {
-    if (thread_.joinable() && !gone_) Go(false);
-    Join();
-  }
-
-  /// What was refused.
-  std::vector<std::string> Start() {
-    std::future<std::vector<std::string>> refused = refused_.get_future();
-    thread_ = std::thread([this] { Work(); });
-    return refused.get();
-  }
-  /// Let the loop run, or give it up.
-  void Go(bool go) {
-    gone_ = true;
-    go_.set_value(go);
-  }
-  [[nodiscard]] bool ended() const { return ended_; }
-  void Join() {
-    if (thread_.joinable()) thread_.join();
-  }
-
- private:
-  void Work() {
-    pthread_setname_np(pthread_self(), "contour-rt");
-    refused_.set_value(lockstep_ ? std::vector<std::string>() : ApplyThreadRequest(request_));
-    if (go_.get_future().get()) {
-      if (lockstep_) {
-        loop_.RunLockstep();
-      } else {
-        loop_.RunWall();
-      }
-    }
-    ended_ = true;
-  }
-
-  Loop& loop_;
-  bool lockstep_;
-  ThreadRequest request_;
-  std::promise<std::vector<std::string>> refused_;
-  std::promise<bool> go_;
-  bool gone_ = false;  ///< the thread has been told
-  std::atomic<bool> ended_{false};
-  std::thread thread_;
-};
-
 /// Everything of a running daemon, in the order in which it is taken down again.
 class Daemon {
  public:
@@ -213,6 +164,9 @@ class Daemon {
                             snapshots_.get()};
     loop_ = std::make_unique<Loop>(loop, cycle_, buses_.all(), mailbox_, *io_, queue_);
   }
+
+  /// The model that an operator has handed over, with which to begin anew: AXIS=YAML.
+  [[nodiscard]] const std::optional<std::string>& wanted_model() const { return wanted_model_; }
 
   int Run(const sigset_t& signals) {
     const bool lockstep = options_.clock == "lockstep";
@@ -335,8 +289,15 @@ class Daemon {
       } else if (signal > 0) {
         mailbox_.PostTerminate();  // before anything that writes
         ending = true;
+        wanted_model_.reset();  // whoever ends the daemon does not want it back
         spdlog::info("asked to end by a signal");
         notifier.Stopping();
+      }
+      if (!ending && !wanted_model_ && (wanted_model_ = supervisor.wanted_model())) {
+        mailbox_.PostTerminate();
+        ending = true;
+        spdlog::info("ends and begins anew with another model of axis {}",
+                     wanted_model_->substr(0, wanted_model_->find('=')));
       }
       const auto now = std::chrono::steady_clock::now();
       if (const std::uint64_t n = loop_->counters().cycles.load(); n != cycles || !ending) {
@@ -379,6 +340,7 @@ class Daemon {
   std::unique_ptr<IoSource> io_;
   std::unique_ptr<StateSnapshots> snapshots_;
   std::unique_ptr<Loop> loop_;
+  std::optional<std::string> wanted_model_;
   SlowLane reloading_{"contour-reload", {1, {}}};
 };
 
@@ -396,9 +358,8 @@ spdlog::level::level_enum ToSpdlog(LogLevel level) {
   return spdlog::level::info;
 }
 
-}  // namespace
-
-int RunDaemon(const DaemonOptions& options) {
+/// Until it ends; `again` is the model with which to begin anew.
+int RunOnce(const DaemonOptions& options, std::optional<std::string>& again) {
   std::vector<std::string> overrides = Overrides(options);
   const MachineConfig stated = LoadMachine(options.config, overrides);
   FrictionMemory memory(stated, MemoryDirectory(stated.memory));
@@ -429,7 +390,18 @@ int RunDaemon(const DaemonOptions& options) {
     const sigset_t& set;
   } give_back{signals};
   Daemon daemon(options, file, source, memory);
-  return daemon.Run(signals);
+  const int status = daemon.Run(signals);
+  again = daemon.wanted_model();
+  return status;
+}
+
+}  // namespace
+
+int RunDaemon(const DaemonOptions& options) {
+  std::optional<std::string> again;
+  const int status = RunOnce(options, again);
+  if (again && status == kExitDone) StartAgain(WithModel(options, *again));
+  return status;
 }
 
 }  // namespace contour

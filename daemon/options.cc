@@ -22,6 +22,11 @@ ParseResult ParseOptions(int argc, char** argv, DaemonOptions& o) {
   app.add_option("--set", o.set, "KEY=VALUE: override a key of the machine file; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--model", o.models,
+                 "AXIS=KEYS: a model, as YAML, in place of the machine file's; contourd gives it to itself "
+                 "when it is handed a model on the control socket; repeatable")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--log", o.log, "Record every cycle, inputs and outputs, in this LCM log");
   app.add_option("--truth", o.truth,
                  "Write what the emulated machine really did to this CSV (loopback only)");

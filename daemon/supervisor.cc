@@ -14,6 +14,7 @@
 #include "config/yaml_writer.h"
 #include "core/reference.h"
 #include "core/version.h"
+#include "daemon/loaded_model.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/program/path_generator.h"
 #include "daemon/program/program.h"
@@ -207,6 +208,30 @@ Answer Supervisor::Reload() {
   } catch (const std::exception& e) {
     return {false, e.what()};
   }
+}
+
+Answer Supervisor::LoadModel(const std::string& axis, const std::string& yaml) {
+  const std::lock_guard lock(reload_);
+  if (std::find(axis_names_.begin(), axis_names_.end(), axis) == axis_names_.end())
+    return {false, "there is no axis " + axis + " on this machine"};
+  if (wanted_model_) return {false, "contourd is about to begin anew with another model"};
+  if (const CycleRecord now = answers_.record(); now.state != MachineState::kIdle)
+    return {false, "a model is loaded while the machine is Idle, and it is " + std::string(Name(now.state))};
+  try {
+    const std::string model = axis + "=" + yaml;
+    std::vector<std::string> overrides = WithoutModelOf(axis, source_.overrides);
+    if (!yaml.empty()) overrides.push_back(ModelOverride(model));
+    MakeCycleConfig(LoadMachine(ReadSource(source_.name, overrides)), controller_);
+    wanted_model_ = model;
+    return {true, ""};
+  } catch (const std::exception& e) {
+    return {false, e.what()};
+  }
+}
+
+std::optional<std::string> Supervisor::wanted_model() {
+  const std::lock_guard lock(reload_);
+  return wanted_model_;
 }
 
 Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwanted) {

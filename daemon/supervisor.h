@@ -52,11 +52,15 @@ class Supervisor final : public OperatorDesk {
   Answer Reference(const std::map<std::string, double>& position_mm,
                    const std::stop_token& unwanted) override;
   Answer Reload() override;
+  Answer LoadModel(const std::string& axis, const std::string& yaml) override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   MachineStatus Status() override;
   std::string MachineFile() override;
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
+
+  /// Asked by LoadModel() and not yet carried out: AXIS=YAML to begin anew with.
+  [[nodiscard]] std::optional<std::string> wanted_model();
 
   /// The newest record.
   [[nodiscard]] CycleRecord record() { return answers_.record(); }
@@ -77,6 +81,7 @@ class Supervisor final : public OperatorDesk {
   std::uint32_t changes_ = 0;
   std::vector<std::unique_ptr<ContourController>> controllers_;  ///< that the cycle may still hold
   std::mutex reload_;                                            ///< SIGHUP and the socket may both ask
+  std::optional<std::string> wanted_model_;                      ///< guarded by it
   std::string machine_name_;
   ControllerName controller_;
   std::string clock_;

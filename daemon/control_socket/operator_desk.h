@@ -56,6 +56,10 @@ class OperatorDesk {
   /// Reads the machine file again and takes what may change while running; refused as a whole if anything
   /// else has changed. Answer::reason says in any case what came of it.
   virtual Answer Reload() = 0;
+  /// Another model of an axis (the keys of `axes.<axis>.model`, as YAML; empty: the machine file's own): the
+  /// daemon ends as it ends on a signal and begins anew with it, in the same process. The machine must be
+  /// Idle, and is Idle again when that is done. Refused before anything ends where it could not begin.
+  virtual Answer LoadModel(const std::string& axis, const std::string& yaml) = 0;
   virtual Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) = 0;
   virtual MachineStatus Status() = 0;
   /// The machine file as it was read, overrides and defaults in it: YAML that reads back as the same.

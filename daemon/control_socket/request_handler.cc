@@ -108,6 +108,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     if (answer.accepted) reply["text"] = answer.reason;
     return reply;
   }
+  if (kind == "load_model") return Reply(desk.LoadModel(Text(request, "axis"), Text(request, "model")));
   if (kind == "run") return Run(request, desk, unwanted, uploaded);
   if (kind == "watch") return Watch(request, subscriptions);
   if (kind == "rows") {
@@ -116,7 +117,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   }
   throw BadRequest("unknown request \"" + kind +
                    "\"; there are status, machine_file, enable, disable, stop, reset, reference, reload, "
-                   "upload, run, watch, rows");
+                   "load_model, upload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

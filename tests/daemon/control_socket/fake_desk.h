@@ -15,6 +15,7 @@ namespace contour::test {
 class FakeDesk final : public OperatorDesk {
  public:
   std::map<std::string, double> referenced_mm;
+  std::map<std::string, std::string> loaded;
 
   Answer Enable(const std::stop_token& unwanted) override {
     Answer answer = Do("enable");
@@ -32,6 +33,10 @@ class FakeDesk final : public OperatorDesk {
     return Do("reference");
   }
   Answer Reload() override { return Do("reload"); }
+  Answer LoadModel(const std::string& axis, const std::string& yaml) override {
+    loaded[axis] = yaml;
+    return Do("load_model");
+  }
   Answer Run(const ProgramUpload& program, const std::stop_token& /*unwanted*/) override {
     Answer answer = Do("run");
     const std::lock_guard lock(mutex_);

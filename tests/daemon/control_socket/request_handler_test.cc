@@ -113,7 +113,7 @@ TEST_F(RequestHandlerTest, ALineSaysWhoAnswersIt) {
   const auto kind = [](const char* request) { return HeadOf(json{{"request", request}}.dump()).kind; };
   for (const char* at_once : {"status", "watch", "rows", "fly"})
     EXPECT_EQ(kind(at_once), std::string(at_once) == "fly" ? RequestClass::kWaits : RequestClass::kAtOnce);
-  for (const char* waits : {"enable", "reset", "reload", "run", "machine_file"})
+  for (const char* waits : {"enable", "reset", "reload", "run", "machine_file", "load_model"})
     EXPECT_EQ(kind(waits), RequestClass::kWaits) << waits;
   EXPECT_EQ(kind("stop"), RequestClass::kStop);
   EXPECT_EQ(kind("disable"), RequestClass::kDisable);

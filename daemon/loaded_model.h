@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace contour {
+
+// A model that contourd was handed while it ran, AXIS=YAML: it stands in place of the machine file's.
+
+/// As `--set` has it.
+std::string ModelOverride(const std::string& model);
+
+/// Assignments less those that put a model, or a part of one, in place of an axis's own.
+std::vector<std::string> WithoutModelOf(const std::string& axis, std::vector<std::string> overrides);
+
+}  // namespace contour

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "daemon/options.h"
+
+namespace contour {
+
+/// The options with another model of an axis, AXIS=YAML; `AXIS=` takes away what was loaded before. Log and
+/// truth go on in files of their own.
+DaemonOptions WithModel(DaemonOptions options, const std::string& model);
+
+/// The command line that these options come from.
+std::vector<std::string> ArgumentsOf(const DaemonOptions& options);
+
+/// The first of FILE.1, FILE.2, ... that is not there; after FILE.2 comes FILE.3. Empty stays empty.
+std::string NextFile(const std::string& file);
+
+/// contourd from its beginning, in this process. Throws EnvironmentError when the kernel refuses.
+[[noreturn]] void StartAgain(const DaemonOptions& options);
+
+}  // namespace contour

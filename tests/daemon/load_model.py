@@ -1,0 +1,117 @@
+#!/usr/bin/env python3
+"""Another model of an axis is handed to a running contourd: it begins anew with it, Idle, and gives it back again.
+
+    load_model.py CONTOURD MACHINE_FILE
+
+In lock-step on the in-process bus. The process stays the same, its log goes on in a file of its own, what cannot be loaded is
+refused before anything ends, and nothing is loaded while there is torque.
+"""
+import json
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import yaml
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+class Client:
+    def __init__(self, path):
+        self.path = path
+
+    def ask(self, **request):
+        with socket.socket(socket.AF_UNIX) as s:
+            s.connect(str(self.path))
+            with s.makefile("rw", encoding="utf-8") as lines:
+                lines.write(json.dumps(request) + "\n")
+                lines.flush()
+                return json.loads(lines.readline())
+
+    def wait_for(self, state):
+        for _ in range(1200):
+            try:
+                if self.ask(request="status")["status"]["state"] == state:
+                    return
+            except (OSError, ValueError):
+                pass  # between its end and its new beginning nobody answers
+            time.sleep(0.05)
+        raise RuntimeError(f"never {state}")
+
+    def stiffness(self):
+        return self.model()["screw_stiffness_N_um"]
+
+    def model(self):
+        return yaml.safe_load(self.ask(request="machine_file")["yaml"])["axes"]["x"]["model"]
+
+    def load(self, model):
+        return self.ask(request="load_model", axis="x", model=model)
+
+    def await_stiffness(self, value):
+        for _ in range(1200):
+            try:
+                if self.stiffness() == value:
+                    return
+            except (OSError, ValueError):
+                pass
+            time.sleep(0.05)
+        raise RuntimeError(f"stiffness never became {value}")
+
+
+def check(client, process, log):
+    client.wait_for("Idle")
+    own = client.stiffness()
+    model = client.model()
+    refused = client.load("lead_mm: 5\n")
+    assert not refused["ok"] and "motor_inertia_kgm2: missing" in refused["error"], refused
+    refused = client.ask(request="load_model", axis="q", model="")
+    assert not refused["ok"] and "no axis q" in refused["error"], refused
+    model["screw_stiffness_N_um"] = 33
+    assert client.ask(request="enable")["ok"]
+    client.wait_for("Ready")
+    refused = client.load(yaml.safe_dump(model))
+    assert not refused["ok"] and "Idle" in refused["error"], refused
+    assert client.ask(request="disable")["ok"]
+    client.wait_for("Idle")
+    assert client.load(yaml.safe_dump(model))["ok"]
+    client.await_stiffness(33)
+    client.wait_for("Idle")
+    assert client.load("")["ok"]
+    client.await_stiffness(own)
+    client.wait_for("Idle")
+    assert process.poll() is None
+    for number in ("", ".1", ".2"):
+        assert Path(f"{log}{number}").stat().st_size > 1000, number
+
+
+def main():
+    contourd, machine_file = sys.argv[1:]
+    port = free_port()
+    with tempfile.TemporaryDirectory() as scratch:
+        log = f"{scratch}/run.log"
+        command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", f"{scratch}/control.sock", "--log", log]
+        for override in ("telemetry.publish=false", f"io.modbus.port={port}", f"emulator.io.port={port}"):
+            command += ["--set", override]
+        with open(f"{scratch}/daemon.txt", "w", encoding="utf-8") as messages:
+            process = subprocess.Popen(command, stdout=messages, stderr=messages)
+        try:
+            check(Client(f"{scratch}/control.sock"), process, log)
+        except Exception:
+            print(Path(f"{scratch}/daemon.txt").read_text(encoding="utf-8"))
+            raise
+        finally:
+            process.terminate()
+            status = process.wait(timeout=60)
+    assert status == 0, status
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,63 @@
+#include "daemon/start_again.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "config/config_error.h"
+#include "daemon/loaded_model.h"
+#include "tests/support/scratch_directory.h"
+
+namespace contour {
+namespace {
+
+TEST(NextFile, CountsUpToOneThatIsNotThere) {
+  const test::ScratchDirectory scratch;
+  const std::string log = (scratch.path() / "run.log").string();
+  EXPECT_EQ(NextFile(""), "");
+  EXPECT_EQ(NextFile(log), log + ".1");
+  EXPECT_EQ(NextFile(log + ".1"), log + ".2");
+  std::ofstream(log + ".1") << "kept";
+  EXPECT_EQ(NextFile(log), log + ".2") << "no log is written over";
+}
+
+TEST(WithModel, OneModelForEachAxisAndNoneWhereItIsTakenAway) {
+  DaemonOptions options;
+  options.models = {"x=a", "y=b"};
+  options = WithModel(options, "x={lead_mm: 5}");
+  EXPECT_EQ(options.models, (std::vector<std::string>{"y=b", "x={lead_mm: 5}"}));
+  EXPECT_EQ(WithModel(options, "x=").models, (std::vector<std::string>{"y=b"}));
+}
+
+TEST(ArgumentsOf, AreReadAsTheSameOptions) {
+  DaemonOptions options;
+  options.config = "a machine.yaml";
+  options.buses = {"can0", "can1"};
+  options.clock = "lockstep";
+  options.controller = "full";
+  options.set = {"machine.name=-x", "axes.x.limits.position_mm=[-1, 1]"};
+  options.models = {"x=lead_mm: 5\nfriction: {a: 1}\n"};
+  options.log = "l";
+  options.truth = "t";
+  options.socket = "/s";
+  std::vector<std::string> arguments = ArgumentsOf(options);
+  std::vector<char*> words;
+  for (std::string& a : arguments) words.push_back(a.data());
+  DaemonOptions read;
+  ASSERT_EQ(ParseOptions(static_cast<int>(words.size()), words.data(), read), ParseResult::kRun);
+  EXPECT_EQ(ArgumentsOf(read), ArgumentsOf(options));
+  EXPECT_EQ(read.models, options.models);
+  EXPECT_EQ(read.set, options.set);
+  EXPECT_EQ(read.buses, options.buses);
+}
+
+TEST(LoadedModel, StandsInPlaceOfTheMachineFilesOwn) {
+  EXPECT_EQ(ModelOverride("x={lead_mm: 5}"), "axes.x.model={lead_mm: 5}");
+  EXPECT_THROW(ModelOverride("{lead_mm: 5}"), ConfigError);
+  EXPECT_EQ(WithoutModelOf("x", {"axes.x.model={a: 1}", "axes.y.model={a: 1}", "axes.x.model.lead_mm=5"}),
+            (std::vector<std::string>{"axes.y.model={a: 1}", "axes.x.model.lead_mm=5"}));
+}
+
+}  // namespace
+}  // namespace contour
