@@ -77,6 +77,8 @@ MAY_INCLUDE = {
     "tools/validation/hidden": [*BELOW_ANALYSIS, "analysis", *SIMULATED],
     "tools/validation/commissioning": [*BELOW_ANALYSIS, "analysis", "design", *SIMULATED],
     "tools/contour_gain": [*BELOW_ANALYSIS, "analysis", "tools/validation/contest", *SIMULATED],
+    # What improving a model on the running machine decides; it does not know the machine it runs on.
+    "tools/improve": [*BELOW_ANALYSIS, "analysis", "design"],
     # The programs know everything.
     "tools/bench": [*BELOW_ANALYSIS, *SIMULATED],
     "tools/contour": [*BELOW_ANALYSIS, "analysis", "design", "tools"],

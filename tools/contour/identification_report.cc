@@ -12,45 +12,9 @@
 #include "analysis/identification/result_files.h"
 #include "analysis/identification/usable.h"
 #include "analysis/parallel/parallel_for.h"
+#include "tools/contour/draw_pictures.h"
 
 namespace contour {
-namespace {
-
-/// The script that draws, beside a build in its source tree; empty when this program lives elsewhere.
-std::filesystem::path PlotScript() {
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  // build/release/bin/contour
-  const std::filesystem::path script =
-      program.parent_path().parent_path().parent_path().parent_path() / "tools/plots/plot_identification.py";
-  return std::filesystem::exists(script, error) ? script : std::filesystem::path{};
-}
-
-std::string Quoted(const std::string& text) {
-  std::string out = "'";
-  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
-
-void Draw(const std::filesystem::path& directory) {
-  const std::filesystem::path script = PlotScript();
-  // The system's own interpreter has the packages; one that comes first in PATH need not.
-  std::error_code error;
-  const std::string python =
-      std::filesystem::exists("/usr/bin/python3", error) ? "/usr/bin/python3" : "python3";
-  const std::string command = python + " " + Quoted(script.string()) + " " + Quoted(directory.string());
-  if (script.empty()) {
-    std::cout << "pictures: tools/plots/plot_identification.py " << directory.string() << "\n";
-    return;
-  }
-  std::cout << std::flush;
-  if (std::system(command.c_str()) != 0)  // NOLINT(concurrency-mt-unsafe): one thread, a command of our own
-    std::cerr << "the pictures could not be drawn; the model is written: " << command << "\n";
-}
-
-}  // namespace
-
 ModelConfig IdentifyAndReport(const IdentificationJob& job) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   identify::IdentifyOptions options;
@@ -72,7 +36,7 @@ ModelConfig IdentifyAndReport(const IdentificationJob& job) {
   std::filesystem::create_directories(job.report, error);
   if (error) throw std::runtime_error("cannot make " + job.report.string() + ": " + error.message());
   identify::WriteIdentificationJson(job.report / "identification.json", id, job.sources);
-  Draw(job.report);
+  DrawPictures("plot_identification.py", job.report);
   return model;
 }
 

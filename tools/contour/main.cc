@@ -18,6 +18,7 @@
 #include "tools/contour/emulate_command.h"
 #include "tools/contour/export_command.h"
 #include "tools/contour/identify_command.h"
+#include "tools/contour/improve_command.h"
 #include "tools/contour/reference_command.h"
 #include "tools/contour/reload_command.h"
 #include "tools/contour/replay_command.h"
@@ -73,6 +74,7 @@ int main(int argc, char** argv) {
   contour::AddIdentifyCommand(app, action);
   contour::AddCircleTestCommand(app, action);
   contour::AddCommissionCommand(app, action);
+  contour::AddImproveCommand(app, action);
   contour::AddContestCommand(app, action);
   contour::AddTuneCommand(app, action);
   contour::AddReferenceCommand(app, action);

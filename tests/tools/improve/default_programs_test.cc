@@ -1,0 +1,50 @@
+#include "tools/improve/default_programs.h"
+
+#include <gtest/gtest.h>
+
+#include "config/load_machine.h"
+#include "daemon/program_limits.h"
+
+namespace contour::improve {
+namespace {
+
+PerAxis<double> At(const MachineConfig& machine, double position_m) {
+  PerAxis<double> at;
+  for (std::size_t i = 0; i < machine.axes.size(); ++i) at.push_back(position_m);
+  return at;
+}
+
+/// Machines from a table of micrometres to a gantry, slow ones and such with little acceleration.
+TEST(DefaultPrograms, FitWhateverTheLimitsAllow) {
+  for (const char* file : {"/xy_emulated.yaml", "/single_axis.yaml"}) {
+    for (const double acceleration : {50.0, 5000.0}) {
+      for (const double travel_mm : {6.0, 20.0, 300.0}) {
+        for (const double speed_mm_s : {20.0, 100.0, 250.0}) {
+          MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + file);
+          for (auto& [name, axis] : machine.axes) axis.limits.acceleration_mm_s2 = acceleration;
+          const std::string axis = machine.axes.begin()->first;
+          const PerAxis<double> at = At(machine, 0.19);  // near an end
+          const WorkingSpace space = SpaceFor(machine, axis, {travel_mm, speed_mm_s, 0.9}, at);
+          const ProgramText path = UsualPath(machine, space), check = UsualCheck(machine, space);
+          EXPECT_NE(path.text, check.text);
+          for (const ProgramText& p : {path, check})
+            EXPECT_NO_THROW(Place(p, space, ProgramLimits(machine), at))
+                << file << " " << acceleration << " " << travel_mm << " " << speed_mm_s << "\n"
+                << p.text;
+        }
+      }
+    }
+  }
+}
+
+TEST(DefaultPrograms, TheSpaceStaysInsideTheLimitsAndHasTheSameShareOfTorque) {
+  MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/xy_emulated.yaml");
+  machine.axes.at("y").limits.torque_Nm = 0.5;
+  const WorkingSpace space = SpaceFor(machine, "x", {20.0, 50.0, 0.75}, At(machine, 0.199));
+  EXPECT_NEAR(space.axes[0].high_m, 0.2, 1e-12);
+  EXPECT_NEAR(space.axes[0].low_m, 0.18, 1e-12);
+  EXPECT_NEAR(space.axes[1].max_torque_Nm, 0.25, 1e-12);
+}
+
+}  // namespace
+}  // namespace contour::improve

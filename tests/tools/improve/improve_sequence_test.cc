@@ -1,0 +1,225 @@
+#include "tools/improve/improve_sequence.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "config/load_machine.h"
+#include "config/yaml_writer.h"
+#include "daemon/program_limits.h"
+#include "tools/improve/default_programs.h"
+
+namespace contour::improve {
+namespace {
+
+/// A machine that follows with an error of its own with each model, and an operator who says no when told to.
+class FakeMachine final : public ImproveMachine {
+ public:
+  explicit FakeMachine(MachineConfig machine) : machine_(std::move(machine)), file_(machine_) {}
+
+  MachineConfig Machine() override { return machine_; }
+  PerAxis<double> Position_m() override {
+    PerAxis<double> zero(2);
+    zero[0] = zero[1] = 0.0;
+    return zero;
+  }
+  void Ask(const std::string& what) override {
+    asked.push_back(what);
+    if (asked.size() == refuse_at) throw Refused("refused by the operator");
+  }
+  void Enable() override { enabled = true; }
+  void Disable() override { enabled = false; }
+  Drawing Run(const ProgramText& program) override {
+    EXPECT_TRUE(enabled);
+    ran.push_back(program.name);
+    if (ran.size() == fail_at) throw std::runtime_error("stopped: a fault");
+    Drawing d;
+    d.start_m = Position_m();
+    d.log.axis = "x";
+    d.log.period_s = 1e-3;
+    const auto plan = PlanMotion(ParseProgram(program.text, program.name, program.format), d.start_m,
+                                 ProgramLimits(machine_));
+    PerAxis<ReferencePoint> at(2);
+    for (double t = 0.0; t < plan->duration_s(); t += 0.05) {
+      plan->At(t, at);
+      DrawnCycle& c = d.cycles.emplace_back();
+      c.path_time_s = t;
+      const double error_m =
+          1e-6 * (new_model ? error_after_um : 1.0) + 1e-9 * static_cast<double>(ran.size() % 3);
+      for (const ReferencePoint& p : at)
+        c.axes.push_back({p.position_m, 0.0, p.position_m + error_m, kNoTruth, 0.0, 0.0});
+      d.log.command.push_back(0.0);
+      d.log.position.push_back(0.0);
+      d.log.present.push_back(1);
+    }
+    d.log.rows = d.log.command.size();
+    if (ran.size() == lose_at || lose_all) d.lost = d.cycles.size();
+    return d;
+  }
+  void LoadModel(const std::string& yaml) override {
+    EXPECT_FALSE(enabled) << "nothing is loaded while there is torque";
+    loaded.push_back(yaml);
+    new_model = !yaml.empty();
+    if (!new_model) machine_ = file_;
+  }
+  void Say(const std::string&) override {}
+
+  std::vector<std::string> asked, ran, loaded;
+  std::size_t refuse_at = 0, fail_at = 0, lose_at = 0;
+  bool lose_all = false;
+  double error_after_um = 0.5;
+  bool enabled = false, new_model = false;
+
+ private:
+  MachineConfig machine_, file_;
+};
+
+class ImproveSequenceTest : public ::testing::Test {
+ protected:
+  ImproveSequenceTest() {
+    PerAxis<double> zero = machine_.Position_m();
+    request_.axis = "x";
+    request_.space = SpaceFor(config_, "x", {20.0, 60.0, 0.9}, zero);
+    request_.limits = ProgramLimits(config_);
+    request_.path = Place(UsualPath(config_, request_.space), request_.space, request_.limits, zero);
+    request_.check = Place(UsualCheck(config_, request_.space), request_.space, request_.limits, zero);
+    request_.experiments = {
+        {"a stroke", "shape: creep\naxis: x\nstroke_mm: 5\nvelocities_mm_s: [5]\n", ProgramFormat::kYaml}};
+    request_.machine_time_s = 900.0;
+  }
+  ImproveResult Run() {
+    return ImproveSequence(machine_, request_,
+                           [this](const auto& log, const auto& stated) {
+                             lengths_.push_back(log.rows);
+                             EXPECT_GT(stated.motor_inertia, 0.0);
+                             return lengths_.size() == 1 ? first_ : last_;
+                           })
+        .Run();
+  }
+  static diagnosis::Diagnosis Cogging() {
+    diagnosis::Diagnosis d;
+    d.verdict = diagnosis::Verdict::kCauseFound;
+    diagnosis::Cause c;
+    c.kind = "cogging";
+    c.parameters["amplitude_Nm"] = {0.02, 0.019, 0.021};
+    c.parameters["order_per_rev"] = {12, 12, 12};
+    c.parameters["phase_rad"] = {0.7, 0.6, 0.8};
+    c.heldout_gain_low = 0.2;
+    d.causes.push_back(c);
+    return d;
+  }
+  static diagnosis::Diagnosis Nothing() {
+    diagnosis::Diagnosis d;
+    d.verdict = diagnosis::Verdict::kNothingFound;
+    return d;
+  }
+  [[nodiscard]] bool Ran(const std::string& name) const {
+    return std::find(machine_.ran.begin(), machine_.ran.end(), name) != machine_.ran.end();
+  }
+
+  const MachineConfig config_ = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/xy_emulated.yaml");
+  FakeMachine machine_{config_};
+  ImproveRequest request_;
+  diagnosis::Diagnosis first_ = Cogging(), last_ = Cogging();
+  std::vector<std::size_t> lengths_;
+};
+
+TEST_F(ImproveSequenceTest, ADecidedCauseNeedsNoExperimentAndTheBetterModelStays) {
+  const ImproveResult result = Run();
+  EXPECT_TRUE(result.judgement.keep) << result.judgement.why;
+  EXPECT_FALSE(Ran("a stroke"));
+  ASSERT_EQ(machine_.loaded.size(), 1u);
+  EXPECT_NE(machine_.loaded[0].find("order_per_rev: 12"), std::string::npos);
+  EXPECT_FALSE(machine_.enabled);
+  EXPECT_EQ(result.before.path.size(), request_.passes + 1);
+  EXPECT_EQ(result.after.check.size(), request_.passes + 1);
+}
+
+TEST_F(ImproveSequenceTest, WhatThePathLeavesOpenIsDecidedByExperimentsAndTheCheckIsNeverFittedOn) {
+  first_ = Nothing();
+  const ImproveResult result = Run();
+  EXPECT_TRUE(Ran("a stroke"));
+  ASSERT_EQ(result.diagnosed.size(), 2u);
+  ASSERT_EQ(lengths_.size(), 2u);
+  std::size_t path_rows = 0;
+  for (std::size_t i = 0; i < 2; ++i) path_rows += result.before.path[i].log.rows;
+  EXPECT_EQ(lengths_[0], path_rows);
+  EXPECT_GT(lengths_[1], lengths_[0]);
+  EXPECT_TRUE(result.judgement.keep);
+}
+
+TEST_F(ImproveSequenceTest, AModelThatIsNoBetterGivesWayToTheOldOne) {
+  machine_.error_after_um = 1.0;
+  const ImproveResult result = Run();
+  EXPECT_FALSE(result.judgement.keep);
+  ASSERT_EQ(machine_.loaded.size(), 2u);
+  EXPECT_EQ(machine_.loaded[1], "");
+  EXPECT_FALSE(machine_.enabled);
+}
+
+TEST_F(ImproveSequenceTest, NothingFoundChangesNothing) {
+  first_ = last_ = Nothing();
+  const ImproveResult result = Run();
+  EXPECT_FALSE(result.judgement.keep);
+  EXPECT_TRUE(machine_.loaded.empty());
+  EXPECT_FALSE(machine_.enabled);
+}
+
+TEST_F(ImproveSequenceTest, EveryStepCanBeRefusedAndLeavesTheOldModelWithoutTorque) {
+  first_ = Nothing();
+  Run();
+  const std::size_t questions = machine_.asked.size();
+  ASSERT_EQ(questions, 3u);
+  for (std::size_t at = 1; at <= questions; ++at) {
+    machine_ = FakeMachine(config_);
+    machine_.refuse_at = at;
+    lengths_.clear();
+    EXPECT_THROW(Run(), Refused);
+    EXPECT_FALSE(machine_.enabled);
+    EXPECT_FALSE(machine_.new_model);
+    if (at == 1) {
+      EXPECT_TRUE(machine_.ran.empty());
+    }
+  }
+}
+
+TEST_F(ImproveSequenceTest, AFaultInAnyProgramLeavesTheOldModelWithoutTorque) {
+  first_ = Nothing();
+  Run();
+  const std::size_t programs = machine_.ran.size();
+  ASSERT_GT(programs, 10u);
+  for (std::size_t at = 1; at <= programs; ++at) {
+    machine_ = FakeMachine(config_);
+    machine_.fail_at = at;
+    lengths_.clear();
+    EXPECT_THROW(Run(), std::runtime_error);
+    EXPECT_FALSE(machine_.enabled);
+    EXPECT_FALSE(machine_.new_model);
+  }
+}
+
+TEST_F(ImproveSequenceTest, ARecordWithHolesIsDrawnOnceMoreAndNotForEver) {
+  machine_.lose_at = 2;  // the path, after the way to its start
+  Run();
+  const std::size_t with_holes = machine_.ran.size();
+  machine_ = FakeMachine(config_);
+  lengths_.clear();
+  Run();
+  EXPECT_GT(with_holes, machine_.ran.size());
+  machine_ = FakeMachine(config_);
+  machine_.lose_all = true;
+  EXPECT_THROW(Run(), std::runtime_error);
+  EXPECT_FALSE(machine_.enabled);
+}
+
+TEST_F(ImproveSequenceTest, ExperimentsKeepToTheMachineTime) {
+  first_ = last_ = Nothing();
+  request_.machine_time_s = 10.0;
+  const ImproveResult result = Run();
+  EXPECT_FALSE(Ran("a stroke"));
+  ASSERT_EQ(result.left_out.size(), 1u);
+}
+
+}  // namespace
+}  // namespace contour::improve

@@ -1,0 +1,47 @@
+#include "tools/improve/kept_model.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace contour::improve {
+namespace {
+
+Comparison Of(std::vector<double> before, std::vector<double> after) {
+  return Compare({std::move(before), std::move(after)}, 0.005);
+}
+
+TEST(KeptModel, ADifferenceCountsBeyondTheScatterOfTheRepeats) {
+  // One deviation of 0.1 um in either set, two means of three: 2.776 * 0.1 * sqrt(2 / 3).
+  const Comparison c = Of({0.9, 1.0, 1.1}, {0.5, 0.6, 0.7});
+  EXPECT_NEAR(c.repeatability_um, 0.2267, 1e-3);
+  EXPECT_TRUE(c.better());
+  EXPECT_FALSE(c.worse());
+  EXPECT_FALSE(Of({0.9, 1.0, 1.1}, {0.7, 0.8, 0.9}).better());
+  EXPECT_TRUE(Of({0.5, 0.6, 0.7}, {0.9, 1.0, 1.1}).worse());
+}
+
+TEST(KeptModel, RepeatsThatAreAlikeToTheLastBitStillHaveTheResolution) {
+  EXPECT_FALSE(Of({1.0, 1.0}, {0.996, 0.996}).better());
+  EXPECT_TRUE(Of({1.0, 1.0}, {0.99, 0.99}).better());
+}
+
+TEST(KeptModel, OnePassTellsNothingOfRepeatability) {
+  EXPECT_THROW(Of({1.0}, {0.5, 0.5}), std::invalid_argument);
+  EXPECT_THROW(Of({1.0, 1.0}, {0.5}), std::invalid_argument);
+}
+
+TEST(KeptModel, KeptWhereTheUnseenProgramIsBetterAndThePathNotWorse) {
+  const Comparison better = Of({1.0, 1.01, 0.99}, {0.5, 0.51, 0.49});
+  const Comparison worse = Of({0.5, 0.51, 0.49}, {1.0, 1.01, 0.99});
+  const Comparison same = Of({1.0, 1.1, 0.9}, {1.0, 1.1, 0.9});
+  EXPECT_TRUE(Judge(better, better).keep);
+  EXPECT_TRUE(Judge(same, better).keep);
+  EXPECT_FALSE(Judge(better, same).keep) << "fitted, and no better where it was not";
+  EXPECT_FALSE(Judge(better, worse).keep);
+  EXPECT_FALSE(Judge(worse, better).keep);
+  EXPECT_NE(Judge(better, same).why.find("beyond repeatability"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace contour::improve

@@ -1,0 +1,71 @@
+#include "tools/improve/default_programs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/text/format_text.h"
+
+namespace contour::improve {
+namespace {
+
+// The circle of ISO 230-4 that the manuals use.
+constexpr double kRadius_mm = 10.0;
+constexpr double kSpeed_mm_s = 50.0;
+constexpr double kShareOfWay = 0.45;
+constexpr double kShareOfSpeed = 0.9;
+/// Of the axis's acceleration, that the curve may take.
+constexpr double kShareOfAcceleration = 0.5;
+/// The other program: shares of the first one's size and speed that no small whole numbers divide, so that
+/// places, speeds and accelerations at the reversals are others.
+constexpr double kSmaller = 0.62;
+constexpr double kSlower = 0.37;
+
+struct Curve {
+  double radius_mm, speed_mm_s;
+};
+
+/// What the limits allow; `size` and `speed` are shares.
+Curve CurveFor(const MachineConfig& machine, const WorkingSpace& space, double size, double speed) {
+  double way_mm = 2e3;
+  double speed_mm_s = kSpeed_mm_s, acceleration_mm_s2 = 1e9;
+  for (std::size_t i = 0; i < space.names.size(); ++i) {
+    way_mm = std::min(way_mm, 1e3 * (space.axes[i].high_m - space.axes[i].low_m));
+    speed_mm_s = std::min(speed_mm_s, kShareOfSpeed * 1e3 * space.axes[i].max_speed_m_s);
+    acceleration_mm_s2 =
+        std::min(acceleration_mm_s2, machine.axes.at(space.names[i]).limits.acceleration_mm_s2);
+  }
+  Curve curve{size * std::min(kRadius_mm, kShareOfWay * way_mm), speed * speed_mm_s};
+  curve.speed_mm_s =
+      std::min(curve.speed_mm_s, std::sqrt(kShareOfAcceleration * acceleration_mm_s2 * curve.radius_mm));
+  return curve;
+}
+
+ProgramText Make(const WorkingSpace& space, const Curve& c, const char* direction) {
+  const std::string& axis = space.names[space.axis];
+  if (space.names.size() < 2)
+    return {FormatText("a sine of %.3g mm at %.3g m/min", c.radius_mm, 0.06 * c.speed_mm_s),
+            FormatText("shape: sine\naxis: %s\namplitude_mm: %.6f\nfeed_mm_min: %.3f\ncycles: 4\n",
+                       axis.c_str(), c.radius_mm, 60.0 * c.speed_mm_s),
+            ProgramFormat::kYaml};
+  const std::size_t other = space.axis == 0 ? 1 : 0;
+  const std::size_t first = std::min(space.axis, other), second = std::max(space.axis, other);
+  return {FormatText("a circle of %.3g mm at %.3g m/min, %s", c.radius_mm, 0.06 * c.speed_mm_s, direction),
+          FormatText("shape: circle\naxes: [%s, %s]\nradius_mm: %.6f\nfeed_mm_min: %.3f\nturns: "
+                     "4\ndirection: %s\n",
+                     space.names[first].c_str(), space.names[second].c_str(), c.radius_mm,
+                     60.0 * c.speed_mm_s, direction),
+          ProgramFormat::kYaml};
+}
+
+}  // namespace
+
+ProgramText UsualPath(const MachineConfig& machine, const WorkingSpace& space) {
+  return Make(space, CurveFor(machine, space, 1.0, 1.0), "ccw");
+}
+
+ProgramText UsualCheck(const MachineConfig& machine, const WorkingSpace& space) {
+  return Make(space, CurveFor(machine, space, kSmaller, kSlower), "cw");
+}
+
+}  // namespace contour::improve

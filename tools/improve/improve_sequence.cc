@@ -1,0 +1,211 @@
+#include "tools/improve/improve_sequence.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/diagnosis/causes/extensions_of.h"
+#include "analysis/diagnosis/report/diagnosis_text.h"
+#include "analysis/recording/read_log.h"
+#include "analysis/text/format_text.h"
+#include "config/yaml_writer.h"
+#include "tools/improve/experiments.h"
+#include "tools/improve/fitted_model.h"
+
+namespace contour::improve {
+namespace {
+
+constexpr std::size_t kDiagnosedPasses = 2;
+/// As commissioning has it.
+constexpr double kMostLost = 0.01;
+constexpr int kAttempts = 4;
+
+PerAxis<double> Middle(const WorkingSpace& space) {
+  PerAxis<double> out;
+  for (const AxisSpace& s : space.axes) out.push_back(0.5 * (s.low_m + s.high_m));
+  return out;
+}
+
+std::string TextOf(const ModelConfig& model) {
+  ModelConfig copy = model;
+  return WriteYaml(copy);
+}
+
+}  // namespace
+
+ImproveSequence::ImproveSequence(ImproveMachine& machine, ImproveRequest request, DiagnoseAxis diagnose)
+    : machine_(machine), request_(std::move(request)), diagnose_(std::move(diagnose)) {}
+
+ImproveResult ImproveSequence::Run() {
+  try {
+    RunSteps();
+  } catch (const std::exception& e) {
+    try {
+      if (enabled_) machine_.Disable();
+      enabled_ = false;
+      if (loaded_) Restore();
+    } catch (const std::exception& also) {
+      throw std::runtime_error(std::string(e.what()) +
+                               "; and the old model is not back, restart contourd: " + also.what());
+    }
+    throw;
+  }
+  return std::move(result_);
+}
+
+void ImproveSequence::RunSteps() {
+  result_.machine = machine_.Machine();
+  machine_.Ask("The axes will be enabled and will move: " + request_.path.program.name + ", and " +
+               request_.check.program.name + ".");
+  result_.before = DrawAll("before");
+  Find();
+  machine_.Disable();
+  enabled_ = false;
+  FitModel();
+  if (!result_.fitted) {
+    result_.judgement = {false, "nothing was found that changes the model"};
+    return;
+  }
+  Load(*result_.fitted);
+  result_.after = DrawAll("after");
+  machine_.Disable();
+  enabled_ = false;
+  Decide();
+  if (!result_.judgement.keep) Restore();
+}
+
+/// A record with holes says less of the axis, and not how large the largest error was: then once more.
+Drawing ImproveSequence::Draw(const Placed& program) {
+  for (int attempt = 1;; ++attempt) {
+    const PerAxis<double> here_m = machine_.Position_m();
+    for (const ProgramText& way : WayTo(here_m, program.start_m, request_.space)) {
+      result_.machine_time_s += Place(way, request_.space, request_.limits, here_m).duration_s;
+      machine_.Run(way);
+    }
+    result_.machine_time_s += program.duration_s;
+    Drawing drawing = machine_.Run(program.program);
+    const double lost = static_cast<double>(drawing.lost);
+    if (lost <= kMostLost * static_cast<double>(drawing.cycles.size())) return drawing;
+    if (attempt == kAttempts)
+      throw std::runtime_error(
+          FormatText("%s: %.0f of its cycles never arrived: this computer is too slow or too busy",
+                     program.program.name.c_str(), lost));
+    machine_.Say(
+        FormatText("%s: %.0f of its cycles never arrived; once more", program.program.name.c_str(), lost));
+  }
+}
+
+Series ImproveSequence::DrawAll(const std::string& when) {
+  machine_.Enable();
+  enabled_ = true;
+  Series series;
+  for (std::size_t pass = 0; pass <= request_.passes; ++pass) {
+    series.path.push_back(Draw(request_.path));
+    series.check.push_back(Draw(request_.check));
+    const auto peak_um = [&](const Drawing& d, const Placed& p) {
+      return ErrorsOf(d, p.program, request_.limits, result_.machine, nullptr).encoder.peak_um;
+    };
+    machine_.Say(FormatText("%s, pass %zu of %zu%s: largest error at the encoder %.3g um, %.3g um",
+                            when.c_str(), pass + 1, request_.passes + 1, pass == 0 ? " (settling)" : "",
+                            peak_um(series.path.back(), request_.path),
+                            peak_um(series.check.back(), request_.check)));
+  }
+  return series;
+}
+
+double ImproveSequence::TimeOfSeries_s() const {
+  return static_cast<double>(request_.passes + 1) * (request_.path.duration_s + request_.check.duration_s);
+}
+
+void ImproveSequence::Find() {
+  // Of passes that are alike two say what there is to say.
+  for (std::size_t i = 0; i < kDiagnosedPasses; ++i) logs_.push_back(result_.before.path[i].log);
+  Diagnose(request_.path.program.name);
+  // First what all axes need, then what decides between what that leaves.
+  if (result_.diagnosed.back().open.empty()) return;
+  Experiment(request_.experiments, "path and experiments");
+  const std::vector<ProgramText> deciding = DecidingPrograms(result_.diagnosed.back().found, run_);
+  if (!deciding.empty()) Experiment(deciding, "all of it and what decides");
+}
+
+void ImproveSequence::Experiment(const std::vector<ProgramText>& programs, const std::string& on) {
+  const double left_s = request_.machine_time_s - result_.machine_time_s - TimeOfSeries_s();
+  const std::vector<Placed> runnable =
+      Runnable(programs, request_.space, request_.limits, Middle(request_.space), left_s, result_.left_out);
+  run_.insert(run_.end(), programs.begin(), programs.end());
+  if (runnable.empty()) return;
+  double takes_s = 0.0;
+  for (const Placed& p : runnable) takes_s += p.duration_s;
+  machine_.Ask(FormatText("%s: %zu experiments of %.0f s would decide.",
+                          result_.diagnosed.back().open.c_str(), runnable.size(), takes_s));
+  for (const Placed& p : runnable) {
+    machine_.Say("experiment: " + p.program.name);
+    logs_.push_back(Draw(p).log);
+    result_.experiments.push_back(p.program.name);
+  }
+  Diagnose(on);
+}
+
+void ImproveSequence::Diagnose(const std::string& on) {
+  const diagnosis::AxisLog log = diagnosis::JoinLogs(logs_);
+  Diagnosed& d = result_.diagnosed.emplace_back();
+  d.on = on;
+  d.seconds = static_cast<double>(log.rows) * log.period_s;
+  d.found = diagnose_(log, diagnosis::ToStatedAxis(result_.machine, request_.axis));
+  d.open = WhatIsOpen(d.found);
+  machine_.Say(FormatText("diagnosis of %.0f s, %s: ", d.seconds, on.c_str()) +
+               diagnosis::VerdictText(d.found));
+}
+
+void ImproveSequence::FitModel() {
+  const ModelConfig& old = result_.machine.axes.at(request_.axis).model;
+  const diagnosis::LogTemperature temperature = diagnosis::TemperatureOf(logs_.front());
+  ModelConfig fitted = FittedModel(old, result_.diagnosed.back().found, temperature.first_degC);
+  if (TextOf(fitted) != TextOf(old)) result_.fitted = std::move(fitted);
+}
+
+void ImproveSequence::Load(const ModelConfig& model) {
+  machine_.Ask("contourd will begin anew with the new model of axis " + request_.axis +
+               "; then the axes will be enabled and will draw both programs again.");
+  loaded_ = true;
+  machine_.LoadModel(TextOf(model));
+}
+
+void ImproveSequence::Decide() {
+  MachineConfig yardstick = result_.machine;
+  yardstick.axes.at(request_.axis).model = *result_.fitted;
+  double resolution_um = 0.0;
+  for (const auto& [name, axis] : yardstick.axes)
+    resolution_um =
+        std::max(resolution_um, 1e3 * axis.model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev);
+  const auto compare = [&](const std::vector<Drawing>& before, const std::vector<Drawing>& after,
+                           const Placed& program) {
+    return Compare({Peaks_um(before, request_, program.program, yardstick),
+                    Peaks_um(after, request_, program.program, yardstick)},
+                   resolution_um);
+  };
+  result_.path = compare(result_.before.path, result_.after.path, request_.path);
+  result_.check = compare(result_.before.check, result_.after.check, request_.check);
+  result_.judgement = Judge(*result_.path, *result_.check);
+}
+
+/// The machine file's own model, or what had been loaded in its place before.
+void ImproveSequence::Restore() {
+  machine_.Say("the old model is loaded again");
+  const std::string old = TextOf(result_.machine.axes.at(request_.axis).model);
+  machine_.LoadModel("");
+  if (TextOf(machine_.Machine().axes.at(request_.axis).model) != old) machine_.LoadModel(old);
+  loaded_ = false;
+}
+
+std::vector<double> Peaks_um(const std::vector<Drawing>& drawings, const ImproveRequest& request,
+                             const ProgramText& program, const MachineConfig& yardstick) {
+  std::vector<double> out;
+  for (std::size_t i = 1; i < drawings.size(); ++i) {
+    const PathErrors e = ErrorsOf(drawings[i], program, request.limits, yardstick, nullptr);
+    out.push_back((e.scale ? *e.scale : e.believed).peak_um);
+  }
+  return out;
+}
+
+}  // namespace contour::improve
