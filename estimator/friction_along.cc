@@ -30,10 +30,12 @@ bool FrictionAlong::MovedOn(const AxisHorizon& reference, std::size_t count) con
 void FrictionAlong::Lay(const ReferencePoint& point, const Node& from, const KnownEffects& known,
                         Node& node) noexcept {
   FrictionTermsState memory = from.memory;
-  basis_.Follow(point.position_m - from.position_m, point.position_m, point.velocity_m_s,
+  // Where the level is higher by a factor, the bristle is as stiff as elsewhere and gives way later: its
+  // travel counts less by that factor.
+  const double factor = known.neutral() ? 1.0 : known.LevelFactor(point.position_m);
+  basis_.Follow((point.position_m - from.position_m) / factor, point.position_m, point.velocity_m_s,
                 point.acceleration_m_s2, memory, node.terms);
   if (!known.neutral()) {
-    const double factor = known.LevelFactor(point.position_m);
     for (std::size_t i = 0; i < friction_term::kViscous; ++i)
       if (i != friction_term::kConstant) node.terms[i] *= factor;
   }

@@ -30,7 +30,11 @@ TEST(Extensions, CoggingOfThreePerCentOfRatedTorque) {
   EXPECT_LT(known, 0.3 * hidden);
 }
 
-TEST(Extensions, FrictionAlongTheStroke) {
+/// Friction along the stroke, hidden and as it is known.
+struct AlongTheStroke {
+  std::string hide, know;
+};
+AlongTheStroke FourPeriods() {
   std::string position, friction;
   for (int x = -40; x <= 40; x += 2) {
     position += (x == -40 ? "" : ", ") + std::to_string(x);
@@ -40,11 +44,55 @@ TEST(Extensions, FrictionAlongTheStroke) {
   const std::string hide =
       "emulator.axes.x.effects.position_friction={amplitude_rel: 0.25, periods_per_stroke: 4, phase_rad: "
       "0.5}";
-  const double hidden = Peak_um({hide});
-  const double known = Peak_um({hide, "axes.x.model.extensions.position_friction={position_mm: [" + position +
-                                          "], friction_rel: [" + friction + "]}"});
+  return {hide, "axes.x.model.extensions.position_friction={position_mm: [" + position +
+                    "], friction_rel: [" + friction + "]}"};
+}
+
+TEST(Extensions, FrictionAlongTheStroke) {
+  const AlongTheStroke along = FourPeriods();
+  const double hidden = Peak_um({along.hide});
+  const double known = Peak_um({along.hide, along.know});
   EXPECT_GT(hidden, 1.5);
   EXPECT_LT(known, 0.5 * hidden);
+}
+
+/// Nothing but what is hidden: models that are right, with levels alike in both directions.
+std::vector<std::string> RightModels() {
+  std::vector<std::string> out{"control.friction=linear", "emulator.parameter_variation_rel=0"};
+  for (const std::string axis : {"x", "y"}) {
+    for (const char* key : {"position_amplitude_rel=0", "ripple_amplitude_rel=0"})
+      out.push_back("emulator.axes." + axis + ".friction." + key);
+    for (const char* key :
+         {"motor_inertia_kgm2=5e-5", "table_mass_kg=10", "screw_stiffness_N_um=40", "screw_damping_Ns_m=1100",
+          "friction.Fs_plus_N=50", "friction.Fs_minus_N=50", "friction.Fc_plus_N=40",
+          "friction.Fc_minus_N=40", "friction.vs_mm_s=2", "friction.sigma0_N_m=5e6",
+          "friction.sigma1_Ns_m=3000", "friction.sigma1_decay_mm_s=2", "friction.sigma2_Ns_m=500"})
+      for (const std::string& where : {"axes." + axis + ".model.", "emulator.axes." + axis + "."})
+        out.push_back(where + key);
+  }
+  return out;
+}
+
+// With friction by its terms along the reference the bristle has to keep its stiffness where its level is
+// another one.
+TEST(Extensions, FrictionOfManyPeriodsAlongTheStrokeWhereItIsLinear) {
+  std::string position, friction;
+  for (int x = -40; x <= 40; ++x) {
+    position += (x == -40 ? "" : ", ") + std::to_string(x);
+    friction += (x == -40 ? "" : ", ") +
+                std::to_string(0.35 * std::sin(12.0 * 2.0 * std::numbers::pi * x / 400.0 + 0.5));
+  }
+  std::vector<std::string> set = RightModels();
+  const double nothing = Peak_um(set);
+  set.push_back(
+      "emulator.axes.x.effects.position_friction={amplitude_rel: 0.35, periods_per_stroke: 12, phase_rad: "
+      "0.5}");
+  const double hidden = Peak_um(set);
+  set.push_back("axes.x.model.extensions.position_friction={position_mm: [" + position +
+                "], friction_rel: [" + friction + "]}");
+  const double known = Peak_um(set);
+  EXPECT_GT(hidden, 3.0 * nothing);
+  EXPECT_LT(known, 1.5 * nothing);
 }
 
 TEST(Extensions, PitchErrorIsTakenOutAtTheTable) {

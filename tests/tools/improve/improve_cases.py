@@ -2,6 +2,7 @@
 """Improves the model of an axis on emulated machines with one hidden effect each, and compares with the truth stated.
 
     improve_cases.py CONTOURD CONTOUR MACHINE_FILE [--effects NAME...] [--seeds N...] [--friction linear|srukf] [--scale] [--table FILE]
+    improve_cases.py CONTOURD CONTOUR MACHINE_FILE --only-truth ...      # what the truth would give, by contour simulate; seconds
 
 For every case a daemon in lock-step with the effect hidden, `contour improve --axis x --yes`, and another daemon whose model of the
 axis is the truth, which draws the same programs as often. Errors are of the true place of the table. Ends with 1 where the peak
@@ -13,7 +14,6 @@ import json
 import math
 import os
 import random
-import signal
 import socket as sockets
 import subprocess
 import sys
@@ -151,9 +151,6 @@ class Daemon:
         done = self.run("status", "--json", check=False)
         return json.loads(done.stdout)["state"] if done.returncode == 0 else "no answer"
 
-    def status(self):
-        return json.loads(self.run("status", "--json").stdout)
-
 
 def improve(programs, case, folder, extra=()):
     """What contour improve says, and its improve.json."""
@@ -215,8 +212,26 @@ def judge(case, said, found, state, truth):
     return line, wrong
 
 
+def what_truth_gives(programs, case, folder):
+    """A line of the other table: largest errors of the table, model as stated and as it is, each drawn once from a cold start."""
+    cells = []
+    for name, text in PROGRAMS.items():
+        (Path(folder) / f"{name}.yaml").write_text(text, encoding="utf-8")
+        peaks = []
+        for model in (case.stated, case.truth):
+            words = [programs[1], "simulate", "--config", programs[2], "--program", Path(folder) / f"{name}.yaml", "--out", folder]
+            for override in case.machine + model:
+                words += ["--set", override]
+            subprocess.run([str(w) for w in words], check=True, capture_output=True)
+            peaks.append(json.loads((Path(folder) / "metrics.json").read_text(encoding="utf-8"))["contour"]["table"]["peak_um"])
+        cells.append(" - ".join(f"{p:.2f}" for p in peaks))
+    return f"| {case.name} | {' | '.join(cells)} |"
+
+
 HEAD = ("| case | found | path: before - after - truth stated, um | check | new model | machine time, s | wrong |\n"
         "|---|---|---|---|---|---|---|")
+
+TRUTH_HEAD = "| case | path: as stated - truth stated, um | check |\n|---|---|---|"
 
 
 def main():
@@ -230,13 +245,18 @@ def main():
     parser.add_argument("--scale", action="store_true", help="linear scales on both axes")
     parser.add_argument("--extra", nargs="*", default=[], help="further words for contour improve")
     parser.add_argument("--table", type=Path, help="file for the table, beside the output")
+    parser.add_argument("--only-truth", action="store_true", help="what the model as it is would give, and nothing else")
     options = parser.parse_args()
     programs = (Path(options.contourd).resolve(), Path(options.contour).resolve(), Path(options.machine_file).resolve())
     lines, failed = [HEAD], 0
-    print(HEAD, flush=True)
+    print(TRUTH_HEAD if options.only_truth else HEAD, flush=True)
     for effect in options.effects:
         for seed in options.seeds:
             case = Case(effect, seed, options.friction, options.scale)
+            if options.only_truth:
+                with tempfile.TemporaryDirectory() as one:
+                    print(what_truth_gives(programs, case, one), flush=True)
+                continue
             with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as two:
                 said, found, state = improve(programs, case, one, options.extra)
                 if os.environ.get("CONTOUR_VERBOSE"):
