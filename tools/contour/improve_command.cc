@@ -108,6 +108,8 @@ improve::ImproveRequest RequestFor(const MachineConfig& machine, DaemonMachine& 
   const double middle_mm = 5e2 * (request.space.axes[i].low_m + request.space.axes[i].high_m);
   for (const CommissionMotion& m : PlanCommissioning(machine, options.axis, middle_mm, limits).motions)
     request.experiments.push_back({m.what, m.yaml, ProgramFormat::kYaml});
+  for (const ProgramText& e : request.experiments)
+    if (e.name.starts_with("chirp")) request.shaking.push_back(e);
   return request;
 }
 

@@ -121,14 +121,20 @@ void ImproveSequence::Find() {
   // Of passes that are alike two say what there is to say.
   for (std::size_t i = 0; i < kDiagnosedPasses; ++i) logs_.push_back(result_.before.path[i].log);
   Diagnose(request_.path.program.name);
+  const std::string& open = result_.diagnosed.back().open;
+  if (open.empty()) {
+    Experiment(request_.shaking, "No path shows the stiffness of the screw", "path and chirp");
+    return;
+  }
   // First what all axes need, then what decides between what that leaves.
-  if (result_.diagnosed.back().open.empty()) return;
-  Experiment(request_.experiments, "path and experiments");
+  Experiment(request_.experiments, "Left open: " + open, "path and experiments");
   const std::vector<ProgramText> deciding = DecidingPrograms(result_.diagnosed.back().found, run_);
-  if (!deciding.empty()) Experiment(deciding, "all of it and what decides");
+  if (!deciding.empty())
+    Experiment(deciding, "Left open: " + result_.diagnosed.back().open, "all of it and what decides");
 }
 
-void ImproveSequence::Experiment(const std::vector<ProgramText>& programs, const std::string& on) {
+void ImproveSequence::Experiment(const std::vector<ProgramText>& programs, const std::string& why,
+                                 const std::string& on) {
   const double left_s = request_.machine_time_s - result_.machine_time_s - TimeOfSeries_s();
   const std::vector<Placed> runnable =
       Runnable(programs, request_.space, request_.limits, Middle(request_.space), left_s, result_.left_out);
@@ -136,8 +142,8 @@ void ImproveSequence::Experiment(const std::vector<ProgramText>& programs, const
   if (runnable.empty()) return;
   double takes_s = 0.0;
   for (const Placed& p : runnable) takes_s += p.duration_s;
-  machine_.Ask(FormatText("%s: %zu experiments of %.0f s would decide.",
-                          result_.diagnosed.back().open.c_str(), runnable.size(), takes_s));
+  machine_.Ask(
+      FormatText("%s: %zu experiments of %.0f s would decide.", why.c_str(), runnable.size(), takes_s));
   for (const Placed& p : runnable) {
     machine_.Say("experiment: " + p.program.name);
     logs_.push_back(Draw(p).log);

@@ -17,6 +17,7 @@ struct ImproveRequest {
   WorkingSpace space;
   Placed path, check;                    ///< the model is fitted on the first and judged on the second
   std::vector<ProgramText> experiments;  ///< that are run where the path leaves something open
+  std::vector<ProgramText> shaking;      ///< those of them that are run always: no path shows the screw
   PerAxis<PlanLimits> limits;
   std::size_t passes = 3;       ///< that count, after one in which estimators settle
   double machine_time_s = 0.0;  ///< at most, all motion counted
@@ -64,7 +65,7 @@ class ImproveSequence {
   Series DrawAll(const std::string& when);
   Drawing Draw(const Placed& program);
   void Find();
-  void Experiment(const std::vector<ProgramText>& programs, const std::string& on);
+  void Experiment(const std::vector<ProgramText>& programs, const std::string& why, const std::string& on);
   void Diagnose(const std::string& on);
   void FitModel();
   void Load(const ModelConfig& model);

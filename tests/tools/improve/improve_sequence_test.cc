@@ -86,6 +86,8 @@ class ImproveSequenceTest : public ::testing::Test {
     request_.check = Place(UsualCheck(config_, request_.space), request_.space, request_.limits, zero);
     request_.experiments = {
         {"a stroke", "shape: creep\naxis: x\nstroke_mm: 5\nvelocities_mm_s: [5]\n", ProgramFormat::kYaml}};
+    request_.shaking = {
+        {"a chirp", "shape: creep\naxis: x\nstroke_mm: 5\nvelocities_mm_s: [6]\n", ProgramFormat::kYaml}};
     request_.machine_time_s = 900.0;
   }
   ImproveResult Run() {
@@ -125,10 +127,11 @@ class ImproveSequenceTest : public ::testing::Test {
   std::vector<std::size_t> lengths_;
 };
 
-TEST_F(ImproveSequenceTest, ADecidedCauseNeedsNoExperimentAndTheBetterModelStays) {
+TEST_F(ImproveSequenceTest, ADecidedCauseNeedsTheChirpAloneAndTheBetterModelStays) {
   const ImproveResult result = Run();
   EXPECT_TRUE(result.judgement.keep) << result.judgement.why;
   EXPECT_FALSE(Ran("a stroke"));
+  EXPECT_TRUE(Ran("a chirp"));
   ASSERT_EQ(machine_.loaded.size(), 1u);
   EXPECT_NE(machine_.loaded[0].find("order_per_rev: 12"), std::string::npos);
   EXPECT_FALSE(machine_.enabled);
