@@ -31,6 +31,8 @@ struct Block {
   int line = 0;
   bool sets_something = false;
   std::array<std::optional<Word>, 26> words;  ///< per letter, but G, M, N and O
+  std::optional<Word> polar_radius;           ///< @
+  std::optional<Word> polar_angle_deg;        ///< ^
   std::array<Code, kGGroups> g;
   std::array<Code, kMGroups> m;
   int m_count = 0;
@@ -46,6 +48,7 @@ struct Block {
       if (Has(letter)) return true;
     return false;
   }
+  [[nodiscard]] bool IsPolar() const { return polar_radius || polar_angle_deg; }
   [[nodiscard]] int G(GGroup group) const { return g[group].code; }
 
   [[noreturn]] void FailAt(int column, const std::string& what) const { Refuse({name, line, column}, what); }

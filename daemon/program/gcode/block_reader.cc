@@ -7,14 +7,14 @@
 namespace contour {
 namespace {
 
-// How far a code may be from a tenth.
+// How far ten times a code may be from a whole number.
 constexpr double kNearlyTenth = 1e-3;
 constexpr double kLargestCode = 1000.0;
 
 class BlockReader {
  public:
   BlockReader(LineText& text, const Parameters& parameters, Block& block)
-      : text_(text), values_(text, parameters), block_(block) {}
+      : text_(text), parameters_(parameters), values_(text, parameters), block_(block) {}
 
   void Item() {
     const SourcePlace place = text_.place();
@@ -27,6 +27,9 @@ class BlockReader {
       CodeG(place);
     } else if (letter == 'm') {
       CodeM(place);
+    } else if (letter == '@' || letter == '^') {
+      Put(letter == '@' ? block_.polar_radius : block_.polar_angle_deg, std::string(1, letter), letter,
+          place);
     } else {
       Word(letter, place);
     }
@@ -37,6 +40,8 @@ class BlockReader {
     Assignment assignment;
     if (text_.Peek() == '<') {
       assignment.name = values_.Name();
+      if (parameters_.IsModal(assignment.name))
+        Refuse(place, "parameter #<" + assignment.name + "> cannot be set");
     } else {
       assignment.number = values_.Whole("#");
       if (!Parameters::Assignable(assignment.number))
@@ -51,7 +56,7 @@ class BlockReader {
   void CodeG(const SourcePlace& place) {
     const double value = values_.Value();
     const double tenfold = value * 10.0;
-    if (value < 0.0 || value >= kLargestCode || std::abs(tenfold - std::round(tenfold)) > 10.0 * kNearlyTenth)
+    if (value < 0.0 || value >= kLargestCode || std::abs(tenfold - std::round(tenfold)) > kNearlyTenth)
       Refuse(place, "expected a G code with at most one decimal");
     const int code = static_cast<int>(std::lround(tenfold));
     Put(GroupOfG(code), NameOfG(code), code, place, block_.g);
@@ -81,11 +86,13 @@ class BlockReader {
     if (letter == 'a' || letter == 'b' || letter == 'c')
       Refuse(place, name + ": rotary axes are not supported");
     if (letter == 'e') Refuse(place, "E words are not supported; a number has no exponent");
-    if (letter == '@' || letter == '^') Refuse(place, "polar coordinates are not supported");
     if (letter == '$') Refuse(place, "a choice of spindles is not supported");
     if (kLetters.find(letter) == std::string_view::npos)
       Refuse(place, std::string("found '") + letter + "', expected a word such as X10");
-    auto& word = block_.words[static_cast<std::size_t>(letter - 'a')];
+    Put(block_.words[static_cast<std::size_t>(letter - 'a')], name, letter, place);
+  }
+
+  void Put(std::optional<Block::Word>& word, const std::string& name, char letter, const SourcePlace& place) {
     if (word) Refuse(place, "word " + name + " is given twice");
     const double value = values_.Value();
     if (value < 0.0 && (letter == 'f' || letter == 's' || letter == 't' || letter == 'h'))
@@ -94,6 +101,7 @@ class BlockReader {
   }
 
   LineText& text_;
+  const Parameters& parameters_;
   ValueReader values_;
   Block& block_;
 };

@@ -19,8 +19,18 @@ bool TakesAxes(int nonmodal) {
 
 bool NeedsAxes(int nonmodal) { return nonmodal == 520 || nonmodal == 920; }
 
+void CheckPolar(const Block& block, const RuleContext& context) {
+  if (!block.IsPolar()) return;
+  const int column = (block.polar_radius ? block.polar_radius : block.polar_angle_deg)->column;
+  if (context.plane != 170) block.FailAt(column, "polar coordinates need the plane G17");
+  if (block.HasAny("xy")) block.FailAt(column, "polar coordinates beside X or Y");
+  if (block.G(kNonModal) == 530) block.FailAt(column, "polar coordinates with G53");
+  if (block.motion == kNoCode || block.motion == 800 || TakesAxes(block.G(kNonModal)))
+    block.FailAt(column, "polar coordinates belong to motion");
+}
+
 void FindMotion(Block& block, int modal_motion) {
-  const bool axes = block.HasAny(kGcodeAxes);
+  const bool axes = block.HasAny(kGcodeAxes) || block.IsPolar();
   const int nonmodal = block.G(kNonModal);
   const int own = block.G(kMotion);
   if (!axes && NeedsAxes(nonmodal) && (own == kNoCode || own == 800))
@@ -35,6 +45,7 @@ void FindMotion(Block& block, int modal_motion) {
     if (modal_motion == kNoCode || modal_motion == 800) {
       for (const char letter : kGcodeAxes)
         if (block.Has(letter)) block.FailAtWord(letter, "a position without G0, G1, G2 or G3 before it");
+      block.FailAt(1, "a position without G0, G1, G2 or G3 before it");
     }
     block.motion = modal_motion;
   } else if (block.HasAny("ijk") && IsArc(modal_motion)) {
@@ -102,6 +113,7 @@ void CheckWords(const Block& block) {
 
 void CheckBlock(Block& block, const RuleContext& context) {
   FindMotion(block, context.modal_motion);
+  CheckPolar(block, context);
   CheckNonModal(block, context);
   if (block.m_count > kMostMCodes) {
     const auto last = std::max_element(block.m.begin(), block.m.end(),

@@ -8,6 +8,7 @@ namespace contour {
 struct RuleContext {
   int modal_motion = kNoCode;
   bool absolute = true;
+  int plane = 170;
   bool referenced = false;  ///< the machine knows where it is
 };
 

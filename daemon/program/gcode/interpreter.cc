@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace contour {
 namespace {
@@ -27,7 +28,7 @@ double FeedLength_m(const AxisValues& from, const AxisValues& to) {
 unsigned Named(const Block& block) {
   unsigned named = 0;
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
-    if (block.Has(kGcodeAxes[k])) named |= 1U << k;
+    if (block.Has(kGcodeAxes[k]) || (k < 2 && block.IsPolar())) named |= 1U << k;
   return named;
 }
 
@@ -36,7 +37,7 @@ unsigned Named(const Block& block) {
 void GcodeInterpreter::Execute(Block& block, bool in_sub) {
   line_ = block.line;
   in_sub_ = in_sub;
-  CheckBlock(block, {motion_, absolute_, settings_.zero_m.has_value()});
+  CheckBlock(block, {motion_, absolute_, plane_, settings_.zero_m.has_value()});
   FeedMode(block);
   Feed(block);
   Events(block);
@@ -182,7 +183,25 @@ AxisValues GcodeInterpreter::Target(const Block& block) const {
       target[k] = value_m + (absolute_ ? offsets_.Of(k) : position_m_[k]);
     }
   }
+  if (block.IsPolar()) PolarTarget(block, target);
   return target;
+}
+
+/// X and Y by distance and angle about the origin in force; what is not stated stays. Incremental ones are
+/// added to those of the present position.
+void GcodeInterpreter::PolarTarget(const Block& block, AxisValues& target) const {
+  const double x = position_m_[0] - offsets_.Of(0), y = position_m_[1] - offsets_.Of(1);
+  const bool needs_direction = !absolute_ || !block.polar_angle_deg;
+  if (needs_direction && x == 0.0 && y == 0.0) {
+    const int column = (block.polar_radius ? block.polar_radius : block.polar_angle_deg)->column;
+    block.FailAt(column, "the angle of the origin is not known: expected @ and ^ with G90");
+  }
+  double radius = std::hypot(x, y), angle = std::atan2(y, x);
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  if (block.polar_radius) radius = block.polar_radius->value * unit_m_ + (absolute_ ? 0.0 : radius);
+  if (block.polar_angle_deg) angle = block.polar_angle_deg->value * kDegree + (absolute_ ? 0.0 : angle);
+  target[0] = offsets_.Of(0) + radius * std::cos(angle);
+  target[1] = offsets_.Of(1) + radius * std::sin(angle);
 }
 
 CanonicalMove GcodeInterpreter::NewMove(CanonicalMove::Kind kind, const AxisValues& target_m) const {
@@ -279,6 +298,23 @@ void GcodeInterpreter::PutPosition(std::array<double, 9>& position) const {
   constexpr std::array<std::size_t, kGcodeAxisCount> kPlaces = {0, 1, 2, 6, 7, 8};
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
     position[kPlaces[k]] = (position_m_[k] - offsets_.Of(k)) / unit_m_;
+}
+
+void GcodeInterpreter::PutModes(std::map<std::string, double, std::less<>>& modes) const {
+  modes["_metric"] = unit_m_ == kMillimetre_m;
+  modes["_imperial"] = unit_m_ == kInch_m;
+  modes["_absolute"] = absolute_;
+  modes["_incremental"] = !absolute_;
+  modes["_ijk_absolute_mode"] = absolute_centres_;
+  modes["_inverse_time"] = inverse_time_;
+  modes["_units_per_minute"] = !inverse_time_;
+  modes["_units_per_rev"] = 0.0;
+  modes["_plane"] = plane_;
+  modes["_motion_mode"] = motion_;
+  modes["_coord_system"] = offsets_.selected();
+  modes["_feed"] = feed_m_s_ * kMinute_s / unit_m_;
+  modes["_line"] = line_;
+  modes["_task"] = 0.0;
 }
 
 }  // namespace contour

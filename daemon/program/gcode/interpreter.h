@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,8 @@ class GcodeInterpreter {
 
   /// Present position in the coordinates and units in force, as #5420 has it.
   void PutPosition(std::array<double, 9>& position) const;
+  /// Modal state by LinuxCNC's names; codes are tenfold.
+  void PutModes(std::map<std::string, double, std::less<>>& modes) const;
 
  private:
   void FeedMode(const Block& block);
@@ -43,6 +46,7 @@ class GcodeInterpreter {
   void Arc(const Block& block);
   [[nodiscard]] PlanePoint ArcCentre(const Block& block, const ArcEnds& ends) const;
   [[nodiscard]] AxisValues Target(const Block& block) const;
+  void PolarTarget(const Block& block, AxisValues& target) const;
   [[nodiscard]] double FeedOf_m_s(const Block& block, double length_m) const;
   [[nodiscard]] CanonicalMove NewMove(CanonicalMove::Kind kind, const AxisValues& target_m) const;
   [[nodiscard]] std::array<std::uint8_t, 3> PlaneAxes() const;  ///< first, second, normal
@@ -61,7 +65,7 @@ class GcodeInterpreter {
   bool inverse_time_ = false;
   double feed_m_s_ = 0.0;
   int plane_ = 170;
-  int motion_ = kNoCode;
+  int motion_ = 800;
   GcodeMove::Corner corner_ = GcodeMove::Corner::kContinuous;
   double tolerance_m_ = 0.0;
 };

@@ -14,6 +14,7 @@ std::optional<double> Parameters::Value(int number) const {
 }
 
 std::optional<double> Parameters::Value(std::string_view name) const {
+  if (const auto modal = modal_.find(name); modal != modal_.end()) return modal->second;
   const auto& names = name.starts_with('_') ? global_ : frames_.back().named;
   const auto found = names.find(name);
   if (found != names.end()) return found->second;

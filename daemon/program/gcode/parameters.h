@@ -31,6 +31,10 @@ class Parameters {
   [[nodiscard]] std::optional<double> Value(std::string_view name) const;
   void Set(const Assignment& assignment);
 
+  /// What LinuxCNC knows by names such as _metric; they cannot be set.
+  std::map<std::string, double, std::less<>>& modal() { return modal_; }
+  [[nodiscard]] bool IsModal(std::string_view name) const { return modal_.find(name) != modal_.end(); }
+
   /// Present position in the coordinates and units in force, in the order of kPosition.
   std::array<double, 9>& position() { return position_; }
 
@@ -46,6 +50,7 @@ class Parameters {
 
   std::vector<double> numbered_ = std::vector<double>(kLast + 1, 0.0);
   std::map<std::string, double, std::less<>> global_;
+  std::map<std::string, double, std::less<>> modal_;
   std::vector<Frame> frames_ = std::vector<Frame>(1);
   std::array<double, 9> position_{};
 };

@@ -100,6 +100,7 @@ void ProgramRun::Run() {
       continue;
     }
     interpreter_.PutPosition(parameters_.position());
+    if (text_.Rest().find("#<_") != std::string_view::npos) interpreter_.PutModes(parameters_.modal());
     if (text_.Peek() == 'o') {
       at = Flow(at);
       continue;

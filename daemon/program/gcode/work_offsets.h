@@ -15,6 +15,11 @@ class WorkOffsets {
   /// Tenfold: 540 to 590, 591, 592, 593.
   void Select(int g) { active_ = static_cast<std::size_t>(g < 590 ? (g - 540) / 10 : 5 + g - 590); }
 
+  /// What has been selected, tenfold.
+  [[nodiscard]] int selected() const {
+    return active_ < 6 ? 540 + 10 * static_cast<int>(active_) : 585 + static_cast<int>(active_);
+  }
+
   /// Number 1 is G54; 0 the one in force.
   void SetSystem(int number, std::size_t axis, double offset_m) {
     systems_m_[number == 0 ? active_ : static_cast<std::size_t>(number - 1)][axis] = offset_m;

@@ -101,6 +101,7 @@ TEST(GcodeParser, ErrorsNameLineAndColumn) {
   } wrong[] = {
       {"G1 X1 F100\nG5 X2\n", "part.ngc:2:1: G5 is not supported: splines"},
       {"G1.04 X1 F100\n", "part.ngc:1:1: expected a G code with at most one decimal"},
+      {"G1.001 X1 F100\n", "part.ngc:1:1: expected a G code with at most one decimal"},
       {"G99999999999999999999 X1 F100\n", "part.ngc:1:1: expected a G code"},
       {"G1 X1\n", "part.ngc:1:1: a feed (F) is missing"},
       {"G1 X1 F0\n", "part.ngc:1:1: a feed (F) is missing, or is zero"},
@@ -270,6 +271,16 @@ TEST(GcodeParser, ParametersExpressionsAndSubs) {
   EXPECT_EQ(p.moves[2].line, 4);
   EXPECT_NEAR(p.moves[5].target_m[2], 7e-3, 1e-15);
   EXPECT_NEAR(p.moves[7].target_m[2], 5e-3, 1e-15);
+}
+
+TEST(GcodeParser, PolarCoordinatesAndNamesOfModes) {
+  const GcodeMoves p = Parse("G0 @10 ^30\n^90\nG91 @5 ^90\nG20\nG90 X[#<_imperial>*2 + #<_plane>/170]\n");
+  EXPECT_NEAR(p.moves[0].target_m[1], 5e-3, 1e-15);
+  EXPECT_NEAR(p.moves[1].target_m[1], 10e-3, 1e-15);
+  EXPECT_NEAR(p.moves[2].target_m[0], -15e-3, 1e-15);
+  EXPECT_NEAR(p.moves[3].target_m[0], 3 * 25.4e-3, 1e-15);
+  EXPECT_NE(testing::ErrorOf([] { Parse("G91 G0 @10 ^30\n"); }).find("part.ngc:1:8: the angle"),
+            std::string::npos);
 }
 
 TEST(GcodeParser, BlockDeleteLeavesLinesOut) {

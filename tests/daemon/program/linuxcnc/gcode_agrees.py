@@ -102,7 +102,7 @@ def check(gcode, contour, program, scratch):
         same = here == refused if refused else their_line - line in (0, 1)
         return "" if same else f"{message}\n  LinuxCNC refuses line {their_line} ({their_message}): {refused}", same, 0
     wrong = compare([m for m in moves if m["move"] != "EVENT"], theirs, NANOMETRE, 6)
-    if not wrong and not has_uvw(text):
+    if not wrong and not has_uvw(text) and printed is not None:
         heard = [m for m in moves if m["move"] != "EVENT" or m["name"] in EVENTS.values()]
         wrong = f"rs274 refuses {refused}" if refused else compare(heard, printed, PRINTED, 3)
     return wrong, False, len(theirs)

@@ -120,7 +120,7 @@ def run_module(gcode, program, scratch):
 
 
 def by_program(program, scratch):
-    """(moves and events, text of the line that is refused or None). X Y Z only, in the four decimals that it prints."""
+    """(moves and events or None where it crashes, text of the line that is refused or None). X Y Z only, in the four decimals that it prints."""
     parameters, tools = Path(scratch) / "program.var", Path(scratch) / "tools.tbl"
     parameters.write_text("".join(f"{n}\t0.0\n" for n in [*range(5161, 5170), *range(5181, 5190)]))
     tools.write_text("".join(f"T{n} P{n} Z0\n" for n in range(1, 10)))
@@ -134,7 +134,8 @@ def by_program(program, scratch):
             if not ended:
                 take_printed(canon, call[1], [w.strip() for w in call[2].split(",")])
     said = [line for line in done.stderr.splitlines() if line.strip()]
-    return canon.moves, None if ended else said[-1].strip()
+    crashed = done.returncode < 0 or (not ended and said[-1:] == ["executing"])
+    return None if crashed else canon.moves, None if ended or crashed else said[-1].strip()
 
 
 # The end of a program stops spindle and coolant too: these two are left out.

@@ -9,8 +9,9 @@ WRONG = [
     "G0 X1 H1", "G0 X1 D1", "G0 X1 L1", "G0 X1 R1", "G0 X1.2.3", "G0 X.", "G0 X1-2", "G0 X", "G0 X1e3", "G0 X1 N5", "N5 /G0 X1", "N5N6 G0",
     "G0 (a (b) X1", "G0 X1 (open", "G0 X1)", "G0 X(a)1", "%", "G1.04 X1", "G1.001", "G100", "G1000", "G-1", "M3.5", "M200", "M31", "S-1", "T-1",
     "F-1", "G1 F0 X1", "G94 G1 X1", "G93 G1 X1\nX2", "M3 M6 M8 M48 M0", "G0 X#<nothing>", "G0 X[1/0]", "G0 X[1+]", "G0 X[1", "G0 X[sqrt[-1]]", "G0 X[asin[2]]",
-    "#0=1", "#10000=1", "#1.5=2", "#5420=1", "#=3", "G0 X[2 foo 3]", "G0 X[ln[0]]", "G0 X[[-2]**0.5]", "o7 call", "G0 X##9", "X", 
+    "#0=1", "#10000=1", "#1.5=2", "#5420=1", "#=3", "G0 X[2 foo 3]", "G0 X[ln[0]]", "G0 X[[-2]**0.5]", "G0 X##9", "X", 
     "G0X1Y2Z3X4", "g", "G0 X[atan[1]]", "G0 X[foo[1]]", "M", "G0 X--", "M0 M2",
+    "G0 @1 X2", "G18 G0 X1\nG0 @1 ^2", "@1 ^30", "G92 @1", "#<_metric>=2",
 ]
 AXES = "XYZUVW"
 
@@ -47,6 +48,7 @@ class RandomProgram:
             f"[atan[{self.number(1, 9)}]/[{self.number(1, 9)}]]", f"[round[{self.number()}] mod 7]", f"-[{self.number()}]",
             f"[10 * [{self.number()} gt {self.number()}]+fix[{self.number()}]]", f"sqrt[{self.number(0, 99)}]",
             f"[abs[{self.number()}] - fup[{self.number()}] + 2*3-4/5]", f"[#<_x> + {self.number(-1, 1)}]", "[#5421 / 2]",
+            "[#<_metric> + 2*#<_absolute> - #<_plane>/17]", "[#<_coord_system>/50 + #<_incremental>]", "[#<_motion_mode> / 5]",
         ])
 
     def words(self, most=4, axes=AXES):
@@ -98,6 +100,11 @@ class RandomProgram:
 
     def full_circle(self):
         return ["G17", self.r.choice(["G2", "G3"]), "I" + self.number(1, 20), "J" + self.number(-20, 20)] + self.feed() + self.r.choice([[], ["Z" + self.number()]])
+
+    def polar(self):
+        words = self.r.sample(["@" + self.number(0.1, 40), "^" + self.number(-400, 400)], self.r.choice([1, 2, 2]))
+        self.lines.append("G17")
+        return [self.r.choice(["G0", "G1"])] + words + self.feed() + self.r.choice([[], ["Z" + self.number()]])
 
     def mode(self):
         kind = self.r.randint(0, 11)
@@ -180,6 +187,8 @@ class RandomProgram:
                 block = self.radius_arc()
             elif kind < 0.57:
                 block = self.full_circle()
+            elif kind < 0.61:
+                block = self.polar()
             else:
                 block = self.straight()
             self.lines.append(self.dressed(block))
