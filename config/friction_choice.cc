@@ -1,7 +1,7 @@
 #include "config/friction_choice.h"
 
-#include <algorithm>
-#include <limits>
+#include <cmath>
+#include <numbers>
 
 #include "config/loop_axis.h"
 #include "core/two_inertia_loop.h"
@@ -10,26 +10,29 @@
 namespace contour {
 namespace {
 
-// Measured on machines with modes of 40 to 400 Hz (docs/laboratory/family.md). With torques from here the
-// filter's disturbance, fed back at some 170 Hz, rings with a mode below 300 Hz. Where the drive closes the
-// loop, 10 mm circles are worse from 106 Hz down, and equal or better from 141 Hz up.
-constexpr double kLowestInTorqueMode_Hz = 300.0;
-constexpr double kLowestInCascade_Hz = 125.0;
+// Measured on machines with modes of 40 to 400 Hz (docs/laboratory/family.md). In torque mode motor and table
+// swing against each other: the filter's disturbance, fed back at some 170 Hz, rings with a mode below 300 Hz.
+constexpr double kLowestMode_Hz = 300.0;
+// A drive that closes the loop holds the motor, and the table swings on the screw alone: from 92 Hz down
+// circles are worse or the axis is lost, from 119 Hz up they are equal or better.
+constexpr double kLowestOnHeldMotor_Hz = 110.0;
+
+double OnHeldMotor_Hz(const TwoInertiaAxis& axis) {
+  return std::sqrt(axis.stiffness_N_m / axis.table_mass_kg) / (2.0 * std::numbers::pi);
+}
 
 }  // namespace
 
 FrictionKind ChooseFriction(const MachineConfig& machine) {
-  double lowest_Hz = std::numeric_limits<double>::infinity();
-  bool cascade = false, tuned = true;
-  for (const auto& [name, axis] : machine.axes) {
-    lowest_Hz = std::min(lowest_Hz, ModeFrequency_Hz(TwoInertiaAxisOf(axis)));
-    tuned = tuned && axis.loop.has_value();
-    cascade = cascade || ModeFor(ControllerName::kFull, axis.drive) == DriveMode::kCsp;
+  for (const auto& [name, config] : machine.axes) {
+    // The filter with one mass knows of no scale.
+    if (config.drive.linear_scale) return FrictionKind::kLinear;
+    const TwoInertiaAxis axis = TwoInertiaAxisOf(config);
+    const bool held = ModeFor(ControllerName::kFull, config.drive) == DriveMode::kCsp;
+    if (held ? OnHeldMotor_Hz(axis) < kLowestOnHeldMotor_Hz : ModeFrequency_Hz(axis) < kLowestMode_Hz)
+      return FrictionKind::kLinear;
   }
-  // In torque mode it needs its loops; what was never tuned for it goes on as it did.
-  if (!cascade && !tuned) return FrictionKind::kSrukf;
-  const double limit_Hz = cascade ? kLowestInCascade_Hz : kLowestInTorqueMode_Hz;
-  return lowest_Hz < limit_Hz ? FrictionKind::kLinear : FrictionKind::kSrukf;
+  return FrictionKind::kSrukf;
 }
 
 }  // namespace contour

@@ -4,9 +4,9 @@
 
 namespace contour {
 
-/// What `full` knows friction by where a machine file does not say: kLinear where the lowest mode of motor
-/// against table is too low for a filter with one rigid mass in the mode of the drives, kSrukf elsewhere,
-/// and in torque mode where an axis has no loop.
+/// What `full` knows friction by where a machine file does not say: kLinear where the table of some axis, on
+/// its screw, swings too low for a filter with one rigid mass, or has a linear scale; kSrukf elsewhere. In
+/// torque mode an axis without a loop gets one when it is loaded, or is refused (design/loop_choice.h).
 FrictionKind ChooseFriction(const MachineConfig& machine);
 
 }  // namespace contour

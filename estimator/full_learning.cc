@@ -3,13 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimator/wind_up_tuning.h"
+
 namespace contour {
 namespace {
-
-/// Reported torque is coarser than commanded torque is known: each reversal tells less of the screw, and all
-/// of them together are farther off.
-constexpr double kMostStdInCascade = 0.25;
-constexpr double kSameLawInCascade = 0.3;
 
 double Turn_m(const FilterSetup& setup) { return 2.0 * std::numbers::pi * setup.mechanics.radius_m_rad; }
 
@@ -22,24 +19,6 @@ AngleForceMap::Tuning Map(const FilterSetup& setup) {
   return {Turn_m(setup), difference_N, Rate(setup, setup.config.cogging_rate), setup.period_s};
 }
 
-WindUpFit::Tuning Screw(const FilterSetup& setup) {
-  WindUpFit::Tuning screw;
-  screw.period_s = setup.period_s;
-  // All friction goes into it, and only the table's share winds the screw up.
-  screw.stiffness_N_m = setup.mechanics.stiffness_N_m / (1.0 - setup.friction.motor_share);
-  screw.before_screw = setup.friction.motor_share;
-  screw.stiffness_std = Rate(setup, setup.config.stiffness_std);
-  screw.vs_m_s = setup.friction.vs_m_s;
-  screw.sigma1_Ns_m = setup.friction.sigma1_Ns_m;
-  screw.sigma1_decay_m_s = setup.friction.sigma1_decay_m_s;
-  screw.sigma2_Ns_m = setup.friction.sigma2_Ns_m;
-  if (setup.reported_torque) {
-    screw.most_std = kMostStdInCascade;
-    screw.same_law = kSameLawInCascade;
-  }
-  return screw;
-}
-
 }  // namespace
 
 FullLearning::FullLearning(const FilterSetup& s)
@@ -49,7 +28,7 @@ FullLearning::FullLearning(const FilterSetup& s)
       momentum(MomentumBalance::Tuning{s.mechanics.mass_kg, s.period_s, Rate(s, s.config.mass_rate),
                                        Rate(s, s.config.delay_rate)}),
       map(Map(s)),
-      wind_up(Screw(s)) {}
+      wind_up(WindUpTuning(s)) {}
 
 void FullLearning::Reset() noexcept {
   level.Reset();

@@ -6,6 +6,7 @@
 
 #include "estimator/linear_friction_fit.h"
 #include "estimator/share_of_period.h"
+#include "estimator/wind_up_tuning.h"
 
 namespace contour {
 namespace {
@@ -19,17 +20,20 @@ constexpr double kTurnPart = 0.08;
 constexpr double kStrokePart = 0.5;
 // Of the force that accelerates the axis: what it is off by beside the mass, and of viscous friction.
 constexpr double kInertialPart = 0.03;
+// Of it, what is left in torque mode, where what a period gave is known and the mass is learnt.
+constexpr double kInertialByCommand = 0.2;
+// A force that goes on changing is off by more than it changes by until half of it shows: in variances.
+constexpr double kLateByMore = 2.0;
+// A change of this moment counts as far as it is more than noise makes of it in 19 of 20 samples; in
+// variances of the noise, which a difference has twice.
+constexpr double kNoiseOfChange = 2.0 * 4.0;
 // A workpiece may have been mounted since the mass was stated.
 constexpr double kMassStds = 2.0;
 constexpr double kViscousPart = 0.3;
+// A target that leads by an unforeseen force shakes the table, which answers at its own frequency on the
+// screw many times as much and shows as such a force as far as the stiffness is off.
+constexpr double kLeadOfTable = 0.1;
 constexpr double kSurprise_s = 0.2;
-// Reported torque is coarser than commanded torque is known: each reversal tells less of the screw, and all
-// of them together are farther off.
-constexpr double kMostStdInCascade = 0.25;
-constexpr double kSameLawInCascade = 0.3;
-// By a torque that noisy another kind of friction may pass for a screw of half the stiffness.
-constexpr double kMostChangeInCascade = 0.3;
-constexpr double kMostChangeStds = 4.0;
 
 /// What a standard deviation towards the other law makes of the commissioned one: bristles that give way one
 /// after the other in place of one that gives way smoothly. Their shares make them as stiff together.
@@ -94,24 +98,11 @@ FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFri
   return FrictionLearner(learner);
 }
 
-// All friction goes into it, and only the table's share winds the screw up: what it finds is 1 / K less the
-// motor's share.
-WindUpFit MakeWindUp(const FilterSetup& s) {
-  WindUpFit::Tuning t;
-  t.period_s = s.period_s;
-  t.stiffness_N_m = s.mechanics.stiffness_N_m / (1.0 - s.friction.motor_share);
-  t.before_screw = s.friction.motor_share;
-  t.stiffness_std = s.config.adapt ? s.config.stiffness_std : 0.0;
-  t.vs_m_s = s.friction.vs_m_s;
-  t.sigma1_Ns_m = s.friction.sigma1_Ns_m;
-  t.sigma1_decay_m_s = s.friction.sigma1_decay_m_s;
-  t.sigma2_Ns_m = s.friction.sigma2_Ns_m;
-  if (s.reported_torque) {
-    t.most_std = kMostStdInCascade;
-    t.same_law = kSameLawInCascade;
-    t.most_change = std::max(kMostChangeInCascade, kMostChangeStds * t.stiffness_std);
-  }
-  return WindUpFit(t);
+CascadeLead::Tuning Lead(const TwoInertiaAxis& axis) {
+  CascadeLead::Tuning t;
+  const double table_Hz = std::sqrt(axis.stiffness_N_m / axis.table_mass_kg) / (2.0 * std::numbers::pi);
+  t.lead_Hz = std::min(t.lead_Hz, kLeadOfTable * table_Hz);
+  return t;
 }
 
 LinearFriction MakeBasis(const TwoInertiaEstimator::Setup& s) {
@@ -146,13 +137,13 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
                  s.filter.Sudden_m(),
                  s.scale_loop}),
       learner_(MakeLearner(s, MakeBasis(s))),
-      wind_up_(MakeWindUp(s.filter)),
+      wind_up_(WindUpTuning(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
-      lead_({}, s.filter.period_s),
+      lead_(Lead(s.axis), s.filter.period_s),
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
       before_screw_(s.filter.friction.motor_share),
       surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
-      settle_(HalfSeen(FirstLoop(s).disturbance_response, kFound - 1)) {
+      settle_(HalfSeen(FirstLoop(s).disturbance_response, (kFound - 1) / 2)) {
   const Friction& f = s.filter.friction;
   most_N_ = s.filter.config.level_range * std::max({f.Fs_plus_N, f.Fs_minus_N, f.Fc_plus_N, f.Fc_minus_N});
   loop_takes_scale_ = s.has_scale && s.scale_loop;
@@ -162,8 +153,8 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
   keep(along_, side_, nodes_, observer_, learner_, wind_up_, lag_, scale_, by_scale_, lead_, given_N_,
-       acted_N_, found_N_, newest_, surprise_N2_, unexplained_N_, elapsed_, temperature_degC_, at_rest_,
-       frozen_);
+       acted_N_, found_N_, newest_, surprise_N2_, noise_N2_, variance_N2_, unexplained_N_, elapsed_,
+       temperature_degC_, at_rest_, frozen_);
 }
 
 void TwoInertiaEstimator::Reset(double position_m) noexcept {
@@ -179,7 +170,7 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
   given_N_ = {};
   acted_N_ = 0.0;
   found_N_ = {};
-  surprise_N2_ = unexplained_N_ = 0.0;
+  surprise_N2_ = noise_N2_ = variance_N2_ = unexplained_N_ = 0.0;
   elapsed_ = 0;
   at_rest_ = true;
 }
@@ -291,16 +282,32 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
   const double used_N = 0.5 * (At(period).learnt_N + At(period + 1).learnt_N);
   unexplained_N_ =
       learner_.Learn(terms, used_N, observer_.disturbance_N(), std::abs(velocity_m_s), may && !at_rest_);
-  newest_ = (newest_ + 1) % found_N_.size();
-  found_N_[newest_] = unexplained_N_;
-  const double before_N = found_N_[(newest_ + found_N_.size() - settle_) % found_N_.size()];
-  const double change_N = found_N_[newest_] - before_N;
-  surprise_N2_ += surprise_share_ * (change_N * change_N - surprise_N2_);
+  Doubt(terms[kMass]);
   if (at_rest_) learner_.Rest();
   if (may && !at_rest_ && !scale_)
     LearnWindUp(in);
   else
     wind_up_.Pause();
+}
+
+// What the force has changed by since the observer could see it is what is off in between: on average, and at
+// this moment. Noise of single samples is in a difference of two of them twice; a second difference, which a
+// force that goes on changing hardly has, has six times its variance. And what accelerates the axis is off.
+void TwoInertiaEstimator::Doubt(double acceleration_m_s2) noexcept {
+  newest_ = (newest_ + 1) % found_N_.size();
+  found_N_[newest_] = unexplained_N_;
+  const auto before_N = [this](std::size_t periods) {
+    return found_N_[(newest_ + found_N_.size() - periods) % found_N_.size()];
+  };
+  const double change_N = unexplained_N_ - before_N(settle_);
+  const double bend_N = change_N - before_N(settle_) + before_N(2 * settle_);
+  surprise_N2_ += surprise_share_ * (change_N * change_N - surprise_N2_);
+  noise_N2_ += surprise_share_ * (bend_N * bend_N / 6.0 - noise_N2_);
+  const double last_N2 = std::max(0.0, change_N * change_N - kNoiseOfChange * noise_N2_);
+  const double inertial_N = kInertialPart * (setup_.reported_torque ? 1.0 : kInertialByCommand) *
+                            setup_.mechanics.mass_kg * acceleration_m_s2;
+  const double late_N2 = kLateByMore * std::max(0.0, surprise_N2_ - 2.0 * noise_N2_);
+  variance_N2_ = late_N2 + noise_N2_ + last_N2 + inertial_N * inertial_N;
 }
 
 void TwoInertiaEstimator::LearnWindUp(const AxisEstimatorInput& in) noexcept {
@@ -343,7 +350,7 @@ AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const n
     out.bristle_N = At(elapsed_ + 1).friction_N;
     out.friction_N = out.bristle_N + setup_.friction.sigma2_Ns_m * now[3] + out.disturbance_N;
   }
-  out.friction_std_N = std::sqrt(surprise_N2_);
+  out.friction_std_N = std::sqrt(variance_N2_);
   out.diverged = !observer_.Sound();
   return out;
 }

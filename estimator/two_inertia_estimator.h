@@ -90,6 +90,7 @@ class TwoInertiaEstimator {
   void LeaveScale(double position_m) noexcept;
   void Learn(const AxisEstimatorInput& in, bool may) noexcept;
   void LearnWindUp(const AxisEstimatorInput& in) noexcept;
+  void Doubt(double acceleration_m_s2) noexcept;
   [[nodiscard]] AxisEstimate Believed(const AxisEstimatorInput& in) const noexcept;
 
   FilterSetup setup_;
@@ -114,10 +115,12 @@ class TwoInertiaEstimator {
 
   std::array<double, kLoopQueue + 1> given_N_{};  ///< to the drive, newest first
   double acted_N_ = 0.0;
-  static constexpr std::size_t kFound = 16;
+  static constexpr std::size_t kFound = 32;
   std::array<double, kFound> found_N_{};  ///< disturbance at the samples before, a ring
   std::size_t newest_ = 0;
-  double surprise_N2_ = 0.0;
+  double surprise_N2_ = 0.0;    ///< mean square of what it changes by until the observer sees a change
+  double noise_N2_ = 0.0;       ///< of it that is noise of single samples
+  double variance_N2_ = 0.0;    ///< of what is believed of friction
   double unexplained_N_ = 0.0;  ///< disturbance, had what is known by now been known all along
   std::size_t elapsed_ = 0;     ///< samples since friction was laid along the reference
   double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();

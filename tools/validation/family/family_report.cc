@@ -96,8 +96,7 @@ struct Pairing {
 void WriteFamilyCsv(std::ostream& out, const std::vector<FamilyCell>& cells,
                     const std::vector<FamilyResult>& results) {
   out << "machine,plant,model,law,variation,controller,mode,program,seed,wind_up_um,peak_um,rms_um,hold_pp_"
-         "um,"
-         "failure\n";
+         "um,friction_inside_rel,friction_std_over_error,failure\n";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const FamilyCell& c = cells[i];
     const FamilyResult& r = results[i];
@@ -106,7 +105,8 @@ void WriteFamilyCsv(std::ostream& out, const std::vector<FamilyCell>& cells,
         << (c.setting.maxwell_slip ? "maxwell_slip" : "lugre") << ',' << c.setting.variation << ','
         << c.entry.controller << ',' << c.entry.mode << ',' << c.program << ',' << c.seed << ','
         << FourDigits(r.wind_up_um) << ',' << FourDigits(r.peak_um) << ',' << FourDigits(r.rms_um) << ','
-        << FourDigits(r.hold_pp_um) << ',' << Quoted(r.failure) << '\n';
+        << FourDigits(r.hold_pp_um) << ',' << FourDigits(r.friction_inside_rel) << ','
+        << FourDigits(r.friction_std_over_error) << ',' << Quoted(r.failure) << '\n';
   }
 }
 

@@ -77,6 +77,32 @@ class PathScore {
   std::vector<bool> scored_;
 };
 
+/// How well the estimate of friction knows by how much it is off.
+class FrictionScore {
+ public:
+  void Add(const CycleRecord& record, const MotionPlan& plan, const TruthRow& truth) {
+    const double time_s = RowOf(record, false).path_time_s;
+    if (time_s < 0.0 || !plan.Scored(time_s)) return;
+    for (std::size_t i = 0; i < truth.axes.size(); ++i) {
+      const AxisEstimate& estimate = record.axes[i].estimate;
+      const double error_N = estimate.friction_N - truth.axes[i].friction_N;
+      error_N2_ += error_N * error_N;
+      variance_N2_ += estimate.friction_std_N * estimate.friction_std_N;
+      if (std::abs(error_N) < 2.0 * estimate.friction_std_N) ++inside_;
+      ++count_;
+    }
+  }
+  void Finish(FamilyResult& result) const {
+    if (count_ == 0 || variance_N2_ == 0.0) return;
+    result.friction_inside_rel = static_cast<double>(inside_) / static_cast<double>(count_);
+    result.friction_std_over_error = std::sqrt(variance_N2_ / error_N2_);
+  }
+
+ private:
+  double error_N2_ = 0.0, variance_N2_ = 0.0;
+  std::size_t inside_ = 0, count_ = 0;
+};
+
 /// Largest excursion of the table's axes while the machine holds.
 class HoldScore {
  public:
@@ -101,10 +127,12 @@ class HoldScore {
 
 void RunProgram(VirtualMachine& machine, const Program& program, FamilyResult& result) {
   PathScore score;
+  FrictionScore friction;
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
     const CycleRecord& record = entry.output.record;
-    if (record.state == MachineState::kRunning && truth != nullptr)
-      score.Add(record, *machine.plan(), *truth);
+    if (record.state != MachineState::kRunning || truth == nullptr) return;
+    score.Add(record, *machine.plan(), *truth);
+    friction.Add(record, *machine.plan(), *truth);
   });
   try {
     machine.Run(program);
@@ -113,6 +141,7 @@ void RunProgram(VirtualMachine& machine, const Program& program, FamilyResult& r
     throw;
   }
   score.Finish(result);
+  friction.Finish(result);
 }
 
 void RunHold(VirtualMachine& machine, FamilyResult& result) {

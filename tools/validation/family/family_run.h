@@ -30,8 +30,12 @@ struct FamilyResult {
   double peak_um = 0.0;     ///< at the table, circles after the first turn, others from 1 s on
   double rms_um = 0.0;
   double hold_pp_um = 0.0;  ///< of the table's worst axis, in the last three seconds of hold
-  std::string failure{};    ///< why the machine stopped; empty: it did not
-  bool refused = false;     ///< before motion, by its checks
+  /// Of the estimate of friction while the program is scored, axes together: share of the time in which it is
+  /// off by less than two of its standard deviations, and these (rms) over the error's rms. 0: no estimate.
+  double friction_inside_rel = 0.0;
+  double friction_std_over_error = 0.0;
+  std::string failure{};  ///< why the machine stopped; empty: it did not
+  bool refused = false;   ///< before motion, by its checks
 };
 
 /// B, C and S with their texts in YAML.
