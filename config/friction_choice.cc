@@ -1,5 +1,6 @@
 #include "config/friction_choice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,8 +12,11 @@ namespace contour {
 namespace {
 
 // Measured on machines with modes of 40 to 400 Hz (docs/laboratory/family.md). In torque mode motor and table
-// swing against each other: the filter's disturbance, fed back at some 170 Hz, rings with a mode below 300 Hz.
+// swing against each other: the filter's disturbance, fed back at some 170 Hz, rings with a mode below 300
+// Hz.
 constexpr double kLowestMode_Hz = 300.0;
+// Measured at that cycle; in a longer one what is fed back is slower.
+constexpr double kMeasuredAt_us = 1000.0;
 // A drive that closes the loop holds the motor, and the table swings on the screw alone: from 92 Hz down
 // circles are worse or the axis is lost, from 119 Hz up they are equal or better.
 constexpr double kLowestOnHeldMotor_Hz = 110.0;
@@ -24,12 +28,13 @@ double OnHeldMotor_Hz(const TwoInertiaAxis& axis) {
 }  // namespace
 
 FrictionKind ChooseFriction(const MachineConfig& machine) {
+  const double lowest_mode_Hz = kLowestMode_Hz * std::min(1.0, kMeasuredAt_us / machine.machine.cycle_us);
   for (const auto& [name, config] : machine.axes) {
     // The filter with one mass knows of no scale.
     if (config.drive.linear_scale) return FrictionKind::kLinear;
     const TwoInertiaAxis axis = TwoInertiaAxisOf(config);
     const bool held = ModeFor(ControllerName::kFull, config.drive) == DriveMode::kCsp;
-    if (held ? OnHeldMotor_Hz(axis) < kLowestOnHeldMotor_Hz : ModeFrequency_Hz(axis) < kLowestMode_Hz)
+    if (held ? OnHeldMotor_Hz(axis) < kLowestOnHeldMotor_Hz : ModeFrequency_Hz(axis) < lowest_mode_Hz)
       return FrictionKind::kLinear;
   }
   return FrictionKind::kSrukf;

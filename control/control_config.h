@@ -204,8 +204,9 @@ struct ControllerConfig {
         "friction", friction, kAny,
         "what `full` knows friction by: srukf, states of its filter beside one rigid mass; linear, "
         "learnt along the reference, outside a loop that knows motor and table apart (torque mode: "
-        "needs axes.<name>.loop). In a file that does not say it is linear where the lowest mode of motor "
-        "against table is below 300 Hz and every axis has its loop; in csp below 125 Hz");
+        "goes by axes.<name>.loop). In a file that does not say it is linear where an axis's mode of motor "
+        "against table is below 300 Hz, in csp where the table on its screw swings below 110 Hz, and with "
+        "a linear scale");
     v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
     v.Optional("supervision", supervision, "how the machine watches its own control");

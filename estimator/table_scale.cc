@@ -48,19 +48,21 @@ void TableScale::Reset() noexcept {
   doubt_ = missing_ < lost_ ? Reason::kNone : Reason::kScaleLost;
   filtering_ = false;
   center_m_ = 0.0;
-  fit_.Reset(believed() ? position_m_ - table_m_ : 0.0);
+  fit_.Reset(believed() ? position_m_ - table_m_ - lead_m_ : 0.0);
 }
 
 // An axis that is let go may swing on its bristles for a while: until it is first held, the mean counts.
 void TableScale::SettleZero(const Sample& s, double apart_m) noexcept {
-  if (!seen_ || std::abs(apart_m) > Allowed_m(0.0, 0.0)) {
+  // What the motor is known to be before the table by the lead is no part of it.
+  const double off_m = apart_m - s.lead_m;
+  if (!seen_ || std::abs(off_m) > Allowed_m(0.0, 0.0)) {
     seen_ = true;
     zero_samples_ = 1;
-    zero_m_ = s.scale_m - s.position_m;
+    zero_m_ = s.scale_m - s.position_m + s.lead_m;
     zero_at_m_ = s.position_m;
   } else if (zero_samples_ > 0) {
     zero_samples_ = std::min(zero_samples_ + 1, most_samples_);
-    zero_m_ -= apart_m / zero_samples_;
+    zero_m_ -= off_m / zero_samples_;
   }
 }
 
@@ -123,6 +125,7 @@ void TableScale::Step(const Sample& s) noexcept {
   }
   position_m_ = s.position_m;
   table_m_ = s.scale_m - zero_m_;
+  lead_m_ = s.lead_m;
   periods_ = 0;
   if (!s.enabled) return Reset();
   if (!believed()) return;

@@ -90,7 +90,7 @@ class TableScale {
   double zero_m_ = 0.0;
   double zero_at_m_ = 0.0;  // the motor, there
   int zero_samples_ = 0;    // that it is a mean of; 0: the axis has been held since
-  double position_m_ = 0.0, table_m_ = 0.0;
+  double position_m_ = 0.0, table_m_ = 0.0, lead_m_ = 0.0;
   int periods_ = 0;  // since that sample
   int missing_ = 0, sudden_ = 0, doubted_ = 0;
   Reason doubt_ = Reason::kNone;

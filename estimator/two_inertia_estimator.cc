@@ -18,9 +18,11 @@ constexpr double kShape = 0.15;
 constexpr double kTurnPart = 0.08;
 // Over half a stroke; a program sees but a part of it.
 constexpr double kStrokePart = 0.5;
+// Friction at its largest place of stroke and turn over the level, whose range is bounded.
+constexpr double kOverPlaces = 1.25;
 // Of the force that accelerates the axis: what it is off by beside the mass, and of viscous friction.
 constexpr double kInertialPart = 0.03;
-// Of it, what is left in torque mode, where what a period gave is known and the mass is learnt.
+// Of kInertialPart, what is left in torque mode, where what a period gave is known and the mass is learnt.
 constexpr double kInertialByCommand = 0.2;
 // A force that goes on changing is off by more than it changes by until half of it shows: in variances.
 constexpr double kLateByMore = 2.0;
@@ -185,7 +187,7 @@ void TwoInertiaEstimator::Lay() noexcept {
     Node& node = nodes_[j];
     node.heavier_N = extra_kg * terms[kMass];
     const double all_N = Sum(learner_.parameters(), terms) - node.heavier_N;
-    node.friction_N = std::clamp(all_N, -most_N_, most_N_);
+    node.friction_N = std::clamp(all_N, -kOverPlaces * most_N_, kOverPlaces * most_N_);
     node.learnt_N = node.friction_N + node.heavier_N;
     node.driving_N = 0.0;
     if (!known_.neutral()) {

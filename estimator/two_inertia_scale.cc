@@ -47,10 +47,8 @@ void TwoInertiaEstimator::ReadScale(const AxisEstimatorInput& in) noexcept {
   s.scale_fresh = in.scale_fresh;
   s.position_m = in.position_m;
   s.scale_m = in.scale_m;
-  if (in.enabled) {
-    s.force_N = acted_N_ + At(elapsed_).motor_N + motor_share_ * At(elapsed_).heavier_N;
-    s.lead_m = known_.Lead_m(in.position_m);
-  }
+  s.lead_m = known_.Lead_m(in.position_m);
+  if (in.enabled) s.force_N = acted_N_ + At(elapsed_).motor_N + motor_share_ * At(elapsed_).heavier_N;
   scale_->Step(s);
 }
 

@@ -44,7 +44,7 @@ std::vector<std::string> Linear(const std::string& mode, double table_kg = 0.0) 
 constexpr double kWindUp_m = 1.1e-6;
 
 TEST(TwoInertia, DrawsTheSmallCircleWithTablesThatOneInertiaLoses) {
-  for (const double table_kg : {0.0, 30.0, 50.0}) {
+  for (const double table_kg : {0.0, 22.0, 30.0, 50.0}) {
     const RunResult r =
         RunCircle(ExampleMachine(Linear("cst", table_kg)), ControllerName::kFull, Circle(0.1, 4, 0.7854));
     EXPECT_LT(r.table_peak_m, 0.4 * kWindUp_m) << table_kg;
@@ -52,7 +52,7 @@ TEST(TwoInertia, DrawsTheSmallCircleWithTablesThatOneInertiaLoses) {
 }
 
 TEST(TwoInertia, DrawsTheLargeCircle) {
-  for (const double table_kg : {0.0, 50.0}) {
+  for (const double table_kg : {0.0, 22.0, 50.0}) {
     const RunResult r =
         RunCircle(ExampleMachine(Linear("cst", table_kg)), ControllerName::kFull, Circle(5.0, 4, 1.5915));
     EXPECT_LT(r.table_peak_m, 1.1 * kWindUp_m) << table_kg;

@@ -211,6 +211,10 @@ TEST(LoadMachine, FrictionIsKnownByWhatTheScrewsModeAllowsUnlessTheFileSays) {
   EXPECT_EQ(friction({heavy, "control.friction=srukf"}), FrictionKind::kSrukf);
   EXPECT_EQ(friction({heavy, csp_x, csp_y}), FrictionKind::kSrukf);
   EXPECT_EQ(friction({soft, csp_x, csp_y}), FrictionKind::kLinear) << "100 Hz";
+  // Only what knows the table has a use for its scale.
+  EXPECT_EQ(friction({csp_x, csp_y, "axes.x.drive.linear_scale={counts_per_mm: 200000}",
+                      "realtime.send_deadline_us=70"}),
+            FrictionKind::kLinear);
   EXPECT_EQ(friction({"control.friction=linear"}), FrictionKind::kLinear);
 }
 

@@ -47,9 +47,9 @@ void AddRoughness(const MaybeEmulatedMachineFile& file, std::vector<std::string>
   }
 }
 
-/// The loop that belongs to a machine's near models, as one line of YAML; empty when it has none.
-std::string NearLoop(const std::string& folder, const std::string& machine) {
-  std::ifstream in(folder + "/near/" + machine + "_loop.yaml");
+/// A loop that belongs to a machine's near models, as one line of YAML; empty when it has none.
+std::string NearLoop(const std::string& folder, const std::string& machine, const std::string& which) {
+  std::ifstream in(folder + "/near/" + machine + "_" + which + ".yaml");
   std::string line;
   while (std::getline(in, line))
     if (line.starts_with('{')) return line;
@@ -93,10 +93,11 @@ std::vector<std::string> FamilyAssignments(const std::string& folder, const Fami
   if (setting.model == FamilyModel::kNear) {
     // The model is off by what it states and no more: the seed varies noise, phases and the start.
     wanted.push_back("emulator.parameter_variation_rel=0");
-    const std::string loop = NearLoop(folder, setting.machine);
     for (const auto& [name, axis] : file.machine.axes) {
       wanted.push_back("axes." + name + ".model=near/" + setting.machine + "_" + name + ".yaml");
-      if (!loop.empty()) wanted.push_back("axes." + name + ".loop=" + loop);
+      for (const char* which : {"loop", "scale_loop"})
+        if (const std::string loop = NearLoop(folder, setting.machine, which); !loop.empty())
+          wanted.push_back("axes." + name + "." + which + "=" + loop);
     }
   }
   if (setting.plant == FamilyPlant::kRough) AddRoughness(file, wanted);

@@ -142,17 +142,20 @@ def emulated_lines(m, axis):
     return ["      " + line for line in lines] + friction_lines(LEVELS[axis], m.size, 8, more)
 
 
-def loop_numbers(m, model):
+LOOP_KEYS = ("loop", "scale_loop")
+
+
+def loop_numbers(m, model, which):
     """What tune_loops.py has found, or None."""
     if not (HERE / "loops.csv").exists():
         return None
-    rows = [row for row in read(HERE / "loops.csv") if (row["name"], row["model"]) == (m.name, model)]
-    return {key: value for key, value in rows[0].items() if key not in ("name", "model")} if rows else None
+    rows = [row for row in read(HERE / "loops.csv") if (row["name"], row["model"], row["key"]) == (m.name, model, which)]
+    return {key: value for key, value in rows[0].items() if key not in ("name", "model", "key")} if rows else None
 
 
-def near_loop(m):
-    numbers = ", ".join(f"{key}: {value}" for key, value in loop_numbers(m, "near").items())
-    return f"# The loop of {m.name} in torque mode with its near models, as contour tune --from-model finds it.\n{{{numbers}}}\n"
+def near_loop(m, which):
+    numbers = ", ".join(f"{key}: {value}" for key, value in loop_numbers(m, "near", which).items())
+    return f"# The {which} of {m.name} in torque mode with its near models, as contour tune --from-model finds it.\n{{{numbers}}}\n"
 
 
 def machine_file(m, near=False, with_loops=True):
@@ -168,9 +171,9 @@ def machine_file(m, near=False, with_loops=True):
             lines += [f"    model: near/{m.name}_{axis}.yaml"]
         else:
             lines += ["    # From catalogues: masses, stiffness of the screw, friction by preload; nothing was measured.", "    model:", *catalogue_model(m, 6)]
-        loop = loop_numbers(m, "near" if near else "catalogue") if with_loops else None
-        if loop:
-            lines += ["    loop:", *(f"      {key}: {value}" for key, value in loop.items())]
+        for which in LOOP_KEYS if with_loops else ():
+            if loop := loop_numbers(m, "near" if near else "catalogue", which):
+                lines += [f"    {which}:", *(f"      {key}: {value}" for key, value in loop.items())]
     lines += ["", "# What the emulated machine really is.", "emulator:", "  seed: 1", "  axes:"]
     for axis in LEVELS:
         lines += [f"    {axis}:", *emulated_lines(m, axis)]
@@ -187,8 +190,9 @@ def files(folder=FAMILY, near=False, with_loops=True):
     for row in read(HERE / "machines.csv"):
         m = Machine(row, gains[row["name"]])
         yield folder / f"{m.name}.yaml", machine_file(m, near, with_loops)
-        if with_loops and loop_numbers(m, "near"):
-            yield folder / "near" / f"{m.name}_loop.yaml", near_loop(m)
+        for which in LOOP_KEYS if with_loops else ():
+            if loop_numbers(m, "near", which):
+                yield folder / "near" / f"{m.name}_{which}.yaml", near_loop(m, which)
         for axis in LEVELS:
             yield folder / "near" / f"{m.name}_{axis}.yaml", near_model(m, axis)
 

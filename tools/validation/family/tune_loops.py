@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The loops of the family's machines in torque mode, as `contour tune --from-model` finds them: loops.csv.
+"""The loops of the family's machines in torque mode, with a linear scale both, as `contour tune --from-model` finds them: loops.csv.
 
     tune_loops.py CONTOUR                 searches all of them and writes loops.csv; make_family.py puts them into the files
     tune_loops.py CONTOUR --check [NAME...]
@@ -25,14 +25,16 @@ EXAMPLES = ["xy_emulated", "xy_vcan", "single_axis", "xyz_emulated"]
 
 
 def found_loops(contour, file, *more):
-    """By axis, what the search finds; empty for an axis without a loop."""
+    """By axis, what the search finds: `loop`, and of an axis with a linear scale `scale_loop`; without those that keep no limits."""
     run = subprocess.run([contour, "tune", "--from-model", file, *more], capture_output=True, text=True, check=False)
     if run.returncode not in (0, 1):
         sys.exit(f"{file}: contour tune ended with {run.returncode}: {run.stderr}")
     loops = {}
     for block in re.split(r"(?m)^axis ", run.stdout)[1:]:
-        numbers = dict(re.findall(r"(?m)^\s+(\w+): ([-+.e\d]+)$", block.partition(".loop:")[2]))
-        loops[block.partition(":")[0]] = {key: numbers[key] for key in KEYS} if numbers else {}
+        of_axis = loops.setdefault(block.partition(":")[0], {})
+        for which, text in re.findall(r"(?m)^\s+axes\.\w+\.(scale_loop|loop):\n((?:\s+\w+: [-+.e\d]+\n?)+)", block):
+            numbers = dict(re.findall(r"(\w+): ([-+.e\d]+)", text))
+            of_axis[which] = {key: numbers[key] for key in KEYS}
     return loops
 
 
@@ -45,10 +47,9 @@ def search(contour, names):
             for path, text in make_family.files(out, model == "near", with_loops=False):
                 path.write_text(text, encoding="utf-8")
             for name in names:
-                loop = found_loops(contour, out / f"{name}.yaml", "--axis", "x")["x"]
-                print(f"{name}, {model}: {loop or 'none'}", flush=True)
-                if loop:
-                    rows.append({"name": name, "model": model, **loop})
+                found = found_loops(contour, out / f"{name}.yaml", "--axis", "x")["x"]
+                print(f"{name}, {model}: {found or 'none'}", flush=True)
+                rows += [{"name": name, "model": model, "key": key, **numbers} for key, numbers in found.items()]
     return rows
 
 
@@ -57,7 +58,7 @@ def examples_differ(contour, names):
     for name in names:
         path = make_family.ROOT / "config" / f"{name}.yaml"
         text = path.read_text(encoding="utf-8")
-        found = list(found_loops(contour, path).values())
+        found = [loops["loop"] for loops in found_loops(contour, path).values()]
         stated = [dict(re.findall(r"(?m)^\s+(\w+): ([-+.e\d]+)$", block)) for block in re.findall(r"(?m)^    loop:\n((?:      .*\n)+)", text)]
         if [{k: float(v) for k, v in s.items()} for s in stated] != [{k: float(v) for k, v in f.items()} for f in found]:
             wrong.append(f"config/{name}.yaml: another loop is found than stands there: {found}")
@@ -75,13 +76,13 @@ def main():
     rows = search(options.contour, names)
     if not options.check:
         with LOOPS.open("w", encoding="utf-8", newline="") as out:
-            writer = csv.DictWriter(out, ["name", "model", *KEYS], lineterminator="\n")
+            writer = csv.DictWriter(out, ["name", "model", "key", *KEYS], lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
         return 0
     stated = [row for row in make_family.read(LOOPS) if row["name"] in names]
-    wrong = [f"{row['name']}, {row['model']}: only found, or other than stated" for row in rows if row not in stated]
-    wrong += [f"{row['name']}, {row['model']}: only stated, or other than found" for row in stated if row not in rows]
+    wrong = [f"{row['name']}, {row['model']}, {row['key']}: only found, or other than stated" for row in rows if row not in stated]
+    wrong += [f"{row['name']}, {row['model']}, {row['key']}: only stated, or other than found" for row in stated if row not in rows]
     wrong += examples_differ(options.contour, [n for n in EXAMPLES if not options.names or n in options.names])
     print("\n".join(wrong))
     return 1 if wrong else 0

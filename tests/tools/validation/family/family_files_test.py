@@ -71,9 +71,10 @@ class FamilyFiles(unittest.TestCase):
         for file in sorted((ROOT / "config" / "family").glob("*.yaml")):
             for mode in ("cst", "csp"):
                 near = [f"axes.{axis}.model=near/{file.stem}_{axis}.yaml" for axis in "xy"]
-                loop = file.parent / "near" / f"{file.stem}_loop.yaml"
-                if loop.exists():
-                    near += [f"axes.{axis}.loop={loop.read_text(encoding='utf-8').splitlines()[1]}" for axis in "xy"]
+                for which in ("loop", "scale_loop"):
+                    loop = file.parent / "near" / f"{file.stem}_{which}.yaml"
+                    if loop.exists():
+                        near += [f"axes.{axis}.{which}={loop.read_text(encoding='utf-8').splitlines()[1]}" for axis in "xy"]
                 for more in ([], near):
                     sets = [f"axes.{axis}.drive.mode={mode}" for axis in "xy"] + more
                     result = subprocess.run([CONTOUR, "check", file, *(part for s in sets for part in ("--set", s))], capture_output=True,

@@ -16,7 +16,12 @@ FamilyCell Cell(const char* machine, const char* mode, char program, std::uint64
   return c;
 }
 FamilyResult Result(double peak_um, double hold_um, const char* failure = "", bool refused = false) {
-  return {2.0, peak_um, 0.5 * peak_um, hold_um, failure, refused};
+  return {.wind_up_um = 2.0,
+          .peak_um = peak_um,
+          .rms_um = 0.5 * peak_um,
+          .hold_pp_um = hold_um,
+          .failure = failure,
+          .refused = refused};
 }
 
 TEST(FamilyReport, PeaksAreMediansOverTheSeedsInUnitsOfWindUp) {
@@ -42,7 +47,7 @@ TEST(FamilyReport, AStoppedSeedIsNoMedianAndARefusedMachineNoPeak) {
 TEST(FamilyReport, TheTableForProgramsHasARowPerRun) {
   std::ostringstream out;
   WriteFamilyCsv(out, {Cell("a", "cst", 'B', 7)}, {Result(1.0, 0.1, "said \"no\", twice")});
-  EXPECT_NE(out.str().find("\na,ideal,near,lugre,,full,cst,B,7,2,1,0.5,0.1,\"said \"\"no\"\", twice\"\n"),
+  EXPECT_NE(out.str().find("\na,ideal,near,lugre,,full,cst,B,7,2,1,0.5,0.1,0,0,\"said \"\"no\"\", twice\"\n"),
             std::string::npos)
       << out.str();
 }

@@ -1,0 +1,69 @@
+#include "tools/validation/family/family_run.h"
+
+#include <gtest/gtest.h>
+
+namespace contour {
+namespace {
+
+struct Change {
+  std::string variation{};
+  bool maxwell_slip = false;
+  std::vector<std::string> set{};
+};
+
+FamilyResult Drawn(const std::string& machine, const std::string& mode, char program,
+                   const Change& change = {}) {
+  FamilyCell cell;
+  cell.setting.machine = machine;
+  cell.entry = {"full", mode};
+  cell.program = program;
+  cell.setting.variation = change.variation;
+  cell.setting.maxwell_slip = change.maxwell_slip;
+  cell.setting.set = change.set;
+  cell.hold = false;
+  return RunFamilyCell(FAMILY_DIR, cell);
+}
+
+double InWindUps(const FamilyResult& r) { return r.peak_um / r.wind_up_um; }
+
+// Asked are 90 to 99 % of the time and 2.5 times the error; measured on the whole family 90.1 to 99.1 % and
+// up to 2.2 (docs/laboratory/family.md).
+TEST(FamilyRun, FrictionIsOffByWhatIsStatedOfIt) {
+  for (const std::string machine : {"base", "m300", "lead20", "slow40"})
+    for (const std::string mode : {"cst", "csp"})
+      for (const char program : {'B', 'S'}) {
+        const FamilyResult r = Drawn(machine, mode, program, {.set = {"control.friction=linear"}});
+        ASSERT_EQ(r.failure, "") << machine << mode << program;
+        EXPECT_GT(r.friction_inside_rel, 0.88) << machine << mode << program;
+        EXPECT_LT(r.friction_inside_rel, 0.995) << machine << mode << program;
+        EXPECT_LT(r.friction_std_over_error, 2.5) << machine << mode << program;
+      }
+}
+
+// By the torque that a drive reports, elements that give way one after the other look like a screw of half
+// the stiffness: 2.4 F/K when it was believed.
+TEST(FamilyRun, AnotherLawOfFrictionIsNotTakenForASoftScrew) {
+  const FamilyResult r = Drawn("m100", "csp", 'B', {.maxwell_slip = true, .set = {"control.friction=srukf"}});
+  EXPECT_EQ(r.failure, "");
+  EXPECT_LT(InWindUps(r), 0.4);
+}
+
+// The drive holds the motor, and a table of 28 Hz answers what the target leads by: 23 F/K.
+TEST(FamilyRun, AStifferScrewThanStatedDoesNotSwingATableOfLowFrequency) {
+  const FamilyResult r = Drawn("slow40", "csp", 'C', {.variation = "k_plus_30"});
+  EXPECT_EQ(r.failure, "");
+  EXPECT_LT(InWindUps(r), 3.0);
+}
+
+// As the file is, without a word on control.friction: ten times the motor's mass on a belt were lost.
+TEST(FamilyRun, ABeltIsDrawnByItsDriveAndRefusedWithTorques) {
+  const FamilyResult drawn = Drawn("belt", "csp", 'B');
+  EXPECT_EQ(drawn.failure, "");
+  EXPECT_LT(InWindUps(drawn), 0.4);
+  const FamilyResult refused = Drawn("belt", "cst", 'B');
+  EXPECT_TRUE(refused.refused);
+  EXPECT_NE(refused.failure.find("csp"), std::string::npos) << refused.failure;
+}
+
+}  // namespace
+}  // namespace contour
