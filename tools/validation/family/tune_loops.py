@@ -58,7 +58,7 @@ def examples_differ(contour, names):
     for name in names:
         path = make_family.ROOT / "config" / f"{name}.yaml"
         text = path.read_text(encoding="utf-8")
-        found = [loops["loop"] for loops in found_loops(contour, path).values()]
+        found = [loops.get("loop", {}) for loops in found_loops(contour, path).values()]
         stated = [dict(re.findall(r"(?m)^\s+(\w+): ([-+.e\d]+)$", block)) for block in re.findall(r"(?m)^    loop:\n((?:      .*\n)+)", text)]
         if [{k: float(v) for k, v in s.items()} for s in stated] != [{k: float(v) for k, v in f.items()} for f in found]:
             wrong.append(f"config/{name}.yaml: another loop is found than stands there: {found}")

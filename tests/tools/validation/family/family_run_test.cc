@@ -55,6 +55,14 @@ TEST(FamilyRun, AStifferScrewThanStatedDoesNotSwingATableOfLowFrequency) {
   EXPECT_LT(InWindUps(r), 3.0);
 }
 
+// Half as much friction again, twice what is stated with its places on stroke and turn: what was learnt was
+// cut off at twice the level, 4.2 F/K.
+TEST(FamilyRun, FrictionOfNearlyTwiceWhatIsStatedIsFedForward) {
+  const FamilyResult r = Drawn("t30", "cst", 'B', {.variation = "friction_plus_50"});
+  EXPECT_EQ(r.failure, "");
+  EXPECT_LT(InWindUps(r), 2.0);
+}
+
 // As the file is, without a word on control.friction: ten times the motor's mass on a belt were lost.
 TEST(FamilyRun, ABeltIsDrawnByItsDriveAndRefusedWithTorques) {
   const FamilyResult drawn = Drawn("belt", "csp", 'B');
