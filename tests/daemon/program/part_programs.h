@@ -149,13 +149,13 @@ inline std::vector<PartProgram> PartPrograms() {
           {"circle 0.02 mm, 4 decimals", ChordCircle(10, 0.02, 4, 3000), 0},
           {"circle 0.5 mm", ChordCircle(10, 0.5, 3, 6000), 0},
           {"small circle 0.01 mm", ChordCircle(1, 0.01, 3, 3000, "G64 P0.005"), 5e-6},
-          {"spiral 0.1 mm", Spiral(8, 0.8, 0.1, 3, 4000), 0},
-          {"text", EngravedText(3, 12, 0.05, 3, 1500), 0},
-          {"pocket", Pocket(5, 3000), 0},
+          {"spiral 0.1 mm", Spiral(5, 0.8, 0.1, 3, 4000), 0},
+          {"text", EngravedText(3, 5, 0.05, 3, 1500), 0},
+          {"pocket", Pocket(3, 3000), 0},
           {"zigzag", RapidZigzag(10), 0},
           {"diamond", "F3000\nG1 X7.071 Y7.071\nX0 Y14.142\nX-7.071 Y7.071\nX0 Y0\n", 0},
           {"slot", "F5000\nG1 X20\nG3 Y10 J5\nG1 X0\nG3 Y0 J-5\nG1 X20\n", 0},
-          {"anything", AnyMoves(5, 150), 0}};
+          {"anything", AnyMoves(5, 60), 0}};
 }
 
 }  // namespace contour::testing

@@ -9,8 +9,7 @@ MACHINES = {
 }
 
 # What tools/test looks at; the rest is for tools/nightly.
-SHORT = {("table", "square"), ("table", "slot"), ("table", "circle, 0.5 mm"), ("table", "circle, 0.02 mm"),
-         ("gantry500", "zigzag of G0"), ("table", "text")}
+SHORT = {("table", "square"), ("table", "circle, 0.02 mm")}
 
 
 def moves(points, feed, decimals):
