@@ -33,8 +33,7 @@ class PathWalk {
 
   /// Feed times `scale` (0 to 2) as soon after `time_s` as the axes' limits allow; 0: to rest on the path, as
   /// soon as they allow. Rapids are scaled down, but never up. Returns the time up to which nothing has
-  /// changed, a few milliseconds after `time_s`. While it comes to rest, a new scale above 0 counts from
-  /// where it rests, if that is later than `time_s`.
+  /// changed, at most 3 ms after `time_s`. A new scale above 0 counts at once, also while it comes to rest.
   virtual double ChangeFeed(double time_s, double scale) = 0;
 
   /// From when on it rests on the way, by a ChangeFeed to 0; infinite: it does not.
