@@ -10,7 +10,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // Of the limits: between the places where they are kept exactly they may be missed by a little.
 constexpr double kUsed = 0.995;
-constexpr double kJerkUsed = 0.985;
+constexpr double kJerkUsed = 0.97;
 // The constant speed to start from, of the largest one.
 constexpr double kFloorShare = 0.3;
 
