@@ -19,6 +19,11 @@ double StretchPlan::duration_s() const {
   return walk_.duration_s();
 }
 
+std::uint32_t StretchPlan::Line(double time_s) const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<std::uint32_t>(std::max(0, walk_.Line(time_s)));
+}
+
 void StretchPlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
   const std::lock_guard lock(mutex_);
   walk_.At(time_s, axes);
