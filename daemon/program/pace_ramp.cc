@@ -13,6 +13,8 @@ constexpr double kWithin = 1.01;
 constexpr double kLonger = 1.25;
 constexpr double kShortest_periods = 4.0;
 constexpr double kLongest_s = 30.0;
+/// Of the limits.
+constexpr double kAtRest = 1e-6;
 
 /// Difference of the given order over points one period apart, oldest first.
 double Difference(const std::array<double, 4>& p, int order) {
@@ -31,12 +33,18 @@ PerAxis<double> PaceRamp::Place_m(double time) const {
   return place_m;
 }
 
+// Within what nobody could tell from rest: the end of a line is found by its number, to a fraction of a
+// period.
 bool PaceRamp::AtRest(double time) const {
   PerAxis<ReferencePoint> axes;
   plan_.At(std::max(0.0, time * period_s_), axes);
-  return std::all_of(axes.begin(), axes.end(), [](const ReferencePoint& p) {
-    return p.velocity_m_s == 0.0 && p.acceleration_m_s2 == 0.0 && p.extra_torque_Nm == 0.0;
-  });
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const ReferencePoint& p = axes[i];
+    if (std::abs(p.velocity_m_s) > kAtRest * limits_[i].velocity_m_s ||
+        std::abs(p.acceleration_m_s2) > kAtRest * limits_[i].acceleration_m_s2 || p.extra_torque_Nm != 0.0)
+      return false;
+  }
+  return true;
 }
 
 // What the axes need at the present speed, if the program did nothing else.

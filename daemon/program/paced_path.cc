@@ -71,13 +71,19 @@ double PacedPath::EndOfLine(double time) const {
   const MotionPlan& plan = *generator_->plan();
   const double period_s = generator_->period_s();
   double at = std::floor(time + kRounding) + 1.0;
-  const std::uint32_t line = plan.Line(at * period_s);
-  while (!IsLast(at) && plan.Line(at * period_s) == line) at += 1.0;
+  std::uint32_t line = 0;
+  // A dwell may belong to no line: then it belongs to the one before.
+  const auto goes_on = [&](double place) {
+    const std::uint32_t there = plan.Line(place * period_s);
+    if (line == 0) line = there;
+    return there == 0 || there == line;
+  };
+  while (!IsLast(at) && goes_on(at)) at += 1.0;
   if (IsLast(at)) return std::numeric_limits<double>::infinity();
   double low = at - 1.0;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + at);
-    (plan.Line(middle * period_s) == line ? low : at) = middle;
+    (goes_on(middle) ? low : at) = middle;
   }
   return at;
 }

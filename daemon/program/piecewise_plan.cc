@@ -160,8 +160,7 @@ void PiecewisePlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
 
 std::uint32_t PiecewisePlan::Line(double time_s) const {
   const Run& run = RunAt(time_s);
-  return static_cast<std::uint32_t>(
-      PieceAt(run, run.before_m + Along(run, time_s - run.begin_s).s_m).line);
+  return static_cast<std::uint32_t>(PieceAt(run, run.before_m + Along(run, time_s - run.begin_s).s_m).line);
 }
 
 double PiecewisePlan::Distance_m(const PerAxis<double>& point_m) const {

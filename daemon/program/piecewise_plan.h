@@ -54,8 +54,8 @@ class PiecewisePlan : public MotionPlan {
  private:
   struct Piece {
     CurvePiece curve;
-    double before_m = 0.0;   ///< way covered by the pieces before
-    int line = 0;  ///< of the program's text
+    double before_m = 0.0;  ///< way covered by the pieces before
+    int line = 0;           ///< of the program's text
   };
   /// Pieces driven through without a stop at one speed: changes of speed reach across them. Or the blend of a
   /// corner.

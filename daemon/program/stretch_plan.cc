@@ -1,5 +1,6 @@
 #include "daemon/program/stretch_plan.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace contour {
