@@ -34,11 +34,23 @@ struct Request {
   std::uint32_t program_id = 0;  ///< of kRun; of kTune the number of the change
 };
 
-/// One grid point of the path of a program, all axes.
+/// One grid point of the path of a program, all axes. What else there is to say of it stands in the log
+/// beside its axes, see PathPointFields of drivers/lcm/cycle_messages.cc.
 struct PathPoint {
+  /// Of points that do not say where they belong: behind the one before.
+  static constexpr std::uint64_t kNextIndex = ~std::uint64_t{0};
+  /// Of points that do not say when they belong: the program runs at its own pace.
+  static constexpr double kOwnPace = -1.0;
+
   std::uint32_t program_id = 0;
   bool last = false;  ///< the path ends here, at rest
   PerAxis<ReferencePoint> axes;
+  std::uint64_t index = kNextIndex;  ///< number of the point, one a period from 0
+  /// Number of the law of time by which the points follow one another; it begins at 0. The first point of
+  /// another law takes the place of the one with its index and of all that follow.
+  std::uint32_t law = 0;
+  std::uint32_t line = 0;            ///< of the program's text; 0 unknown
+  double program_time_s = kOwnPace;  ///< place on the program's own time axis
 };
 
 /// What the auxiliary I/O permits. Inputs can only take permission away; old data counts as open.

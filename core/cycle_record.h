@@ -70,6 +70,8 @@ struct CycleRecord {
   bool acknowledged_ok = false;    ///< false: refused in this state
   std::uint32_t program_id = 0;    ///< of the program that runs or ran last
   double path_time_s = 0.0;        ///< position on the program's time axis, of the feedback's instant
+  double pace = 0.0;               ///< program time per time; 1 as programmed, 0 paused. Not in the log
+  std::uint32_t program_line = 0;  ///< of its text; 0 unknown. Not in the log
   double contour_error_m = 0.0;    ///< seen at the encoder; shortest distance to the path nearby
   double lag_error_m = 0.0;        ///< along the path, positive behind
   std::uint16_t path_points_waiting = 0;

@@ -1,33 +1,104 @@
 #include "daemon/path_feeder.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace contour {
+namespace {
 
-void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator) {
-  generator_ = std::move(generator);
+/// So many points later than the cycle would take it a law begins: it takes time to plan and to hand over.
+/// After one that came too late it is twice as many.
+constexpr std::uint64_t kFirstMargin = 16;
+constexpr std::uint64_t kLargestMargin = 512;
+/// Calls of Feed() after which is looked again for a way to another pace, where there was none.
+constexpr std::uint32_t kLookAgain = 32;
+/// This part of the queue is kept free, so that behind the first point of another law there are enough at
+/// once.
+constexpr std::size_t kKeptFree = 4;
+
+}  // namespace
+
+void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options) {
+  path_ = std::make_unique<PacedPath>(std::move(generator), options);
+  wanted_ = options.rate;
+  resume_ = resuming_ = false;
+  margin_ = kFirstMargin;
+  rest_ = 0;
+  burst_ = 0;
   holding_ = false;
   mailbox_.SetPathSupply(true);
   Feed();
 }
 
+// What waits in the queue is of no use any more; what comes now may use the place that was kept for it.
+void PathFeeder::GiveAnew() {
+  mailbox_.SkipPath();
+  burst_ = mailbox_.path_capacity() / kKeptFree;
+  holding_ = false;
+}
+
+// What became of the law that was handed over last.
+void PathFeeder::Hear() {
+  const PathProgress progress = mailbox_.path_progress();
+  if (progress.law == path_->law_number()) {
+    path_->Taken();
+    margin_ = kFirstMargin;
+  } else if (progress.refused_law == path_->law_number()) {
+    GiveAnew();
+    path_->Refused(progress.end);
+    margin_ = std::min(2 * margin_, kLargestMargin);
+    resume_ = resume_ || resuming_;
+  }
+}
+
+void PathFeeder::ChangePace() {
+  if (rest_ != 0) {
+    --rest_;
+    return;
+  }
+  const PathProgress progress = mailbox_.path_progress();
+  if (progress.earliest == PathProgress::kNowhere) return;
+  switch (path_->ChangePace(progress.earliest + margin_, progress.end, wanted_, resume_)) {
+    case PacedPath::Change::kPlanned:
+      GiveAnew();
+      mailbox_.SetPathSupply(true);
+      resuming_ = resume_;
+      resume_ = false;
+      return;
+    case PacedPath::Change::kNothing:
+      // The program ends before it could come to another pace.
+      wanted_ = path_->rate();
+      resume_ = false;
+      return;
+    case PacedPath::Change::kLater:
+      rest_ = kLookAgain;
+      return;
+  }
+}
+
 bool PathFeeder::Feed() {
-  if (!generator_) return false;
+  if (!path_) return false;
+  if (path_->pending()) Hear();
+  if (!path_->pending() && (path_->rate() != wanted_ || resume_)) ChangePace();
   for (;;) {
     if (!holding_) {
-      if (!generator_->Next(held_)) {
-        Abandon();
+      if (!path_->Next(held_)) {
+        // It stays: until the cycle has got to its end, a pause may still come.
+        mailbox_.SetPathSupply(false);
         return false;
       }
       holding_ = true;
     }
+    const std::size_t kept = burst_ > 0 ? 0 : mailbox_.path_capacity() / kKeptFree;
+    if (mailbox_.path_points_waiting() + kept >= mailbox_.path_capacity()) return true;
     if (!mailbox_.PushPathPoint(held_)) return true;
+    burst_ -= burst_ > 0 ? 1 : 0;
     holding_ = false;
   }
 }
 
 void PathFeeder::Abandon() {
-  generator_.reset();
+  path_.reset();
   holding_ = false;
   mailbox_.SetPathSupply(false);
 }

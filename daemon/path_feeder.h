@@ -1,14 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
-#include "daemon/program/path_generator.h"
+#include "daemon/program/paced_path.h"
 #include "daemon/rt/command_mailbox.h"
 
 namespace contour {
 
-/// Keeps the mailbox's path queue filled from a generator. But for Announce() one thread: the mailbox's path
-/// writer.
+/// Keeps the mailbox's path queue filled with a program's points, and makes the cycle change their pace. But
+/// for Announce() one thread: the mailbox's path writer.
 class PathFeeder {
  public:
   explicit PathFeeder(CommandMailbox& mailbox) : mailbox_(mailbox) {}
@@ -16,17 +17,37 @@ class PathFeeder {
   /// Any thread, before the cycle is asked to run the program: points are to come. Lock-step time waits for
   /// them, however late Begin() is called; it could go by for as long as a program is waited for.
   void Announce() { mailbox_.SetPathSupply(true); }
-  void Begin(std::unique_ptr<PathGenerator> generator);
+  void Begin(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options = {});
+  /// The pace that the program shall go to as soon as it can; 0 is a pause. `resume`: it leaves the end of a
+  /// line, where single block has it rest.
+  void SetPace(double rate, bool resume = false) {
+    wanted_ = rate;
+    resume_ = resume;
+  }
   /// Hands over what the queue has room for. Returns whether more is to come.
   bool Feed();
   /// The program is over or was given up: no more points.
   void Abandon();
 
-  [[nodiscard]] const PathGenerator* generator() const { return generator_.get(); }
+  /// The pace wanted is the one that the cycle has been handed, or there is no program any more that could
+  /// take it.
+  [[nodiscard]] bool settled() const { return !path_ || (!path_->pending() && path_->rate() == wanted_); }
+  /// The program that is supplied; null when there is none.
+  [[nodiscard]] const PacedPath* path() const { return path_.get(); }
 
  private:
+  void ChangePace();
+  void Hear();
+  void GiveAnew();
+
   CommandMailbox& mailbox_;
-  std::unique_ptr<PathGenerator> generator_;
+  std::unique_ptr<PacedPath> path_;
+  double wanted_ = 1.0;
+  bool resume_ = false;
+  bool resuming_ = false;     ///< so does the law that is pending
+  std::uint64_t margin_ = 0;  ///< points between what the cycle said was possible and what it is handed
+  std::size_t burst_ = 0;     ///< points that may go where place is kept
+  std::uint32_t rest_ = 0;    ///< calls until the next attempt
   PathPoint held_;
   bool holding_ = false;
 };

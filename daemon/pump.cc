@@ -40,11 +40,18 @@ void Pump::Finish() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Pump::Supply(std::unique_ptr<PathGenerator> generator) {
+void Pump::Supply(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options) {
   const std::scoped_lock lock(mutex_);
   next_ = std::move(generator);
+  next_options_ = options;
+  pace_.reset();
   abandon_ = false;
   feeder_.Announce();
+}
+
+void Pump::SetPace(double rate, bool resume) {
+  const std::scoped_lock lock(mutex_);
+  pace_ = {rate, resume || (pace_ && pace_->resume)};
 }
 
 void Pump::Abandon() {
@@ -95,6 +102,7 @@ void Pump::Drain() {
     Report(entry->output.record);
     ReportReferences(entry->output.record);
     MeasureMotion(entry->output.record);
+    tally_.Consume(entry->output.record);
     queue_.Release();
   }
   if (snapshots_ != nullptr) {
@@ -181,7 +189,9 @@ void Pump::Feed() {
       feeder_.Abandon();
       abandon_ = false;
     }
-    if (next_) feeder_.Begin(std::move(next_));
+    if (next_) feeder_.Begin(std::move(next_), next_options_);
+    if (pace_) feeder_.SetPace(pace_->rate, pace_->resume);
+    pace_.reset();
   }
   feeder_.Feed();
 }

@@ -5,12 +5,14 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "daemon/path_feeder.h"
+#include "daemon/program_tally.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/state_snapshots.h"
 #include "daemon/rt/telemetry_queue.h"
@@ -44,8 +46,13 @@ class Pump {
   bool AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time) const;
 
   /// Supply this program's points until they are all handed over or the program is abandoned.
-  void Supply(std::unique_ptr<PathGenerator> generator);
+  void Supply(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options = {});
+  /// The pace that the program shall go to, as PathFeeder::SetPace has it.
+  void SetPace(double rate, bool resume);
   void Abandon();
+
+  /// What has come so far of the program that runs, or ran last. Any thread.
+  [[nodiscard]] TallyOfProgram tally() const { return tally_.tally(); }
 
  private:
   void Work();
@@ -63,8 +70,15 @@ class Pump {
   std::vector<std::string> axis_names_;
   std::vector<std::string> bus_names_;
   PathFeeder feeder_;  ///< pump thread only, but for Announce()
-  std::mutex mutex_;   ///< guards next_ and abandon_
+  ProgramTally tally_;
+  std::mutex mutex_;  ///< guards the next four
   std::unique_ptr<PathGenerator> next_;
+  PacedPath::Options next_options_;
+  struct Pace {
+    double rate;
+    bool resume;
+  };
+  std::optional<Pace> pace_;
   bool abandon_ = false;
   MachineState last_state_ = MachineState::kOff;
   Reason last_reason_ = Reason::kNone;

@@ -55,7 +55,8 @@ Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, 
       bus_names_(BusNames(machine)),
       limits_(ProgramLimits(machine)),
       parts_(parts),
-      answers_(parts.queue.board()) {
+      answers_(parts.queue.board()),
+      pace_(parts.pump) {
   for (const auto& [name, axis] : machine.axes)
     encoder_counts_m_.push_back(axis.model.mechanics.lead_mm * 1e-3 / axis.drive.encoder_counts_per_rev);
   for (const auto& [name, bus] : machine.buses) interfaces_.push_back(bus.interface);
@@ -163,6 +164,7 @@ Answer Supervisor::Reference(const std::map<std::string, double>& position_mm,
   for (const std::uint32_t code : codes) {
     answer = Ask(RequestKind::kReference, unwanted, code);
     if (!answer.accepted) return answer;
+    zero_.Lose("an axis was told where it is");
   }
   spdlog::info("told where the axes are: {}", told);
   return answer;
@@ -245,29 +247,36 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
   if (now.state != MachineState::kReady)
     return {false, RefusalText(now, RequestKind::kRun, axis_names_, bus_names_), 0, 0};
   try {
-    const Program program = ParseProgram(
-        upload.text, upload.name, upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml);
-    PerAxis<double> start_m;
-    for (const AxisRecord& a : now.axes) start_m.push_back(a.reference.position_m);
-    auto generator = std::make_unique<PathGenerator>(program, start_m, LimitsNow(limits_, now),
+    const ProgramZero::Found found = zero_.ForProgram(now, upload.from_here);
+    if (!found.place) return {false, found.refused};
+    const PerAxis<PlanLimits> limits = LimitsNow(limits_, now);
+    const bool referenced = std::all_of(now.axes.begin(), now.axes.end(),
+                                        [](const AxisRecord& a) { return IsReferenced(a.reference_state); });
+    const Program program = ReadPlaced(
+        {upload.text, upload.name, upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml},
+        *found.place, limits, {referenced, upload.part});
+    auto generator = std::make_unique<PathGenerator>(PlanPlaced(program, *found.place, limits), limits,
                                                      cycle_us_ * 1e-6, ++program_id_);
     const double duration_s = generator->duration_s();
     // Planning takes its time; nothing is learnt, noted or supplied for nobody.
     if (unwanted.stop_requested()) return {false, kUnwanted};
     parts_.pump.AwaitShown(now.cycle, kPumpTimeout);
-    const LearningReport learnt = Learn(upload, start_m, *generator);
+    const LearningReport learnt = Learn(upload, *found.place, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
     // The points wait in the queue until the cycle has taken the request and expects them.
-    parts_.pump.Supply(std::move(generator));
+    parts_.pump.Supply(std::move(generator), PacedPath::Options{pace_.Begin(), upload.part.single_block});
     Answer answer = Ask(RequestKind::kRun, unwanted, program_id_);
     answer.program_id = program_id_;
-    answer.start_m = start_m;
+    answer.start_m = found.place->start_m;
+    answer.zero_m = found.place->zero_m;
+    answer.zero_set = found.set_now;
     answer.learnt_passes = learnt.passes;
     answer.best_peak_um = learnt.best_peak_um;
     if (!answer.accepted) {
       parts_.pump.Abandon();
       return answer;
     }
+    if (found.set_now) zero_.Set(now);
     const std::lock_guard lock(program_);
     program_name_ = upload.name;
     program_duration_s_ = duration_s;
@@ -277,16 +286,30 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
   }
 }
 
-LearningReport Supervisor::Learn(const ProgramUpload& upload, const PerAxis<double>& start_m,
+LearningReport Supervisor::Learn(const ProgramUpload& upload, const Placement& place,
                                  PathGenerator& generator) {
   if (upload.forget) parts_.learning.Forget();
+  // A program that has to go to its zero first is another one than the same program that stands there.
+  std::string text = upload.text;
+  for (std::size_t i = 0; i < place.zero_m.size(); ++i)
+    text += '\n' + RoundedText(1e3 * (place.start_m[i] - place.zero_m[i]));
   const LearningReport report =
-      parts_.learning.Prepare(upload.text, start_m, program_id_, generator).value_or(LearningReport());
+      parts_.learning.Prepare(text, place.zero_m, program_id_, generator).value_or(LearningReport());
   if (!report.refused.empty()) spdlog::warn("the last pass taught nothing: {}", report.refused);
   if (report.passes > 0)
     spdlog::info("{}: passes learnt from: {}; largest error seen by the scales {:.2f} um, best {:.2f} um",
                  upload.name, report.passes, report.last_peak_um, report.best_peak_um);
   return report;
+}
+
+Answer Supervisor::Zero() {
+  const CycleRecord now = answers_.record();
+  if (now.state != MachineState::kReady && now.state != MachineState::kIdle)
+    return {false, "the machine is " + std::string(Name(now.state)) +
+                       "; program zero is set where it stands, in Ready or Idle"};
+  zero_.Set(now);
+  spdlog::info("program zero is where the machine stands");
+  return {true, {}};
 }
 
 MachineStatus Supervisor::Status() {
@@ -314,6 +337,13 @@ MachineStatus Supervisor::Status() {
     out.program_name = program_name_;
     out.program_duration_s = program_duration_s_;
   }
+  out.pace = pace_.Status(out.record);
+  if (const TallyOfProgram tally = parts_.pump.tally(); tally.program_id == out.record.program_id) {
+    out.program_ran_s = static_cast<double>(tally.cycles) * cycle_us_ * 1e-6;
+    out.contour_error_peak_m = tally.contour_error_peak_m;
+    out.contour_error_rms_m = tally.contour_error_rms_m;
+  }
+  out.zero_m = zero_.zero_m();
   out.cycles = parts_.loop.counters().cycles.load();
   if (clock_ == "wall") out.late_cycles = parts_.loop.counters().late_cycles.load();
   out.skipped_grid_points = parts_.loop.counters().skipped_grid_points.load();

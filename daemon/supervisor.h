@@ -14,7 +14,9 @@
 #include "control/contour_controller.h"
 #include "daemon/control_socket/operator_desk.h"
 #include "daemon/learning/program_learning.h"
+#include "daemon/pace_control.h"
 #include "daemon/program/motion_plan.h"
+#include "daemon/program_zero.h"
 #include "daemon/pump.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/loop.h"
@@ -54,6 +56,8 @@ class Supervisor final : public OperatorDesk {
   Answer Reload() override;
   Answer LoadModel(const std::string& axis, const std::string& yaml) override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
+  Answer Zero() override;
+  Answer Pace(const PaceRequest& request) override { return pace_.Change(request, answers_.record()); }
   MachineStatus Status() override;
   std::string MachineFile() override;
   void Attach(std::shared_ptr<RowFeed> feed) override;
@@ -73,7 +77,7 @@ class Supervisor final : public OperatorDesk {
   [[nodiscard]] std::optional<Answer> Look(RequestKind kind, std::uint32_t sequence);
   std::uint32_t Post(RequestKind kind, std::uint32_t program_id = 0);
   void TakeBack(RequestKind kind);
-  [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const PerAxis<double>& start_m,
+  [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const Placement& place,
                                      PathGenerator& generator);
 
   MachineConfig machine_;  ///< as it runs now
@@ -94,6 +98,8 @@ class Supervisor final : public OperatorDesk {
   PerAxis<double> encoder_counts_m_;  ///< way of the table per encoder count
   SupervisedParts parts_;
   CycleAnswers answers_;
+  PaceControl pace_;
+  ProgramZero zero_;
   std::atomic<bool> loop_ended_{false};
   std::mutex
       posting_;  ///< requests come from two threads of the socket's and from SIGHUP, a stop from anywhere

@@ -1,5 +1,6 @@
 #include "daemon/control_socket/machine_status.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -44,6 +45,15 @@ json Axis(const std::string& name, const AxisRecord& a) {
       {"estimate_limit", Name(a.estimate.limit)},
       {"estimate_diverged", a.estimate.diverged},
   };
+}
+
+/// Where programs count from, axis by axis; null before it is set.
+json Zero(const MachineStatus& s) {
+  if (!s.zero_m) return nullptr;
+  json zero = json::object();
+  for (std::size_t i = 0; i < s.zero_m->size() && i < s.axis_names.size(); ++i)
+    zero[s.axis_names[i]] = (*s.zero_m)[i] * 1e3;
+  return zero;
 }
 
 json Facts(const AxisFacts& f) {
@@ -161,6 +171,30 @@ json Lcm(const PublisherStats& p) {
   return {{"messages", p.messages}, {"failures", p.failures}, {"last_error", p.last_error}};
 }
 
+/// Of the program that runs, at the feed that is wanted; null in a pause, and when none runs.
+json TimeLeft_s(const MachineStatus& s) {
+  const bool goes = s.record.state == MachineState::kRunning && !s.pace.pause_wanted;
+  if (!goes || s.pace.feed_percent <= 0.0 || s.program_duration_s <= 0.0) return nullptr;
+  return std::max(0.0, s.program_duration_s - s.record.path_time_s) / (0.01 * s.pace.feed_percent);
+}
+
+json ProgramNow(const MachineStatus& s) {
+  const CycleRecord& r = s.record;
+  return {{"id", r.program_id},
+          {"name", s.program_name},
+          {"time_s", Number(r.path_time_s)},
+          {"duration_s", Number(s.program_duration_s)},
+          {"left_s", TimeLeft_s(s)},
+          {"ran_s", s.program_ran_s},
+          {"contour_error_peak_m", Number(s.contour_error_peak_m)},
+          {"contour_error_rms_m", Number(s.contour_error_rms_m)},
+          {"line", r.program_line != 0 ? json(r.program_line) : json(nullptr)},
+          {"feed_percent", s.pace.feed_percent},
+          {"pace", Number(r.pace)},
+          {"pausing", s.pace.pause_wanted},
+          {"paused", s.pace.paused}};
+}
+
 }  // namespace
 
 nlohmann::json ToJson(const MachineStatus& s) {
@@ -181,11 +215,8 @@ nlohmann::json ToJson(const MachineStatus& s) {
       {"bring_up", s.bring_up},
       {"cycle", r.cycle},
       {"acknowledged", r.acknowledged},
-      {"program",
-       {{"id", r.program_id},
-        {"name", s.program_name},
-        {"time_s", Number(r.path_time_s)},
-        {"duration_s", Number(s.program_duration_s)}}},
+      {"program", ProgramNow(s)},
+      {"zero_mm", Zero(s)},
       {"contour_error_m", Number(r.contour_error_m)},
       {"lag_error_m", Number(r.lag_error_m)},
       {"axes", Axes(s)},

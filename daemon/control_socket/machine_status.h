@@ -31,6 +31,13 @@ struct AxisFacts {
   double encoder_count_m = 0.0;  ///< way of the table per encoder count
 };
 
+/// A program's pace as operators want it.
+struct PaceStatus {
+  double feed_percent = 100.0;  ///< of the programmed feed; of the programs to come, too
+  bool pause_wanted = false;
+  bool paused = false;  ///< and it has come to rest
+};
+
 /// Everything `contour status` shows. Axes, buses and names are in the order of the machine file.
 struct MachineStatus {
   std::string machine;
@@ -43,11 +50,16 @@ struct MachineStatus {
   std::vector<AxisFacts> axis_facts;  ///< one per axis
   std::vector<std::string> warnings;  ///< what the start complained of, such as refused real time
 
-  CycleRecord record;               ///< of the newest cycle
-  std::string bring_up;             ///< sentence on where bring-up stands or why it failed; may be empty
-  std::string reason_text;          ///< sentence on record.reason; empty when there is none
-  std::string program_name;         ///< of record.program_id; may be empty
-  double program_duration_s = 0.0;  ///< 0 unknown
+  CycleRecord record;                 ///< of the newest cycle
+  std::string bring_up;               ///< sentence on where bring-up stands or why it failed; may be empty
+  std::string reason_text;            ///< sentence on record.reason; empty when there is none
+  std::string program_name;           ///< of record.program_id; may be empty
+  double program_duration_s = 0.0;    ///< 0 unknown
+  double program_ran_s = 0.0;         ///< so far, pauses among it
+  double contour_error_peak_m = 0.0;  ///< of this program so far, at the encoders
+  double contour_error_rms_m = 0.0;
+  PaceStatus pace;
+  std::optional<PerAxis<double>> zero_m;  ///< where programs count from; nothing: it is not set
 
   std::uint64_t cycles = 0;
   std::optional<std::uint64_t> late_cycles;  ///< nothing where time is not the wall's

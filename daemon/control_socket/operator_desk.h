@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 
 #include "daemon/control_socket/machine_status.h"
+#include "daemon/program/part_of_program.h"
 #include "daemon/telemetry/row_feed.h"
 
 namespace contour {
@@ -18,15 +20,25 @@ struct ProgramUpload {
   std::string text;        ///< the program itself
   std::string controller;  ///< empty: the one in use
   bool forget = false;     ///< what has been learnt of programs is forgotten first
+  PartOfProgram part{};    ///< of G-code
+  bool from_here = false;  ///< it counts from where the machine stands, whatever program zero is
+};
+
+/// What is to become of a program's pace; what is not said stays.
+struct PaceRequest {
+  std::optional<bool> paused{};
+  std::optional<double> feed_percent{};  ///< of the programmed feed
 };
 
 /// What became of a request.
 struct Answer {
   bool accepted = false;
-  std::string reason;             ///< why it was refused, one sentence; empty when accepted
-  std::uint32_t sequence = 0;     ///< as CycleRecord::acknowledged counts; 0 when it never reached the cycle
-  std::uint32_t program_id = 0;   ///< Run() only: what CycleRecord::program_id will say
-  PerAxis<double> start_m{};      ///< Run() only: where the program was placed
+  std::string reason;            ///< why it was refused, one sentence; empty when accepted
+  std::uint32_t sequence = 0;    ///< as CycleRecord::acknowledged counts; 0 when it never reached the cycle
+  std::uint32_t program_id = 0;  ///< Run() only: what CycleRecord::program_id will say
+  PerAxis<double> start_m{};     ///< Run() only: where the machine stood
+  PerAxis<double> zero_m{};      ///< Run() only: where the program counts from
+  bool zero_set = false;         ///< Run() only: there was no program zero, so it is where the machine stands
   std::size_t learnt_passes = 0;  ///< Run() only: that this program is shifted by what they taught
   double best_peak_um = 0.0;      ///< largest error that the scales saw on the best of them
 };
@@ -61,6 +73,11 @@ class OperatorDesk {
   /// Idle, and is Idle again when that is done. Refused before anything ends where it could not begin.
   virtual Answer LoadModel(const std::string& axis, const std::string& yaml) = 0;
   virtual Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) = 0;
+  /// Programs count from where the machine stands from now on. As the next.
+  virtual Answer Zero() = 0;
+  /// Pause, resume and feed. Returns at once, and may be called from the thread of Status(): the status says
+  /// when the machine has got there.
+  virtual Answer Pace(const PaceRequest& request) = 0;
   virtual MachineStatus Status() = 0;
   /// The machine file as it was read, overrides and defaults in it: YAML that reads back as the same.
   virtual std::string MachineFile() = 0;

@@ -15,6 +15,7 @@ constexpr int kShortestWatch_ms = 20;
 constexpr int kLongestWatch_ms = 60'000;
 /// A request is an object of plain values. The parser would follow a line of brackets to its end.
 constexpr int kDeepest = 8;
+constexpr int kMostLines = 100'000'000;
 
 /// A request that makes no sense; the text goes to the client.
 class BadRequest : public std::runtime_error {
@@ -36,6 +37,13 @@ bool Flag(const json& request, const char* key) {
   return at->get<bool>();
 }
 
+int Line(const json& request, const char* key) {
+  const auto at = request.find(key);
+  if (!at->is_number_integer() || *at < 1 || *at > kMostLines)
+    throw BadRequest(std::string("\"") + key + "\" must be the number of a line");
+  return at->get<int>();
+}
+
 json Reply(const Answer& answer) {
   if (!answer.accepted) return {{"ok", false}, {"error", answer.reason}, {"sequence", answer.sequence}};
   return {{"ok", true}, {"sequence", answer.sequence}};
@@ -54,6 +62,10 @@ json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwante
   }
   if (request.contains("controller")) upload.controller = Text(request, "controller");
   if (request.contains("forget")) upload.forget = Flag(request, "forget");
+  if (request.contains("from_here")) upload.from_here = Flag(request, "from_here");
+  if (request.contains("single_block")) upload.part.single_block = Flag(request, "single_block");
+  if (request.contains("go_there")) upload.part.go_there = Flag(request, "go_there");
+  if (request.contains("from_line")) upload.part.from_line = Line(request, "from_line");
   if (upload.format != "yaml" && upload.format != "ngc")
     throw BadRequest("\"format\" must be \"yaml\" or \"ngc\"");
   const Answer answer = desk.Run(upload, unwanted);
@@ -61,6 +73,8 @@ json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwante
   if (answer.accepted) {
     reply["program_id"] = answer.program_id;
     reply["start_m"] = std::vector<double>(answer.start_m.begin(), answer.start_m.end());
+    reply["zero_m"] = std::vector<double>(answer.zero_m.begin(), answer.zero_m.end());
+    reply["zero_set"] = answer.zero_set;
     reply["learnt_passes"] = answer.learnt_passes;
     if (answer.learnt_passes > 0) reply["best_peak_um"] = answer.best_peak_um;
   }
@@ -77,6 +91,12 @@ json Reference(const json& request, OperatorDesk& desk, const std::stop_token& u
     position_mm[axis] = value.get<double>();
   }
   return Reply(desk.Reference(position_mm, unwanted));
+}
+
+json Feed(const json& request, OperatorDesk& desk) {
+  const auto at = request.find("percent");
+  if (at == request.end() || !at->is_number()) throw BadRequest("\"percent\" must be there and be a number");
+  return Reply(desk.Pace({{}, at->get<double>()}));
 }
 
 json Watch(const json& request, Subscriptions& subscriptions) {
@@ -100,6 +120,10 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   if (kind == "enable") return Reply(desk.Enable(unwanted));
   if (kind == "disable") return Reply(desk.Disable());
   if (kind == "stop") return Reply(desk.Stop());
+  if (kind == "pause") return Reply(desk.Pace({true, {}}));
+  if (kind == "resume") return Reply(desk.Pace({false, {}}));
+  if (kind == "zero") return Reply(desk.Zero());
+  if (kind == "feed") return Feed(request, desk);
   if (kind == "reset") return Reply(desk.Reset(unwanted));
   if (kind == "reference") return Reference(request, desk, unwanted);
   if (kind == "reload") {
@@ -116,8 +140,8 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     return {{"ok", true}};
   }
   throw BadRequest("unknown request \"" + kind +
-                   "\"; there are status, machine_file, enable, disable, stop, reset, reference, reload, "
-                   "load_model, upload, run, watch, rows");
+                   "\"; there are status, machine_file, enable, disable, stop, pause, resume, feed, "
+                   "zero, reset, reference, reload, load_model, upload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }
@@ -165,6 +189,13 @@ json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& sub
   }
 }
 
+/// By the thread that serves the socket: nothing of it waits.
+bool AnsweredAtOnce(std::string_view kind) {
+  for (const char* at_once : {"watch", "rows", "pause", "resume", "feed", "zero"})
+    if (kind == at_once) return true;
+  return false;
+}
+
 }  // namespace
 
 RequestHead HeadOf(std::string_view line) noexcept {
@@ -181,7 +212,7 @@ RequestHead HeadOf(std::string_view line) noexcept {
       head.kind = RequestClass::kDisable;
     } else if (kind == "upload") {
       head.kind = RequestClass::kUpload;
-    } else if (!head.status && kind != "watch" && kind != "rows") {
+    } else if (!head.status && !AnsweredAtOnce(kind)) {
       head.kind = RequestClass::kWaits;
     }
     head.uploaded = kind == "run" && request.value("uploaded", false);

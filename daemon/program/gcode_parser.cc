@@ -7,7 +7,7 @@
 namespace contour {
 
 GcodeMoves ParseGcode(std::string_view text, const std::string& name, const GcodeSettings& settings) {
-  MoveList list(name);
+  MoveList list(name, settings.start_m);
   ProgramRun(text, name, settings, [&](const CanonicalMove& move) { list.Add(move); }).Run();
   return list.Finish();
 }

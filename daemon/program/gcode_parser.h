@@ -14,6 +14,8 @@ struct GcodeSettings {
   /// Where program zero is in the machine's coordinates, for X Y Z U V W; nothing: the machine is not
   /// referenced, and G28, G30 and G53 are refused.
   std::optional<std::array<double, 6>> zero_m;
+  /// Where the machine stands when the program starts, from program zero.
+  std::array<double, 6> start_m{};
 };
 
 /// Reads RS-274 G-code as docs/programs.md lists it. `name` stands for the file in messages.

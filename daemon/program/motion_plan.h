@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,6 +51,9 @@ class MotionPlan {
   /// Reference at a time since the start, held at either end. Velocity and acceleration are the exact
   /// derivatives of position (from the right, at a corner taken at full feed).
   virtual void At(double time_s, PerAxis<ReferencePoint>& axes) const = 0;
+
+  /// Line of the program's text that is carried out at a time since the start; 0 unknown.
+  [[nodiscard]] virtual std::uint32_t Line(double /*time_s*/) const { return 0; }
 
   /// Shortest distance from a point (one coordinate per axis) to the whole curve.
   [[nodiscard]] virtual double Distance_m(const PerAxis<double>& point_m) const = 0;

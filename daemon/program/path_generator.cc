@@ -12,7 +12,11 @@ constexpr double kRounding = 1e-6;
 
 PathGenerator::PathGenerator(const Program& program, const PerAxis<double>& start_m,
                              const PerAxis<PlanLimits>& limits, double period_s, std::uint32_t program_id)
-    : plan_(PlanMotion(program, start_m, limits)), period_s_(period_s), program_id_(program_id) {}
+    : PathGenerator(PlanMotion(program, start_m, limits), limits, period_s, program_id) {}
+
+PathGenerator::PathGenerator(std::shared_ptr<const MotionPlan> plan, const PerAxis<PlanLimits>& limits,
+                             double period_s, std::uint32_t program_id)
+    : plan_(std::move(plan)), limits_(limits), period_s_(period_s), program_id_(program_id) {}
 
 std::uint64_t PathGenerator::points() const {
   return static_cast<std::uint64_t>(std::ceil(plan_->duration_s() / period_s_ - kRounding)) + 1;

@@ -19,12 +19,20 @@ class PathGenerator {
   PathGenerator(const Program& program, const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits,
                 double period_s, std::uint32_t program_id);
 
+  /// Of a program that is placed already.
+  PathGenerator(std::shared_ptr<const MotionPlan> plan, const PerAxis<PlanLimits>& limits, double period_s,
+                std::uint32_t program_id);
+
   /// Hand the points out shifted from now on; null: as they are.
   void Shift(std::shared_ptr<const PathOffsets> offsets) { offsets_ = std::move(offsets); }
 
   /// The next grid point; false when the last one has been handed out.
   bool Next(PathPoint& point);
 
+  [[nodiscard]] const PerAxis<PlanLimits>& limits() const { return limits_; }
+  [[nodiscard]] double period_s() const { return period_s_; }
+  [[nodiscard]] std::uint32_t program_id() const { return program_id_; }
+  [[nodiscard]] const std::shared_ptr<const PathOffsets>& offsets() const { return offsets_; }
   /// Altogether; plans all of the program.
   [[nodiscard]] std::uint64_t points() const;
   [[nodiscard]] std::uint64_t points_done() const { return next_; }
@@ -33,6 +41,7 @@ class PathGenerator {
 
  private:
   std::shared_ptr<const MotionPlan> plan_;
+  PerAxis<PlanLimits> limits_;
   double period_s_;
   std::uint32_t program_id_;
   bool done_ = false;

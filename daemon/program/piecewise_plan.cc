@@ -46,7 +46,7 @@ PiecewisePlan::PiecewisePlan(std::vector<PieceRequest> requests, const PathTrait
     if (r.speed_m_s == 0.0 && r.curve.length_m > 0.0) r.speed_m_s = LargestSpeed_m_s(r.curve, limits);
     CheckPiece(r, limits);
     ramps.push_back(RampLimitsOf(r, ramp_limits));
-    pieces_.push_back({r.curve, way_m});
+    pieces_.push_back({r.curve, way_m, r.line});
     way_m += r.curve.length_m;
   }
   if (blended) {
@@ -156,6 +156,11 @@ void PiecewisePlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
     axes[i].acceleration_m_s2 =
         p.tangent[i] * along.acceleration_m_s2 + p.curvature_1_m[i] * along.speed_m_s * along.speed_m_s;
   }
+}
+
+std::uint32_t PiecewisePlan::Line(double time_s) const {
+  const Run& run = RunAt(time_s);
+  return static_cast<std::uint32_t>(PieceAt(run, run.before_m + Along(run, time_s - run.begin_s).s_m).line);
 }
 
 double PiecewisePlan::Distance_m(const PerAxis<double>& point_m) const {

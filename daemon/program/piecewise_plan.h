@@ -43,6 +43,7 @@ class PiecewisePlan : public MotionPlan {
   [[nodiscard]] std::size_t axis_count() const override { return axis_count_; }
   [[nodiscard]] double duration_s() const override { return duration_s_; }
   void At(double time_s, PerAxis<ReferencePoint>& axes) const override;
+  [[nodiscard]] std::uint32_t Line(double time_s) const override;
   [[nodiscard]] double Distance_m(const PerAxis<double>& point_m) const override;
   [[nodiscard]] double Turns(double time_s) const override;
   [[nodiscard]] bool Scored(double time_s) const override;
@@ -54,6 +55,7 @@ class PiecewisePlan : public MotionPlan {
   struct Piece {
     CurvePiece curve;
     double before_m = 0.0;  ///< way covered by the pieces before
+    int line = 0;           ///< of the program's text
   };
   /// Pieces driven through without a stop at one speed: changes of speed reach across them. Or the blend of a
   /// corner.

@@ -261,10 +261,10 @@ std::shared_ptr<const MotionPlan> Plan(const TogetherShape& shape, const Place& 
   return std::make_shared<TogetherPlan>(std::move(plans), place.limits, place.program.name);
 }
 
-CurvePiece Helix(const Place& place, const PerAxis<double>& at, const PerAxis<double>& target,
+CurvePiece Helix(const PerAxis<double>& zero_m, const PerAxis<double>& at, const PerAxis<double>& target,
                  const Plane& plane, const GcodeMove& move) {
   return HelixPiece(at, target, plane,
-                    {place.start_m[plane[0]] + move.centre_m[0], place.start_m[plane[1]] + move.centre_m[1]},
+                    {zero_m[plane[0]] + move.centre_m[0], zero_m[plane[1]] + move.centre_m[1]},
                     move.sweep_rad);
 }
 
@@ -276,10 +276,12 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
   }
   std::vector<PieceRequest> requests;
   double longest_s = 0.0;
+  PerAxis<double> zero_m = place.start_m;
+  for (std::size_t k = 0; k < axis.size(); ++k) zero_m[axis[k]] -= program.start_m[k];
   PerAxis<double> at = place.start_m;
   for (const GcodeMove& move : program.moves) {
     PerAxis<double> target = at;
-    for (std::size_t k = 0; k < axis.size(); ++k) target[axis[k]] = place.start_m[axis[k]] + move.target_m[k];
+    for (std::size_t k = 0; k < axis.size(); ++k) target[axis[k]] = zero_m[axis[k]] + move.target_m[k];
     PieceRequest request;
     request.origin = place.program.name + ":" + std::to_string(move.line);
     request.speed_m_s = move.kind == GcodeMove::Kind::kRapid ? 0.0 : move.feed_m_s;
@@ -297,7 +299,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
         request.curve = LinePiece(at, target);
         break;
       case GcodeMove::Kind::kArc:
-        request.curve = Helix(place, at, target, {axis[move.plane[0]], axis[move.plane[1]]}, move);
+        request.curve = Helix(zero_m, at, target, {axis[move.plane[0]], axis[move.plane[1]]}, move);
         break;
     }
     requests.push_back(request);

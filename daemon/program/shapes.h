@@ -310,6 +310,8 @@ struct GcodeEvent {
 struct GcodeMoves {
   std::string letters;            ///< axis letters in use; letter X is the machine's axis `x`
   std::vector<int> letter_lines;  ///< where each of them is used first
+  std::array<double, 6>
+      start_m{};  ///< per letter: where the machine stands when it starts, from program zero
   std::vector<GcodeMove> moves;
   std::vector<GcodeEvent> events;  ///< in their order; the move before a hold ends in a stop
 };

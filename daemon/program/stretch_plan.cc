@@ -1,5 +1,6 @@
 #include "daemon/program/stretch_plan.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace contour {
@@ -17,6 +18,11 @@ StretchPlan::StretchPlan(const std::vector<PieceRequest>& requests, const PerAxi
 double StretchPlan::duration_s() const {
   const std::lock_guard lock(mutex_);
   return walk_.duration_s();
+}
+
+std::uint32_t StretchPlan::Line(double time_s) const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<std::uint32_t>(std::max(0, walk_.Line(time_s)));
 }
 
 void StretchPlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "core/cycle_input.h"
+#include "daemon/rt/path_progress.h"
 #include "daemon/rt/spsc_ring.h"
 
 namespace contour {
@@ -78,6 +79,13 @@ class CommandMailbox {
     return Post(RequestKind::kTune, change);
   }
   bool PushPathPoint(const PathPoint& point) noexcept { return path_.Push(point); }
+  /// What has been pushed so far and was not taken yet is not wanted any more.
+  void SkipPath() noexcept { skip_.store(path_.pushed(), std::memory_order_release); }
+  /// Where the cycle has got to on the path.
+  [[nodiscard]] PathProgress path_progress() const noexcept {
+    return {earliest_.load(std::memory_order_acquire), end_.load(std::memory_order_acquire),
+            law_.load(std::memory_order_acquire), refused_law_.load(std::memory_order_acquire)};
+  }
   /// Whether more points of the program are to come; lock-step time waits for them instead of running dry.
   void SetPathSupply(bool more_to_come) noexcept {
     more_to_come_.store(more_to_come, std::memory_order_release);
@@ -117,7 +125,18 @@ class CommandMailbox {
   ContourController* TakeController() noexcept {
     return next_controller_.exchange(nullptr, std::memory_order_acq_rel);
   }
-  bool TakePathPoint(PathPoint& point) noexcept { return path_.Pop(point); }
+  bool TakePathPoint(PathPoint& point) noexcept {
+    path_.ReleaseUntil(skip_.load(std::memory_order_acquire));
+    return path_.Pop(point);
+  }
+  /// Every cycle.
+  void TellProgress(const PathProgress& now) noexcept {
+    // The end first: a writer that sees the later start sees an end that is no older.
+    end_.store(now.end, std::memory_order_release);
+    law_.store(now.law, std::memory_order_release);
+    refused_law_.store(now.refused_law, std::memory_order_release);
+    earliest_.store(now.earliest, std::memory_order_release);
+  }
 
  private:
   static constexpr unsigned kFateBits = 2;
@@ -147,6 +166,12 @@ class CommandMailbox {
   std::atomic<std::uint32_t> terminate_{0};
   std::atomic<ContourController*> next_controller_{nullptr};
   std::atomic<bool> more_to_come_{false};
+  std::atomic<std::size_t> skip_{0};  ///< so many path points are not wanted
+  // PathProgress:
+  std::atomic<std::uint64_t> earliest_{PathProgress::kNowhere};
+  std::atomic<std::uint64_t> end_{0};
+  std::atomic<std::uint32_t> law_{0};
+  std::atomic<std::uint32_t> refused_law_{0};
 };
 
 }  // namespace contour

@@ -46,6 +46,8 @@ class Cycle {
   // For the loop around it:
   /// How many path points the next Step can take.
   [[nodiscard]] std::size_t PathRoom() const noexcept { return follower_.Room(); }
+  /// For who supplies them.
+  [[nodiscard]] PathProgress Progress() const noexcept { return follower_.progress(); }
   /// The drives have a SYNC to answer.
   [[nodiscard]] bool ExpectsFeedback() const noexcept { return master_.sync_sent(); }
   /// All drives' answers to the last SYNC are among these frames.

@@ -31,7 +31,9 @@ void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONB
   r.acknowledged = transitions_.acknowledged();
   r.acknowledged_ok = transitions_.acknowledged_ok();
   r.program_id = transitions_.program_id();
-  r.path_time_s = follower_.moving() || follower_.at_end() ? follower_.path_time() * period_s_ : 0.0;
+  r.path_time_s = follower_.moving() || follower_.at_end() ? follower_.program_time_s() : 0.0;
+  r.pace = follower_.program_pace();
+  r.program_line = follower_.line();
   r.path_points_waiting = static_cast<std::uint16_t>(follower_.waiting());
   r.solver_iterations = static_cast<std::uint16_t>(control_out_.iterations);
   r.stale_cycles = stale_cycles_;

@@ -34,6 +34,7 @@ void CycleRunner::Collect(const GridPoint& grid, std::int64_t now_ns, bool take_
     if (next == nullptr || !cycle_.TakeController(*next)) in.request.program_id = kNothingChanged;
   }
   in.io = io_.Read(now_ns);
+  mailbox_.TellProgress(cycle_.Progress());
   in.path.clear();
   const std::size_t room = std::min(in.path.capacity(), cycle_.PathRoom());
   while (in.path.size() < room) {

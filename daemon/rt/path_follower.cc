@@ -53,15 +53,48 @@ void PathFollower::Expect(std::uint32_t program_id) noexcept {
   expecting_ = true;
   have_last_ = false;
   first_ = end_ = 0;
+  law_ = refused_law_ = 0;
 }
 
 void PathFollower::Accept(const PathPoint& point) noexcept {
-  if (!expecting_ || point.program_id != program_id_ || have_last_ || Room() == 0) return;
+  if (!expecting_ || point.program_id != program_id_) return;
+  if (point.law != law_ && !TakesLaw(point)) return;
+  if (have_last_ || Room() == 0) return;
+  // Points that are here already come again before those of another law, so that there is no gap.
+  if (point.index != PathPoint::kNextIndex && point.index != end_) return;
   if (end_ == 0) begins_with_axes_ = point.axes.size();
   for (std::size_t i = 0; i < axes_; ++i) points_[i][end_ % kCapacity] = point.axes[i];
+  marks_[end_ % kCapacity] = {point.program_time_s, point.line};
   ++end_;
   have_last_ = point.last;
 }
+
+// What was to come from the point on is forgotten; it has been seen by nobody yet.
+bool PathFollower::TakesLaw(const PathPoint& point) noexcept {
+  if (point.law == refused_law_) return false;
+  if (point.index < EarliestSplice() || point.index > end_) {
+    refused_law_ = point.law;
+    return false;
+  }
+  law_ = point.law;
+  end_ = point.index;
+  have_last_ = false;
+  return true;
+}
+
+// Points that must lie ahead for a controlled stop to be possible.
+double PathFollower::Reserve() const noexcept {
+  return 0.5 * stop_periods_ + static_cast<double>(horizon_) + 2.0;
+}
+
+// What is left in front of the splice is enough for a stop until the first points behind it are here.
+std::uint64_t PathFollower::EarliestSplice() const noexcept {
+  if (mode_ != Mode::kRunning) return PathProgress::kNowhere;
+  const auto now = static_cast<std::uint64_t>(std::max<std::int64_t>(0, clock_));
+  return now + static_cast<std::uint64_t>(std::ceil(Reserve())) + kSpliceMargin;
+}
+
+PathProgress PathFollower::progress() const noexcept { return {EarliestSplice(), end_, law_, refused_law_}; }
 
 PathPoint PathFollower::First() const noexcept {
   PathPoint point;
@@ -72,7 +105,9 @@ PathPoint PathFollower::First() const noexcept {
 }
 
 std::size_t PathFollower::Room() const noexcept {
-  if (!expecting_ || have_last_) return 0;
+  if (!expecting_) return 0;
+  // Behind the last point only another law can come, while there is time for it.
+  if (have_last_) return mode_ == Mode::kRunning ? 1 : 0;
   return kCapacity - waiting();
 }
 
@@ -147,7 +182,38 @@ void PathFollower::DropPassed() noexcept {
 bool PathFollower::running_dry() const noexcept {
   if (mode_ != Mode::kRunning || have_last_) return false;
   const double left = static_cast<double>(end_ - 1) - std::max(0.0, pace_[0].time);
-  return left < 0.5 * stop_periods_ + static_cast<double>(horizon_) + 2.0;
+  return left < Reserve();
+}
+
+double PathFollower::ProgramTime_s(std::uint64_t index) const noexcept {
+  const double told_s = MarkAt(index).program_time_s;
+  return told_s >= 0.0 ? told_s : static_cast<double>(index) * period_s_;
+}
+
+std::uint64_t PathFollower::IndexNow() const noexcept {
+  const double bounded = std::max(static_cast<double>(first_), pace_[0].time);
+  return std::min(static_cast<std::uint64_t>(bounded), end_ - 1);
+}
+
+double PathFollower::program_time_s() const noexcept {
+  if (end_ == 0) return 0.0;
+  const std::uint64_t index = IndexNow();
+  if (MarkAt(index).program_time_s < 0.0) return pace_[0].time * period_s_;
+  const double since = pace_[0].time - static_cast<double>(index);
+  const double here_s = ProgramTime_s(index);
+  if (since <= 0.0 || index + 1 >= end_) return here_s;
+  return here_s + since * (ProgramTime_s(index + 1) - here_s);
+}
+
+double PathFollower::program_pace() const noexcept {
+  if (!moving() || end_ == 0) return 0.0;
+  const std::uint64_t index = IndexNow();
+  if (index + 1 >= end_) return 0.0;
+  return pace_[0].rate * (ProgramTime_s(index + 1) - ProgramTime_s(index)) / period_s_;
+}
+
+std::uint32_t PathFollower::line() const noexcept {
+  return end_ == 0 || mode_ == Mode::kHolding ? 0 : MarkAt(IndexNow()).line;
 }
 
 ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const noexcept {

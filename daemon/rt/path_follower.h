@@ -6,6 +6,7 @@
 #include "core/cycle_input.h"
 #include "core/horizon.h"
 #include "core/state_keeper.h"
+#include "daemon/rt/path_progress.h"
 
 namespace contour {
 
@@ -16,6 +17,10 @@ namespace contour {
 /// Time on the path is counted in periods. At pace 1 the references are the points themselves, bit for bit;
 /// off the grid they are quintic Hermite interpolations, whose velocity and acceleration follow from the pace
 /// by the chain rule.
+///
+/// While the program runs, what is yet to come may be replaced: the first point of another law of time takes
+/// the place of the point with its index, if that lies far enough ahead that neither the horizon nor a stop
+/// that begins now would notice. Pauses and other feeds come this way; here they are points like any others.
 class PathFollower {
  public:
   /// stop_periods: length of the stop ramp. horizon: points wanted ahead of the present one.
@@ -26,6 +31,7 @@ class PathFollower {
 
   /// Expect the points of this program; others are ignored.
   void Expect(std::uint32_t program_id) noexcept;
+  /// Whether a law that came too late was refused shows in progress().
   void Accept(const PathPoint& point) noexcept;
   /// How many more points may come this cycle.
   [[nodiscard]] std::size_t Room() const noexcept;
@@ -58,18 +64,25 @@ class PathFollower {
   [[nodiscard]] bool running_dry() const noexcept;
   /// Time on the path of horizon element 0, in periods.
   [[nodiscard]] double path_time() const noexcept { return pace_[0].time; }
+  /// Where that is on the program's own time axis, and how fast it goes there.
+  [[nodiscard]] double program_time_s() const noexcept;
+  [[nodiscard]] double program_pace() const noexcept;
+  [[nodiscard]] std::uint32_t line() const noexcept;
+  [[nodiscard]] PathProgress progress() const noexcept;
   [[nodiscard]] std::size_t waiting() const noexcept { return static_cast<std::size_t>(end_ - first_); }
 
   /// Of the many points only the axes there are: a copy of the rest would hold up the drives' answers.
   void Keep(StateKeeper& keep) noexcept {
     keep(mode_, hold_m_, program_id_, expecting_, have_last_, first_, end_, begins_with_axes_, clock_,
-         stop_clock_, pace_);
+         stop_clock_, pace_, law_, refused_law_, marks_);
     for (std::size_t i = 0; i < axes_; ++i) keep(points_[i]);
   }
 
  private:
   enum class Mode : std::uint8_t { kHolding, kRunning, kStopping, kEnded };
   static constexpr std::size_t kCapacity = 1024;
+  /// How many cycles the points behind a splice may take to come, before the reserve for a stop is touched.
+  static constexpr std::uint64_t kSpliceMargin = 8;
   /// Points kept behind the present one, for the geometry of the contour error.
   static constexpr std::uint64_t kBehind = 8;
 
@@ -83,6 +96,18 @@ class PathFollower {
   [[nodiscard]] const ReferencePoint& At(std::size_t axis, std::uint64_t index) const noexcept {
     return points_[axis][index % kCapacity];
   }
+  /// What a point says besides its axes.
+  struct Mark {
+    double program_time_s = PathPoint::kOwnPace;
+    std::uint32_t line = 0;
+  };
+
+  [[nodiscard]] const Mark& MarkAt(std::uint64_t index) const noexcept { return marks_[index % kCapacity]; }
+  [[nodiscard]] double ProgramTime_s(std::uint64_t index) const noexcept;
+  [[nodiscard]] std::uint64_t IndexNow() const noexcept;
+  [[nodiscard]] double Reserve() const noexcept;
+  [[nodiscard]] std::uint64_t EarliestSplice() const noexcept;
+  [[nodiscard]] bool TakesLaw(const PathPoint& point) noexcept;
   [[nodiscard]] ReferencePoint Evaluate(std::size_t axis, const Pace& pace) const noexcept;
   /// Points as they are.
   void Copy(std::size_t axis, std::uint64_t first, std::size_t count, ReferencePoint* to) const noexcept;
@@ -106,6 +131,9 @@ class PathFollower {
   std::int64_t stop_clock_ = 0;                 ///< clock of the horizon element at which the stop ramp began
   std::array<Pace, kMaxHorizonPoints> pace_{};  ///< at the program's own pace the first one only, see PaceAt
   std::size_t begins_with_axes_ = 0;            ///< of the first point
+  std::uint32_t law_ = 0;                       ///< of the points here
+  std::uint32_t refused_law_ = 0;               ///< the last that came too late
+  std::array<Mark, kCapacity> marks_{};
   /// One ring for each axis: every cycle takes some tens of points that follow one another.
   std::array<std::array<ReferencePoint, kCapacity>, kMaxAxes> points_{};
 };

@@ -38,6 +38,15 @@ class SpscRing {
     return true;
   }
 
+  /// Elements ever pushed. Producer only.
+  [[nodiscard]] std::size_t pushed() const noexcept { return head_.load(std::memory_order_relaxed); }
+  /// Gives back what is left of the first `count` elements ever pushed. Consumer only.
+  void ReleaseUntil(std::size_t count) noexcept {
+    const std::size_t tail = tail_.load(std::memory_order_relaxed);
+    // The difference, as the numbers may wrap.
+    if (count - tail <= mask_ + 1) tail_.store(count, std::memory_order_release);
+  }
+
   /// The oldest element, or null when empty. Consumer only; Release() gives the slot back.
   [[nodiscard]] T* Front() noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);

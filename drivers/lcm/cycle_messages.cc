@@ -70,11 +70,46 @@ struct ReferenceFields {
   }
 };
 
+/// What a path point says besides its axes travels in one entry behind them, so that the type of the message,
+/// and with it every older log, stays readable: bit 32 of program_id says that it is there.
 struct PathPointFields {
-  void operator()(auto& copy, auto& core, auto& wire) const {
+  static constexpr std::int64_t kMarked = std::int64_t{1} << 32;
+
+  void operator()(Writing& copy, const PathPoint& core, contour_lcm::path_point& wire) const {
+    copy.List(core.axes, wire.num_axes, wire.axes, ReferenceFields{});
+    wire.program_id = core.program_id | kMarked;
+    wire.last = core.last;
+    const bool told = core.index != PathPoint::kNextIndex;
+    contour_lcm::reference_point& mark = wire.axes.emplace_back();
+    mark.position_m = core.program_time_s;
+    mark.velocity_m_s = told ? static_cast<double>(core.index) : -1.0;
+    mark.acceleration_m_s2 = core.law;
+    mark.extra_torque_Nm = core.line;
+    mark.spring_N_m = 0.0;
+    ++wire.num_axes;
+  }
+  void operator()(Reading& copy, PathPoint& core, const contour_lcm::path_point& wire) const {
     copy(core.program_id, wire.program_id);
     copy(core.last, wire.last);
-    copy.List(core.axes, wire.num_axes, wire.axes, ReferenceFields{});
+    core.index = PathPoint::kNextIndex;
+    core.law = core.line = 0;
+    core.program_time_s = PathPoint::kOwnPace;
+    if ((wire.program_id & kMarked) == 0 || wire.axes.empty()) {
+      copy.List(core.axes, wire.num_axes, wire.axes, ReferenceFields{});
+      return;
+    }
+    const std::vector<contour_lcm::reference_point> axes(wire.axes.begin(), wire.axes.end() - 1);
+    copy.List(core.axes, wire.num_axes, axes, ReferenceFields{});
+    const contour_lcm::reference_point& mark = wire.axes.back();
+    core.program_time_s = mark.position_m;
+    if (mark.velocity_m_s >= 0.0) core.index = static_cast<std::uint64_t>(mark.velocity_m_s);
+    core.law = Count(mark.acceleration_m_s2);
+    core.line = Count(mark.extra_torque_Nm);
+  }
+
+ private:
+  static std::uint32_t Count(double value) noexcept {
+    return value >= 0.0 && value <= 4294967295.0 ? static_cast<std::uint32_t>(value) : 0;
   }
 };
 

@@ -65,6 +65,10 @@ class RandomCycleEntry {
       PathPoint p;
       p.program_id = Int<std::uint32_t>();
       p.last = Bool();
+      if (Bool()) p.index = Below(std::size_t{1} << 50);
+      p.law = Int<std::uint32_t>();
+      p.line = Int<std::uint32_t>();
+      p.program_time_s = Double();
       p.axes.resize(axes);
       for (auto& axis : p.axes) Fill(axis);
       in.path.push_back(p);

@@ -54,6 +54,10 @@ inline void ExpectSame(const CycleInput& a, const CycleInput& b) {
   for (std::size_t i = 0; i < a.path.size(); ++i) {
     EXPECT_EQ(a.path[i].program_id, b.path[i].program_id);
     EXPECT_EQ(a.path[i].last, b.path[i].last);
+    EXPECT_EQ(a.path[i].index, b.path[i].index);
+    EXPECT_EQ(a.path[i].law, b.path[i].law);
+    EXPECT_EQ(a.path[i].line, b.path[i].line);
+    EXPECT_TRUE(Same("program time", a.path[i].program_time_s, b.path[i].program_time_s));
     ASSERT_EQ(a.path[i].axes.size(), b.path[i].axes.size());
     for (std::size_t j = 0; j < a.path[i].axes.size(); ++j) ExpectSame(a.path[i].axes[j], b.path[i].axes[j]);
   }

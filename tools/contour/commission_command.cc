@@ -130,6 +130,7 @@ void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion
   const json reply = RunProgram(client, {{"request", "run"},
                                          {"name", "commissioning: " + motion.what},
                                          {"format", "yaml"},
+                                         {"from_here", true},
                                          {"text", motion.yaml}});
   const std::uint32_t id = reply.at("program_id");
   const bool terminal = ::isatty(STDERR_FILENO) != 0;

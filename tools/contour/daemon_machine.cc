@@ -212,6 +212,7 @@ improve::Drawing DaemonMachine::Run(const improve::ProgramText& program) {
       RunProgram(*client_, {{"request", "run"},
                             {"name", program.name},
                             {"format", program.format == ProgramFormat::kGcode ? "ngc" : "yaml"},
+                            {"from_here", true},
                             {"text", program.text}});
   recording.SetProgram(reply.at("program_id"));
   Follow(reply.at("program_id"), program.name, recording);

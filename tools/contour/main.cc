@@ -19,6 +19,7 @@
 #include "tools/contour/export_command.h"
 #include "tools/contour/identify_command.h"
 #include "tools/contour/improve_command.h"
+#include "tools/contour/pace_command.h"
 #include "tools/contour/reference_command.h"
 #include "tools/contour/reload_command.h"
 #include "tools/contour/replay_command.h"
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
   contour::AddStatusCommand(app, action);
   contour::AddWatchCommand(app, action);
   contour::AddRequestCommands(app, action);
+  contour::AddPaceCommands(app, action);
   contour::AddExportCommand(app, action);
   contour::AddIdentifyCommand(app, action);
   contour::AddCircleTestCommand(app, action);

@@ -19,9 +19,12 @@
 #include <vector>
 
 #include "daemon/control_socket/base64.h"
+#include "daemon/program/placed_program.h"
 #include "daemon/program/program.h"
 #include "tools/contour/daemon_link.h"
+#include "tools/contour/result_line.h"
 #include "tools/contour/run_record.h"
+#include "tools/contour/status_text.h"
 
 namespace contour {
 namespace {
@@ -35,6 +38,8 @@ struct Options {
   std::optional<std::string> truth;
   std::string controller;
   bool forget = false;
+  bool from_here = false;
+  PartOfProgram part;
 };
 
 constexpr std::chrono::milliseconds kLookEvery{100};
@@ -112,13 +117,8 @@ class ProgressLine {
  public:
   void Show(const json& status) {
     if (!terminal_) return;
-    const json& program = status.at("program");
-    std::fprintf(
-        stderr, "\r\x1b[K%s  %.1f of %.1f s  contour error %.2f um",
-        status.at("state").get<std::string>().c_str(),
-        program.at("time_s").is_number() ? program.at("time_s").get<double>() : 0.0,
-        program.at("duration_s").is_number() ? program.at("duration_s").get<double>() : 0.0,
-        status.at("contour_error_m").is_number() ? status.at("contour_error_m").get<double>() * 1e6 : 0.0);
+    std::fprintf(stderr, "\r\x1b[K%s  %s", status.at("state").get<std::string>().c_str(),
+                 ProgramText(status).c_str());
   }
   ~ProgressLine() {
     if (terminal_) std::fputs("\r\x1b[K", stderr);
@@ -147,10 +147,25 @@ json Follow(ControlClient& client, std::uint32_t program_id) {
   }
 }
 
-PerAxis<double> StartOf(const json& reply) {
-  PerAxis<double> start_m;
-  for (const json& value : reply.at("start_m")) start_m.push_back(value.get<double>());
-  return start_m;
+Placement PlaceOf(const json& reply) {
+  Placement place;
+  for (const json& value : reply.at("start_m")) place.start_m.push_back(value.get<double>());
+  for (const json& value : reply.at("zero_m")) place.zero_m.push_back(value.get<double>());
+  return place;
+}
+
+/// Where the program is drawn, if that is news.
+void TellPlace(const json& reply, const Program& program) {
+  char text[160];
+  const double off_mm = 1e3 * PlaceOf(reply).Off_m();
+  if (reply.at("zero_set") == true) {
+    std::cout << "program zero is where the machine stands; it stays there until contour zero\n";
+  } else if (off_mm > 1e-6 && !std::holds_alternative<GcodeMoves>(program.shape)) {
+    std::snprintf(text, sizeof text, "the machine stands %.4f mm from program zero and goes there first\n",
+                  off_mm);
+    std::cout << text;
+  }
+  std::cout << std::flush;
 }
 
 PerAxis<PlanLimits> LimitsOf(const json& status) {
@@ -175,26 +190,59 @@ RunRecord::Facts FactsOf(const json& status, const std::string& program) {
   return facts;
 }
 
+/// What the daemon saw of the program; of the rows, where there are some, what was scored.
+ProgramResult ResultOf(const json& status, const std::string& name) {
+  const json& program = status.at("program");
+  ProgramResult result;
+  result.program = std::filesystem::path(name).filename().string();
+  result.seconds = program.at("ran_s");
+  const auto um = [&](const char* key) {
+    return program.at(key).is_number() ? std::optional(1e6 * program.at(key).get<double>()) : std::nullopt;
+  };
+  result.encoder_peak_um = um("contour_error_peak_m");
+  result.encoder_rms_um = um("contour_error_rms_m");
+  result.faults = status.at("state") == "Faulted" ? 1 : 0;
+  if (status.at("log").is_object()) result.log = status.at("log").at("file");
+  return result;
+}
+
+void Put(const RunMetrics& metrics, ProgramResult& result) {
+  if (metrics.encoder.peak_um) {
+    result.encoder_peak_um = metrics.encoder.peak_um;
+    result.encoder_rms_um = metrics.encoder.rms_um;
+  }
+  result.table_peak_um = metrics.table.peak_um;
+}
+
 std::string EndSentence(const json& status, std::uint32_t program_id) {
   if (status.at("program").at("id") != program_id) return "another program has been started since";
   return StateSentence(status);
 }
 
-int RunRun(const Options& options) {
-  Program program;
-  try {
-    program = LoadProgram(options.program);
-  } catch (const ProgramError& e) {
-    std::cerr << e.what() << "\n";
-    return kExitBadUsage;
+/// Where the program will be placed, as far as the status tells before it is.
+Placement PlaceBefore(const json& status, bool here) {
+  Placement place;
+  const json& zero_mm = status.at("zero_mm");
+  for (const json& axis : status.at("axes")) {
+    const double at_m =
+        axis.at("reference_position_m").is_number() ? axis.at("reference_position_m").get<double>() : 0.0;
+    place.start_m.push_back(at_m);
+    place.zero_m.push_back(here || zero_mm.is_null() ? at_m
+                                                     : 1e-3 * zero_mm.at(axis.at("name")).get<double>());
   }
-  WarnOfIgnoredWords(options.program);
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  ControlClient client = ConnectToDaemon(options.socket);
-  const json before = Status(client);
-  std::optional<RowCollector> rows;
-  if (options.out) rows.emplace(client, *options.out);
+  return place;
+}
+
+/// The program as the daemon reads it for that place.
+Program ReadFor(const Placement& place, const json& status, const Options& options) {
+  const std::string& file = options.program;
+  const std::string text = ReadText(file);
+  bool referenced = true;
+  for (const json& axis : status.at("axes")) referenced = referenced && axis.value("referenced", true);
+  return ReadPlaced({text, file, FormatOf(file)}, place, LimitsOf(status), {referenced, options.part});
+}
+
+json RequestOf(const Options& options) {
   const bool gcode = FormatOf(options.program) == ProgramFormat::kGcode;
   json request{{"request", "run"},
                {"name", std::filesystem::path(options.program).filename().string()},
@@ -202,24 +250,63 @@ int RunRun(const Options& options) {
                {"text", ReadText(options.program)}};
   if (!options.controller.empty()) request["controller"] = options.controller;
   if (options.forget) request["forget"] = true;
-  const json reply = RunProgram(client, std::move(request));
+  if (options.from_here) request["from_here"] = true;
+  if (options.part.single_block) request["single_block"] = true;
+  if (options.part.from_line > 0) request["from_line"] = options.part.from_line;
+  if (options.part.go_there) request["go_there"] = true;
+  return request;
+}
+
+/// Writes what was collected, and puts what was scored into the result.
+void WriteRows(RowCollector& rows, const Options& options, const json& status, const Placement& place,
+               ProgramResult& result) {
+  if (rows.record().cycles() == 0) return;
+  std::optional<std::filesystem::path> truth;
+  if (options.truth) truth = *options.truth;
+  const Program program = ReadFor(place, status, options);
+  Put(rows.record().Write(FactsOf(status, program.name), PlanPlaced(program, place, LimitsOf(status)), truth),
+      result);
+  std::cout << "wrote " << *options.out << "/metrics.json and cycles.csv, " << rows.record().cycles()
+            << " cycles";
+  if (rows.lost() > 0) std::cout << "; " << rows.lost() << " LOST on the way: this computer is too slow";
+  std::cout << "\n";
+}
+
+int RunRun(const Options& options) {
+  Program program;
+  std::optional<ControlClient> client;
+  json before;
+  try {
+    // What G-code means depends on where the machine stands.
+    if (FormatOf(options.program) == ProgramFormat::kYaml)
+      program = ReadPlaced({ReadProgramText(options.program), options.program, ProgramFormat::kYaml}, {}, {},
+                           {false, options.part});
+    client.emplace(ConnectToDaemon(options.socket));
+    before = Status(*client);
+    if (FormatOf(options.program) == ProgramFormat::kGcode)
+      program = ReadFor(PlaceBefore(before, options.from_here), before, options);
+  } catch (const ProgramError& e) {
+    std::cerr << e.what() << "\n";
+    return kExitBadUsage;
+  }
+  WarnOfIgnoredWords(options.program);
+  std::signal(SIGINT, OnSignal);
+  std::signal(SIGTERM, OnSignal);
+  std::optional<RowCollector> rows;
+  if (options.out) rows.emplace(*client, *options.out);
+  const json reply = RunProgram(*client, RequestOf(options));
   const std::uint32_t id = reply.at("program_id");
+  TellPlace(reply, program);
   if (const std::size_t passes = reply.value("learnt_passes", std::size_t{0}); passes > 0)
     std::cout << "passes learnt from: " << passes << "\n" << std::flush;
   if (rows) rows->SetProgram(id);
-  const json after = Follow(client, id);
+  const json after = Follow(*client, id);
   if (rows) rows->Await(after.at("cycle"));
-  if (rows && rows->record().cycles() > 0) {
-    std::optional<std::filesystem::path> truth;
-    if (options.truth) truth = *options.truth;
-    rows->record().Write(FactsOf(after, program.name), PlanMotion(program, StartOf(reply), LimitsOf(before)),
-                         truth);
-    std::cout << "wrote " << *options.out << "/metrics.json and cycles.csv, " << rows->record().cycles()
-              << " cycles";
-    if (rows->lost() > 0) std::cout << "; " << rows->lost() << " LOST on the way: this computer is too slow";
-    std::cout << "\n";
-  }
-  const bool done = after.at("reason") == "program_end" && after.at("program").at("id") == id;
+  const bool ours = after.at("program").at("id") == id;
+  ProgramResult result = ours ? ResultOf(after, program.name) : ProgramResult{};
+  if (rows) WriteRows(*rows, options, before, PlaceOf(reply), result);
+  if (ours) std::cout << ResultLine(result) << "\n" << std::flush;
+  const bool done = after.at("reason") == "program_end" && ours;
   if (!done) throw std::runtime_error("the program did not end by itself: " + EndSentence(after, id));
   std::cout << "done: " << program.name << "\n";
   return kExitDone;
@@ -239,6 +326,16 @@ void AddRunCommand(CLI::App& app, Action& action) {
   sub->add_option("--controller", options->controller,
                   "Refuse to run unless the daemon runs with this controller");
   sub->add_flag("--forget", options->forget, "Forget first what has been learnt of programs");
+  sub->add_flag("--from-here", options->from_here,
+                "The program counts from where the machine stands, whatever program zero is");
+  sub->add_flag("--single-block", options->part.single_block,
+                "G-code: rest at the end of every line until contour resume");
+  CLI::Option* line = sub->add_option("--from-line", options->part.from_line,
+                                      "G-code: begin at this line, with the words in force there")
+                          ->check(CLI::Range(1, 100'000'000));
+  sub->add_flag("--go-there", options->part.go_there,
+                "Go at rapid to where that line begins; otherwise the machine must stand there")
+      ->needs(line);
   sub->footer("An interrupt (Ctrl-C) stops the machine on the path and ends this program with status 1.");
   sub->callback([options, &action] { action = [options] { return RunRun(*options); }; });
 }

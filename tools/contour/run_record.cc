@@ -112,8 +112,8 @@ void RunRecord::Add(std::string_view row, std::uint32_t program_id) {
   ++cycles_;
 }
 
-void RunRecord::Write(const Facts& facts, std::shared_ptr<const MotionPlan> plan,
-                      const std::optional<std::filesystem::path>& truth_file) {
+RunMetrics RunRecord::Write(const Facts& facts, std::shared_ptr<const MotionPlan> plan,
+                            const std::optional<std::filesystem::path>& truth_file) {
   if (cycles_ == 0) throw std::runtime_error("no cycle in which the program ran was received");
   std::vector<std::string> names;
   for (const ScoredAxisFacts& axis : facts.axes) names.push_back(axis.name);
@@ -142,7 +142,9 @@ void RunRecord::Write(const Facts& facts, std::shared_ptr<const MotionPlan> plan
   run.cycles = cycles_;
   if (facts.wall_clock) run.late_cycles = late_cycles_;
   run.stale_cycles = stale_last_ - stale_first_;
-  WriteMetrics(directory_ / "metrics.json", run, scorer.Finish());
+  RunMetrics metrics = scorer.Finish();
+  WriteMetrics(directory_ / "metrics.json", run, metrics);
+  return metrics;
 }
 
 RunRecord::AlignedTruth RunRecord::Align(const std::filesystem::path& file,

@@ -40,9 +40,10 @@ class RunRecord {
     std::optional<std::uint64_t> seed;  ///< of an emulated machine in the daemon
     std::vector<ScoredAxisFacts> axes;
   };
-  /// Writes both files. Throws std::runtime_error, also when the truth does not belong to this run.
-  void Write(const Facts& facts, std::shared_ptr<const MotionPlan> plan,
-             const std::optional<std::filesystem::path>& truth_file);
+  /// Writes both files; what is in metrics.json. Throws std::runtime_error, also when the truth does not
+  /// belong to this run.
+  RunMetrics Write(const Facts& facts, std::shared_ptr<const MotionPlan> plan,
+                   const std::optional<std::filesystem::path>& truth_file);
 
  private:
   struct Close {

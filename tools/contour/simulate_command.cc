@@ -11,6 +11,7 @@
 #include "daemon/make_log_header.h"
 #include "daemon/program/program.h"
 #include "tools/contour/ignored_words.h"
+#include "tools/contour/result_line.h"
 #include "tools/machine/load_emulated_machine.h"
 #include "tools/simulate/simulation_run.h"
 
@@ -28,6 +29,19 @@ struct Options {
   std::string log;
 };
 
+std::string Line(const SimulationResult& result, const SimulationRequest& request) {
+  const ContourMetrics& encoder = result.metrics.encoder;
+  ProgramResult line;
+  line.program = std::filesystem::path(request.program.name).filename().string();
+  line.seconds = static_cast<double>(result.tally.cycles) * request.file.machine.machine.cycle_us * 1e-6;
+  // What ends before it would be scored is told as the cycle saw it.
+  line.encoder_peak_um = encoder.peak_um.value_or(1e6 * result.tally.contour_error_peak_m);
+  line.encoder_rms_um = encoder.rms_um.value_or(1e6 * result.tally.contour_error_rms_m);
+  line.table_peak_um = result.metrics.table.peak_um;
+  line.log = request.log.string();
+  return ResultLine(line);
+}
+
 int RunSimulate(const Options& options) {
   SimulationRequest request;
   std::vector<std::string> set = options.set;
@@ -43,7 +57,12 @@ int RunSimulate(const Options& options) {
     return kExitBadUsage;
   }
   try {
-    request.program = LoadProgram(options.program);
+    if (FormatOf(options.program) == ProgramFormat::kGcode) {
+      request.program.name = options.program;
+      request.gcode = ReadProgramText(options.program);
+    } else {
+      request.program = LoadProgram(options.program);
+    }
   } catch (const ProgramError& e) {
     std::cerr << e.what() << "\n";
     return kExitBadUsage;
@@ -59,7 +78,8 @@ int RunSimulate(const Options& options) {
     machine.machine.controller = request.controller;
     request.log_header = MakeLogHeader(ReadSource(options.config, set), machine, "virtual", 0);
   }
-  RunSimulation(request);
+  const SimulationResult result = RunSimulation(request);
+  std::cout << Line(result, request) << "\n";
   std::cout << "wrote " << (std::filesystem::path(options.out) / "metrics.json").string()
             << (options.passes > 1 ? ", cycles.csv and passes.csv\n" : " and cycles.csv\n");
   return kExitDone;

@@ -29,11 +29,8 @@ std::string Machine(const json& s) {
   const std::string bring_up = Text(s["bring_up"]);
   if (!bring_up.empty() && bring_up != Text(s["reason_text"])) text += "  bring-up: " + bring_up + "\n";
   for (const json& warning : s["warnings"]) text += "  warning: " + Text(warning) + "\n";
-  const json& program = s["program"];
-  if (program["id"] != 0)
-    text += "  program " + Text(program["name"]) + ", " + Number(program["time_s"], 1.0, 1) + " of " +
-            Number(program["duration_s"], 1.0, 1) + " s\n";
-  return text;
+  const std::string program = ProgramText(s);
+  return program.empty() ? text : text + "  " + program + "\n";
 }
 
 std::string Axes(const json& s) {
@@ -169,6 +166,21 @@ std::string Around(const json& s) {
 
 }  // namespace
 
+std::string ProgramText(const json& s) {
+  const json& program = s["program"];
+  if (program["id"] == 0) return {};
+  std::string text = "program " + Text(program["name"]);
+  if (program.value("line", json()).is_number()) text += " line " + Text(program["line"]);
+  text += ", " + Number(program["time_s"], 1.0, 1) + " of " + Number(program["duration_s"], 1.0, 1) + " s";
+  if (program.value("left_s", json()).is_number())
+    text += ", " + Number(program["left_s"], 1.0, 1) + " s left";
+  if (program.value("feed_percent", 100.0) != 100.0)
+    text += ", feed " + Number(program["feed_percent"], 1.0, 0) + " %";
+  if (program.value("pausing", false)) text += program["paused"] == true ? ", paused" : ", pausing";
+  if (s["state"] == "Running") text += ", contour error " + Number(s["contour_error_m"], 1e6, 2) + " um";
+  return text;
+}
+
 std::string StatusText(const json& status) {
   return Machine(status) + Axes(status) + Errors(status) + Counters(status) + Buses(status) + Around(status);
 }
@@ -178,8 +190,7 @@ std::string StatusLine(const json& status) {
   for (const json& a : status["axes"])
     line += "  " + Text(a["name"]) + " " + Number(a["position_m"], 1e3, 4) + " mm " +
             Number(a["torque_Nm"], 1.0, 3) + " Nm " + Number(a["friction_N"], 1.0, 1) + " N";
-  if (status["state"] == "Running")
-    line += "  contour error " + Number(status["contour_error_m"], 1e6, 2) + " um";
+  if (status["state"] == "Running") line += "  " + ProgramText(status);
   return line;
 }
 

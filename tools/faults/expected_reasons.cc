@@ -79,7 +79,9 @@ ExpectedHere ExpectedIn(Fault fault, Phase phase, bool crawls) noexcept {
   Expectation row = ExpectationOf(fault);
   if (crawls && fault == F::kTorqueLostSilently) row.reasons = {R::kTorqueWithoutMotion, R::kFeedbackFrozen};
   // A stop on the path may be over before its motion shows what shows at rest only by chance.
-  if (phase == Phase::kStopping) return {row.at_rest == kMayStop ? kMayStop : row.moving, row.reasons};
+  // Nor need one that only just begins again.
+  if (phase == Phase::kStopping || phase == Phase::kResuming)
+    return {row.at_rest == kMayStop ? kMayStop : row.moving, row.reasons};
   if (Holds(phase)) return {Moves(phase) ? row.moving : row.at_rest, row.reasons};
   // A tool that speaks to a drive before we do may be another master: the start is refused.
   if (fault == F::kForeignSdo && phase == Phase::kBringUp)

@@ -170,7 +170,7 @@ double SettledError_m(const AxisConfig& axis) {
 /// Feeds that the axis has from the fault on: its own, and those on its way there or to rest.
 std::vector<double> FeedsOf(const FaultCase& c) {
   std::vector<double> feeds;
-  if (!Moves(c.phase) || c.phase == Phase::kStopping) feeds.push_back(0.0);
+  if (!Moves(c.phase) || c.phase == Phase::kStopping || c.phase == Phase::kResuming) feeds.push_back(0.0);
   if (!Moves(c.phase)) return feeds;
   feeds.push_back(c.feed_mm_s);
   if (c.phase != Phase::kConstant)

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
+#include "daemon/path_feeder.h"
+#include "daemon/program_limits.h"
 #include "tools/faults/expected_reasons.h"
 #include "tools/faults/fault_bounds.h"
 #include "tools/faults/injection.h"
 #include "tools/faults/test_path.h"
+#include "tools/faults/test_plan.h"
 #include "tools/faults/truth_watch.h"
 #include "tools/simulate/virtual_machine.h"
 
@@ -113,7 +117,9 @@ class Run {
   }
 
   void Tick() {
-    if (path_) {
+    if (feeder_) {
+      feeder_->Feed();
+    } else if (path_) {
       while (held_ && machine_.mailbox().PushPathPoint(point_)) held_ = path_->Next(point_);
       if (!held_) machine_.mailbox().SetPathSupply(false);
     }
@@ -232,7 +238,13 @@ class Run {
       start_m.push_back(record().axes[i].reference.position_m);
     }
     path_.emplace(shape, file_.machine, start_m, moves, 1);
-    held_ = path_->Next(point_);
+    if (Paced(c_.phase)) {
+      feeder_.emplace(machine_.mailbox());
+      feeder_->Begin(std::make_unique<PathGenerator>(std::make_shared<TestPlan>(*path_, period_s_),
+                                                     ProgramLimits(file_.machine), period_s_, 1U));
+    } else {
+      held_ = path_->Next(point_);
+    }
     WaitForTheMotionThatShowsIt();
     machine_.mailbox().SetPathSupply(true);
     machine_.mailbox().Post(RequestKind::kRun, 1);
@@ -247,6 +259,7 @@ class Run {
       Violated("the program ended before any fault: " + Now());
       return false;
     }
+    if (Paced(c_.phase)) return ChangePace();
     if (c_.phase != Phase::kStopping) return true;
     machine_.mailbox().PostStop();
     if (!Reach("a stop on the path", MachineState::kStopping)) return false;
@@ -254,12 +267,35 @@ class Run {
     return true;
   }
 
+  bool ChangePace() {
+    const auto reaches = [&](auto pace_is) {
+      const bool there = TickUntil(
+          kStartPatience_s, [&] { return state() != MachineState::kRunning || pace_is(record().pace); });
+      if (there && state() == MachineState::kRunning) return true;
+      Violated("the program did not come to another pace: " + Now());
+      return false;
+    };
+    const double slower = c_.phase == Phase::kFeedChange ? random_.Uniform(0.1, 0.7) : 0.0;
+    feeder_->SetPace(slower);
+    if (c_.phase == Phase::kFeedChange) {
+      const double within = random_.Uniform(slower + 0.1 * (1.0 - slower), 0.99);
+      return reaches([within](double pace) { return pace < within; });
+    }
+    if (!reaches([](double pace) { return pace == 0.0; })) return false;
+    for (int n = Draw(0, 300); n > 0; --n) Tick();
+    if (c_.phase == Phase::kPaused) return true;
+    feeder_->SetPace(1.0);
+    const double within = random_.Uniform(0.02, 0.9);
+    return reaches([within](double pace) { return pace > within; });
+  }
+
   /// What motion shows is promised from the motion on that shows it; an axis that turns has first to get
   /// there.
   void WaitForTheMotionThatShowsIt() {
     if (!ShownByMotion(c_.fault)) return;
     if (c_.phase == Phase::kAcceleration || c_.phase == Phase::kStopping) until_it_shows_s_ = path_->ramp_s();
-    if (c_.phase == Phase::kReversal) until_it_shows_s_ = 2.0 * path_->ramp_s();
+    if (c_.phase == Phase::kReversal || (Paced(c_.phase) && Moves(c_.phase)))
+      until_it_shows_s_ = 2.0 * path_->ramp_s();
     result_.time_bound_s += until_it_shows_s_;
   }
 
@@ -419,6 +455,7 @@ class Run {
   TruthWatch watch_;
   RunResult result_;
   std::optional<TestPath> path_;
+  std::optional<PathFeeder> feeder_;  ///< of a path whose pace changes, instead
   PathPoint point_;
   bool held_ = false;
   bool broken_ = false;

@@ -17,10 +17,14 @@ enum class Phase : std::uint8_t {
   kReversal,
   kStopping,
   kReset,
+  kPaused,
+  kResuming,
+  kFeedChange,
 };
 inline constexpr std::array kPhases{Phase::kBringUp,  Phase::kIdle,         Phase::kEnabling,
                                     Phase::kReady,    Phase::kAcceleration, Phase::kConstant,
-                                    Phase::kReversal, Phase::kStopping,     Phase::kReset};
+                                    Phase::kReversal, Phase::kStopping,     Phase::kReset,
+                                    Phase::kPaused,   Phase::kResuming,     Phase::kFeedChange};
 
 constexpr std::string_view Name(Phase phase) noexcept {
   switch (phase) {
@@ -42,14 +46,25 @@ constexpr std::string_view Name(Phase phase) noexcept {
       return "stopping";
     case Phase::kReset:
       return "reset";
+    case Phase::kPaused:
+      return "paused";
+    case Phase::kResuming:
+      return "resuming";
+    case Phase::kFeedChange:
+      return "feed_change";
   }
   return "unknown";
 }
 
 constexpr bool Moves(Phase p) noexcept {
-  return p == Phase::kAcceleration || p == Phase::kConstant || p == Phase::kReversal || p == Phase::kStopping;
+  return p == Phase::kAcceleration || p == Phase::kConstant || p == Phase::kReversal ||
+         p == Phase::kStopping || p == Phase::kResuming || p == Phase::kFeedChange;
+}
+/// The program's pace is or was another than the programmed one.
+constexpr bool Paced(Phase p) noexcept {
+  return p == Phase::kPaused || p == Phase::kResuming || p == Phase::kFeedChange;
 }
 /// The machine holds the axes under torque.
-constexpr bool Holds(Phase p) noexcept { return p == Phase::kReady || Moves(p); }
+constexpr bool Holds(Phase p) noexcept { return p == Phase::kReady || p == Phase::kPaused || Moves(p); }
 
 }  // namespace contour::faults

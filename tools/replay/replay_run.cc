@@ -169,7 +169,7 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
     source.overrides.push_back(std::move(loop));
   const MachineConfig machine = LoadMachine(source);
   CycleConfig config = MakeCycleConfig(machine, machine.machine.controller);
-  if (log.header().format_version < kLogFormatVersion) config.master.start_up = StartUp::kOfLogFormat4;
+  if (log.header().format_version < kStartUpNowSinceFormat) config.master.start_up = StartUp::kOfLogFormat4;
   Cycle cycle(config);
   ReplayReport report;
   report.recorded_build = log.header().build;

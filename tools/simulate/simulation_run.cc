@@ -143,7 +143,7 @@ class PassesFile {
 
 }  // namespace
 
-void RunSimulation(const SimulationRequest& request) {
+SimulationResult RunSimulation(const SimulationRequest& request) {
   std::filesystem::create_directories(request.out);
   VirtualMachine machine(request.file, request.controller);
   std::optional<RunLog> log;
@@ -153,7 +153,10 @@ void RunSimulation(const SimulationRequest& request) {
   }
   machine.BringUp();
   machine.Enable();
+  machine.SetZero();
   PassesFile passes;
+  ProgramTally tally;
+  SimulationResult result;
   for (int pass = 1; pass <= request.passes; ++pass) {
     std::optional<CyclesFile> cycles;
     if (pass == request.passes)
@@ -161,19 +164,23 @@ void RunSimulation(const SimulationRequest& request) {
     Scoring scoring(request, machine);
     machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
       if (entry.output.record.state != MachineState::kRunning) return;
+      tally.Consume(entry.output.record);
       if (cycles) cycles->Add(entry, truth);
       scoring.Add(entry.output.record, truth);
     });
-    machine.Run(request.program);
+    machine.Run(request.gcode.empty() ? request.program
+                                      : machine.ReadGcode(request.gcode, request.program.name));
     machine.SetObserver(nullptr);
     const RunMetrics metrics = scoring.Finish();
     passes.Add(pass, metrics);
     if (!cycles) continue;
+    result = {metrics, tally.tally()};
     cycles->Close();
     WriteMetrics(request.out / "metrics.json", scoring.facts(), metrics);
   }
   if (request.passes > 1) passes.Write(request.out / "passes.csv");
   if (log) log->Close();
+  return result;
 }
 
 }  // namespace contour

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
+#include "analysis/metrics/run_metrics.h"
 #include "core/controller_name.h"
 #include "daemon/program/program.h"
+#include "daemon/program_tally.h"
 #include "daemon/telemetry/log_header.h"
 #include "tools/machine/load_emulated_machine.h"
 
@@ -13,16 +16,24 @@ struct SimulationRequest {
   EmulatedMachineFile file;
   ControllerName controller = ControllerName::kFull;
   Program program;
+  /// Not empty: G-code, read anew for where the machine stands before each pass; `program` has its name.
+  std::string gcode;
   std::filesystem::path log;  ///< of every cycle, for replay; empty: none
   LogHeader log_header;
   int passes = 1;             ///< runs of the program, one after the other; the files are of the last
   std::filesystem::path out;  ///< directory for cycles.csv and metrics.json; made when missing
 };
 
+/// What came of it, of the last pass.
+struct SimulationResult {
+  RunMetrics metrics;
+  TallyOfProgram tally;
+};
+
 /// Bring-up, enable, the program to its end, all in virtual time; then the files. With more passes than one
 /// also passes.csv, one row each. Throws std::runtime_error
 /// when the machine stops otherwise or a file cannot be written, ProgramError when the program does not fit
 /// the machine.
-void RunSimulation(const SimulationRequest& request);
+SimulationResult RunSimulation(const SimulationRequest& request);
 
 }  // namespace contour

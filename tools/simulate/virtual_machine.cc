@@ -1,5 +1,6 @@
 #include "tools/simulate/virtual_machine.h"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -117,13 +118,34 @@ void VirtualMachine::Enable() {
   TickUntilSettled(MachineState::kReady, "enabling");
 }
 
+PerAxis<double> VirtualMachine::StandsAt_m() const {
+  PerAxis<double> place_m;
+  for (const AxisRecord& a : record().axes) place_m.push_back(a.reference.position_m);
+  return place_m;
+}
+
+void VirtualMachine::SetZero() { zero_m_ = StandsAt_m(); }
+
+Placement VirtualMachine::PlaceNow() const {
+  const PerAxis<double> start_m = StandsAt_m();
+  return {start_m, zero_m_.value_or(start_m)};
+}
+
+Program VirtualMachine::ReadGcode(const std::string& text, const std::string& name) const {
+  const auto& axes = record().axes;
+  const bool referenced = std::all_of(axes.begin(), axes.end(),
+                                      [](const AxisRecord& a) { return IsReferenced(a.reference_state); });
+  return ReadPlaced({text, name, ProgramFormat::kGcode}, PlaceNow(), LimitsNow(limits_, record()),
+                    {referenced, {}});
+}
+
 std::uint32_t VirtualMachine::Start(const Program& program) {
-  PerAxis<double> start_m;
-  for (const AxisRecord& a : record().axes) start_m.push_back(a.reference.position_m);
-  auto generator = std::make_unique<PathGenerator>(program, start_m, LimitsNow(limits_, record()),
-                                                   static_cast<double>(period_ns_) * 1e-9, ++program_id_);
-  plan_ = generator->plan();
-  learning_.Prepare(program.name, start_m, program_id_, *generator);
+  const Placement place = PlaceNow();
+  const PerAxis<PlanLimits> limits = LimitsNow(limits_, record());
+  plan_ = PlanPlaced(program, place, limits);
+  auto generator =
+      std::make_unique<PathGenerator>(plan_, limits, static_cast<double>(period_ns_) * 1e-9, ++program_id_);
+  learning_.Prepare(program.name, place.start_m, program_id_, *generator);
   feeder_.Begin(std::move(generator));
   return mailbox_.Post(RequestKind::kRun, program_id_);
 }

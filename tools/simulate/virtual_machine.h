@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/cycle_record.h"
 #include "daemon/learning/program_learning.h"
 #include "daemon/path_feeder.h"
+#include "daemon/program/placed_program.h"
 #include "daemon/program/program.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/cycle.h"
@@ -57,9 +59,15 @@ class VirtualMachine {
   void Enable();
   /// Asks for a program and supplies its points from now on; the caller ticks. Gives the request's sequence.
   std::uint32_t Start(const Program& program);
+  /// Programs count from where the machine stands now, instead of each from where it begins.
+  void SetZero();
+  /// G-code for where the machine stands. Throws ProgramError.
+  [[nodiscard]] Program ReadGcode(const std::string& text, const std::string& name) const;
   /// Runs a program to its end, learning as the machine file says: by its name and place a program is known.
   /// Throws std::runtime_error with the reason when the machine stops otherwise.
   void Run(const Program& program);
+  /// The pace that the program shall go to; 1 as programmed, 0 a pause.
+  void SetPace(double rate) { feeder_.SetPace(rate); }
   /// One more cycle, whatever the state.
   void Tick();
   /// So many grid points go by without a cycle, as on an overloaded host. What time does to the plant
@@ -82,6 +90,8 @@ class VirtualMachine {
  private:
   class TruthMemory;
 
+  [[nodiscard]] PerAxis<double> StandsAt_m() const;
+  [[nodiscard]] Placement PlaceNow() const;
   void TickUntilSettled(MachineState wanted, const char* doing);
   [[noreturn]] void Fail(const std::string& doing) const;
 
@@ -105,6 +115,7 @@ class VirtualMachine {
   bool prompt_;
   std::unique_ptr<CycleEntry> entry_;
   std::shared_ptr<const MotionPlan> plan_;
+  std::optional<PerAxis<double>> zero_m_;
   Observer observer_;
   std::function<void(const CycleEntry&)> record_;
 };

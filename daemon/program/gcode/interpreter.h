@@ -19,7 +19,8 @@ class GcodeInterpreter {
  public:
   using Sink = std::function<void(const CanonicalMove&)>;
 
-  GcodeInterpreter(const GcodeSettings& settings, Sink sink) : settings_(settings), sink_(std::move(sink)) {}
+  GcodeInterpreter(const GcodeSettings& settings, Sink sink)
+      : settings_(settings), sink_(std::move(sink)), position_m_(settings.start_m) {}
 
   /// Throws ProgramError with the place. The block's motion is found here.
   void Execute(Block& block, bool in_sub);
@@ -57,7 +58,7 @@ class GcodeInterpreter {
   int line_ = 0;
   bool in_sub_ = false;
 
-  AxisValues position_m_{};  ///< from program zero
+  AxisValues position_m_;  ///< from program zero
   WorkOffsets offsets_;
   double unit_m_ = 1e-3;
   bool absolute_ = true;

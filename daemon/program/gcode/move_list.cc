@@ -59,6 +59,7 @@ void MoveList::Push(GcodeMove move, int line) {
 void MoveList::Add(const CanonicalMove& canonical) {
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
     if ((canonical.named >> k & 1U) != 0) Use(k, canonical.line);
+  if (canonical.named != 0) named_line_ = canonical.line;
   switch (canonical.kind) {
     case CanonicalMove::Kind::kTraverse:
     case CanonicalMove::Kind::kFeed:
@@ -152,6 +153,9 @@ void MoveList::Pack() {
     list_.letters += static_cast<char>(kGcodeAxes[k] - 'a' + 'A');
     list_.letter_lines.push_back(used_[k]);
   }
+  list_.start_m = {};
+  for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
+    if (used_[k] != 0) list_.start_m[place[k]] = start_m_[k];
   for (GcodeMove& move : list_.moves) {
     const AxisValues all = move.target_m;
     move.target_m = {};
@@ -162,6 +166,14 @@ void MoveList::Pack() {
 }
 
 GcodeMoves MoveList::Finish() {
+  if (list_.moves.empty() && named_line_ != 0) {
+    // It is there already, as after a pass before this one.
+    GcodeMove stay;
+    stay.kind = GcodeMove::Kind::kDwell;
+    stay.line = named_line_;
+    stay.target_m = at_m_;
+    list_.moves.push_back(stay);
+  }
   if (list_.moves.empty()) throw ProgramError(name_ + ": the program does not move");
   Pack();
   return std::move(list_);

@@ -12,7 +12,9 @@ namespace contour {
 /// both ends, feeds along all axes.
 class MoveList {
  public:
-  explicit MoveList(const std::string& name) : name_(name) {}
+  /// `start_m`: where the machine stands, from program zero.
+  explicit MoveList(const std::string& name, const AxisValues& start_m = {})
+      : name_(name), start_m_(start_m), at_m_(start_m) {}
 
   void Add(const CanonicalMove& move);
   /// Throws ProgramError when there is no move.
@@ -30,7 +32,9 @@ class MoveList {
 
   const std::string& name_;
   GcodeMoves list_;
-  AxisValues at_m_{};
+  AxisValues start_m_;
+  AxisValues at_m_;
+  int named_line_ = 0;                       ///< of a move, if only to where the machine stands
   std::array<int, kGcodeAxisCount> used_{};  ///< line of the first use; 0: none
 };
 

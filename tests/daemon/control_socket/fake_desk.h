@@ -46,6 +46,19 @@ class FakeDesk final : public OperatorDesk {
     answer.start_m.push_back(-0.3);
     return answer;
   }
+  Answer Zero() override { return Do("zero"); }
+  Answer Pace(const PaceRequest& request) override {
+    if (request.paused) return Do(*request.paused ? "pause" : "resume");
+    {
+      const std::lock_guard lock(mutex_);
+      feed_percent_ = request.feed_percent.value_or(-1.0);
+    }
+    return Do("feed");
+  }
+  double feed_percent() const {
+    const std::lock_guard lock(mutex_);
+    return feed_percent_;
+  }
   MachineStatus Status() override {
     const std::lock_guard lock(mutex_);
     ++statuses_;
@@ -115,6 +128,7 @@ class FakeDesk final : public OperatorDesk {
   std::vector<std::shared_ptr<RowFeed>> feeds_;
   std::string refusal_;
   ProgramUpload upload_;
+  double feed_percent_ = 0.0;
   MachineStatus status_;
 };
 

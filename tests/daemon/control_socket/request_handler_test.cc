@@ -49,6 +49,17 @@ TEST_F(RequestHandlerTest, ReferenceTellsWhereEachNamedAxisStands) {
   EXPECT_EQ(desk_.asked().size(), asked);
 }
 
+TEST_F(RequestHandlerTest, PauseFeedAndZeroReachTheDesk) {
+  for (const char* kind : {"pause", "resume", "zero"})
+    EXPECT_EQ(Ask(std::string(R"({"request": ")") + kind + "\"}")["ok"], true) << kind;
+  EXPECT_EQ(Ask(R"({"request": "feed", "percent": 42.5})")["ok"], true);
+  EXPECT_EQ(desk_.feed_percent(), 42.5);
+  EXPECT_EQ(desk_.asked(), (std::vector<std::string>{"pause", "resume", "zero", "feed"}));
+  for (const char* wrong : {R"({"request": "feed"})", R"({"request": "feed", "percent": "50"})"})
+    EXPECT_EQ(Ask(wrong)["ok"], false) << wrong;
+  EXPECT_EQ(desk_.asked().size(), 4u);
+}
+
 TEST_F(RequestHandlerTest, RunUploadsTheProgram) {
   const json reply =
       Ask(R"({"request": "run", "name": "a.yaml", "format": "yaml", "text": "shape: circle\n"})");
@@ -64,6 +75,11 @@ TEST_F(RequestHandlerTest, RunUploadsTheProgram) {
       Ask(R"({"request": "run", "name": "a.yaml", "format": "yaml", "text": "", "forget": true})")["ok"],
       true);
   EXPECT_TRUE(desk_.upload().forget);
+  EXPECT_FALSE(desk_.upload().from_here);
+  EXPECT_EQ(
+      Ask(R"({"request": "run", "name": "a.yaml", "format": "yaml", "text": "", "from_here": true})")["ok"],
+      true);
+  EXPECT_TRUE(desk_.upload().from_here);
 }
 
 TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesTheDesk) {
@@ -113,6 +129,9 @@ TEST_F(RequestHandlerTest, ALineSaysWhoAnswersIt) {
   const auto kind = [](const char* request) { return HeadOf(json{{"request", request}}.dump()).kind; };
   for (const char* at_once : {"status", "watch", "rows", "fly"})
     EXPECT_EQ(kind(at_once), std::string(at_once) == "fly" ? RequestClass::kWaits : RequestClass::kAtOnce);
+  for (const char* at_once : {"pause", "resume", "feed", "zero"})
+    EXPECT_EQ(HeadOf(std::string(R"({"request": ")") + at_once + "\"}").kind, RequestClass::kAtOnce)
+        << at_once;
   for (const char* waits : {"enable", "reset", "reload", "run", "machine_file", "load_model"})
     EXPECT_EQ(kind(waits), RequestClass::kWaits) << waits;
   EXPECT_EQ(kind("stop"), RequestClass::kStop);

@@ -148,6 +148,100 @@ TEST_F(PathFollowerTest, IgnoresPointsOfAnotherProgramAndAfterTheLast) {
   EXPECT_EQ(follower_->waiting(), 10u);
 }
 
+/// The same circle from point `from` on at half the pace: law 1.
+PathPoint HalfPace(int from, int k, int count) {
+  PathPoint p = CirclePoint(7, k, count);
+  if (k >= from) {
+    // Between two points of the circle; what lies there does not matter here, but that it is told apart.
+    p = CirclePoint(7, from + (k - from) / 2, count);
+    p.law = 1;
+    p.program_time_s = kPeriod_s * (from + 0.5 * (k - from));
+    p.line = 3;
+  }
+  p.index = static_cast<std::uint64_t>(k);
+  return p;
+}
+
+TEST_F(PathFollowerTest, AnotherLawOfTimeTakesThePlaceOfWhatWasToCome) {
+  constexpr int kCount = 100000;
+  follower_->Expect(7);
+  Supply(kCount, kCount);
+  follower_->Start();
+  for (int k = 0; k < 300; ++k) {
+    follower_->Advance();
+    Supply(kCount, kCount);
+  }
+  const PathProgress before = follower_->progress();
+  ASSERT_NE(before.earliest, PathProgress::kNowhere);
+  const int from = static_cast<int>(before.earliest) + 1;
+  // Points that are here already come again first, and change nothing.
+  int next = from - 5;
+  const auto supply = [&] {
+    for (int i = 0; i < 8 && follower_->Room() != 0; ++i) follower_->Accept(HalfPace(from, next++, kCount));
+  };
+  for (int k = 300; k < from + 400; ++k) {
+    supply();
+    ASSERT_FALSE(follower_->running_dry()) << k;
+    follower_->Advance();
+    AxisHorizon x;
+    follower_->Horizon(0, kHorizon, x);
+    for (std::size_t j = 0; j < kHorizon; ++j)
+      ASSERT_EQ(x[j].position_m, HalfPace(from, k + static_cast<int>(j), kCount).axes[0].position_m)
+          << k << " " << j;
+    const double time_s = k < from ? kPeriod_s * k : kPeriod_s * (from + 0.5 * (k - from));
+    ASSERT_NEAR(follower_->program_time_s(), time_s, 1e-12);
+    ASSERT_NEAR(follower_->program_pace(), k < from ? 1.0 : 0.5, 1e-9);
+    ASSERT_EQ(follower_->line(), k < from ? 0u : 3u);
+  }
+  EXPECT_EQ(follower_->progress().law, 1u);
+  EXPECT_EQ(follower_->progress().refused_law, 0u);
+  follower_->BeginStop();
+  EXPECT_EQ(follower_->progress().earliest, PathProgress::kNowhere) << "a stop keeps its path";
+  for (int k = 0; k < 200 && !follower_->at_rest(); ++k) follower_->Advance();
+  EXPECT_TRUE(follower_->at_rest());
+}
+
+TEST_F(PathFollowerTest, ALawThatComesTooLateIsRefusedAndChangesNothing) {
+  constexpr int kCount = 100000;
+  follower_->Expect(7);
+  Supply(kCount, kCount);
+  follower_->Start();
+  for (int k = 0; k < 300; ++k) follower_->Advance();
+  const PathProgress before = follower_->progress();
+  for (const std::uint64_t index : {before.earliest - 1, before.end + 1}) {
+    PathPoint late = HalfPace(static_cast<int>(index), static_cast<int>(index), kCount);
+    ++late.law;
+    late.law += static_cast<std::uint32_t>(index);
+    follower_->Accept(late);
+    EXPECT_EQ(follower_->progress().refused_law, late.law);
+    // What follows it is refused with it.
+    ++late.index;
+    follower_->Accept(late);
+  }
+  EXPECT_EQ(follower_->progress().end, before.end);
+  EXPECT_EQ(follower_->progress().law, 0u);
+  for (int k = 300; k < 600; ++k) {
+    follower_->Advance();
+    ASSERT_EQ(Now(0).position_m, CirclePoint(7, k, kCount).axes[0].position_m);
+  }
+}
+
+TEST_F(PathFollowerTest, ALawMayTakeBackTheLastPoint) {
+  constexpr int kCount = 600;
+  follower_->Expect(7);
+  EXPECT_EQ(follower_->progress().earliest, PathProgress::kNowhere) << "it does not run yet";
+  Supply(kCount, kCount);
+  EXPECT_EQ(follower_->Room(), 0u);
+  follower_->Start();
+  for (int k = 0; k < 100; ++k) follower_->Advance();
+  EXPECT_EQ(follower_->Room(), 1u);
+  const int from = 400;
+  follower_->Accept(HalfPace(from, from, kCount));
+  EXPECT_EQ(follower_->progress().law, 1u);
+  EXPECT_EQ(follower_->progress().end, static_cast<std::uint64_t>(from + 1));
+  EXPECT_GT(follower_->Room(), 8u);
+}
+
 TEST(PathFollower, RefusesAStopThatItCannotLookAheadFor) {
   EXPECT_THROW(PathFollower(2, kPeriod_s, 2000.0, kHorizon), std::invalid_argument);
 }

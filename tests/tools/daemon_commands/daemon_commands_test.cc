@@ -105,6 +105,11 @@ TEST_F(DaemonCommandsTest, RequestsEndWhereTheyLead) {
   expect("stop", "Ready");
   expect("disable", "Idle");
   expect("reset", "Idle");
+  expect("pause", "paused");
+  expect("feed 30", "done");
+  EXPECT_NE(Ask("status").out.find("feed 30 %, paused"), std::string::npos) << Ask("status").out;
+  expect("resume", "Running");
+  expect("zero", "program zero is where the machine stands");
 }
 
 TEST_F(DaemonCommandsTest, ARefusalOrAFaultIsStatusOneWithItsReason) {

@@ -1,5 +1,6 @@
 #include "tests/tools/daemon_commands/scripted_machine.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "daemon/program/program.h"
@@ -63,6 +64,20 @@ Answer ScriptedMachine::Go(MachineState state, Reason reason) {
   return {true, "", ++sequence_, 0, {}};
 }
 
+Answer ScriptedMachine::Pace(const PaceRequest& request) {
+  const std::lock_guard lock(mutex_);
+  if (!refusal_.empty()) return {false, refusal_};
+  if (request.paused) {
+    status_.record.state = MachineState::kRunning;
+    status_.record.program_id = std::max(1U, status_.record.program_id);
+    status_.pace.pause_wanted = status_.pace.paused = *request.paused;
+    status_.record.pace = *request.paused ? 0.0 : 1.0;
+    status_.record.path_time_s += *request.paused ? 0.0 : 1e-3;
+  }
+  if (request.feed_percent) status_.pace.feed_percent = *request.feed_percent;
+  return {true, ""};
+}
+
 Answer ScriptedMachine::Run(const ProgramUpload& upload, const std::stop_token& /*unwanted*/) {
   Answer answer = Go(MachineState::kReady, Reason::kProgramEnd);
   if (!answer.accepted) return answer;
@@ -73,6 +88,7 @@ Answer ScriptedMachine::Run(const ProgramUpload& upload, const std::stop_token& 
   for (const AxisFacts& facts : status_.axis_facts) limits.push_back(facts.limits);
   answer.start_m.push_back(0.01);
   answer.start_m.push_back(-0.02);
+  answer.zero_m = answer.start_m;
   answer.program_id = ++status_.record.program_id;
   PathGenerator path(ParseProgram(upload.text, upload.name, format), answer.start_m, limits, 1e-3,
                      answer.program_id);

@@ -30,6 +30,8 @@ class ScriptedMachine final : public OperatorDesk {
   Answer LoadModel(const std::string& /*axis*/, const std::string& /*yaml*/) override { return {true, ""}; }
   Answer Reset(const std::stop_token&) override { return Go(MachineState::kIdle, Reason::kNone); }
   Answer Run(const ProgramUpload& upload, const std::stop_token&) override;
+  Answer Zero() override { return Go(MachineState::kReady, Reason::kNone); }
+  Answer Pace(const PaceRequest& request) override;
   MachineStatus Status() override;
   std::string MachineFile() override { return {}; }
   void Attach(std::shared_ptr<RowFeed> feed) override;

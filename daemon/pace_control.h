@@ -1,0 +1,32 @@
+#pragma once
+
+#include <mutex>
+
+#include "core/cycle_record.h"
+#include "daemon/control_socket/operator_desk.h"
+#include "daemon/pump.h"
+
+namespace contour {
+
+/// What operators want of a program's pace: a pause, and the feed in percent of the programmed one. The feed
+/// stays for the programs to come, a pause ends with its program. Never waits: who supplies the points of the
+/// path changes their pace as soon as it can. Any thread.
+class PaceControl {
+ public:
+  explicit PaceControl(Pump& pump) : pump_(pump) {}
+
+  /// `now`: the newest record.
+  Answer Change(const PaceRequest& request, const CycleRecord& now);
+  /// A program begins: the pace for it.
+  [[nodiscard]] double Begin();
+  /// For the status; `now` is its record.
+  [[nodiscard]] PaceStatus Status(const CycleRecord& now) const;
+
+ private:
+  Pump& pump_;
+  mutable std::mutex mutex_;  // guards what follows
+  bool paused_ = false;
+  double feed_percent_ = 100.0;
+};
+
+}  // namespace contour

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <vector>
+
+namespace contour {
+
+/// Where a program is at a point, in periods of its own time, and how fast it goes there.
+struct PaceState {
+  double time = 0.0;    ///< of the program, in periods
+  double rate = 1.0;    ///< program time per time; 1 as programmed, 0 paused
+  double change = 0.0;  ///< of the rate, per period
+};
+
+/// A program's own time as a function of time: the rate is constant, or goes from one constant to the next by
+/// a cubic without a jump of itself or of its first derivative. Time is counted in periods from the first
+/// point.
+///
+/// What the reference of an axis becomes: with v, a, j of the program at that time, velocity r v,
+/// acceleration r^2 a + r' v, jerk r^3 j + 3 r r' a + r'' v.
+class PaceLaw {
+ public:
+  explicit PaceLaw(double rate = 1.0) : pieces_{{0.0, 0.0, {0.0, rate, 0.0}, rate}} {}
+
+  [[nodiscard]] PaceState At(double index) const;
+
+  /// From `begin` on the rate goes to `rate` within `length` periods; what came after `begin` is forgotten.
+  void Ramp(double begin, double length, double rate);
+  /// Nothing before this will be asked for.
+  void ForgetBefore(double index);
+
+  /// From here on the rate is constant.
+  [[nodiscard]] double settled() const { return pieces_.back().begin + pieces_.back().length; }
+  /// That constant.
+  [[nodiscard]] double rate() const { return pieces_.back().to; }
+
+ private:
+  struct Piece {
+    double begin = 0.0;
+    double length = 0.0;  ///< of the ramp that it begins with
+    PaceState from;
+    double to = 1.0;
+  };
+  [[nodiscard]] static PaceState On(const Piece& piece, double index);
+
+  std::vector<Piece> pieces_;  ///< never empty
+};
+
+}  // namespace contour

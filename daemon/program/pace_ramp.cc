@@ -1,0 +1,139 @@
+#include "daemon/program/pace_ramp.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace contour {
+namespace {
+
+/// Of the limits; what they are proved by is finite differences.
+constexpr double kWithin = 1.01;
+/// One attempt is longer than the one before by this.
+constexpr double kLonger = 1.25;
+constexpr double kShortest_periods = 4.0;
+constexpr double kLongest_s = 30.0;
+/// Of the limits.
+constexpr double kAtRest = 1e-6;
+
+/// Difference of the given order over points one period apart, oldest first.
+double Difference(const std::array<double, 4>& p, int order) {
+  if (order == 1) return p[3] - p[2];
+  if (order == 2) return p[3] - 2.0 * p[2] + p[1];
+  return p[3] - 3.0 * p[2] + 3.0 * p[1] - p[0];
+}
+
+}  // namespace
+
+PerAxis<double> PaceRamp::Place_m(double time) const {
+  PerAxis<ReferencePoint> axes;
+  plan_.At(std::max(0.0, time * period_s_), axes);
+  PerAxis<double> place_m;
+  for (const ReferencePoint& p : axes) place_m.push_back(p.position_m);
+  return place_m;
+}
+
+// Within what nobody could tell from rest: the end of a line is found by its number, to a fraction of a
+// period.
+bool PaceRamp::AtRest(double time) const {
+  PerAxis<ReferencePoint> axes;
+  plan_.At(std::max(0.0, time * period_s_), axes);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const ReferencePoint& p = axes[i];
+    if (std::abs(p.velocity_m_s) > kAtRest * limits_[i].velocity_m_s ||
+        std::abs(p.acceleration_m_s2) > kAtRest * limits_[i].acceleration_m_s2 || p.extra_torque_Nm != 0.0)
+      return false;
+  }
+  return true;
+}
+
+// What the axes need at the present speed, if the program did nothing else.
+double PaceRamp::Shortest(double time, double change_of_rate) const {
+  PerAxis<ReferencePoint> axes;
+  plan_.At(std::max(0.0, time * period_s_), axes);
+  double periods = kShortest_periods;
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const double speed = std::abs(axes[i].velocity_m_s * change_of_rate);
+    const PlanLimits& l = limits_[i];
+    periods = std::max(periods, 1.5 * speed / (l.acceleration_m_s2 * period_s_));
+    if (l.jerk_m_s3 > 0.0) periods = std::max(periods, std::sqrt(6.0 * speed / l.jerk_m_s3) / period_s_);
+  }
+  return periods;
+}
+
+// Whether the program as it is written has the same difference near that time, or a larger one.
+bool PaceRamp::Own(std::size_t axis, double time, int order, double found) const {
+  std::array<double, 4> p{};
+  for (int step = -4; step <= 3; ++step) {
+    std::rotate(p.begin(), p.begin() + 1, p.end());
+    p[3] = Place_m(time + step)[axis];
+    if (step >= -1 && std::abs(Difference(p, order)) >= found) return true;
+  }
+  return false;
+}
+
+bool PaceRamp::Fits(const PaceLaw& law, double from, double to) const {
+  const std::size_t axes = limits_.size();
+  std::array<std::array<double, 4>, kMaxAxes> p{};
+  const double first = std::floor(from) - 3.0;
+  const std::array<double, 4> per{0.0, period_s_, period_s_ * period_s_, period_s_ * period_s_ * period_s_};
+  for (double index = first; index <= to + 3.0; index += 1.0) {
+    const PaceState at = law.At(std::max(0.0, index));
+    if (at.rate < 0.0) return false;
+    const PerAxis<double> place_m = Place_m(at.time);
+    for (std::size_t i = 0; i < axes; ++i) {
+      std::rotate(p[i].begin(), p[i].begin() + 1, p[i].end());
+      p[i][3] = place_m[i];
+      if (index < first + 3.0) continue;
+      const PlanLimits& l = limits_[i];
+      const std::array<double, 4> allowed{0.0, l.velocity_m_s, l.acceleration_m_s2, l.jerk_m_s3};
+      for (int order = 1; order <= 3; ++order) {
+        const auto o = static_cast<std::size_t>(order);
+        const double found = std::abs(Difference(p[i], order));
+        if (allowed[o] <= 0.0 || found <= kWithin * allowed[o] * per[o]) continue;
+        if (!Own(i, at.time, order, found)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+std::optional<PaceLaw> PaceRamp::From(const PaceLaw& law, double begin, double rate) const {
+  const PaceState now = law.At(begin);
+  const auto with = [&](double length) {
+    PaceLaw candidate = law;
+    candidate.Ramp(begin, length, rate);
+    return candidate;
+  };
+  if (AtRest(now.time) && now.change == 0.0) {
+    // Nothing moves while the rate jumps; what it leads to must fit all the same.
+    PaceLaw at_once = with(0.0);
+    if (Fits(at_once, begin, begin + kShortest_periods)) return at_once;
+  }
+  const double longest = kLongest_s / period_s_;
+  for (double length = Shortest(now.time, rate - now.rate); length <= longest; length *= kLonger) {
+    PaceLaw candidate = with(length);
+    if (Fits(candidate, begin, begin + length)) return candidate;
+  }
+  return std::nullopt;
+}
+
+std::optional<PaceLaw> PaceRamp::StopAt(const PaceLaw& law, double begin, double stop) const {
+  const PaceState now = law.At(begin);
+  if (now.rate <= 0.0 || stop <= now.time) return std::nullopt;
+  const double room = (stop - now.time) / now.rate;  // periods at this rate
+  if (AtRest(stop)) {
+    PaceLaw candidate = law;
+    candidate.Ramp(begin + room, 0.0, 0.0);
+    if (Fits(candidate, begin + room, begin + room)) return candidate;
+  }
+  // A ramp goes half as far as the rate that it begins with.
+  for (double length = Shortest(stop, now.rate); 0.5 * length <= room; length *= kLonger) {
+    PaceLaw candidate = law;
+    candidate.Ramp(begin + room - 0.5 * length, length, 0.0);
+    if (Fits(candidate, begin + room - 0.5 * length, begin + room + 0.5 * length)) return candidate;
+  }
+  return std::nullopt;
+}
+
+}  // namespace contour
