@@ -35,7 +35,7 @@ std::vector<Stretch> StretchesOf(const Column& time_s) {
 }
 
 /// Cubic through rows i and i + 1 with the slopes of parabolas through each and its neighbours; straight
-/// beside a value that is not known, and none where one of the two is not.
+/// next to a value that is not known, and none where one of the two is not.
 double CubicAt(const Column& t, const Column& y, const Stretch& s, std::size_t i, double at) {
   const double h = t[i + 1] - t[i], x = (at - t[i]) / h, rise = y[i + 1] - y[i];
   const auto slope = [&](std::size_t k) {

@@ -138,37 +138,5 @@ TEST(ReadCsvLog, AVelocityAloneIsIntegrated) {
   EXPECT_NEAR(log.position[2], 0.7, 1e-12);
 }
 
-TEST(ReadCsvLog, ResampledRowsFollowACurveAndKeepTheImpulse) {
-  // Steps of 10 and 12 ms, as a robot's recorder has them.
-  std::string text = "time_s,torque_Nm,position_rad\n";
-  double t = 0.0, impulse = 0.0;
-  for (int i = 0; i < 300; ++i) {
-    const double step = i % 3 == 0 ? 12e-3 : 10e-3, u = std::sin(3.0 * t);
-    text += std::to_string(t) + "," + std::to_string(u) + "," + std::to_string(std::sin(2.0 * t)) + "\n";
-    impulse += i + 1 < 300 ? u * step : 0.0;
-    t += step;
-  }
-  const AxisLog log = ReadLog(WriteTestFile("log.csv", text), {.resample_Hz = 94.0});
-  EXPECT_DOUBLE_EQ(log.period_s, 1.0 / 94.0);
-  EXPECT_NE(log.note.find("94"), std::string::npos);
-  double kept = 0.0;
-  for (std::size_t k = 0; k < log.size(); ++k) {
-    EXPECT_NEAR(log.position[k], std::sin(2.0 * static_cast<double>(k) / 94.0), 5e-6);
-    kept += log.command[k] / 94.0;
-  }
-  EXPECT_NEAR(kept, impulse, 0.012);
-}
-
-TEST(Beginnings, AfterMoreThanTenMillisecondsAndThreeRows) {
-  AxisLog log;
-  log.present.assign(100, 1);
-  for (std::size_t k = 20; k < 30; ++k) log.present[k] = 0;  // 10 ms: goes on
-  for (std::size_t k = 40; k < 51; ++k) log.present[k] = 0;
-  EXPECT_EQ(Beginnings(log), (std::vector<std::size_t>{0, 51}));
-  log.period_s = 0.02;
-  EXPECT_EQ(Beginnings(log), (std::vector<std::size_t>{0, 30, 51}));
-  EXPECT_FALSE(IsGap(3, 0.02));
-}
-
 }  // namespace
 }  // namespace contour::diagnosis
