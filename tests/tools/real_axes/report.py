@@ -16,7 +16,7 @@ from axis_model import butterworth, central_difference, rms
 HEAD = """# Real axes
 
 Made by `tests/tools/real_axes/report.py build/release/bin/contour FOLDER > docs/real_axes.md`, where FOLDER holds `emps/` and `ur10e/`. The recordings are their authors' and not part of this repository; tests that need them
-look in `CONTOUR_REAL_AXES` (a CMake variable; `../shared/data` beside the sources unless said otherwise) and are skipped, with a message, where they are not.
+look in `CONTOUR_REAL_AXES` (a CMake variable; `../shared/data` next to the sources unless said otherwise) and are skipped, with a message, where they are not.
 
 `contour diagnose` is given the first half of a recording, a model, and no option but how the columns are spelt. What comes out is scored by scripts that share nothing with it (`tests/tools/real_axes`).
 """
