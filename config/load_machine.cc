@@ -1,5 +1,6 @@
 #include "config/load_machine.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <utility>
@@ -12,12 +13,31 @@
 namespace contour {
 namespace {
 
-// A file of a model or a loop holds its keys, or one key `model` or `loop` with them below.
+/// Identification and diagnosis know axes that no controller here has.
+void RefuseOtherAxes(const YamlValue& model) {
+  if (const YamlEntry* mass = model.Find("mass_kg"))
+    throw ConfigError({mass->where +
+                       ": mass_kg: states a linear axis, expected one with a ball screw: lead_mm, "
+                       "motor_inertia_kgm2, table_mass_kg, screw_stiffness_N_um"});
+  const YamlEntry* inertia = model.Find("motor_inertia_kgm2");
+  if (inertia == nullptr) return;
+  for (const char* key : {"lead_mm", "screw_stiffness_N_um"})
+    if (model.Find(key) == nullptr)
+      throw ConfigError({inertia->where + ": motor_inertia_kgm2: states an axis without " + key +
+                         ", expected one with a ball screw: lead_mm, motor_inertia_kgm2, table_mass_kg, "
+                         "screw_stiffness_N_um"});
+}
+
+// A file of a model or a loop holds its keys, or one key `model` or `loop` with them below; a model may have
+// `drive` beside it, which is the machine file's matter.
 YamlValue Below(const std::string& key, YamlValue root) {
-  if (root.entries.size() == 1 && root.entries.front().key == key) {
-    YamlValue below = std::move(root.entries.front().value);
-    return below;
+  const auto is = [&](const YamlEntry& e) { return e.key == key || (key == "model" && e.key == "drive"); };
+  YamlEntry* entry = root.Find(key);
+  if (entry != nullptr && std::all_of(root.entries.begin(), root.entries.end(), is)) {
+    YamlValue below = std::move(entry->value);
+    root = std::move(below);
   }
+  if (key == "model") RefuseOtherAxes(root);
   return root;
 }
 

@@ -139,6 +139,16 @@ struct ViscousNonlinearExtension : ViscousCurve {
   }
 };
 
+/// sigma2 times 1 + difference_rel / 2 upwards, 1 - difference_rel / 2 downwards.
+struct AsymmetricViscousExtension {
+  double difference_rel = 0.0;
+  template <class Visitor>
+  void Visit(Visitor& v) {
+    v.Required("difference_rel", difference_rel, Range{-1.9, 1.9},
+               "(upwards - downwards) / mean of the viscous coefficient");
+  }
+};
+
 /// sigma2 times 1 + rate_1_K (T - reference_degC).
 struct TemperatureViscosityExtension {
   double rate_1_K = 0.0;
@@ -234,6 +244,7 @@ struct ExtensionsConfig {
   std::optional<RippleExtension> ball_ripple;
   std::optional<CoggingExtension> cogging;
   std::optional<ViscousNonlinearExtension> viscous_nonlinear;
+  std::optional<AsymmetricViscousExtension> asymmetric_viscous;
   std::optional<TemperatureViscosityExtension> temperature_viscosity;
   std::optional<TorqueConstantExtension> torque_constant;
   std::optional<ComplianceExtension> compliance;
@@ -254,6 +265,8 @@ struct ExtensionsConfig {
     v.Optional("ball_ripple", ball_ripple, "friction that varies with the balls' circulation");
     v.Optional("cogging", cogging, "detent torque");
     v.Optional("viscous_nonlinear", viscous_nonlinear, "viscous friction beyond the linear term");
+    v.Optional("asymmetric_viscous", asymmetric_viscous,
+               "viscous friction that differs between the directions");
     v.Optional("temperature_viscosity", temperature_viscosity,
                "viscous friction that changes with temperature");
     v.Optional("torque_constant", torque_constant, "torque constant other than stated");

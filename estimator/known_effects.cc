@@ -36,7 +36,7 @@ KnownEffects::Table KnownEffects::MakeTable(const char* kind, const std::vector<
 KnownEffects::KnownEffects(const ExtensionsConfig& c, const Mechanics& mechanics, double viscous_Ns_m) {
   neutral_ = !(c.constant_torque || c.cogging || c.friction_ripple || c.ball_ripple || c.cable_spring ||
                c.position_friction || c.pitch_error || c.lead_wobble || c.viscous_nonlinear ||
-               c.temperature_viscosity);
+               c.asymmetric_viscous || c.temperature_viscosity);
   const double r = mechanics.radius_m_rad;
   // Forces of the real machine, in units of the torque that is asked for.
   const double lever_m_rad = r * (c.torque_constant ? c.torque_constant->ratio : 1.0);
@@ -73,6 +73,7 @@ KnownEffects::KnownEffects(const ExtensionsConfig& c, const Mechanics& mechanics
     add_curve(*e);
     for (const ViscousCurve& curve : e->further) add_curve(curve);
   }
+  if (const auto& e = c.asymmetric_viscous) viscous_asymmetry_Ns_m_ = 0.5 * e->difference_rel * viscous_Ns_m;
   if (const auto& e = c.temperature_viscosity) {
     viscous_rate_Ns_m_K_ = viscous_Ns_m * e->rate_1_K;
     reference_degC_ = e->reference_degC;
@@ -117,7 +118,7 @@ double KnownEffects::Curve::At(double velocity_m_s) const noexcept {
 }
 
 double KnownEffects::Viscous_N(double velocity_m_s, double temperature_degC) const noexcept {
-  double force_N = 0.0;
+  double force_N = viscous_asymmetry_Ns_m_ * std::abs(velocity_m_s);
   for (const Curve& curve : viscous_) force_N += curve.At(velocity_m_s);
   if (viscous_rate_Ns_m_K_ != 0.0 && !std::isnan(temperature_degC))
     force_N += viscous_rate_Ns_m_K_ * (temperature_degC - reference_degC_) * velocity_m_s;

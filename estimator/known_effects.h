@@ -55,6 +55,7 @@ class KnownEffects {
   Waves ripple_, ball_;
   Table friction_rel_;
   std::vector<Curve> viscous_;
+  double viscous_asymmetry_Ns_m_ = 0.0;  ///< more upwards, less downwards
   double viscous_rate_Ns_m_K_ = 0.0, reference_degC_ = 20.0;
   Table pitch_m_;
   Waves wobble_;  ///< m

@@ -84,6 +84,7 @@ void ApplyExtras(const ExtensionsConfig& x, StatedAxis& axis) {
     add_drag(*e);
     for (const ViscousCurve& curve : e->further) add_drag(curve);
   }
+  if (const auto& e = x.asymmetric_viscous) out.viscous_difference_rel = e->difference_rel;
   if (const auto& e = x.temperature_viscosity) {
     out.viscous_rate_1_K = e->rate_1_K;
     out.reference_degC = e->reference_degC;

@@ -6,6 +6,7 @@ AxisModel ModelOf(const StatedAxis& s) {
   AxisModel m;
   m.two_inertia = s.two_inertia;
   m.friction_on_load = s.friction_on_load && s.two_inertia;
+  m.motor_share = m.friction_on_load ? s.motor_share : 0.0;
   m.motor_inertia = s.motor_inertia;
   m.load_inertia = s.load_inertia;
   m.stiffness = s.stiffness;

@@ -16,6 +16,7 @@ struct AxisModel {
   std::size_t rows = 0;  ///< of the log, for signals
   bool two_inertia = false;
   bool friction_on_load = false;
+  double motor_share = 0.0;  ///< of friction on the load, that acts on the motor
   double motor_inertia = 0.0, load_inertia = 0.0;
   double stiffness = 0.0, damping = 0.0;
   double gap = 0.0;  ///< free travel between the two inertias

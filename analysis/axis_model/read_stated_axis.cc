@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "analysis/axis_model/apply_extensions.h"
+#include "analysis/axis_model/extension_keys.h"
 #include "analysis/axis_model/loose_axis.h"
 #include "analysis/axis_model/stated_parameters.h"
 #include "config/config_error.h"
@@ -32,21 +33,47 @@ StatedFriction AtTable(const Friction& f) {
 
 bool IsMachine(const YamlValue& tree) { return tree.Find("axes") != nullptr; }
 
-StatedAxis ReadLoose(const YamlValue& tree) {
+/// Motor values (Nm, rad) say on which side friction acts.
+void SayActsOn(YamlValue& model) {
+  YamlEntry* friction = model.Find("friction");
+  if (friction == nullptr || friction->value.Find("acts_on") != nullptr) return;
+  for (const YamlEntry& e : friction->value.entries) {
+    if (e.key.find("_Nm") == std::string::npos && e.key.find("_rad") == std::string::npos) continue;
+    YamlValue motor;
+    motor.kind = YamlValue::Kind::kScalar;
+    motor.text = "motor";
+    motor.where = e.where;
+    friction->value.entries.push_back({"acts_on", e.where, motor});
+    return;
+  }
+}
+
+StatedAxis ReadLoose(YamlValue tree) {
+  LooseAxisFile content = ReadLooseFile(tree);
   std::vector<std::string> errors;
-  LooseAxisFile content;
-  const bool has_model_key = tree.Find("model") != nullptr;
-  if (has_model_key)
-    ReadYaml(tree, content, "", errors);
-  else
-    ReadYaml(tree, content.model, "", errors);
-  StatedAxis axis;
-  if (errors.empty()) axis = ToStatedAxis(content, tree, has_model_key ? "model" : "", errors);
+  const StatedAxis axis = ToStatedAxis(content, tree, tree.Find("model") != nullptr ? "model" : "", errors);
   if (!errors.empty()) throw ConfigError(std::move(errors));
   return axis;
 }
 
 }  // namespace
+
+LooseAxisFile ReadLooseFile(YamlValue& tree) {
+  std::vector<std::string> errors;
+  LooseAxisFile content;
+  const bool has_model_key = tree.Find("model") != nullptr;
+  YamlValue& model = has_model_key ? tree.Find("model")->value : tree;
+  const ExtensionUnits units = UnitsOf(model);
+  SayActsOn(model);
+  if (YamlEntry* extensions = model.Find("extensions")) RenameFromFile(units, extensions->value);
+  if (has_model_key)
+    ReadYaml(tree, content, "", errors);
+  else
+    ReadYaml(tree, content.model, "", errors);
+  for (std::string& e : errors) e = RenamedToFile(units, e);
+  if (!errors.empty()) throw ConfigError(std::move(errors));
+  return content;
+}
 
 bool IsMachineFile(const std::string& file) { return IsMachine(ParseYamlFile(file)); }
 
@@ -65,6 +92,7 @@ StatedAxis ToStatedAxis(const MachineConfig& machine, const std::string& name) {
   axis.stiffness = r * r * m.stiffness_N_m;
   axis.damping = r * r * m.damping_Ns_m;
   axis.friction_on_load = a.model.friction.acts_on == FrictionSide::kTable;
+  axis.motor_share = a.model.friction.motor_share_rel;
   axis.friction = SeenAtQ(AtTable(ToSi(model.friction, r)), r);
   axis.delay_s = a.drive.delay_cycles * machine.machine.cycle_us * 1e-6 + model.added_delay_s;
   axis.lag_s = a.drive.lag_ms * 1e-3 + model.added_lag_s;

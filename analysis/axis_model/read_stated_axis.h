@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "analysis/axis_model/stated_axis.h"
+#include "analysis/axis_model/stated_axis_config.h"
 #include "config/machine_config.h"
+#include "config/yaml_tree.h"
 
 namespace contour::diagnosis {
 
@@ -13,6 +15,10 @@ namespace contour::diagnosis {
 /// (docs/diagnosis_files.md). Throws ConfigError with all that is wrong.
 StatedAxis ReadStatedAxis(const std::string& file, const std::string& axis,
                           const std::vector<std::string>& overrides = {});
+
+/// Such a file as it stands; its tree gets the keys of ExtensionsConfig. Throws ConfigError with all that is
+/// wrong.
+LooseAxisFile ReadLooseFile(YamlValue& tree);
 
 /// Whether the file is a whole machine file.
 bool IsMachineFile(const std::string& file);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,8 @@ struct StatedExtras {
   StatedTable pitch_error_m;                             ///< table beyond what the motor's angle says
   std::vector<StatedWave> wobble_m;                      ///< the same, per turn
   std::vector<StatedDrag> drag;
+  double viscous_difference_rel =
+      0.0;  ///< of the viscous coefficient: half more upwards, half less downwards
   double viscous_rate_1_K = 0.0, reference_degC = 20.0;
 };
 
@@ -62,6 +65,8 @@ struct StatedAxis {
   std::string source;  ///< file, for messages
   std::string axis;    ///< its name; empty when not known
   bool linear = false;
+  bool endless = false;      ///< no stroke, and nothing that goes with one
+  double gear_ratio = 1.0;   ///< turns of the motor per turn of q, where q is not the motor's angle
   double lead_m = 0.0;       ///< table travel per motor turn; 0 when unknown (linear axes without a screw)
   double table_per_q = 1.0;  ///< table travel in m per unit of q: lead / (2 pi), or 1
 
@@ -71,6 +76,7 @@ struct StatedAxis {
   double stiffness = 0.0;      ///< between the two, seen at q
   double damping = 0.0;
   bool friction_on_load = false;  ///< else on the motor's inertia
+  double motor_share = 0.0;       ///< of friction on the load: so much of it acts on the motor
   StatedFriction friction;
   double offset = 0.0;  ///< constant u that the model states, positive accelerates
   StatedExtras extras;
@@ -80,11 +86,16 @@ struct StatedAxis {
   double position_step = 0.0;                     ///< q of one count
   double command_step = 0.0;                      ///< u of one step of the command
   double rated = 0.0;                             ///< rated u
+  double torque_constant = 0.0;                   ///< u per ampere; 0: unknown
   double stroke_min_m = 0.0, stroke_max_m = 0.0;  ///< table
 
   /// Relative standard deviation, by the names: inertia (motor_inertia), load_inertia, stiffness, damping,
   /// Fc, Fs, vs, s0, s1, s2, delay, lag, torque_constant. Absent: the engine's stated default.
   std::map<std::string, double> sigma;
+
+  /// What the file leaves open, by the same names (Fc, s2, vs, s0): a placeholder stands there until
+  /// CompleteFromLog. "stroke" where its ends are not stated.
+  std::set<std::string> open;
 };
 
 }  // namespace contour::diagnosis

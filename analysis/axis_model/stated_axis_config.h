@@ -5,7 +5,9 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "core/side_mode.h"
 #include "core/visit.h"
 #include "estimator/extension_config.h"
 #include "estimator/friction_config.h"
@@ -19,9 +21,8 @@ namespace contour::diagnosis {
 struct LooseFrictionConfig {
   FrictionSide acts_on = FrictionSide::kTable;
   double stribeck_exponent = 1.0;
-  double Fc_plus = 0.0, Fc_minus = 0.0;
-  std::optional<double> Fs_plus, Fs_minus, vs, sigma0, sigma1, sigma1_decay;
-  double sigma2 = 0.0;
+  /// Coulomb levels and viscous friction that are left out come from the log (CompleteFromLog).
+  std::optional<double> Fc_plus, Fc_minus, Fs_plus, Fs_minus, vs, sigma0, sigma1, sigma1_decay, sigma2;
   double motor_share_rel = 0.0;
 
   template <class Visitor>
@@ -29,12 +30,12 @@ struct LooseFrictionConfig {
     v.Optional("acts_on", acts_on, kAny, "whether the values below are at the table (N) or the motor (Nm)");
     v.Optional("stribeck_exponent", stribeck_exponent, Range{0.5, 4.0}, "n of exp(-(|v| / vs)^n)");
     v.Optional("motor_share_rel", motor_share_rel, Range{0.0, 0.9},
-               "share of the friction that acts before the screw; for the controller, not used here");
+               "share of the friction at the table that acts on the motor, before the screw");
     const bool table = acts_on == FrictionSide::kTable;
-    v.Required(table ? "Fc_plus_N" : "Fc_plus_Nm", Fc_plus, kNotNegative,
-               "Coulomb friction, positive direction");
-    v.Required(table ? "Fc_minus_N" : "Fc_minus_Nm", Fc_minus, kNotNegative,
-               "Coulomb friction, negative direction");
+    v.Optional(table ? "Fc_plus_N" : "Fc_plus_Nm", Fc_plus, kNotNegative,
+               "Coulomb friction, positive direction; from the log when left out");
+    v.Optional(table ? "Fc_minus_N" : "Fc_minus_Nm", Fc_minus, kNotNegative,
+               "Coulomb friction, negative direction; that of Fc_plus when left out");
     v.Optional(table ? "Fs_plus_N" : "Fs_plus_Nm", Fs_plus, kNotNegative,
                "break-away friction, positive direction; that of Fc_plus when left out");
     v.Optional(table ? "Fs_minus_N" : "Fs_minus_Nm", Fs_minus, kNotNegative,
@@ -44,7 +45,8 @@ struct LooseFrictionConfig {
     v.Optional(table ? "sigma1_Ns_m" : "sigma1_Nms_rad", sigma1, kNotNegative, "bristle damping");
     v.Optional(table ? "sigma1_decay_mm_s" : "sigma1_decay_rad_s", sigma1_decay, kNotNegative,
                "velocity at which bristle damping fades; 0: it does not");
-    v.Required(table ? "sigma2_Ns_m" : "sigma2_Nms_rad", sigma2, kNotNegative, "viscous friction");
+    v.Optional(table ? "sigma2_Ns_m" : "sigma2_Nms_rad", sigma2, kNotNegative,
+               "viscous friction; from the log when left out");
   }
 };
 
@@ -60,12 +62,14 @@ struct LooseModelConfig {
   double screw_damping_Ns_m = 0.0;
   double damping_Nms_rad = 0.0;
   double constant_torque_Nm = 0.0;
+  double gear_ratio = 1.0;
   // Linear: seen at the carriage.
   std::optional<double> mass_kg;
   std::optional<double> load_mass_kg;
   double constant_force_N = 0.0;
 
   LooseFrictionConfig friction;
+  std::vector<SideMode> side_modes;  ///< read, as identify writes them, and not used here
   std::map<std::string, double> uncertainty;
   ExtensionsConfig extensions;
 
@@ -87,12 +91,16 @@ struct LooseModelConfig {
     v.Optional("damping_Nms_rad", damping_Nms_rad, kNotNegative, "the same, seen at the motor");
     v.Optional("constant_torque_Nm", constant_torque_Nm, kAny,
                "rotary axes: torque that always acts, positive towards positive position");
+    v.Optional("gear_ratio", gear_ratio, Range{1e-3, 1e4},
+               "rotary axes: turns of the motor per turn of the axis, where the log has the axis's angle and "
+               "torque; orders per turn are the motor's");
     v.Optional("mass_kg", mass_kg, kPositive, "linear axes: the mass that the force moves");
     v.Optional("load_mass_kg", load_mass_kg, kPositive,
                "linear axes: a second mass behind screw_stiffness_N_um");
     v.Optional("constant_force_N", constant_force_N, kAny,
                "linear axes: force that always acts, positive towards positive position");
-    v.Required("friction", friction, "LuGre friction of the axis");
+    v.Optional("friction", friction, "LuGre friction of the axis; from the log when left out");
+    v.Optional("side_modes", side_modes, "parts of the table that swing; for the controller, not used here");
     v.Optional("uncertainty", uncertainty, Range{0.0, 10.0},
                "relative standard deviation of a parameter, by its key");
     v.Optional("extensions", extensions, "further effects with their parameters, as diagnosis writes them");
@@ -109,7 +117,10 @@ struct LooseDriveConfig {
   double force_step_N = 0.0;
   double rated_torque_Nm = 0.0;
   double rated_force_N = 0.0;
+  double torque_constant_Nm_A = 0.0;
+  double force_constant_N_A = 0.0;
   std::optional<std::array<double, 2>> stroke_mm;
+  bool endless = false;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -123,6 +134,11 @@ struct LooseDriveConfig {
     v.Optional("force_step_N", force_step_N, kNotNegative, "linear axes: the same");
     v.Optional("rated_torque_Nm", rated_torque_Nm, kNotNegative, "rated torque of the motor; 0: unknown");
     v.Optional("rated_force_N", rated_force_N, kNotNegative, "linear axes: the same");
+    v.Optional("torque_constant_Nm_A", torque_constant_Nm_A, kNotNegative,
+               "of a log with current_A; 0: from the log, as the stated inertia asks for");
+    v.Optional("force_constant_N_A", force_constant_N_A, kNotNegative, "linear axes: the same");
+    v.Optional("endless", endless, kAny,
+               "rotary axes that turn for ever: no cause is looked for that goes with a stroke");
     v.Optional("stroke_mm", stroke_mm, kAny, "ends of the table's travel; those of the log when left out");
   }
 };

@@ -15,6 +15,7 @@ const std::map<std::string, std::string>& NamesOfKeys() {
                                                            {"load_mass_kg", ""},
                                                            {"lead_mm", ""},
                                                            {"stribeck_exponent", ""},
+                                                           {"motor_share_rel", ""},
                                                            {"sigma1_decay_mm_s", ""},
                                                            {"sigma1_decay_rad_s", ""},
                                                            {"screw_stiffness_N_um", "stiffness"},

@@ -1,11 +1,14 @@
 #include "analysis/diagnosis/diagnose.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "analysis/diagnosis/adequacy/remaining_structure.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/verdict.h"
@@ -13,6 +16,8 @@
 #include "analysis/diagnosis/rounds.h"
 #include "analysis/diagnosis/screening/nominal.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
+#include "analysis/diagnosis/tuning/prediction_tuning.h"
+#include "config/number_text.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -29,20 +34,42 @@ void CheckInput(const AxisLog& log, const StatedAxis& stated) {
   if (!(stated.motor_inertia > 0.0)) throw std::invalid_argument(stated.source + ": inertia is not positive");
 }
 
+/// So many that every segment of the noise settles.
+constexpr std::size_t kFewestRows = kNoise.segments * kNoise.settling_rows;
+
+std::size_t FewestRows(const AxisLog& log) {
+  return std::max(kFewestRows, static_cast<std::size_t>(kRounds.shortest_s / log.period_s + 0.5));
+}
+
+std::size_t RowsThere(const AxisLog& log) {
+  return static_cast<std::size_t>(std::count(log.present.begin(), log.present.end(), std::uint8_t{1}));
+}
+
+/// What goes with a stroke is no cause where there is none.
+DiagnoseOptions WithoutStroke(const StatedAxis& stated, DiagnoseOptions options) {
+  if (!stated.endless) return options;
+  for (const CauseDefinition* c : AllCauses())
+    if (c->shape != nullptr) options.exclude.emplace_back(*c->name);
+  return options;
+}
+
 Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
   Diagnosis out;
   out.false_alarm_rate = options.false_alarm_rate;
   out.data_quality.rows = log.rows;
   out.data_quality.missing = log.missing;
-  out.notes.push_back("The log is shorter than " + std::to_string(kRounds.fewest_rows) + " rows.");
+  out.notes.push_back("The log has fewer than " + std::to_string(FewestRows(log)) + " rows of motion, " +
+                      RoundedText(kRounds.shortest_s) + " s or " + std::to_string(kFewestRows) +
+                      " rows, whichever is longer.");
   return out;
 }
 
 }  // namespace
 
-Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& options) {
+Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& asked) {
   CheckInput(log, stated);
-  if (log.size() < kRounds.fewest_rows) return TooShort(log, options);
+  const DiagnoseOptions options = WithoutStroke(stated, asked);
+  if (RowsThere(log) < FewestRows(log)) return TooShort(log, options);
   Diagnosis out;
   out.false_alarm_rate = options.false_alarm_rate;
   Problem problem(log, stated, options.threads);
@@ -57,6 +84,8 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   const std::vector<RemainingStructure> left = FindStructure(problem, fit, options.false_alarm_rate);
   std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
   TellStructure(rounds.accepted, left, options);
+  out.in_model = out.causes;
+  std::erase_if(out.in_model, [](const Cause& c) { return Outside(c.kind); });
   Conclude(problem, left, out);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)
     out.notes.push_back("No more than " + std::to_string(options.most_effects) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,14 @@ bool Known(const std::string& kind, const Diagnosis& out) {
   return std::any_of(out.causes.begin(), out.causes.end(), [&](const Cause& c) { return c.kind == kind; });
 }
 
+bool Among(const std::vector<std::string>& kinds, std::string_view kind) {
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+void LeaveOut(const std::vector<std::string>& kinds, std::vector<Scored>& scored) {
+  std::erase_if(scored, [&](const Scored& s) { return Among(kinds, s.effect->kind); });
+}
+
 /// Where one of them will be in the model next time around: their kinds; what could be found of the others
 /// is not asked before. Else none.
 std::vector<std::string> ThoseWithoutDoubt(const std::vector<Hypothesis>& hypotheses) {
@@ -82,6 +91,7 @@ void KeepFirst(const std::vector<Scored>& scored, Diagnosis& out) {
 Seen Look(Rounds& r) {
   Seen seen;
   seen.scored = Screen(r.problem, r.accepted.fit, r.nominal.catalogue);
+  LeaveOut(r.options.exclude, seen.scored);
   seen.threshold = ScoreThresholdOf(r.problem, r.accepted, seen.scored, r.nominal.by_extras, r.options);
   seen.search = r.options.fit_above_chance ? ByChanceAlone(seen.threshold) : seen.threshold;
   seen.jitter = TestJitter(r.problem, r.accepted.fit);
@@ -92,7 +102,8 @@ Seen Look(Rounds& r) {
     r.out.threshold = Threshold(r.problem, seen.threshold);
     r.first = false;
   }
-  seen.jitter_there = !r.jitter_known && ScoreOf(seen.jitter) > Threshold(r.problem, seen.threshold);
+  seen.jitter_there = !r.jitter_known && !Among(r.options.exclude, *CauseInScatter().name) &&
+                      ScoreOf(seen.jitter) > Threshold(r.problem, seen.threshold);
   return seen;
 }
 
@@ -184,7 +195,8 @@ RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const Diag
   }
   // In addition to all that is in the model now, a shape from outside the catalogue among it.
   if (r.stated_with != r.accepted.places.size()) {
-    const std::vector<Scored> scored = Screen(problem, r.accepted.fit, nominal.catalogue);
+    std::vector<Scored> scored = Screen(problem, r.accepted.fit, nominal.catalogue);
+    LeaveOut(options.exclude, scored);
     const Jitter jitter = TestJitter(problem, r.accepted.fit);
     const ScoreThreshold threshold =
         ScoreThresholdOf(problem, r.accepted, scored, nominal.by_extras, options);

@@ -70,6 +70,23 @@ Signal Along(const std::vector<StatedDrag>& curves, const Signals& s) {
   return out;
 }
 
+/// What the viscous coefficient has more, as a share.
+Signal WithTemperature(const StatedExtras& x, const Signals& s) {
+  Signal out;
+  if (x.viscous_rate_1_K == 0.0) return out;
+  for (const double T : s.temperature_K)
+    out.push_back(x.viscous_rate_1_K * (T + s.mean_degC - x.reference_degC));
+  return out;
+}
+
+Signal WithDirection(const StatedExtras& x, const Signals& s) {
+  Signal out;
+  if (x.viscous_difference_rel == 0.0) return out;
+  for (const double w : s.velocity)
+    out.push_back(w == 0.0 ? 0.0 : std::copysign(0.5 * x.viscous_difference_rel, w));
+  return out;
+}
+
 }  // namespace
 
 void AddExtras(const StatedExtras& x, const Signals& s, AxisModel& m) {
@@ -83,11 +100,7 @@ void AddExtras(const StatedExtras& x, const Signals& s, AxisModel& m) {
   m.level = Share(Joined(Joined(Along(x.friction_rel, s), Along(x.friction_ripple, s), both),
                          Along(x.ball_ripple, s), both));
   m.scale_error_m = Share(Joined(Along(x.pitch_error_m, s), AtRows(x.wobble_m, s), sum));
-  if (x.viscous_rate_1_K == 0.0 || s.temperature_K.empty()) return;
-  Signal viscous;
-  for (const double T : s.temperature_K)
-    viscous.push_back(x.viscous_rate_1_K * (T + s.mean_degC - x.reference_degC));
-  m.viscous = Share(std::move(viscous));
+  m.viscous = Share(Joined(WithTemperature(x, s), WithDirection(x, s), sum));
 }
 
 }  // namespace contour::diagnosis

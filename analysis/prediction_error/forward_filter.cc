@@ -99,8 +99,9 @@ void RunBundles(const Inputs& in, std::span<const Bundle> some) {
   };
   std::optional<Lanes> second;
   if (some.size() > 1) second = Prepare(in, some[1], spare);
-  if (in.setup.segments.empty()) return run(first, second ? &*second : nullptr);
-  for (const Segment& s : in.setup.segments) {
+  const std::span<const Segment> parts = PartsOf(in.setup);
+  if (parts.empty()) return run(first, second ? &*second : nullptr);
+  for (const Segment& s : parts) {
     const Lanes a = Over(first, s);
     if (!second) {
       run(a, nullptr);
@@ -126,6 +127,10 @@ void DeliveredStore::Give(Delivered used) {
   if (free_.size() < kMostKept) free_.push_back(std::move(used));
 }
 
+std::span<const Segment> PartsOf(const FilterSetup& setup) {
+  return setup.segments.empty() ? std::span<const Segment>(setup.pieces) : setup.segments;
+}
+
 int SubstepsOf(const FilterSetup& setup, const AxisModel& m) {
   return m.two_inertia ? setup.substeps_two : setup.substeps_rigid;
 }
@@ -149,7 +154,7 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
     const MeansKey key = KeyOf(setup, m);
     if (!in.means.contains(key)) {
       Delivered means = setup.store->Take();
-      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), setup.segments, means);
+      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), PartsOf(setup), means);
       in.means[key] = std::move(means);
     }
     std::vector<Bundle>& alike = bundles[ShapeOf(m)];

@@ -59,8 +59,13 @@ struct FilterSetup {
   bool trace = false;
   /// Only these are run, back to back in what comes out; none: the whole log.
   std::span<const Segment> segments;
+  /// The whole log, one after the other, where it has gaps: after each, motion begins anew. Empty: none.
+  std::vector<Segment> pieces;
   std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
 };
+
+/// What a run goes over; empty: the whole log at once.
+std::span<const Segment> PartsOf(const FilterSetup& setup);
 
 /// Per row, as the model's shape asks for.
 int SubstepsOf(const FilterSetup& setup, const AxisModel& m);

@@ -89,9 +89,9 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
   std::copy(gain.begin(), gain.end(), m.l);
   m.start_q = setup.start[0];
   m.start_w = setup.start[1];
-  const bool square = first.friction.exponent > 1.5;
-  m.linear = square ? 0.0 : 1.0;
-  m.square = square ? 1.0 : 0.0;
+  // Between 1 and 2 a mixture of both, which is the power to within 0.03 of the whole curve.
+  m.square = std::clamp(first.friction.exponent - 1.0, 0.0, 1.0);
+  m.linear = 1.0 - m.square;
   m.full = setup.full;
   m.trace = setup.trace;
   m.two = first.two_inertia;
@@ -120,6 +120,7 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
     }
     m.payload = m.payload || a.payload != 0.0;
     m.half_gap[i] = 0.5 * a.gap;
+    m.elsewhere[i] = m.on_load ? a.motor_share : 0.0;
     SetFriction(m, i, a);
     m.offset[i] = a.offset;
     m.gain[i] = a.torque_gain;

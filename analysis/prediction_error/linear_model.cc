@@ -68,6 +68,8 @@ LinearModel EmptyModel(const FilterSetup& setup, const AxisModel& model, std::si
   out.stride = n * n + 2 * n + kLinearInputs * (n + 1);
   out.step.assign((rows - 1) * out.stride, 0.0F);
   out.valid = setup.valid;
+  for (const Segment& piece : setup.pieces)
+    if (piece.from > 0) out.begins.push_back(piece.from);
   out.viscous = model.friction.s2;
   out.friction_on_load = model.two_inertia && model.friction_on_load;
   out.innovation.resize(rows);
@@ -97,8 +99,9 @@ void RunDirections(const FilterSetup& setup, const AxisModel& model, const Direc
   FilterSetup traced = setup;
   traced.full = true;
   traced.trace = true;
-  const Delivered delivered = DeliveredMeans(*setup.log, model.delay_s - model.lag_for_delay_s,
-                                             model.lag_s + model.lag_for_delay_s, SubstepsOf(setup, model));
+  Delivered delivered;
+  DeliveredMeans(*setup.log, model.delay_s - model.lag_for_delay_s, model.lag_s + model.lag_for_delay_s,
+                 SubstepsOf(setup, model), setup.pieces, delivered);
   std::vector<double> measured = setup.log->position, zeros(rows, 0.0), spare(rows);
   for (std::size_t k = 0; k < rows; ++k)
     if (setup.valid[k] == 0) measured[k] = 0.0;
@@ -121,7 +124,12 @@ void RunDirections(const FilterSetup& setup, const AxisModel& model, const Direc
       m.push.inverse[i + 1] = 1.0 / d.columns[first + i].size;
     }
     m.tangent = tangent.data();
-    BestLoops().run(m);
+    if (setup.pieces.empty()) BestLoops().run(m);
+    for (const Segment& piece : setup.pieces) {
+      Lanes part = Over(m, piece);
+      part.tangent += piece.from * kAtOnce * kTangentStates;
+      BestLoops().run(part);
+    }
     for (std::size_t k = 0; k + 1 < rows; ++k) {
       float* to = &out.step[k * out.stride];
       for (std::size_t i = 0; i < count; ++i) {
@@ -160,6 +168,8 @@ LinearModel Linearise(const FilterSetup& setup, const AxisModel& model) {
   LinearModel out = EmptyModel(setup, model, n);
   RunDirections(setup, model, d, PlacesOf(d, at, model.two_inertia), out);
   CompleteFrames(setup, d, at, model.two_inertia, out);
+  for (const std::size_t k : out.begins)
+    std::fill_n(out.step.begin() + static_cast<std::ptrdiff_t>((k - 1) * out.stride), out.stride, 0.0F);
   return out;
 }
 

@@ -18,6 +18,7 @@ struct LinearModel {
   int table_state = 0;              ///< the one that the table's position follows
   std::vector<float> step;          ///< per transition, as LaneColumns has it
   std::vector<std::uint8_t> valid;  ///< rows whose innovation corrects
+  std::vector<std::size_t> begins;  ///< rows after gaps, from which nothing is left of what was before
   Signal innovation, table, velocity;  ///< of the run itself; velocity of the body that carries friction
   double viscous = 0.0;
   bool friction_on_load = false;

@@ -39,14 +39,16 @@ void Likelihood(const Rows& rows, const Noise& noise, Sums& sums, float* gains) 
   using Vector = Eigen::Matrix<double, n, 1>;
   using FloatMatrix = Eigen::Matrix<float, n, n, Eigen::RowMajor>;
   using FloatVector = Eigen::Matrix<float, n, 1>;
-  Matrix p = Matrix::Zero();
-  p(0, 0) = noise.reading;
-  p(1, 1) = noise.reading / (rows.period_s * rows.period_s);
+  Matrix start = Matrix::Zero();
+  start(0, 0) = noise.reading;
+  start(1, 1) = noise.reading / (rows.period_s * rows.period_s);
   if (n >= 6) {
-    p(4, 4) = p(0, 0);
-    p(5, 5) = p(1, 1);
+    start(4, 4) = start(0, 0);
+    start(5, 5) = start(1, 1);
   }
+  Matrix p = start;
   Vector x = Vector::Zero();
+  auto begin = std::upper_bound(m.begins.begin(), m.begins.end(), rows.from);
   for (std::size_t k = rows.from; k + 1 < rows.to; ++k) {
     const float* at = &m.step[k * m.stride];
     const Matrix a = Eigen::Map<const FloatMatrix>(at).template cast<double>();
@@ -82,6 +84,10 @@ void Likelihood(const Rows& rows, const Noise& noise, Sums& sums, float* gains) 
     p.noalias() += q0 * h0 * h0.transpose();
     p.noalias() += q1 * h1 * h1.transpose();
     p.noalias() += r * hr * hr.transpose();
+    if (begin == m.begins.end() || *begin != k + 1) continue;
+    p = start;
+    x.setZero();
+    ++begin;
   }
 }
 

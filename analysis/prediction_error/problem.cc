@@ -16,6 +16,8 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr std::size_t kSlowRows = kRows.slow_rows;
+/// Over which the speed is taken that a run begins with; the observer does the rest.
+constexpr double kStart_s = 0.01;
 
 }  // namespace
 
@@ -30,9 +32,7 @@ Problem::Problem(const AxisLog& axis_log, const StatedAxis& stated_axis, int mos
   setup.log = &log;
   setup.full = has_scale();
   setup.valid = ValidRows(log, *signals, stated, quality);
-  const std::size_t n = std::min<std::size_t>(10, rows() - 1);
-  setup.start = {signals->position[0],
-                 (signals->position[n] - signals->position[0]) / (static_cast<double>(n) * log.period_s)};
+  Begin();
   setup.gain_two = SteadyObserverGain(nominal, log.period_s, kNoise.observer_bandwidth_Hz);
   AxisModel rigid = nominal;
   rigid.two_inertia = false;
@@ -41,6 +41,20 @@ Problem::Problem(const AxisLog& axis_log, const StatedAxis& stated_axis, int mos
   ChooseSubsteps();
   terms = MakeBaseTerms(stated, nominal);
   CountRows();
+}
+
+void Problem::Begin() {
+  const auto reach = std::max<std::size_t>(1, static_cast<std::size_t>(kStart_s / log.period_s + 0.5));
+  const std::vector<std::size_t>& begins = signals->begins;
+  for (std::size_t b = 0; b < begins.size(); ++b) {
+    const std::size_t from = begins[b], to = b + 1 < begins.size() ? begins[b + 1] : rows();
+    const std::size_t n = std::min(reach, to - from - 1);
+    const double q = signals->position[from];
+    const double w =
+        n > 0 ? (signals->position[from + n] - q) / (static_cast<double>(n) * log.period_s) : 0.0;
+    if (b == 0) setup.start = {q, w};
+    if (begins.size() > 1) setup.pieces.push_back({from, to - from, from, q, w});
+  }
 }
 
 void Problem::ChooseSubsteps() {
@@ -70,7 +84,9 @@ void Problem::CountRows() {
   const std::size_t n = rows();
   counted.assign(n, 1);
   const auto settled = std::min(n, static_cast<std::size_t>(kRows.settling_s / log.period_s));
-  std::fill(counted.begin(), counted.begin() + static_cast<std::ptrdiff_t>(settled), std::uint8_t{0});
+  for (const std::size_t begin : signals->begins)
+    std::fill_n(counted.begin() + static_cast<std::ptrdiff_t>(begin), std::min(settled, n - begin),
+                std::uint8_t{0});
   for (std::size_t k = 0; k < n; ++k) {
     if (setup.valid[k] != 0) continue;
     for (std::size_t i = k > 2 ? k - 2 : 0; i < std::min(n, k + 3); ++i) counted[i] = 0;
@@ -331,7 +347,13 @@ void Problem::LearnOutliers(const Point& point) {
   const FilterRun run = std::move(RunFilter(setup, std::span(&m, 1), 1)[0]);
   MarkOutliers(run.innovation, stated.position_step, setup.valid, quality);
   CountRows();
-  excerpt = ChooseExcerpt(signals->position, signals->velocity, setup.valid, counted, log.period_s,
+  // Over a gap nothing stands for what was before it.
+  std::vector<std::uint8_t> valid = setup.valid;
+  const auto length = static_cast<std::size_t>(kExcerpts.segment_s / log.period_s);
+  for (const std::size_t begin : signals->begins)
+    std::fill(valid.begin() + static_cast<std::ptrdiff_t>(begin - std::min(begin, length)),
+              valid.begin() + static_cast<std::ptrdiff_t>(begin), std::uint8_t{0});
+  excerpt = ChooseExcerpt(signals->position, signals->velocity, valid, counted, log.period_s,
                           nominal.friction.Fc_plus / nominal.friction.s0);
 }
 

@@ -115,6 +115,8 @@ class Problem {
                 std::vector<double>& raw, Extent extent = Extent::kWhole) const;
   /// The weights of the excerpt from those of the log.
   void WeighExcerpt();
+  /// Where the runs begin, at first and after every gap.
+  void Begin();
   void ChooseSubsteps();
   void CountRows();
   void LowerWhereScaleRests(double* w) const;

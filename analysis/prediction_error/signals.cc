@@ -104,18 +104,43 @@ Signal SmoothSlow(const Signal& x, double sigma_rows) {
 
 }  // namespace
 
+namespace {
+
+/// Every stretch between gaps on its own: nothing moves in a gap.
+template <class F>
+Signal PerStretch(const Signal& x, const std::vector<std::size_t>& begins, F&& of) {
+  if (begins.size() < 2) return of(x);
+  Signal out;
+  out.reserve(x.size());
+  for (std::size_t b = 0; b < begins.size(); ++b) {
+    const auto from = static_cast<std::ptrdiff_t>(begins[b]);
+    const auto to = static_cast<std::ptrdiff_t>(b + 1 < begins.size() ? begins[b + 1] : x.size());
+    const Signal part = of(Signal(x.begin() + from, x.begin() + to));
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  return out;
+}
+
+}  // namespace
+
 Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   Signals s;
+  s.begins = Beginnings(log);
   const double sigma = kRows.kinematic_smoothing_s / log.period_s;
-  s.position = Filled(log.position);
-  s.velocity = Derivative(s.position, sigma, log.period_s);
-  s.acceleration =
-      Derivative(s.velocity, std::max(1.0, kRows.acceleration_smoothing_share * sigma), log.period_s);
+  const double acceleration_sigma = std::max(1.0, kRows.acceleration_smoothing_share * sigma);
+  const auto filled = [&](const Signal& x) { return PerStretch(x, s.begins, Filled); };
+  const auto rate = [&](const Signal& x, double smoothing) {
+    return PerStretch(x, s.begins, [&](const Signal& y) { return Derivative(y, smoothing, log.period_s); });
+  };
+  s.position = filled(log.position);
+  s.velocity = rate(s.position, sigma);
+  s.acceleration = rate(s.velocity, acceleration_sigma);
   const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
   const double middle = 0.5 * (*low + *high);
   s.half_stroke_m = 0.5 * (*high - *low) * stated.table_per_q;
   s.middle_m = middle * stated.table_per_q;
-  s.angle_per_q = stated.lead_m > 0.0 ? stated.table_per_q * 2.0 * std::numbers::pi / stated.lead_m : 1.0;
+  s.angle_per_q =
+      stated.lead_m > 0.0 ? stated.table_per_q * 2.0 * std::numbers::pi / stated.lead_m : stated.gear_ratio;
   s.table_m.reserve(log.size());
   s.angle_rad.reserve(log.size());
   for (const double q : s.position) {
@@ -132,14 +157,11 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
     s.mean_degC = mean;
   }
   if (!log.axis2_position_m.empty()) {
-    const Signal other = Filled(log.axis2_position_m);
-    s.axis2_m_s = Derivative(other, sigma, log.period_s);
-    s.axis2_m_s2 =
-        Derivative(s.axis2_m_s, std::max(1.0, kRows.acceleration_smoothing_share * sigma), log.period_s);
+    s.axis2_m_s = rate(filled(log.axis2_position_m), sigma);
+    s.axis2_m_s2 = rate(s.axis2_m_s, acceleration_sigma);
     // What the smoothing took, once more: it would make the coupling look stronger than it is (Tukey's
     // twicing).
-    const Signal smoother =
-        Smooth(s.axis2_m_s2, std::hypot(sigma, std::max(1.0, kRows.acceleration_smoothing_share * sigma)));
+    const Signal smoother = Smooth(s.axis2_m_s2, std::hypot(sigma, acceleration_sigma));
     for (std::size_t k = 0; k < log.size(); ++k) s.axis2_m_s2[k] += s.axis2_m_s2[k] - smoother[k];
   }
   return s;

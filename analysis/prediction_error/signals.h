@@ -21,16 +21,17 @@ struct Signals {
   Signal table_m;       ///< centred on the middle of the stroke
   Signal angle_rad;     ///< of the motor
   Signal sign;  ///< friction without its viscous part over the Coulomb level: a sign good in presliding
-  Signal model_torque;           ///< u that the motion needs by the model
-  Signal net_force;              ///< what accelerates over the row: delivered less friction by the model
-  Signal temperature_K;          ///< about its mean; empty without a sensor
-  double mean_degC = 0.0;        ///< that mean
-  Signal axis2_m_s2, axis2_m_s;  ///< empty without a second axis
-  double half_stroke_m = 0.0;    ///< of what was travelled
-  double max_speed = 0.0;        ///< of q
-  double angle_per_q = 1.0;      ///< rad of the motor
-  double middle_m = 0.0;         ///< table position of the stroke's middle as travelled
-  double coulomb = 0.0;          ///< mean level
+  Signal model_torque;              ///< u that the motion needs by the model
+  Signal net_force;                 ///< what accelerates over the row: delivered less friction by the model
+  Signal temperature_K;             ///< about its mean; empty without a sensor
+  double mean_degC = 0.0;           ///< that mean
+  Signal axis2_m_s2, axis2_m_s;     ///< empty without a second axis
+  std::vector<std::size_t> begins;  ///< rows where motion begins anew, the first among them
+  double half_stroke_m = 0.0;       ///< of what was travelled
+  double max_speed = 0.0;           ///< of q
+  double angle_per_q = 1.0;         ///< rad of the motor
+  double middle_m = 0.0;            ///< table position of the stroke's middle as travelled
+  double coulomb = 0.0;             ///< mean level
 };
 
 /// Of `sign`: friction beyond it follows the motion.

@@ -19,6 +19,8 @@ struct AxisLog {
   std::string axis;    ///< its name; empty when not known
   bool linear = false;
   double period_s = 1e-3;
+  bool in_ampere = false;  ///< `command` is a current: what it is in Nm or N, the model has to say
+  std::string note;        ///< what was done to the file's rows before; empty: nothing
 
   /// All vectors have one element per grid point from the first to the last row: a missing row has
   /// present[k] == 0 and the last known command (a drive goes on with it), position NaN.
@@ -35,5 +37,11 @@ struct AxisLog {
 
   std::size_t size() const { return command.size(); }
 };
+
+/// Rows, the first among them, from which the axis is looked at anew: what comes after a gap of more than
+/// 10 ms and three rows has nothing to do with what was before it.
+std::vector<std::size_t> Beginnings(const AxisLog& log);
+/// Whether so many grid points without a row are such a gap.
+bool IsGap(std::size_t missing, double period_s);
 
 }  // namespace contour::diagnosis

@@ -3,118 +3,114 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <deque>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
+#include "analysis/recording/csv_records.h"
 #include "config/config_error.h"
 
 namespace contour::diagnosis {
 namespace {
 
-bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+constexpr std::size_t kLinesLookedAt = 20;
 
-std::string_view Trimmed(std::string_view text) {
-  while (!text.empty() && IsBlank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && IsBlank(text.back())) text.remove_suffix(1);
+std::optional<double> Parsed(std::string_view field) {
+  if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+  if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(number)) return {};
+  return number;
+}
+
+bool IsNone(std::string_view field) {
+  return field.empty() || field == "nan" || field == "NaN" || field == "NA";
+}
+
+/// With a decimal comma, if there is exactly one and no point.
+std::string WithPoint(std::string_view field) {
+  std::string text(field);
+  if (std::count(text.begin(), text.end(), ',') == 1 && text.find('.') == std::string::npos)
+    std::replace(text.begin(), text.end(), ',', '.');
   return text;
 }
 
-/// Fields that are not in the text as they are meant.
-using Unquoted = std::deque<std::string>;
-
-std::string WithoutDoubledQuotes(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    out.push_back(text[i]);
-    if (text[i] == '"') ++i;
-  }
-  return out;
+bool IsNumber(std::string_view field, char separator) {
+  return Parsed(field).has_value() || (separator != ',' && Parsed(WithPoint(field)).has_value());
 }
 
-/// Cuts text into records of fields, as RFC 4180 has them: a field that begins with a quote ends at the next
-/// one that is not doubled, and may hold separators, line ends and doubled quotes.
-class Records {
- public:
-  Records(const std::string& file, std::string_view text, std::size_t at, std::size_t line)
-      : file_(file), text_(text), at_(at), line_(line) {}
+using Lines = std::vector<std::vector<std::string>>;
 
-  [[nodiscard]] std::size_t at() const { return at_; }
-  [[nodiscard]] std::size_t line() const { return line_; }
-
-  /// The line that comes next; none but empty ones and comments is left where it is empty. They are passed.
-  std::string_view Peek() {
-    while (at_ < text_.size()) {
-      const std::string_view line = text_.substr(at_, std::min(text_.find('\n', at_), text_.size()) - at_);
-      const std::string_view content = Trimmed(line);
-      if (!content.empty() && content.front() != '#') return line;
-      at_ = std::min(at_ + line.size() + 1, text_.size());
-      ++line_;
-    }
-    return {};
+/// The first lines of a table as a separator cuts them, the header among them.
+Lines FirstLines(const std::string& file, std::string_view text, char separator) {
+  Lines lines;
+  CsvRecords records(file, text, 0, 1);
+  std::vector<std::string_view> fields;
+  Unquoted unquoted;
+  while (lines.size() < kLinesLookedAt && !records.Peek().empty()) {
+    records.Take(separator, fields, unquoted);
+    lines.emplace_back(fields.begin(), fields.end());
   }
+  return lines;
+}
 
-  /// The fields of the record that comes next, behind Peek().
-  void Take(char separator, std::vector<std::string_view>& fields, Unquoted& unquoted) {
-    fields.clear();
-    unquoted.clear();
-    for (;;) {
-      while (at_ < text_.size() && IsBlank(text_[at_]) && text_[at_] != separator) ++at_;
-      const bool quoted = at_ < text_.size() && text_[at_] == '"';
-      fields.push_back(quoted ? Quoted(separator, unquoted) : Plain(separator));
-      if (at_ >= text_.size()) return;
-      if (text_[at_++] == '\n') {
-        ++line_;
-        return;
-      }
+bool AllAlike(const Lines& lines) {
+  return !lines.empty() && lines[0].size() > 1 &&
+         std::all_of(lines.begin(), lines.end(), [&](const auto& l) { return l.size() == lines[0].size(); });
+}
+
+/// The one that cuts all lines into the same number of fields; a semicolon first, since where both do, the
+/// comma is a decimal one. Where none does, the header's.
+char SeparatorOf(const std::string& file, std::string_view text) {
+  std::vector<char> in_header;
+  for (const char separator : {';', ',', '\t', ' '}) {
+    try {
+      const Lines lines = FirstLines(file, text, separator);
+      if (AllAlike(lines)) return separator;
+      if (!lines.empty() && lines[0].size() > 1) in_header.push_back(separator);
+    } catch (const ConfigError&) {
+      continue;  // what stands behind a quoted field is another's separator
     }
   }
+  if (std::find(in_header.begin(), in_header.end(), ',') != in_header.end()) return ',';
+  return in_header.empty() ? ',' : in_header.front();
+}
 
- private:
-  std::string_view Plain(char separator) {
-    const std::size_t from = at_;
-    while (at_ < text_.size() && text_[at_] != separator && text_[at_] != '\n') ++at_;
-    return Trimmed(text_.substr(from, at_ - from));
+/// Whether it is written so: a field that is a number with a comma only.
+bool HasDecimalComma(const Lines& lines, char separator) {
+  if (separator == ',') return false;
+  for (const auto& line : lines)
+    for (const std::string& field : line)
+      if (!Parsed(field) && Parsed(WithPoint(field))) return true;
+  return false;
+}
+
+bool AllNumbers(const std::vector<std::string>& fields, char separator) {
+  bool any = false;
+  for (const std::string& f : fields) {
+    if (!IsNumber(f, separator) && !IsNone(f)) return false;
+    any = any || !IsNone(f);
   }
+  return any;
+}
 
-  std::string_view Quoted(char separator, Unquoted& unquoted) {
-    const std::size_t opened = line_, from = ++at_;
-    bool doubled = false;
-    for (;; ++at_) {
-      if (at_ >= text_.size())
-        throw ConfigError(
-            {file_ + ":" + std::to_string(opened) + ": a field begins with a quote and never ends"});
-      if (text_[at_] == '\n') ++line_;
-      if (text_[at_] != '"') continue;
-      if (at_ + 1 >= text_.size() || text_[at_ + 1] != '"') break;
-      doubled = true;
-      ++at_;
-    }
-    const std::string_view content = text_.substr(from, at_ - from);
-    ++at_;
-    if (const std::string_view rest = Plain(separator); !rest.empty())
-      throw ConfigError({file_ + ":" + std::to_string(line_) + ": found '" + std::string(rest) +
-                         "' behind a quoted field, expected a separator"});
-    return doubled ? unquoted.emplace_back(WithoutDoubledQuotes(content)) : content;
+bool NoNumbers(const std::vector<std::string>& fields, char separator) {
+  return std::none_of(fields.begin(), fields.end(), [&](const auto& f) { return IsNumber(f, separator); }) &&
+         std::any_of(fields.begin(), fields.end(), [](const auto& f) { return !IsNone(f); });
+}
+
+/// Names of a table that has none of its own.
+std::vector<std::string> NamesFor(const std::string& file, std::string_view comment, std::size_t columns,
+                                  char separator) {
+  for (const char cut : {separator, ',', ';', '\t', ' '}) {
+    const Lines names = FirstLines(file, comment, cut);
+    if (names.size() == 1 && names[0].size() == columns && NoNumbers(names[0], cut)) return names[0];
   }
-
-  const std::string& file_;
-  std::string_view text_;
-  std::size_t at_, line_;
-};
-
-/// Of a header line: a comma outside quotes, or else a semicolon where there is one.
-char SeparatorOf(std::string_view line) {
-  bool quoted = false, semicolon = false;
-  for (const char c : line) {
-    quoted = quoted != (c == '"');
-    if (quoted) continue;
-    if (c == ',') return ',';
-    semicolon = semicolon || c == ';';
-  }
-  return semicolon ? ';' : ',';
+  std::vector<std::string> numbers;
+  for (std::size_t i = 1; i <= columns; ++i) numbers.push_back(std::to_string(i));
+  return numbers;
 }
 
 }  // namespace
@@ -126,15 +122,25 @@ CsvTable::CsvTable(std::string file) : file_(std::move(file)) {
   if (!in) throw ConfigError({file_ + ": cannot be read"});
   text_ = content.str();
   if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
-  Records records(file_, text_, 0, 1);
-  const std::string_view line = records.Peek();
-  if (line.empty())
+  CsvRecords records(file_, text_, 0, 1);
+  if (records.Peek().empty())
     throw ConfigError({file_ + ": is empty, expected a line of column names and rows of numbers"});
-  separator_ = SeparatorOf(line);
-  std::vector<std::string_view> names;
-  Unquoted unquoted;
-  records.Take(separator_, names, unquoted);
-  header_.assign(names.begin(), names.end());
+  separator_ = SeparatorOf(file_, text_);
+  const Lines lines = FirstLines(file_, text_, separator_);
+  decimal_comma_ = HasDecimalComma(lines, separator_);
+  if (AllNumbers(lines[0], separator_)) {
+    header_ = NamesFor(file_, records.comment(), lines[0].size(), separator_);
+  } else {
+    std::vector<std::string_view> fields;
+    Unquoted unquoted;
+    header_ = lines[0];
+    records.Take(separator_, fields, unquoted);
+    // Units below the names.
+    if (lines.size() > 2 && NoNumbers(lines[1], separator_) && AllNumbers(lines[2], separator_)) {
+      records.Peek();
+      records.Take(separator_, fields, unquoted);
+    }
+  }
   body_ = records.at();
   body_line_ = records.line();
 }
@@ -142,7 +148,7 @@ CsvTable::CsvTable(std::string file) : file_(std::move(file)) {
 void CsvTable::ForEachRow(const RowReader& reader) const {
   std::vector<std::string_view> fields;
   Unquoted unquoted;
-  Records records(file_, text_, body_, body_line_);
+  CsvRecords records(file_, text_, body_, body_line_);
   while (!records.Peek().empty()) {
     const std::size_t line = records.line();
     records.Take(separator_, fields, unquoted);
@@ -153,16 +159,17 @@ void CsvTable::ForEachRow(const RowReader& reader) const {
   }
 }
 
+double CsvTable::Number(std::string_view field, std::size_t line, std::size_t column) const {
+  if (decimal_comma_ && field.find(',') != std::string_view::npos)
+    return NumberOf(WithPoint(field), file_, line, header_[column]);
+  return NumberOf(field, file_, line, header_[column]);
+}
+
 double NumberOf(std::string_view field, const std::string& file, std::size_t line, std::string_view column) {
-  if (field.empty() || field == "nan" || field == "NaN" || field == "NA")
-    return std::numeric_limits<double>::quiet_NaN();
-  if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-  if (error != std::errc{} || end != field.data() + field.size() || !std::isfinite(number))
-    throw ConfigError({file + ":" + std::to_string(line) + ": " + std::string(column) + ": found '" +
-                       std::string(field) + "', expected a number"});
-  return number;
+  if (IsNone(field)) return std::numeric_limits<double>::quiet_NaN();
+  if (const auto number = Parsed(field)) return *number;
+  throw ConfigError({file + ":" + std::to_string(line) + ": " + std::string(column) + ": found '" +
+                     std::string(field) + "', expected a number"});
 }
 
 }  // namespace contour::diagnosis

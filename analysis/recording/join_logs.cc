@@ -34,7 +34,11 @@ AxisLog JoinLogs(std::vector<AxisLog> logs) {
     if (std::abs(next.period_s - all.period_s) > 1e-3 * all.period_s)
       throw ConfigError({next.source + ": has a row every " + RoundedText(1e6 * next.period_s) + " us, " +
                          all.source + " every " + RoundedText(1e6 * all.period_s)});
-    const auto gap = static_cast<std::size_t>(std::lround(kGap_s / all.period_s));
+    if (next.in_ampere != all.in_ampere)
+      throw ConfigError({next.source + ": states " + (next.in_ampere ? "a current, " : "no current, ") +
+                         all.source + " does otherwise"});
+    auto gap = static_cast<std::size_t>(std::lround(kGap_s / all.period_s));
+    while (!IsGap(gap, all.period_s)) ++gap;
     all.present.insert(all.present.end(), gap, 0);
     all.present.insert(all.present.end(), next.present.begin(), next.present.end());
     Append(all.command, next.command, gap, true);
@@ -46,6 +50,7 @@ AxisLog JoinLogs(std::vector<AxisLog> logs) {
     all.rows += next.rows;
     all.missing += next.missing;
     all.source += ", " + next.source;
+    if (all.note.empty()) all.note = next.note;
   }
   return all;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <set>
 #include <string_view>
 
@@ -12,17 +13,12 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr std::array<std::string_view, 11> kQuantities = {"time_s",
-                                                          "torque_Nm",
-                                                          "motor_angle_rad",
-                                                          "force_N",
-                                                          "position_m",
-                                                          "table_position_m",
-                                                          "temperature_degC",
-                                                          "axis2_position_m",
-                                                          "reference_position_m",
-                                                          "reference_angle_rad",
-                                                          "temperature_c"};
+constexpr std::array<std::string_view, 17> kQuantities = {
+    "time_s",           "torque_Nm",          "motor_angle_rad",      "force_N",
+    "position_m",       "position_rad",       "velocity_rad_s",       "velocity_m_s",
+    "current_A",        "measured_torque_Nm", "measured_force_N",     "table_position_m",
+    "temperature_degC", "axis2_position_m",   "reference_position_m", "reference_angle_rad",
+    "temperature_c"};
 
 std::string Lower(std::string_view text) {
   std::string out(text);
@@ -36,6 +32,14 @@ std::string Joined(const std::vector<std::string>& names) {
   return out + (names.size() > 40 ? ", ..." : "");
 }
 
+template <class T>
+std::optional<T> NumberIn(const std::string& text) {
+  T number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  return number;
+}
+
 class Finder {
  public:
   Finder(const std::string& file, const std::vector<std::string>& header, const std::string& axis,
@@ -45,23 +49,22 @@ class Finder {
     if (axis_.empty()) ChooseAxis();
   }
 
-  std::optional<std::size_t> Find(const std::string& quantity) const {
+  [[nodiscard]] bool Named(const std::string& quantity) const { return names_.contains(quantity); }
+  [[nodiscard]] std::optional<LogColumn> Find(const std::string& quantity) const {
     if (const auto named = names_.find(quantity); named != names_.end()) {
-      const auto at = std::find(header_.begin(), header_.end(), named->second);
-      if (at == header_.end())
-        throw ConfigError({file_ + ": --columns: " + quantity + "=" + named->second +
-                           ": no such column; there are " + Joined(header_)});
-      return static_cast<std::size_t>(at - header_.begin());
+      if (const auto at = ByHeader(named->second)) return at;
+      throw ConfigError({file_ + ": --columns: " + quantity + "=" + named->second +
+                         ": no such column; there are " + Joined(header_)});
     }
     if (const auto at = Column(axis_.empty() ? quantity : axis_ + "_" + quantity)) return at;
     return Column(quantity);
   }
   /// The same under either of two spellings.
-  std::optional<std::size_t> Find(const std::string& a, const std::string& b) const {
+  [[nodiscard]] std::optional<LogColumn> Find(const std::string& a, const std::string& b) const {
     const auto at = Find(a);
     return at ? at : Find(b);
   }
-  std::size_t Demand(const std::string& quantity) const {
+  [[nodiscard]] LogColumn Demand(const std::string& quantity) const {
     if (const auto at = Find(quantity)) return *at;
     throw ConfigError({file_ + ": no column " + quantity + "; there are " + Joined(header_) +
                        ". Name it by --columns " + quantity + "=HEADER"});
@@ -75,10 +78,24 @@ class Finder {
   }
 
  private:
-  std::optional<std::size_t> Column(const std::string& name) const {
+  [[nodiscard]] std::optional<LogColumn> Column(const std::string& name) const {
     const auto at = std::find(lower_.begin(), lower_.end(), Lower(name));
     if (at == lower_.end()) return {};
-    return static_cast<std::size_t>(at - lower_.begin());
+    return LogColumn{static_cast<std::size_t>(at - lower_.begin())};
+  }
+  /// A header, or the number of a column from 1; HEADER*FACTOR where no header is called so.
+  [[nodiscard]] std::optional<LogColumn> ByHeader(const std::string& text) const {
+    const auto at = std::find(header_.begin(), header_.end(), text);
+    if (at != header_.end()) return LogColumn{static_cast<std::size_t>(at - header_.begin())};
+    const auto number = NumberIn<std::size_t>(text);
+    if (number && *number >= 1 && *number <= header_.size()) return LogColumn{*number - 1};
+    const std::size_t star = text.rfind('*');
+    if (star == std::string::npos) return {};
+    auto column = ByHeader(text.substr(0, star));
+    const auto factor = NumberIn<double>(text.substr(star + 1));
+    if (!column || !factor || *factor == 0.0) return {};
+    column->factor *= *factor;
+    return column;
   }
   /// Axes of one of our own tables: what stands before _motor_angle_rad.
   std::set<std::string> Axes() const {
@@ -92,7 +109,7 @@ class Finder {
   void ChooseAxis() {
     const std::set<std::string> axes = Axes();
     if (axes.empty() || Column("motor_angle_rad") || names_.contains("motor_angle_rad") ||
-        names_.contains("position_m"))
+        names_.contains("position_rad") || names_.contains("position_m"))
       return;
     if (axes.size() > 1)
       throw ConfigError(
@@ -136,20 +153,60 @@ ColumnNames ParseColumnNames(const std::string& text) {
   return names;
 }
 
+namespace {
+
+struct Command {
+  const char* name;
+  bool linear, measured, in_ampere;
+};
+/// In the order in which they count where a table has several: what was commanded acts as it is stated, a
+/// reading is rounded and filtered; a current needs a constant besides.
+constexpr Command kCommands[] = {{"torque_Nm", false, false, false},
+                                 {"force_N", true, false, false},
+                                 {"measured_torque_Nm", false, true, false},
+                                 {"measured_force_N", true, true, false},
+                                 {"current_A", false, true, true}};
+
+/// A name that is given on the command line comes before one that the table has.
+const Command* FindCommand(const Finder& finder) {
+  if (finder.Named("force_N")) return &kCommands[1];
+  for (const Command& c : kCommands)
+    if (finder.Named(c.name)) return &c;
+  for (const Command& c : kCommands)
+    if (finder.Find(c.name)) return &c;
+  return nullptr;
+}
+
+void FindMotion(const Finder& finder, LogColumns& columns) {
+  const auto angle = finder.Find("motor_angle_rad", "position_rad");
+  const auto metres = finder.Find("position_m");
+  if (columns.in_ampere)
+    columns.linear = !angle && (metres || (finder.Find("velocity_m_s") && !finder.Find("velocity_rad_s")));
+  columns.position = columns.linear ? metres : angle;
+  // A torque with the position of the table that its screw moves.
+  columns.position_in_m = !columns.linear && !angle && metres.has_value();
+  if (columns.position_in_m) columns.position = metres;
+  columns.velocity = finder.Find(columns.linear || columns.position_in_m ? "velocity_m_s" : "velocity_rad_s");
+  if (!columns.position && !columns.velocity)
+    columns.position = finder.Demand(columns.linear ? "position_m" : "motor_angle_rad");
+}
+
+}  // namespace
+
 LogColumns FindColumns(const std::string& file, const std::vector<std::string>& header,
-                       const std::string& axis, const ColumnNames& names) {
+                       const std::string& axis, const ColumnNames& names, bool rate_stated) {
   const Finder finder(file, header, axis, names);
   LogColumns columns;
-  columns.time = finder.Demand("time_s");
-  const auto force = finder.Find("force_N");
-  const auto torque = finder.Find("torque_Nm");
-  const bool named_force = names.contains("force_N");
-  if (!force && !torque)
+  columns.time = rate_stated ? finder.Find("time_s") : finder.Demand("time_s");
+  const Command* command = FindCommand(finder);
+  if (command == nullptr)
     throw ConfigError({file + ": neither torque_Nm nor force_N; there are " + Joined(header) +
                        ". Name it by --columns torque_Nm=HEADER"});
-  columns.linear = named_force || !torque;
-  columns.command = columns.linear ? *force : *torque;
-  columns.position = finder.Demand(columns.linear ? "position_m" : "motor_angle_rad");
+  columns.linear = command->linear;
+  columns.measured = command->measured;
+  columns.in_ampere = command->in_ampere;
+  columns.command = finder.Demand(command->name);
+  FindMotion(finder, columns);
   columns.table_position = finder.Find("table_position_m");
   columns.temperature = finder.Find("temperature_degC", "temperature_c");
   columns.axis2_position = finder.Find("axis2_position_m");

@@ -1,48 +1,20 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "analysis/recording/csv_table.h"
 #include "analysis/recording/grid.h"
 #include "analysis/recording/read_log.h"
+#include "analysis/recording/table_rows.h"
 #include "config/config_error.h"
+#include "config/number_text.h"
 
 namespace contour::diagnosis {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-/// The rows of a table as they stand, NaN where a field is empty.
-struct Rows {
-  std::vector<std::size_t> line;
-  std::vector<double> time_s, command, position, table_position, temperature, axis2, reference;
-};
-
-Rows ReadRows(const CsvTable& table, const LogColumns& columns) {
-  Rows rows;
-  const auto number = [&](const std::vector<std::string_view>& fields, std::size_t line, std::size_t column) {
-    return NumberOf(fields[column], table.file(), line, table.header()[column]);
-  };
-  const auto add = [&](std::vector<double>& to, const std::optional<std::size_t>& column,
-                       const std::vector<std::string_view>& fields, std::size_t line) {
-    if (column) to.push_back(number(fields, line, *column));
-  };
-  table.ForEachRow([&](std::size_t line, const std::vector<std::string_view>& fields) {
-    const double time = number(fields, line, columns.time);
-    if (std::isnan(time))
-      throw ConfigError({table.file() + ":" + std::to_string(line) + ": time_s: is empty"});
-    rows.line.push_back(line);
-    rows.time_s.push_back(time);
-    rows.command.push_back(number(fields, line, columns.command));
-    const bool off = columns.drive_state && fields[*columns.drive_state] != "Operation Enabled";
-    const bool old = columns.fresh && (fields[*columns.fresh] == "0" || fields[*columns.fresh] == "false");
-    rows.position.push_back(off || old ? kNone : number(fields, line, columns.position));
-    add(rows.table_position, columns.table_position, fields, line);
-    add(rows.temperature, columns.temperature, fields, line);
-    add(rows.axis2, columns.axis2_position, fields, line);
-    add(rows.reference, columns.reference, fields, line);
-  });
-  return rows;
-}
+constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// Values on the grid; where there is no row the one before goes on when `hold`.
 std::vector<double> OnGrid(const Grid& grid, const std::vector<double>& values, bool hold) {
@@ -63,22 +35,101 @@ std::vector<double> OnGrid(const Grid& grid, const std::vector<double>& values, 
   return out;
 }
 
+/// Angles that begin again after every turn go on. No axis makes half a turn from row to row.
+void Unwrap(std::vector<double>& angle) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const double a : angle) {
+    if (std::isnan(a)) continue;
+    low = std::min(low, a);
+    high = std::max(high, a);
+  }
+  if (!(high - low > 0.5 * kTurn && high - low < kTurn * (1.0 + 1e-6))) return;
+  double before = kNone, turns = 0.0;
+  for (double& a : angle) {
+    if (std::isnan(a)) continue;
+    if (!std::isnan(before) && std::abs(a - before) > 0.5 * kTurn) turns += a < before ? 1.0 : -1.0;
+    before = a;
+    a += turns * kTurn;
+  }
+}
+
+/// Where nobody recorded the position.
+std::vector<double> IntegralOf(const std::vector<double>& velocity, const Grid& grid) {
+  std::vector<double> q(velocity.size(), 0.0);
+  for (std::size_t i = 1; i < q.size(); ++i)
+    q[i] = q[i - 1] + 0.5 * (velocity[i] + velocity[i - 1]) * grid.period_s *
+                          static_cast<double>(grid.index[i] - grid.index[i - 1]);
+  return q;
+}
+
+/// A velocity has to be that of the position: where it is not, a unit, a sign or an axis is another one.
+void CheckVelocity(const std::string& file, const TableRows& rows, const Grid& grid) {
+  constexpr double kFar = 0.2;
+  const std::size_t reach = std::max<std::size_t>(1, static_cast<std::size_t>(0.01 / grid.period_s));
+  double squares = 0.0, product = 0.0, recorded = 0.0;
+  for (std::size_t i = reach; i + reach < rows.position.size(); ++i) {
+    const auto steps = static_cast<double>(grid.index[i + reach] - grid.index[i - reach]);
+    const double w = (rows.position[i + reach] - rows.position[i - reach]) / (steps * grid.period_s);
+    const double v = rows.velocity[i];
+    if (steps > 2.5 * static_cast<double>(reach) || std::isnan(w) || std::isnan(v)) continue;
+    squares += w * w;
+    product += w * v;
+    recorded += v * v;
+  }
+  // Noise in the one and in the other make these two its bounds.
+  const double least = product / squares, most = recorded / product;
+  if (squares > 0.0 && !(least < 1.0 + kFar && most > 1.0 - kFar && product > 0.0))
+    throw ConfigError(
+        {file + ": the velocity is " + RoundedText(least) +
+         " times what the position's changes say, expected 1: is one of them in another unit, of "
+         "another sign or of another axis? --columns NAME=HEADER*FACTOR takes a factor"});
+}
+
+/// What acted over each row: the mean of what was measured at its ends.
+void HoldMeans(std::vector<double>& command, const Grid& grid) {
+  for (std::size_t i = 0; i + 1 < command.size(); ++i)
+    if (grid.index[i + 1] == grid.index[i] + 1 && !std::isnan(command[i + 1]))
+      command[i] = 0.5 * (command[i] + command[i + 1]);
+}
+
+void InUnitsOfAxis(const LogColumns& columns, const ReadOptions& options, TableRows& rows) {
+  if (columns.reference_in_m && !columns.linear)
+    for (double& r : rows.reference) r /= options.table_per_q;
+  if (columns.position_in_m)
+    for (auto* column : {&rows.position, &rows.velocity})
+      for (double& x : *column) x /= options.table_per_q;
+  else if (!columns.linear)
+    Unwrap(rows.position);
+}
+
 }  // namespace
 
 AxisLog ReadCsvLog(const std::string& file, const ReadOptions& options) {
   const CsvTable table(file);
-  const LogColumns columns = FindColumns(file, table.header(), options.axis, options.columns);
-  Rows rows = ReadRows(table, columns);
-  const Grid grid = FindGrid(file, rows.time_s, rows.line);
-  if (columns.reference_in_m && !columns.linear)
-    for (double& r : rows.reference) r /= options.table_per_q;
-
+  const LogColumns columns =
+      FindColumns(file, table.header(), options.axis, options.columns, options.sample_rate_Hz > 0.0);
+  TableRows rows = ReadTableRows(table, columns, options.sample_rate_Hz);
+  InUnitsOfAxis(columns, options, rows);
   AxisLog log;
+  log.rows = rows.time_s.size();
+  Grid grid;
+  if (options.resample_Hz > 0.0) {
+    rows = Resample(file, rows, columns.measured, options.resample_Hz, grid, log.note);
+    log.rows = rows.time_s.size();
+  } else {
+    grid = FindGrid(file, rows.time_s, rows.line);
+    if (columns.measured) HoldMeans(rows.command, grid);
+  }
+  if (rows.position.empty())
+    rows.position = IntegralOf(rows.velocity, grid);
+  else if (!rows.velocity.empty())
+    CheckVelocity(file, rows, grid);
+
   log.source = file;
   log.axis = options.axis;
   log.linear = columns.linear;
+  log.in_ampere = columns.in_ampere;
   log.period_s = grid.period_s;
-  log.rows = rows.time_s.size();
   log.command = OnGrid(grid, rows.command, true);
   log.position = OnGrid(grid, rows.position, false);
   if (log.command.empty() || log.position.empty())

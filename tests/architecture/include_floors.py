@@ -34,13 +34,14 @@ ANALYSIS = {
     "analysis/circle_test": ["core", "estimator", "config"],
     "analysis/prediction_error/simd": [],
     "analysis/prediction_error": ["analysis/parallel", *PREDICTION, "analysis/diagnosis/tuning"],
+    "analysis/rough_fit": ["config", *PREDICTION],
     "analysis/identification": ["core", "config", "estimator", "analysis/text", *PREDICTION],
-    "analysis/diagnosis/result": ["analysis/recording", "analysis/diagnosis/tuning"],
+    "analysis/diagnosis/result": [*MODEL, "analysis/diagnosis/tuning"],
     "analysis/diagnosis/tuning": [],
     "analysis/diagnosis/causes": ["config", "estimator", *PREDICTION, *diagnosis_floors(["result", "tuning"])],
-    **{f"analysis/diagnosis/{name}": [*PREDICTION, *diagnosis_floors(DIAGNOSIS[:i])]
+    **{f"analysis/diagnosis/{name}": ["config", *PREDICTION, *diagnosis_floors(DIAGNOSIS[:i])]
        for i, name in enumerate(DIAGNOSIS) if i >= DIAGNOSIS.index("screening")},
-    "analysis/diagnosis": [*PREDICTION, *diagnosis_floors(DIAGNOSIS)],
+    "analysis/diagnosis": ["config", *PREDICTION, *diagnosis_floors(DIAGNOSIS)],
     "analysis/diagnosis/report": ["core", "config", "estimator", *MODEL, *diagnosis_floors(["result", "tuning", "causes"])],
 }
 MAY_INCLUDE = {

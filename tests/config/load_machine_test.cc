@@ -125,6 +125,19 @@ TEST(LoadMachine, AnAxisMayNameALoopFile) {
   EXPECT_NE(missing[0].find("axes.x.loop: "), std::string::npos) << missing[0];
 }
 
+TEST(LoadModel, AxesWithoutABallScrewAreRefusedByName) {
+  for (const char* text : {"mass_kg: 95\n", "model: {mass_kg: 95}\ndrive: {delay_ms: 1}\n",
+                           "model: {motor_inertia_kgm2: 1e-4, lead_mm: 5}\n"}) {
+    try {
+      LoadModel(WriteTestFile("other.yaml", text));
+      FAIL() << text;
+    } catch (const ConfigError& e) {
+      EXPECT_NE(std::string(e.what()).find("expected one with a ball screw"), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("other.yaml:1"), std::string::npos) << e.what();
+    }
+  }
+}
+
 TEST(LoadModel, AMachineMayNameAModelFile) {
   const ModelConfig model = LoadMachine(ExampleMachine("single_axis.yaml")).axes.at("x").model;
   std::string keys = WriteYaml(model);

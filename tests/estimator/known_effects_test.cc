@@ -111,5 +111,15 @@ TEST(KnownEffectsTest, RefusesTablesThatAreNone) {
   EXPECT_THROW(KnownEffects(c, kMechanics, 0.0), std::invalid_argument);
 }
 
+TEST(KnownEffectsTest, ViscousFrictionOfEitherDirection) {
+  ExtensionsConfig c;
+  c.asymmetric_viscous = AsymmetricViscousExtension{0.4};
+  const KnownEffects known(c, kMechanics, 500.0);
+  EXPECT_FALSE(known.neutral());
+  // Beside sigma2 v: 600 v upwards, 400 v downwards.
+  EXPECT_NEAR(known.Viscous_N(0.1, kNoTemperature), 10.0, 1e-12);
+  EXPECT_NEAR(known.Viscous_N(-0.1, kNoTemperature), 10.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace contour

@@ -1,15 +1,18 @@
 #include "tools/contour/diagnose_command.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/extensions_of.h"
 #include "analysis/diagnosis/diagnose.h"
 #include "analysis/diagnosis/report/diagnosis_json.h"
@@ -19,7 +22,9 @@
 #include "analysis/parallel/parallel_for.h"
 #include "analysis/prediction_error/keep_memory.h"
 #include "analysis/recording/read_log.h"
+#include "analysis/rough_fit/complete_from_log.h"
 #include "config/config_error.h"
+#include "config/key_hints.h"
 #include "config/load_machine.h"
 #include "config/number_text.h"
 #include "daemon/program/program.h"
@@ -44,6 +49,9 @@ struct Options {
   std::uint64_t seed = 1;
   int threads = 0;
   std::vector<std::string> set;
+  int most_effects = diagnosis::DiagnoseOptions{}.most_effects;
+  std::string exclude;
+  double resample_Hz = 0.0, sample_rate_Hz = 0.0;
 };
 
 AxisLog ReadLogs(const Options& options, const StatedAxis& stated) {
@@ -51,6 +59,8 @@ AxisLog ReadLogs(const Options& options, const StatedAxis& stated) {
   read.axis = options.axis;
   read.columns = ParseColumnNames(options.columns);
   read.table_per_q = stated.table_per_q;
+  read.resample_Hz = options.resample_Hz;
+  read.sample_rate_Hz = options.sample_rate_Hz;
   std::vector<AxisLog> logs;
   for (const std::string& file : options.logs) {
     logs.push_back(ReadLog(file, read));
@@ -93,21 +103,47 @@ std::string PredictionText(const ContourGain& gain) {
          " um with the extended one, " + RoundedText(100.0 * gain.gain()) + " % less.\n";
 }
 
-int RunDiagnose(const Options& options) {
-  KeepMemory();
-  const StatedAxis stated = ReadStatedAxis(options.model, options.axis, options.set);
-  const AxisLog log = ReadLogs(options, stated);
+std::vector<std::string> KindsOf(const std::string& list) {
+  std::vector<std::string> kinds;
+  std::istringstream in(list);
+  for (std::string kind; std::getline(in, kind, ',');) {
+    const auto all = AllCauses();
+    if (std::none_of(all.begin(), all.end(), [&](const auto* c) { return *c->name == kind; })) {
+      std::vector<std::string> names;
+      for (const auto* c : all) names.emplace_back(*c->name);
+      const KeyHint hint = NearestKey(kind, names);
+      throw ConfigError({"--exclude: found '" + kind + "', expected kinds of causes" +
+                         (hint.key.empty() ? "" : "; did you mean " + hint.key + "?")});
+    }
+    kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+DiagnoseOptions HowOf(const Options& options) {
   DiagnoseOptions how;
   how.false_alarm_rate = options.false_alarm_rate;
   how.bootstrap_runs = options.bootstrap_runs;
   how.seed = options.seed;
   how.threads = ThreadsOf(options.threads);
+  how.most_effects = options.most_effects;
+  how.exclude = KindsOf(options.exclude);
+  return how;
+}
+
+int RunDiagnose(const Options& options) {
+  KeepMemory();
+  StatedAxis stated = ReadStatedAxis(options.model, options.axis, options.set);
+  DiagnoseOptions how = HowOf(options);
+  AxisLog log = ReadLogs(options, stated);
+  const std::vector<std::string> assumed = CompleteFromLog(log, stated);
   Diagnosis found;
   std::optional<ContourGain> contour;
   {
     TerminalProgress progress;
     how.progress = [&](std::string_view doing, double share) { progress.Show(doing, share); };
     found = Diagnose(log, stated, how);
+    found.notes.insert(found.notes.begin(), assumed.begin(), assumed.end());
     if (!options.out.empty()) {
       progress.Show("simulating the path", 1.0);
       contour = Predict(options, found, log);
@@ -152,6 +188,14 @@ void AddDiagnoseCommand(CLI::App& app, Action& action) {
                   "Share of the logs of a machine that is as stated in which something may be found")
       ->check(CLI::Range(1e-4, 0.5));
   sub->add_option("--columns", options->columns, "NAME=HEADER,...: how a table spells what is needed");
+  sub->add_option("--resample", options->resample_Hz,
+                  "Hz: puts rows that come at uneven times on a grid of this rate")
+      ->check(CLI::PositiveNumber);
+  sub->add_option("--sample-rate", options->sample_rate_Hz, "Hz: of a table that has no times")
+      ->check(CLI::PositiveNumber);
+  sub->add_option("--most-effects", options->most_effects, "Causes that are named at most")
+      ->check(CLI::Range(1, 20));
+  sub->add_option("--exclude", options->exclude, "KIND,...: causes that are not looked for");
   sub->add_option("--program", options->program,
                   "Program whose contour error is simulated for the report; default: a circle of 10 mm")
       ->check(CLI::ExistingFile);

@@ -238,4 +238,7 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except (ArithmeticError, KeyError, LookupError, OSError, TypeError, ValueError) as error:
+        sys.exit(f"plot_identification.py: the record does not hold what the pictures show: {error}")

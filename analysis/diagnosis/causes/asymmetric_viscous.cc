@@ -3,6 +3,7 @@
 #include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/causes/effect_parts.h"
 #include "analysis/diagnosis/causes/experiments.h"
+#include "analysis/diagnosis/causes/extension_parts.h"
 
 namespace contour::diagnosis::causes {
 namespace {
@@ -28,6 +29,20 @@ Experiment StrokesAtThreeSpeeds(const Problem& problem, bool) {
       SameStretchAtThreeSpeeds(problem, false).program};
 }
 
+/// Shares of one coefficient add up.
+void Extend(const Cause& cause, double, ExtensionsConfig& e) {
+  Existing(e.asymmetric_viscous).difference_rel += ValueOf(cause, "difference_rel");
+}
+
+constexpr ExtensionRule kExtension = {
+    .add = Extend,
+    .remove = RemoveExtension<&ExtensionsConfig::asymmetric_viscous>,
+    .number_of_the_model = false,
+    .simulation = [](const ModelConfig&, const ExtensionsConfig& all) -> Assignments {
+      if (!all.asymmetric_viscous) return {};
+      return {SetEffect(kName, {{"difference_rel", all.asymmetric_viscous->difference_rel}})};
+    }};
+
 constexpr Specimen kSpecimen = {.needs = SpecimenNeeds{},
                                 .draw = [](const SpecimenMachine&, double sign,
                                            const UniformNumbers&) { return Drawn{.size = sign * 0.1}; },
@@ -52,8 +67,9 @@ constexpr CauseDefinition asymmetric_viscous = {
     .name = kName,
     .words = "viscous friction differs between the directions",
     .advice =
-        "Look for a wiper, cover or seal that drags in one direction, and at the lubrication; expect another "
-        "friction at speed in each direction.",
+        "Give the model a viscous coefficient per direction; look for a wiper, cover or seal that drags in "
+        "one "
+        "direction, and at the lubrication.",
     .grid = Grid,
     .wave = nullptr,
     .family = nullptr,
@@ -67,7 +83,7 @@ constexpr CauseDefinition asymmetric_viscous = {
     .shape = nullptr,
     .largest = [](const Problem&) { return 0.7; },
     .freed_terms = kFreesNothing,
-    .extension = nullptr,
+    .extension = &kExtension,
     .experiment = StrokesAtThreeSpeeds,
     .shows_more_of = std::nullopt,
     .specimen = &kSpecimen,

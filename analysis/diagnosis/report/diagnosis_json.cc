@@ -33,6 +33,22 @@ Json CauseJson(const Cause& cause) {
           {"deciding_experiment", cause.deciding_experiment}};
 }
 
+Json BaseJson(const Diagnosis& d) {
+  Json out = Json::object();
+  for (const BaseParameter& p : d.base)
+    out[p.name] = {{"stated", Number(p.stated)}, {"fitted", Number(p.fitted)}, {"sigma", Number(p.sigma)}};
+  return out;
+}
+
+Json ErrorsJson(const Diagnosis& d) {
+  if (d.model_errors.empty() || !d.fitted) return nullptr;
+  Json out = {{"unit", d.fitted->linear ? "m" : "rad"}, {"free_run_s", d.free_run_s}};
+  for (const ForecastError& e : d.model_errors)
+    out[e.model] = {{"one_step", {{"used", Number(e.one_step_used)}, {"unseen", Number(e.one_step_unseen)}}},
+                    {"free_run", {{"used", Number(e.free_run_used)}, {"unseen", Number(e.free_run_unseen)}}}};
+  return out;
+}
+
 }  // namespace
 
 std::string VerdictName(Verdict verdict) {
@@ -71,6 +87,8 @@ std::string DiagnosisJson(const Diagnosis& d, const std::string& extended_model,
                        {"missing", d.data_quality.missing},
                        {"stale", d.data_quality.stale},
                        {"outliers", d.data_quality.outliers}}},
+                     {"base_model", BaseJson(d)},
+                     {"model_errors", ErrorsJson(d)},
                      {"extended_model", extended_model.empty() ? Json(nullptr) : Json(extended_model)},
                      {"contour_gain", contour ? ContourJson(*contour) : Json(nullptr)},
                      {"notes", d.notes}};

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 
@@ -31,7 +32,8 @@ struct DiagnoseOptions {
       1;  ///< of everything drawn; the same seed gives the same answer on any number of threads
   int threads = 1;
   int most_effects =
-      kRounds.most_effects;  ///< causes named at most; as many further orders of theirs do not count
+      kRounds.most_effects;          ///< causes named at most; as many further orders of theirs do not count
+  std::vector<std::string> exclude;  ///< kinds that are not looked for
   /// Refits with the residual of every stroke at random, from which the intervals come; 0: from the fit's
   /// covariance.
   int bootstrap_runs = 0;

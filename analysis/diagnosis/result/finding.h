@@ -1,9 +1,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "analysis/axis_model/stated_axis.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/recording/data_quality.h"
 
@@ -51,6 +53,14 @@ struct BaseParameter {
   double stated = 0.0, fitted = 0.0, sigma = 0.0;  ///< sigma: 1 standard deviation of the fit
 };
 
+/// How far a model is off, root mean squares in units of q, on the log that it was fitted on and on parts of
+/// it that it was not: every other part, by a model from the ones between.
+struct ForecastError {
+  std::string model;  ///< stated, refitted, extended
+  double one_step_used = 0.0, one_step_unseen = 0.0;
+  double free_run_used = 0.0, free_run_unseen = 0.0;
+};
+
 /// Signals for pictures, decimated by whoever fills them as little as needed.
 struct Traces {
   std::vector<double> time_s, position, velocity, acceleration;
@@ -76,6 +86,12 @@ struct Diagnosis {
   DataQuality data_quality;
   std::vector<Candidate> candidates;
   std::vector<BaseParameter> base;
+  /// The stated model with its numbers as the log has them, fitted with the causes found, and their
+  /// deviations.
+  std::optional<StatedAxis> fitted;
+  std::vector<Cause> in_model;  ///< causes that were fitted with it, whether the verdict names them or not
+  std::vector<ForecastError> model_errors;  ///< none where the log is too short
+  double free_run_s = 0.0;                  ///< length of the free runs
   std::vector<BlockGain> blocks;
   Traces traces;
   std::vector<std::string> notes;  ///< in plain words: what limits the answer

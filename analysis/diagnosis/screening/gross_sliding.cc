@@ -13,7 +13,12 @@ std::vector<double> TravelSinceReversal(const Signals& s) {
   std::vector<double> travel(x.size(), 0.0);
   double turned_at = x[0], furthest = x[0];
   bool up = true;
+  auto begin = s.begins.begin();
   for (std::size_t k = 0; k < x.size(); ++k) {
+    if (begin != s.begins.end() && *begin == k) {
+      turned_at = furthest = x[k];  // no motion led here
+      ++begin;
+    }
     if (up ? x[k] > furthest : x[k] < furthest) furthest = x[k];
     if (std::fabs(s.sign[k]) > kFollowsMotion && (s.sign[k] > 0.0) != up) {
       up = !up;

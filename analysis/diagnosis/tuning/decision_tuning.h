@@ -9,8 +9,8 @@ namespace contour::diagnosis {
 
 /// Logs, rounds, and what a user may ask for.
 struct RoundsTuning {
-  /// [rows] A log with fewer says nothing. Source: reasoning; 3 s at 1 kHz, one stroke or two. 2026-11-21
-  std::size_t fewest_rows = 3000;
+  /// [s] A shorter log says nothing. Source: reasoning; one stroke or two. 2026-11-21
+  double shortest_s = 3.0;
   /// [probability] Default of the asked false-alarm rate. Source: custom. 2026-11-21
   double false_alarm_rate = 0.05;
   /// [causes] Default of how many are named at most. Source: archive. 2026-11-21

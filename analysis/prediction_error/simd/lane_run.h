@@ -55,9 +55,10 @@ struct Lanes {
   Vec Fc_plus, Fc_minus, dF_plus, dF_minus, inv_vs, s0, s1, inv_vd, s2, smallest, offset, gain, saturation,
       start_z;
   Vec soft_level, soft_s0, rough;
+  Vec elsewhere;  ///< share of the friction on the load that acts on the motor
   double l[4] = {};
   double start_q = 0.0, start_w = 0.0;
-  double linear = 1.0, square = 0.0;  ///< exponent of the Stribeck curve: 1, 0 or 0, 1
+  double linear = 1.0, square = 0.0;  ///< exponent of the Stribeck curve: 1, 0 is 1; 0, 1 is 2
   bool full = false, trace = false;
   bool two = false, on_load = false, soft = false, fading = false;  ///< which of the loops
   bool gap = false;                                                 ///< between the two inertias

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
 
 #include "analysis/axis_model/read_stated_axis.h"
 #include "config/config_error.h"
@@ -68,12 +70,63 @@ friction: {Fc_plus_N: 20.3935, Fc_minus_N: 20.3935, sigma2_Ns_m: 203.5034}
   EXPECT_DOUBLE_EQ(a.lead_m, 2.5e-3);
 }
 
-TEST(LooseAxis, ExtensionsOfALinearAxisAreRefusedAndNotPassedOver) {
+TEST(LooseAxis, ExtensionsOfALinearAxisAreInNewtons) {
   const std::string linear = "mass_kg: 95\nfriction: {Fc_plus_N: 20, Fc_minus_N: 20, sigma2_Ns_m: 200}\n";
   EXPECT_EQ(Error(linear), "");
-  EXPECT_NE(Error(linear + "extensions: {constant_torque: {torque_Nm: 0.1}}\n")
-                .find("extensions: found on a linear axis"),
+  const StatedAxis a = ReadStatedAxis(
+      WriteTestFile("model.yaml", linear + "extensions:\n  constant_torque: {force_N: 0.5}\n"
+                                           "  cogging: {amplitude_N: 1.4, order_per_rev: 1, phase_rad: 0.2}\n"
+                                           "  asymmetric_viscous: {difference_rel: -0.35}\n"),
+      "");
+  EXPECT_DOUBLE_EQ(a.offset, 0.5);
+  EXPECT_DOUBLE_EQ(a.extras.cogging.at(0).amplitude, 1.4);
+  EXPECT_DOUBLE_EQ(a.extras.viscous_difference_rel, -0.35);
+  const std::string error = Error(linear + "extensions: {constant_torque: {torque_Nm: 0.1}}\n");
+  EXPECT_NE(error.find("expected force_N on this axis"), std::string::npos) << error;
+}
+
+TEST(LooseAxis, AModelWithNothingButInertiaLeavesTheRestOpen) {
+  const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml", "model: {motor_inertia_kgm2: 1e-4}\n"), "");
+  EXPECT_EQ(a.open, (std::set<std::string>{"Fc", "s0", "s2", "stroke", "vs"}));
+  EXPECT_EQ(ReadStatedAxis(WriteTestFile("model.yaml", "mass_kg: 3\n"), "").open.count("Fc"), 1U);
+}
+
+TEST(LooseAxis, GearEndlessAndCurrent) {
+  const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml",
+                                                    "model: {motor_inertia_kgm2: 10, gear_ratio: 101}\n"
+                                                    "drive: {endless: true, torque_constant_Nm_A: 9.5}\n"),
+                                      "");
+  EXPECT_DOUBLE_EQ(a.gear_ratio, 101.0);
+  EXPECT_DOUBLE_EQ(a.torque_constant, 9.5);
+  EXPECT_TRUE(a.endless);
+  // Without a lead, places are in rad.
+  EXPECT_DOUBLE_EQ(a.table_per_q, 1.0);
+  EXPECT_NE(Error("model: {motor_inertia_kgm2: 10, gear_ratio: 3, lead_mm: 5}\n").find("gear_ratio"),
             std::string::npos);
+  EXPECT_NE(Error("model: {mass_kg: 10, gear_ratio: 3}\n").find("found on a linear axis"), std::string::npos);
+}
+
+TEST(LooseAxis, ValuesInNmSayThatFrictionActsOnTheMotor) {
+  const StatedAxis a = ReadStatedAxis(
+      WriteTestFile("model.yaml",
+                    "motor_inertia_kgm2: 1e-4\nfriction: {Fc_plus_Nm: 0.03, sigma2_Nms_rad: 1e-4}\n"),
+      "");
+  EXPECT_DOUBLE_EQ(a.friction.Fc_minus, 0.03);
+  EXPECT_FALSE(a.open.contains("Fc"));
+}
+
+TEST(LooseAxis, AShareOfTheFrictionMayActOnTheMotor) {
+  const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml", R"(
+lead_mm: 5
+motor_inertia_kgm2: 5e-5
+table_mass_kg: 10
+screw_stiffness_N_um: 40
+friction: {acts_on: table, motor_share_rel: 0.3, Fc_plus_N: 40, Fc_minus_N: 40, sigma2_Ns_m: 400}
+side_modes: [{frequency_Hz: 80, mass_share_rel: 0.1}]
+uncertainty: {motor_share_rel: 0.1}
+)"),
+                                      "");
+  EXPECT_DOUBLE_EQ(a.motor_share, 0.3);
 }
 
 TEST(LooseAxis, TwoInertiasSeenAtTheMotor) {

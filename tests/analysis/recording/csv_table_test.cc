@@ -77,5 +77,41 @@ TEST(NumberOf, TakesNumbersAndNothingElse) {
     EXPECT_THROW(NumberOf(wrong, "f", 7, "c"), ConfigError) << wrong;
 }
 
+std::vector<double> Numbers(const CsvTable& table) {
+  std::vector<double> out;
+  table.ForEachRow([&](std::size_t line, const std::vector<std::string_view>& fields) {
+    for (std::size_t i = 0; i < fields.size(); ++i) out.push_back(table.Number(fields[i], line, i));
+  });
+  return out;
+}
+
+TEST(CsvTable, DecimalCommasBetweenSemicolonsTabsOrBlanks) {
+  for (const char* text :
+       {"t;u\n0,5;-1,25e1\n1;2\n", "t\tu\n0,5\t-1,25e1\n1\t2\n", " t  u \n 0,5   -1,25e1 \n1 2\n"}) {
+    const CsvTable table(WriteTestFile("t.csv", text));
+    EXPECT_EQ(table.header(), (std::vector<std::string>{"t", "u"})) << text;
+    EXPECT_EQ(Numbers(table), (std::vector<double>{0.5, -12.5, 1, 2})) << text;
+  }
+}
+
+TEST(CsvTable, WithoutAHeaderColumnsHaveTheirNumbers) {
+  const CsvTable table(WriteTestFile("t.csv", "% a recorder's\n0,1.5,2\n1,,3\n"));
+  EXPECT_EQ(table.header(), (std::vector<std::string>{"1", "2", "3"}));
+  EXPECT_EQ(RowsOf(table).size(), 2U);
+  EXPECT_EQ(RowsOf(CsvTable(WriteTestFile("t.csv", "0,5;1,5\n1;2\n"))).size(), 2U);
+}
+
+TEST(CsvTable, ACommentMayBeTheHeader) {
+  const CsvTable table(WriteTestFile("t.csv", "# recorded by hand\n# t, q, u\n0,1.5,2\n1,2,3\n"));
+  EXPECT_EQ(table.header(), (std::vector<std::string>{"t", "q", "u"}));
+}
+
+TEST(CsvTable, ALineOfUnitsIsNoRow) {
+  const CsvTable table(WriteTestFile("t.csv", "t,q\ns,rad\n0,1\n1,2\n"));
+  EXPECT_EQ(Numbers(table), (std::vector<double>{0, 1, 1, 2}));
+  // Two lines without numbers before none at all are a table that is wrong.
+  EXPECT_EQ(RowsOf(CsvTable(WriteTestFile("t.csv", "t,q\ns,rad\nx,y\n"))).size(), 2U);
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

@@ -50,5 +50,23 @@ TEST(Grid, TimeThatStandsGoesBackOrIsOffTheGridIsNamedWithItsLine) {
   EXPECT_NE(Error({0.0, 1e-3}).find("fewer than three rows"), std::string::npos);
 }
 
+TEST(Grid, AfterAGapTheGridBeginsAnew) {
+  std::vector<double> time_s;
+  for (int i = 0; i < 50; ++i) time_s.push_back(1e-3 * i);
+  for (int i = 0; i < 50; ++i) time_s.push_back(0.2364 + 1e-3 * i);  // off the first grid by 0.4 rows
+  const Grid grid = Find(time_s);
+  EXPECT_EQ(grid.period_s, 1e-3);
+  EXPECT_EQ(grid.index[50], 236U);
+  EXPECT_EQ(grid.index[99], 285U);
+}
+
+TEST(Grid, RowsThatComeAsTheyComeAreRefusedWithTheirSteps) {
+  std::vector<double> time_s = {0.0};
+  for (int i = 0; i < 200; ++i) time_s.push_back(time_s.back() + (i % 3 == 0 || i % 7 == 2 ? 12e-3 : 10e-3));
+  const std::string error = Error(time_s);
+  EXPECT_NE(error.find("10 to 12 ms"), std::string::npos) << error;
+  EXPECT_NE(error.find("--resample 9"), std::string::npos) << error;
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

@@ -81,5 +81,47 @@ TEST(ParseColumnNames, KnowsItsQuantitiesAndRefusesTheRest) {
   }
 }
 
+TEST(LogColumns, FactorsAndNumbersOfColumns) {
+  const LogColumns c = FindColumns("f", {"1", "2", "3"}, "",
+                                   ParseColumnNames("time_s=1*0.001,torque_Nm=3*-2,motor_angle_rad=2"));
+  EXPECT_EQ(c.time->at, 0U);
+  EXPECT_DOUBLE_EQ(c.time->factor, 1e-3);
+  EXPECT_EQ(c.command.at, 2U);
+  EXPECT_DOUBLE_EQ(c.command.factor, -2.0);
+  // A header that is called so comes first.
+  EXPECT_EQ(
+      FindColumns("f", {"t", "u*2", "u", "q"}, "", ParseColumnNames("time_s=t,force_N=u*2,position_m=q"))
+          .command.at,
+      1U);
+  EXPECT_NE(Error({"t", "u", "q"}, "", ParseColumnNames("time_s=t*x")).find("no such column"),
+            std::string::npos);
+}
+
+TEST(LogColumns, WhatWasCommandedComesBeforeWhatWasMeasuredUnlessOneIsNamed) {
+  const Names header = {"time_s",    "position_rad",       "velocity_rad_s",
+                        "current_A", "measured_torque_Nm", "torque_Nm"};
+  LogColumns c = FindColumns("f", header, "", {});
+  EXPECT_EQ(c.command.at, 5U);
+  EXPECT_FALSE(c.measured || c.in_ampere || c.linear);
+  EXPECT_EQ(*c.velocity, 2U);
+  c = FindColumns("f", {header.begin(), header.end() - 1}, "", {});
+  EXPECT_EQ(c.command.at, 4U);
+  EXPECT_TRUE(c.measured);
+  c = FindColumns("f", header, "", ParseColumnNames("current_A=current_A"));
+  EXPECT_EQ(c.command.at, 3U);
+  EXPECT_TRUE(c.measured && c.in_ampere);
+}
+
+TEST(LogColumns, ACurrentIsOfTheAxisThatThePositionIsOf) {
+  EXPECT_TRUE(FindColumns("f", {"time_s", "current_A", "position_m"}, "", {}).linear);
+  EXPECT_FALSE(FindColumns("f", {"time_s", "current_A", "position_rad"}, "", {}).linear);
+}
+
+TEST(LogColumns, ATorqueMayComeWithThePositionOfTheTableOrAVelocityAlone) {
+  EXPECT_TRUE(FindColumns("f", {"time_s", "torque_Nm", "position_m"}, "", {}).position_in_m);
+  const LogColumns c = FindColumns("f", {"torque_Nm", "velocity_rad_s"}, "", {}, true);
+  EXPECT_FALSE(c.position || c.time);
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

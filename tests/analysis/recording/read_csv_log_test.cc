@@ -101,5 +101,42 @@ TEST(ReadCsvLog, WithoutAnyPositionThereIsNothingToRead) {
             std::string::npos);
 }
 
+TEST(ReadCsvLog, WhatWasMeasuredActsAsTheMeanOfBothEndsOfARow) {
+  const std::string file =
+      WriteTestFile("log.csv", "time_s,current_A,position_rad\n0,1,0\n0.001,3,0\n0.002,7,1\n");
+  const AxisLog log = ReadLog(file, {});
+  EXPECT_TRUE(log.in_ampere);
+  EXPECT_EQ(log.command, (std::vector<double>{2, 5, 7}));
+}
+
+TEST(ReadCsvLog, AnglesThatBeginAgainGoOn) {
+  std::string text = "time_s,torque_Nm,position_rad\n";
+  for (int i = 0; i < 40; ++i)
+    text += std::to_string(1e-3 * i) + ",0," + std::to_string(std::fmod(5.0 + 0.25 * i, 6.283185307)) + "\n";
+  const AxisLog log = ReadLog(WriteTestFile("log.csv", text), {});
+  for (std::size_t k = 0; k < log.size(); ++k)
+    EXPECT_NEAR(log.position[k], 5.0 + 0.25 * static_cast<double>(k), 1e-5);
+}
+
+TEST(ReadCsvLog, AVelocityOfAnotherUnitOrSignIsRefused) {
+  const auto table = [](double factor) {
+    std::string text = "time_s,torque_Nm,position_rad,velocity_rad_s\n";
+    for (int i = 0; i < 100; ++i)
+      text += std::to_string(1e-3 * i) + ",0," + std::to_string(std::sin(0.1 * i)) + "," +
+              std::to_string(factor * 100.0 * std::cos(0.1 * i)) + "\n";
+    return WriteTestFile("log.csv", text);
+  };
+  EXPECT_EQ(Error(table(1.0)), "");
+  EXPECT_NE(Error(table(57.3)).find("velocity is 6"), std::string::npos);
+  EXPECT_NE(Error(table(-1.0)).find("-1"), std::string::npos);
+}
+
+TEST(ReadCsvLog, AVelocityAloneIsIntegrated) {
+  const std::string file = WriteTestFile("log.csv", "torque_Nm,velocity_rad_s\n0,2\n0,4\n0,4\n");
+  const AxisLog log = ReadLog(file, {.sample_rate_Hz = 10.0});
+  EXPECT_DOUBLE_EQ(log.period_s, 0.1);
+  EXPECT_NEAR(log.position[2], 0.7, 1e-12);
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

@@ -32,6 +32,15 @@ TEST(AsymmetricViscous, IsDecidedByTheSameStrokesAtThreeSpeeds) {
   EXPECT_EQ(std::get<CreepShape>(test::DecidingProgram(axis, kKind).shape).velocities_mm_s.size(), 3u);
 }
 
+TEST(AsymmetricViscous, ExtensionsAddUp) {
+  Cause cause;
+  cause.kind = kKind;
+  cause.parameters["difference_rel"] = {0.2, 0.1, 0.3};
+  ExtensionsConfig e;
+  for (int i = 0; i < 2; ++i) (*CauseNamed(kKind).extension->add)(cause, 20.0, e);
+  EXPECT_DOUBLE_EQ(e.asymmetric_viscous->difference_rel, 0.4);
+}
+
 TEST(AsymmetricViscous, ItsSpecimenIsOneThatTheEmulatedMachineTakes) {
   const Specimen& s = **CauseNamed(kKind).specimen;
   const Drawn drawn = (*s.draw)(test::MachineToDrawFor(), -1.0, test::Numbers({0.5}));

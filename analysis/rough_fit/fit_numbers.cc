@@ -1,0 +1,90 @@
+#include "analysis/rough_fit/fit_numbers.h"
+
+#include <cmath>
+
+#include "analysis/prediction_error/fitted_half.h"
+#include "analysis/prediction_error/problem.h"
+#include "analysis/rough_fit/complete_from_log.h"
+#include "analysis/rough_fit/rough_fit.h"
+#include "config/number_text.h"
+
+namespace contour::diagnosis {
+namespace {
+
+/// Relative deviation of what is to be found: half of all draws are within a factor of two.
+constexpr double kFree = 1.0;
+/// A number that is known no better is not known.
+constexpr double kMostUncertain = 0.7;
+/// [share of the command's square] More that the motion does not explain is no friction's.
+constexpr double kMostUnexplained = 0.25;
+/// Two estimates of one inertia.
+constexpr double kFarApart = 1.5;
+constexpr FitEffort kThorough = {.most_steps = 40, .most_refreshes = 12, .close_enough = 0.1};
+
+std::string Numbers(const StatedAxis& axis, const Problem& problem) {
+  for (const BaseTerm& t : problem.terms) {
+    if (t.nuisance) continue;
+    const auto at = axis.sigma.find(t.name);
+    if (at == axis.sigma.end() || !std::isfinite(at->second))
+      return t.name +
+             " came out as no number: the log does not fit the model at all; are force and position of "
+             "one axis, and their signs right?";
+    if (!(at->second > 0.0))
+      return t.name + " has an interval of no width, which no measurement has: the log says nothing of it";
+  }
+  return {};
+}
+
+std::string Inertia(const StatedAxis& axis, const RoughFit& rough) {
+  if (axis.sigma.at("inertia") > kMostUncertain)
+    return "the log says nothing of the inertia (to " + RoundedText(100.0 * axis.sigma.at("inertia")) +
+           " % only): record quick reversals, with as much acceleration as the axis may have";
+  const double fitted = axis.motor_inertia + axis.load_inertia;
+  const double apart = fitted / rough.inertia;
+  if (!rough.why_not.empty() || rough.inertia_sigma_rel > 0.2 ||
+      (apart < kFarApart && apart > 1.0 / kFarApart))
+    return {};
+  return "two estimates of the inertia disagree, " + RoundedText(fitted) + " by prediction errors and " +
+         RoundedText(rough.inertia) +
+         " by least squares: the model lacks something large, or delay_ms and lag_ms are others; contour "
+         "diagnose "
+         "names it";
+}
+
+std::string WhyUnusable(const Problem& problem, const Fit& fit, const StatedAxis& axis,
+                        const RoughFit& rough) {
+  if (!rough.why_not.empty()) return rough.why_not + ": record strokes at several speeds";
+  if (rough.unexplained > kMostUnexplained)
+    return "motion explains no more than " + RoundedText(100.0 * (1.0 - rough.unexplained)) +
+           " % of the force's square: are force and position of one axis, and their signs and units right?";
+  if (const std::string why = Numbers(axis, problem); !why.empty()) return why;
+  if (const std::string why = Inertia(axis, rough); !why.empty()) return why;
+  if (!fit.converged)
+    return "the fit did not settle: begin with a model that is nearer, or record more of what it is to say";
+  return {};
+}
+
+}  // namespace
+
+FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
+  FittedNumbers out;
+  out.notes = CompleteFromLog(log, stated);
+  const RoughFit rough = FitRoughly(log, stated);
+  for (const char* name : {"inertia", "load_inertia", "Fc", "Fs", "vs", "s0", "s1", "s2", "damping"})
+    stated.sigma[name] = kFree;
+  Problem problem(log, stated, threads);
+  Point start;
+  for (const BaseTerm& t : problem.terms) start.base.push_back(t.start);
+  problem.LearnOutliers(start);
+  problem.LearnNoise(start);
+  Fit fit = FitPoint(problem, start, kThorough);
+  for (int round = 0; round < 2; ++round) {
+    problem.LearnNoise(fit.point);
+    fit = FitPoint(problem, fit.point, kThorough);
+  }
+  out.axis = FittedAxis(problem, fit, FitHalves(problem, fit));
+  out.unusable = WhyUnusable(problem, fit, out.axis, rough);
+  return out;
+}
+
+}  // namespace contour::diagnosis

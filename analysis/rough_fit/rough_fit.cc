@@ -1,0 +1,119 @@
+#include "analysis/rough_fit/rough_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "analysis/prediction_error/signals.h"
+
+namespace contour::diagnosis {
+namespace {
+
+/// [s, rows] Deviation of the Gaussian behind each derivative, whichever is longer.
+constexpr double kSmoothing_s = 3e-3, kSmoothingRows = 2.0;
+/// [share of the largest speed] Below it the axis does not slide for certain.
+constexpr double kSlides = 0.03;
+/// [deviations of the smoothing] From one independent row to the next.
+constexpr double kPerIndependentRow = 5.0;
+constexpr std::size_t kFewestRows = 100;
+
+/// The command in the middle of each row as it acts there.
+Signal Acting(const AxisLog& log, const StatedAxis& stated) {
+  const double rows = (stated.delay_s + stated.lag_s) / log.period_s + 0.5;
+  Signal out(log.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const double at = std::max(0.0, static_cast<double>(k) - rows);
+    const auto i = static_cast<std::size_t>(at);
+    const std::size_t next = std::min(i + 1, log.size() - 1);
+    out[k] = log.command[i] + (at - static_cast<double>(i)) * (log.command[next] - log.command[i]);
+  }
+  return out;
+}
+
+struct Motion {
+  Signal velocity, acceleration, command;
+  std::vector<std::uint8_t> counts;
+};
+
+/// Stretch by stretch, all smoothed alike.
+Motion MotionOf(const AxisLog& log, const Signals& s, const StatedAxis& stated, double sigma) {
+  Motion m;
+  const Signal acting = Acting(log, stated);
+  const auto reach = static_cast<std::size_t>(8.0 * sigma) + 1;
+  for (std::size_t b = 0; b < s.begins.size(); ++b) {
+    const auto from = static_cast<std::ptrdiff_t>(s.begins[b]);
+    const auto to = static_cast<std::ptrdiff_t>(b + 1 < s.begins.size() ? s.begins[b + 1] : log.size());
+    const Signal q(s.position.begin() + from, s.position.begin() + to);
+    const Signal w = Derivative(q, sigma, log.period_s);
+    const Signal a = Derivative(w, sigma, log.period_s), v = Smooth(w, sigma);
+    const Signal u = Smooth(Smooth(Signal(acting.begin() + from, acting.begin() + to), sigma), sigma);
+    m.velocity.insert(m.velocity.end(), v.begin(), v.end());
+    m.acceleration.insert(m.acceleration.end(), a.begin(), a.end());
+    m.command.insert(m.command.end(), u.begin(), u.end());
+    for (std::size_t k = 0; k < q.size(); ++k) m.counts.push_back(k >= reach && k + reach < q.size() ? 1 : 0);
+  }
+  for (std::size_t k = 0; k < log.size(); ++k) {
+    if (log.present[k] != 0) continue;
+    for (std::size_t i = k > reach ? k - reach : 0; i < std::min(log.size(), k + reach); ++i) m.counts[i] = 0;
+  }
+  return m;
+}
+
+/// Columns: acceleration, Coulomb friction up and down, viscous friction. A direction that the log has not
+/// gets none.
+void Solve(const Motion& m, double independent_rows, RoughFit& out) {
+  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  double squares = 0.0, rows = 0.0;
+  for (std::size_t k = 0; k < m.counts.size(); ++k) {
+    const double v = m.velocity[k];
+    if (m.counts[k] == 0 || std::fabs(v) < kSlides * out.max_speed) continue;
+    const Eigen::Vector4d x(m.acceleration[k], v > 0.0 ? 1.0 : 0.0, v < 0.0 ? -1.0 : 0.0, v);
+    normal += x * x.transpose();
+    right += x * m.command[k];
+    squares += m.command[k] * m.command[k];
+    rows += 1.0;
+  }
+  if (rows < static_cast<double>(kFewestRows)) {
+    out.why_not = "the axis hardly moves in it";
+    return;
+  }
+  const bool up = normal(1, 1) > 0.0, down = normal(2, 2) > 0.0;
+  for (int i = 1; i < 3; ++i)
+    if (normal(i, i) == 0.0) normal(i, i) = 1.0;
+  // In units in which every column has length 1.
+  const Eigen::Vector4d unit = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::Matrix4d scaled = unit.asDiagonal() * normal * unit.asDiagonal();
+  const Eigen::Matrix4d inverse = (scaled + 1e-9 * Eigen::Matrix4d::Identity()).inverse();
+  const Eigen::Vector4d x = unit.cwiseProduct(inverse * unit.cwiseProduct(right));
+  const double left = std::max(0.0, squares - x.dot(right)) / rows;
+  out.inertia = x(0);
+  out.inertia_sigma_rel =
+      std::sqrt(left * inverse(0, 0) * independent_rows) * unit(0) / std::max(std::fabs(x(0)), 1e-300);
+  out.coulomb = ((up ? x(1) : 0.0) + (down ? x(2) : 0.0)) / (static_cast<int>(up) + static_cast<int>(down));
+  out.viscous = x(3);
+  out.unexplained = left * rows / squares;
+  out.typical = std::sqrt(squares / rows);
+}
+
+}  // namespace
+
+RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated) {
+  RoughFit out;
+  const Signals s = MakeSignals(log, stated);
+  const double sigma = std::max(kSmoothingRows, kSmoothing_s / log.period_s);
+  const Motion m = MotionOf(log, s, stated, sigma);
+  for (std::size_t k = 0; k < m.counts.size(); ++k)
+    if (m.counts[k] != 0) out.max_speed = std::max(out.max_speed, std::fabs(m.velocity[k]));
+  const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
+  out.travel = *high - *low;
+  if (!(out.travel > 0.0 && out.max_speed > 0.0)) {
+    out.why_not = "the axis does not move in it";
+    return out;
+  }
+  Solve(m, kPerIndependentRow * sigma, out);
+  return out;
+}
+
+}  // namespace contour::diagnosis

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "analysis/axis_model/stated_axis.h"
+#include "analysis/recording/axis_log.h"
+
+namespace contour::diagnosis {
+
+/// What a rigid axis with Coulomb and viscous friction would be by least squares on the smoothed log: good
+/// enough to begin with.
+struct RoughFit {
+  std::string why_not;  ///< nothing was found; empty: found
+  double inertia = 0.0;
+  double inertia_sigma_rel = 0.0;
+  double coulomb = 0.0, viscous = 0.0;
+  double unexplained = 1.0;  ///< share of the command's square
+  double max_speed = 0.0;    ///< of q
+  double travel = 0.0;       ///< between the extremes of q
+  double typical = 0.0;      ///< root mean square of the command
+};
+
+/// In the units of the log's command.
+RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated);
+
+}  // namespace contour::diagnosis

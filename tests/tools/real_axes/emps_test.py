@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""EMPS by `contour diagnose` alone, from rows 1 to 12420 of its recording: direction-dependent viscous friction and the
+ripple are named, and the model file as written foresees what it has not seen.
+
+    emps_test.py CONTOUR FOLDER [--strict]
+
+Without --strict, what is asked but not reached yet is printed, and no more is asked than that the model is no worse than
+the stated one.
+"""
+import sys
+import tempfile
+from pathlib import Path
+
+import diagnosed
+import emps
+
+SECOND_HALF_UM, PULSES_UM = 405.0, 1360.0
+
+
+def main():
+    folder = diagnosed.data_folder(Path(sys.argv[2]) / "emps", "emps_train.csv", "emps_pulses.csv")
+    with tempfile.TemporaryDirectory() as name:
+        work = Path(name)
+        emps.write_first_half(folder / "emps_train.csv", work / "half.csv")
+        (work / "model.yaml").write_text(emps.MODEL, encoding="utf-8")
+        text, found = diagnosed.diagnose(sys.argv[1], work / "half.csv", work / "model.yaml", work / "out", "--columns", emps.COLUMNS)
+        kinds = diagnosed.named(found)
+        model = work / "out" / "extended_model.yaml"
+        second = emps.free_run_um(model, emps.read(folder / "emps_train.csv"), emps.SECOND_HALF)
+        pulses = emps.free_run_um(model, emps.read(folder / "emps_pulses.csv"), emps.PULSES)
+        print(f"{found['verdict']}: {kinds}; free run of 1 s: {second:.0f} um on the second half, {pulses:.0f} um on pulses")
+        errors = []
+        if "asymmetric_viscous" not in kinds:
+            errors.append("asymmetric_viscous is not named")
+        if not {"cogging", "friction_ripple"} & set(kinds):
+            errors.append("the ripple is not named")
+        if second > SECOND_HALF_UM or pulses > PULSES_UM:
+            errors.append(f"expected {SECOND_HALF_UM:.0f} and {PULSES_UM:.0f} um at most")
+        stated = 1787.0, 2171.0
+        if "--strict" not in sys.argv:
+            print("\n".join(f"not reached: {e}" for e in errors))
+            errors = [] if second < 1.05 * stated[0] and pulses < 1.05 * stated[1] else ["worse than the stated model"]
+        if errors:
+            sys.exit("\n".join(errors) + "\n" + text)
+
+
+if __name__ == "__main__":
+    main()
