@@ -2,6 +2,7 @@
 import numpy as np
 
 import style
+from picture_deciding import deciding
 
 FORWARD, BACKWARD = style.COMPENSATED, style.PLAIN
 BEFORE, AFTER = style.QUIET, style.COMPENSATED
@@ -31,11 +32,15 @@ def smoothed(x, width):
 
 
 def window(f):
-    """The stretch in which most is going on."""
+    """The stretch in which what was found shows most; where nothing was, in which most is going on."""
     time, v = f["time_s"], np.nan_to_num(f["velocity"])
     rows = int(SECONDS_SHOWN / f.period_s)
     if len(time) <= rows:
         return slice(0, len(time))
+    change = np.nan_to_num(f["residual_before"] - f["residual_after"]) ** 2
+    if f.data["causes"] and np.any(change > 0):
+        start = int(np.argmax(np.convolve(change, np.ones(rows), "valid")))
+        return slice(start, start + rows)
     activity = np.convolve(np.abs(np.diff(np.sign(v))) + 1e-3 * np.abs(v[1:]) / (np.max(np.abs(v)) + 1e-30),
                            np.ones(rows), "valid")
     start = int(np.argmax(activity))
@@ -211,15 +216,18 @@ def correlations(pyplot, f):
     """The residual's correlation with itself and with the torque before it."""
     lags = min(200, len(f["time_s"]) // 4)
     figure, panels = pyplot.subplots(1, 2, figsize=(9.5, 3.6))
-    band = 2.0 / np.sqrt(len(f["time_s"]))
     lag_ms = 1e3 * f.period_s * np.arange(lags)
+    own, torque = (correlation(f[name], f[name], lags) for name in ("residual_after", "measured"))
+    # Bartlett: what chance makes of signals that are not white themselves.
+    rows = np.isfinite(f["residual_after"]).sum()
+    bands = [2.0 * np.sqrt(max(1.0, 2.0 * float(np.sum(own * other)) - 1.0) / rows) for other in (own, torque)]
     for name, colour, words in (("residual_before", BEFORE, "before"), ("residual_after", AFTER, "after")):
         panels[0].plot(lag_ms[1:], correlation(f[name], f[name], lags)[1:], color=colour, label=words)
         panels[1].plot(lag_ms, correlation(f["measured"], f[name], lags), color=colour, label=words)
-    for panel, words in zip(panels, ("of the residual with itself", f"of the residual with the {f.effort} before it")):
+    for panel, band, words in zip(panels, bands, ("of the residual with itself", f"of the residual with the {f.effort} before it")):
         panel.axhspan(-band, band, color=style.QUIET, alpha=0.25, linewidth=0)
         panel.set_xlabel("lag (ms)")
-        panel.set_title("correlation " + words, fontsize=10)
+        panel.set_title("correlation " + words + "\n(band: ±2σ by chance, of noise as coloured as this)", fontsize=9)
     panels[0].legend()
     return figure
 
@@ -246,7 +254,7 @@ def shapes(pyplot, f):
     if not tables:
         return None
     figure, panels = pyplot.subplots(1, len(tables), figsize=(4.8 * len(tables) + 1, 3.6), squeeze=False)
-    units = {"friction_rel": ("friction beyond the model (%)", 100.0), "torque_Nm": ("torque (Nm)", 1.0),
+    units = {"friction_rel": ("friction beyond the model (%)", 100.0), "torque_Nm": (f"{f.effort} ({f.unit})", 1.0),
              "error_um": ("error (um)", 1.0)}
     for panel, (kind, t) in zip(panels[0], tables):
         label, scale = units.get(t["ordinate"], (t["ordinate"], 1.0))
@@ -283,6 +291,7 @@ def scale(pyplot, f):
 
 
 ALL = [
+    ("deciding", deciding, "What decides"),
     ("overlay", overlay, "Measured against simulated"),
     ("against", against, "What is left, against what may explain it"),
     ("shapes", shapes, "Fitted curves"),

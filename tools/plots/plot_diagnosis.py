@@ -20,12 +20,24 @@ table{border-collapse:collapse;margin:.5rem 0}td,th{padding:.15rem .8rem .15rem 
 th{border-bottom:1px solid #999}img{max-width:100%}pre{background:#f5f5f5;padding:.6rem;overflow:auto}.quiet{color:#666}"""
 
 
+NOTHING = 1e-12  # of any quantity here, in its unit: rounding
+
+
 def number(value, digits=3):
-    return "–" if value is None else f"{value:.{digits}g}"
+    if value is None:
+        return "–"
+    return "0" if abs(value) < NOTHING else f"{value:.{digits}g}"
 
 
 def percent(value):
     return "–" if value is None else f"{100 * value:.0f} %"
+
+
+def change(gain):
+    """A gain in words: a residual that grows is so much more, not less than less."""
+    if gain is None:
+        return "–"
+    return f"{percent(abs(gain))} {'less' if gain >= 0 else 'more'}"
 
 
 def table(head, rows):
@@ -36,14 +48,14 @@ def table(head, rows):
 
 def cause_html(cause, place):
     kind, _, words = cause["words"].partition(": ")
-    parts = [f"<div class='cause'><h2>{place}. {escape(kind.replace('_', ' '))}: {escape(words)}</h2>"]
+    parts = [f"<div class='cause'><h2>{place}. {'Part of it: ' if cause.get('part_of_it') else ''}{escape(kind.replace('_', ' '))}: {escape(words)}</h2>"]
     parts.append(table(["", "value", "95 % interval"],
                        [[p["name"], p["value"], f"{p['low']} to {p['high']}"] for p in cause["parameters"]]))
     parts.append(f"<p><b>How sure:</b> log evidence {number(cause['evidence'], 4)} nats over the model without it.</p>")
     if cause["before"]:
         parts.append(f"<p><b>What it gains</b> on data that the fit has not seen: residual {number(cause['before'])} to "
-                     f"{number(cause['after'])} {escape(cause['unit'])}, {percent(cause['gain'])} less "
-                     f"(95 %: {percent(cause['gain_low'])} to {percent(cause['gain_high'])}).</p>")
+                     f"{number(cause['after'])} {escape(cause['unit'])}, {change(cause['gain'])} "
+                     f"(95 %: {change(cause['gain_low'])} to {change(cause['gain_high'])}).</p>")
     if cause["indistinguishable_from"]:
         parts.append("<p><b>This log cannot tell it from</b> " + escape(", ".join(cause["indistinguishable_from"])) + ".</p>")
     if cause["experiment"]:
@@ -63,7 +75,7 @@ def summary_html(data):
         less = 1 - gain["after_um"] / gain["before_um"] if gain["before_um"] else None
         parts.append(f"<p><b>What it gains on the path:</b> simulated on {escape(gain['program'])} with the controller full, the table's "
                      f"largest contour error goes from {number(gain['before_um'])} um to {number(gain['after_um'])} um, "
-                     f"{percent(less)} less, once the model is extended.</p>")
+                     f"{change(less)}, once the model is extended.</p>")
     if data["extended_model"]:
         parts.append(f"<p>The model with what was found: <code>{escape(data['extended_model'])}</code></p>")
     q = data["quality"]
@@ -84,8 +96,8 @@ def limits_html(data):
         parts.append("<h2>The model's own numbers, as fitted</h2>")
         rows = []
         for p in data["base"]:
-            change = (p["fitted"] - p["stated"]) / p["sigma"] if p["sigma"] else None
-            rows.append([p["name"], number(p["stated"], 4), number(p["fitted"], 4), number(p["sigma"], 2), number(change, 2)])
+            moved = (p["fitted"] - p["stated"]) / p["sigma"] if p["sigma"] and p["sigma"] > NOTHING else None
+            rows.append([p["name"], number(p["stated"], 4), number(p["fitted"], 4), number(p["sigma"], 2), number(moved, 2)])
         parts.append(table(["", "stated", "fitted", "± 1σ", "change (σ)"], rows))
     return "".join(parts)
 

@@ -65,9 +65,9 @@ class Report(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(done.stderr, "")
             pictures = {p.stem for p in directory.glob("*.png")}
-            self.assertEqual(pictures, {"overlay", "against", "shapes", "scale", "spectra", "evidence", "blocks", "correlations"})
+            self.assertEqual(pictures, {"deciding", "overlay", "against", "shapes", "scale", "spectra", "evidence", "blocks", "correlations"})
             page = (directory / "report.html").read_text(encoding="utf-8")
-            self.assertEqual(page.count("data:image/png;base64,"), 8)
+            self.assertEqual(page.count("data:image/png;base64,"), 9)
             self.assertNotIn("src='http", page)
             for words in ("One cause was found.", "0.009 Nm to 0.011 Nm", "72 % less", "friction_ripple", "shape: sweep",
                           "Feed it &lt;forward&gt;.", "13 um to 0.65 um", "95 % less", "backlash", "2 outliers"):

@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""The strangers are what they are said to be: the same for the same seed, on their path, with the friction and the effect that was hidden."""
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+from draw_axis import TICK_S, draw_axis, stated_of
+from effects import HIDE, NEEDS, hidden
+from motion import Motion, stroke
+from simulate import Batch
+from write_case import model_text, write_case
+
+
+def strokes(axis):
+    """A second of rest, a stroke there and back."""
+    m = Motion(axis)
+    m.to(0.1 * axis["stroke_m"] / axis["lever_m"], 0.3 * m.fast)
+    m.to(0.0, 0.3 * m.fast)
+    return np.concatenate(m.x), np.concatenate(m.u), np.concatenate(m.other)
+
+
+def run(axis, effect=None, law="lugre"):
+    motion = strokes(axis)
+    return Batch([axis], [effect or {}], [motion], law, 5).run(), motion
+
+
+def sliding_torque(columns, motion):
+    """Mean torque while it moves up, and down."""
+    speed = np.gradient(motion[0], TICK_S)
+    fast = 0.9 * np.max(speed)
+    torque = columns["torque"][:, 0]
+    return torque[speed > fast].mean(), torque[speed < -fast].mean()
+
+
+class Strangers(unittest.TestCase):
+    def test_a_seed_is_one_axis_whatever_is_hidden(self):
+        self.assertEqual(draw_axis(3), draw_axis(3))
+        self.assertNotEqual(draw_axis(3)["rated"], draw_axis(4)["rated"])
+
+    def test_every_cause_has_an_effect_with_a_truth(self):
+        for kind in HIDE:
+            axis = draw_axis(11, NEEDS.get(kind, ()))
+            _, truth = hidden(kind, axis, 1.0, np.random.default_rng(1))
+            self.assertTrue(truth, kind)
+
+    def test_it_keeps_its_path_and_friction_is_what_was_drawn(self):
+        for law in ("lugre", "dahl", "maxwell_slip"):
+            axis = {**draw_axis(21), "white": 0.0, "coloured": 0.0}
+            columns, motion = run(axis, law=law)
+            error_m = axis["lever_m"] * np.max(np.abs(columns["q"][:, 0] - motion[0]))
+            self.assertLess(error_m, 0.02 * axis["stroke_m"], law)
+            up, down = sliding_torque(columns, motion)
+            friction = axis["Fc"] + axis["sigma2"] * 0.3 * axis["fast_rad_s"]
+            self.assertAlmostEqual(0.5 * (up - down) / friction, 1.0, delta=0.12, msg=law)
+
+    def test_a_hidden_torque_and_a_hidden_asymmetry_are_there(self):
+        axis = {**draw_axis(21), "white": 0.0, "coloured": 0.0}
+        plain = sum(sliding_torque(*run(axis)))
+        pushed = sum(sliding_torque(*run(axis, {"offset": 0.3 * axis["Fc"]})))
+        self.assertAlmostEqual((pushed - plain) / (-0.6 * axis["Fc"]), 1.0, delta=0.1)
+        uneven = sum(sliding_torque(*run(axis, {"asymmetry": 0.4})))
+        self.assertAlmostEqual((uneven - plain) / (0.4 * axis["Fc"]), 1.0, delta=0.15)
+
+    def test_a_stroke_ends_where_it_is_to(self):
+        x = stroke(-3.0, 2.0, 40.0)
+        self.assertAlmostEqual(x[-1], -3.0)
+        self.assertLessEqual(np.max(np.abs(np.diff(x))) / TICK_S, 2.05)
+
+    def test_a_case_is_three_files(self):
+        axis = draw_axis(31, ("scale", "thermometer"))
+        rows = 10
+        columns = {name: np.zeros(rows) for name in ("q", "torque", "table", "temperature", "other")}
+        with tempfile.TemporaryDirectory() as folder:
+            write_case(folder, axis, stated_of(axis), columns, {"kind": "clean"}, False)
+            self.assertEqual(sorted(p.name for p in Path(folder).iterdir()), ["log.csv", "model.yaml", "truth.json"])
+            header = (Path(folder) / "log.csv").read_text(encoding="utf-8").splitlines()[0]
+        self.assertEqual(header, "time_s,torque_Nm,motor_angle_rad,table_position_m,temperature_degC")
+        self.assertIn("uncertainty:", model_text(stated_of(axis), False))
+
+
+if __name__ == "__main__":
+    unittest.main()

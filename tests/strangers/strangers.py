@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""Axes that share nothing with contourd: made here, diagnosed by `contour diagnose`, counted.
+
+    strangers.py --make FOLDER [--seed 1] [--clean 20] [--each 2] [--strength clear] [--kinds a,b] [--law lugre]
+    strangers.py --judge FOLDER --contour build/release/bin/contour [--out results.csv] [--rate 0.05] [--answered]
+
+--make writes a folder a case: log.csv, model.yaml, truth.json. --judge diagnoses what stands there and prints a table: right, wrong
+name, unexplained, false alarms, intervals that hold the truth. The same seed makes the same cases.
+"""
+import argparse
+import csv
+import json
+import resource
+import subprocess
+from pathlib import Path
+
+import numpy as np
+
+from draw_axis import draw_axis, stated_of
+from effects import HIDE, NEEDS, STRENGTHS, hidden
+from motion import both_directions
+from simulate import Batch
+from write_case import write_case
+
+BATCH = 128
+# Found on a friction of another law, it names what is wrong.
+MISMATCH = {"presliding_hysteresis"}
+MEANT_TOGETHER = {"friction_ripple": {"ball_ripple"}, "ball_ripple": {"friction_ripple"}}
+
+
+def cases_of(options):
+    kinds = options.kinds.split(",") if options.kinds else list(HIDE)
+    out = [("clean", options.seed * 100000 + i) for i in range(options.clean)]
+    for number, kind in enumerate(HIDE):
+        if kind in kinds:
+            out += [(kind, options.seed * 100000 + 1000 * (number + 1) + i) for i in range(options.each)]
+    return out
+
+
+def make(options):
+    cases = cases_of(options)
+    for at in range(0, len(cases), BATCH):
+        batch, prepared = cases[at:at + BATCH], []
+        for kind, seed in batch:
+            axis = draw_axis(seed, NEEDS.get(kind, ()))
+            stated, effect, truth = stated_of(axis), {}, {}
+            if kind != "clean":
+                effect, truth = hidden(kind, axis, STRENGTHS[options.strength], np.random.default_rng([seed, 4]))
+            prepared.append((axis, stated, effect, truth, both_directions(axis)))
+        simulated = Batch([p[0] for p in prepared], [p[2] for p in prepared], [p[4] for p in prepared], options.law, options.seed + at)
+        columns = simulated.run()
+        for i, ((kind, seed), (axis, stated, _, truth, motion)) in enumerate(zip(batch, prepared)):
+            own = {name: values[:len(motion[0]), i] for name, values in columns.items()}
+            own["other"] = motion[2]
+            name = f"{'clean' if kind == 'clean' else options.strength + '_' + kind}_{options.law}_{seed}"
+            said = {"kind": kind, "seed": seed, "law": options.law, "strength": options.strength, "parameters": truth,
+                    "axis": {k: v for k, v in axis.items()}}
+            write_case(Path(options.make) / name, axis, stated, own, said, kind == "stribeck")
+        print(f"{at + len(batch)} of {len(cases)}", flush=True)
+
+
+def diagnose(folder, options):
+    if options.answered:
+        there = folder / "answer.json"
+        return (json.loads(there.read_text(encoding="utf-8")) if there.exists() else {"verdict": "failed"}), 0.0
+    command = [options.contour, "diagnose", str(folder / "log.csv"), "--model", str(folder / "model.yaml"), "--json",
+               str(folder / "answer.json"), "--false-alarm-rate", str(options.rate)]
+    began = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    used_s = ended.ru_utime + ended.ru_stime - began.ru_utime - began.ru_stime
+    if done.returncode != 0:
+        return {"verdict": "failed", "causes": [], "said": done.stderr.strip()}, used_s
+    return json.loads((folder / "answer.json").read_text(encoding="utf-8")), used_s
+
+
+def inside(cause, truth):
+    """Whether every size that is known lies in its interval; None where none is."""
+    told = [(p, truth[p]) for p in cause["parameters"] if truth.get(p) is not None]
+    if not told:
+        return None
+    return all(cause["parameters"][p]["ci95"][0] <= value <= cause["parameters"][p]["ci95"][1] for p, value in told)
+
+
+def judged(folder, options):
+    truth = json.loads((folder / "truth.json").read_text(encoding="utf-8"))
+    answer, used_s = diagnose(folder, options)
+    # Where most is unexplained, what is known of it is no verdict.
+    causes = [c for c in answer.get("causes", []) if not c.get("part_of_it")]
+    names = [c["kind"] for c in causes]
+    counted = [n for n in names if truth["law"] == "lugre" or n not in MISMATCH]
+    kind, verdict = truth["kind"], answer["verdict"]
+    held, first = None, None
+    if kind == "clean":
+        mismatch = truth["law"] != "lugre" and verdict in ("unexplained", "cause_found", "ambiguous")
+        result = "failed" if verdict == "failed" else "right" if not counted and (verdict == "nothing_found" or mismatch) else "alarm"
+    else:
+        first = next((c for c in causes if c["kind"] in counted), None)
+        meant = {kind} | MEANT_TOGETHER.get(kind, set())
+        said = set() if first is None else {first["kind"], *first.get("indistinguishable_from", [])}
+        result = ("failed" if verdict == "failed" else "unexplained" if verdict == "unexplained" else "missed" if not said else
+                  "right" if said & meant and len(said) <= 2 else "wrong")
+        own = next((c for c in causes if c["kind"] == kind), None)
+        held = inside(own, truth["parameters"]) if own else None
+    return {"case": folder.name, "kind": kind, "result": result, "verdict": verdict, "names": "+".join(names), "inside": held,
+            "set": "|".join([] if first is None else first.get("indistinguishable_from", [])), "cpu_s": round(used_s, 2),
+            "gain": round(causes[0]["heldout_gain"] or 0.0, 3) if causes else ""}
+
+
+def judge(options):
+    folders = sorted(p.parent for p in Path(options.judge).glob("*/truth.json") if options.only in p.parent.name)
+    rows = []
+    for folder in folders:
+        rows.append(judged(folder, options))
+        print(rows[-1], flush=True)
+    if options.out:
+        with open(options.out, "w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, rows[0].keys())
+            writer.writeheader()
+            writer.writerows(rows)
+    print_table(rows)
+    return rows
+
+
+def print_table(rows):
+    hidden_rows = [r for r in rows if r["kind"] != "clean"]
+    clean = [r for r in rows if r["kind"] == "clean"]
+    held = [r["inside"] for r in hidden_rows if r["inside"] is not None]
+    print("| hidden | right | wrong name | unexplained | nothing | failed | truth inside | alarms, clean | s/log |\n" + "| --- " * 9 + "|")
+    counts = [sum(r["result"] == x for r in hidden_rows) for x in ("right", "wrong", "unexplained", "missed")]
+    failed = sum(r["result"] == "failed" for r in rows)
+    mean_s = sum(r["cpu_s"] for r in rows) / max(1, len(rows))
+    print(f"| {len(hidden_rows)} | {counts[0]} | {counts[1]} | {counts[2]} | {counts[3]} | {failed} | {sum(held)} of {len(held)} | "
+          f"{sum(r['result'] == 'alarm' for r in clean)} of {len(clean)} | {mean_s:.1f} |")
+
+
+def main():
+    p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name, otherwise in (("make", None), ("judge", None), ("contour", "build/release/bin/contour"), ("out", None), ("kinds", ""),
+                            ("law", "lugre"), ("strength", "clear"), ("only", "")):
+        p.add_argument("--" + name, default=otherwise)
+    for name, otherwise in (("seed", 1), ("clean", 20), ("each", 2)):
+        p.add_argument("--" + name, type=int, default=otherwise)
+    p.add_argument("--rate", type=float, default=0.05)
+    p.add_argument("--answered", action="store_true", help="judge the answer.json that stand there")
+    options = p.parse_args()
+    if not options.make and not options.judge:
+        p.error("say --make or --judge")
+    if options.make:
+        make(options)
+    if options.judge:
+        judge(options)
+
+
+if __name__ == "__main__":
+    main()
