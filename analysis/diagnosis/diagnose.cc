@@ -34,7 +34,7 @@ Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
   out.false_alarm_rate = options.false_alarm_rate;
   out.data_quality.rows = log.rows;
   out.data_quality.missing = log.missing;
-  out.notes.push_back("The log is shorter than " + std::to_string(kRounds.fewest_rows) + " rows.");
+  out.notes.push_back("The log is shorter than " + std::to_string(FewestRows()) + " rows.");
   return out;
 }
 
@@ -42,7 +42,7 @@ Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
 
 Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& options) {
   CheckInput(log, stated);
-  if (log.size() < kRounds.fewest_rows) return TooShort(log, options);
+  if (log.size() < FewestRows()) return TooShort(log, options);
   Diagnosis out;
   out.false_alarm_rate = options.false_alarm_rate;
   Problem problem(log, stated, options.threads);
@@ -58,6 +58,7 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
   TellStructure(rounds.accepted, left, options);
   Conclude(problem, left, out);
+  if (out.verdict == Verdict::kUnexplained && out.causes.empty()) out.causes = std::move(rounds.leading);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)
     out.notes.push_back("No more than " + std::to_string(options.most_effects) +
                         " causes were looked for: several known ones together may be behind it.");
