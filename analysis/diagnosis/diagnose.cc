@@ -17,7 +17,6 @@
 #include "analysis/diagnosis/screening/nominal.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
-#include "config/number_text.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -35,10 +34,8 @@ void CheckInput(const AxisLog& log, const StatedAxis& stated) {
 }
 
 /// So many that every segment of the noise settles.
-constexpr std::size_t kFewestRows = kNoise.segments * kNoise.settling_rows;
-
-std::size_t FewestRows(const AxisLog& log) {
-  return std::max(kFewestRows, static_cast<std::size_t>(kRounds.shortest_s / log.period_s + 0.5));
+constexpr std::size_t FewestRowsThere() {
+  return std::max(FewestRows(), kNoise.segments * kNoise.settling_rows);
 }
 
 std::size_t RowsThere(const AxisLog& log) {
@@ -58,9 +55,7 @@ Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
   out.false_alarm_rate = options.false_alarm_rate;
   out.data_quality.rows = log.rows;
   out.data_quality.missing = log.missing;
-  out.notes.push_back("The log has fewer than " + std::to_string(FewestRows(log)) + " rows of motion, " +
-                      RoundedText(kRounds.shortest_s) + " s or " + std::to_string(kFewestRows) +
-                      " rows, whichever is longer.");
+  out.notes.push_back("The log has fewer than " + std::to_string(FewestRowsThere()) + " rows of motion.");
   return out;
 }
 
@@ -69,7 +64,7 @@ Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
 Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& asked) {
   CheckInput(log, stated);
   const DiagnoseOptions options = WithoutStroke(stated, asked);
-  if (RowsThere(log) < FewestRows(log)) return TooShort(log, options);
+  if (RowsThere(log) < FewestRowsThere()) return TooShort(log, options);
   Diagnosis out;
   out.false_alarm_rate = options.false_alarm_rate;
   Problem problem(log, stated, options.threads);
@@ -87,6 +82,7 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   out.in_model = out.causes;
   std::erase_if(out.in_model, [](const Cause& c) { return Outside(c.kind); });
   Conclude(problem, left, out);
+  if (out.verdict == Verdict::kUnexplained && out.causes.empty()) out.causes = std::move(rounds.leading);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)
     out.notes.push_back("No more than " + std::to_string(options.most_effects) +
                         " causes were looked for: several known ones together may be behind it.");

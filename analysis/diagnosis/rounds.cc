@@ -32,6 +32,7 @@ struct Rounds {
   std::size_t stated_with = std::numeric_limits<std::size_t>::max();
   bool first = true, jitter_known = false;
   int further_orders = 0;
+  std::vector<Cause> leading = {};  ///< known causes in place of a shape from outside the catalogue
 };
 
 enum class Next { kSameRound, kNextRound, kEnd };
@@ -61,7 +62,7 @@ void LeaveOut(const std::vector<std::string>& kinds, std::vector<Scored>& scored
 /// is not asked before. Else none.
 std::vector<std::string> ThoseWithoutDoubt(const std::vector<Hypothesis>& hypotheses) {
   std::vector<std::string> out;
-  if (hypotheses.empty() || hypotheses[0].no_fault || hypotheses[0].score < kRounds.no_doubt_score)
+  if (hypotheses.empty() || hypotheses[0].no_fault || hypotheses[0].score < kAcceptance.no_chance_score)
     return out;
   for (const Hypothesis& r : hypotheses) out.push_back(r.effect().kind);
   return out;
@@ -135,12 +136,22 @@ Next TryOthers(const Seen& seen, Rounds& r) {
   return Next::kSameRound;
 }
 
+/// What is listed as not excited is not found either. Of what begins far from linear the smallest size says
+/// little of a large one.
+void EraseNotExcited(const Diagnosis& out, std::vector<Hypothesis>& hypotheses) {
+  std::erase_if(hypotheses, [&](const Hypothesis& h) {
+    return !Outside(h.effect().kind) && h.effect().start.empty() &&
+           !out.smallest_detectable.contains(h.effect().kind);
+  });
+}
+
 /// The first of the hypotheses, once it holds.
 Next Take(const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& threshold, Rounds& r) {
   r.tried.clear();
   const std::string kind = hypotheses[0].effect().kind;
   // A further order of what is known takes no other cause's place.
   const bool further = Known(kind, r.out) && r.further_orders++ < r.options.most_effects;
+  if (Outside(kind)) KeepLeadingKnown(r.problem, r.accepted.fit, threshold, hypotheses, r.leading);
   AcceptFirst(r.problem, hypotheses, threshold, r.accepted, r.out);
   if (Outside(kind)) return Next::kEnd;
   return further ? Next::kSameRound : Next::kNextRound;
@@ -154,6 +165,11 @@ Next OneRound(int round, Rounds& r) {
       HypothesesThatMayHold(r.problem, r.accepted.fit, seen.scored, seen.search, r.tried);
   StateDetectable(seen, ThoseWithoutDoubt(hypotheses), r);
   if (hypotheses.empty()) return EndWithJitter(seen, r);
+  EraseNotExcited(r.out, hypotheses);
+  if (hypotheses.empty()) {
+    const Next next = TryOthers(seen, r);
+    return next == Next::kEnd ? EndWithJitter(seen, r) : next;
+  }
   // Noise as the best candidate leaves it.
   r.problem.LearnNoise(hypotheses[0].fit.point);
   Say(r.options, "candidate hypotheses under the noise that is left", 0.35 + 0.25 * round);
@@ -171,7 +187,7 @@ Next OneRound(int round, Rounds& r) {
   if (seen.jitter_there) {
     // A mean effect that the variance was about leaves none behind.
     const Jitter left = TestJitter(r.problem, hypotheses[0].fit);
-    if (left.drop > kRounds.jitter_left_share * seen.jitter.drop &&
+    if (left.drop > kAcceptance.still_there_share * seen.jitter.drop &&
         (!choice.found || left.drop > choice.tested)) {
       AcceptJitter(r.problem, r.nominal.fit, left, r.out);
       r.jitter_known = true;
@@ -202,7 +218,7 @@ RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const Diag
         ScoreThresholdOf(problem, r.accepted, scored, nominal.by_extras, options);
     KeepDetectable(problem, r.accepted.fit, {scored, jitter, threshold}, {}, out);
   }
-  return {std::move(r.accepted), round >= options.most_effects};
+  return {std::move(r.accepted), round >= options.most_effects, std::move(r.leading)};
 }
 
 }  // namespace contour::diagnosis

@@ -11,6 +11,9 @@ namespace contour::diagnosis {
 struct RoundsResult {
   Accepted accepted;
   bool stopped = false;
+  /// Where a shape from outside the catalogue came first: the known causes that explain the most in its
+  /// place, each with its size and gain.
+  std::vector<Cause> leading = {};
 };
 RoundsResult AcceptInRounds(Problem& problem, const Nominal& nominal, const DiagnoseOptions& options,
                             Diagnosis& out);

@@ -4,8 +4,7 @@
     cause_names.py ROOT
 
 Takes the causes from analysis/diagnosis/causes/cause_list.inc and their names from their files, and looks for string literals and
-enumerators of these names elsewhere. Also: every file of a cause is in the list, the calibrated margins are of causes, and the
-manual names every cause. Prints every offence as file:line and ends with 1 if there is one.
+enumerators of these names elsewhere. Also: every file of a cause is in the list, and the manual names every cause. Prints every offence as file:line and ends with 1 if there is one.
 """
 import re
 import sys
@@ -15,15 +14,12 @@ CAUSES = "analysis/diagnosis/causes"
 LIST = f"{CAUSES}/cause_list.inc"
 FOLDERS = ["analysis", "tools"]
 SUFFIXES = (".h", ".cc", ".inc", ".py")
-MARGINS = "analysis/diagnosis/tuning/model_error_table.inc"
 # Pages that name every cause.
 PAGES = ["docs/diagnosis.md", "docs/emulator.md"]
 # Names that mean something else there.
 OTHERWISE = {
     # Keys of the emulated machine's effects, in the struct that reads them.
     "tools/plant_emulator/effects_config.h": None,
-    # Made by `contour_hidden --calibrate`; its names are checked here.
-    MARGINS: None,
     # A number of the base model, and the key of its stated uncertainty.
     "analysis/axis_model/stated_parameters.cc": {"torque_constant"},
     "analysis/prediction_error/common_factor.cc": {"torque_constant"},
@@ -117,10 +113,6 @@ def check(root):
     for path in sources(root):
         file = path.relative_to(root).as_posix()
         offences += offences_in(file, path.read_text(encoding="utf-8"), names)
-    margins = root / MARGINS
-    for name in re.findall(r'^\{"([^"]*)"', margins.read_text(encoding="utf-8"), re.M) if margins.exists() else []:
-        if name and not name.startswith("unexplained") and name not in names:
-            offences.append(f"{MARGINS}: {name} is no cause")
     for page in PAGES:
         text = (root / page).read_text(encoding="utf-8") if (root / page).exists() else ""
         offences += [f"{page}: says nothing of `{name}`" for name in names if f"`{name}`" not in text]

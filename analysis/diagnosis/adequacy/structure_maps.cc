@@ -8,14 +8,12 @@
 
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/adequacy_tuning.h"
+#include "analysis/diagnosis/tuning/screening_tuning.h"
 
 namespace contour::diagnosis {
 namespace {
 
-constexpr int kPlaces = kAdequacy.position_bins, kSpeeds = kAdequacy.speed_bins;
-constexpr int kTravelBins = kAdequacy.travel_bins, kAngles = kAdequacy.angle_bins;
-constexpr int kTemperatures = kAdequacy.temperature_bins;
-constexpr double kShortestTravel_m = kAdequacy.shortest_travel_m;
+constexpr int kBins = kScreening.bins;
 constexpr double kDegreesPerTurn = 360.0;
 // Of a range, and of a speed that divides.
 constexpr double kLeast = 1e-12;
@@ -43,7 +41,7 @@ std::string Text(double x, const char* unit) {
 
 /// Slow speeds in finer steps.
 int SpeedBin(const Signals& s, std::size_t k) {
-  return Range{}.Bin(std::sqrt(std::fabs(s.velocity[k]) / std::max(s.max_speed, kLeast)), kSpeeds);
+  return Range{}.Bin(std::sqrt(std::fabs(s.velocity[k]) / std::max(s.max_speed, kLeast)), kBins);
 }
 
 class Maps {
@@ -54,41 +52,42 @@ class Maps {
   std::vector<BinnedRows> All() {
     const Range x = RangeOf(s_.table_m);
     BothDirections(
-        "the position", Quantity::kPosition, kPlaces,
-        [&](std::size_t k) { return x.Bin(s_.table_m[k], kPlaces); },
-        [x, middle_m = s_.middle_m](int b) { return Text(1e3 * (x.Middle(b, kPlaces) + middle_m), "mm"); });
+        "the position", Quantity::kPosition, kBins,
+        [&](std::size_t k) { return x.Bin(s_.table_m[k], kBins); },
+        [x, middle_m = s_.middle_m](int b) { return Text(1e3 * (x.Middle(b, kBins) + middle_m), "mm"); });
     BothDirections(
-        "the speed", Quantity::kSpeed, kSpeeds, [&](std::size_t k) { return SpeedBin(s_, k); },
+        "the speed", Quantity::kSpeed, kBins, [&](std::size_t k) { return SpeedBin(s_, k); },
         [fastest_m_s = s_.max_speed * p_.stated.table_per_q](int b) {
-          return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kSpeeds), 2), "mm/s");
+          return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kBins), 2), "mm/s");
         });
     const std::vector<double> travel = TravelSinceReversal(s_);
-    const Range log_travel{std::log(kShortestTravel_m), std::log(2.0 * s_.half_stroke_m + kShortestTravel_m)};
+    // From the length of a bristle on.
+    const StatedFriction& f = p_.nominal.friction;
+    const double shortest_m = std::max(f.Fc_plus / f.s0 * p_.stated.table_per_q, kLeast);
+    const Range log_travel{std::log(shortest_m), std::log(2.0 * s_.half_stroke_m + shortest_m)};
     BothDirections(
-        "the travel since the last reversal", Quantity::kTravelSinceReversal, kTravelBins,
-        [&](std::size_t k) { return log_travel.Bin(std::log(travel[k] + kShortestTravel_m), kTravelBins); },
+        "the travel since the last reversal", Quantity::kTravelSinceReversal, kBins,
+        [&](std::size_t k) { return log_travel.Bin(std::log(travel[k] + shortest_m), kBins); },
         [log_travel](int b) {
-          return Text(1e3 * std::exp(log_travel.Middle(b, kTravelBins)), "mm after a reversal");
+          return Text(1e3 * std::exp(log_travel.Middle(b, kBins)), "mm after a reversal");
         });
     BothDirections(
-        "the angle of the motor", Quantity::kAngle, kAngles,
+        "the angle of the motor", Quantity::kAngle, kBins,
         [&](std::size_t k) {
           const double turns = s_.angle_rad[k] / kTurn;
-          return Range{}.Bin(turns - std::floor(turns), kAngles);
+          return Range{}.Bin(turns - std::floor(turns), kBins);
         },
-        [](int b) { return Text(kDegreesPerTurn * Range{}.Middle(b, kAngles), "degrees"); });
+        [](int b) { return Text(kDegreesPerTurn * Range{}.Middle(b, kBins), "degrees"); });
     out_.back().series = true;
     if (!s_.temperature_K.empty()) {
       const Range t = RangeOf(s_.temperature_K);
       BothDirections(
-          "the temperature", Quantity::kTemperature, kTemperatures,
-          [&](std::size_t k) { return t.Bin(s_.temperature_K[k], kTemperatures); },
-          [t, mean_degC = s_.mean_degC](int b) {
-            return Text(t.Middle(b, kTemperatures) + mean_degC, "degC");
-          });
+          "the temperature", Quantity::kTemperature, kBins,
+          [&](std::size_t k) { return t.Bin(s_.temperature_K[k], kBins); },
+          [t, mean_degC = s_.mean_degC](int b) { return Text(t.Middle(b, kBins) + mean_degC, "degC"); });
     }
-    OfTime("time, as a torque", kAdequacy.torque_bin_s, {}, kUnexplainedTorque);
-    OfTime("time, as friction", kAdequacy.friction_bin_s, s_.sign, kUnexplainedFriction);
+    OfTime("time, as a torque", kAdequacy.time_bin_s, {}, kUnexplainedTorque);
+    OfTime("time, as friction", kAdequacy.time_bin_s, s_.sign, kUnexplainedFriction);
     return std::move(out_);
   }
 
@@ -150,7 +149,7 @@ BinnedRows FrictionCurve(const Problem& problem, const std::vector<bool>& slides
   BinnedRows rows;
   rows.bin.assign(slides.size(), -1);
   rows.size = s.sign;
-  rows.count = kSpeeds;
+  rows.count = kBins;
   for (std::size_t k = 0; k < slides.size(); ++k)
     if (slides[k]) rows.bin[k] = SpeedBin(s, k);
   return rows;

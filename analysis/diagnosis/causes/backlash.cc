@@ -64,7 +64,10 @@ extern const CauseDefinition backlash;
 constexpr CauseDefinition backlash = {
     .name = kName,
     .words = "free play between motor and table",
-    .advice = "Preload or replace the nut or coupling.",
+    .advice =
+        "Preload or replace the nut or coupling. Its size is a guide, and its interval says little: impacts "
+        "are chaotic, "
+        "and for an axis stated as rigid the share of the inertia behind the gap is assumed.",
     .grid = Grid,
     .wave = nullptr,
     .family = nullptr,

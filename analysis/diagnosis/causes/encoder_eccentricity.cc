@@ -13,6 +13,13 @@ constexpr WaveSource kWave = {.wave = Wave::kReadingOfAngle,
                               .has_order = [](double order) { return order == 1.0; },
                               .free_order = false};
 
+// A disc whose centre is off by a tenth of its radius.
+constexpr double kMostSlope = 0.1;
+
+bool OffTheDisc(const Problem& p, const Effect& e, const std::vector<double>& a) {
+  return ReadsWithMoreSlope(p, e, a, kMostSlope);
+}
+
 constexpr Specimen kSpecimen = {
     .needs = SpecimenNeeds{},
     .draw = [](const SpecimenMachine&, double, const UniformNumbers&) { return Drawn{.size = 1e-3}; },
@@ -41,7 +48,7 @@ constexpr CauseDefinition encoder_eccentricity = {
                std::vector<SharedEffect>& out) { out.push_back(WaveEffect(p, *kWave.wave, 1.0, 1.0)); },
     .wave = &kWave,
     .family = nullptr,
-    .implausible = nullptr,
+    .implausible = OffTheDisc,
     .parameters =
         [](const FittedEffect& fitted) {
           return WaveParameters(fitted, "amplitude_rad", nullptr, fitted.signals().angle_per_q);

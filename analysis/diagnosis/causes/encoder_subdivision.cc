@@ -13,6 +13,13 @@ constexpr WaveSource kWave = {.wave = Wave::kReadingOfAngle,
                               .has_order = [](double order) { return order != 1.0; },
                               .free_order = false};
 
+// At this slope the reading stands still once a line.
+constexpr double kMostSlope = 1.0;
+
+bool RunsBackwards(const Problem& p, const Effect& e, const std::vector<double>& a) {
+  return ReadsWithMoreSlope(p, e, a, kMostSlope);
+}
+
 constexpr ModelError kErrors[] = {{"amplitude_rad", 0.001}};
 
 constexpr Specimen kSpecimen = {
@@ -47,7 +54,7 @@ constexpr CauseDefinition encoder_subdivision = {
     .grid = nullptr,
     .wave = &kWave,
     .family = nullptr,
-    .implausible = nullptr,
+    .implausible = RunsBackwards,
     .parameters =
         [](const FittedEffect& fitted) {
           return WaveParameters(fitted, "amplitude_rad", "order_per_rev", fitted.signals().angle_per_q);

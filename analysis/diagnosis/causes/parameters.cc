@@ -22,7 +22,8 @@ constexpr int kDraws = 400;
 
 void AddShape(const Problem& problem, const Fit& fit, std::size_t index, std::size_t first, Cause& cause) {
   const StrokeShape* shape = CauseNamed(fit.point.effects[index]->kind).shape;
-  if (shape == nullptr) return;
+  // A wave of the angle is told by its amplitudes.
+  if (shape == nullptr || fit.point.effects[index]->order > 0.0) return;
   const std::vector<double>& a = fit.point.amplitudes[index];
   ShapeTable t;
   t.abscissa = "position_mm";

@@ -115,6 +115,11 @@ SharedEffect WaveEffect(const Problem& problem, Wave wave, double order, double 
                                 : FixedOrder(problem, wave, order, grid, std::move(kind));
 }
 
+bool ReadsWithMoreSlope(const Problem& problem, const Effect& effect, const std::vector<double>& a,
+                        double most_slope) {
+  return std::hypot(a[0], a[1]) * problem.signals->angle_per_q * effect.order > most_slope;
+}
+
 NamedValues WaveParameters(const FittedEffect& fitted, const char* amplitude, const char* order,
                            double scale) {
   const std::vector<double>& a = fitted.amplitudes();

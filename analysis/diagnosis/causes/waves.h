@@ -25,4 +25,9 @@ SharedEffect WaveEffect(const Problem& problem, Wave wave, double order, double 
 NamedValues WaveParameters(const FittedEffect& fitted, const char* amplitude, const char* order,
                            double scale);
 
+/// Whether an error of the reading, a wave of the angle, runs ahead and back by more than a share of the
+/// angle itself: no encoder that works does.
+bool ReadsWithMoreSlope(const Problem& problem, const Effect& effect, const std::vector<double>& a,
+                        double most_slope);
+
 }  // namespace contour::diagnosis

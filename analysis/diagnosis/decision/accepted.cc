@@ -6,11 +6,11 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/experiments.h"
+#include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/held_out.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
-#include "analysis/diagnosis/tuning/model_error.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -19,8 +19,8 @@ namespace {
 void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                     const ScoreThreshold& threshold, const Accepted& accepted, Cause& cause, Diagnosis& out) {
   const Hypothesis& best = hypotheses[0];
-  const double alike = FrictionModelMismatch(problem, accepted.fit) ? kAcceptance.alike_on_mismatch_share
-                                                                    : kAcceptance.alike_share;
+  const double alike =
+      FrictionModelMismatch(problem, accepted.fit) ? kScreening.little_share : kAcceptance.alike_share;
   for (const Hypothesis& r : hypotheses) {
     const std::string& kind = r.effect().kind;
     for (Candidate& c : out.candidates)
@@ -31,7 +31,7 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
     // What would not have been accepted alone explains too little to be the cause.
     if (&r != &best && !r.refused && !r.given_up && !Outside(kind) &&
         r.score > Asked(problem, r, threshold) &&
-        r.score > best.score - std::max(kAcceptance.alike_score, alike * best.score) &&
+        r.score > best.score - std::max(AlikeScore(), alike * best.score) &&
         !ExplainsSomethingElse(problem, best.fit, r) && !ExplainsSomethingElse(problem, r.fit, best))
       cause.indistinguishable_from.push_back(kind);
   }
@@ -45,11 +45,31 @@ ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted
   ScoreThreshold threshold =
       SignFlips(scored, options.false_alarm_rate, options.seed, StatedOffDrop() * by_extras);
   threshold.accepted = static_cast<int>(accepted.places.size());
-  threshold.leakage = accepted.leakage + (FrictionModelMismatch(problem, accepted.fit)
-                                              ? kThreshold.leakage_on_mismatch_share * accepted.in_presliding
-                                              : 0.0);
+  threshold.leakage =
+      accepted.leakage +
+      (FrictionModelMismatch(problem, accepted.fit) ? kScreening.little_share * accepted.in_presliding : 0.0);
   threshold.leakage_of_kind = accepted.leakage_of_kind;
   return threshold;
+}
+
+void KeepLeadingKnown(const Problem& problem, const Fit& current, const ScoreThreshold& threshold,
+                      const std::vector<Hypothesis>& hypotheses, std::vector<Cause>& leading) {
+  for (const Hypothesis& h : hypotheses) {
+    const std::string& kind = h.effect().kind;
+    if (h.given_up || h.refused || Outside(kind) || !(h.score > Asked(problem, h, threshold))) continue;
+    Cause cause;
+    cause.kind = kind;
+    cause.part_of_it = true;
+    cause.log_evidence_gain = 0.5 * h.score;
+    std::vector<BlockGain> blocks;
+    HeldOutGain(problem, current, h.fit, CauseNamed(kind).judged_at_scale, cause, blocks);
+    if (cause.heldout_gain_low <= 0.0) continue;
+    Fit scattered = h.fit;
+    scattered.covariance *= OverdispersionOfLast(problem, h.fit) * std::pow(kAcceptance.few_strokes, 2);
+    DescribeEffect(problem, scattered, h.fit.point.effects.size() - 1, cause);
+    leading.push_back(std::move(cause));
+    return;
+  }
 }
 
 void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
@@ -72,8 +92,8 @@ void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypothes
   const std::string& kind = best.effect().kind;
   accepted.explained += best.score;
   if (CauseNamed(kind).takes_up_mismatch) accepted.in_presliding = best.score;
-  accepted.leakage += LeakageShare(kind) * best.score;
-  accepted.leakage_of_kind[kind] += LeakageShareOfItsKind(kind) * best.score;
+  accepted.leakage += kThreshold.leakage_share * best.score;
+  accepted.leakage_of_kind[kind] += kThreshold.leakage_share * best.score;
   accepted.fit = best.fit;
 }
 

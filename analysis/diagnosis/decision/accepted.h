@@ -33,4 +33,9 @@ ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted
 void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                  const ScoreThreshold& threshold, Accepted& accepted, Diagnosis& out);
 
+/// Of hypotheses whose first is from outside the catalogue: the best known one that holds in its place,
+/// described by its own fit.
+void KeepLeadingKnown(const Problem& problem, const Fit& current, const ScoreThreshold& threshold,
+                      const std::vector<Hypothesis>& hypotheses, std::vector<Cause>& leading);
+
 }  // namespace contour::diagnosis

@@ -1,6 +1,7 @@
 #include "analysis/diagnosis/decision/choose.h"
 
 #include <algorithm>
+#include <numbers>
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
@@ -16,21 +17,24 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
            const ScoreThreshold& threshold) {
   // From outside the catalogue only what is beyond doubt.
   const double least = Asked(problem, r, threshold);
-  if (tested <= (Outside(r.effect().kind) ? least + kHypotheses.outside_score : least)) return false;
+  if (tested <= (Outside(r.effect().kind) ? least + kHypotheses.new_noise_score : least)) return false;
+  // What does harm in the half of the log that it was not fitted on is no cause. A factor on all forces and
+  // on the torque moves nothing that it could harm.
+  const CauseDefinition& definition = CauseNamed(r.effect().kind);
+  if (!definition.common_factor) {
+    Cause cause;
+    std::vector<BlockGain> blocks;
+    HeldOutGain(problem, current, r.fit, definition.judged_at_scale, cause, blocks);
+    // A scale's noise is never white: there, only what others of its rows confirm.
+    if ((definition.judged_at_scale ? cause.heldout_gain_low : cause.heldout_gain_high) < 0.0) return false;
+  }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
-  // A further effect that does harm in the half of the log that it was not fitted on is none.
-  Cause cause;
-  std::vector<BlockGain> blocks;
-  if (threshold.accepted > 0) {
-    HeldOutGain(problem, current, r.fit, CauseNamed(r.effect().kind).judged_at_scale, cause, blocks);
-    if (cause.heldout_gain_high < 0.0) return false;
-  }
   if (Consistency(problem, current, r.fit, true) > kAcceptance.consistency) return true;
   // Left out, the only stroke that shows a base parameter may take it far. Where chance is out of the
   // question, it is enough that the drop does not come from one event.
   return tested > kAcceptance.no_chance_score &&
-         Consistency(problem, current, r.fit, false) > kAcceptance.seen_consistency;
+         Consistency(problem, current, r.fit, false) > std::numbers::sqrt2;
 }
 
 /// The hypothesis itself, or a number of the base behind it that the log says more about, where that is not
@@ -83,7 +87,7 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThresh
     if (chosen == 0) continue;
     std::rotate(hypotheses.begin(), hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen),
                 hypotheses.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
-    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), kHypotheses.chosen);
+    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), QuickToTheEnd());
     hypotheses[0].score = DropOf(problem, current, hypotheses[0].fit) - Penalty(hypotheses[0].effect());
   }
   return choice;

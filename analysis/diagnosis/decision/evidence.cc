@@ -67,7 +67,7 @@ void TellStructure(const Accepted& accepted, const std::vector<RemainingStructur
     e.penalty = best->bins;
     e.refitted = e.tested = best->score;
     e.unseen = std::sqrt(best->score);
-    e.flips = -2.0 * std::log(kCalibratedRate);
+    e.flips = -2.0 * std::log(kRounds.false_alarm_rate);
     e.asked = best->asked;
     options.evidence(e);
   }

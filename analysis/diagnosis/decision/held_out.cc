@@ -6,6 +6,7 @@
 #include <random>
 #include <span>
 
+#include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
@@ -14,22 +15,47 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr std::size_t kHeldOutBlocks = kAcceptance.held_out_blocks;
+constexpr std::size_t kHeldOutBlocks = kBlocks;
 constexpr std::size_t kUnseenBlocks = kBlocks;
 // Factors on a diagonal: one holds a parameter, one keeps a solver away from zero.
 constexpr double kHeld = 1e12, kRidge = 1.0 + 1e-12;
 constexpr unsigned kSeed = 77;
 
-// A shape's own number, such as an instant, may be in one block only: it stays.
+// A shape's own number, such as an instant, may be in one block only: it stays; so does what the fit has
+// taken to a bound, where no step leads to a minimum.
 void HoldShapes(const Fit& fit, Eigen::MatrixXd& normal) {
   auto j = static_cast<Eigen::Index>(fit.point.base.size());
-  for (std::size_t e = 0; e < fit.point.effects.size(); ++e)
-    for (std::size_t i = 0; i < fit.point.amplitudes[e].size(); ++i, ++j)
-      if (i >= fit.point.effects[e]->tested) normal(j, j) *= kHeld;
+  for (std::size_t e = 0; e < fit.point.effects.size(); ++e) {
+    const Effect& effect = *fit.point.effects[e];
+    for (std::size_t i = 0; i < fit.point.amplitudes[e].size(); ++i, ++j) {
+      const double a = fit.point.amplitudes[e][i];
+      const bool at_bound =
+          (i < effect.low.size() && a <= effect.low[i]) || (i < effect.high.size() && a >= effect.high[i]);
+      if (i >= effect.tested || at_bound) normal(j, j) *= kHeld;
+    }
+  }
 }
 
+// Where a gain is seen: as a torque, on the scale, or in the white residual, as multiples of the noise. A
+// coupling moves a resonance about, which a torque below 100 Hz does not have.
+enum class Seen { kTorque, kScale, kWhite };
+
+Seen SeenIn(const Fit& with, bool scale) {
+  if (scale) return Seen::kScale;
+  const bool coupling = !with.point.effects.empty() && CauseNamed(with.point.effects.back()->kind).coupling;
+  return coupling ? Seen::kWhite : Seen::kTorque;
+}
+
+// Blocks that stay together. A scale wanders for longer than a block: what its neighbours were fitted to has
+// seen it.
+std::size_t Together(Seen seen) {
+  return seen == Seen::kScale ? static_cast<std::size_t>(std::sqrt(static_cast<double>(kHeldOutBlocks))) : 1;
+}
+
+std::size_t FoldOf(std::size_t block, Seen seen) { return block / Together(seen) % 2; }
+
 // Where the parameters go to first order when the blocks of one fold are left out, for either fold.
-std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit) {
+std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit, Seen seen) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
   const Eigen::Index p = fit.jacobian.cols();
   std::vector<Eigen::VectorXd> steps;
@@ -43,7 +69,7 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
       gradient(j) += w * fit.point.base[i];
     }
     for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
-      if (b % 2 == fold) continue;
+      if (FoldOf(b, seen) == fold) continue;
       for (std::size_t part = 0; part < parts; ++part) {
         const auto from = static_cast<Eigen::Index>(part * n + n * b / kHeldOutBlocks);
         const auto rows = static_cast<Eigen::Index>(n * (b + 1) / kHeldOutBlocks - n * b / kHeldOutBlocks);
@@ -61,18 +87,20 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
 }
 
 // Sum of squares of the residual in every block, each with the parameters of the fold that did not see it.
-std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, bool scale) {
+std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, Seen seen) {
   const std::size_t n = problem.rows();
   std::vector<Point> points;
-  for (const Eigen::VectorXd& step : StepsWithout(problem, fit)) points.push_back(Moved(fit.point, step));
+  for (const Eigen::VectorXd& step : StepsWithout(problem, fit, seen))
+    points.push_back(Moved(fit.point, step));
   const auto raw = problem.Raw(points);
   std::vector<double> squares(kHeldOutBlocks, 0.0);
   for (std::size_t fold = 0; fold < 2; ++fold) {
-    const Signal r = scale ? Signal(raw[fold].begin() + static_cast<std::ptrdiff_t>(n), raw[fold].end())
-                           : TorqueResidualFrom(problem, points[fold], raw[fold]);
-    for (std::size_t b = fold; b < kHeldOutBlocks; b += 2)
+    const Signal r = seen == Seen::kScale
+                         ? Signal(raw[fold].begin() + static_cast<std::ptrdiff_t>(n), raw[fold].end())
+                         : TorqueResidualFrom(problem, points[fold], raw[fold]);
+    for (std::size_t b = 0; b < kHeldOutBlocks; ++b)
       for (std::size_t k = n * b / kHeldOutBlocks; k < n * (b + 1) / kHeldOutBlocks; ++k)
-        if (problem.counted[k] != 0) squares[b] += r[k] * r[k];
+        if (FoldOf(b, seen) == fold && problem.counted[k] != 0) squares[b] += r[k] * r[k];
   }
   return squares;
 }
@@ -132,8 +160,11 @@ double Consistency(const Problem& problem, const Fit& without, const Fit& with, 
 
 void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks) {
-  const std::vector<double> before = HeldOutSquares(problem, without, scale);
-  const std::vector<double> after = HeldOutSquares(problem, with, scale);
+  const Seen seen = SeenIn(with, scale);
+  const auto squares = [&](const Fit& fit) {
+    return seen == Seen::kWhite ? WhiteSquares(problem, fit, true) : HeldOutSquares(problem, fit, seen);
+  };
+  const std::vector<double> before = squares(without), after = squares(with);
   const double n = static_cast<double>(problem.rows()) / kHeldOutBlocks;
   double sum_before = 0.0, sum_after = 0.0;
   blocks.clear();
@@ -144,19 +175,24 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
     blocks.push_back({static_cast<double>(b) * n * problem.log.period_s,
                       static_cast<double>(b + 1) * n * problem.log.period_s, gain});
   }
-  const double unit = scale ? 1e6 : 1.0;
-  cause.unit = scale ? "um" : (problem.log.linear ? "N" : "Nm");
+  const double unit = seen == Seen::kScale ? 1e6 : 1.0;
+  cause.unit = seen == Seen::kScale   ? "um"
+               : seen == Seen::kWhite ? "times the noise"
+                                      : (problem.log.linear ? "N" : "Nm");
   cause.heldout_rms_before = unit * std::sqrt(sum_before / (n * kHeldOutBlocks));
   cause.heldout_rms_after = unit * std::sqrt(sum_after / (n * kHeldOutBlocks));
   cause.heldout_gain = 1.0 - std::sqrt(sum_after / sum_before);
   std::mt19937_64 random(kSeed);
   std::vector<double> gains;
-  for (std::size_t draw = 0; draw < kAcceptance.held_out_draws; ++draw) {
+  const std::size_t together = Together(seen), groups = (kHeldOutBlocks + together - 1) / together;
+  for (int draw = 0; draw < kThreshold.flip_draws; ++draw) {
     double x = 0.0, y = 0.0;
-    for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
-      const std::size_t i = random() % kHeldOutBlocks;
-      x += before[i];
-      y += after[i];
+    for (std::size_t b = 0; b < kHeldOutBlocks; b += together) {
+      const std::size_t from = random() % groups * together;
+      for (std::size_t i = from; i < std::min(kHeldOutBlocks, from + together); ++i) {
+        x += before[i];
+        y += after[i];
+      }
     }
     gains.push_back(1.0 - std::sqrt(y / std::max(x, 1e-300)));
   }

@@ -31,7 +31,7 @@ void Sort(std::vector<Hypothesis>& hypotheses) {
   });
   if (outside == hypotheses.end() || outside == hypotheses.begin()) return;
   if (outside->score >
-      kHypotheses.outside_factor * std::max(0.0, hypotheses[0].score) + kHypotheses.outside_score)
+      (1.0 + kHypotheses.may_matter_share) * std::max(0.0, hypotheses[0].score) + kHypotheses.new_noise_score)
     std::rotate(hypotheses.begin(), outside, outside + 1);
 }
 
@@ -55,7 +55,7 @@ InitialGuess Near(const Problem& problem, const Fit& current, const Scored& s) {
   for (std::size_t i = 0; i < freed.size() && i < a.size(); ++i) start.base[freed[i]] -= a[i];
   start.amplitudes.push_back(std::move(a));
   if (s.effect->common_factor) ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
-  return {std::move(start), WorthFrom(current, kHypotheses.near, kHypotheses.all_the_same_share), &current};
+  return {std::move(start), WorthFrom(current, kEfforts.quick, kScreening.negligible_share), &current};
 }
 
 /// Of a kind, what no fit leads from one to the other.
@@ -86,12 +86,12 @@ std::vector<InitialGuess> Far(const Problem& problem, const Fit& current, const 
   GridPoint best, stiff;
   const bool coupling = CauseNamed(kind).coupling && !problem.nominal.two_inertia;
   for (GridPoint& p : FullSize(problem, current, kind, scored)) {
-    GridPoint& of = coupling && p.point.effects.back()->order > kScreening.no_fault_Hz ? stiff : best;
+    GridPoint& of = coupling && p.point.effects.back()->order > NoFault_Hz(problem) ? stiff : best;
     if (p.cost < of.cost) of = std::move(p);
   }
   std::vector<InitialGuess> out;
   // The base's sensitivities serve until they lead astray.
-  FitEffort effort = WorthFrom(current, kHypotheses.far, kHypotheses.all_the_same_share);
+  FitEffort effort = WorthFrom(current, kEfforts.far, kScreening.negligible_share);
   effort.hopeless_above = current.cost;
   for (GridPoint* p : {&best, &stiff})
     if (std::isfinite(p->cost)) out.push_back({std::move(p->point), effort, &current});
@@ -128,8 +128,8 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
     } else {
       // Evidence in the priors is small compared with what lies in the residual, and as good.
       const bool by_priors = InBase(problem, s.effect->kind) && Promising(problem, s, threshold);
-      if (!by_priors && (fitted >= kHypotheses.most_kinds || looked_at >= kHypotheses.most_tried ||
-                         s.drop < kHypotheses.waits_share * most))
+      if (!by_priors && (fitted >= kHypotheses.most_kinds || looked_at >= MostLookedAt() ||
+                         s.drop < kScreening.little_share * most))
         continue;
       if (Among(tried, s)) continue;
       tried.push_back(FamilyOf(*s.effect));
@@ -174,7 +174,7 @@ void FitAllFromStated(const Problem& problem, const Fit& current, const std::vec
     double worth = std::numeric_limits<double>::infinity();
     if (!InBase(problem, r.effect().kind))
       worth = current.cost - Penalty(r.effect()) - kHypotheses.may_matter_share * best;
-    if (FitFromStated(problem, r.fit, kHypotheses.far, worth)) Judge(problem, current, r);
+    if (FitFromStated(problem, r.fit, kEfforts.far, worth)) Judge(problem, current, r);
     best = std::max(best, r.score);
   }
 }
@@ -198,7 +198,7 @@ void GiveUpFarBehind(const Problem& problem, double share, std::vector<Hypothesi
 void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
   std::size_t kept = 0;
   std::erase_if(hypotheses, [&](const Hypothesis& r) {
-    return !InBase(problem, r.effect().kind) && !Outside(r.effect().kind) && kept++ >= kHypotheses.most_kept;
+    return !InBase(problem, r.effect().kind) && !Outside(r.effect().kind) && kept++ >= MostLookedAt();
   });
 }
 
@@ -217,7 +217,7 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
       best = std::max(best, out.back().score);
     }
     // Where the best came to nothing, those far behind it have their turn.
-    if (best > kHypotheses.waits_share * most || !MorePromised(problem, scored, threshold, tried)) break;
+    if (best > kScreening.little_share * most || !MorePromised(problem, scored, threshold, tried)) break;
   }
   Sort(out);
   KeepBest(problem, out);
@@ -233,7 +233,7 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
     if (r.given_up) return false;
     const ScoreScale score_scale = threshold.accepted > 0 ? ScoreScaleOf(problem, r.fit) : ScoreScale{};
     return r.score + r.fit.promised >
-           kHypotheses.near_threshold_share * Threshold(problem, threshold, r.effect(), score_scale);
+           kHypotheses.half_share * Threshold(problem, threshold, r.effect(), score_scale);
   });
 }
 
@@ -252,7 +252,7 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
     const Scored s = ScoreEffects(problem, current, {r.fit.point.effects.back()})[0];
     const double promised = s.drop - Penalty(*s.effect);
     if (r.score > (by_priors ? promised - kHypotheses.fitted_anew_score
-                             : kHypotheses.fitted_anew_share * promised - kHypotheses.new_noise_score))
+                             : kHypotheses.half_share * promised - kHypotheses.new_noise_score))
       continue;
     if (!by_priors && promised < matters) continue;
     again.push_back(i);
@@ -273,7 +273,7 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
     fits[on.size() - 1] = std::move(anew.fit);
   }
   for (std::size_t i = 0; i < on.size(); ++i)
-    guesses.push_back({fits[i].point, kHypotheses.anew, nullptr, &fits[i]});
+    guesses.push_back({fits[i].point, QuickToTheEnd(), nullptr, &fits[i]});
   fits = FitPoints(problem, std::move(guesses));
   for (std::size_t i = 0; i < on.size(); ++i) {
     Hypothesis anew{std::move(fits[i])};
@@ -283,9 +283,9 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
 }
 
 FitEffort EffortAgain(const Fit& current, bool best) {
-  const double enough = kHypotheses.all_the_same_share;
-  return best ? WorthFrom(current, kHypotheses.best_again, kHypotheses.best_fit_factor * enough)
-              : WorthFrom(current, kHypotheses.others_again, enough);
+  const double enough = kScreening.negligible_share;
+  return best ? WorthFrom(current, FitEffort{}, kHypotheses.given_up_share * enough)
+              : WorthFrom(current, kEfforts.quick, enough);
 }
 
 }  // namespace
@@ -310,15 +310,15 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   const bool there = CostAt(problem, other) < current.cost;
   const double best = hypotheses[0].score;
   // A base is as well known as the scores need it.
-  FitEffort base = kHypotheses.base_again;
-  base.close_enough = std::max(base.close_enough, kHypotheses.all_the_same_share * best);
+  FitEffort base = FitEffort{};
+  base.close_enough = std::max(base.close_enough, kScreening.negligible_share * best);
   std::vector<InitialGuess> guesses = {
       {there ? std::move(other) : current.point, base, nullptr, there ? nullptr : &current}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const Hypothesis& r = hypotheses[i];
     if (r.given_up) continue;
-    if (i > 0 && r.score < kHypotheses.may_win_share * best - kHypotheses.new_noise_score) continue;
+    if (i > 0 && r.score < kHypotheses.may_matter_share * best - kHypotheses.new_noise_score) continue;
     again.push_back(i);
     guesses.push_back({r.fit.point, EffortAgain(current, i == 0), nullptr, &hypotheses[i].fit});
   }
@@ -332,7 +332,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   Sort(hypotheses);
   OneOfEach(hypotheses);
   if (&hypotheses[0].effect() != first)
-    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), kHypotheses.became_first);
+    hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), QuickToTheEnd());
 }
 
 }  // namespace contour::diagnosis

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <random>
-#include <string_view>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/chi_square.h"
@@ -13,42 +18,60 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr double kTail = TailQuantile();
+// Waves of a grid come from a scan, one or several of it.
+bool FromScan(const Scored& s) { return s.effect->wave && s.effect->grid > 1.0; }
+
+/// The scans that the candidates come from: kinds, and grids of one kind.
+std::size_t ScansOf(std::span<const Scored> scored) {
+  std::set<std::pair<std::string, double>> scans;
+  for (const Scored& s : scored)
+    if (FromScan(s)) scans.insert({s.effect->kind, s.effect->grid});
+  return scans.size();
+}
+
+/// What the largest of the draws exceeds with a probability. Far out, Gumbel's distribution with their mean
+/// and deviation stands for them.
+double Exceeded(const std::vector<double>& sorted, double probability) {
+  const auto count = static_cast<double>(sorted.size());
+  const auto drawn = [&](double p) {
+    return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(p * count))];
+  };
+  const double often = 1.0 / std::sqrt(count);
+  if (probability >= often) return drawn(1.0 - probability);
+  double mean = 0.0, square = 0.0;
+  for (const double x : sorted) mean += x / count;
+  for (const double x : sorted) square += (x - mean) * (x - mean) / count;
+  const auto gumbel = [&](double p) {
+    return mean +
+           std::sqrt(6.0 * square) / std::numbers::pi * (-std::log(-std::log1p(-p)) - std::numbers::egamma);
+  };
+  return drawn(1.0 - often) + std::max(0.0, gumbel(probability) - gumbel(often));
+}
 
 }  // namespace
 
 ScoreThreshold SignFlips(std::span<const Scored> scored, double false_alarm_rate, std::uint64_t seed,
                          double more) {
-  constexpr int kDraws = kThreshold.flip_draws;
   std::mt19937_64 random(seed * 2654435761U + 99);
   std::uniform_real_distribution<double> uniform(1e-12, 1.0);
+  const std::size_t scans = std::max<std::size_t>(1, ScansOf(scored));
   std::vector<double> largest;
   Eigen::VectorXd signs(kBlocks);
-  for (int d = 0; d < kDraws; ++d) {
+  for (int d = 0; d < kThreshold.flip_draws; ++d) {
     for (Eigen::Index b = 0; b < kBlocks; ++b) signs(b) = (random() & 1U) != 0 ? 1.0 : -1.0;
     double best = -1e300;
-    for (int i = 0; i < kThreshold.scans; ++i)
+    for (std::size_t i = 0; i < scans; ++i)
       best = std::max(best, -2.0 * std::log(-std::log(uniform(random))) - ScanPenalty());
     for (const Scored& s : scored) {
-      if (s.effect->wave && s.effect->grid >= kThreshold.scanned_grid) continue;  // a scan's
+      if (FromScan(s)) continue;
       const Eigen::VectorXd h = s.per_block * signs;
-      best = std::max(best, h.dot(s.covariance * h) / s.overdispersion - Penalty(*s.effect));
+      best = std::max(best, h.dot(s.covariance * h) / s.within_blocks - Penalty(*s.effect));
     }
     largest.push_back(best);
   }
   std::sort(largest.begin(), largest.end());
-  const auto drawn = [&](double p) {
-    return largest[std::min<std::size_t>(kDraws - 1, static_cast<std::size_t>(p * kDraws))];
-  };
-  // Straight through two quantiles on Gumbel's paper.
-  const auto paper = [](double p) { return -std::log(-std::log(p)); };
-  const double slope =
-      (drawn(kTail) - drawn(kThreshold.fitted_quantile)) / (paper(kTail) - paper(kThreshold.fitted_quantile));
-  const auto at_rate = [&](double rate) {
-    if (rate >= kThreshold.tail_rate) return drawn(1.0 - rate);
-    return drawn(kTail) + slope * (paper(1.0 - rate) - paper(kTail));
-  };
-  return {at_rate(false_alarm_rate) + more, at_rate(kCalibratedRate) + more, false_alarm_rate};
+  return {Exceeded(largest, false_alarm_rate) + more, Exceeded(largest, kRounds.false_alarm_rate) + more,
+          false_alarm_rate};
 }
 
 ScoreThreshold ByChanceAlone(ScoreThreshold threshold) {
@@ -79,9 +102,17 @@ double VarianceRatio(const Problem& problem, const std::string& kind, const Eige
   return most;
 }
 
-double Threshold(const Problem& problem, const ScoreThreshold& threshold, std::string_view kind) {
+/// Kinds that are numbers of the base: they share the asked rate.
+double KindsInBase(const Problem& problem) {
+  const auto all = AllCauses();
+  return static_cast<double>(std::max<std::ptrdiff_t>(
+      1, std::count_if(all.begin(), all.end(),
+                       [&](const CauseDefinition* c) { return InBase(problem, std::string(*c->name)); })));
+}
+
+double ByChanceAndErrors(const Problem& problem, const ScoreThreshold& threshold) {
   if (!threshold.model_error) return threshold.flips;
-  const double errors = AllowancePerRow(kind, threshold.rate) * static_cast<double>(problem.rows());
+  const double errors = AllowancePerRow(threshold.rate) * static_cast<double>(problem.rows());
   return std::max(threshold.flips, threshold.calibrated + errors);
 }
 
@@ -108,20 +139,19 @@ ScoreScale ScoreScaleOf(const Problem& problem, const Fit& fit) {
 }
 
 double Threshold(const Problem& problem, const ScoreThreshold& threshold) {
-  return Threshold(problem, threshold, "") + threshold.leakage;
+  return ByChanceAndErrors(problem, threshold) + threshold.leakage;
 }
 
 double Threshold(const Problem& problem, const ScoreThreshold& threshold, const Effect& effect,
                  const ScoreScale& score_scale) {
   double left = threshold.LeakageAs(effect.kind);
   if (!InBase(problem, effect.kind))
-    return Threshold(problem, threshold, effect.kind) + left / score_scale.overdispersion;
+    return ByChanceAndErrors(problem, threshold) + left / score_scale.overdispersion;
   // The stated uncertainties say what chance does here.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
   const double by_chance = ChiSquareQuantile(
-      degrees, std::max(kThreshold.share_in_base * threshold.rate, kThreshold.beyond_stated_rate));
+      degrees, std::max(threshold.rate / KindsInBase(problem), kThreshold.beyond_stated_rate));
   if (threshold.accepted == 0) return by_chance - Penalty(effect);
-  left += kThreshold.leakage_per_row * static_cast<double>(problem.rows());
   // At its worst residual leakage of chi^2 moves the number by its root, in standard errors of the log.
   const double moved = score_scale.variance_ratio * left;
   left = std::min(left, moved + 2.0 * std::sqrt(moved * by_chance));

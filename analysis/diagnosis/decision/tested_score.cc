@@ -26,7 +26,7 @@ bool Implausible(const Problem& problem, const Hypothesis& r) {
 bool NoFault(const Problem& problem, const Hypothesis& r) {
   const AxisModel m = problem.Build(r.fit.point);
   return m.two_inertia &&
-         m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * kScreening.no_fault_Hz, 2);
+         m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * NoFault_Hz(problem), 2);
 }
 
 }  // namespace
@@ -44,8 +44,8 @@ void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
 }
 
 bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold) {
-  threshold.leakage *= kHypotheses.short_by_leakage_share;
-  for (auto& [kind, left] : threshold.leakage_of_kind) left *= kHypotheses.short_by_leakage_share;
+  threshold.leakage *= kScreening.little_share;
+  for (auto& [kind, left] : threshold.leakage_of_kind) left *= kScreening.little_share;
   ScoreScale score_scale = ScoreScaleOf(problem, s);
   score_scale.overdispersion = std::min(s.overdispersion, kScreening.most_overdispersion);
   return s.drop / score_scale.overdispersion - Penalty(*s.effect) >
@@ -57,11 +57,12 @@ double TestedScore(const Problem& problem, const Fit& current, const Hypothesis&
   double drop = hypothesis.score + Penalty(*effect);
   double most = std::numeric_limits<double>::infinity();
   // Chance does not lower a cost that far; a base that lies elsewhere without the effect does.
-  if (drop < kThreshold.beyond_chance_drop && effect->start.empty() && !InBase(problem, effect->kind)) {
+  if (drop < kScreening.most_overdispersion * kAcceptance.no_chance_score && effect->start.empty() &&
+      !InBase(problem, effect->kind)) {
     const Scored again = ScoreEffects(problem, current, {effect})[0];
-    if (again.drop < kThreshold.small_drop) drop = std::min(drop, again.drop);
+    if (again.drop < kAcceptance.no_chance_score) drop = std::min(drop, again.drop);
     // An effect that is there makes its score scatter from block to block, but not as a single event does.
-    most = kScreening.most_overdispersion * again.drop / again.overdispersion;
+    most = kScreening.most_overdispersion * again.drop / again.within_blocks;
   }
   return std::min(drop / OverdispersionOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
 }

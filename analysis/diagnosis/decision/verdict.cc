@@ -24,10 +24,13 @@ std::string StructureText(const Problem& problem, const RemainingStructure& left
 }
 
 std::string NearestText(const std::vector<Cause>& causes) {
-  std::string text = "Of the known causes these come nearest, and leave too much: ";
+  std::string text = "Of the known causes these come nearest, are part of it, and leave too much: ";
   for (const Cause& c : causes) text += (&c == causes.data() ? "" : ", ") + c.kind;
   return text + ".";
 }
+
+/// Whether the unseen part of the log says plainly that the model is worse with it.
+bool DoesHarm(const Cause& c) { return c.heldout_gain_high < 0.0; }
 
 }  // namespace
 
@@ -41,18 +44,21 @@ void Conclude(const Problem& problem, const std::vector<RemainingStructure>& lef
   for (const Cause& c : out.causes) (Outside(c.kind) ? beyond : named) += 2.0 * c.log_evidence_gain;
   const bool scale = !out.causes.empty() && CauseNamed(out.causes[0].kind).judged_at_scale;
   const bool unexplained =
-      beyond >
-      (scale ? kAcceptance.large_with_scale_error_share : kAcceptance.large_share) * (named + beyond);
+      beyond > (scale ? kHypotheses.may_matter_share : kScreening.little_share) * (named + beyond);
   for (const Cause& c : out.causes)
     if (Outside(c.kind))
       out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
                           c.kind.substr(kOutside.size()) + ".");
-  std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind); });
+  std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind) || DoesHarm(c); });
+  // What is told as found was excited.
+  std::erase_if(out.not_excited, [&](const std::string& kind) {
+    return std::any_of(out.causes.begin(), out.causes.end(), [&](const Cause& c) { return c.kind == kind; });
+  });
   if (something) out.notes.push_back(StructureText(problem, left[0]));
   if (unexplained) {
     if (!out.causes.empty()) out.notes.push_back(NearestText(out.causes));
     out.verdict = Verdict::kUnexplained;
-    out.causes.clear();
+    for (Cause& c : out.causes) c.part_of_it = true;
     for (Candidate& c : out.candidates) c.accepted = false;
   } else if (out.causes.empty()) {
     out.verdict = Verdict::kNothingFound;

@@ -107,8 +107,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
   std::vector<double> sizes;
   std::vector<Point> points;
   const double largest = linear.effect->high[0];
-  for (double size = kQuantification.first_run_share * linear.threshold;
-       size < largest && points.size() < kLanes; size *= 2.0) {
+  for (double size = 0.5 * linear.threshold; size < largest && points.size() < kLanes; size *= 2.0) {
     sizes.push_back(size);
     points.push_back(WithEffect(base, linear.effect, size));
   }
@@ -137,7 +136,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
     if (!(over[i] > 1.0)) continue;
     double size = sizes[i];
     if (i > 0 && over[i - 1] > 0.0) size *= std::exp2(-std::log(over[i]) / std::log(over[i] / over[i - 1]));
-    return Detectable{linear.effect, size, kQuantification.beyond_runs * size};
+    return Detectable{linear.effect, size, kQuantification.beyond_threshold * size};
   }
   return std::nullopt;
 }
@@ -149,7 +148,7 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   std::vector<const Scored*> places;
   for (const Scored& s : scored) {
     if (!CauseNamed(s.effect->kind).coupling || s.effect->start.empty() ||
-        s.effect->order > kScreening.no_fault_Hz)
+        s.effect->order > NoFault_Hz(problem))
       continue;
     places.push_back(&s);
     points.push_back(WithEffect(base, s.effect, s.effect->start[0]));
@@ -158,8 +157,9 @@ std::optional<Detectable> Stiffest(const Problem& problem, const Fit& base, cons
   const Eigen::VectorXd promised = LeftOf(problem, base, points).diagonal();
   const Scored* best = nullptr;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double enough = std::pow(kQuantification.beyond_runs * Needed(problem, threshold, *places[i]), 2) *
-                          ByChance(*places[i]);
+    const double enough =
+        std::pow(kQuantification.beyond_threshold * Needed(problem, threshold, *places[i]), 2) *
+        ByChance(*places[i]);
     if (promised(static_cast<Eigen::Index>(i)) > enough &&
         (best == nullptr || places[i]->effect->order > best->effect->order))
       best = places[i];
@@ -189,7 +189,7 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
     const std::string kind(*cause->name);
     if (!only.empty() && std::find(only.begin(), only.end(), kind) == only.end()) continue;
     const std::optional<Detectable> d = Smallest(problem, base, screened.threshold, screened.scored, kind);
-    if (!d || d->threshold > kQuantification.hopeless_factor * (*cause->largest)(problem)) continue;
+    if (!d || d->threshold > kQuantification.beyond_threshold * (*cause->largest)(problem)) continue;
     Fit at;
     at.point = base.point;
     // Numbers of the model deviate from what is stated.

@@ -12,7 +12,7 @@
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/quantification/model_errors.h"
 #include "analysis/diagnosis/quantification/widen.h"
-#include "analysis/diagnosis/tuning/quantification_tuning.h"
+#include "analysis/diagnosis/tuning/fit_effort.h"
 #include "analysis/prediction_error/bootstrap.h"
 #include "analysis/prediction_error/fitted_half.h"
 #include "analysis/prediction_error/refit.h"
@@ -39,8 +39,8 @@ void Bootstrap(const Problem& problem, const Accepted& accepted, Fit fit, const 
 
 /// What was accepted first was fitted before the rest was known, and only well enough to be judged.
 Fit Together(const Problem& problem, Fit accepted) {
-  Fit fit = FitOn(problem, std::move(accepted), kQuantification.together);
-  FitFromStated(problem, fit, kQuantification.together);
+  Fit fit = FitOn(problem, std::move(accepted), FitEffort{});
+  FitFromStated(problem, fit, FitEffort{});
   return fit;
 }
 

@@ -22,6 +22,7 @@ Json CauseJson(const Cause& cause) {
   for (const auto& [name, p] : cause.parameters)
     parameters[name] = {{"value", Number(p.value)}, {"ci95", {Number(p.low), Number(p.high)}}};
   return {{"kind", cause.kind},
+          {"part_of_it", cause.part_of_it},
           {"parameters", parameters},
           {"log_evidence_gain", Number(cause.log_evidence_gain)},
           {"heldout_rms_before", Number(cause.heldout_rms_before)},

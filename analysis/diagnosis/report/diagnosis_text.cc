@@ -51,7 +51,8 @@ std::string Sizes(const Cause& cause) {
 }
 
 std::string CauseText(const Cause& cause, std::size_t number) {
-  std::string out = Wrapped(std::to_string(number) + ". " + KindWords(cause.kind), 0);
+  std::string out = Wrapped(
+      std::to_string(number) + ". " + (cause.part_of_it ? "Part of it: " : "") + KindWords(cause.kind), 0);
   if (!cause.parameters.empty()) out += Wrapped("Size: " + Sizes(cause) + ".", 3);
   out += Wrapped(
       "How sure: log evidence " + RoundedText(cause.log_evidence_gain) + " nats over the model without it.",
@@ -88,7 +89,8 @@ std::string VerdictText(const Diagnosis& d) {
              rate + " of all cases.)";
     case Verdict::kUnexplained:
       return "Something is missing from the model, and none of the " + std::to_string(AllCauses().size()) +
-             " known causes fits it.";
+             " known causes fits it" +
+             (d.causes.empty() ? "." : "; what is known of it stands below, as part of it.");
     case Verdict::kInsufficientData:
       break;
   }

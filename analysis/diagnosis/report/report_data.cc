@@ -42,6 +42,7 @@ Json CauseJson(const Cause& c) {
                       {"y", Numbers(t.y)},
                       {"sigma", Numbers(t.sigma)}});
   return {{"kind", c.kind},
+          {"part_of_it", c.part_of_it},
           {"words", KindWords(c.kind)},
           {"advice", KindAdvice(c.kind)},
           {"parameters", parameters},

@@ -38,6 +38,8 @@ struct Cause {
   std::string deciding_experiment;  ///< for people
   std::string deciding_program;     ///< YAML of a program for `contour run`; empty when none decides
   std::vector<ShapeTable> shapes;
+  /// Most of what there is to explain is something else (Verdict::kUnexplained): no name of the deviation.
+  bool part_of_it = false;
 };
 
 /// One bar of the evidence chart.

@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "analysis/diagnosis/tuning/screening_tuning.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/prediction_error/products.h"
 #include "analysis/prediction_error/simd/lanes.h"
 
@@ -33,11 +33,11 @@ std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, cons
   std::size_t small = 0;
   for (const Scored& s : scored) {
     if (s.effect->kind != kind) continue;
-    for (const double size : kScreening.grid_sizes) add(s.effect, size * s.effect->start[0]);
+    for (int i = 0; i < kScreening.grid_sizes; ++i) add(s.effect, std::exp2(-2.0 * i) * s.effect->start[0]);
     // Small ones from where the score test would have them.
-    if (small >= kScreening.small_grid_points || InBase(problem, kind) || s.amplitude(0) <= 0.0) continue;
+    if (small >= kHypotheses.most_kinds || InBase(problem, kind) || s.amplitude(0) <= 0.0) continue;
     ++small;
-    for (const double size : kScreening.small_sizes) add(s.effect, size * s.amplitude(0));
+    for (const double size : {1.0, 2.0}) add(s.effect, size * s.amplitude(0));
   }
   return points;
 }
@@ -94,9 +94,7 @@ std::vector<Point> Shortlist(const Problem& problem, const Fit& current, std::ve
       Costs(problem, OnExcerpt(problem, current), std::move(points), Extent::kExcerpt);
   std::stable_sort(points_of_grid.begin(), points_of_grid.end(),
                    [](const GridPoint& a, const GridPoint& b) { return a.cost < b.cost; });
-  const auto stiff = [](const GridPoint& p) {
-    return p.point.effects.back()->order > kScreening.no_fault_Hz;
-  };
+  const auto stiff = [&](const GridPoint& p) { return p.point.effects.back()->order > NoFault_Hz(problem); };
   const bool both = std::any_of(points_of_grid.begin(), points_of_grid.end(), stiff);
   const std::size_t most = both ? kShortlist / 2 : kShortlist;
   std::size_t kept[2] = {0, 0};
@@ -112,7 +110,7 @@ std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, cons
                                 const std::vector<Scored>& scored) {
   std::vector<Point> points = GridPointsOf(problem, current, kind, scored);
   const bool strong = std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
-    return s.effect->kind == kind && s.drop > kScreening.ranks_drop;
+    return s.effect->kind == kind && s.drop > kAcceptance.no_chance_score;
   });
   if (strong && points.size() > 2 * kShortlist && !problem.excerpt.empty())
     points = Shortlist(problem, current, std::move(points));

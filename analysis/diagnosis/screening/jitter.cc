@@ -70,16 +70,16 @@ WeightedFit FitVariances(const std::vector<Row>& rows, const std::vector<double>
   std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
                    sorted.end());
   const double middle = sorted[sorted.size() / 2];
-  for (int pass = 0; pass < kJitter.passes; ++pass) {
+  for (int pass = 0; pass < kParts; ++pass) {
     Square normal = Square::Identity() * 1e-12;
     Row right = Row::Zero();
     scatter.setZero();
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const double expected =
-          std::max(pass == 0 ? middle : rows[i].dot(c), kJitter.least_expected_share * middle);
+          std::max(pass == 0 ? middle : rows[i].dot(c), middle / kScreening.most_overdispersion);
       const double weight = 1.0 / (expected * expected);
       // A block with a shock in it counts as far as it may be chance.
-      const double seen = std::min(variance[i], kJitter.most_seen_factor * expected);
+      const double seen = std::min(variance[i], kScreening.most_overdispersion * expected);
       normal += weight * rows[i] * rows[i].transpose();
       right += weight * seen * rows[i];
       scatter += std::pow(weight * (seen - rows[i].dot(c)), 2) * rows[i] * rows[i].transpose();
@@ -106,7 +106,7 @@ double GainOfReading(const Problem& problem) {
 Jitter TestJitter(const Problem& problem, const Fit& fit) {
   auto [rows, variance] = BlockVariances(problem, fit);
   Jitter out;
-  if (rows.size() < kJitter.fewest_blocks) return out;
+  if (rows.size() < static_cast<std::size_t>(kScreening.blocks)) return out;
   Row top = Row::Constant(1e-300);
   for (const auto& r : rows) top = top.cwiseMax(r);
   double low = 1.0;
@@ -114,7 +114,7 @@ Jitter TestJitter(const Problem& problem, const Fit& fit) {
     r = r.cwiseQuotient(top).eval();
     low = std::min(low, r(kSpeed));
   }
-  if (low > kJitter.slow_enough_share) return out;
+  if (low > 0.5 * 0.5) return out;
   out.tested = true;
   const auto [c, covariance] = FitVariances(rows, variance);
   const double sigma = std::sqrt(std::max(covariance(kSpeed, kSpeed), 1e-300));

@@ -17,17 +17,17 @@ Nominal FitNominal(Problem& problem) {
   problem.LearnOutliers(start);
   problem.LearnNoise(start);
   const Extent ahead = problem.excerpt.empty() ? Extent::kWhole : Extent::kExcerpt;
-  nominal.fit = FitPoint(problem, start, kScreening.base_ahead, ahead);
+  nominal.fit = FitPoint(problem, start, kEfforts.quick, ahead);
   problem.LearnNoise(nominal.fit.point);
   if (ahead == Extent::kExcerpt) {
-    nominal.fit = FitPoint(problem, FitPoint(problem, nominal.fit.point, kFits.to_the_basin, ahead).point,
-                           kScreening.base);
+    nominal.fit =
+        FitPoint(problem, FitPoint(problem, nominal.fit.point, kFits.to_the_basin, ahead).point, FitEffort{});
   } else {
     Rewhiten(problem, nominal.fit);
-    nominal.fit = FitOn(problem, std::move(nominal.fit), kScreening.base);
+    nominal.fit = FitOn(problem, std::move(nominal.fit), FitEffort{});
   }
   // A resonance may have been taken for another one.
-  FitFromStated(problem, nominal.fit, kScreening.base);
+  FitFromStated(problem, nominal.fit, FitEffort{});
   problem.LearnSignals(nominal.fit.point);
   nominal.catalogue = CatalogueEffects(problem);
   nominal.by_extras = std::max(0.0, problem.ExplainedByExtras(nominal.fit.point));

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kResponse = kScan.response_rows;
-constexpr std::size_t kTransfer = kScan.transfer_rows;
+// The response fills half of its transform: as fine as there is anything to see.
+constexpr std::size_t kTransfer = 2 * kResponse;
 
 struct Matched {
   std::vector<double> lambda;    // gradient of |r|^2 / 2 by a pulse at each row
@@ -25,7 +26,8 @@ struct Matched {
   double At(double cycles_per_row) const {
     const double f = std::fabs(cycles_per_row) * kTransfer;
     const auto i = static_cast<std::size_t>(f);
-    return i + 1 < transfer.size() ? transfer[i] : 0.0;
+    const double part = f - static_cast<double>(i);
+    return i + 1 < transfer.size() ? (1.0 - part) * transfer[i] + part * transfer[i + 1] : 0.0;
   }
 };
 
@@ -72,12 +74,12 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   const Signals& s = *problem.signals;
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = std::max(1.0, (*high - *low) / kTwoPi);
-  const double per_rev = std::exp2(std::ceil(std::log2(kScan.samples_per_period * highest)));
+  const double per_rev = 2.0 * std::exp2(std::ceil(std::log2(2.0 * highest)));
   const auto length = folded ? static_cast<std::size_t>(per_rev)
                              : std::bit_ceil(static_cast<std::size_t>(per_rev * revs * 2.0) + 2);
   std::vector<double> gradient(length, 0.0);
   Histogram histogram;
-  constexpr std::size_t kBins = kScan.speed_bins;
+  constexpr std::size_t kBins = kScreening.bins;
   histogram.weight.assign(kBins, 0.0);
   histogram.speed.assign(kBins, 0.0);
   double fastest = 1e-12;
@@ -103,7 +105,7 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
   for (std::size_t i = 1; i < length / 2; ++i) {
     const double order = step * static_cast<double>(i);
     if (order > highest) break;
-    if (order > info_at * kScan.renewed_at_ratio + kScan.renewed_at_orders || info_at < 0.0) {
+    if (order > info_at + (1.0 + info_at) / kScreening.bins || info_at < 0.0) {
       info = histogram.InformationAt(matched, order);
       info_at = order;
     }
@@ -127,7 +129,7 @@ std::vector<double> Frequencies(const Problem& problem, const Matched& torque,
   std::vector<Peak> time;
   for (std::size_t i = 1; i < length / 2; ++i) {
     const double f = static_cast<double>(i) / static_cast<double>(length);
-    if (f * static_cast<double>(n) < kScan.fewest_periods_of_time || f > kScan.highest_per_row) continue;
+    if (f * static_cast<double>(n) < kScan.fewest_periods || f > kScan.highest_per_row) continue;
     time.push_back(
         {f / problem.log.period_s, 2.0 * std::norm(spectrum[i]) / (moving * torque.At(f) + 1e-300)});
   }
@@ -140,10 +142,9 @@ std::vector<double> PulseResponse(const Problem& problem, bool reading) {
   // In the middle of the longest slide.
   const Signals& s = *problem.signals;
   const std::size_t n = problem.rows();
-  const double slow = kScan.slow_share * s.max_speed;
   std::size_t row = n / 2, longest = 0, since = 0;
   for (std::size_t k = 1; k <= n; ++k) {
-    const bool slides = k < n && problem.counted[k] != 0 && std::fabs(s.velocity[k]) > slow &&
+    const bool slides = k < n && problem.counted[k] != 0 && std::fabs(s.sign[k]) > kFollowsMotion &&
                         (s.velocity[k] > 0.0) == (s.velocity[k - 1] > 0.0);
     if (slides) continue;
     if (k - since > longest) {
@@ -166,8 +167,7 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   };
   const auto whole_orders = [&](Wave wave, const Matched& matched, const std::vector<double>& weight,
                                 double highest, std::size_t count) {
-    add(wave, Best(AngleScores(problem, matched, weight, highest, true), count, kScan.whole_orders_apart),
-        highest);
+    add(wave, Best(AngleScores(problem, matched, weight, highest, true), count, kScan.waves_apart), highest);
   };
   std::vector<double> innovation(fit.residual.begin(), fit.residual.begin() + static_cast<std::ptrdiff_t>(n));
   NoiseFilter::Gradient back = problem.noise.Back(innovation, problem.counted, problem.root_weight.data());
@@ -184,25 +184,24 @@ std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit) {
   }
   const auto [low, high] = std::minmax_element(s.angle_rad.begin(), s.angle_rad.end());
   const double revs = (*high - *low) / kTwoPi;
-  if (revs > kScan.fewest_turns) {
+  if (revs > 2.0) {
     whole_orders(Wave::kFrictionOfAngle, level, sliding, kScan.highest_friction_order, kScan.proposed);
     std::vector<Peak> between;
-    if (revs > kScan.fewest_turns_between)
-      for (const Peak& p : AngleScores(problem, level, sliding, kScan.highest_order_between, false))
-        if (std::fabs(p.order - std::round(p.order)) > kScan.off_whole_periods / revs &&
-            p.order > kScan.fewest_friction_periods / revs)
+    if (revs > kScan.fewest_periods)
+      for (const Peak& p : AngleScores(problem, level, sliding, kScan.highest_friction_order, false))
+        if (std::fabs(p.order - std::round(p.order)) > 1.0 / revs && p.order > kScan.fewest_periods / revs)
           between.push_back(p);
     add(Wave::kFrictionOfAngle, Best(std::move(between), kScan.proposed, 1.0 / revs),
-        kScan.highest_order_between * revs);
+        kScan.highest_friction_order * revs);
     whole_orders(Wave::kTorqueOfAngle, torque, sliding, kScan.highest_torque_order, kScan.proposed);
     whole_orders(Wave::kGainOfAngle, torque, loaded, kScan.highest_torque_order, 1);
   }
-  if (revs > kScan.fewest_turns_of_lines) {
+  if (revs > 1.0) {
     const Matched reading = Match(problem, true, std::move(back.reading));
     std::vector<Peak> lines =
         AngleScores(problem, reading, std::vector<double>(n, 1.0), kScan.highest_line_order, true);
     std::erase_if(lines, [](const Peak& peak) { return peak.order < kScan.lowest_line_order; });
-    add(Wave::kReadingOfAngle, Best(std::move(lines), kScan.proposed, kScan.whole_orders_apart),
+    add(Wave::kReadingOfAngle, Best(std::move(lines), kScan.proposed, kScan.waves_apart),
         kScan.highest_line_order);
   }
   add(Wave::kForceOfTime, Frequencies(problem, torque, sliding), 0.5 * static_cast<double>(n));

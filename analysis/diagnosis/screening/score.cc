@@ -7,12 +7,15 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/prediction_error/common_factor.h"
 #include "analysis/prediction_error/products.h"
+#include "analysis/prediction_error/simd/lanes.h"
 
 namespace contour::diagnosis {
 namespace {
 
 // Keep solvers away from zero.
 constexpr double kRidge = 1e-6, kLeastLeft = 1e-9;
+// For the memory: columns of two runs of all lanes.
+constexpr std::size_t kColumnsAtOnce = 2 * kLanes;
 
 // Products of columns with each other and, in blocks of time, with the residual.
 ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<const double* const> a,
@@ -21,9 +24,26 @@ ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<cons
                               static_cast<std::size_t>(kBlocks));
 }
 
-double Overdispersion(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
+// Of drops when blocks get random signs.
+double WithinBlocks(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
   const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
   return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
+}
+
+// Of drops where blocks next to each other may go together: variance of a sum by Bartlett's window (Newey and
+// West, Econometrica 55, 1987), as many neighbours as the root of all.
+double Overdispersion(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
+  const Eigen::Index blocks = per_block.cols();
+  const auto reach = static_cast<Eigen::Index>(std::sqrt(static_cast<double>(blocks)));
+  Eigen::MatrixXd variance = per_block * per_block.transpose();
+  for (Eigen::Index lag = 1; lag <= reach && lag < blocks; ++lag) {
+    const double share = 1.0 - static_cast<double>(lag) / static_cast<double>(reach + 1);
+    const Eigen::MatrixXd shifted =
+        per_block.leftCols(blocks - lag) * per_block.rightCols(blocks - lag).transpose();
+    variance += share * (shifted + shifted.transpose());
+  }
+  return std::max(WithinBlocks(per_block, covariance),
+                  (covariance * variance).trace() / static_cast<double>(per_block.rows()));
 }
 
 }  // namespace
@@ -56,6 +76,8 @@ double OverdispersionOfLast(const Problem& problem, const Fit& fit) {
   const Eigen::MatrixXd projected = blocks.bottomRows(n) - onto.transpose() * blocks.topRows(others);
   return Overdispersion(projected, information.ldlt().solve(Eigen::MatrixXd::Identity(n, n)));
 }
+
+double NoFault_Hz(const Problem& problem) { return 0.5 / problem.log.period_s; }
 
 double Penalty(const Effect& effect) {
   return kScreening.penalty_per_amplitude * static_cast<double>(effect.steps.size()) +
@@ -173,8 +195,7 @@ class Scorer {
     Eigen::VectorXd to = z, spread(n);
     s.drop = 0.0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double share =
-          std::clamp(eigen.eigenvalues()(i), kLeastLeft, kScreening.most_left_of_prior_share);
+      const double share = std::clamp(eigen.eigenvalues()(i), kLeastLeft, 1.0 - kScreening.little_share);
       s.drop += z(i) * z(i) / (1.0 - share);
       to(i) = z(i) / (1.0 - share);
       spread(i) = share / (1.0 - share);
@@ -194,7 +215,7 @@ class Scorer {
     Eigen::MatrixXd information = square - cross.transpose() * onto;
     s.per_block = blocks - onto.transpose() * base_blocks_;
     // Directions that the base explains already, to rounding, carry nothing.
-    const bool nearly_base = n == 1 && information(0, 0) < kScreening.nearly_base_share * square(0, 0);
+    const bool nearly_base = n == 1 && information(0, 0) < kScreening.negligible_share * square(0, 0);
     for (Eigen::Index i = 0; i < n; ++i) information(i, i) += kRidge * square(i, i) + 1e-300;
     // The gradient of the prior belongs to the base; at its optimum both parts cancel.
     const Eigen::LDLT<Eigen::MatrixXd> solver(information);
@@ -202,17 +223,16 @@ class Scorer {
     s.amplitude = -solver.solve(gradient);
     s.drop = -gradient.dot(s.amplitude);
     s.overdispersion = Overdispersion(s.per_block, s.covariance);
+    s.within_blocks = WithinBlocks(s.per_block, s.covariance);
     // What the base can nearly do itself frees it from its priors and no more.
-    if (nearly_base)
-      s.drop =
-          std::min(s.drop, kScreening.nearly_base_prior_factor * fit_.prior + kScreening.nearly_base_score);
+    if (nearly_base) s.drop = std::min(s.drop, 2.0 * fit_.prior);
     if (InBase(problem_, effect->kind)) {
       // A number of the base already: the evidence is in the prior and not in the blocks.
       s.per_block.setZero();
-      s.overdispersion = 1.0;
+      s.overdispersion = s.within_blocks = 1.0;
       Free(s);
     }
-    s.score = s.drop / s.overdispersion - Penalty(*effect);
+    s.score = s.drop / s.within_blocks - Penalty(*effect);
     const Eigen::RowVectorXd gain = -s.amplitude.transpose() * s.per_block;
     s.consistency = gain.sum() / (gain.norm() + 1e-300);
     return s;
@@ -236,7 +256,7 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::ve
     const Means means = MeansOf(*effects[at]);
     std::size_t end = at, count = 0;
     while (end < effects.size() && MeansOf(*effects[end]) == means &&
-           (count == 0 || count + effects[end]->tested <= kScreening.columns_at_once)) {
+           (count == 0 || count + effects[end]->tested <= kColumnsAtOnce)) {
       count += effects[end]->tested;
       ++end;
     }

@@ -22,12 +22,18 @@ struct Scored {
   Eigen::VectorXd amplitude;
   Eigen::MatrixXd covariance;  ///< of the amplitudes
   Eigen::MatrixXd per_block;   ///< projected gradient, amplitudes x blocks
-  /// How much larger than white noise would make them the drops are when blocks get random signs; at least 1.
-  /// A residual that is not quite white, or not quite stationary, shows here.
+  /// How much larger than white noise would make them the drops are by chance, from the scatter of the blocks
+  /// and from how neighbours go together; at least 1. A residual that is not quite white, or not quite
+  /// stationary, shows here, a scale that wanders from block to block too.
   double overdispersion = 1.0;
+  /// The same of blocks that had nothing to do with each other: what random signs make of them.
+  double within_blocks = 1.0;
 };
 
 double Penalty(const Effect& effect);
+
+/// A coupling above half the rate of the rows cannot be told from a delay: it is one that every screw has.
+double NoFault_Hz(const Problem& problem);
 
 /// Whether the kind is a number of the base model: its evidence is in the priors.
 bool InBase(const Problem& problem, const std::string& kind);

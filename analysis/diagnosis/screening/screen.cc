@@ -19,7 +19,7 @@ std::vector<Scored> Screen(const Problem& problem, const Fit& fit, std::span<con
     if (mismatch && CauseNamed(e->kind).refuted_by_mismatch) return true;
     return std::any_of(fit.point.effects.begin(), fit.point.effects.end(), [&](const SharedEffect& f) {
       // A wave may have further orders.
-      const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kScreening.waves_apart;
+      const bool another = e->wave && f->wave && std::fabs(e->order - f->order) > kScan.waves_apart;
       return f->kind == e->kind && !another;
     });
   });

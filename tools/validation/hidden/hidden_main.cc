@@ -18,7 +18,6 @@
 #include "analysis/prediction_error/keep_memory.h"
 #include "analysis/text/format_text.h"
 #include "core/exit_status.h"
-#include "tools/validation/hidden/calibrate.h"
 #include "tools/validation/hidden/options.h"
 #include "tools/validation/hidden/outcome.h"
 #include "tools/validation/hidden/recorded_case.h"
@@ -208,11 +207,7 @@ int main(int argc, char** argv) {
   using namespace contour::hidden;
   try {
     const Options options = ParseOptions(argc, argv);
-    if (!options.calibrate.empty()) {
-      std::ifstream evidence(options.calibrate);
-      if (!evidence) throw std::runtime_error("cannot read " + options.calibrate);
-      std::fputs(ModelErrorTable(evidence).c_str(), stdout);
-    } else if (!options.record.empty()) {
+    if (!options.record.empty()) {
       RecordAll(options);
     } else if (!options.judge.empty()) {
       JudgeAll(options, argc, argv);

@@ -21,6 +21,7 @@ constexpr std::size_t kLargestSet = 2;
 std::string AnswerText(const Diagnosis& d) {
   std::string text;
   for (const Cause& cause : d.causes) {
+    if (cause.part_of_it) continue;
     std::string one = cause.kind;
     for (const std::string& other : cause.indistinguishable_from) one += "|" + other;
     text += (text.empty() ? "" : " + ") + one;
@@ -64,6 +65,7 @@ std::vector<ToldSize> SizesOf(const Diagnosis& answer, const Hidden& hidden) {
   for (const auto& [name, truth] : hidden.truth) {
     ToldSize size{name, truth, {kNone, kNone, kNone}, kNone};
     for (const Cause& cause : answer.causes) {
+      if (cause.part_of_it) continue;
       const auto told = cause.parameters.find(name);
       if (cause.kind == hidden.kind && told != cause.parameters.end()) size.told = told->second;
     }
@@ -112,11 +114,14 @@ Judged Judge(const Diagnosis& answer, const std::vector<Hidden>& hidden, Misfit 
   judged.answer = AnswerText(answer);
   std::vector<Cause> causes;
   for (const Cause& cause : answer.causes)
-    if (!NamesMisfit(cause, hidden, misfit)) causes.push_back(cause);
+    if (!cause.part_of_it && !NamesMisfit(cause, hidden, misfit)) causes.push_back(cause);
   judged.extra = std::max(0, static_cast<int>(causes.size()) - static_cast<int>(hidden.size()));
   if (hidden.empty()) {
-    const bool silent = answer.verdict == Verdict::kNothingFound || misfit != Misfit::kNone;
-    judged.right = causes.empty() && silent;
+    // On a plant that no model describes, what names how it differs; of a law of friction nobody has a name.
+    const bool mismatch_named = std::any_of(answer.causes.begin(), answer.causes.end(),
+                                            [](const Cause& cause) { return !cause.part_of_it; });
+    const bool law_told = misfit == Misfit::kMaxwellSlip && answer.verdict == Verdict::kUnexplained;
+    judged.right = causes.empty() && (answer.verdict == Verdict::kNothingFound || mismatch_named || law_told);
     return judged;
   }
   if (OutsideCatalogue(hidden.front().kind)) {

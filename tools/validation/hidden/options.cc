@@ -20,7 +20,6 @@ Hides effects in the emulated machine, records logs over the bus, diagnoses them
   --record DIR         only record: a directory for each case, with the truth next to the log
   --judge DIR          only diagnose what is recorded there; goes on where an earlier run ended
   (neither)            both, and the logs are not kept
-  --calibrate FILE     model-error allowances from what --fit-above-chance --evidence wrote, on standard output
 
 What to record (cases that are there already are not recorded again):
   --kinds A,B,...      effects to hide (all of the catalogue); "outside": those outside the catalogue
@@ -127,10 +126,8 @@ bool Take(const std::string& option, const std::string& value, Options& o) {
       return true;
     }
   std::string Options::*const texts[] = {&Options::record, &Options::judge,    &Options::keep,
-                                         &Options::out,    &Options::evidence, &Options::calibrate,
-                                         &Options::sizes};
-  const char* const text_names[] = {"--record",   "--judge",     "--keep", "--out",
-                                    "--evidence", "--calibrate", "--sizes"};
+                                         &Options::out,    &Options::evidence, &Options::sizes};
+  const char* const text_names[] = {"--record", "--judge", "--keep", "--out", "--evidence", "--sizes"};
   for (std::size_t i = 0; i < std::size(texts); ++i)
     if (option == text_names[i]) {
       o.*texts[i] = value;

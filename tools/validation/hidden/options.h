@@ -9,7 +9,7 @@ namespace contour::hidden {
 
 struct Options {
   Plan plan;
-  std::string record, judge, keep, out, evidence, sizes, calibrate;
+  std::string record, judge, keep, out, evidence, sizes;
   std::vector<std::string> only;  ///< beginnings of the names of the cases to judge; empty: all
   double rate = 0.05;
   double strict_rate = 0.0;  ///< clean machines that raise an alarm are asked again at this rate; 0: not

@@ -35,6 +35,14 @@ TEST(EncoderEccentricity, IsToldInRadOfTheMotorWhereTheLogHasMetres) {
               (*CauseNamed(kKind).largest)(test::KnownAxis().problem), 1e-12);
 }
 
+TEST(EncoderEccentricity, IsNoneWhereTheDiscWouldTurnAboutItsRim) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "1.0");
+  const auto implausible = *CauseNamed(kKind).implausible;
+  EXPECT_FALSE(implausible(axis.problem, *e, {0.02, 0.03}));
+  EXPECT_TRUE(implausible(axis.problem, *e, {0.6, 0.8}));
+}
+
 TEST(EncoderEccentricity, OtherOrdersAreTheEncodersLines) {
   const test::KnownAxis axis;
   EXPECT_EQ(WaveEffect(axis.problem, Wave::kReadingOfAngle, 1.0, 1.0)->kind, kKind);

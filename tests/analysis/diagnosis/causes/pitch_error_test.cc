@@ -31,6 +31,22 @@ TEST(PitchError, IsWhatTheScaleReadsOverTheStrokeInMetres) {
   EXPECT_EQ(*(*CauseNamed(kKind).shape)->per_unit, 1e6);
 }
 
+TEST(PitchError, IsOnceAndTwicePerTurnOfTheScrewToo) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "per turn");
+  const std::vector<double> a = {3e-6, 0.0, 0.0, 1e-6};
+  const AxisModel m = test::With(axis, e, a);
+  for (const std::size_t row : {0u, 300u, 1100u}) {
+    const double angle = axis.signals().angle_rad[row];
+    EXPECT_NEAR((*m.scale_error_m)[row], 3e-6 * std::sin(angle) + 1e-6 * std::cos(2.0 * angle), 1e-15);
+  }
+  const NamedValues told = test::Told(axis, e, a);
+  EXPECT_NEAR(told.at("amplitude_once_per_turn_um"), 3.0, 1e-9);
+  EXPECT_NEAR(told.at("amplitude_twice_per_turn_um"), 1.0, 1e-9);
+  // Highest at one of sin(x) = 1 / 1.5: 3 sin + 1 - 2 sin^2; lowest at sin = -1: -3 - 1.
+  EXPECT_NEAR(told.at("amplitude_um"), 0.5 * (2.0 + 1.0 - 8.0 / 9.0 * 1.0 + 4.0), 0.2);
+}
+
 TEST(PitchError, WithoutAScaleIsNotLookedFor) {
   EXPECT_TRUE(test::GridOf(test::KnownAxis({.scale = false}), kKind).empty());
   EXPECT_TRUE(*CauseNamed(kKind).judged_at_scale);

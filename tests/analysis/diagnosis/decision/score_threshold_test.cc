@@ -70,7 +70,7 @@ TEST(SignFlips, WhatScattersMoreThanNoiseCountsForLess) {
   Scored s = OfChance(20, 9);
   s.per_block *= 3.0;
   const double scattered = Flips({s}, 0.05);
-  s.overdispersion = 9.0;
+  s.within_blocks = 9.0;
   EXPECT_LT(Flips({s}, 0.05), scattered / 5.0);
 }
 

@@ -79,7 +79,8 @@ TEST_F(VerdictTest, ACauseThatLeavesATenthLosesIt) {
   const Diagnosis d = Concluded(Named({{"presliding_hysteresis", 6000.0}, {"cable_spring", 500.0}}),
                                 {Of("time", 900.0), Of("the speed", 4.0)});
   EXPECT_EQ(d.verdict, Verdict::kUnexplained);
-  EXPECT_TRUE(d.causes.empty());
+  ASSERT_EQ(d.causes.size(), 2u) << "told with size and gain";
+  for (const Cause& c : d.causes) EXPECT_TRUE(c.part_of_it) << c.kind;
   EXPECT_FALSE(d.candidates[0].accepted);
   EXPECT_NE(d.notes.back().find("presliding_hysteresis, cable_spring"), std::string::npos);
 }
@@ -93,6 +94,23 @@ TEST_F(VerdictTest, ATorqueMakesAnErrorOfTheLeadNoLessTrueUnlessItIsLarge) {
   EXPECT_EQ(large.verdict, Verdict::kUnexplained);
 }
 
+TEST_F(VerdictTest, WhatDoesHarmOnUnseenDataIsNotTold) {
+  Diagnosis found = Named({{"encoder_eccentricity", 400.0}});
+  found.causes[0].heldout_gain_low = -9.0;
+  found.causes[0].heldout_gain_high = -7.0;
+  const Diagnosis d = Concluded(found, {Of("time", 5.0)});
+  EXPECT_TRUE(d.causes.empty());
+  EXPECT_EQ(d.verdict, Verdict::kNothingFound);
+  found.causes[0].heldout_gain_high = 0.01;
+  EXPECT_EQ(Concluded(found, {Of("time", 5.0)}).causes.size(), 1u) << "not beyond its interval";
+}
+
+TEST_F(VerdictTest, WhatIsFoundIsNotListedAsNotExcited) {
+  Diagnosis found = Named({{"backlash", 400.0}});
+  found.not_excited = {"backlash", "cross_coupling"};
+  EXPECT_EQ(Concluded(found, {Of("time", 5.0)}).not_excited, (std::vector<std::string>{"cross_coupling"}));
+}
+
 TEST_F(VerdictTest, FurtherOrdersOfATurnMakeNoNameWrong) {
   RemainingStructure angle = Of("the angle of the motor and the direction", 1200.0);
   angle.series = true;
@@ -104,7 +122,8 @@ TEST_F(VerdictTest, AShapeOutsideTheCatalogueIsNoExplanation) {
   const Diagnosis much = Concluded(Named({{"friction_drift", 34000.0}, {"outside:friction of time", 9000.0}}),
                                    {Of("time", 5.0)});
   EXPECT_EQ(much.verdict, Verdict::kUnexplained);
-  EXPECT_TRUE(much.causes.empty());
+  ASSERT_EQ(much.causes.size(), 1u) << "the shape itself is no cause";
+  EXPECT_TRUE(much.causes[0].part_of_it);
   const Diagnosis little =
       Concluded(Named({{"friction_drift", 34000.0}, {"outside:friction of time", 90.0}}), {Of("time", 5.0)});
   EXPECT_EQ(little.verdict, Verdict::kCauseFound);

@@ -71,7 +71,7 @@ TEST_F(ScoreTest, TheAmplitudeIsWhatIsMissing) {
   // 20 standard errors: 400 of chi^2.
   const double expected = std::pow((before.amplitude(0) + amplitude) / sigma, 2);
   EXPECT_NEAR(after.drop, expected, 0.02 * expected);
-  EXPECT_NEAR(after.score, after.drop / after.overdispersion - Penalty(*e), 1e-9);
+  EXPECT_NEAR(after.score, after.drop / after.within_blocks - Penalty(*e), 1e-9);
 }
 
 TEST_F(ScoreTest, WhatIsThereAllTheTimeIsConsistentAndOneEventIsNot) {
@@ -84,7 +84,20 @@ TEST_F(ScoreTest, WhatIsThereAllTheTimeIsConsistentAndOneEventIsNot) {
   event.segment(20 * block, block) = column.segment(20 * block, block);
   const Scored once = ScoreOf(Without(300.0 * sigma, event), e);
   EXPECT_GT(all.consistency, 2.0 * once.consistency);
-  EXPECT_GT(once.overdispersion, 2.0 * all.overdispersion);
+  EXPECT_GT(once.within_blocks, 2.0 * all.within_blocks);
+}
+
+TEST_F(ScoreTest, WhatWandersForLongerThanABlockScattersMore) {
+  // Of a scale, say: the same amplitude for six blocks, and the other sign for the next six.
+  const SharedEffect e = axis_.Of("cable_spring")->shorter;
+  const Eigen::VectorXd column = ColumnOf(e);
+  const double sigma = std::sqrt(ScoreOf(axis_.base, e).covariance(0, 0));
+  const Eigen::Index together = 6 * column.size() / kBlocks;
+  Eigen::VectorXd wander = column;
+  for (Eigen::Index k = 0; k < wander.size(); ++k) wander(k) *= k / together % 2 == 0 ? 1.0 : -1.0;
+  const Scored s = ScoreOf(Without(30.0 * sigma, wander), e);
+  EXPECT_GT(s.overdispersion, 1.2 * s.within_blocks);
+  EXPECT_LT(s.drop / s.overdispersion, 40.0) << "900 of chi^2, had it been there all the time";
 }
 
 TEST_F(ScoreTest, ColumnsOfSignalsAreThoseOfRuns) {

@@ -4,21 +4,28 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/diagnosis/tuning/model_error.h"
+
 namespace contour::diagnosis {
 namespace {
 
 TEST(DecisionTuning, AScanLosesThePenaltyOfTwoAmplitudes) { EXPECT_EQ(ScanPenalty(), 6.0); }
 
-TEST(DecisionTuning, TheTailBeginsWhereTheRateOfItSays) {
-  EXPECT_EQ(TailQuantile(), 0.98);
-  EXPECT_LT(kThreshold.fitted_quantile, TailQuantile());
+TEST(DecisionTuning, EveryBlockOfTheShortestLogHoldsTheMemoryOfItsNoise) {
+  EXPECT_EQ(FewestRows(), 60U * 48U);
+}
+
+TEST(DecisionTuning, TheModelsOwnErrorsAddMoreWhereFewerAlarmsAreAsked) {
+  EXPECT_GT(AllowancePerRow(0.01), AllowancePerRow(0.05));
+  EXPECT_GT(AllowancePerRow(0.05), 0.0);
+  EXPECT_EQ(AllowancePerRow(1.0), 0.0);
 }
 
 TEST(DecisionTuning, AnAmplitudeThatIsOffLeavesTheSquareOfItsShare) { EXPECT_EQ(StatedOffDrop(), 1e-4); }
 
 TEST(DecisionTuning, AsManyDrawsLieBelowAnIntervalAsAboveIt) {
-  EXPECT_EQ(HeldOutDraw(0.025), 12U);
-  EXPECT_EQ(HeldOutDraw(1.0 - 0.025), kAcceptance.held_out_draws - 1 - 12);
+  EXPECT_EQ(HeldOutDraw(0.025), 37U);
+  EXPECT_NEAR(static_cast<double>(HeldOutDraw(1.0 - 0.025)), kThreshold.flip_draws - 1.0 - 37.0, 1.0);
 }
 
 }  // namespace
