@@ -15,7 +15,9 @@ namespace contour {
 /// neither is the cycle. Bounded: when the client is too slow the newest rows are lost and counted.
 class RowFeed {
  public:
-  static constexpr std::size_t kDefaultCapacity = 8192;
+  /// Half a minute at 1 kHz, some 20 MB: in lock-step a machine runs a program in a second, and a client on a
+  /// busy host needs a while to read it.
+  static constexpr std::size_t kDefaultCapacity = 32768;
 
   explicit RowFeed(std::size_t capacity = kDefaultCapacity) : capacity_(capacity) {}
 
