@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -291,8 +292,9 @@ LearningReport Supervisor::Learn(const ProgramUpload& upload, const Placement& p
   if (upload.forget) parts_.learning.Forget();
   // A program that has to go to its zero first is another one than the same program that stands there.
   std::string text = upload.text;
+  // In whole hundredths of a millimetre: two passes do not end at the same bit.
   for (std::size_t i = 0; i < place.zero_m.size(); ++i)
-    text += '\n' + RoundedText(1e3 * (place.start_m[i] - place.zero_m[i]));
+    text += '\n' + std::to_string(std::lround(1e5 * (place.start_m[i] - place.zero_m[i])));
   const LearningReport report =
       parts_.learning.Prepare(text, place.zero_m, program_id_, generator).value_or(LearningReport());
   if (!report.refused.empty()) spdlog::warn("the last pass taught nothing: {}", report.refused);

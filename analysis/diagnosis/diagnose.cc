@@ -59,6 +59,18 @@ Diagnosis TooShort(const AxisLog& log, const DiagnoseOptions& options) {
   return out;
 }
 
+/// Where something known is missing, what was fitted may be wrong with it: it has to foresee better than what
+/// was stated.
+void KeepStatedWhereBetter(const StatedAxis& stated, Diagnosis& out) {
+  if (out.verdict != Verdict::kUnexplained || out.model_errors.empty()) return;
+  if (!(out.model_errors.back().free_run_unseen >= out.model_errors.front().free_run_unseen)) return;
+  out.fitted = stated;
+  out.in_model.clear();
+  out.notes.push_back(
+      "What was fitted foresees parts of the log that it has not seen no better than the stated model does: "
+      "the model file keeps the stated numbers.");
+}
+
 }  // namespace
 
 Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& asked) {
@@ -82,6 +94,7 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   out.in_model = out.causes;
   std::erase_if(out.in_model, [](const Cause& c) { return Outside(c.kind); });
   Conclude(problem, left, out);
+  KeepStatedWhereBetter(stated, out);
   if (out.verdict == Verdict::kUnexplained && out.causes.empty()) out.causes = std::move(rounds.leading);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)
     out.notes.push_back("No more than " + std::to_string(options.most_effects) +

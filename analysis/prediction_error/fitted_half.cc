@@ -7,8 +7,7 @@ namespace contour::diagnosis {
 namespace {
 
 /// The halves are near the whole.
-constexpr FitEffort kHalfEffort = {
-    .most_steps = 6, .most_refreshes = 2, .close_enough = 1.0, .covariance = false};
+constexpr FitEffort kHalfEffort = {.most_steps = 6, .most_refreshes = 2, .covariance = false};
 
 }  // namespace
 

@@ -31,9 +31,10 @@ void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONB
   r.acknowledged = transitions_.acknowledged();
   r.acknowledged_ok = transitions_.acknowledged_ok();
   r.program_id = transitions_.program_id();
-  r.path_time_s = follower_.moving() || follower_.at_end() ? follower_.program_time_s() : 0.0;
-  r.pace = follower_.program_pace();
-  r.program_line = follower_.line();
+  const ProgramPlace place = follower_.program_place();
+  r.path_time_s = place.time_s;
+  r.pace = place.pace;
+  r.program_line = place.line;
   r.path_points_waiting = static_cast<std::uint16_t>(follower_.waiting());
   r.solver_iterations = static_cast<std::uint16_t>(control_out_.iterations);
   r.stale_cycles = stale_cycles_;

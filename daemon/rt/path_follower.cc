@@ -195,25 +195,17 @@ std::uint64_t PathFollower::IndexNow() const noexcept {
   return std::min(static_cast<std::uint64_t>(bounded), end_ - 1);
 }
 
-double PathFollower::program_time_s() const noexcept {
-  if (end_ == 0) return 0.0;
+ProgramPlace PathFollower::program_place() const noexcept {
+  if (end_ == 0 || mode_ == Mode::kHolding) return {};
+  const Pace& now = pace_[0];
+  const double rate = moving() ? now.rate : 0.0;
   const std::uint64_t index = IndexNow();
-  if (MarkAt(index).program_time_s < 0.0) return pace_[0].time * period_s_;
-  const double since = pace_[0].time - static_cast<double>(index);
-  const double here_s = ProgramTime_s(index);
-  if (since <= 0.0 || index + 1 >= end_) return here_s;
-  return here_s + since * (ProgramTime_s(index + 1) - here_s);
-}
-
-double PathFollower::program_pace() const noexcept {
-  if (!moving() || end_ == 0) return 0.0;
-  const std::uint64_t index = IndexNow();
-  if (index + 1 >= end_) return 0.0;
-  return pace_[0].rate * (ProgramTime_s(index + 1) - ProgramTime_s(index)) / period_s_;
-}
-
-std::uint32_t PathFollower::line() const noexcept {
-  return end_ == 0 || mode_ == Mode::kHolding ? 0 : MarkAt(IndexNow()).line;
+  const Mark& here = MarkAt(index);
+  if (here.program_time_s < 0.0) return {now.time * period_s_, rate, here.line};
+  if (index + 1 >= end_) return {here.program_time_s, 0.0, here.line};
+  const double step_s = ProgramTime_s(index + 1) - here.program_time_s;
+  const double since = std::max(0.0, now.time - static_cast<double>(index));
+  return {here.program_time_s + since * step_s, rate * step_s / period_s_, here.line};
 }
 
 ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const noexcept {

@@ -10,6 +10,13 @@
 
 namespace contour {
 
+/// A place in a program.
+struct ProgramPlace {
+  double time_s = 0.0;     ///< on the program's own time axis
+  double pace = 0.0;       ///< program time per time
+  std::uint32_t line = 0;  ///< of its text; 0 unknown
+};
+
 /// Turns the prefetched points of a program into the reference of every cycle, with a horizon ahead of it,
 /// and can leave the program's own pace for a stop on the path: the pace falls from 1 to 0 by a smooth ramp,
 /// the geometry is kept.
@@ -64,10 +71,8 @@ class PathFollower {
   [[nodiscard]] bool running_dry() const noexcept;
   /// Time on the path of horizon element 0, in periods.
   [[nodiscard]] double path_time() const noexcept { return pace_[0].time; }
-  /// Where that is on the program's own time axis, and how fast it goes there.
-  [[nodiscard]] double program_time_s() const noexcept;
-  [[nodiscard]] double program_pace() const noexcept;
-  [[nodiscard]] std::uint32_t line() const noexcept;
+  /// Where that is in the program; all 0 while nothing is under way.
+  [[nodiscard]] ProgramPlace program_place() const noexcept;
   [[nodiscard]] PathProgress progress() const noexcept;
   [[nodiscard]] std::size_t waiting() const noexcept { return static_cast<std::size_t>(end_ - first_); }
 

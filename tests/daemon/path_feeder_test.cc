@@ -88,21 +88,21 @@ TEST(PathFeederTest, APauseStaysOnThePathWithinTheLimitsAndLeavesNoMark) {
     }
   };
   run(1500);
-  const double before_s = consumer.follower().program_time_s();
+  const double before_s = consumer.follower().program_place().time_s;
   feeder.SetPace(0.0);
   run(500);
-  EXPECT_EQ(consumer.follower().program_pace(), 0.0);
+  EXPECT_EQ(consumer.follower().program_place().pace, 0.0);
   for (const ReferencePoint& p : consumer.Now()) {
     EXPECT_EQ(p.velocity_m_s, 0.0);
     EXPECT_EQ(p.acceleration_m_s2, 0.0);
   }
-  const double rest_s = consumer.follower().program_time_s();
+  const double rest_s = consumer.follower().program_place().time_s;
   EXPECT_LT(rest_s - before_s, 0.4) << "some tenths of a second";
   run(20000);
-  EXPECT_EQ(consumer.follower().program_time_s(), rest_s) << "a pause may last";
+  EXPECT_EQ(consumer.follower().program_place().time_s, rest_s) << "a pause may last";
   feeder.SetPace(0.5);
   run(1000);
-  EXPECT_NEAR(consumer.follower().program_pace(), 0.5, 1e-9);
+  EXPECT_NEAR(consumer.follower().program_place().pace, 0.5, 1e-9);
   feeder.SetPace(1.0);
   run(100000);
   EXPECT_TRUE(consumer.follower().at_end());
@@ -142,8 +142,8 @@ TEST(PathFeederTest, AnyChangesAtAnyTimeKeepTheLimitsAndThePath) {
       }
       consumer.Tick(i / 100 % 2 == 0);
       refused += consumer.follower().progress().refused_law != 0 ? 1 : 0;
-      ASSERT_GE(consumer.follower().program_time_s(), time_s);
-      time_s = consumer.follower().program_time_s();
+      ASSERT_GE(consumer.follower().program_place().time_s, time_s);
+      time_s = consumer.follower().program_place().time_s;
       const PerAxis<ReferencePoint> now = consumer.Now();
       watch.Add(now);
       // The very place of the program at that time.
@@ -176,7 +176,7 @@ TEST(PathFeederTest, SingleBlockRestsAtTheEndOfEveryLineUntilItIsResumed) {
   const double ends[][2] = {{5e-3, 0.0}, {5e-3, 0.05e-3}, {5e-3, 10e-3}};
   for (const double* end : ends) {
     run(2000);
-    EXPECT_EQ(consumer.follower().program_pace(), 0.0);
+    EXPECT_EQ(consumer.follower().program_place().pace, 0.0);
     EXPECT_NEAR(consumer.Now()[0].position_m, end[0], 1e-9);
     EXPECT_NEAR(consumer.Now()[1].position_m, end[1], 1e-9);
     // Another feed is no reason to go on.
@@ -189,12 +189,12 @@ TEST(PathFeederTest, SingleBlockRestsAtTheEndOfEveryLineUntilItIsResumed) {
   // In the middle of the last line, which is long, a pause is a pause.
   feeder.SetPace(0.0);
   run(1000);
-  EXPECT_EQ(consumer.follower().program_pace(), 0.0);
+  EXPECT_EQ(consumer.follower().program_place().pace, 0.0);
   EXPECT_LT(consumer.Now()[0].position_m, 39e-3);
   feeder.SetPace(1.0, true);
   run(4000);
   EXPECT_TRUE(consumer.follower().at_end());
-  EXPECT_NEAR(consumer.follower().program_time_s(), feeder.path()->generator().duration_s(), 2e-3);
+  EXPECT_NEAR(consumer.follower().program_place().time_s, feeder.path()->generator().duration_s(), 2e-3);
   EXPECT_EQ(consumer.dry(), 0);
   watch.ExpectKept();
 }
@@ -205,7 +205,7 @@ TEST(PathFeederTest, AProgramThatEndsFirstEndsAsItWouldHave) {
   PathFeeder feeder(mailbox);
   Consumer consumer(mailbox, 75.0);
   feeder.Begin(Generator("{shape: line, dx_mm: 5, feed_mm_min: 3000}", limits));
-  while (consumer.follower().program_time_s() < 0.1) {
+  while (consumer.follower().program_place().time_s < 0.1) {
     feeder.Feed();
     consumer.Tick();
   }

@@ -155,7 +155,7 @@ def check_lines(operator):
     out = operator.scratch / "from_line"
     operator.ask("run", str(ngc), "--from-line", "4", "--go-there", "--out", str(out))
     largest = [max(abs(1e3 * p[a] - zero_mm["xy"[a]]) for p in operator.table(out)) for a in (0, 1)]
-    assert abs(largest[0] - 4.0) < 0.01 and abs(largest[1] - 3.0) < 0.01, largest
+    assert abs(largest[0] - 4.0) < 0.01 and abs(largest[1] - 3.0) < 0.02, largest  # less the tolerance at corners
 
 
 def main():

@@ -81,7 +81,7 @@ Fit KnownAlone(const Problem& problem, Fit fit) {
     known.amplitudes.push_back(fit.point.amplitudes[e]);
   }
   if (known.effects.size() == fit.point.effects.size()) return fit;
-  return FitPoint(problem, std::move(known), kQuantification.together);
+  return FitPoint(problem, std::move(known), FitEffort{});
 }
 
 /// What changed with time has come to its end: that is the axis as it is now. No file holds how it got there.

@@ -189,9 +189,9 @@ TEST_F(PathFollowerTest, AnotherLawOfTimeTakesThePlaceOfWhatWasToCome) {
       ASSERT_EQ(x[j].position_m, HalfPace(from, k + static_cast<int>(j), kCount).axes[0].position_m)
           << k << " " << j;
     const double time_s = k < from ? kPeriod_s * k : kPeriod_s * (from + 0.5 * (k - from));
-    ASSERT_NEAR(follower_->program_time_s(), time_s, 1e-12);
-    ASSERT_NEAR(follower_->program_pace(), k < from ? 1.0 : 0.5, 1e-9);
-    ASSERT_EQ(follower_->line(), k < from ? 0u : 3u);
+    ASSERT_NEAR(follower_->program_place().time_s, time_s, 1e-12);
+    ASSERT_NEAR(follower_->program_place().pace, k < from ? 1.0 : 0.5, 1e-9);
+    ASSERT_EQ(follower_->program_place().line, k < from ? 0u : 3u);
   }
   EXPECT_EQ(follower_->progress().law, 1u);
   EXPECT_EQ(follower_->progress().refused_law, 0u);
