@@ -65,7 +65,7 @@ def test(programs, out):
         bench.ask("reset")
         bench.wait_for_state("Idle")
         bench.enable()
-        bench.ask("run", short_program)
+        bench.ask("run", short_program, "--from-here")
     print(f"drives gone: {status['reason']}, enable taken back in cycle {quick_stop}, torque 0 from then on; works again")
 
 

@@ -160,13 +160,13 @@ def recovers(bench, case):
     short = bench.write_program("short", {"shape": "line", "dx_mm": -0.5, "dy_mm": -0.5, "feed_mm_min": 600})
     if case.loses_reference:
         print(f"    {bench.status()['state']} again, {displacement_mm(bench, case):.3f} mm displaced", flush=True)
-        expect(not bench.try_ask("run", short), f"{case.name}: the axis lost its reference, and a program was accepted")
+        expect(not bench.try_ask("run", short, "--from-here"), f"{case.name}: the axis lost its reference, and a program was accepted")
         bench.ask("disable")
         bench.wait_for_state("Idle")
         bench.ask("reference", f"{case.axis}={1e3 * bench.truth()[-1][case.axis].motor_m:.6f}")
         bench.enable()
         expect(abs(displacement_mm(bench, case)) < 0.01, f"{case.name}: {displacement_mm(bench, case):.3f} mm off after it was told")
-    bench.ask("run", short)
+    bench.ask("run", short, "--from-here")
 
 
 def say(case, outcome, status, bound):

@@ -49,7 +49,7 @@ def run_mode(programs, mode):
         for number, program in enumerate(PROGRAMS):
             bench.peer("status")
             start = bench.truth()[-1]
-            bench.ask("run", bench.write_program(f"program{number}", program))
+            bench.ask("run", bench.write_program(f"program{number}", program), "--from-here")
             if program["shape"] == "circle":
                 rows = bench.truth(start["sync"])
                 moving = [row for row in rows if abs(row["x"].velocity_m_s) + abs(row["y"].velocity_m_s) > 5e-3]

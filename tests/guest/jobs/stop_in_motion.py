@@ -180,7 +180,7 @@ def check_works_again(bench, way, short_program):
         bench.wait_for("the reset to be accepted", lambda: bench.try_ask("reset"))
     bench.wait_for_state("Idle")
     bench.enable()
-    bench.ask("run", short_program)
+    bench.ask("run", short_program, "--from-here")
 
 
 def test(programs, out):

@@ -60,8 +60,12 @@ class ShortFamily(unittest.TestCase):
                                  self.out / "s", *(part for s in sets for part in ("--set", s))], capture_output=True, text=True, check=False)
         self.assertEqual(result.returncode, 0, result.stderr)
         metrics = json.loads((self.out / "s" / "metrics.json").read_text(encoding="utf-8"))
-        # The distance to the references' curve instead of the circle.
-        self.assertAlmostEqual(self.peak("t30", "full", "B"), metrics["contour"]["table"]["peak_um"], delta=1e-3)
+        # The distance to the references' curve instead of the circle: beyond its end that is the distance to the end itself, so that the last
+        # cycles differ.
+        row, = [r for r in self.rows if (r["machine"], r["controller"], r["program"]) == ("t30", "full", "B")]
+        table = metrics["contour"]["table"]
+        self.assertAlmostEqual(float(row["rms_um"]), table["rms_um"], delta=1e-3)
+        self.assertAlmostEqual(float(row["peak_um"]), table["peak_um"], delta=0.02)
 
     def test_holds_are_scored(self):
         self.assertTrue(all(0.0 < float(r["hold_pp_um"]) < 5.0 for r in self.rows))
