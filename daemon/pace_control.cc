@@ -49,6 +49,8 @@ PaceStatus PaceControl::Status(const CycleRecord& now) const {
   const bool running = now.state == MachineState::kRunning;
   // At the end of a line, too, where single block has it rest.
   status.paused = running && now.pace == 0.0 && now.path_time_s > 0.0 && (paused_ || feed_percent_ > 0.0);
+  if (running) status.halt = pump_.halt();
+  status.paused = status.paused || status.halt;
   status.pause_wanted = running && (paused_ || status.paused);
   return status;
 }

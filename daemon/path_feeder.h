@@ -24,6 +24,8 @@ class PathFeeder {
     wanted_ = rate;
     resume_ = resume;
   }
+  /// The same for the place where the program halts; its pace is the one wanted.
+  void Release() { resume_ = true; }
   /// Hands over what the queue has room for. Returns whether more is to come.
   bool Feed();
   /// The program is over or was given up: no more points.
@@ -32,6 +34,8 @@ class PathFeeder {
   /// The pace wanted is the one that the cycle has been handed, or there is no program any more that could
   /// take it.
   [[nodiscard]] bool settled() const { return !path_ || (!path_->pending() && path_->rate() == wanted_); }
+  /// Where the program waits, as far as it has been handed over.
+  [[nodiscard]] PacedPath::Halt halt() const { return path_ ? path_->halt() : PacedPath::Halt{}; }
   /// The program that is supplied; null when there is none.
   [[nodiscard]] const PacedPath* path() const { return path_.get(); }
 

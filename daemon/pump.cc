@@ -40,10 +40,13 @@ void Pump::Finish() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Pump::Supply(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options) {
+void Pump::Supply(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options,
+                  std::vector<ProgramHalt> halts) {
   const std::scoped_lock lock(mutex_);
   next_ = std::move(generator);
   next_options_ = options;
+  next_options_.halts = !halts.empty();
+  next_halts_ = std::move(halts);
   pace_.reset();
   abandon_ = false;
   feeder_.Announce();
@@ -103,6 +106,7 @@ void Pump::Drain() {
     ReportReferences(entry->output.record);
     MeasureMotion(entry->output.record);
     tally_.Consume(entry->output.record);
+    halts_.Consume(entry->output.record, feeder_.halt());
     queue_.Release();
   }
   if (snapshots_ != nullptr) {
@@ -189,10 +193,21 @@ void Pump::Feed() {
       feeder_.Abandon();
       abandon_ = false;
     }
-    if (next_) feeder_.Begin(std::move(next_), next_options_);
-    if (pace_) feeder_.SetPace(pace_->rate, pace_->resume);
+    if (next_) {
+      halts_.Begin(next_->program_id(), std::move(next_halts_));
+      feeder_.Begin(std::move(next_), next_options_);
+    }
+    if (pace_) {
+      // Where the program waits for the operator, that is what goes on, and the path with it when all is
+      // done.
+      const bool ends_wait = pace_->resume && halts_.holding();
+      feeder_.SetPace(pace_->rate, pace_->resume && !halts_.waiting());
+      if (ends_wait) halts_.Resume();
+    }
     pace_.reset();
   }
+  halts_.Work();
+  if (halts_.TakeRelease()) feeder_.Release();
   feeder_.Feed();
 }
 

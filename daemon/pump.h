@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/halt_keeper.h"
 #include "daemon/path_feeder.h"
 #include "daemon/program_tally.h"
 #include "daemon/rt/command_mailbox.h"
@@ -28,6 +29,8 @@ class Pump {
        std::vector<std::string> axis_names, std::vector<std::string> bus_names);
   ~Pump();
 
+  /// What switches outputs for programs. Before Start().
+  void SwitchOutputsBy(ProgramOutputs& outputs) { halts_.SwitchBy(outputs); }
   /// Something else to empty on this thread, such as the truth of an emulated machine. Before Start().
   void AlsoDrain(std::function<void()> drain) { also_drain_ = std::move(drain); }
   /// Is told the totals of travel (all axes) and of time in motion. Before Start().
@@ -46,11 +49,15 @@ class Pump {
   bool AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time) const;
 
   /// Supply this program's points until they are all handed over or the program is abandoned.
-  void Supply(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options = {});
+  /// `halts`: where it waits.
+  void Supply(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options = {},
+              std::vector<ProgramHalt> halts = {});
   /// The pace that the program shall go to, as PathFeeder::SetPace has it.
   void SetPace(double rate, bool resume);
   void Abandon();
 
+  /// What the program waits for; nothing: it does not. Any thread.
+  [[nodiscard]] std::optional<HaltStatus> halt() const { return halts_.status(); }
   /// What has come so far of the program that runs, or ran last. Any thread.
   [[nodiscard]] TallyOfProgram tally() const { return tally_.tally(); }
 
@@ -70,10 +77,12 @@ class Pump {
   std::vector<std::string> axis_names_;
   std::vector<std::string> bus_names_;
   PathFeeder feeder_;  ///< pump thread only, but for Announce()
+  HaltKeeper halts_;   ///< pump thread only, but for status()
   ProgramTally tally_;
-  std::mutex mutex_;  ///< guards the next four
+  std::mutex mutex_;  ///< guards the next five
   std::unique_ptr<PathGenerator> next_;
   PacedPath::Options next_options_;
+  std::vector<ProgramHalt> next_halts_;
   struct Pace {
     double rate;
     bool resume;

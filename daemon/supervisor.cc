@@ -237,6 +237,12 @@ std::optional<std::string> Supervisor::wanted_model() {
   return wanted_model_;
 }
 
+EventUse Supervisor::UseOfEvents(const PartOfProgram& part) const {
+  EventUse use;
+  use.optional_stop = part.optional_stop;
+  return use;
+}
+
 Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwanted) {
   if (!upload.controller.empty() && upload.controller != Name(controller_)) {
     return {false,
@@ -255,7 +261,7 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
                                         [](const AxisRecord& a) { return IsReferenced(a.reference_state); });
     const Program program = ReadPlaced(
         {upload.text, upload.name, upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml},
-        *found.place, limits, {referenced, upload.part});
+        *found.place, limits, {referenced, upload.part, UseOfEvents(upload.part)});
     auto generator = std::make_unique<PathGenerator>(PlanPlaced(program, *found.place, limits), limits,
                                                      cycle_us_ * 1e-6, ++program_id_);
     const double duration_s = generator->duration_s();
@@ -265,7 +271,10 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     const LearningReport learnt = Learn(upload, *found.place, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
     // The points wait in the queue until the cycle has taken the request and expects them.
-    parts_.pump.Supply(std::move(generator), PacedPath::Options{pace_.Begin(), upload.part.single_block});
+    const auto* gcode = std::get_if<GcodeMoves>(&program.shape);
+    parts_.pump.Supply(std::move(generator),
+                       PacedPath::Options{pace_.Begin(), upload.part.single_block, false},
+                       gcode != nullptr ? HaltsOf(*gcode) : std::vector<ProgramHalt>());
     Answer answer = Ask(RequestKind::kRun, unwanted, program_id_);
     answer.program_id = program_id_;
     answer.start_m = found.place->start_m;

@@ -77,6 +77,7 @@ class Supervisor final : public OperatorDesk {
   [[nodiscard]] std::optional<Answer> Look(RequestKind kind, std::uint32_t sequence);
   std::uint32_t Post(RequestKind kind, std::uint32_t program_id = 0);
   void TakeBack(RequestKind kind);
+  [[nodiscard]] EventUse UseOfEvents(const PartOfProgram& part) const;
   [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const Placement& place,
                                      PathGenerator& generator);
 

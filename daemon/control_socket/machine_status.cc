@@ -178,6 +178,14 @@ json TimeLeft_s(const MachineStatus& s) {
   return std::max(0.0, s.program_duration_s - s.record.path_time_s) / (0.01 * s.pace.feed_percent);
 }
 
+json Halt(const std::optional<HaltStatus>& halt) {
+  if (!halt) return nullptr;
+  return {{"line", halt->line},
+          {"word", halt->word},
+          {"for_operator", halt->for_operator},
+          {"number", halt->number}};
+}
+
 json ProgramNow(const MachineStatus& s) {
   const CycleRecord& r = s.record;
   return {{"id", r.program_id},
@@ -192,7 +200,8 @@ json ProgramNow(const MachineStatus& s) {
           {"feed_percent", s.pace.feed_percent},
           {"pace", Number(r.pace)},
           {"pausing", s.pace.pause_wanted},
-          {"paused", s.pace.paused}};
+          {"paused", s.pace.paused},
+          {"halt", Halt(s.pace.halt)}};
 }
 
 }  // namespace

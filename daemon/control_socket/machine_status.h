@@ -31,11 +31,20 @@ struct AxisFacts {
   double encoder_count_m = 0.0;  ///< way of the table per encoder count
 };
 
+/// What a program waits for, where it stands.
+struct HaltStatus {
+  int line = 0;               ///< of the word
+  std::string word;           ///< M0, T5 M6, M3 ...
+  bool for_operator = false;  ///< until it is resumed; otherwise for an output
+  std::uint64_t number = 0;   ///< another one for every wait
+};
+
 /// A program's pace as operators want it.
 struct PaceStatus {
   double feed_percent = 100.0;  ///< of the programmed feed; of the programs to come, too
   bool pause_wanted = false;
-  bool paused = false;  ///< and it has come to rest
+  bool paused = false;               ///< and it has come to rest
+  std::optional<HaltStatus> halt{};  ///< what the program itself waits for
 };
 
 /// Everything `contour status` shows. Axes, buses and names are in the order of the machine file.

@@ -55,6 +55,10 @@ class MotionPlan {
   /// Line of the program's text that is carried out at a time since the start; 0 unknown.
   [[nodiscard]] virtual std::uint32_t Line(double /*time_s*/) const { return 0; }
 
+  /// How many of the places at which the program waits (see HaltsOf) have been reached at a time since the
+  /// start.
+  [[nodiscard]] virtual std::uint32_t Halts(double /*time_s*/) const { return 0; }
+
   /// Shortest distance from a point (one coordinate per axis) to the whole curve.
   [[nodiscard]] virtual double Distance_m(const PerAxis<double>& point_m) const = 0;
 

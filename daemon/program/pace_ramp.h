@@ -17,8 +17,8 @@ class PaceRamp {
 
   /// The law with the shortest ramp to `rate` that begins at the point `begin`. Nothing: none is long enough.
   [[nodiscard]] std::optional<PaceLaw> From(const PaceLaw& law, double begin, double rate) const;
-  /// The law that comes to rest when the program's time is `stop`, which lies ahead of `begin`, where the
-  /// rate must not change. Nothing: there is no room for it.
+  /// The law that comes to rest when the program's time is `stop`, and is held there; that lies ahead of
+  /// `begin`, where the rate must not change. Nothing: there is no room for it.
   [[nodiscard]] std::optional<PaceLaw> StopAt(const PaceLaw& law, double begin, double stop) const;
   /// Do the points from..to of the law keep the limits?
   [[nodiscard]] bool Fits(const PaceLaw& law, double from, double to) const;

@@ -23,6 +23,7 @@ PacedPath::PacedPath(std::unique_ptr<PathGenerator> generator, const Options& op
       ramp_(*generator_->plan(), generator_->limits(), generator_->period_s()),
       rate_(options.rate),
       single_block_(options.single_block),
+      halts_(options.halts),
       law_(options.rate) {
   // A program begins at rest, so there is a way to the end of its first line.
   if (single_block_ && rate_ > 0.0)
@@ -34,13 +35,33 @@ bool PacedPath::IsLast(double time) const {
   return !generator_->plan()->GoesOnAfter((time + kRounding) * generator_->period_s());
 }
 
+std::uint32_t PacedPath::HaltsAt(double index) const {
+  return index < 0.0 ? 0
+                     : generator_->plan()->Halts((law_.At(index).time + kRounding) * generator_->period_s());
+}
+
+// The program is at rest where it halts, as in a dwell: its time may stand still there at once. It stands
+// just behind that instant, so that it is not found again when it goes on.
+void PacedPath::StandAtHalt() {
+  double high = static_cast<double>(next_), low = high - 1.0;
+  const std::uint32_t passed = HaltsAt(low);
+  if (HaltsAt(high) == passed) return;
+  for (int i = 0; i < kHalvings && low >= 0.0; ++i) {
+    const double middle = 0.5 * (low + high);
+    (HaltsAt(middle) == passed ? low : high) = middle;
+  }
+  halt_ = {HaltsAt(high), law_.At(high).time * generator_->period_s()};
+  law_.Hold(high, 0.0);
+}
+
 bool PacedPath::Next(PathPoint& point) {
   if (ended_) return false;
+  if (halts_) StandAtHalt();
   const PaceState state = law_.At(static_cast<double>(next_));
   point.program_id = generator_->program_id();
   point.index = next_;
   point.law = pending_ && next_ >= pending_from_ ? issued_ : taken_;
-  point.last = IsLast(state.time);
+  point.last = !state.held && IsLast(state.time);
   Evaluate(state, point);
   ended_ = point.last;
   ++next_;
@@ -131,20 +152,18 @@ void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end
 
 PacedPath::Change PacedPath::ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, bool resume) {
   PaceState from = law_.At(static_cast<double>(earliest));
-  if (IsLast(from.time)) return Change::kNothing;
-  const auto at_end_of_line = [&] { return single_block_ && rate_ > 0.0 && from.rate == 0.0; };
-  if (at_end_of_line() ? !resume : rate == rate_) {
+  if (!from.held && IsLast(from.time)) return Change::kNothing;
+  if (from.held ? !resume : rate == rate_) {
     rate_ = rate;
     return Change::kNothing;
   }
-  if (rate == 0.0 && at_end_of_line()) return Change::kNothing;
   std::optional<PaceLaw> law = LawFrom(earliest, rate);
   if (!law && from.change != 0.0) {
     // Not out of the middle of another change: after it.
     earliest = std::max(earliest, static_cast<std::uint64_t>(std::ceil(law_.settled())));
     from = law_.At(static_cast<double>(earliest));
-    if (IsLast(from.time)) return Change::kNothing;
-    if (at_end_of_line()) {
+    if (!from.held && IsLast(from.time)) return Change::kNothing;
+    if (from.held) {
       // It rests there anyway, and goes on as it has been told last.
       rate_ = rate;
       return Change::kNothing;

@@ -13,8 +13,8 @@ namespace contour {
 /// A program's points at a pace that may change while they are handed out: pauses, and feeds other than the
 /// programmed one. At pace 1 from the start they are the generator's own, bit for bit.
 ///
-/// With `single_block` it comes to rest at the end of every line of the program, and stays there until it is
-/// resumed.
+/// With `single_block` it comes to rest at the end of every line of the program, and with `halts` where the
+/// program itself asks for it (MotionPlan::Halts); it stays there until it is resumed.
 ///
 /// A change is planned from a point on that the cycle has not looked at yet; until the cycle has taken the
 /// first point of the new law, the one before is remembered.
@@ -23,6 +23,12 @@ class PacedPath {
   struct Options {
     double rate = 1.0;  ///< the pace that it begins with
     bool single_block = false;
+    bool halts = false;
+  };
+  /// Where the program waits in the law as it is handed out.
+  struct Halt {
+    std::uint32_t number = 0;  ///< of the program's halts, from 1
+    double time_s = 0.0;       ///< of the program
   };
   PacedPath(std::unique_ptr<PathGenerator> generator, const Options& options);
 
@@ -36,12 +42,14 @@ class PacedPath {
   };
   /// From the point `earliest` on, or as soon after it as can be, the pace goes to `rate`. `end`: one past
   /// the newest point that the cycle has; what lies between is handed out again. At rest at the
-  /// end of a line it goes on only when `resume` says so.
+  /// end of a line, or where the program halts, it goes on only when `resume` says so.
   Change ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, bool resume = false);
   void Taken();
   /// It goes on by the law before, with the point `end`.
   void Refused(std::uint64_t end);
 
+  /// The newest halt that points have been handed out for; number 0: there was none.
+  [[nodiscard]] const Halt& halt() const { return halt_; }
   [[nodiscard]] bool pending() const { return pending_; }
   [[nodiscard]] std::uint32_t law_number() const { return issued_; }
   /// The pace that it has been told to go to.
@@ -54,6 +62,8 @@ class PacedPath {
   [[nodiscard]] std::optional<PaceLaw> ToEndOfLine(const PaceLaw& law) const;
   [[nodiscard]] double EndOfLine(double time) const;
   void Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end, double rate);
+  void StandAtHalt();
+  [[nodiscard]] std::uint32_t HaltsAt(double index) const;
   void Evaluate(const PaceState& state, PathPoint& point) const;
 
   std::unique_ptr<PathGenerator> generator_;
@@ -61,6 +71,8 @@ class PacedPath {
   double rate_;
   double rate_before_ = 1.0;
   bool single_block_;
+  bool halts_;
+  Halt halt_;
   PaceLaw law_;
   PaceLaw before_;  ///< the law that the cycle knows, while another is pending
   bool pending_ = false;

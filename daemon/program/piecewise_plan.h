@@ -21,8 +21,9 @@ struct PieceRequest {
   GcodeMove::Corner corner = GcodeMove::Corner::kExactStop;  ///< towards the next piece
   double tolerance_m = 0.0;                                  ///< of a blended corner
   double shortest_ramp_s = 0.0;
-  std::string origin;  ///< "file" or "file:line", begins messages
-  int line = 0;        ///< of the program; 0: none
+  std::string origin;       ///< "file" or "file:line", begins messages
+  int line = 0;             ///< of the program; 0: none
+  std::uint32_t halts = 0;  ///< places before it at which the program waits, at rest
 };
 
 /// What else is known of the whole path.

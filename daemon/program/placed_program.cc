@@ -50,6 +50,7 @@ Program ReadPlaced(const ProgramSource& source, const Placement& place, const Pe
     if (options.referenced) (*settings.zero_m)[letter] = place.zero_m[i];
   }
   GcodeMoves moves = FromLine(ParseGcode(source.text, source.name, settings), source.name, part);
+  UseEvents(moves, options.events);
   return {source.name, part.single_block ? WithStops(std::move(moves)) : std::move(moves)};
 }
 

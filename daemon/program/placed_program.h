@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "daemon/program/gcode/program_halts.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/part_of_program.h"
 
@@ -31,6 +32,7 @@ struct ProgramSource {
 struct ReadOptions {
   bool referenced = false;  ///< machine coordinates mean something
   PartOfProgram part{};     ///< of G-code; a shape has no lines
+  EventUse events{};        ///< of G-code, too
 };
 Program ReadPlaced(const ProgramSource& source, const Placement& place, const PerAxis<PlanLimits>& limits,
                    const ReadOptions& options = {});

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "daemon/program/combined_plans.h"
+#include "daemon/program/gcode/program_halts.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/oscillation_plan.h"
 #include "daemon/program/piecewise_plan.h"
@@ -279,6 +280,12 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
   PerAxis<double> zero_m = place.start_m;
   for (std::size_t k = 0; k < axis.size(); ++k) zero_m[axis[k]] -= program.start_m[k];
   PerAxis<double> at = place.start_m;
+  const std::vector<ProgramHalt> halts = HaltsOf(program);
+  std::uint32_t passed = 0;
+  const auto halts_before = [&](std::size_t move) {
+    while (passed < halts.size() && halts[passed].before_move <= move) ++passed;
+    return passed;
+  };
   for (const GcodeMove& move : program.moves) {
     PerAxis<double> target = at;
     for (std::size_t k = 0; k < axis.size(); ++k) target[axis[k]] = zero_m[axis[k]] + move.target_m[k];
@@ -287,6 +294,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     request.speed_m_s = move.kind == GcodeMove::Kind::kRapid ? 0.0 : move.feed_m_s;
     request.dwell_s = move.dwell_s;
     request.line = move.line;
+    request.halts = halts_before(requests.size());
     request.corner = move.corner;
     request.tolerance_m =
         move.corner == GcodeMove::Corner::kBlended ? move.tolerance_m : PathTolerance_m(place.limits);
@@ -309,6 +317,10 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     longest_s += move.dwell_s + (request.speed_m_s > 0.0 ? request.curve.length_m / request.speed_m_s : 0.0);
   }
   if (!(longest_s <= kLongest_s)) RefuseDuration(place.program);
+  if (passed < halts.size()) {
+    requests.push_back(Dwell(place, at, 0.0));
+    requests.back().halts = halts_before(program.moves.size());
+  }
   return std::make_shared<StretchPlan>(requests, place.limits);
 }
 

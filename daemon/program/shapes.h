@@ -303,7 +303,9 @@ struct GcodeEvent {
   int line = 0;
   char letter = 'M';   ///< M, S or T
   int code = 0;        ///< of M
-  double value = 0.0;  ///< of S and T
+  double value = 0.0;  ///< of S and T; of M6 the tool, -1 none
+  bool acts = false;   ///< something is done about it: see UseEvents
+  bool waits = false;  ///< for the operator
   [[nodiscard]] bool holds() const { return letter == 'M' && code <= 1; }
 };
 

@@ -25,6 +25,11 @@ std::uint32_t StretchPlan::Line(double time_s) const {
   return static_cast<std::uint32_t>(std::max(0, walk_.Line(time_s)));
 }
 
+std::uint32_t StretchPlan::Halts(double time_s) const {
+  const std::lock_guard lock(mutex_);
+  return walk_.Halts(time_s);
+}
+
 void StretchPlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
   const std::lock_guard lock(mutex_);
   walk_.At(time_s, axes);

@@ -21,6 +21,7 @@ class StretchPlan : public MotionPlan {
   [[nodiscard]] double duration_s() const override;
   void At(double time_s, PerAxis<ReferencePoint>& axes) const override;
   [[nodiscard]] std::uint32_t Line(double time_s) const override;
+  [[nodiscard]] std::uint32_t Halts(double time_s) const override;
   [[nodiscard]] double Distance_m(const PerAxis<double>& point_m) const override;
   [[nodiscard]] double Turns(double) const override { return 0.0; }
   [[nodiscard]] bool Scored(double time_s) const override;

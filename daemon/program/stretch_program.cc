@@ -34,7 +34,8 @@ double Deviation_m(const PieceRequest& request) {
 }
 
 bool StopsBetween(const PieceRequest& before, const PieceRequest& after) {
-  if (before.dwell_s > 0.0 || before.corner == GcodeMove::Corner::kExactStop) return true;
+  if (before.dwell_s > 0.0 || before.halts != after.halts || before.corner == GcodeMove::Corner::kExactStop)
+    return true;
   const double turn = Turn(before.curve, after.curve);
   if (before.corner == GcodeMove::Corner::kExactPath) return turn > kTangentAngle_rad;
   const double shorter_m = std::min(before.curve.length_m, after.curve.length_m);
@@ -52,12 +53,14 @@ StretchProgram::StretchProgram(const std::vector<PieceRequest>& requests, const 
     if (r.curve.length_m == 0.0) {
       if (r.curve.kind != CurvePiece::Kind::kPoint) continue;
       // A dwell, of whatever time, is a stop.
-      if (parts_.empty()) parts_.push_back({moves_.size(), moves_.size(), 0.0});
+      if (parts_.empty() || parts_.back().halts != r.halts)
+        parts_.push_back({moves_.size(), moves_.size(), 0.0, r.halts});
       parts_.back().dwell_s += r.dwell_s;
       last = nullptr;
       continue;
     }
-    if (last == nullptr || StopsBetween(*last, r)) parts_.push_back({moves_.size(), moves_.size(), 0.0});
+    if (last == nullptr || StopsBetween(*last, r))
+      parts_.push_back({moves_.size(), moves_.size(), 0.0, r.halts});
     moves_.push_back({r.curve, r.speed_m_s, Deviation_m(r), r.line});
     parts_.back().end = moves_.size();
     parts_.back().dwell_s = r.dwell_s;

@@ -16,6 +16,7 @@ class StretchProgram {
     std::size_t first = 0;
     std::size_t end = 0;  ///< moves first..end; none: only a dwell
     double dwell_s = 0.0;
+    std::uint32_t halts = 0;  ///< places before it at which the program waits
   };
 
   /// Checks the way of every move against the axes' ranges; feeds are as fast as the axes follow. Throws

@@ -130,6 +130,11 @@ double StretchWalk::ChangeFeed(double time_s, double scale) {
   return from_s;
 }
 
+std::uint32_t StretchWalk::Halts(double time_s) {
+  Extend(time_s);
+  return program_->parts()[legs_[LegAt(time_s)].part].halts;
+}
+
 int StretchWalk::Line(double time_s) {
   Extend(time_s);
   const std::size_t leg = LegAt(time_s);

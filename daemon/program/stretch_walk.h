@@ -22,6 +22,9 @@ class StretchWalk : public PathWalk {
   [[nodiscard]] double rests_from_s() const override { return rests_from_s_; }
   [[nodiscard]] int Line(double time_s) override;
 
+  /// Places reached at a time at which the program waits.
+  [[nodiscard]] std::uint32_t Halts(double time_s);
+
   /// Of all of it, at the feed as it is.
   double duration_s();
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Pauses, feeds and program zero on a running contourd (emulated machine, lock-step), as an operator uses them.
+"""Pauses, feeds, M0 and program zero on a running contourd (emulated machine, lock-step), as an operator uses them.
 
     pause_through_daemon.py CONTOURD CONTOUR MACHINE_FILE
 
@@ -158,6 +158,49 @@ def check_lines(operator):
     assert abs(largest[0] - 4.0) < 0.01 and abs(largest[1] - 3.0) < 0.02, largest  # less the tolerance at corners
 
 
+def check_halts(operator):
+    """M0 waits for the operator, M1 where that was asked for; a stop ends a program that waits."""
+    ngc = operator.scratch / "halts.ngc"
+    ngc.write_text("G21 F3000\nG0 X0 Y0\nM3 S100\nG1 X4\nM0\nY3\nM1\nX0 Y0\n", encoding="utf-8")
+
+    def start(*more):
+        return subprocess.Popen([operator.contour, "run", str(ngc), *more, "--socket", operator.socket],
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def halted(line):
+        return operator.wait(f"line {line}", lambda s: s["state"] == "Running" and s["program"]["halt"]
+                             and s["program"]["halt"]["line"] == line)
+    run = start("--optional-stop")
+    status = halted(5)
+    assert status["program"]["halt"]["word"] == "M0" and status["program"]["pace"] == 0, status["program"]
+    said = operator.ask("status")
+    assert "holding at line 5: M0" in said, said
+    operator.ask("feed", "0")
+    operator.ask("feed", "50")
+    operator.ask("pause")
+    assert halted(5)["program"]["time_s"] == status["program"]["time_s"], "only the operator lets it go on"
+    assert "Running" in operator.ask("resume")
+    assert halted(7)["program"]["halt"]["word"] == "M1"
+    operator.ask("feed", "100")
+    operator.ask("resume")
+    out, errors = run.communicate()
+    assert run.returncode == 0 and "no output listens to M3, S" in errors, (out, errors)
+    # Without the switch M1 is passed; a stop at M0 is a stop.
+    run = start()
+    halted(5)
+    operator.ask("stop")
+    out, errors = run.communicate()
+    assert run.returncode == 1 and "did not end by itself" in errors, (out, errors)
+    assert operator.status()["program"]["halt"] is None
+    refused = operator.call("resume")
+    assert refused.returncode == 1, refused.stdout
+    run = start()
+    halted(5)
+    operator.ask("resume")
+    out, errors = run.communicate()
+    assert run.returncode == 0 and "M1 does not wait without --optional-stop" in errors, (out, errors)
+
+
 def main():
     with tempfile.TemporaryDirectory() as scratch:
         operator = Operator(*sys.argv[1:], scratch)
@@ -168,6 +211,7 @@ def main():
             plain = check_pause(operator, circle)
             check_zero(operator, circle, plain)
             check_lines(operator)
+            check_halts(operator)
         finally:
             operator.daemon.terminate()
             operator.daemon.wait()

@@ -8,11 +8,12 @@
 
 namespace contour {
 
-void WarnOfIgnoredWords(const std::filesystem::path& program) {
+void WarnOfIgnoredWords(const std::filesystem::path& program, const EventUse& use, bool simulated) {
   if (FormatOf(program) != ProgramFormat::kGcode) return;
   try {
-    const std::string warning =
-        IgnoredEvents(ParseGcode(ReadProgramText(program), program.string()), program.string());
+    GcodeMoves moves = ParseGcode(ReadProgramText(program), program.string());
+    UseEvents(moves, use);
+    const std::string warning = IgnoredEvents(moves, program.string(), simulated);
     if (!warning.empty()) std::cerr << "warning: " << warning << "\n";
   } catch (const ProgramError&) {
     // Whoever runs the program says what is wrong with it.

@@ -38,7 +38,8 @@ int RunResume(const std::string& socket) {
       [&](const nlohmann::json& s) {
         const nlohmann::json& program = s.at("program");
         return !Running(s) || program.at("id") != rested.at("id") ||
-               program.at("time_s") != rested.at("time_s") || program.at("feed_percent") == 0.0;
+               program.at("time_s") != rested.at("time_s") || program.at("halt") != rested.at("halt") ||
+               program.at("feed_percent") == 0.0;
       },
       kLimit);
   const bool ended = status.at("reason") == "program_end";

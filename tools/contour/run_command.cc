@@ -239,7 +239,8 @@ Program ReadFor(const Placement& place, const json& status, const Options& optio
   const std::string text = ReadText(file);
   bool referenced = true;
   for (const json& axis : status.at("axes")) referenced = referenced && axis.value("referenced", true);
-  return ReadPlaced({text, file, FormatOf(file)}, place, LimitsOf(status), {referenced, options.part});
+  return ReadPlaced({text, file, FormatOf(file)}, place, LimitsOf(status),
+                    {referenced, options.part, {options.part.optional_stop, {}}});
 }
 
 json RequestOf(const Options& options) {
@@ -252,6 +253,7 @@ json RequestOf(const Options& options) {
   if (options.forget) request["forget"] = true;
   if (options.from_here) request["from_here"] = true;
   if (options.part.single_block) request["single_block"] = true;
+  if (options.part.optional_stop) request["optional_stop"] = true;
   if (options.part.from_line > 0) request["from_line"] = options.part.from_line;
   if (options.part.go_there) request["go_there"] = true;
   return request;
@@ -280,7 +282,7 @@ int RunRun(const Options& options) {
     // What G-code means depends on where the machine stands.
     if (FormatOf(options.program) == ProgramFormat::kYaml)
       program = ReadPlaced({ReadProgramText(options.program), options.program, ProgramFormat::kYaml}, {}, {},
-                           {false, options.part});
+                           {false, options.part, {}});
     client.emplace(ConnectToDaemon(options.socket));
     before = Status(*client);
     if (FormatOf(options.program) == ProgramFormat::kGcode)
@@ -289,7 +291,7 @@ int RunRun(const Options& options) {
     std::cerr << e.what() << "\n";
     return kExitBadUsage;
   }
-  WarnOfIgnoredWords(options.program);
+  WarnOfIgnoredWords(options.program, {options.part.optional_stop, {}}, false);
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
   std::optional<RowCollector> rows;
@@ -330,6 +332,8 @@ void AddRunCommand(CLI::App& app, Action& action) {
                 "The program counts from where the machine stands, whatever program zero is");
   sub->add_flag("--single-block", options->part.single_block,
                 "G-code: rest at the end of every line until contour resume");
+  sub->add_flag("--optional-stop", options->part.optional_stop,
+                "G-code: M1 waits for contour resume, as M0 does");
   CLI::Option* line = sub->add_option("--from-line", options->part.from_line,
                                       "G-code: begin at this line, with the words in force there")
                           ->check(CLI::Range(1, 100'000'000));

@@ -68,7 +68,7 @@ int RunSimulate(const Options& options) {
     return kExitBadUsage;
   }
   request.passes = options.passes;
-  WarnOfIgnoredWords(options.program);
+  WarnOfIgnoredWords(options.program, {}, true);
   request.out = options.out;
   if (!options.log.empty()) {
     if (options.seed) set.push_back("emulator.seed=" + std::to_string(*options.seed));

@@ -164,6 +164,12 @@ std::string Around(const json& s) {
   return text;
 }
 
+std::string HaltSentence(const json& halt) {
+  const bool waits = halt["for_operator"] == true;
+  return std::string(waits ? ", holding" : ", switching") + " at line " + Text(halt["line"]) + ": " +
+         Text(halt["word"]) + (waits ? " (contour resume goes on)" : "");
+}
+
 }  // namespace
 
 std::string ProgramText(const json& s) {
@@ -176,7 +182,10 @@ std::string ProgramText(const json& s) {
     text += ", " + Number(program["left_s"], 1.0, 1) + " s left";
   if (program.value("feed_percent", 100.0) != 100.0)
     text += ", feed " + Number(program["feed_percent"], 1.0, 0) + " %";
-  if (program.value("pausing", false)) text += program["paused"] == true ? ", paused" : ", pausing";
+  if (const json halt = program.value("halt", json()); halt.is_object())
+    text += HaltSentence(halt);
+  else if (program.value("pausing", false))
+    text += program["paused"] == true ? ", paused" : ", pausing";
   if (s["state"] == "Running") text += ", contour error " + Number(s["contour_error_m"], 1e6, 2) + " um";
   return text;
 }

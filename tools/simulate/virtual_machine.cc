@@ -136,7 +136,7 @@ Program VirtualMachine::ReadGcode(const std::string& text, const std::string& na
   const bool referenced = std::all_of(axes.begin(), axes.end(),
                                       [](const AxisRecord& a) { return IsReferenced(a.reference_state); });
   return ReadPlaced({text, name, ProgramFormat::kGcode}, PlaceNow(), LimitsNow(limits_, record()),
-                    {referenced, {}});
+                    {referenced, {}, {}});
 }
 
 std::uint32_t VirtualMachine::Start(const Program& program) {

@@ -2,25 +2,34 @@
 
 #include <set>
 
+#include "daemon/program/gcode/program_halts.h"
+
 namespace contour {
 
-std::string IgnoredEvents(const GcodeMoves& program, const std::string& name) {
-  std::set<std::string> words;
+std::string IgnoredEvents(const GcodeMoves& program, const std::string& name, bool simulated) {
+  std::set<std::string> deaf;
+  std::set<std::string> passed;
   int first = 0;
-  bool holds = false;
   for (const GcodeEvent& event : program.events) {
+    const bool waits_here = event.waits && !simulated;
+    if (waits_here || (event.acts && !event.waits)) continue;
+    const std::string word =
+        event.letter == 'M' ? "M" + std::to_string(event.code) : std::string(1, event.letter);
+    (event.waits || event.holds() ? passed : deaf).insert(word);
     if (first == 0) first = event.line;
-    holds = holds || event.holds();
-    if (!event.holds())
-      words.insert(event.letter == 'M' ? "M" + std::to_string(event.code) : std::string(1, event.letter));
   }
   if (first == 0) return "";
+  const auto list = [](const std::set<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+  };
   std::string text = name + ":" + std::to_string(first) + ": ";
-  for (const std::string& word : words)
-    text += (word == *words.begin() ? "no output listens to " : ", ") + word;
-  if (!words.empty()) text += ": ignored, here and below";
-  if (!words.empty() && holds) text += "; ";
-  if (holds) text += "M0 and M1 stop for an instant and do not hold";
+  if (!deaf.empty()) text += "no output listens to " + list(deaf) + ": ignored, here and below";
+  if (!deaf.empty() && !passed.empty()) text += "; ";
+  if (!passed.empty())
+    text += simulated ? "a simulation goes on at " + list(passed)
+                      : list(passed) + " does not wait without --optional-stop";
   return text;
 }
 

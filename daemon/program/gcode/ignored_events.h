@@ -6,8 +6,9 @@
 
 namespace contour {
 
-/// One sentence that names the words which do less than they ask for: no output is switched, and nothing
-/// holds at M0 and M1. Empty when the program has none. `name` stands for its file.
-std::string IgnoredEvents(const GcodeMoves& program, const std::string& name);
+/// One sentence that names the words of a program, after UseEvents, that do nothing: no output listens to
+/// them, or they do not wait. Empty when there are none. `name` stands for its file; `simulated`: nobody is
+/// there to let it go on, so nothing waits.
+std::string IgnoredEvents(const GcodeMoves& program, const std::string& name, bool simulated = false);
 
 }  // namespace contour

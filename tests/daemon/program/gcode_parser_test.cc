@@ -6,6 +6,7 @@
 #include <random>
 
 #include "daemon/program/gcode/ignored_events.h"
+#include "daemon/program/gcode/program_halts.h"
 #include "tests/daemon/program/on_a_table.h"
 
 namespace contour {
@@ -291,14 +292,36 @@ TEST(GcodeParser, BlockDeleteLeavesLinesOut) {
 }
 
 TEST(GcodeParser, WordsThatDoNothingAreNamedOnce) {
-  const auto warning = [](const char* text) { return IgnoredEvents(Parse(text), "part.ngc"); };
+  const auto warning = [](const char* text, bool simulated = false, const EventUse& use = {}) {
+    GcodeMoves moves = Parse(text);
+    UseEvents(moves, use);
+    return IgnoredEvents(moves, "part.ngc", simulated);
+  };
   EXPECT_EQ(warning("G0 X1\nM3 S900\nX2\nM3 S100 M8\n"),
             "part.ngc:2: no output listens to M3, M8, S: ignored, here and below");
-  EXPECT_EQ(warning("G0 X1\nM0\n"), "part.ngc:2: M0 and M1 stop for an instant and do not hold");
+  EXPECT_EQ(warning("G0 X1\nM0\n"), "");
+  EXPECT_EQ(warning("G0 X1\nM0\n", true), "part.ngc:2: a simulation goes on at M0");
   EXPECT_EQ(warning("T1\nG0 X1\nM1\n"),
-            "part.ngc:1: no output listens to T: ignored, here and below; M0 and M1 stop for an instant and "
-            "do not hold");
+            "part.ngc:1: no output listens to T: ignored, here and below; M1 does not wait without "
+            "--optional-stop");
+  EXPECT_EQ(warning("T1\nG0 X1\nM1\n", false, {true, [](const GcodeEvent& e) { return e.letter == 'T'; }}),
+            "");
   EXPECT_EQ(warning("G0 X1\n"), "");
+}
+
+TEST(GcodeParser, AProgramHaltsWhereSomethingIsDoneAboutItsEvents) {
+  GcodeMoves moves = Parse("M3 S900\nG64 G1 F100 X1\nT7 M6 M8\nX2\nM0\nM0\nX3\nM1\nX4\nM5\n");
+  UseEvents(moves, {false, [](const GcodeEvent& e) { return e.letter == 'M' && e.code <= 5; }});
+  const std::vector<ProgramHalt> halts = HaltsOf(moves);
+  std::string text;
+  for (const ProgramHalt& halt : halts) {
+    text += std::to_string(halt.before_move) + ":";
+    for (const GcodeEvent& event : halt.events) text += " " + WordOf(event) + (event.waits ? "!" : "");
+    text += "; ";
+  }
+  // Without the switch M1 is nobody's business but that of the output that the rule above has for it.
+  EXPECT_EQ(text, "0: M3; 1: T7 M6!; 2: M0! M0!; 3: M1; 4: M5; ");
+  EXPECT_EQ(moves.moves[0].corner, GcodeMove::Corner::kExactStop);
 }
 
 // Whatever comes over the socket is read or refused.

@@ -84,7 +84,7 @@ TEST(PlacedProgramTest, GcodeCountsFromZeroAndBeginsWhereTheMachineStands) {
   // Machine coordinates, where the machine has some.
   EXPECT_THROW(ReadPlaced({"G53 G0 X1\n", "m.ngc", ProgramFormat::kGcode}, place, Limits()), ProgramError);
   const Program home =
-      ReadPlaced({"G53 G0 X1\n", "m.ngc", ProgramFormat::kGcode}, place, Limits(), {true, {}});
+      ReadPlaced({"G53 G0 X1\n", "m.ngc", ProgramFormat::kGcode}, place, Limits(), {true, {}, {}});
   const auto homed = PlanPlaced(home, place, Limits());
   EXPECT_NEAR(At(*homed, homed->duration_s())[0], 0.001, 1e-12);
 }

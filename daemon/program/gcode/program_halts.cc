@@ -1,0 +1,46 @@
+#include "daemon/program/gcode/program_halts.h"
+
+#include <array>
+#include <cstdio>
+
+namespace contour {
+
+void UseEvents(GcodeMoves& program, const EventUse& use) {
+  double tool = -1.0;
+  for (GcodeEvent& event : program.events) {
+    if (event.letter == 'T') tool = event.value;
+    const bool switches = use.switches && use.switches(event);
+    if (event.letter == 'M') {
+      event.waits = event.code == 0 || (event.code == 1 && use.optional_stop) || event.code == 6;
+      if (event.code == 6) event.value = tool;
+    }
+    event.acts = event.waits || switches;
+    if (event.acts && event.before_move > 0)
+      program.moves[event.before_move - 1].corner = GcodeMove::Corner::kExactStop;
+  }
+}
+
+std::vector<ProgramHalt> HaltsOf(const GcodeMoves& program) {
+  std::vector<ProgramHalt> halts;
+  for (const GcodeEvent& event : program.events) {
+    if (!event.acts) continue;
+    if (halts.empty() || halts.back().before_move != event.before_move)
+      halts.push_back({event.before_move, {}});
+    halts.back().events.push_back(event);
+  }
+  return halts;
+}
+
+std::string WordOf(const GcodeEvent& event) {
+  std::array<char, 48> text{};
+  if (event.letter != 'M') {
+    std::snprintf(text.data(), text.size(), "%c%g", event.letter, event.value);
+  } else if (event.code == 6 && event.value >= 0.0) {
+    std::snprintf(text.data(), text.size(), "T%g M6", event.value);
+  } else {
+    std::snprintf(text.data(), text.size(), "M%d", event.code);
+  }
+  return text.data();
+}
+
+}  // namespace contour

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "daemon/program/shapes.h"
+
+namespace contour {
+
+/// Who does something about a program's events.
+struct EventUse {
+  bool optional_stop = false;                       ///< M1 waits for the operator
+  std::function<bool(const GcodeEvent&)> switches;  ///< an output is switched; empty: there are no outputs
+};
+
+/// A place at which a program waits, at rest: for an operator, or until outputs are switched.
+struct ProgramHalt {
+  std::size_t before_move = 0;
+  std::vector<GcodeEvent> events;  ///< in their order; none is empty
+};
+
+/// Marks the events that something is done about; the moves before them end in a stop.
+void UseEvents(GcodeMoves& program, const EventUse& use);
+
+/// The places at which the marked events are carried out, in order. MotionPlan::Halts counts them.
+std::vector<ProgramHalt> HaltsOf(const GcodeMoves& program);
+
+/// As a program writes it: M0, S1000, T5 M6.
+std::string WordOf(const GcodeEvent& event);
+
+}  // namespace contour

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "daemon/program/shapes.h"
+
+namespace contour {
+
+/// What switches outputs for a program: spindle, coolant, tools. One thread.
+class ProgramOutputs {
+ public:
+  virtual ~ProgramOutputs() = default;
+  /// Is there an output for it?
+  [[nodiscard]] virtual bool Listens(const GcodeEvent& event) const = 0;
+  /// Begin to switch it; Done() when it is switched, and had its time.
+  virtual void Do(const GcodeEvent& event) = 0;
+  [[nodiscard]] virtual bool Done() = 0;
+  /// The operator has let a program go on that waited at this event.
+  virtual void Over(const GcodeEvent& event) = 0;
+};
+
+}  // namespace contour
