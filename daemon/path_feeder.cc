@@ -21,7 +21,7 @@ constexpr std::size_t kKeptFree = 4;
 void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options) {
   path_ = std::make_unique<PacedPath>(std::move(generator), options);
   wanted_ = options.rate;
-  resume_ = resuming_ = false;
+  resume_ = resuming_ = Held::kNot;
   margin_ = kFirstMargin;
   rest_ = 0;
   burst_ = 0;
@@ -47,7 +47,7 @@ void PathFeeder::Hear() {
     GiveAnew();
     path_->Refused(progress.end);
     margin_ = std::min(2 * margin_, kLargestMargin);
-    resume_ = resume_ || resuming_;
+    if (resume_ == Held::kNot) resume_ = resuming_;
   }
 }
 
@@ -63,12 +63,12 @@ void PathFeeder::ChangePace() {
       GiveAnew();
       mailbox_.SetPathSupply(true);
       resuming_ = resume_;
-      resume_ = false;
+      resume_ = Held::kNot;
       return;
     case PacedPath::Change::kNothing:
       // The program ends before it could come to another pace.
       wanted_ = path_->rate();
-      resume_ = false;
+      resume_ = Held::kNot;
       return;
     case PacedPath::Change::kLater:
       rest_ = kLookAgain;
@@ -79,7 +79,7 @@ void PathFeeder::ChangePace() {
 bool PathFeeder::Feed() {
   if (!path_) return false;
   if (path_->pending()) Hear();
-  if (!path_->pending() && (path_->rate() != wanted_ || resume_)) ChangePace();
+  if (!path_->pending() && (path_->rate() != wanted_ || resume_ != Held::kNot)) ChangePace();
   for (;;) {
     if (!holding_) {
       if (!path_->Next(held_)) {

@@ -22,10 +22,10 @@ class PathFeeder {
   /// line, where single block has it rest.
   void SetPace(double rate, bool resume = false) {
     wanted_ = rate;
-    resume_ = resume;
+    if (resume_ != Held::kHalt) resume_ = resume ? Held::kEndOfLine : Held::kNot;
   }
   /// The same for the place where the program halts; its pace is the one wanted.
-  void Release() { resume_ = true; }
+  void Release() { resume_ = Held::kHalt; }
   /// Hands over what the queue has room for. Returns whether more is to come.
   bool Feed();
   /// The program is over or was given up: no more points.
@@ -47,11 +47,11 @@ class PathFeeder {
   CommandMailbox& mailbox_;
   std::unique_ptr<PacedPath> path_;
   double wanted_ = 1.0;
-  bool resume_ = false;
-  bool resuming_ = false;     ///< so does the law that is pending
-  std::uint64_t margin_ = 0;  ///< points between what the cycle said was possible and what it is handed
-  std::size_t burst_ = 0;     ///< points that may go where place is kept
-  std::uint32_t rest_ = 0;    ///< calls until the next attempt
+  Held resume_ = Held::kNot;
+  Held resuming_ = Held::kNot;  ///< so does the law that is pending
+  std::uint64_t margin_ = 0;    ///< points between what the cycle said was possible and what it is handed
+  std::size_t burst_ = 0;       ///< points that may go where place is kept
+  std::uint32_t rest_ = 0;      ///< calls until the next attempt
   PathPoint held_;
   bool holding_ = false;
 };

@@ -19,7 +19,7 @@ PaceState PaceLaw::On(const Piece& p, double index) {
       p.from.rate * (1.0 - 3.0 * u2 + 2.0 * u3) + slope * (u - 2.0 * u2 + u3) + p.to * (3.0 * u2 - 2.0 * u3);
   const double change =
       (6.0 * (p.to - p.from.rate) * (u - u2) + slope * (1.0 - 4.0 * u + 3.0 * u2)) / p.length;
-  return {p.from.time + p.length * way, rate, change, false};
+  return {p.from.time + p.length * way, rate, change, Held::kNot};
 }
 
 PaceState PaceLaw::At(double index) const {
@@ -31,12 +31,12 @@ PaceState PaceLaw::At(double index) const {
 void PaceLaw::Ramp(double begin, double length, double rate) {
   const PaceState from = At(begin);
   while (pieces_.size() > 1 && pieces_.back().begin >= begin) pieces_.pop_back();
-  pieces_.push_back({begin, length, from, rate, false});
+  pieces_.push_back({begin, length, from, rate, Held::kNot});
 }
 
-void PaceLaw::Hold(double begin, double length) {
+void PaceLaw::Hold(double begin, double length, Held held) {
   Ramp(begin, length, 0.0);
-  pieces_.back().held = true;
+  pieces_.back().held = held;
 }
 
 void PaceLaw::ForgetBefore(double index) {

@@ -1,15 +1,20 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 namespace contour {
+
+/// At rest until somebody lets it go, whatever pace is wanted. A program's own halt is not let go by who
+/// resumes at the end of a line, nor the other way round.
+enum class Held : std::uint8_t { kNot, kEndOfLine, kHalt };
 
 /// Where a program is at a point, in periods of its own time, and how fast it goes there.
 struct PaceState {
   double time = 0.0;    ///< of the program, in periods
   double rate = 1.0;    ///< program time per time; 1 as programmed, 0 paused
   double change = 0.0;  ///< of the rate, per period
-  bool held = false;    ///< at rest until somebody lets it go, whatever pace is wanted
+  Held held = Held::kNot;
 };
 
 /// A program's own time as a function of time: the rate is constant, or goes from one constant to the next by
@@ -20,14 +25,14 @@ struct PaceState {
 /// acceleration r^2 a + r' v, jerk r^3 j + 3 r r' a + r'' v.
 class PaceLaw {
  public:
-  explicit PaceLaw(double rate = 1.0) : pieces_{{0.0, 0.0, {0.0, rate, 0.0, false}, rate, false}} {}
+  explicit PaceLaw(double rate = 1.0) : pieces_{{0.0, 0.0, {0.0, rate, 0.0, Held::kNot}, rate, Held::kNot}} {}
 
   [[nodiscard]] PaceState At(double index) const;
 
   /// From `begin` on the rate goes to `rate` within `length` periods; what came after `begin` is forgotten.
   void Ramp(double begin, double length, double rate);
   /// The same to a rest that lasts until somebody lets it go.
-  void Hold(double begin, double length);
+  void Hold(double begin, double length, Held held);
   /// Nothing before this will be asked for.
   void ForgetBefore(double index);
 
@@ -42,7 +47,7 @@ class PaceLaw {
     double length = 0.0;  ///< of the ramp that it begins with
     PaceState from;
     double to = 1.0;
-    bool held = false;  ///< when it has settled
+    Held held = Held::kNot;  ///< when it has settled
   };
   [[nodiscard]] static PaceState On(const Piece& piece, double index);
 

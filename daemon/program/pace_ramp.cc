@@ -124,13 +124,13 @@ std::optional<PaceLaw> PaceRamp::StopAt(const PaceLaw& law, double begin, double
   const double room = (stop - now.time) / now.rate;  // periods at this rate
   if (AtRest(stop)) {
     PaceLaw candidate = law;
-    candidate.Hold(begin + room, 0.0);
+    candidate.Hold(begin + room, 0.0, Held::kEndOfLine);
     if (Fits(candidate, begin + room, begin + room)) return candidate;
   }
   // A ramp goes half as far as the rate that it begins with.
   for (double length = Shortest(stop, now.rate); 0.5 * length <= room; length *= kLonger) {
     PaceLaw candidate = law;
-    candidate.Hold(begin + room - 0.5 * length, length);
+    candidate.Hold(begin + room - 0.5 * length, length, Held::kEndOfLine);
     if (Fits(candidate, begin + room - 0.5 * length, begin + room + 0.5 * length)) return candidate;
   }
   return std::nullopt;

@@ -51,7 +51,7 @@ void PacedPath::StandAtHalt() {
     (HaltsAt(middle) == passed ? low : high) = middle;
   }
   halt_ = {HaltsAt(high), law_.At(high).time * generator_->period_s()};
-  law_.Hold(high, 0.0);
+  law_.Hold(high, 0.0, Held::kHalt);
 }
 
 bool PacedPath::Next(PathPoint& point) {
@@ -61,7 +61,7 @@ bool PacedPath::Next(PathPoint& point) {
   point.program_id = generator_->program_id();
   point.index = next_;
   point.law = pending_ && next_ >= pending_from_ ? issued_ : taken_;
-  point.last = !state.held && IsLast(state.time);
+  point.last = state.held == Held::kNot && IsLast(state.time);
   Evaluate(state, point);
   ended_ = point.last;
   ++next_;
@@ -150,10 +150,11 @@ void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end
   ended_ = false;
 }
 
-PacedPath::Change PacedPath::ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, bool resume) {
+PacedPath::Change PacedPath::ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, Held resume) {
   PaceState from = law_.At(static_cast<double>(earliest));
-  if (!from.held && IsLast(from.time)) return Change::kNothing;
-  if (from.held ? !resume : rate == rate_) {
+  const auto held = [&] { return from.held != Held::kNot; };
+  if (!held() && IsLast(from.time)) return Change::kNothing;
+  if (held() ? from.held != resume : rate == rate_) {
     rate_ = rate;
     return Change::kNothing;
   }
@@ -162,8 +163,8 @@ PacedPath::Change PacedPath::ChangePace(std::uint64_t earliest, std::uint64_t en
     // Not out of the middle of another change: after it.
     earliest = std::max(earliest, static_cast<std::uint64_t>(std::ceil(law_.settled())));
     from = law_.At(static_cast<double>(earliest));
-    if (!from.held && IsLast(from.time)) return Change::kNothing;
-    if (from.held) {
+    if (!held() && IsLast(from.time)) return Change::kNothing;
+    if (held()) {
       // It rests there anyway, and goes on as it has been told last.
       rate_ = rate;
       return Change::kNothing;

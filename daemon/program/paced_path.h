@@ -42,8 +42,9 @@ class PacedPath {
   };
   /// From the point `earliest` on, or as soon after it as can be, the pace goes to `rate`. `end`: one past
   /// the newest point that the cycle has; what lies between is handed out again. At rest at the
-  /// end of a line, or where the program halts, it goes on only when `resume` says so.
-  Change ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, bool resume = false);
+  /// end of a line, or where the program halts, it goes on only when `resume` says so; it says of
+  /// which rest.
+  Change ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, Held resume = Held::kNot);
   void Taken();
   /// It goes on by the law before, with the point `end`.
   void Refused(std::uint64_t end);
