@@ -9,8 +9,8 @@
 namespace contour {
 namespace {
 
-/// Beyond the programmed feed a program would have to be planned anew.
-constexpr double kLargestFeed_percent = 100.0;
+/// As controls have it; PathWalk goes no further.
+constexpr double kLargestFeed_percent = 200.0;
 
 }  // namespace
 
@@ -33,19 +33,32 @@ Answer PaceControl::Change(const PaceRequest& request, const CycleRecord& now) {
     spdlog::info(paused_ ? "pause" : "resume");
   }
   if (running) pump_.SetPace(paused_ ? 0.0 : 0.01 * feed_percent_, request.paused == false);
-  return {true, {}};
+  return {true, running && request.feed_percent ? NoteNow() : std::string()};
 }
 
-double PaceControl::Begin() {
+double PaceControl::Begin(bool may_exceed) {
   const std::lock_guard lock(mutex_);
   paused_ = false;
+  may_exceed_ = may_exceed;
   return 0.01 * feed_percent_;
+}
+
+std::string PaceControl::Note() const {
+  const std::lock_guard lock(mutex_);
+  return NoteNow();
+}
+
+std::string PaceControl::NoteNow() const {
+  if (may_exceed_ || feed_percent_ <= 100.0) return {};
+  return "this program runs at 100 percent of its feed, not at " + RoundedText(feed_percent_) +
+         ": only G-code can be faster than programmed, and not where it is shifted by what was learnt";
 }
 
 PaceStatus PaceControl::Status(const CycleRecord& now) const {
   const std::lock_guard lock(mutex_);
   PaceStatus status;
   status.feed_percent = feed_percent_;
+  status.feed_fixed = !may_exceed_;
   const bool running = now.state == MachineState::kRunning;
   // At the end of a line, too, where single block has it rest.
   status.paused = running && now.pace == 0.0 && now.path_time_s > 0.0 && (paused_ || feed_percent_ > 0.0);

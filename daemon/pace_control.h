@@ -1,6 +1,7 @@
 #pragma once
 
 #include <mutex>
+#include <string>
 
 #include "core/cycle_record.h"
 #include "daemon/control_socket/operator_desk.h"
@@ -17,16 +18,21 @@ class PaceControl {
 
   /// `now`: the newest record.
   Answer Change(const PaceRequest& request, const CycleRecord& now);
-  /// A program begins: the pace for it.
-  [[nodiscard]] double Begin();
+  /// A program begins: the feed for it, 1 as programmed. `may_exceed`: it can be more than that.
+  [[nodiscard]] double Begin(bool may_exceed);
+  /// What operators should know of the feed of the program that began last; empty: it is as they want it.
+  [[nodiscard]] std::string Note() const;
   /// For the status; `now` is its record.
   [[nodiscard]] PaceStatus Status(const CycleRecord& now) const;
 
  private:
+  [[nodiscard]] std::string NoteNow() const;
+
   Pump& pump_;
   mutable std::mutex mutex_;  // guards what follows
   bool paused_ = false;
   double feed_percent_ = 100.0;
+  bool may_exceed_ = true;  ///< of the program that began last
 };
 
 }  // namespace contour

@@ -16,11 +16,23 @@ constexpr std::uint32_t kLookAgain = 32;
 /// once.
 constexpr std::size_t kKeptFree = 4;
 
+/// While it lives, lock-step time waits.
+class Planning {
+ public:
+  explicit Planning(CommandMailbox& mailbox) : mailbox_(mailbox) { mailbox_.SetPathPlanning(true); }
+  ~Planning() { mailbox_.SetPathPlanning(false); }
+  Planning(const Planning&) = delete;
+  Planning& operator=(const Planning&) = delete;
+
+ private:
+  CommandMailbox& mailbox_;
+};
+
 }  // namespace
 
 void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options) {
   path_ = std::make_unique<PacedPath>(std::move(generator), options);
-  wanted_ = options.rate;
+  wanted_ = options.feed;
   resume_ = resuming_ = Held::kNot;
   margin_ = kFirstMargin;
   rest_ = 0;
@@ -42,7 +54,7 @@ void PathFeeder::Hear() {
   const PathProgress progress = mailbox_.path_progress();
   if (progress.law == path_->law_number()) {
     path_->Taken();
-    margin_ = kFirstMargin;
+    margin_ = std::max(kFirstMargin, margin_ / 2);
   } else if (progress.refused_law == path_->law_number()) {
     GiveAnew();
     path_->Refused(progress.end);
@@ -56,9 +68,10 @@ void PathFeeder::ChangePace() {
     --rest_;
     return;
   }
+  const Planning planning(mailbox_);
   const PathProgress progress = mailbox_.path_progress();
   if (progress.earliest == PathProgress::kNowhere) return;
-  switch (path_->ChangePace(progress.earliest + margin_, progress.end, wanted_, resume_)) {
+  switch (path_->ChangeFeed(progress.earliest + margin_, progress.end, wanted_, resume_)) {
     case PacedPath::Change::kPlanned:
       GiveAnew();
       mailbox_.SetPathSupply(true);
@@ -67,7 +80,7 @@ void PathFeeder::ChangePace() {
       return;
     case PacedPath::Change::kNothing:
       // The program ends before it could come to another pace.
-      wanted_ = path_->rate();
+      wanted_ = path_->feed();
       resume_ = Held::kNot;
       return;
     case PacedPath::Change::kLater:
@@ -79,8 +92,10 @@ void PathFeeder::ChangePace() {
 bool PathFeeder::Feed() {
   if (!path_) return false;
   if (path_->pending()) Hear();
-  if (!path_->pending() && (path_->rate() != wanted_ || resume_ != Held::kNot)) ChangePace();
+  if (!path_->pending() && (path_->feed() != wanted_ || resume_ != Held::kNot)) ChangePace();
   for (;;) {
+    // Points of a law that was refused are taken as fast as they come, and lead nowhere.
+    if (path_->pending()) Hear();
     if (!holding_) {
       if (!path_->Next(held_)) {
         // It stays: until the cycle has got to its end, a pause may still come.

@@ -8,7 +8,7 @@
 
 namespace contour {
 
-/// Keeps the mailbox's path queue filled with a program's points, and makes the cycle change their pace. But
+/// Keeps the mailbox's path queue filled with a program's points, and makes the cycle change their feed. But
 /// for Announce() one thread: the mailbox's path writer.
 class PathFeeder {
  public:
@@ -18,11 +18,12 @@ class PathFeeder {
   /// them, however late Begin() is called; it could go by for as long as a program is waited for.
   void Announce() { mailbox_.SetPathSupply(true); }
   void Begin(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options = {});
-  /// The pace that the program shall go to as soon as it can; 0 is a pause. `resume`: it leaves the end of a
-  /// line, where single block has it rest.
-  void SetPace(double rate, bool resume = false) {
-    wanted_ = rate;
+  /// The feed that the program shall go to as soon as it can, 1 as programmed, 2 at most; 0 is a pause.
+  /// `resume`: it leaves the end of a line, where single block has it rest.
+  void SetPace(double feed, bool resume = false) {
+    wanted_ = feed;
     if (resume_ != Held::kHalt) resume_ = resume ? Held::kEndOfLine : Held::kNot;
+    rest_ = 0;
   }
   /// The same for the place where the program halts; its pace is the one wanted.
   void Release() { resume_ = Held::kHalt; }
@@ -31,9 +32,9 @@ class PathFeeder {
   /// The program is over or was given up: no more points.
   void Abandon();
 
-  /// The pace wanted is the one that the cycle has been handed, or there is no program any more that could
+  /// The feed wanted is the one that the cycle has been handed, or there is no program any more that could
   /// take it.
-  [[nodiscard]] bool settled() const { return !path_ || (!path_->pending() && path_->rate() == wanted_); }
+  [[nodiscard]] bool settled() const { return !path_ || (!path_->pending() && path_->feed() == wanted_); }
   /// Where the program waits, as far as it has been handed over.
   [[nodiscard]] PacedPath::Halt halt() const { return path_ ? path_->halt() : PacedPath::Halt{}; }
   /// The program that is supplied; null when there is none.

@@ -270,10 +270,10 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     parts_.pump.AwaitShown(now.cycle, kPumpTimeout);
     const LearningReport learnt = Learn(upload, *found.place, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
+    const double feed = pace_.Begin(generator->feed_may_exceed());
     // The points wait in the queue until the cycle has taken the request and expects them.
     const auto* gcode = std::get_if<GcodeMoves>(&program.shape);
-    parts_.pump.Supply(std::move(generator),
-                       PacedPath::Options{pace_.Begin(), upload.part.single_block, false},
+    parts_.pump.Supply(std::move(generator), PacedPath::Options{feed, upload.part.single_block, false},
                        gcode != nullptr ? HaltsOf(*gcode) : std::vector<ProgramHalt>());
     Answer answer = Ask(RequestKind::kRun, unwanted, program_id_);
     answer.program_id = program_id_;
@@ -282,6 +282,7 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     answer.zero_set = found.set_now;
     answer.learnt_passes = learnt.passes;
     answer.best_peak_um = learnt.best_peak_um;
+    if (answer.accepted) answer.reason = pace_.Note();
     if (!answer.accepted) {
       parts_.pump.Abandon();
       return answer;

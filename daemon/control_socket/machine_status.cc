@@ -175,7 +175,8 @@ json Lcm(const PublisherStats& p) {
 json TimeLeft_s(const MachineStatus& s) {
   const bool goes = s.record.state == MachineState::kRunning && !s.pace.pause_wanted;
   if (!goes || s.pace.feed_percent <= 0.0 || s.program_duration_s <= 0.0) return nullptr;
-  return std::max(0.0, s.program_duration_s - s.record.path_time_s) / (0.01 * s.pace.feed_percent);
+  const double feed = 0.01 * (s.pace.feed_fixed ? std::min(100.0, s.pace.feed_percent) : s.pace.feed_percent);
+  return std::max(0.0, s.program_duration_s - s.record.path_time_s) / feed;
 }
 
 json Halt(const std::optional<HaltStatus>& halt) {
@@ -198,6 +199,7 @@ json ProgramNow(const MachineStatus& s) {
           {"contour_error_rms_m", Number(s.contour_error_rms_m)},
           {"line", r.program_line != 0 ? json(r.program_line) : json(nullptr)},
           {"feed_percent", s.pace.feed_percent},
+          {"feed_fixed", s.pace.feed_fixed},
           {"pace", Number(r.pace)},
           {"pausing", s.pace.pause_wanted},
           {"paused", s.pace.paused},

@@ -42,6 +42,7 @@ struct HaltStatus {
 /// A program's pace as operators want it.
 struct PaceStatus {
   double feed_percent = 100.0;  ///< of the programmed feed; of the programs to come, too
+  bool feed_fixed = false;      ///< this program runs at 100 percent of it at most
   bool pause_wanted = false;
   bool paused = false;               ///< and it has come to rest
   std::optional<HaltStatus> halt{};  ///< what the program itself waits for

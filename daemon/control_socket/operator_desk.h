@@ -33,7 +33,7 @@ struct PaceRequest {
 /// What became of a request.
 struct Answer {
   bool accepted = false;
-  std::string reason;            ///< why it was refused, one sentence; empty when accepted
+  std::string reason;  ///< why it was refused, one sentence; accepted: what is to be known of it, or empty
   std::uint32_t sequence = 0;    ///< as CycleRecord::acknowledged counts; 0 when it never reached the cycle
   std::uint32_t program_id = 0;  ///< Run() only: what CycleRecord::program_id will say
   PerAxis<double> start_m{};     ///< Run() only: where the machine stood

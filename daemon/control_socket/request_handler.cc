@@ -46,7 +46,9 @@ int Line(const json& request, const char* key) {
 
 json Reply(const Answer& answer) {
   if (!answer.accepted) return {{"ok", false}, {"error", answer.reason}, {"sequence", answer.sequence}};
-  return {{"ok", true}, {"sequence", answer.sequence}};
+  json reply{{"ok", true}, {"sequence", answer.sequence}};
+  if (!answer.reason.empty()) reply["text"] = answer.reason;
+  return reply;
 }
 
 json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwanted,

@@ -82,6 +82,7 @@ class MotionPlan {
 
   /// A way along it whose feed may be changed, which keeps the plan alive; null: its feed is fixed.
   [[nodiscard]] virtual std::unique_ptr<PathWalk> Walk() const { return nullptr; }
+  [[nodiscard]] virtual bool feed_may_change() const { return false; }
 };
 
 /// Places a program where the machine stands and checks it against the limits: position range, velocity,

@@ -22,10 +22,17 @@ PaceState PaceLaw::On(const Piece& p, double index) {
   return {p.from.time + p.length * way, rate, change, Held::kNot};
 }
 
-PaceState PaceLaw::At(double index) const {
+const PaceLaw::Piece& PaceLaw::PieceAt(double index) const {
   auto piece = pieces_.end() - 1;
   while (piece != pieces_.begin() && index < piece->begin) --piece;
-  return On(*piece, index);
+  return *piece;
+}
+
+PaceState PaceLaw::At(double index) const { return On(PieceAt(index), index); }
+
+PaceLaw::Aim PaceLaw::AimAt(double index) const {
+  const Piece& piece = PieceAt(index);
+  return {piece.to, index >= piece.begin + piece.length};
 }
 
 void PaceLaw::Ramp(double begin, double length, double rate) {

@@ -36,6 +36,13 @@ class PaceLaw {
   /// Nothing before this will be asked for.
   void ForgetBefore(double index);
 
+  /// The constant rate that it goes to at a point, and whether it has got there.
+  struct Aim {
+    double rate = 1.0;
+    bool reached = true;
+  };
+  [[nodiscard]] Aim AimAt(double index) const;
+
   /// From here on the rate is constant.
   [[nodiscard]] double settled() const { return pieces_.back().begin + pieces_.back().length; }
   /// That constant.
@@ -49,6 +56,7 @@ class PaceLaw {
     double to = 1.0;
     Held held = Held::kNot;  ///< when it has settled
   };
+  [[nodiscard]] const Piece& PieceAt(double index) const;
   [[nodiscard]] static PaceState On(const Piece& piece, double index);
 
   std::vector<Piece> pieces_;  ///< never empty

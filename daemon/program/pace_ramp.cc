@@ -27,7 +27,7 @@ double Difference(const std::array<double, 4>& p, int order) {
 
 PerAxis<double> PaceRamp::Place_m(double time) const {
   PerAxis<ReferencePoint> axes;
-  plan_.At(std::max(0.0, time * period_s_), axes);
+  walk_.At(std::max(0.0, time * period_s_), axes);
   PerAxis<double> place_m;
   for (const ReferencePoint& p : axes) place_m.push_back(p.position_m);
   return place_m;
@@ -37,7 +37,7 @@ PerAxis<double> PaceRamp::Place_m(double time) const {
 // period.
 bool PaceRamp::AtRest(double time) const {
   PerAxis<ReferencePoint> axes;
-  plan_.At(std::max(0.0, time * period_s_), axes);
+  walk_.At(std::max(0.0, time * period_s_), axes);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const ReferencePoint& p = axes[i];
     if (std::abs(p.velocity_m_s) > kAtRest * limits_[i].velocity_m_s ||
@@ -50,7 +50,7 @@ bool PaceRamp::AtRest(double time) const {
 // What the axes need at the present speed, if the program did nothing else.
 double PaceRamp::Shortest(double time, double change_of_rate) const {
   PerAxis<ReferencePoint> axes;
-  plan_.At(std::max(0.0, time * period_s_), axes);
+  walk_.At(std::max(0.0, time * period_s_), axes);
   double periods = kShortest_periods;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const double speed = std::abs(axes[i].velocity_m_s * change_of_rate);

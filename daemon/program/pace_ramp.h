@@ -4,6 +4,7 @@
 
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/pace_law.h"
+#include "daemon/program/path_walk.h"
 
 namespace contour {
 
@@ -12,8 +13,8 @@ namespace contour {
 /// asked to exceed it less.
 class PaceRamp {
  public:
-  PaceRamp(const MotionPlan& plan, const PerAxis<PlanLimits>& limits, double period_s)
-      : plan_(plan), limits_(limits), period_s_(period_s) {}
+  PaceRamp(PathWalk& walk, const PerAxis<PlanLimits>& limits, double period_s)
+      : walk_(walk), limits_(limits), period_s_(period_s) {}
 
   /// The law with the shortest ramp to `rate` that begins at the point `begin`. Nothing: none is long enough.
   [[nodiscard]] std::optional<PaceLaw> From(const PaceLaw& law, double begin, double rate) const;
@@ -29,7 +30,7 @@ class PaceRamp {
   [[nodiscard]] PerAxis<double> Place_m(double time) const;
   [[nodiscard]] bool Own(std::size_t axis, double time, int order, double found) const;
 
-  const MotionPlan& plan_;
+  PathWalk& walk_;
   const PerAxis<PlanLimits>& limits_;
   double period_s_;
 };

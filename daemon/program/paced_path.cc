@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "daemon/program/fixed_walk.h"
+
 namespace contour {
 namespace {
 
@@ -15,29 +17,40 @@ constexpr std::uint64_t kRemembered = 4096;
 constexpr int kHalvings = 40;
 /// Of the pace that is wanted.
 constexpr double kSlowest = 1e-3;
+/// Of the programmed feed; the largest that operators may ask for.
+constexpr double kLargestScale = 2.0;
+
+std::unique_ptr<PathWalk> WalkOf(const PathGenerator& generator) {
+  std::unique_ptr<PathWalk> walk = generator.plan()->Walk();
+  if (!walk) walk = std::make_unique<FixedWalk>(generator.plan());
+  return walk;
+}
 
 }  // namespace
 
 PacedPath::PacedPath(std::unique_ptr<PathGenerator> generator, const Options& options)
     : generator_(std::move(generator)),
-      ramp_(*generator_->plan(), generator_->limits(), generator_->period_s()),
-      rate_(options.rate),
+      walk_(WalkOf(*generator_)),
+      feed_(options.feed),
       single_block_(options.single_block),
       halts_(options.halts),
-      law_(options.rate) {
+      law_(std::min(options.feed, 1.0)) {
+  if (feed_ > 1.0 && feed_may_exceed()) {
+    scale_ = std::min(feed_, kLargestScale);
+    walk_->ChangeFeed(0.0, scale_);
+  }
   // A program begins at rest, so there is a way to the end of its first line.
-  if (single_block_ && rate_ > 0.0)
+  if (single_block_ && feed_ > 0.0)
     if (const std::optional<PaceLaw> law = ToEndOfLine(law_)) law_ = *law;
 }
 
 // Long programs are planned no further than needed to know.
 bool PacedPath::IsLast(double time) const {
-  return !generator_->plan()->GoesOnAfter((time + kRounding) * generator_->period_s());
+  return !walk_->GoesOnAfter((time + kRounding) * generator_->period_s());
 }
 
 std::uint32_t PacedPath::HaltsAt(double index) const {
-  return index < 0.0 ? 0
-                     : generator_->plan()->Halts((law_.At(index).time + kRounding) * generator_->period_s());
+  return index < 0.0 ? 0 : walk_->Halts((law_.At(index).time + kRounding) * generator_->period_s());
 }
 
 // The program is at rest where it halts, as in a dwell: its time may stand still there at once. It stands
@@ -50,7 +63,7 @@ void PacedPath::StandAtHalt() {
     const double middle = 0.5 * (low + high);
     (HaltsAt(middle) == passed ? low : high) = middle;
   }
-  halt_ = {HaltsAt(high), law_.At(high).time * generator_->period_s()};
+  halt_ = {HaltsAt(high), walk_->ProgramTime_s(law_.At(high).time * generator_->period_s())};
   law_.Hold(high, 0.0, Held::kHalt);
 }
 
@@ -70,12 +83,11 @@ bool PacedPath::Next(PathPoint& point) {
 
 void PacedPath::Evaluate(const PaceState& state, PathPoint& point) const {
   const double period_s = generator_->period_s();
-  const MotionPlan& plan = *generator_->plan();
   // The last grid point lies on the end of the path or after it.
-  const double time_s = point.last ? plan.duration_s() : state.time * period_s;
-  point.program_time_s = state.time * period_s;
-  point.line = plan.Line(time_s);
-  plan.At(time_s, point.axes);
+  const double time_s = point.last ? walk_->duration_s() : state.time * period_s;
+  point.program_time_s = walk_->ProgramTime_s(state.time * period_s);
+  point.line = static_cast<std::uint32_t>(std::max(0, walk_->Line(time_s)));
+  walk_->At(time_s, point.axes);
   if (generator_->offsets()) generator_->offsets()->AddBetween(state.time, point);
   if (state.rate == 1.0 && state.change == 0.0) return;
   for (ReferencePoint& p : point.axes) {
@@ -89,13 +101,12 @@ void PacedPath::Evaluate(const PaceState& state, PathPoint& point) const {
 
 // Where the line ends that is under way at that time, or begins.
 double PacedPath::EndOfLine(double time) const {
-  const MotionPlan& plan = *generator_->plan();
   const double period_s = generator_->period_s();
   double at = std::floor(time + kRounding) + 1.0;
-  std::uint32_t line = 0;
+  int line = 0;
   // A dwell may belong to no line: then it belongs to the one before.
   const auto goes_on = [&](double place) {
-    const std::uint32_t there = plan.Line(place * period_s);
+    const int there = walk_->Line(place * period_s);
     if (line == 0) line = there;
     return there == 0 || there == line;
   };
@@ -113,34 +124,35 @@ std::optional<PaceLaw> PacedPath::ToEndOfLine(const PaceLaw& law) const {
   const double begin = std::ceil(law.settled());
   const double stop = EndOfLine(law.At(begin).time);
   // The last line ends by itself.
-  return std::isfinite(stop) ? ramp_.StopAt(law, begin, stop) : law;
+  return std::isfinite(stop) ? Ramp().StopAt(law, begin, stop) : law;
 }
 
 std::optional<PaceLaw> PacedPath::LawFrom(std::uint64_t begin, double rate) const {
   const auto from = static_cast<double>(begin);
-  if (!single_block_) return ramp_.From(law_, from, rate);
+  if (!single_block_) return Ramp().From(law_, from, rate);
   const double end_of_line = EndOfLine(law_.At(from).time);
   const auto before_its_end = [&](const PaceLaw& law) {
     return law.At(std::ceil(law.settled())).time < end_of_line;
   };
   if (rate <= 0.0) {
-    const std::optional<PaceLaw> law = ramp_.From(law_, from, rate);
+    const std::optional<PaceLaw> law = Ramp().From(law_, from, rate);
     return law && before_its_end(*law) ? law : std::nullopt;
   }
   // On a short line the pace that is wanted may not be reached.
   for (double slower = rate; slower > kSlowest * rate; slower *= 0.5) {
-    const std::optional<PaceLaw> law = ramp_.From(law_, from, slower);
+    const std::optional<PaceLaw> law = Ramp().From(law_, from, slower);
     if (!law || !before_its_end(*law)) continue;
     if (std::optional<PaceLaw> stopping = ToEndOfLine(*law)) return stopping;
   }
   return std::nullopt;
 }
 
-void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end, double rate) {
-  before_ = law_;
-  rate_before_ = rate_;
+// What the cycle knows is to be kept, until it has taken what comes now.
+void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end, double feed) {
+  before_.law = law_;
+  before_.feed = feed_;
   law_ = law;
-  rate_ = rate;
+  feed_ = feed;
   const std::uint64_t oldest = std::min(begin, end);
   law_.ForgetBefore(static_cast<double>(oldest > kRemembered ? oldest - kRemembered : 0));
   ++issued_;
@@ -150,40 +162,86 @@ void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end
   ended_ = false;
 }
 
-PacedPath::Change PacedPath::ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, Held resume) {
-  PaceState from = law_.At(static_cast<double>(earliest));
-  const auto held = [&] { return from.held != Held::kNot; };
-  if (!held() && IsLast(from.time)) return Change::kNothing;
-  if (held() ? from.held != resume : rate == rate_) {
-    rate_ = rate;
-    return Change::kNothing;
+// Below the programmed feed by the pace, above it by the walk, whose feed is changed at the pace 1 or at rest
+// only: one of the two changes at a time.
+PacedPath::Step PacedPath::StepTowards(double feed, double begin, double from_rate) const {
+  const double scale = std::clamp(feed, 1.0, kLargestScale);
+  if (feed <= 0.0 || !feed_may_exceed() || scale == scale_) return {std::min(feed, 1.0), scale_, false, true};
+  const bool steady = law_.AimAt(begin).reached;
+  if (steady && from_rate == 0.0) return {std::min(feed, 1.0), scale, true, true};
+  // The stop at the end of the line has been planned for the feed as it is: what is more comes after it.
+  if (single_block_) return {std::min(1.0, feed / scale_), scale_, false, true};
+  if (steady && from_rate == 1.0) return {1.0, scale, true, feed >= 1.0};
+  return {1.0, scale_, false, false};
+}
+
+void PacedPath::Rescale(std::uint64_t begin, double scale) {
+  before_.walk = walk_->Clone();
+  before_.scale = scale_;
+  walk_->ChangeFeed(law_.At(static_cast<double>(begin)).time * generator_->period_s(), scale);
+  scale_ = scale;
+}
+
+void PacedPath::ScaleBack() {
+  if (!before_.walk) return;
+  walk_ = std::move(before_.walk);
+  scale_ = before_.scale;
+}
+
+std::optional<PaceLaw> PacedPath::Take(const Step& step, std::uint64_t begin) {
+  const auto from = static_cast<double>(begin);
+  if (!step.rescale) {
+    // It is on its way to the pace 1 already.
+    if (!step.last && law_.AimAt(from).rate == 1.0) return std::nullopt;
+    return LawFrom(begin, step.rate);
   }
-  std::optional<PaceLaw> law = LawFrom(earliest, rate);
-  if (!law && from.change != 0.0) {
-    // Not out of the middle of another change: after it.
-    earliest = std::max(earliest, static_cast<std::uint64_t>(std::ceil(law_.settled())));
-    from = law_.At(static_cast<double>(earliest));
-    if (!held() && IsLast(from.time)) return Change::kNothing;
-    if (held()) {
-      // It rests there anyway, and goes on as it has been told last.
-      rate_ = rate;
+  const bool at_rest = law_.At(from).rate == 0.0;
+  Rescale(begin, step.scale);
+  std::optional<PaceLaw> law;
+  if (at_rest) {
+    law = LawFrom(begin, step.rate);
+  } else {
+    // Where it was to be held is another time now.
+    law = law_;
+    law->Ramp(from, 0.0, 1.0);
+  }
+  if (!law) ScaleBack();
+  return law;
+}
+
+PacedPath::Change PacedPath::ChangeFeed(std::uint64_t earliest, std::uint64_t end, double feed, Held resume) {
+  before_.walk.reset();
+  // Twice: not out of the middle of another change, then after it.
+  for (const bool again : {false, true}) {
+    const PaceState from = law_.At(static_cast<double>(earliest));
+    const bool held = from.held != Held::kNot;
+    if (!held && IsLast(from.time)) return Change::kNothing;
+    if (held ? from.held != resume || again : feed == feed_) {
+      // Where it is held it rests anyway, and goes on as it has been told last.
+      feed_ = feed;
       return Change::kNothing;
     }
-    law = LawFrom(earliest, rate);
+    const Step step = StepTowards(feed, static_cast<double>(earliest), from.rate);
+    if (const std::optional<PaceLaw> law = Take(step, earliest)) {
+      Adopt(*law, earliest, end, step.last ? feed : scale_ * step.rate);
+      return Change::kPlanned;
+    }
+    if (from.change == 0.0) break;
+    earliest = std::max(earliest, static_cast<std::uint64_t>(std::ceil(law_.settled())));
   }
-  if (!law) return Change::kLater;
-  Adopt(*law, earliest, end, rate);
-  return Change::kPlanned;
+  return Change::kLater;
 }
 
 void PacedPath::Taken() {
   taken_ = issued_;
   pending_ = false;
+  before_.walk.reset();
 }
 
 void PacedPath::Refused(std::uint64_t end) {
-  law_ = before_;
-  rate_ = rate_before_;
+  ScaleBack();
+  law_ = before_.law;
+  feed_ = before_.feed;
   pending_ = false;
   next_ = end;
   ended_ = false;

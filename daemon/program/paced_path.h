@@ -7,11 +7,17 @@
 #include "daemon/program/pace_law.h"
 #include "daemon/program/pace_ramp.h"
 #include "daemon/program/path_generator.h"
+#include "daemon/program/path_walk.h"
 
 namespace contour {
 
-/// A program's points at a pace that may change while they are handed out: pauses, and feeds other than the
-/// programmed one. At pace 1 from the start they are the generator's own, bit for bit.
+/// A program's points at a feed that may change while they are handed out, and pauses. At feed 1 from the
+/// start they are the generator's own, bit for bit.
+///
+/// Up to the programmed feed it is the program's time that goes by more slowly, so that all of it is slowed
+/// down alike. Beyond, the way along the path is timed anew, because its axes would be asked for more than
+/// they may where they are at their limits already; between the two the pace is 1 or 0 for a moment. Where
+/// the plan's feed is fixed (YAML shapes, and what is shifted by what was learnt) it stays at 1.
 ///
 /// With `single_block` it comes to rest at the end of every line of the program, and with `halts` where the
 /// program itself asks for it (MotionPlan::Halts); it stays there until it is resumed.
@@ -21,7 +27,7 @@ namespace contour {
 class PacedPath {
  public:
   struct Options {
-    double rate = 1.0;  ///< the pace that it begins with
+    double feed = 1.0;  ///< that it begins with
     bool single_block = false;
     bool halts = false;
   };
@@ -40,11 +46,11 @@ class PacedPath {
     kNothing,  ///< it runs at that pace already, or has come to its end first
     kLater,    ///< no way from here within the limits: try again
   };
-  /// From the point `earliest` on, or as soon after it as can be, the pace goes to `rate`. `end`: one past
-  /// the newest point that the cycle has; what lies between is handed out again. At rest at the
-  /// end of a line, or where the program halts, it goes on only when `resume` says so; it says of
-  /// which rest.
-  Change ChangePace(std::uint64_t earliest, std::uint64_t end, double rate, Held resume = Held::kNot);
+  /// From the point `earliest` on, or as soon after it as can be, the feed goes to `feed`, or a step towards
+  /// it: until feed() is that, it is to be asked again. `end`: one past the newest point that the cycle has;
+  /// what lies between is handed out again. At rest at the end of a line, or where the program halts, it goes
+  /// on only when `resume` says so; it says of which rest.
+  Change ChangeFeed(std::uint64_t earliest, std::uint64_t end, double feed, Held resume = Held::kNot);
   void Taken();
   /// It goes on by the law before, with the point `end`.
   void Refused(std::uint64_t end);
@@ -53,29 +59,50 @@ class PacedPath {
   [[nodiscard]] const Halt& halt() const { return halt_; }
   [[nodiscard]] bool pending() const { return pending_; }
   [[nodiscard]] std::uint32_t law_number() const { return issued_; }
-  /// The pace that it has been told to go to.
-  [[nodiscard]] double rate() const { return rate_; }
+  /// The feed that it has been told to go to.
+  [[nodiscard]] double feed() const { return feed_; }
+  /// Can it be more than the programmed one?
+  [[nodiscard]] bool feed_may_exceed() const { return generator_->feed_may_exceed(); }
   [[nodiscard]] const PathGenerator& generator() const { return *generator_; }
 
  private:
+  /// One step towards a feed.
+  struct Step {
+    double rate = 1.0;     ///< of the walk's own time
+    double scale = 1.0;    ///< of the walk's feed
+    bool rescale = false;  ///< to that scale, now
+    bool last = true;      ///< it leads to the feed
+  };
+  [[nodiscard]] Step StepTowards(double feed, double from, double from_rate) const;
   [[nodiscard]] bool IsLast(double time) const;
+  [[nodiscard]] PaceRamp Ramp() const { return {*walk_, generator_->limits(), generator_->period_s()}; }
   [[nodiscard]] std::optional<PaceLaw> LawFrom(std::uint64_t begin, double rate) const;
   [[nodiscard]] std::optional<PaceLaw> ToEndOfLine(const PaceLaw& law) const;
   [[nodiscard]] double EndOfLine(double time) const;
-  void Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end, double rate);
+  void Rescale(std::uint64_t begin, double scale);
+  void ScaleBack();
+  [[nodiscard]] std::optional<PaceLaw> Take(const Step& step, std::uint64_t begin);
+  void Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end, double feed);
   void StandAtHalt();
   [[nodiscard]] std::uint32_t HaltsAt(double index) const;
   void Evaluate(const PaceState& state, PathPoint& point) const;
 
   std::unique_ptr<PathGenerator> generator_;
-  PaceRamp ramp_;
-  double rate_;
-  double rate_before_ = 1.0;
+  std::unique_ptr<PathWalk> walk_;  ///< by the time of the law
+  double feed_;
+  double scale_ = 1.0;  ///< of the walk's feed
   bool single_block_;
   bool halts_;
   Halt halt_;
   PaceLaw law_;
-  PaceLaw before_;  ///< the law that the cycle knows, while another is pending
+  /// What the cycle knows, while another law is pending.
+  struct Known {
+    std::unique_ptr<PathWalk> walk;  ///< null: the same
+    double feed = 1.0;
+    double scale = 1.0;
+    PaceLaw law;
+  };
+  Known before_;
   bool pending_ = false;
   std::uint64_t pending_from_ = 0;  ///< first point of the pending law
   std::uint32_t issued_ = 0;        ///< number of the newest law; none is used twice

@@ -37,6 +37,8 @@ class PathGenerator {
   [[nodiscard]] std::uint64_t points() const;
   [[nodiscard]] std::uint64_t points_done() const { return next_; }
   [[nodiscard]] double duration_s() const { return plan_->duration_s(); }
+  /// Can its feed be more than the programmed one? A shift that was learnt belongs to the program's own time.
+  [[nodiscard]] bool feed_may_exceed() const { return plan_->feed_may_change() && !offsets_; }
   [[nodiscard]] const std::shared_ptr<const MotionPlan>& plan() const { return plan_; }
 
  private:

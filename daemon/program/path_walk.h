@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "core/axis.h"
@@ -20,7 +21,7 @@ namespace contour {
 ///
 /// A change concerns everything after `time_s`: points handed out for later times are void and have to be
 /// asked for again. So whoever keeps a queue changes the feed from the oldest point that can still be taken
-/// back.
+/// back. A change that may have to be withdrawn is made on a Clone(), which gives the same points until then.
 class PathWalk {
  public:
   virtual ~PathWalk() = default;
@@ -41,6 +42,18 @@ class PathWalk {
 
   /// Line of the program under way at a time; 0: none.
   [[nodiscard]] virtual int Line(double time_s) = 0;
+
+  /// How many of the places at which the program waits have been reached at a time.
+  [[nodiscard]] virtual std::uint32_t Halts(double time_s) = 0;
+
+  /// When the plan, at the programmed feed, is where this is at a time; the same time before the first
+  /// change.
+  [[nodiscard]] virtual double ProgramTime_s(double time_s) = 0;
+
+  /// Of the whole program at the feed as it is. Plans all of it; infinite while it rests on the way.
+  [[nodiscard]] virtual double duration_s() = 0;
+
+  [[nodiscard]] virtual std::unique_ptr<PathWalk> Clone() const = 0;
 };
 
 }  // namespace contour

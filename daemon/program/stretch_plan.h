@@ -30,6 +30,7 @@ class StretchPlan : public MotionPlan {
   [[nodiscard]] bool Moves(std::size_t axis) const override;
   [[nodiscard]] bool GoesOnAfter(double time_s) const override;
   [[nodiscard]] std::unique_ptr<PathWalk> Walk() const override;
+  [[nodiscard]] bool feed_may_change() const override { return true; }
 
   [[nodiscard]] const StretchProgram& program() const { return *program_; }
 

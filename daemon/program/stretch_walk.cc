@@ -8,14 +8,30 @@ namespace contour {
 namespace {
 
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
+constexpr double kRounding_s = 1e-9;
 // Laws kept besides those that cannot be made again.
 constexpr std::size_t kHeld = 4;
 
 }  // namespace
 
 StretchWalk::StretchWalk(std::shared_ptr<const StretchProgram> program)
-    : program_(std::move(program)), rests_from_s_(kNever_s) {
+    : program_(std::move(program)), rests_from_s_(kNever_s), changed_from_s_(kNever_s) {
   Append(0, 0.0, 0.0);
+}
+
+StretchWalk::StretchWalk(const StretchWalk& other)
+    : program_(other.program_),
+      held_(other.held_),
+      complete_(other.complete_),
+      end_s_(other.end_s_),
+      scale_(other.scale_),
+      not_before_s_(other.not_before_s_),
+      rests_from_s_(other.rests_from_s_),
+      changed_from_s_(other.changed_from_s_) {
+  for (const Leg& l : other.legs_)
+    legs_.push_back({l.part, l.from_m, l.scale, l.begin_s, l.changed,
+                     l.law ? std::make_unique<TimeLaw>(*l.law) : nullptr});
+  if (other.own_) own_ = std::make_unique<StretchWalk>(*other.own_);
 }
 
 void StretchWalk::Append(std::size_t part, double from_m, double begin_s) {
@@ -114,6 +130,10 @@ double StretchWalk::duration_s() {
 
 double StretchWalk::ChangeFeed(double time_s, double scale) {
   Extend(time_s);
+  if (!own_) {
+    own_ = std::make_unique<StretchWalk>(program_);
+    changed_from_s_ = time_s;
+  }
   complete_ = false;
   while (legs_.size() > 1 && legs_.back().begin_s > time_s) legs_.pop_back();
   scale_ = scale;
@@ -142,6 +162,35 @@ int StretchWalk::Line(double time_s) {
   if (law == nullptr) return 0;
   const ProgrammedPath& path = law->stretch().programmed;
   return path.move(path.MoveAt(law->At(time_s - legs_[leg].begin_s).way_m)).line;
+}
+
+double StretchWalk::BeginOf_s(std::size_t part) {
+  while (legs_.size() <= part) {
+    TimeLaw* law = LawOf(legs_.size() - 1);
+    Extend(legs_.back().begin_s + (law != nullptr ? law->duration_s() : 0.0) + kRounding_s);
+  }
+  return legs_[part].begin_s;
+}
+
+double StretchWalk::TimeAt_s(std::size_t part, double way_m) {
+  const double begin_s = BeginOf_s(part);
+  TimeLaw* law = LawOf(part);
+  return begin_s + (law != nullptr ? law->TimeAt_s(way_m) : 0.0);
+}
+
+double StretchWalk::ProgramTime_s(double time_s) {
+  if (time_s <= changed_from_s_) return time_s;
+  Extend(time_s);
+  const std::size_t leg = LegAt(time_s);
+  const std::size_t part = legs_[leg].part;
+  TimeLaw* law = LawOf(leg);
+  const double since_s = time_s - legs_[leg].begin_s;
+  const double moves_s =
+      law != nullptr ? own_->TimeAt_s(part, law->At(since_s).way_m) : own_->BeginOf_s(part);
+  const double moved_s = law != nullptr ? law->planned_s() : 0.0;
+  // A dwell takes the time that it takes.
+  const double dwelt_s = law != nullptr && law->stops_on_the_way() ? 0.0 : std::max(0.0, since_s - moved_s);
+  return moves_s + std::min(dwelt_s, program_->parts()[part].dwell_s);
 }
 
 }  // namespace contour

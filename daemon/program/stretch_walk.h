@@ -15,18 +15,20 @@ namespace contour {
 class StretchWalk : public PathWalk {
  public:
   explicit StretchWalk(std::shared_ptr<const StretchProgram> program);
+  StretchWalk(const StretchWalk& other);
+  StretchWalk& operator=(const StretchWalk&) = delete;
 
   void At(double time_s, PerAxis<ReferencePoint>& axes) override;
   [[nodiscard]] bool GoesOnAfter(double time_s) override;
   double ChangeFeed(double time_s, double scale) override;
   [[nodiscard]] double rests_from_s() const override { return rests_from_s_; }
   [[nodiscard]] int Line(double time_s) override;
-
-  /// Places reached at a time at which the program waits.
-  [[nodiscard]] std::uint32_t Halts(double time_s);
-
-  /// Of all of it, at the feed as it is.
-  double duration_s();
+  [[nodiscard]] std::uint32_t Halts(double time_s) override;
+  [[nodiscard]] double ProgramTime_s(double time_s) override;
+  [[nodiscard]] double duration_s() override;
+  [[nodiscard]] std::unique_ptr<PathWalk> Clone() const override {
+    return std::make_unique<StretchWalk>(*this);
+  }
 
  private:
   struct Leg {
@@ -42,6 +44,9 @@ class StretchWalk : public PathWalk {
   [[nodiscard]] std::size_t LegAt(double time_s);
   /// The law of a leg, made again where it was given up; null: only a dwell.
   TimeLaw* LawOf(std::size_t leg);
+  /// Of a walk whose feed never changes: when a part begins, and when it is at a way of that part.
+  [[nodiscard]] double BeginOf_s(std::size_t part);
+  [[nodiscard]] double TimeAt_s(std::size_t part, double way_m);
   [[nodiscard]] PerAxis<double> StartOf(const StretchProgram::Part& part) const;
 
   std::shared_ptr<const StretchProgram> program_;
@@ -52,6 +57,8 @@ class StretchWalk : public PathWalk {
   double scale_ = 1.0;
   double not_before_s_ = 0.0;  ///< the next leg begins
   double rests_from_s_;
+  double changed_from_s_;             ///< the feed was never changed before
+  std::unique_ptr<StretchWalk> own_;  ///< at the programmed feed; null before the first change
 };
 
 }  // namespace contour

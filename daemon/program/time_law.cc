@@ -136,6 +136,17 @@ double TimeLaw::SinceNode(std::size_t i, double since_s) const {
   return e;
 }
 
+double TimeLaw::TimeAt_s(double way_m) {
+  const double at_u = map_.Inverse(way_m);
+  while (time_s_.size() < speed_.u.size() && speed_.u[time_s_.size() - 1] < at_u) PlanWindow();
+  const auto settled = speed_.u.begin() + static_cast<std::ptrdiff_t>(time_s_.size());
+  const auto after = std::upper_bound(speed_.u.begin(), settled, at_u);
+  if (after == settled) return time_s_.back();
+  if (after == speed_.u.begin()) return 0.0;
+  const auto i = static_cast<std::size_t>(after - speed_.u.begin()) - 1;
+  return time_s_[i] + TimeWithin(i, at_u - speed_.u[i]);
+}
+
 std::size_t TimeLaw::NodeAfter(double time_s) {
   const auto after = std::lower_bound(time_s_.begin(), time_s_.end(), std::max(0.0, time_s));
   const auto node = static_cast<std::size_t>(after - time_s_.begin());

@@ -28,6 +28,10 @@ class TimeLaw {
   bool GoesOnAfter(double time_s);
   /// Plans all of it.
   double duration_s();
+  /// Until the end of what is planned.
+  [[nodiscard]] double planned_s() const { return stops_ ? last_s_ + tail_s_ : time_s_.back(); }
+  /// When it is at a way, 0 and duration_s() beyond either end. The feed must never have been changed.
+  double TimeAt_s(double way_m);
 
   /// As PathWalk::ChangeFeed. After a change to 0 the law ends where it rests, which is not the stretch's end
   /// but for chance.

@@ -93,6 +93,10 @@ class CommandMailbox {
   [[nodiscard]] bool more_path_to_come() const noexcept {
     return more_to_come_.load(std::memory_order_acquire);
   }
+  /// Whether another law of time is being planned; lock-step time waits for it, or every law would come too
+  /// late.
+  void SetPathPlanning(bool planning) noexcept { planning_.store(planning, std::memory_order_release); }
+  [[nodiscard]] bool path_planning() const noexcept { return planning_.load(std::memory_order_acquire); }
   [[nodiscard]] std::size_t path_points_waiting() const noexcept { return path_.size(); }
   [[nodiscard]] std::size_t path_capacity() const noexcept { return path_.capacity(); }
 
@@ -166,6 +170,7 @@ class CommandMailbox {
   std::atomic<std::uint32_t> terminate_{0};
   std::atomic<ContourController*> next_controller_{nullptr};
   std::atomic<bool> more_to_come_{false};
+  std::atomic<bool> planning_{false};
   std::atomic<std::size_t> skip_{0};  ///< so many path points are not wanted
   // PathProgress:
   std::atomic<std::uint64_t> earliest_{PathProgress::kNowhere};

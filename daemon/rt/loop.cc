@@ -203,7 +203,7 @@ void Loop::WaitForWork(const CycleOutput& last, const IoInput& io, const GridPoi
                          mailbox_.path_points_waiting() < kMaxPathPointsPerCycle;
     // Nothing waits for real time here, so nothing needs to be dropped either.
     const bool crowded = telemetry_.size() + 1 >= telemetry_.capacity();
-    if (!idle && !starved && !crowded) return;
+    if (!idle && !starved && !crowded && !mailbox_.path_planning()) return;
     // The drives' hearts go on beating: left in the sockets, they would fill the input of the next cycles and
     // push the feedback out of it.
     runner_.Receive(grid.time_ns, frames);

@@ -82,7 +82,8 @@ def check_pause(operator, circle):
     assert at["program"]["left_s"] is None, at["program"]
     refused = operator.call("run", str(circle))
     assert refused.returncode == 1 and "Running" in refused.stderr, refused.stderr
-    assert operator.call("feed", "120").returncode == 1
+    assert operator.call("feed", "201").returncode == 1
+    assert "runs at 100 percent of its feed, not at 120" in operator.ask("feed", "120"), "a circle is as fast as it is"
     operator.ask("feed", "40")
     operator.ask("pause")
     again = operator.status()
@@ -130,6 +131,32 @@ def check_zero(operator, circle, plain):
     operator.ask("zero")
     zero_mm = operator.status()["zero_mm"]
     assert abs(zero_mm["x"] - 1e3 * operator.table(first)[-1][0]) < 1e-4, zero_mm
+
+
+def check_faster(operator):
+    """G-code goes as fast as it is told while it runs, and a feed stays for the programs to come."""
+    ngc = operator.scratch / "faster.ngc"
+    ngc.write_text("G21 F1200\nG0 X0 Y0\n" + "G1 X30\nG1 X0\n" * 6, encoding="utf-8")
+    took = []
+    for feed in ("100", "200"):
+        operator.ask("feed", feed)
+        took.append(float(operator.ask("run", str(ngc)).split("faster.ngc: ")[1].split(" s")[0]))
+    assert took[1] < 0.6 * took[0], took
+    ngc.write_text("G21 F1200\nG0 X0 Y0\n" + "G1 X30\nG1 X0\n" * 60, encoding="utf-8")
+    run = operator.start(ngc)
+    status = operator.wait("200 %", lambda s: s["state"] != "Running" or s["program"]["pace"] > 1.95)
+    assert status["program"]["feed_percent"] == 200 and not status["program"]["feed_fixed"], status["program"]
+    operator.ask("pause")
+    operator.ask("feed", "130")
+    operator.ask("resume")
+    operator.wait("130 %", lambda s: s["state"] != "Running" or abs(s["program"]["pace"] - 1.3) < 0.01)
+    operator.ask("feed", "100")
+    out, errors = run.communicate()
+    assert run.returncode == 0, (out, errors)
+    operator.ask("feed", "150")
+    said = operator.ask("run", str(operator.scratch / "circle.yaml"))
+    assert "runs at 100 percent of its feed, not at 150" in said, said
+    operator.ask("feed", "100")
 
 
 def check_lines(operator):
@@ -210,6 +237,8 @@ def main():
             operator.ask("enable")
             plain = check_pause(operator, circle)
             check_zero(operator, circle, plain)
+            circle.write_text("{shape: circle, radius_mm: 1, frequency_hz: 1, turns: 2}", encoding="utf-8")
+            check_faster(operator)
             check_lines(operator)
             check_halts(operator)
         finally:

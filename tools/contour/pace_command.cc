@@ -58,8 +58,8 @@ int RunZero(const std::string& socket) {
 
 int RunFeed(const std::string& socket, double percent) {
   ControlClient client = ConnectToDaemon(socket);
-  AskOrThrow(client, {{"request", "feed"}, {"percent", percent}});
-  std::cout << "done\n";
+  const nlohmann::json reply = AskOrThrow(client, {{"request", "feed"}, {"percent", percent}});
+  std::cout << reply.value("text", "done") << "\n";
   return kExitDone;
 }
 
@@ -89,7 +89,7 @@ void AddPaceCommands(CLI::App& app, Action& action) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* feed = app.add_subcommand("feed", "Run programs at so many percent of the programmed feed");
-  feed->add_option("percent", options->percent, "0 to 100; it stays for the programs to come")->required();
+  feed->add_option("percent", options->percent, "0 to 200; it stays for the programs to come")->required();
   AddSocketOption(*feed, options->socket);
   feed->callback(
       [options, &action] { action = [options] { return RunFeed(options->socket, options->percent); }; });

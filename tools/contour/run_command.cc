@@ -299,6 +299,7 @@ int RunRun(const Options& options) {
   const json reply = RunProgram(*client, RequestOf(options));
   const std::uint32_t id = reply.at("program_id");
   TellPlace(reply, program);
+  if (reply.contains("text")) std::cout << reply.at("text").get<std::string>() << "\n" << std::flush;
   if (const std::size_t passes = reply.value("learnt_passes", std::size_t{0}); passes > 0)
     std::cout << "passes learnt from: " << passes << "\n" << std::flush;
   if (rows) rows->SetProgram(id);

@@ -1,9 +1,11 @@
 #include "tools/contour/simulate_command.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -24,6 +26,8 @@ struct Options {
   std::string controller;
   std::vector<std::string> set;
   std::optional<std::uint64_t> seed;
+  std::vector<std::string> feed;
+  std::vector<FeedFrom> feeds;
   int passes = 1;
   std::string out;
   std::string log;
@@ -42,8 +46,33 @@ std::string Line(const SimulationResult& result, const SimulationRequest& reques
   return ResultLine(line);
 }
 
+/// PERCENT or PERCENT@SECONDS.
+FeedFrom FeedOf(const std::string& text) {
+  double percent = 0.0, time_s = 0.0;
+  char at = '@';
+  std::istringstream stream(text);
+  stream >> percent;
+  if (stream && !stream.eof()) stream >> at >> time_s;
+  std::string rest;
+  if (!stream || at != '@' || stream >> rest || !(percent >= 0.0 && percent <= 200.0) || !(time_s >= 0.0))
+    throw CLI::ValidationError("--feed",
+                               "found '" + text + "', expected PERCENT or PERCENT@SECONDS, 0 to 200 percent");
+  return {time_s, 0.01 * percent};
+}
+
+std::vector<FeedFrom> FeedsOf(const std::vector<std::string>& texts) {
+  std::vector<FeedFrom> feeds;
+  for (const std::string& text : texts) feeds.push_back(FeedOf(text));
+  std::stable_sort(feeds.begin(), feeds.end(),
+                   [](const FeedFrom& a, const FeedFrom& b) { return a.time_s < b.time_s; });
+  if (!feeds.empty() && feeds.back().feed == 0.0)
+    throw CLI::ValidationError("--feed", "the last feed is 0: the program would never end");
+  return feeds;
+}
+
 int RunSimulate(const Options& options) {
   SimulationRequest request;
+  request.feeds = options.feeds;
   std::vector<std::string> set = options.set;
   // The file's own controller judges what the file allows: in a simulation a softer rival hurts nobody. But
   // `full` may need loops that the file has no use for.
@@ -101,9 +130,17 @@ void AddSimulateCommand(CLI::App& app, Action& action) {
   sub->add_option("--passes", options->passes,
                   "Run the program so many times, one after the other; metrics and cycles are of the last")
       ->check(CLI::Range(1, 10000));
+  sub->add_option("--feed", options->feed,
+                  "PERCENT or PERCENT@SECONDS: run at so many percent of the programmed feed, 0 to 200, from "
+                  "the beginning or so long after it; repeatable. Only G-code can be faster than programmed")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub->add_option("--out", options->out, "Directory for metrics.json and cycles.csv")->required();
   sub->add_option("--log", options->log, "Record every cycle in this log, for `contour replay`");
-  sub->callback([options, &action] { action = [options] { return RunSimulate(*options); }; });
+  sub->callback([options, &action] {
+    options->feeds = FeedsOf(options->feed);
+    action = [options] { return RunSimulate(*options); };
+  });
 }
 
 }  // namespace contour

@@ -141,6 +141,33 @@ class PassesFile {
   std::string text_ = "pass,encoder_peak_um,encoder_rms_um,table_peak_um,table_rms_um\n";
 };
 
+/// Asks for the feeds of a pass when it is time for them.
+class FeedSchedule {
+ public:
+  FeedSchedule(const SimulationRequest& request, VirtualMachine& machine)
+      : feeds_(request.feeds), machine_(machine), period_s_(1e-6 * request.file.machine.machine.cycle_us) {}
+
+  /// That the pass begins with.
+  double Begin() {
+    double feed = 1.0;
+    for (; next_ < feeds_.size() && feeds_[next_].time_s <= 0.0; ++next_) feed = feeds_[next_].feed;
+    return feed;
+  }
+  /// A cycle in which the program ran.
+  void Count() {
+    ++cycles_;
+    for (; next_ < feeds_.size() && feeds_[next_].time_s <= period_s_ * static_cast<double>(cycles_); ++next_)
+      machine_.SetPace(feeds_[next_].feed);
+  }
+
+ private:
+  const std::vector<FeedFrom>& feeds_;
+  VirtualMachine& machine_;
+  double period_s_;
+  std::size_t next_ = 0;
+  std::uint64_t cycles_ = 0;
+};
+
 }  // namespace
 
 SimulationResult RunSimulation(const SimulationRequest& request) {
@@ -162,14 +189,17 @@ SimulationResult RunSimulation(const SimulationRequest& request) {
     if (pass == request.passes)
       cycles.emplace(request.out / "cycles.csv", machine.axis_names(), request.file.machine.machine.cycle_us);
     Scoring scoring(request, machine);
+    FeedSchedule feeds(request, machine);
     machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
       if (entry.output.record.state != MachineState::kRunning) return;
       tally.Consume(entry.output.record);
       if (cycles) cycles->Add(entry, truth);
       scoring.Add(entry.output.record, truth);
+      feeds.Count();
     });
-    machine.Run(request.gcode.empty() ? request.program
-                                      : machine.ReadGcode(request.gcode, request.program.name));
+    machine.Run(
+        request.gcode.empty() ? request.program : machine.ReadGcode(request.gcode, request.program.name),
+        feeds.Begin());
     machine.SetObserver(nullptr);
     const RunMetrics metrics = scoring.Finish();
     passes.Add(pass, metrics);

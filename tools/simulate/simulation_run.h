@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "analysis/metrics/run_metrics.h"
 #include "core/controller_name.h"
@@ -12,6 +13,12 @@
 
 namespace contour {
 
+/// The feed from a time on.
+struct FeedFrom {
+  double time_s = 0.0;  ///< since the program began to run
+  double feed = 1.0;    ///< 1 as programmed, 0 to 2
+};
+
 struct SimulationRequest {
   EmulatedMachineFile file;
   ControllerName controller = ControllerName::kFull;
@@ -20,8 +27,9 @@ struct SimulationRequest {
   std::string gcode;
   std::filesystem::path log;  ///< of every cycle, for replay; empty: none
   LogHeader log_header;
-  int passes = 1;             ///< runs of the program, one after the other; the files are of the last
-  std::filesystem::path out;  ///< directory for cycles.csv and metrics.json; made when missing
+  std::vector<FeedFrom> feeds;  ///< in order of time; of every pass
+  int passes = 1;               ///< runs of the program, one after the other; the files are of the last
+  std::filesystem::path out;    ///< directory for cycles.csv and metrics.json; made when missing
 };
 
 /// What came of it, of the last pass.

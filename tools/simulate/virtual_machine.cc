@@ -139,19 +139,19 @@ Program VirtualMachine::ReadGcode(const std::string& text, const std::string& na
                     {referenced, {}, {}});
 }
 
-std::uint32_t VirtualMachine::Start(const Program& program) {
+std::uint32_t VirtualMachine::Start(const Program& program, double feed) {
   const Placement place = PlaceNow();
   const PerAxis<PlanLimits> limits = LimitsNow(limits_, record());
   plan_ = PlanPlaced(program, place, limits);
   auto generator =
       std::make_unique<PathGenerator>(plan_, limits, static_cast<double>(period_ns_) * 1e-9, ++program_id_);
   learning_.Prepare(program.name, place.start_m, program_id_, *generator);
-  feeder_.Begin(std::move(generator));
+  feeder_.Begin(std::move(generator), {feed, false, false});
   return mailbox_.Post(RequestKind::kRun, program_id_);
 }
 
-void VirtualMachine::Run(const Program& program) {
-  const std::uint32_t sequence = Start(program);
+void VirtualMachine::Run(const Program& program, double feed) {
+  const std::uint32_t sequence = Start(program, feed);
   const auto acknowledged = [&] { return record().acknowledged >= sequence; };
   bool ran = false;
   for (;;) {

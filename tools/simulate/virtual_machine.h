@@ -58,16 +58,17 @@ class VirtualMachine {
   /// Enables and waits until the machine holds.
   void Enable();
   /// Asks for a program and supplies its points from now on; the caller ticks. Gives the request's sequence.
-  std::uint32_t Start(const Program& program);
+  /// `feed`: that it begins with, 1 as programmed.
+  std::uint32_t Start(const Program& program, double feed = 1.0);
   /// Programs count from where the machine stands now, instead of each from where it begins.
   void SetZero();
   /// G-code for where the machine stands. Throws ProgramError.
   [[nodiscard]] Program ReadGcode(const std::string& text, const std::string& name) const;
   /// Runs a program to its end, learning as the machine file says: by its name and place a program is known.
   /// Throws std::runtime_error with the reason when the machine stops otherwise.
-  void Run(const Program& program);
-  /// The pace that the program shall go to; 1 as programmed, 0 a pause.
-  void SetPace(double rate) { feeder_.SetPace(rate); }
+  void Run(const Program& program, double feed = 1.0);
+  /// The feed that the program shall go to; 1 as programmed, 0 a pause, 2 at most.
+  void SetPace(double feed) { feeder_.SetPace(feed); }
   /// One more cycle, whatever the state.
   void Tick();
   /// So many grid points go by without a cycle, as on an overloaded host. What time does to the plant

@@ -1,0 +1,236 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "daemon/path_feeder.h"
+#include "daemon/program/gcode/program_halts.h"
+#include "tests/daemon/path_consumer.h"
+#include "tests/daemon/program/keeps_limits.h"
+#include "tests/daemon/program/part_programs.h"
+
+// Feeds of 0 to 200 %, as the cycle sees them.
+namespace contour {
+namespace {
+
+using test::Consumer;
+using test::kPeriod_s;
+using test::Limits;
+using test::Origin;
+
+constexpr double kTolerance_m = 1e-5;
+
+PerAxis<PlanLimits> WithTolerance(PerAxis<PlanLimits> limits) {
+  for (PlanLimits& l : limits) l.path_tolerance_m = kTolerance_m;
+  return limits;
+}
+
+/// A program on its way from the supply to the cycle.
+class Way {
+ public:
+  Way(const std::string& text, const PerAxis<PlanLimits>& limits, const PacedPath::Options& options = {},
+      ProgramFormat format = ProgramFormat::kGcode)
+      : mailbox_(16, 4096), feeder_(mailbox_), consumer_(mailbox_, 120.0), watch_(limits, kPeriod_s) {
+    Program program = ParseProgram(text, "program of the test", format);
+    if (options.halts) UseEvents(std::get<GcodeMoves>(program.shape), EventUse{true, {}});
+    feeder_.Begin(std::make_unique<PathGenerator>(program, Origin(), limits, kPeriod_s, 1), options);
+    plan_ = feeder_.path()->generator().plan();
+  }
+  PathFeeder& feeder() { return feeder_; }
+  Consumer& consumer() { return consumer_; }
+  [[nodiscard]] const MotionPlan& plan() const { return *plan_; }
+  [[nodiscard]] bool ended() { return consumer_.follower().at_end(); }
+  [[nodiscard]] ProgramPlace place() { return consumer_.follower().program_place(); }
+  [[nodiscard]] const test::LimitWatch& watch() const { return watch_; }
+  [[nodiscard]] double off_m() const { return off_m_; }
+  [[nodiscard]] int cycles() const { return cycles_; }
+
+  void Cycle(bool feed = true, bool tell = true) {
+    if (feed) feeder_.Feed();
+    consumer_.Tick(tell);
+    const PerAxis<ReferencePoint> now = consumer_.Now();
+    watch_.Add(now);
+    PerAxis<double> at_m;
+    for (const ReferencePoint& p : now) at_m.push_back(p.position_m);
+    off_m_ = std::max(off_m_, plan_->Distance_m(at_m));
+    ++cycles_;
+  }
+  void Run(int most) {
+    for (int i = 0; i < most && !ended(); ++i) Cycle();
+  }
+  void ExpectAtItsEnd() {
+    PerAxis<ReferencePoint> end;
+    plan_->At(plan_->duration_s(), end);
+    const PerAxis<ReferencePoint> now = consumer_.Now();
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      EXPECT_NEAR(now[i].position_m, end[i].position_m, 1e-11);
+      EXPECT_EQ(now[i].velocity_m_s, 0.0);
+    }
+  }
+
+ private:
+  CommandMailbox mailbox_;
+  PathFeeder feeder_;
+  Consumer consumer_;
+  std::shared_ptr<const MotionPlan> plan_;
+  test::LimitWatch watch_;
+  double off_m_ = 0.0;
+  int cycles_ = 0;
+};
+
+std::vector<std::string> Programs() {
+  return {testing::ChordCircle(10, 0.1, 3, 2500), testing::Pocket(2, 3000), testing::RapidZigzag(4),
+          testing::EngravedText(3, 3, 0.05, 3, 1500), "F2000\nG1 X40\nG4 P0.3\nG1 Y20\nG0 X0 Y0\n"};
+}
+
+// The supply looks seldom and hears late, as on a busy host; the feed changes at any time, in the middle of
+// another change too. Laws that come too late are withdrawn.
+TEST(FeedOverrideTest, AnyFeedAtAnyTimeKeepsTheLimitsAndThePath) {
+  std::mt19937 random(5);
+  const auto below = [&](unsigned n) { return static_cast<int>(random() % n); };
+  const auto programs = Programs();
+  const PerAxis<PlanLimits> sets[] = {Limits(0.25, 5.0, 200.0), Limits(0.6, 2.0, 30.0),
+                                      Limits(0.1, 15.0, 2000.0)};
+  int refused = 0;
+  double fastest = 0.0;
+  for (std::size_t round = 0; round < 2 * programs.size(); ++round) {
+    SCOPED_TRACE(round);
+    Way way(programs[round % programs.size()], WithTolerance(sets[round % 3]),
+            {round % 4 == 3 ? 1.7 : 1.0, false});
+    double time_s = 0.0;
+    int until_feed = 0, until_change = 300;
+    for (int i = 0; i < 40000 && !way.ended(); ++i) {
+      const bool feed = --until_feed <= 0;
+      if (feed) until_feed = 1 + below(60);
+      if (--until_change == 0) {
+        way.feeder().SetPace(i > 8000 ? 1.0 : below(5) == 0 ? 0.0 : 0.01 * (1 + below(200)));
+        until_change = 1 + below(400);
+      }
+      way.Cycle(feed, i / 100 % 2 == 0);
+      refused += way.consumer().follower().progress().refused_law != 0 ? 1 : 0;
+      ASSERT_GE(way.place().time_s, time_s - 1e-9);
+      time_s = way.place().time_s;
+      fastest = std::max(fastest, way.place().pace);
+    }
+    EXPECT_TRUE(way.ended());
+    way.ExpectAtItsEnd();
+    EXPECT_EQ(way.consumer().dry(), 0);
+    EXPECT_LE(way.off_m(), kTolerance_m);
+    way.watch().ExpectKept();
+  }
+  EXPECT_GT(refused, 0) << "the test shall see laws that come too late";
+  EXPECT_GT(fastest, 1.5) << "and feeds that are kept";
+}
+
+TEST(FeedOverrideTest, IsFasterWhereTheFeedBinds) {
+  const PerAxis<PlanLimits> limits = WithTolerance(Limits(0.5, 5.0, 200.0));
+  const auto cycles = [&](const std::string& text, double feed) {
+    Way way(text, limits, {feed, false});
+    way.Run(100000);
+    EXPECT_TRUE(way.ended());
+    way.watch().ExpectKept();
+    return way.cycles();
+  };
+  const std::string line = "F1500\nG1 X100\n";
+  EXPECT_NEAR(cycles(line, 2.0), 0.5 * cycles(line, 1.0), 200);
+  EXPECT_NEAR(cycles(line, 1.5), cycles(line, 1.0) / 1.5, 200);
+  // Rapids are as fast as the axes already.
+  EXPECT_NEAR(cycles(testing::RapidZigzag(3), 2.0), cycles(testing::RapidZigzag(3), 1.0), 5);
+}
+
+TEST(FeedOverrideTest, WhereItIsInTheProgramAndWhenItEndsAreTold) {
+  Way way("F1500\nG1 X50\nG1 Y50\n", WithTolerance(Limits(0.5, 5.0, 200.0)));
+  way.Run(500);
+  way.feeder().SetPace(2.0);
+  way.Run(500);
+  EXPECT_NEAR(way.place().pace, 2.0, 1e-3);
+  EXPECT_EQ(way.place().line, 2U);
+  way.Run(100000);
+  EXPECT_TRUE(way.ended());
+  EXPECT_NEAR(way.place().time_s, way.plan().duration_s(), 3e-3);
+  EXPECT_LT(way.cycles() * kPeriod_s, 0.7 * way.plan().duration_s());
+}
+
+TEST(FeedOverrideTest, APauseAboveTheProgrammedFeedGoesOnAsFast) {
+  Way way("F1500\nG1 X60\nG1 Y50\nX0\n", WithTolerance(Limits(0.5, 5.0, 200.0)), {2.0, false});
+  way.Run(500);
+  way.feeder().SetPace(0.0);
+  way.Run(1000);
+  EXPECT_EQ(way.place().pace, 0.0);
+  const double rested_s = way.place().time_s;
+  way.feeder().SetPace(0.5);
+  way.Run(600);
+  EXPECT_NEAR(way.place().pace, 0.5, 1e-3);
+  EXPECT_GT(way.place().time_s, rested_s);
+  way.feeder().SetPace(2.0);
+  way.Run(600);
+  EXPECT_NEAR(way.place().pace, 2.0, 0.02);
+  way.Run(100000);
+  way.ExpectAtItsEnd();
+  way.watch().ExpectKept();
+}
+
+TEST(FeedOverrideTest, AShapeStaysAtItsOwnFeed) {
+  const char* const circle = "{shape: circle, radius_mm: 10, turns: 3, frequency_hz: 1}";
+  const PerAxis<PlanLimits> limits = Limits(0.4, 8.0, 400.0);
+  Way fast(circle, limits, {1.8, false}, ProgramFormat::kYaml);
+  Way plain(circle, limits, {}, ProgramFormat::kYaml);
+  EXPECT_FALSE(fast.feeder().path()->feed_may_exceed());
+  while (!plain.ended()) {
+    plain.Cycle();
+    fast.Cycle();
+    for (std::size_t i = 0; i < 2; ++i)
+      ASSERT_EQ(plain.consumer().Now()[i].position_m, fast.consumer().Now()[i].position_m);
+  }
+  EXPECT_TRUE(fast.ended());
+}
+
+TEST(FeedOverrideTest, SingleBlockRestsAtTheEndOfItsLinesAtAnyFeed) {
+  Way way("G61.1 F1500\nG1 X20\nG1 Y10\nG1 X60\n", WithTolerance(Limits(0.5, 5.0, 200.0)), {1.5, true});
+  way.Run(3000);
+  EXPECT_NEAR(way.consumer().Now()[0].position_m, 20e-3, 1e-9);
+  way.feeder().SetPace(2.0);
+  way.Run(500);
+  EXPECT_NEAR(way.consumer().Now()[1].position_m, 0.0, 1e-9) << "another feed is no reason to go on";
+  way.feeder().SetPace(2.0, true);
+  way.Run(250);
+  EXPECT_NEAR(way.place().pace, 2.0, 1e-3);
+  way.feeder().SetPace(0.5);
+  way.Run(3000);
+  EXPECT_NEAR(way.consumer().Now()[1].position_m, 10e-3, 1e-9);
+  way.feeder().SetPace(0.5, true);
+  way.Run(600);
+  EXPECT_NEAR(way.place().pace, 0.5, 1e-3);
+  way.feeder().SetPace(1.2);
+  way.Run(100000);
+  way.ExpectAtItsEnd();
+  way.watch().ExpectKept();
+}
+
+TEST(FeedOverrideTest, WaitsWhereTheProgramSaysAtAnyFeed) {
+  for (const double feed : {1.0, 0.4, 1.6}) {
+    Way way("F1500\nG1 X30\nM0\nG1 X60\n", WithTolerance(Limits(0.5, 5.0, 200.0)), {feed, false, true});
+    way.Run(300);
+    // The place where it waits may have been handed out already.
+    way.feeder().SetPace(2.0);
+    way.Run(3000);
+    EXPECT_NEAR(way.consumer().Now()[0].position_m, 30e-3, 1e-9);
+    EXPECT_EQ(way.feeder().halt().number, 1U);
+    EXPECT_NEAR(way.place().time_s, way.feeder().halt().time_s, 2e-3);
+    way.feeder().SetPace(1.3);
+    way.Run(500);
+    EXPECT_NEAR(way.consumer().Now()[0].position_m, 30e-3, 1e-9) << "another feed is no reason to go on";
+    way.feeder().Release();
+    way.Run(300);
+    EXPECT_NEAR(way.place().pace, 1.3, 1e-3);
+    way.Run(100000);
+    way.ExpectAtItsEnd();
+    way.watch().ExpectKept();
+  }
+}
+
+}  // namespace
+}  // namespace contour
