@@ -374,6 +374,18 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
   Append(ImplausibleTelemetry(c.telemetry), problems);
   if (c.io.modbus) {
     if (std::string text = Problem(*c.io.modbus); !text.empty()) problems.Add("io.modbus.timeout_ms", text);
+    const IoOutputsConfig& outputs = c.io.modbus->outputs;
+    if (outputs.program) {
+      const std::string shared = SharedAddress(
+          *outputs.program, outputs.lubrication ? std::optional(outputs.lubrication->coil) : std::nullopt);
+      if (!shared.empty())
+        problems.Add("io.modbus.outputs." + shared,
+                     "another output has this address, expected one of its own");
+      const auto& speed = outputs.program->spindle_speed;
+      if (speed && speed->largest_rpm * speed->counts_per_rpm > 65535.0)
+        problems.Add("io.modbus.outputs.program.spindle_speed.largest_rpm",
+                     "its counts do not fit into a register of 16 bits, expected 65535 counts at most");
+    }
     const auto& temperature = c.io.modbus->inputs.screw_temperature;
     if (temperature && temperature->degC_per_count == 0.0)
       problems.Add("io.modbus.inputs.screw_temperature.degC_per_count",

@@ -29,6 +29,8 @@ struct MachineSection {
   std::int32_t cycle_us = 1000;
   ControllerName controller = ControllerName::kFull;
   double path_tolerance_mm = 0.01;
+  bool optional_stop = false;
+  bool block_delete = true;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -38,6 +40,8 @@ struct MachineSection {
     v.Optional("path_tolerance_mm", path_tolerance_mm, kPositive,
                "how far the table may leave the path of a program that does not say so itself: corners of "
                "G-code with G0 and with G64 without P, of squares without corners");
+    v.Optional("optional_stop", optional_stop, "M1 of a program waits for the operator, as M0 does");
+    v.Optional("block_delete", block_delete, "lines of G-code that begin with a slash are left out");
   }
 };
 

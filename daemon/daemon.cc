@@ -28,6 +28,7 @@
 #include "daemon/make_cycle_config.h"
 #include "daemon/make_log_header.h"
 #include "daemon/memory/friction_memory.h"
+#include "daemon/modbus_outputs.h"
 #include "daemon/pump.h"
 #include "daemon/realtime_thread.h"
 #include "daemon/rt/loop.h"
@@ -147,6 +148,11 @@ class Daemon {
     if (machine_.io.modbus) {
       io_client_ = std::make_unique<IoClient>(*machine_.io.modbus);
       io_ = std::make_unique<IoAdapter>(*io_client_);
+      if (machine_.io.modbus->outputs.program) {
+        outputs_ =
+            std::make_unique<ModbusOutputs>(*machine_.io.modbus->outputs.program, *io_client_->outputs());
+        pump_.SwitchOutputsBy(*outputs_);
+      }
       pump_.ReportMotionTo(
           [this](double travel_m, double moving_s) { io_client_->ReportMotion(travel_m, moving_s); });
     } else {
@@ -337,6 +343,7 @@ class Daemon {
   ProgramLearning learning_;
   Cycle cycle_;
   std::unique_ptr<IoClient> io_client_;
+  std::unique_ptr<ModbusOutputs> outputs_;
   std::unique_ptr<IoSource> io_;
   std::unique_ptr<StateSnapshots> snapshots_;
   std::unique_ptr<Loop> loop_;

@@ -33,6 +33,11 @@ const GcodeEvent* HaltKeeper::Now() const {
 }
 
 void HaltKeeper::Consume(const CycleRecord& record, const PacedPath::Halt& ahead) {
+  if (outputs_ != nullptr) outputs_->Confirm();
+  const bool runs = record.state == MachineState::kRunning && record.program_id == program_id_;
+  // Stopping, ended, faulted: whatever it is, what the program switched on goes off.
+  if (runs_ && !runs && outputs_ != nullptr) outputs_->Off();
+  runs_ = runs;
   if (record.program_id != program_id_) return;
   const bool stands = record.state == MachineState::kRunning && record.pace == 0.0 && ahead.number > 0 &&
                       ahead.number <= halts_.size() &&
@@ -63,6 +68,8 @@ void HaltKeeper::Work() {
     Step();
   }
 }
+
+bool HaltKeeper::TakeLoss() { return outputs_ != nullptr && outputs_->TakeLoss() && runs_; }
 
 bool HaltKeeper::holding() const {
   const GcodeEvent* event = Now();

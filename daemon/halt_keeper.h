@@ -27,6 +27,8 @@ class HaltKeeper {
   void Consume(const CycleRecord& record, const PacedPath::Halt& ahead);
   /// Again and again: outputs take their time.
   void Work();
+  /// The program has to end: an output that it needs went off. True once.
+  [[nodiscard]] bool TakeLoss();
   /// It waits for the operator.
   [[nodiscard]] bool holding() const;
   /// It waits, for whatever it is.
@@ -53,6 +55,7 @@ class HaltKeeper {
   std::size_t event_ = 0;   ///< of the halt
   bool asked_ = false;      ///< the outputs have been told
   bool release_ = false;
+  bool runs_ = false;  ///< the program's cycles have been seen
   std::uint64_t waits_ = 0;
   mutable std::mutex mutex_;  // guards the next
   std::optional<HaltStatus> status_;

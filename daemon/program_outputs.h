@@ -15,6 +15,12 @@ class ProgramOutputs {
   [[nodiscard]] virtual bool Done() = 0;
   /// The operator has let a program go on that waited at this event.
   virtual void Over(const GcodeEvent& event) = 0;
+  /// The program does not run any more: everything off.
+  virtual void Off() = 0;
+  /// Again and again: the machine's cycles go on.
+  virtual void Confirm() = 0;
+  /// Outputs that a program had on went off without it; true once.
+  [[nodiscard]] virtual bool TakeLoss() = 0;
 };
 
 }  // namespace contour

@@ -25,6 +25,7 @@ bool Given(MachineState s) {
 Pump::Pump(TelemetryQueue& queue, CommandMailbox& mailbox, TelemetryHub& hub, double period_s,
            std::vector<std::string> axis_names, std::vector<std::string> bus_names)
     : queue_(queue),
+      mailbox_(mailbox),
       hub_(hub),
       axis_names_(std::move(axis_names)),
       bus_names_(std::move(bus_names)),
@@ -208,6 +209,10 @@ void Pump::Feed() {
   }
   halts_.Work();
   if (halts_.TakeRelease()) feeder_.Release();
+  if (halts_.TakeLoss()) {
+    spdlog::error("outputs of the program went off: no cycle was seen for too long; the program is stopped");
+    mailbox_.PostStop();
+  }
   feeder_.Feed();
 }
 

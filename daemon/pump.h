@@ -73,6 +73,7 @@ class Pump {
   void MeasureMotion(const CycleRecord& record);
 
   TelemetryQueue& queue_;
+  CommandMailbox& mailbox_;
   TelemetryHub& hub_;
   std::vector<std::string> axis_names_;
   std::vector<std::string> bus_names_;

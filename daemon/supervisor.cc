@@ -17,6 +17,7 @@
 #include "core/version.h"
 #include "daemon/loaded_model.h"
 #include "daemon/make_cycle_config.h"
+#include "daemon/output_words.h"
 #include "daemon/program/path_generator.h"
 #include "daemon/program/program.h"
 #include "daemon/program_limits.h"
@@ -57,7 +58,9 @@ Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, 
       limits_(ProgramLimits(machine)),
       parts_(parts),
       answers_(parts.queue.board()),
-      pace_(parts.pump) {
+      pace_(parts.pump),
+      events_(UseOfEvents(machine, machine.machine.optional_stop)),
+      program_defaults_{machine.machine.optional_stop, machine.machine.block_delete, WordsOf(machine)} {
   for (const auto& [name, axis] : machine.axes)
     encoder_counts_m_.push_back(axis.model.mechanics.lead_mm * 1e-3 / axis.drive.encoder_counts_per_rev);
   for (const auto& [name, bus] : machine.buses) interfaces_.push_back(bus.interface);
@@ -237,12 +240,6 @@ std::optional<std::string> Supervisor::wanted_model() {
   return wanted_model_;
 }
 
-EventUse Supervisor::UseOfEvents(const PartOfProgram& part) const {
-  EventUse use;
-  use.optional_stop = part.optional_stop;
-  return use;
-}
-
 Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwanted) {
   if (!upload.controller.empty() && upload.controller != Name(controller_)) {
     return {false,
@@ -257,11 +254,16 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     const ProgramZero::Found found = zero_.ForProgram(now, upload.from_here);
     if (!found.place) return {false, found.refused};
     const PerAxis<PlanLimits> limits = LimitsNow(limits_, now);
+    PartOfProgram part = upload.part;
+    part.optional_stop = part.optional_stop.value_or(program_defaults_.optional_stop);
+    part.block_delete = part.block_delete.value_or(program_defaults_.block_delete);
+    EventUse events = events_;
+    events.optional_stop = *part.optional_stop;
     const bool referenced = std::all_of(now.axes.begin(), now.axes.end(),
                                         [](const AxisRecord& a) { return IsReferenced(a.reference_state); });
     const Program program = ReadPlaced(
         {upload.text, upload.name, upload.format == "ngc" ? ProgramFormat::kGcode : ProgramFormat::kYaml},
-        *found.place, limits, {referenced, upload.part, UseOfEvents(upload.part)});
+        *found.place, limits, {referenced, part, events});
     auto generator = std::make_unique<PathGenerator>(PlanPlaced(program, *found.place, limits), limits,
                                                      cycle_us_ * 1e-6, ++program_id_);
     const double duration_s = generator->duration_s();
@@ -349,6 +351,7 @@ MachineStatus Supervisor::Status() {
     out.program_name = program_name_;
     out.program_duration_s = program_duration_s_;
   }
+  out.program_defaults = program_defaults_;
   out.pace = pace_.Status(out.record);
   if (const TallyOfProgram tally = parts_.pump.tally(); tally.program_id == out.record.program_id) {
     out.program_ran_s = static_cast<double>(tally.cycles) * cycle_us_ * 1e-6;

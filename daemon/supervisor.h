@@ -77,7 +77,6 @@ class Supervisor final : public OperatorDesk {
   [[nodiscard]] std::optional<Answer> Look(RequestKind kind, std::uint32_t sequence);
   std::uint32_t Post(RequestKind kind, std::uint32_t program_id = 0);
   void TakeBack(RequestKind kind);
-  [[nodiscard]] EventUse UseOfEvents(const PartOfProgram& part) const;
   [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const Placement& place,
                                      PathGenerator& generator);
 
@@ -100,6 +99,8 @@ class Supervisor final : public OperatorDesk {
   SupervisedParts parts_;
   CycleAnswers answers_;
   PaceControl pace_;
+  EventUse events_;
+  ProgramDefaults program_defaults_;
   ProgramZero zero_;
   std::atomic<bool> loop_ended_{false};
   std::mutex

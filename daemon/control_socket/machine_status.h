@@ -39,6 +39,13 @@ struct HaltStatus {
   std::uint64_t number = 0;   ///< another one for every wait
 };
 
+/// What a machine does with programs that say nothing else.
+struct ProgramDefaults {
+  bool optional_stop = false;
+  bool block_delete = true;
+  std::vector<std::string> outputs{};  ///< words that switch something: M3, S ...
+};
+
 /// A program's pace as operators want it.
 struct PaceStatus {
   double feed_percent = 100.0;  ///< of the programmed feed; of the programs to come, too
@@ -69,6 +76,7 @@ struct MachineStatus {
   double contour_error_peak_m = 0.0;  ///< of this program so far, at the encoders
   double contour_error_rms_m = 0.0;
   PaceStatus pace;
+  ProgramDefaults program_defaults;
   std::optional<PerAxis<double>> zero_m;  ///< where programs count from; nothing: it is not set
 
   std::uint64_t cycles = 0;

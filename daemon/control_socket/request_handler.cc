@@ -67,6 +67,7 @@ json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwante
   if (request.contains("from_here")) upload.from_here = Flag(request, "from_here");
   if (request.contains("single_block")) upload.part.single_block = Flag(request, "single_block");
   if (request.contains("optional_stop")) upload.part.optional_stop = Flag(request, "optional_stop");
+  if (request.contains("block_delete")) upload.part.block_delete = Flag(request, "block_delete");
   if (request.contains("go_there")) upload.part.go_there = Flag(request, "go_there");
   if (request.contains("from_line")) upload.part.from_line = Line(request, "from_line");
   if (upload.format != "yaml" && upload.format != "ngc")

@@ -10,7 +10,7 @@
 namespace contour {
 
 struct GcodeSettings {
-  bool block_delete = false;  ///< leave lines out that begin with a slash
+  bool block_delete = true;  ///< leave lines out that begin with a slash, as LinuxCNC does unless told
   /// Where program zero is in the machine's coordinates, for X Y Z U V W; nothing: the machine is not
   /// referenced, and G28, G30 and G53 are refused.
   std::optional<std::array<double, 6>> zero_m;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "daemon/program/shapes.h"
@@ -8,10 +9,11 @@ namespace contour {
 
 /// How a G-code program is to be run, other than from its beginning to its end.
 struct PartOfProgram {
-  int from_line = 0;           ///< 0: from the beginning
-  bool go_there = false;       ///< at rapid to where that line begins, if the machine stands elsewhere
-  bool single_block = false;   ///< at rest at the end of every line
-  bool optional_stop = false;  ///< M1 waits for the operator
+  int from_line = 0;          ///< 0: from the beginning
+  bool go_there = false;      ///< at rapid to where that line begins, if the machine stands elsewhere
+  bool single_block = false;  ///< at rest at the end of every line
+  std::optional<bool> optional_stop{};  ///< M1 waits for the operator; nothing: as the machine file says
+  std::optional<bool> block_delete{};   ///< lines that begin with a slash are left out; likewise
 };
 
 /// The moves from that line on. Moves before it are read, so that its words mean what they mean there, and

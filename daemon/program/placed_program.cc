@@ -42,6 +42,7 @@ Program ReadPlaced(const ProgramSource& source, const Placement& place, const Pe
   }
   constexpr std::string_view kLetters = "xyzuvw";
   GcodeSettings settings;
+  settings.block_delete = part.block_delete.value_or(settings.block_delete);
   if (options.referenced) settings.zero_m.emplace();
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const std::size_t letter = limits[i].axis.size() == 1 ? kLetters.find(limits[i].axis[0]) : kLetters.npos;
@@ -50,7 +51,7 @@ Program ReadPlaced(const ProgramSource& source, const Placement& place, const Pe
     if (options.referenced) (*settings.zero_m)[letter] = place.zero_m[i];
   }
   GcodeMoves moves = FromLine(ParseGcode(source.text, source.name, settings), source.name, part);
-  UseEvents(moves, options.events);
+  UseEvents(moves, source.name, options.events);
   return {source.name, part.single_block ? WithStops(std::move(moves)) : std::move(moves)};
 }
 

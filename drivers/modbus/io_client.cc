@@ -25,6 +25,9 @@ IoClient::IoClient(const ModbusConfig& config)
       connection_(
           std::make_unique<ModbusConnection>(config.host, config.port, config.unit_id, config.timeout_ms)) {
   if (config_.outputs.lubrication) lubrication_.emplace(*config_.outputs.lubrication);
+  if (config_.outputs.program)
+    outputs_.emplace(std::chrono::duration_cast<OutputWriter::Clock::duration>(
+        std::chrono::duration<double>(config_.outputs.program->silence_s)));
   stats_.configured = true;
 }
 
@@ -78,11 +81,13 @@ void IoClient::Work() {
   }
   if (coil_.value_or(false) && connection_->connected())
     connection_->WriteCoil(config_.outputs.lubrication->coil, false);
+  if (outputs_) outputs_->Release(*connection_);
   connection_->Close();
 }
 
 bool IoClient::Connect() {
   coil_.reset();
+  if (outputs_) outputs_->Forget();
   if (!connection_->Connect()) {
     Fail(connection_->error());
     return false;
@@ -120,7 +125,16 @@ bool IoClient::Poll() {
   return true;
 }
 
+// Reading goes on at its pace when only an output is refused; it is tried again at the next poll.
 bool IoClient::DriveOutputs() {
+  if (outputs_ && !outputs_->Write(*connection_)) {
+    Fail(connection_->error());
+    if (!connection_->connected()) return false;
+  }
+  return Lubricate();
+}
+
+bool IoClient::Lubricate() {
   if (!lubrication_) return true;
   const bool on = lubrication_->Update(travel_m_.load(std::memory_order_relaxed),
                                        moving_s_.load(std::memory_order_relaxed), MonotonicNow_ns());
@@ -131,7 +145,6 @@ bool IoClient::DriveOutputs() {
   if (coil_ == on) return true;
   if (!connection_->WriteCoil(config_.outputs.lubrication->coil, on)) {
     Fail(connection_->error());
-    // Reading goes on at its pace when only the output is refused; it is tried again at the next poll.
     return connection_->connected();
   }
   coil_ = on;

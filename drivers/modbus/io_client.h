@@ -14,6 +14,7 @@
 #include "drivers/modbus/io_snapshot.h"
 #include "drivers/modbus/io_stats.h"
 #include "drivers/modbus/lubrication.h"
+#include "drivers/modbus/output_writer.h"
 
 namespace contour {
 
@@ -39,6 +40,9 @@ class IoClient {
   /// Totals since the start, for the lubrication. From any thread.
   void ReportMotion(double travel_m, double moving_s) noexcept;
 
+  /// What programs switch; null: nothing.
+  [[nodiscard]] OutputWriter* outputs() { return outputs_ ? &*outputs_ : nullptr; }
+
   [[nodiscard]] IoStats stats() const;
 
  private:
@@ -46,6 +50,7 @@ class IoClient {
   [[nodiscard]] bool Connect();
   [[nodiscard]] bool Poll();
   [[nodiscard]] bool DriveOutputs();
+  [[nodiscard]] bool Lubricate();
   void Fail(const std::string& what);
   [[nodiscard]] bool WaitForStop(int milliseconds);
 
@@ -57,6 +62,7 @@ class IoClient {
   // The thread's own.
   std::unique_ptr<ModbusConnection> connection_;
   std::optional<Lubrication> lubrication_;
+  std::optional<OutputWriter> outputs_;
   std::optional<bool> coil_;  // as last written; unknown after a new connection
 
   mutable std::mutex mutex_;  // guards stats_ and stop_

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/visit.h"
+#include "drivers/modbus/program_outputs_config.h"
 
 namespace contour {
 
@@ -58,10 +59,12 @@ struct LubricationConfig {
 
 struct IoOutputsConfig {
   std::optional<LubricationConfig> lubrication;
+  std::optional<ProgramOutputsConfig> program;
 
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Optional("lubrication", lubrication, "lubrication of the ball screws");
+    v.Optional("program", program, "spindle, coolant and tools, as programs switch them");
   }
 };
 

@@ -55,6 +55,11 @@ bool ModbusConnection::WriteCoil(int address, bool on) {
                "write coil " + std::to_string(address));
 }
 
+bool ModbusConnection::WriteRegister(int address, std::uint16_t value) {
+  return Check(modbus_write_register(context_.get(), address, value),
+               "write register " + std::to_string(address));
+}
+
 bool ModbusConnection::Check(int result, const std::string& what) {
   if (result != -1) return true;
   const int cause = errno;

@@ -24,6 +24,7 @@ class ModbusConnection {
   std::optional<bool> ReadDiscreteInput(int address);
   std::optional<std::int16_t> ReadInputRegister(int address);
   bool WriteCoil(int address, bool on);
+  bool WriteRegister(int address, std::uint16_t value);
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 

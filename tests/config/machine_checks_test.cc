@@ -244,6 +244,25 @@ TEST(MachineChecks, ATemperatureThatNeverChangesIsNone) {
             "temperature would never change");
 }
 
+TEST(MachineChecks, EveryOutputHasAnAddressOfItsOwn) {
+  MachineConfig c = Good();
+  IoOutputsConfig& outputs = c.io.modbus.emplace().outputs;
+  outputs.lubrication.emplace().coil = 3;
+  outputs.program.emplace().mist = ProgramCoilConfig{3, 0.0};
+  EXPECT_EQ(Only(c),
+            "io.modbus.outputs.program.mist.coil: another output has this address, expected one of its own");
+  outputs.program->mist->coil = 4;
+  outputs.program->tool_number = ToolRegisterConfig{4};
+  EXPECT_TRUE(Check(c).empty()) << "coils and registers are not the same";
+  outputs.program->spindle_speed = SpeedRegisterConfig{4, 1.0, 6000.0, 0.0};
+  EXPECT_NE(Check(c).empty(), true);
+  outputs.program->spindle_speed = SpeedRegisterConfig{5, 10.0, 6600.0, 0.0};
+  EXPECT_EQ(
+      Only(c),
+      "io.modbus.outputs.program.spindle_speed.largest_rpm: its counts do not fit into a register of 16 "
+      "bits, expected 65535 counts at most");
+}
+
 TEST(MachineChecks, FullTakesAllAxesInOneMode) {
   MachineConfig c = Good();
   c.axes.at("y").drive.mode = DriveMode::kCsp;

@@ -17,12 +17,13 @@ from pathlib import Path
 
 
 class Operator:
-    def __init__(self, contourd, contour, machine_file, scratch):
+    def __init__(self, contourd, contour, machine_file, scratch, settings=("io={}",)):
         self.contour, self.scratch = contour, Path(scratch)
         self.socket = str(self.scratch / "control.sock")
         self.log, self.messages = self.scratch / "run.lcmlog", self.scratch / "daemon.txt"
         command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", self.socket, "--log",
-                   str(self.log), "--set", "io={}", "--set", "telemetry.publish=false"]
+                   str(self.log), "--set", "telemetry.publish=false"]
+        command += [word for setting in settings for word in ("--set", setting)]
         with open(self.messages, "w", encoding="utf-8") as file:
             self.daemon = subprocess.Popen(command, stdout=file, stderr=file)
         self.wait("Idle", lambda s: s["state"] == "Idle")

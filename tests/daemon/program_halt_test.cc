@@ -26,7 +26,7 @@ class HaltingProgram {
     GcodeMoves moves = ParseGcode(text, "part.ngc");
     EventUse use{true, {}};
     if (outputs != nullptr) use.switches = [outputs](const GcodeEvent& e) { return outputs->Listens(e); };
-    UseEvents(moves, use);
+    UseEvents(moves, "part.ngc", use);
     keeper_.Begin(1, HaltsOf(moves));
     PacedPath::Options all = options;
     all.halts = true;
@@ -204,6 +204,9 @@ class SlowOutputs final : public ProgramOutputs {
   }
   [[nodiscard]] bool Done() override { return ++looks_ > 300; }
   void Over(const GcodeEvent&) override {}
+  void Off() override { done += "off "; }
+  void Confirm() override {}
+  [[nodiscard]] bool TakeLoss() override { return false; }
   std::string done;
 
  private:
@@ -222,7 +225,7 @@ TEST(ProgramHaltTest, MotionWaitsUntilAnOutputIsSwitched) {
   EXPECT_NEAR(program.x_mm(), 5.0, 1e-9) << "an operator does not pass it by";
   program.Run(3000);
   EXPECT_TRUE(program.over());
-  EXPECT_EQ(outputs.done, "M3 ");
+  EXPECT_EQ(outputs.done, "M3 off ");
   program.ExpectKept();
 }
 

@@ -25,7 +25,7 @@ struct Options {
   bool describe = false;
   bool markdown = false;
   std::string canon;
-  bool block_delete = false;
+  bool block_delete = true;
   std::vector<std::string> set;
 };
 
@@ -99,8 +99,8 @@ void AddCheckCommand(CLI::App& app, Action& action) {
   sub->add_option("--canon", options->canon,
                   "Print what a G-code program asks for, move by move, as LinuxCNC's rs274 does")
       ->type_name("PROGRAM");
-  sub->add_flag("--block-delete", options->block_delete,
-                "With --canon: leave lines out that begin with a slash");
+  sub->add_flag("--block-delete,!--no-block-delete", options->block_delete,
+                "With --canon: leave lines out that begin with a slash (default), or not");
   sub->add_option("--set", options->set, "Put KEY=VALUE on top of the file; any number of times")
       ->type_name("KEY=VALUE")
       ->expected(1)

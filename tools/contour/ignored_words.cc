@@ -12,7 +12,7 @@ void WarnOfIgnoredWords(const std::filesystem::path& program, const EventUse& us
   if (FormatOf(program) != ProgramFormat::kGcode) return;
   try {
     GcodeMoves moves = ParseGcode(ReadProgramText(program), program.string());
-    UseEvents(moves, use);
+    UseEvents(moves, program.string(), use);
     const std::string warning = IgnoredEvents(moves, program.string(), simulated);
     if (!warning.empty()) std::cerr << "warning: " << warning << "\n";
   } catch (const ProgramError&) {

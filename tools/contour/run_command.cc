@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -233,6 +234,27 @@ Placement PlaceBefore(const json& status, bool here) {
   return place;
 }
 
+PartOfProgram PartFor(const Options& options, const json& status) {
+  const json& defaults = status.at("program_defaults");
+  PartOfProgram part = options.part;
+  if (!part.optional_stop) part.optional_stop = defaults.at("optional_stop").get<bool>();
+  if (!part.block_delete) part.block_delete = defaults.at("block_delete").get<bool>();
+  return part;
+}
+
+/// What the daemon does about the program's events.
+EventUse EventsFor(const Options& options, const json& status) {
+  const auto outputs = status.at("program_defaults").at("outputs").get<std::vector<std::string>>();
+  EventUse use;
+  use.optional_stop = *PartFor(options, status).optional_stop;
+  use.switches = [outputs](const GcodeEvent& event) {
+    const std::string word =
+        event.letter == 'M' ? "M" + std::to_string(event.code) : std::string(1, event.letter);
+    return std::find(outputs.begin(), outputs.end(), word) != outputs.end();
+  };
+  return use;
+}
+
 /// The program as the daemon reads it for that place.
 Program ReadFor(const Placement& place, const json& status, const Options& options) {
   const std::string& file = options.program;
@@ -240,7 +262,7 @@ Program ReadFor(const Placement& place, const json& status, const Options& optio
   bool referenced = true;
   for (const json& axis : status.at("axes")) referenced = referenced && axis.value("referenced", true);
   return ReadPlaced({text, file, FormatOf(file)}, place, LimitsOf(status),
-                    {referenced, options.part, {options.part.optional_stop, {}}});
+                    {referenced, PartFor(options, status), EventsFor(options, status)});
 }
 
 json RequestOf(const Options& options) {
@@ -253,7 +275,8 @@ json RequestOf(const Options& options) {
   if (options.forget) request["forget"] = true;
   if (options.from_here) request["from_here"] = true;
   if (options.part.single_block) request["single_block"] = true;
-  if (options.part.optional_stop) request["optional_stop"] = true;
+  if (options.part.optional_stop) request["optional_stop"] = *options.part.optional_stop;
+  if (options.part.block_delete) request["block_delete"] = *options.part.block_delete;
   if (options.part.from_line > 0) request["from_line"] = options.part.from_line;
   if (options.part.go_there) request["go_there"] = true;
   return request;
@@ -291,7 +314,7 @@ int RunRun(const Options& options) {
     std::cerr << e.what() << "\n";
     return kExitBadUsage;
   }
-  WarnOfIgnoredWords(options.program, {options.part.optional_stop, {}}, false);
+  WarnOfIgnoredWords(options.program, EventsFor(options, before), false);
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
   std::optional<RowCollector> rows;
@@ -333,8 +356,10 @@ void AddRunCommand(CLI::App& app, Action& action) {
                 "The program counts from where the machine stands, whatever program zero is");
   sub->add_flag("--single-block", options->part.single_block,
                 "G-code: rest at the end of every line until contour resume");
-  sub->add_flag("--optional-stop", options->part.optional_stop,
-                "G-code: M1 waits for contour resume, as M0 does");
+  sub->add_flag("--optional-stop,!--no-optional-stop", options->part.optional_stop,
+                "G-code: M1 waits for contour resume, as M0 does, or not; default machine.optional_stop");
+  sub->add_flag("--block-delete,!--no-block-delete", options->part.block_delete,
+                "G-code: leave lines out that begin with a slash, or not; default machine.block_delete");
   CLI::Option* line = sub->add_option("--from-line", options->part.from_line,
                                       "G-code: begin at this line, with the words in force there")
                           ->check(CLI::Range(1, 100'000'000));

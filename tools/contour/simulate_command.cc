@@ -11,6 +11,7 @@
 
 #include "core/exit_status.h"
 #include "daemon/make_log_header.h"
+#include "daemon/output_words.h"
 #include "daemon/program/program.h"
 #include "tools/contour/ignored_words.h"
 #include "tools/contour/result_line.h"
@@ -31,6 +32,7 @@ struct Options {
   int passes = 1;
   std::string out;
   std::string log;
+  PartOfProgram part;
 };
 
 std::string Line(const SimulationResult& result, const SimulationRequest& request) {
@@ -97,7 +99,11 @@ int RunSimulate(const Options& options) {
     return kExitBadUsage;
   }
   request.passes = options.passes;
-  WarnOfIgnoredWords(options.program, {}, true);
+  request.part = options.part;
+  const MachineConfig& said = request.file.machine;
+  WarnOfIgnoredWords(options.program,
+                     UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)),
+                     true);
   request.out = options.out;
   if (!options.log.empty()) {
     if (options.seed) set.push_back("emulator.seed=" + std::to_string(*options.seed));
@@ -135,6 +141,8 @@ void AddSimulateCommand(CLI::App& app, Action& action) {
                   "the beginning or so long after it; repeatable. Only G-code can be faster than programmed")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  sub->add_flag("--block-delete,!--no-block-delete", options->part.block_delete,
+                "G-code: leave lines out that begin with a slash, or not; default machine.block_delete");
   sub->add_option("--out", options->out, "Directory for metrics.json and cycles.csv")->required();
   sub->add_option("--log", options->log, "Record every cycle in this log, for `contour replay`");
   sub->callback([options, &action] {

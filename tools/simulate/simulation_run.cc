@@ -197,9 +197,9 @@ SimulationResult RunSimulation(const SimulationRequest& request) {
       scoring.Add(entry.output.record, truth);
       feeds.Count();
     });
-    machine.Run(
-        request.gcode.empty() ? request.program : machine.ReadGcode(request.gcode, request.program.name),
-        feeds.Begin());
+    machine.Run(request.gcode.empty() ? request.program
+                                      : machine.ReadGcode(request.gcode, request.program.name, request.part),
+                feeds.Begin());
     machine.SetObserver(nullptr);
     const RunMetrics metrics = scoring.Finish();
     passes.Add(pass, metrics);

@@ -6,6 +6,7 @@
 
 #include "analysis/metrics/run_metrics.h"
 #include "core/controller_name.h"
+#include "daemon/program/part_of_program.h"
 #include "daemon/program/program.h"
 #include "daemon/program_tally.h"
 #include "daemon/telemetry/log_header.h"
@@ -25,6 +26,7 @@ struct SimulationRequest {
   Program program;
   /// Not empty: G-code, read anew for where the machine stands before each pass; `program` has its name.
   std::string gcode;
+  PartOfProgram part{};       ///< of it
   std::filesystem::path log;  ///< of every cycle, for replay; empty: none
   LogHeader log_header;
   std::vector<FeedFrom> feeds;  ///< in order of time; of every pass

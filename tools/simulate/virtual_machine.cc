@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "daemon/make_cycle_config.h"
+#include "daemon/output_words.h"
 #include "daemon/program_limits.h"
 #include "daemon/reason_text.h"
 #include "drivers/cia301/bring_up_text.h"
@@ -48,6 +49,8 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
     : axis_names_(AxisNames(file.machine)),
       bus_names_(BusNames(file.machine)),
       limits_(ProgramLimits(file.machine)),
+      events_(UseOfEvents(file.machine, file.machine.machine.optional_stop)),
+      block_delete_(file.machine.machine.block_delete),
       emulated_(file.emulator, EmulatedPlacements(file.machine),
                 static_cast<std::uint32_t>(file.machine.machine.cycle_us), clock),
       truths_(std::make_unique<TruthMemory>()),
@@ -131,12 +134,17 @@ Placement VirtualMachine::PlaceNow() const {
   return {start_m, zero_m_.value_or(start_m)};
 }
 
-Program VirtualMachine::ReadGcode(const std::string& text, const std::string& name) const {
+Program VirtualMachine::ReadGcode(const std::string& text, const std::string& name,
+                                  const PartOfProgram& part) const {
   const auto& axes = record().axes;
   const bool referenced = std::all_of(axes.begin(), axes.end(),
                                       [](const AxisRecord& a) { return IsReferenced(a.reference_state); });
+  PartOfProgram whole = part;
+  whole.block_delete = part.block_delete.value_or(block_delete_);
+  EventUse events = events_;
+  events.optional_stop = part.optional_stop.value_or(events.optional_stop);
   return ReadPlaced({text, name, ProgramFormat::kGcode}, PlaceNow(), LimitsNow(limits_, record()),
-                    {referenced, {}, {}});
+                    {referenced, whole, events});
 }
 
 std::uint32_t VirtualMachine::Start(const Program& program, double feed) {

@@ -63,7 +63,8 @@ class VirtualMachine {
   /// Programs count from where the machine stands now, instead of each from where it begins.
   void SetZero();
   /// G-code for where the machine stands. Throws ProgramError.
-  [[nodiscard]] Program ReadGcode(const std::string& text, const std::string& name) const;
+  [[nodiscard]] Program ReadGcode(const std::string& text, const std::string& name,
+                                  const PartOfProgram& part = {}) const;
   /// Runs a program to its end, learning as the machine file says: by its name and place a program is known.
   /// Throws std::runtime_error with the reason when the machine stops otherwise.
   void Run(const Program& program, double feed = 1.0);
@@ -99,6 +100,8 @@ class VirtualMachine {
   std::vector<std::string> axis_names_;
   std::vector<std::string> bus_names_;
   PerAxis<PlanLimits> limits_;
+  EventUse events_;
+  bool block_delete_;
   EmulatedMachine emulated_;
   std::unique_ptr<TruthMemory> truths_;
   std::vector<std::unique_ptr<LoopbackBus>> buses_;

@@ -3,15 +3,20 @@
 #include <array>
 #include <cstdio>
 
+#include "daemon/program/program.h"
+
 namespace contour {
 
-void UseEvents(GcodeMoves& program, const EventUse& use) {
+void UseEvents(GcodeMoves& program, const std::string& name, const EventUse& use) {
   double tool = -1.0;
   for (GcodeEvent& event : program.events) {
     if (event.letter == 'T') tool = event.value;
     const bool switches = use.switches && use.switches(event);
+    const std::string problem = switches && use.problem ? use.problem(event) : std::string();
+    if (!problem.empty()) throw ProgramError(name + ":" + std::to_string(event.line) + ": " + problem);
     if (event.letter == 'M') {
-      event.waits = event.code == 0 || (event.code == 1 && use.optional_stop) || event.code == 6;
+      event.waits = event.code == 0 || (event.code == 1 && use.optional_stop) ||
+                    (event.code == 6 && use.tool_change_holds);
       if (event.code == 6) event.value = tool;
     }
     event.acts = event.waits || switches;

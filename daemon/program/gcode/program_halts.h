@@ -11,8 +11,11 @@ namespace contour {
 
 /// Who does something about a program's events.
 struct EventUse {
-  bool optional_stop = false;                       ///< M1 waits for the operator
-  std::function<bool(const GcodeEvent&)> switches;  ///< an output is switched; empty: there are no outputs
+  bool optional_stop = false;                         ///< M1 waits for the operator
+  std::function<bool(const GcodeEvent&)> switches{};  ///< an output is switched; empty: there are no outputs
+  /// Why an output that there is cannot do it, or nothing; empty as the one before.
+  std::function<std::string(const GcodeEvent&)> problem{};
+  bool tool_change_holds = true;  ///< M6 waits for the operator
 };
 
 /// A place at which a program waits, at rest: for an operator, or until outputs are switched.
@@ -21,8 +24,9 @@ struct ProgramHalt {
   std::vector<GcodeEvent> events;  ///< in their order; none is empty
 };
 
-/// Marks the events that something is done about; the moves before them end in a stop.
-void UseEvents(GcodeMoves& program, const EventUse& use);
+/// Marks the events that something is done about; the moves before them end in a stop. Throws ProgramError,
+/// under the program's `name`, where an output cannot do what is asked for.
+void UseEvents(GcodeMoves& program, const std::string& name, const EventUse& use);
 
 /// The places at which the marked events are carried out, in order. MotionPlan::Halts counts them.
 std::vector<ProgramHalt> HaltsOf(const GcodeMoves& program);

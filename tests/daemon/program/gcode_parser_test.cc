@@ -286,15 +286,15 @@ TEST(GcodeParser, PolarCoordinatesAndNamesOfModes) {
 
 TEST(GcodeParser, BlockDeleteLeavesLinesOut) {
   GcodeSettings settings;
-  EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "XY");
-  settings.block_delete = true;
   EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "Y");
+  settings.block_delete = false;
+  EXPECT_EQ(ParseGcode("/N1 G0 X1\nG0 Y1\n", "part.ngc", settings).letters, "XY");
 }
 
 TEST(GcodeParser, WordsThatDoNothingAreNamedOnce) {
   const auto warning = [](const char* text, bool simulated = false, const EventUse& use = {}) {
     GcodeMoves moves = Parse(text);
-    UseEvents(moves, use);
+    UseEvents(moves, "part.ngc", use);
     return IgnoredEvents(moves, "part.ngc", simulated);
   };
   EXPECT_EQ(warning("G0 X1\nM3 S900\nX2\nM3 S100 M8\n"),
@@ -311,7 +311,7 @@ TEST(GcodeParser, WordsThatDoNothingAreNamedOnce) {
 
 TEST(GcodeParser, AProgramHaltsWhereSomethingIsDoneAboutItsEvents) {
   GcodeMoves moves = Parse("M3 S900\nG64 G1 F100 X1\nT7 M6 M8\nX2\nM0\nM0\nX3\nM1\nX4\nM5\n");
-  UseEvents(moves, {false, [](const GcodeEvent& e) { return e.letter == 'M' && e.code <= 5; }});
+  UseEvents(moves, "part.ngc", {false, [](const GcodeEvent& e) { return e.letter == 'M' && e.code <= 5; }});
   const std::vector<ProgramHalt> halts = HaltsOf(moves);
   std::string text;
   for (const ProgramHalt& halt : halts) {

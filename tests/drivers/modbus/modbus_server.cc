@@ -77,6 +77,16 @@ void ModbusServer::SetRegister(int address, std::int16_t value) {
   mapping_->tab_input_registers[address] = static_cast<std::uint16_t>(value);
 }
 
+int ModbusServer::Holding(int address) const {
+  const std::lock_guard lock(mutex_);
+  return mapping_->tab_registers[address];
+}
+
+void ModbusServer::SetCoil(int address, bool on) {
+  const std::lock_guard lock(mutex_);
+  mapping_->tab_bits[address] = on ? 1 : 0;
+}
+
 bool ModbusServer::Coil(int address) const {
   const std::lock_guard lock(mutex_);
   return mapping_->tab_bits[address] != 0;

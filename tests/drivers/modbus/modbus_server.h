@@ -26,6 +26,9 @@ class ModbusServer {
   void SetInput(int address, bool closed);
   void SetRegister(int address, std::int16_t value);
   bool Coil(int address) const;
+  int Holding(int address) const;
+  /// As somebody else would write it.
+  void SetCoil(int address, bool on);
   int port() const { return port_; }
 
  private:
