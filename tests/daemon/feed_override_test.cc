@@ -35,7 +35,8 @@ class Way {
       ProgramFormat format = ProgramFormat::kGcode)
       : mailbox_(16, 4096), feeder_(mailbox_), consumer_(mailbox_, 120.0), watch_(limits, kPeriod_s) {
     Program program = ParseProgram(text, "program of the test", format);
-    if (options.halts) UseEvents(std::get<GcodeMoves>(program.shape), EventUse{true, {}});
+    if (options.halts)
+      UseEvents(std::get<GcodeMoves>(program.shape), program.name, EventUse{true, {}, {}, true});
     feeder_.Begin(std::make_unique<PathGenerator>(program, Origin(), limits, kPeriod_s, 1), options);
     plan_ = feeder_.path()->generator().plan();
   }

@@ -21,7 +21,7 @@ FEED = 1e-9         # relative
 
 def ours(contour, program):
     """(moves, line of the error or None, its text)."""
-    done = subprocess.run([contour, "check", "--canon", str(program)], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([contour, "check", "--no-block-delete", "--canon", str(program)], capture_output=True, text=True, timeout=60)
     if done.returncode == 2:
         message = done.stderr.strip().splitlines()[-1]
         place = message.split(str(program) + ":", 1)[1].split(":")
