@@ -9,9 +9,12 @@ namespace {
 /// So many points later than the cycle would take it a law begins: it takes time to plan and to hand over.
 /// After one that came too late it is twice as many.
 constexpr std::uint64_t kFirstMargin = 16;
-constexpr std::uint64_t kLargestMargin = 512;
+constexpr std::uint64_t kLargestMargin = 2048;
 /// Calls of Feed() after which is looked again for a way to another pace, where there was none.
 constexpr std::uint32_t kLookAgain = 32;
+/// Points that the cycle has besides what a stop needs, where those that come bring it to rest because
+/// planning is late: as long as this the supply may be held up.
+constexpr std::uint64_t kBridge = 256;
 /// This part of the queue is kept free, so that behind the first point of another law there are enough at
 /// once.
 constexpr std::size_t kKeptFree = 4;
@@ -31,7 +34,12 @@ class Planning {
 }  // namespace
 
 void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath::Options& options) {
-  path_ = std::make_unique<PacedPath>(std::move(generator), options);
+  auto path = std::make_unique<PacedPath>(std::move(generator), options);
+  {
+    const std::scoped_lock lock(planning_);
+    path_ = std::move(path);
+    ++program_;
+  }
   wanted_ = options.feed;
   resume_ = resuming_ = Held::kNot;
   margin_ = kFirstMargin;
@@ -89,14 +97,46 @@ void PathFeeder::ChangePace() {
   }
 }
 
+bool PathFeeder::PlanStep() {
+  PacedPath::Plan plan;
+  std::uint64_t program = 0;
+  {
+    const std::scoped_lock lock(planning_);
+    if (path_) plan = path_->TakePlan();
+    program = program_;
+  }
+  if (!plan.walk) return false;
+  plan.walk->PlanStep();
+  const std::scoped_lock lock(planning_);
+  if (path_ && program == program_) path_->GivePlan(std::move(plan));
+  return true;
+}
+
 bool PathFeeder::Feed() {
+  const std::scoped_lock lock(planning_);
   if (!path_) return false;
+  const bool more = FeedNow();
+  const PathWalk::Estimate duration = path_->ProgramDuration();
+  duration_s_ = duration.duration_s;
+  duration_exact_ = duration.exact;
+  waits_for_plan_ = path_->waits_for_plan();
+  return more;
+}
+
+bool PathFeeder::FeedNow() {
+  const PathProgress progress = mailbox_.path_progress();
+  std::uint64_t needed = 0;  // nothing moves
+  if (progress.earliest != PathProgress::kNowhere) {
+    path_->ForgetBefore(std::min(progress.earliest, progress.end));
+    needed = progress.earliest + kBridge;
+  }
   if (path_->pending()) Hear();
   if (!path_->pending() && (path_->feed() != wanted_ || resume_ != Held::kNot)) ChangePace();
   for (;;) {
     // Points of a law that was refused are taken as fast as they come, and lead nowhere.
     if (path_->pending()) Hear();
     if (!holding_) {
+      if (!path_->Ready(needed)) return true;
       if (!path_->Next(held_)) {
         // It stays: until the cycle has got to its end, a pause may still come.
         mailbox_.SetPathSupply(false);
@@ -113,7 +153,9 @@ bool PathFeeder::Feed() {
 }
 
 void PathFeeder::Abandon() {
+  const std::scoped_lock lock(planning_);
   path_.reset();
+  waits_for_plan_ = false;
   holding_ = false;
   mailbox_.SetPathSupply(false);
 }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 
 #include "daemon/program/paced_path.h"
 #include "daemon/rt/command_mailbox.h"
@@ -9,7 +11,7 @@
 namespace contour {
 
 /// Keeps the mailbox's path queue filled with a program's points, and makes the cycle change their feed. But
-/// for Announce() one thread: the mailbox's path writer.
+/// for Announce(), PlanStep(), duration() and waits_for_plan() one thread: the mailbox's path writer.
 class PathFeeder {
  public:
   explicit PathFeeder(CommandMailbox& mailbox) : mailbox_(mailbox) {}
@@ -27,6 +29,13 @@ class PathFeeder {
   }
   /// The same for the place where the program halts; its pace is the one wanted.
   void Release() { resume_ = Held::kHalt; }
+  /// Any thread, beside the others: plans the program a step further, where its options leave that to
+  /// somebody else. False when there is nothing to plan at present.
+  bool PlanStep();
+  /// Of the program at its own feed, as far as that is known. Any thread.
+  [[nodiscard]] PathWalk::Estimate duration() const { return {duration_s_, duration_exact_}; }
+  /// The program is slow or at rest because planning does not keep up. Any thread.
+  [[nodiscard]] bool waits_for_plan() const { return waits_for_plan_; }
   /// Hands over what the queue has room for. Returns whether more is to come.
   bool Feed();
   /// The program is over or was given up: no more points.
@@ -41,12 +50,18 @@ class PathFeeder {
   [[nodiscard]] const PacedPath* path() const { return path_.get(); }
 
  private:
+  bool FeedNow();
   void ChangePace();
   void Hear();
   void GiveAnew();
 
   CommandMailbox& mailbox_;
+  std::mutex planning_;  ///< guards the path while it is used, and while a plan is taken and given
   std::unique_ptr<PacedPath> path_;
+  std::uint64_t program_ = 0;  ///< counts them
+  std::atomic<double> duration_s_{0.0};
+  std::atomic<bool> duration_exact_{true};
+  std::atomic<bool> waits_for_plan_{false};
   double wanted_ = 1.0;
   Held resume_ = Held::kNot;
   Held resuming_ = Held::kNot;  ///< so does the law that is pending

@@ -34,10 +34,14 @@ Pump::Pump(TelemetryQueue& queue, CommandMailbox& mailbox, TelemetryHub& hub, do
 
 Pump::~Pump() { Finish(); }
 
-void Pump::Start() { thread_ = std::thread(&Pump::Work, this); }
+void Pump::Start() {
+  thread_ = std::thread(&Pump::Work, this);
+  planner_.Start();
+}
 
 void Pump::Finish() {
   finish_ = true;
+  planner_.Finish();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -214,6 +218,17 @@ void Pump::Feed() {
     mailbox_.PostStop();
   }
   feeder_.Feed();
+  ReportPlanning();
+}
+
+void Pump::ReportPlanning() {
+  const bool waits = feeder_.waits_for_plan();
+  if (waits == waited_for_plan_) return;
+  waited_for_plan_ = waits;
+  if (waits)
+    spdlog::warn("planning does not keep up: the program slows down, to rest on its path if need be");
+  else
+    spdlog::info("planning keeps up again");
 }
 
 void Pump::Report(const CycleRecord& record) {

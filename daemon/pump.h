@@ -13,6 +13,7 @@
 
 #include "daemon/halt_keeper.h"
 #include "daemon/path_feeder.h"
+#include "daemon/path_planner.h"
 #include "daemon/program_tally.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/state_snapshots.h"
@@ -58,6 +59,8 @@ class Pump {
 
   /// What the program waits for; nothing: it does not. Any thread.
   [[nodiscard]] std::optional<HaltStatus> halt() const { return halts_.status(); }
+  /// Of the program that is supplied, or was last, at its own feed. Any thread.
+  [[nodiscard]] PathWalk::Estimate program_duration() const { return feeder_.duration(); }
   /// What has come so far of the program that runs, or ran last. Any thread.
   [[nodiscard]] TallyOfProgram tally() const { return tally_.tally(); }
 
@@ -68,6 +71,7 @@ class Pump {
   void Feed();
   void Report(const CycleRecord& record);
   void ReportReferences(const CycleRecord& record);
+  void ReportPlanning();
   void ReportFlight();
   void ReportLog();
   void MeasureMotion(const CycleRecord& record);
@@ -77,8 +81,10 @@ class Pump {
   TelemetryHub& hub_;
   std::vector<std::string> axis_names_;
   std::vector<std::string> bus_names_;
-  PathFeeder feeder_;  ///< pump thread only, but for Announce()
-  HaltKeeper halts_;   ///< pump thread only, but for status()
+  PathFeeder feeder_;  ///< pump thread only, but for what it says is for any
+  PathPlanner planner_{feeder_};
+  bool waited_for_plan_ = false;  ///< as last told
+  HaltKeeper halts_;              ///< pump thread only, but for status()
   ProgramTally tally_;
   std::mutex mutex_;  ///< guards the next five
   std::unique_ptr<PathGenerator> next_;

@@ -266,7 +266,6 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
         *found.place, limits, {referenced, part, events});
     auto generator = std::make_unique<PathGenerator>(PlanPlaced(program, *found.place, limits), limits,
                                                      cycle_us_ * 1e-6, ++program_id_);
-    const double duration_s = generator->duration_s();
     // Planning takes its time; nothing is learnt, noted or supplied for nobody.
     if (unwanted.stop_requested()) return {false, kUnwanted};
     parts_.pump.AwaitShown(now.cycle, kPumpTimeout);
@@ -274,8 +273,12 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
     const double feed = pace_.Begin(generator->feed_may_exceed());
     // The points wait in the queue until the cycle has taken the request and expects them.
+    // In lock-step time waits for the points, so nothing needs to slow down.
+    const auto planning = clock_ == "lockstep" ? PacedPath::Options::Planning::kAhead
+                                               : PacedPath::Options::Planning::kAheadOrSlower;
     const auto* gcode = std::get_if<GcodeMoves>(&program.shape);
-    parts_.pump.Supply(std::move(generator), PacedPath::Options{feed, upload.part.single_block, false},
+    parts_.pump.Supply(std::move(generator),
+                       PacedPath::Options{feed, upload.part.single_block, false, planning},
                        gcode != nullptr ? HaltsOf(*gcode) : std::vector<ProgramHalt>());
     Answer answer = Ask(RequestKind::kRun, unwanted, program_id_);
     answer.program_id = program_id_;
@@ -292,7 +295,6 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     if (found.set_now) zero_.Set(now);
     const std::lock_guard lock(program_);
     program_name_ = upload.name;
-    program_duration_s_ = duration_s;
     return answer;
   } catch (const std::exception& e) {
     return {false, e.what(), 0, 0};
@@ -349,9 +351,11 @@ MachineStatus Supervisor::Status() {
   {
     const std::lock_guard lock(program_);
     out.program_name = program_name_;
-    out.program_duration_s = program_duration_s_;
   }
   out.program_defaults = program_defaults_;
+  const PathWalk::Estimate duration = parts_.pump.program_duration();
+  out.program_duration_s = duration.duration_s;
+  out.program_duration_estimated = !duration.exact;
   out.pace = pace_.Status(out.record);
   if (const TallyOfProgram tally = parts_.pump.tally(); tally.program_id == out.record.program_id) {
     out.program_ran_s = static_cast<double>(tally.cycles) * cycle_us_ * 1e-6;

@@ -106,9 +106,8 @@ class Supervisor final : public OperatorDesk {
   std::mutex
       posting_;  ///< requests come from two threads of the socket's and from SIGHUP, a stop from anywhere
   std::uint32_t program_id_ = 0;
-  std::mutex program_;  ///< guards the two below
+  std::mutex program_;  ///< guards the name
   std::string program_name_;
-  double program_duration_s_ = 0.0;
 };
 
 }  // namespace contour

@@ -193,6 +193,7 @@ json ProgramNow(const MachineStatus& s) {
           {"name", s.program_name},
           {"time_s", Number(r.path_time_s)},
           {"duration_s", Number(s.program_duration_s)},
+          {"duration_estimated", s.program_duration_estimated},
           {"left_s", TimeLeft_s(s)},
           {"ran_s", s.program_ran_s},
           {"contour_error_peak_m", Number(s.contour_error_peak_m)},

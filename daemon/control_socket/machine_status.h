@@ -67,13 +67,14 @@ struct MachineStatus {
   std::vector<AxisFacts> axis_facts;  ///< one per axis
   std::vector<std::string> warnings;  ///< what the start complained of, such as refused real time
 
-  CycleRecord record;                 ///< of the newest cycle
-  std::string bring_up;               ///< sentence on where bring-up stands or why it failed; may be empty
-  std::string reason_text;            ///< sentence on record.reason; empty when there is none
-  std::string program_name;           ///< of record.program_id; may be empty
-  double program_duration_s = 0.0;    ///< 0 unknown
-  double program_ran_s = 0.0;         ///< so far, pauses among it
-  double contour_error_peak_m = 0.0;  ///< of this program so far, at the encoders
+  CycleRecord record;               ///< of the newest cycle
+  std::string bring_up;             ///< sentence on where bring-up stands or why it failed; may be empty
+  std::string reason_text;          ///< sentence on record.reason; empty when there is none
+  std::string program_name;         ///< of record.program_id; may be empty
+  double program_duration_s = 0.0;  ///< 0 unknown
+  bool program_duration_estimated = false;  ///< it is not planned to its end yet
+  double program_ran_s = 0.0;               ///< so far, pauses among it
+  double contour_error_peak_m = 0.0;        ///< of this program so far, at the encoders
   double contour_error_rms_m = 0.0;
   PaceStatus pace;
   ProgramDefaults program_defaults;

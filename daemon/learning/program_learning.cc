@@ -45,7 +45,8 @@ std::optional<LearningReport> ProgramLearning::Prepare(const std::string& text,
   }
   // Whoever hands the cycles over does not wait for this.
   const std::string refused = last && last->over ? LearnFrom(last->measured) : std::string();
-  if (generator.duration_s() > config_.longest_s) return std::nullopt;
+  // Of a long program no more is planned than tells that it is long.
+  if (generator.plan()->GoesOnAfter(config_.longest_s)) return std::nullopt;
   Entry& entry = Find(text, start_m, generator);
   generator.Shift(entry.learnt.next());
   const auto points = static_cast<std::size_t>(generator.points());

@@ -13,6 +13,8 @@ constexpr double kWithin = 1.01;
 constexpr double kLonger = 1.25;
 constexpr double kShortest_periods = 4.0;
 constexpr double kLongest_s = 30.0;
+/// Points behind the end of a ramp that are looked at, and one.
+constexpr double kBeyond = 4.0;
 /// Of the limits.
 constexpr double kAtRest = 1e-6;
 
@@ -98,7 +100,7 @@ bool PaceRamp::Fits(const PaceLaw& law, double from, double to) const {
   return true;
 }
 
-std::optional<PaceLaw> PaceRamp::From(const PaceLaw& law, double begin, double rate) const {
+std::optional<PaceLaw> PaceRamp::From(const PaceLaw& law, double begin, double rate, double latest) const {
   const PaceState now = law.At(begin);
   const auto with = [&](double length) {
     PaceLaw candidate = law;
@@ -113,6 +115,7 @@ std::optional<PaceLaw> PaceRamp::From(const PaceLaw& law, double begin, double r
   const double longest = kLongest_s / period_s_;
   for (double length = Shortest(now.time, rate - now.rate); length <= longest; length *= kLonger) {
     PaceLaw candidate = with(length);
+    if (candidate.At(begin + length).time + kBeyond > latest) return std::nullopt;
     if (Fits(candidate, begin, begin + length)) return candidate;
   }
   return std::nullopt;

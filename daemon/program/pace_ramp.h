@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "daemon/program/motion_plan.h"
@@ -16,8 +17,10 @@ class PaceRamp {
   PaceRamp(PathWalk& walk, const PerAxis<PlanLimits>& limits, double period_s)
       : walk_(walk), limits_(limits), period_s_(period_s) {}
 
-  /// The law with the shortest ramp to `rate` that begins at the point `begin`. Nothing: none is long enough.
-  [[nodiscard]] std::optional<PaceLaw> From(const PaceLaw& law, double begin, double rate) const;
+  /// The law with the shortest ramp to `rate` that begins at the point `begin`. Nothing: none is long enough,
+  /// or it would end after `latest`, in periods of the program.
+  [[nodiscard]] std::optional<PaceLaw> From(const PaceLaw& law, double begin, double rate,
+                                            double latest = std::numeric_limits<double>::infinity()) const;
   /// The law that comes to rest when the program's time is `stop`, and is held there; that lies ahead of
   /// `begin`, where the rate must not change. Nothing: there is no room for it.
   [[nodiscard]] std::optional<PaceLaw> StopAt(const PaceLaw& law, double begin, double stop) const;

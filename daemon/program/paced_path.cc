@@ -26,6 +26,30 @@ std::unique_ptr<PathWalk> WalkOf(const PathGenerator& generator) {
   return walk;
 }
 
+/// A way to rest is looked for once in so many points, and begins so many points later.
+constexpr std::uint64_t kStride = 32;
+/// Ramps are longer than the shortest that the limits allow at constant speed, where the path bends.
+constexpr double kLongerRamp = 4.0;
+/// What is not needed any more is given up in lots of so many points; differences look a few points back.
+constexpr std::uint64_t kForgetAtOnce = 256;
+constexpr std::uint64_t kLooksBack = 64;
+/// Periods of plan that are left where it rests.
+constexpr double kRoom = 4.0;
+/// So much of what is enough is planned at once when the feed changes.
+constexpr double kPlanAfterChange = 1.5;
+/// So much of what is enough is planned ahead.
+constexpr double kPlanAhead = 3.0;
+
+/// Periods within which a motion at the axes' largest velocities comes to rest, with room.
+double EnoughAhead(const PerAxis<PlanLimits>& limits, double period_s) {
+  double ramp_s = 0.0;
+  for (const PlanLimits& l : limits) {
+    ramp_s = std::max(ramp_s, 1.5 * l.velocity_m_s / l.acceleration_m_s2);
+    if (l.jerk_m_s3 > 0.0) ramp_s = std::max(ramp_s, std::sqrt(6.0 * l.velocity_m_s / l.jerk_m_s3));
+  }
+  return kLongerRamp * ramp_s / period_s + 4.0 * static_cast<double>(kStride);
+}
+
 }  // namespace
 
 PacedPath::PacedPath(std::unique_ptr<PathGenerator> generator, const Options& options)
@@ -34,6 +58,8 @@ PacedPath::PacedPath(std::unique_ptr<PathGenerator> generator, const Options& op
       feed_(options.feed),
       single_block_(options.single_block),
       halts_(options.halts),
+      planning_(options.planning),
+      enough_(EnoughAhead(generator_->limits(), generator_->period_s())),
       law_(std::min(options.feed, 1.0)) {
   if (feed_ > 1.0 && feed_may_exceed()) {
     scale_ = std::min(feed_, kLargestScale);
@@ -99,6 +125,77 @@ void PacedPath::Evaluate(const PaceState& state, PathPoint& point) const {
   }
 }
 
+// In periods of the walk's time.
+double PacedPath::Planned() const {
+  return planning_ == Options::Planning::kItself ? std::numeric_limits<double>::infinity()
+                                                 : walk_->planned_s() / generator_->period_s();
+}
+
+bool PacedPath::Ready(std::uint64_t needed) {
+  if (ended_ || planning_ == Options::Planning::kItself) return true;
+  const double planned = Planned();
+  if (planning_ == Options::Planning::kAheadOrSlower) {
+    const bool enough = law_.At(static_cast<double>(next_)).time + enough_ <= planned;
+    if (!enough && !waits_for_plan_ && next_ >= needed) return false;
+    if (!MayGoOn()) return false;
+  }
+  const double ahead = next_ == 0 ? enough_ : 1.0;
+  return law_.At(static_cast<double>(next_)).time + ahead < planned;
+}
+
+// No point is handed out unless there is a way to rest behind it within what is planned.
+bool PacedPath::MayGoOn() {
+  const double planned = Planned();
+  const PaceState now = law_.At(static_cast<double>(next_));
+  if (now.time + enough_ <= planned) {
+    stop_.reset();
+    if (waits_for_plan_) GoOnWithPlan();
+    return true;
+  }
+  const bool rests = law_.rate() == 0.0 && law_.At(law_.settled()).time + kRoom < planned;
+  if (waits_for_plan_ || rests || (stop_ && next_ < stop_->begin)) return true;
+  const std::uint64_t later = next_ + kStride;
+  if (const auto law = Ramp().From(law_, static_cast<double>(later), 0.0, planned)) {
+    stop_ = Stop{later, *law};
+    return true;
+  }
+  if (!stop_ || next_ != stop_->begin) return false;
+  law_ = stop_->law;
+  stop_.reset();
+  waits_for_plan_ = true;
+  return true;
+}
+
+// Nothing of this has been handed out, so that nobody needs to be told.
+void PacedPath::GoOnWithPlan() {
+  const PaceState now = law_.At(static_cast<double>(next_));
+  if (now.rate > 0.0 && now.change != 0.0) return;  // still on its way to rest
+  if (feed_ > 0.0) {
+    const std::optional<PaceLaw> law = LawFrom(next_, std::min(feed_ / scale_, 1.0));
+    if (!law) return;
+    law_ = *law;
+  }
+  waits_for_plan_ = false;
+}
+
+void PacedPath::ForgetBefore(std::uint64_t index) {
+  if (index < forgotten_ + kForgetAtOnce) return;
+  forgotten_ = index;
+  const std::uint64_t needed = index - std::min(index, kLooksBack);
+  const double time_s = law_.At(static_cast<double>(needed)).time * generator_->period_s();
+  walk_->ForgetBefore(std::max(0.0, time_s));
+}
+
+PacedPath::Plan PacedPath::TakePlan() {
+  if (planning_ == Options::Planning::kItself || ended_) return {};
+  if (law_.At(static_cast<double>(next_)).time + kPlanAhead * enough_ < Planned()) return {};
+  return {walk_->Clone(), version_};
+}
+
+void PacedPath::GivePlan(Plan plan) {
+  if (plan.version == version_) walk_ = std::move(plan.walk);
+}
+
 // Where the line ends that is under way at that time, or begins.
 double PacedPath::EndOfLine(double time) const {
   const double period_s = generator_->period_s();
@@ -150,9 +247,11 @@ std::optional<PaceLaw> PacedPath::LawFrom(std::uint64_t begin, double rate) cons
 // What the cycle knows is to be kept, until it has taken what comes now.
 void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end, double feed) {
   before_.law = law_;
+  before_.stop = stop_;
   before_.feed = feed_;
   law_ = law;
   feed_ = feed;
+  stop_.reset();
   const std::uint64_t oldest = std::min(begin, end);
   law_.ForgetBefore(static_cast<double>(oldest > kRemembered ? oldest - kRemembered : 0));
   ++issued_;
@@ -178,14 +277,21 @@ PacedPath::Step PacedPath::StepTowards(double feed, double begin, double from_ra
 void PacedPath::Rescale(std::uint64_t begin, double scale) {
   before_.walk = walk_->Clone();
   before_.scale = scale_;
-  walk_->ChangeFeed(law_.At(static_cast<double>(begin)).time * generator_->period_s(), scale);
+  const double from_s = law_.At(static_cast<double>(begin)).time * generator_->period_s();
+  walk_->ChangeFeed(from_s, scale);
+  // What was planned beyond is void. Until the first points are handed out there are those of the law before.
+  if (planning_ != Options::Planning::kItself)
+    while (walk_->planned_s() < from_s + kPlanAfterChange * enough_ * generator_->period_s())
+      walk_->PlanStep();
   scale_ = scale;
+  ++version_;
 }
 
 void PacedPath::ScaleBack() {
   if (!before_.walk) return;
   walk_ = std::move(before_.walk);
   scale_ = before_.scale;
+  ++version_;
 }
 
 std::optional<PaceLaw> PacedPath::Take(const Step& step, std::uint64_t begin) {
@@ -221,6 +327,14 @@ PacedPath::Change PacedPath::ChangeFeed(std::uint64_t earliest, std::uint64_t en
       feed_ = feed;
       return Change::kNothing;
     }
+    if (waits_for_plan_ || (feed > 0.0 && from.time + enough_ > Planned())) {
+      if (feed > 0.0) return Change::kLater;
+      // It comes to rest anyway, and stays there.
+      if (waits_for_plan_) {
+        feed_ = 0.0;
+        return Change::kNothing;
+      }
+    }
     const Step step = StepTowards(feed, static_cast<double>(earliest), from.rate);
     if (const std::optional<PaceLaw> law = Take(step, earliest)) {
       Adopt(*law, earliest, end, step.last ? feed : scale_ * step.rate);
@@ -241,6 +355,8 @@ void PacedPath::Taken() {
 void PacedPath::Refused(std::uint64_t end) {
   ScaleBack();
   law_ = before_.law;
+  stop_ = before_.stop;
+  waits_for_plan_ = false;  // it did not, or it would not have been asked for another law
   feed_ = before_.feed;
   pending_ = false;
   next_ = end;

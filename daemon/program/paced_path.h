@@ -30,6 +30,11 @@ class PacedPath {
     double feed = 1.0;  ///< that it begins with
     bool single_block = false;
     bool halts = false;
+    /// Who plans how far: nobody but the path itself when it is asked; or somebody else, by TakePlan() and
+    /// GivePlan(). Then Ready() says whether there is a point, and with kAheadOrSlower it comes to rest on
+    /// the path, within the limits, before what is planned ends, and goes on when there is more.
+    enum class Planning : std::uint8_t { kItself, kAhead, kAheadOrSlower };
+    Planning planning = Planning::kItself;
   };
   /// Where the program waits in the law as it is handed out.
   struct Halt {
@@ -38,6 +43,9 @@ class PacedPath {
   };
   PacedPath(std::unique_ptr<PathGenerator> generator, const Options& options);
 
+  /// Can the next point be had without planning? Always, when the path plans itself. Points before `needed`
+  /// are wanted at once; whether later ones shall bring it to rest is decided when they are.
+  bool Ready(std::uint64_t needed);
   /// The next point; false when the last one has been handed out. A pause has no last one.
   bool Next(PathPoint& point);
 
@@ -54,6 +62,20 @@ class PacedPath {
   void Taken();
   /// It goes on by the law before, with the point `end`.
   void Refused(std::uint64_t end);
+
+  /// What is to be planned further, away from here; null: nothing at present. The plan that is given back
+  /// counts unless the feed has been changed meanwhile.
+  struct Plan {
+    std::unique_ptr<PathWalk> walk;
+    std::uint64_t version = 0;
+  };
+  [[nodiscard]] Plan TakePlan();
+  void GivePlan(Plan plan);
+  /// No change will begin before this point, and none before it will be handed out again.
+  void ForgetBefore(std::uint64_t index);
+  /// It is slow, or at rest, because there is no plan for more yet.
+  [[nodiscard]] bool waits_for_plan() const { return waits_for_plan_; }
+  [[nodiscard]] PathWalk::Estimate ProgramDuration() { return walk_->ProgramDuration(); }
 
   /// The newest halt that points have been handed out for; number 0: there was none.
   [[nodiscard]] const Halt& halt() const { return halt_; }
@@ -84,6 +106,9 @@ class PacedPath {
   [[nodiscard]] std::optional<PaceLaw> Take(const Step& step, std::uint64_t begin);
   void Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end, double feed);
   void StandAtHalt();
+  [[nodiscard]] double Planned() const;
+  [[nodiscard]] bool MayGoOn();
+  void GoOnWithPlan();
   [[nodiscard]] std::uint32_t HaltsAt(double index) const;
   void Evaluate(const PaceState& state, PathPoint& point) const;
 
@@ -93,6 +118,17 @@ class PacedPath {
   double scale_ = 1.0;  ///< of the walk's feed
   bool single_block_;
   bool halts_;
+  Options::Planning planning_;
+  double enough_;              ///< periods of plan ahead that no stop needs
+  std::uint64_t version_ = 0;  ///< of the walk
+  std::uint64_t forgotten_ = 0;
+  bool waits_for_plan_ = false;
+  /// A way to rest within what is planned, from a point that has not been handed out yet.
+  struct Stop {
+    std::uint64_t begin = 0;
+    PaceLaw law;
+  };
+  std::optional<Stop> stop_;
   Halt halt_;
   PaceLaw law_;
   /// What the cycle knows, while another law is pending.
@@ -101,6 +137,7 @@ class PacedPath {
     double feed = 1.0;
     double scale = 1.0;
     PaceLaw law;
+    std::optional<Stop> stop;
   };
   Known before_;
   bool pending_ = false;

@@ -53,6 +53,21 @@ class PathWalk {
   /// Of the whole program at the feed as it is. Plans all of it; infinite while it rests on the way.
   [[nodiscard]] virtual double duration_s() = 0;
 
+  /// The same of the plan at the programmed feed: an estimate from feeds and lengths, which gets better with
+  /// what is planned.
+  struct Estimate {
+    double duration_s = 0.0;
+    bool exact = false;
+  };
+  [[nodiscard]] virtual Estimate ProgramDuration() = 0;
+
+  /// Times before this need no planning when they are asked for; infinite: none do.
+  [[nodiscard]] virtual double planned_s() = 0;
+  /// Plans one step further: some hundred nodes of speed, some tens of milliseconds of work.
+  virtual void PlanStep() = 0;
+  /// Times before this will not be asked for again: what they need is given up.
+  virtual void ForgetBefore(double time_s) = 0;
+
   [[nodiscard]] virtual std::unique_ptr<PathWalk> Clone() const = 0;
 };
 

@@ -20,9 +20,11 @@ constexpr double kRough = 0.02;
 constexpr double kFine = 1e-4;
 // Of the time that exceeding a lowered feed twice over costs.
 constexpr double kPenalty = 1e3;
-// A stop shall come to rest; and room that is left where a motion is beyond a limit.
+// A stop shall come to rest; and room that is left where a motion is beyond a limit. What is optimised again
+// and again, as the feed changes, takes it every time.
 constexpr double kStopGap = 1e-7;
-constexpr double kAllowed = 1.005;
+constexpr double kAllowed = 1.0002;
+constexpr double kAllowedInStop = 1.002;
 
 /// Gradient and the three diagonals of a symmetric matrix.
 struct System {
@@ -152,8 +154,9 @@ class Window {
                std::sqrt(w) * std::abs(p.third[a] * w + 1.5 * p.second[a] * s + 0.5 * p.first[a] * b) /
                    constraints_.jerk[a]});
         }
-        p.allowance = std::max(1.0, kAllowed * used);
-        p.cap = std::max(p.cap, kAllowed * w);
+        const double allowed = stopping() ? kAllowedInStop : kAllowed;
+        p.allowance = std::max(1.0, allowed * used);
+        p.cap = std::max(p.cap, allowed * w);
       }
     }
   }

@@ -67,6 +67,38 @@ StretchProgram::StretchProgram(const std::vector<PieceRequest>& requests, const 
     last = &r;
   }
   if (parts_.empty()) parts_.push_back({});
+  CountNominal();
+}
+
+void StretchProgram::CountNominal() {
+  nominal_.reserve(moves_.size() + 1);
+  Nominal now;
+  for (const Part& part : parts_) {
+    for (std::size_t i = part.first; i < part.end; ++i) {
+      nominal_.push_back(now);
+      const ProgrammedMove& m = moves_[i];
+      const double largest_m_s = LargestSpeed_m_s(m.curve, limits_);
+      const double speed_m_s = m.feed_m_s > 0.0 ? std::min(m.feed_m_s, largest_m_s) : largest_m_s;
+      now.before_s += m.curve.length_m / speed_m_s;
+      now.before_m += m.curve.length_m;
+    }
+    now.before_s += part.dwell_s;
+  }
+  nominal_.push_back(now);
+}
+
+double StretchProgram::Nominal_s(const Part& part, double way_m) const {
+  const double at_m = nominal_[part.first].before_m + way_m;
+  const auto first = nominal_.begin() + static_cast<std::ptrdiff_t>(part.first);
+  const auto end = nominal_.begin() + static_cast<std::ptrdiff_t>(part.end);
+  const auto after =
+      std::upper_bound(first, end, at_m, [](double m, const Nominal& n) { return m < n.before_m; });
+  if (after == first) return first->before_s;
+  const Nominal& from = *(after - 1);
+  const Nominal& to = *after;
+  const double length_m = to.before_m - from.before_m;
+  if (!(length_m > 0.0)) return from.before_s;
+  return from.before_s + (to.before_s - from.before_s) * std::min(1.0, (at_m - from.before_m) / length_m);
 }
 
 std::shared_ptr<const Stretch> StretchProgram::MakeStretch(const Part& part) const {

@@ -28,11 +28,24 @@ class StretchProgram {
   [[nodiscard]] const PerAxis<double>& start_m() const { return start_m_; }
   [[nodiscard]] std::shared_ptr<const Stretch> MakeStretch(const Part& part) const;
 
+  /// How long it takes by feeds, lengths and dwells alone, with no time for getting faster and slower: of all
+  /// of it, and up to a way of a part.
+  [[nodiscard]] double nominal_s() const { return nominal_.back().before_s; }
+  [[nodiscard]] double Nominal_s(const Part& part, double way_m) const;
+
  private:
+  void CountNominal();
+
   PerAxis<PlanLimits> limits_;
   PerAxis<double> start_m_;
   std::vector<ProgrammedMove> moves_;
   std::vector<Part> parts_;
+  /// Before each move, and after the last.
+  struct Nominal {
+    double before_s = 0.0;
+    double before_m = 0.0;
+  };
+  std::vector<Nominal> nominal_;
 };
 
 }  // namespace contour

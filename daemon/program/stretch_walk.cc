@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
 constexpr double kRounding_s = 1e-9;
+constexpr double kBetweenLegs_s = 1e-3;
 // Laws kept besides those that cannot be made again.
 constexpr std::size_t kHeld = 4;
 
@@ -21,6 +22,8 @@ StretchWalk::StretchWalk(std::shared_ptr<const StretchProgram> program)
 
 StretchWalk::StretchWalk(const StretchWalk& other)
     : program_(other.program_),
+      gone_(other.gone_),
+      forgets_(other.forgets_),
       held_(other.held_),
       complete_(other.complete_),
       end_s_(other.end_s_),
@@ -51,13 +54,57 @@ TimeLaw* StretchWalk::LawOf(std::size_t leg) {
     if (!stretch) stretch = program_->MakeStretch(part);
     l.law = std::make_unique<TimeLaw>(std::move(stretch), l.from_m, l.scale);
     held_.push_back(leg);
-    if (held_.size() > kHeld) {
-      const std::size_t oldest = held_.front();
-      held_.erase(held_.begin());
-      if (oldest < legs_.size() && oldest != leg && !legs_[oldest].changed) legs_[oldest].law.reset();
-    }
+    if (!forgets_) GiveUpLaws(leg);
   }
   return l.law.get();
+}
+
+void StretchWalk::GiveUpLaws(std::size_t but) {
+  if (held_.size() <= kHeld) return;
+  const std::size_t oldest = held_.front();
+  held_.erase(held_.begin());
+  if (oldest < legs_.size() && oldest != but && !legs_[oldest].changed) legs_[oldest].law.reset();
+}
+
+void StretchWalk::ForgetBefore(double time_s) {
+  // Where one leg ends and the next begins, either may be asked for.
+  if (own_) own_->ForgetBefore(ProgramTime_s(time_s) - kBetweenLegs_s);
+  forgets_ = true;
+  const std::size_t leg = LegAt(time_s);
+  legs_.erase(legs_.begin(), legs_.begin() + static_cast<std::ptrdiff_t>(leg));
+  gone_ += leg;
+  std::vector<std::size_t> held;
+  for (const std::size_t h : held_)
+    if (h >= leg) held.push_back(h - leg);
+  held_ = std::move(held);
+}
+
+double StretchWalk::planned_s() {
+  if (complete_ || rests_from_s_ < kNever_s) return kNever_s;
+  const Leg& last = legs_.back();
+  return last.begin_s + (last.law ? last.law->planned_s() : 0.0);
+}
+
+void StretchWalk::PlanStep() {
+  const double planned = planned_s();
+  if (!(planned < kNever_s)) return;
+  Extend(planned + kRounding_s);
+  // Where that is in the program is asked for with every point.
+  const double reached = complete_ ? end_s_ : planned_s();
+  if (own_) static_cast<void>(ProgramTime_s(reached - kRounding_s));
+}
+
+PathWalk::Estimate StretchWalk::ProgramDuration() {
+  if (own_) return own_->ProgramDuration();
+  if (complete_) return {end_s_, true};
+  const Leg& last = legs_.back();
+  const StretchProgram::Part& part = program_->parts()[last.part];
+  const double planned = planned_s();
+  // As far as it is planned, it has taken so much longer than feeds and lengths alone say.
+  const double way_m = last.law ? last.law->planned_way_m() : 0.0;
+  const double nominal_s = program_->Nominal_s(part, way_m);
+  const double longer = planned > 0.0 && nominal_s > 0.0 ? planned / nominal_s : 1.0;
+  return {planned + longer * (program_->nominal_s() - nominal_s), false};
 }
 
 void StretchWalk::Extend(double time_s) {
@@ -131,7 +178,7 @@ double StretchWalk::duration_s() {
 double StretchWalk::ChangeFeed(double time_s, double scale) {
   Extend(time_s);
   if (!own_) {
-    own_ = std::make_unique<StretchWalk>(program_);
+    own_ = std::make_unique<StretchWalk>(*this);
     changed_from_s_ = time_s;
   }
   complete_ = false;
@@ -165,16 +212,16 @@ int StretchWalk::Line(double time_s) {
 }
 
 double StretchWalk::BeginOf_s(std::size_t part) {
-  while (legs_.size() <= part) {
+  while (gone_ + legs_.size() <= part) {
     TimeLaw* law = LawOf(legs_.size() - 1);
     Extend(legs_.back().begin_s + (law != nullptr ? law->duration_s() : 0.0) + kRounding_s);
   }
-  return legs_[part].begin_s;
+  return legs_[part - gone_].begin_s;
 }
 
 double StretchWalk::TimeAt_s(std::size_t part, double way_m) {
   const double begin_s = BeginOf_s(part);
-  TimeLaw* law = LawOf(part);
+  TimeLaw* law = LawOf(part - gone_);
   return begin_s + (law != nullptr ? law->TimeAt_s(way_m) : 0.0);
 }
 

@@ -26,6 +26,12 @@ class StretchWalk : public PathWalk {
   [[nodiscard]] std::uint32_t Halts(double time_s) override;
   [[nodiscard]] double ProgramTime_s(double time_s) override;
   [[nodiscard]] double duration_s() override;
+  [[nodiscard]] Estimate ProgramDuration() override;
+  [[nodiscard]] double planned_s() override;
+  void PlanStep() override;
+  void ForgetBefore(double time_s) override;
+  /// Legs that are kept, with and without a law.
+  [[nodiscard]] std::size_t legs() const { return legs_.size(); }
   [[nodiscard]] std::unique_ptr<PathWalk> Clone() const override {
     return std::make_unique<StretchWalk>(*this);
   }
@@ -44,6 +50,7 @@ class StretchWalk : public PathWalk {
   [[nodiscard]] std::size_t LegAt(double time_s);
   /// The law of a leg, made again where it was given up; null: only a dwell.
   TimeLaw* LawOf(std::size_t leg);
+  void GiveUpLaws(std::size_t but);
   /// Of a walk whose feed never changes: when a part begins, and when it is at a way of that part.
   [[nodiscard]] double BeginOf_s(std::size_t part);
   [[nodiscard]] double TimeAt_s(std::size_t part, double way_m);
@@ -51,6 +58,8 @@ class StretchWalk : public PathWalk {
 
   std::shared_ptr<const StretchProgram> program_;
   std::vector<Leg> legs_;
+  std::size_t gone_ = 0;           ///< legs before the first that is kept
+  bool forgets_ = false;           ///< ForgetBefore() says what is not needed; until then it is guessed
   std::vector<std::size_t> held_;  ///< legs with a law that can be made again, newest use last
   bool complete_ = false;          ///< the last leg ends the program
   double end_s_ = 0.0;             ///< of the program when complete

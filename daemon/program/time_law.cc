@@ -136,6 +136,11 @@ double TimeLaw::SinceNode(std::size_t i, double since_s) const {
   return e;
 }
 
+double TimeLaw::planned_way_m() const {
+  if (!stops_) return map_.At(speed_.u[time_s_.size() - 1]).way_m;
+  return last_.way_m;
+}
+
 double TimeLaw::TimeAt_s(double way_m) {
   const double at_u = map_.Inverse(way_m);
   while (time_s_.size() < speed_.u.size() && speed_.u[time_s_.size() - 1] < at_u) PlanWindow();

@@ -30,6 +30,8 @@ class TimeLaw {
   double duration_s();
   /// Until the end of what is planned.
   [[nodiscard]] double planned_s() const { return stops_ ? last_s_ + tail_s_ : time_s_.back(); }
+  /// Where that is on the way.
+  [[nodiscard]] double planned_way_m() const;
   /// When it is at a way, 0 and duration_s() beyond either end. The feed must never have been changed.
   double TimeAt_s(double way_m);
 

@@ -177,7 +177,8 @@ std::string ProgramText(const json& s) {
   if (program["id"] == 0) return {};
   std::string text = "program " + Text(program["name"]);
   if (program.value("line", json()).is_number()) text += " line " + Text(program["line"]);
-  text += ", " + Number(program["time_s"], 1.0, 1) + " of " + Number(program["duration_s"], 1.0, 1) + " s";
+  const char* const about = program.value("duration_estimated", false) ? " of about " : " of ";
+  text += ", " + Number(program["time_s"], 1.0, 1) + about + Number(program["duration_s"], 1.0, 1) + " s";
   if (program.value("left_s", json()).is_number())
     text += ", " + Number(program["left_s"], 1.0, 1) + " s left";
   if (program.value("feed_percent", 100.0) != 100.0)
