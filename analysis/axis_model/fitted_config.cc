@@ -170,6 +170,8 @@ void IntoConfig(const StatedAxis& axis, LooseAxisFile& file) {
   if (!axis.linear && !m.lead_mm) m.friction.acts_on = FrictionSide::kMotor;
   IntoFriction(axis, r, m.friction);
   to.PutFriction(axis.linear || m.friction.acts_on == FrictionSide::kTable);
+  (axis.linear ? m.constant_force_N : m.constant_torque_Nm) = FiveDigits(axis.offset);
+  to.Put("offset", {axis.linear ? "constant_force_N" : "constant_torque_Nm"});
   to.Put("delay", {"delay_ms"});
   to.Put("lag", {"lag_ms"});
   (axis.linear ? file.drive.force_constant_N_A : file.drive.torque_constant_Nm_A) =

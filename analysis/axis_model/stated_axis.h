@@ -90,7 +90,7 @@ struct StatedAxis {
   double stroke_min_m = 0.0, stroke_max_m = 0.0;  ///< table
 
   /// Relative standard deviation, by the names: inertia (motor_inertia), load_inertia, stiffness, damping,
-  /// Fc, Fs, vs, s0, s1, s2, delay, lag, torque_constant. Absent: the engine's stated default.
+  /// Fc, Fs, vs, s0, s1, s2, offset, delay, lag, torque_constant. Absent: the engine's stated default.
   std::map<std::string, double> sigma;
 
   /// What the file leaves open, by the same names (Fc, s2, vs, s0): a placeholder stands there until

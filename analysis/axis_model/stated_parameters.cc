@@ -38,6 +38,8 @@ const std::map<std::string, std::string>& NamesOfKeys() {
                                                            {"sigma1_Nms_rad", "s1"},
                                                            {"sigma2_Ns_m", "s2"},
                                                            {"sigma2_Nms_rad", "s2"},
+                                                           {"constant_force_N", "offset"},
+                                                           {"constant_torque_Nm", "offset"},
                                                            {"delay_ms", "delay"},
                                                            {"lag_ms", "lag"},
                                                            {"torque_constant", "torque_constant"}};

@@ -13,6 +13,7 @@
 #include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/verdict.h"
 #include "analysis/diagnosis/quantification/quantify.h"
+#include "analysis/diagnosis/quantification/written_model.h"
 #include "analysis/diagnosis/rounds.h"
 #include "analysis/diagnosis/screening/nominal.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
@@ -91,8 +92,8 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   const std::vector<RemainingStructure> left = FindStructure(problem, fit, options.false_alarm_rate);
   std::erase_if(out.candidates, [](const Candidate& c) { return Outside(c.kind); });
   TellStructure(rounds.accepted, left, options);
-  out.in_model = out.causes;
-  std::erase_if(out.in_model, [](const Cause& c) { return Outside(c.kind); });
+  Say(options, "errors of the models", 1.0);
+  DescribeModel(problem, nominal.fit, fit, rounds.accepted, left[0].score > left[0].asked, out);
   Conclude(problem, left, out);
   KeepStatedWhereBetter(stated, out);
   if (out.verdict == Verdict::kUnexplained && out.causes.empty()) out.causes = std::move(rounds.leading);

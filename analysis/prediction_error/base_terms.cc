@@ -1,5 +1,6 @@
 #include "analysis/prediction_error/base_terms.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -51,6 +52,23 @@ void AddNumbers(const StatedAxis& stated, AxisModel& nominal, std::vector<BaseTe
   add("s1", sigma_of("s1"), 1e-2, [](AxisModel& m) { return &m.friction.s1; });
   add("s2", sigma_of("s2"), 2e-3, [](AxisModel& m) { return &m.friction.s2; });
   add("torque_constant", sigma_of("torque_constant"), 5e-4, [](AxisModel& m) { return &m.torque_gain; });
+}
+
+/// A constant force that is stated is a number like the others, and as doubtful as friction: an axis whose
+/// directions differ looks much like one that something pulls. One that is not stated is a cause.
+void AddOffset(const StatedAxis& stated, const AxisModel& nominal, std::vector<BaseTerm>& terms) {
+  if (stated.offset == 0.0) return;
+  const double level = 0.5 * (nominal.friction.Fc_plus + nominal.friction.Fc_minus);
+  const auto known = stated.sigma.find("offset");
+  BaseTerm t;
+  t.name = "offset";
+  t.stated = stated.offset;
+  t.sigma = known != stated.sigma.end() ? known->second * std::fabs(stated.offset)
+                                        : kPriors.Fc_rel * std::max(level, std::fabs(stated.offset));
+  t.step = 1e-2 * std::max(level, std::fabs(stated.offset));
+  t.additive = true;
+  t.field = [](AxisModel& m) { return &m.offset; };
+  if (t.sigma > 0.0) terms.push_back(t);
 }
 
 void AddTimes(const StatedAxis& stated, AxisModel& nominal, std::vector<BaseTerm>& terms) {
@@ -109,6 +127,7 @@ double StatedSigma(const StatedAxis& stated, const std::string& name) {
 std::vector<BaseTerm> MakeBaseTerms(const StatedAxis& stated, AxisModel nominal) {
   std::vector<BaseTerm> terms;
   AddNumbers(stated, nominal, terms);
+  AddOffset(stated, nominal, terms);
   AddTimes(stated, nominal, terms);
   AddNuisances(nominal.friction, terms);
   return terms;

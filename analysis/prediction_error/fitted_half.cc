@@ -40,13 +40,14 @@ StatedAxis FittedAxis(const Problem& problem, const Fit& fit, const std::array<P
   axis.stiffness = m.stiffness;
   axis.damping = m.damping;
   axis.friction = m.friction;
+  axis.offset = m.offset;
   axis.delay_s = m.delay_s;
   axis.lag_s = m.lag_s;
   // Noise that goes on for long scatters more from part to part of the log than the fit's covariance says.
   for (std::size_t i = 0; i < problem.terms.size(); ++i) {
     const BaseTerm& t = problem.terms[i];
     const auto at = static_cast<Eigen::Index>(i);
-    const double value = *t.field(m);
+    const double value = std::fabs(*t.field(m));
     if (t.nuisance || !(value > 0.0)) continue;
     const double sd = std::max(std::sqrt(std::max(0.0, fit.covariance(at, at))),
                                0.5 * std::fabs(halves[0].base[i] - halves[1].base[i]));

@@ -63,7 +63,9 @@ void Problem::ChooseSubsteps() {
   const StatedFriction& f = nominal.friction;
   const double carried =
       nominal.two_inertia && nominal.friction_on_load ? nominal.load_inertia : nominal.motor_inertia;
-  const double presliding = std::sqrt(2.0 * f.s0 / carried);
+  // A stiffness that is hardly known may come out as much larger.
+  const double stiffer = std::exp(2.0 * std::max(0.0, StatedSigma(stated, "s0") - kPriors.s0_rel));
+  const double presliding = std::sqrt(2.0 * f.s0 * stiffer / carried);
   const double damped = 2.0 * f.s1 / carried;
   // What is fitted to a rigid axis is compared with runs of the rigid one's sub-steps.
   double coupling = 0.0;

@@ -8,6 +8,9 @@ namespace {
 
 constexpr std::string_view kName = "constant_torque";
 
+// Where a constant torque is stated.
+constexpr std::string_view kFrees[] = {"offset"};
+
 constexpr ExtensionRule kExtension = {
     .add = [](const Cause& cause, double,
               ExtensionsConfig& e) { Existing(e.constant_torque).torque_Nm += ValueOf(cause, "torque_Nm"); },
@@ -60,7 +63,7 @@ constexpr CauseDefinition constant_torque = {
     .model_errors = kNoModelErrors,
     .shape = nullptr,
     .largest = [](const Problem& p) { return 0.7 * p.signals->coulomb; },
-    .freed_terms = kFreesNothing,
+    .freed_terms = kFrees,
     .extension = &kExtension,
     .experiment = TorqueStepsFromRest,
     .shows_more_of = std::nullopt,

@@ -179,6 +179,36 @@ void FitAllFromStated(const Problem& problem, const Fit& current, const std::vec
   }
 }
 
+/// Where the linear estimate lies across a ridge of the cost, a fit that begins there ends above the base.
+/// From where the effect is absent it cannot: once more, for those that keep little of what the score test
+/// promises.
+void FitFromAbsent(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                   std::vector<Hypothesis>& hypotheses) {
+  std::vector<std::size_t> again;
+  std::vector<InitialGuess> guesses;
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const Effect& e = hypotheses[i].effect();
+    if (!e.start.empty() || InBase(problem, e.kind) || Outside(e.kind)) continue;
+    const auto s =
+        std::find_if(scored.begin(), scored.end(), [&](const Scored& one) { return one.effect.get() == &e; });
+    if (s == scored.end() ||
+        hypotheses[i].score > kHypotheses.half_share * (s->drop - Penalty(e)) - kHypotheses.new_noise_score)
+      continue;
+    Point absent = current.point;
+    absent.effects.push_back(s->effect);
+    absent.amplitudes.emplace_back(e.steps.size(), 0.0);
+    again.push_back(i);
+    guesses.push_back(
+        {std::move(absent), WorthFrom(current, kEfforts.far, kScreening.negligible_share), &current});
+  }
+  std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    Hypothesis anew{std::move(fits[i])};
+    Judge(problem, current, anew);
+    if (anew.score > hypotheses[again[i]].score) hypotheses[again[i]] = std::move(anew);
+  }
+}
+
 /// Those below a share of the best one's score, never the first; sorted before and after.
 void GiveUpFarBehind(const Problem& problem, double share, std::vector<Hypothesis>& hypotheses) {
   for (Hypothesis& r : hypotheses) {
@@ -219,6 +249,7 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
     // Where the best came to nothing, those far behind it have their turn.
     if (best > kScreening.little_share * most || !MorePromised(problem, scored, threshold, tried)) break;
   }
+  FitFromAbsent(problem, current, scored, out);
   Sort(out);
   KeepBest(problem, out);
   FitAllFromStated(problem, current, scored, out);

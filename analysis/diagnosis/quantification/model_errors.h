@@ -14,8 +14,11 @@ namespace contour::diagnosis {
 void DescribeModelErrors(const Problem& problem, const Fit& without, const Fit& with,
                          const std::array<Point, 2>& halves, Diagnosis& out);
 
-/// Root mean square of free runs of `seconds` over the rows [from, to) of the log, window after window.
-double FreeRunError(const Problem& problem, const AxisModel& model, double seconds, std::size_t from,
-                    std::size_t to);
+/// Says them in a note.
+void TellModelErrors(const Problem& problem, Diagnosis& out);
+
+/// Of a model named so, fitted to all parts, and of those fitted to either half on what they have not seen.
+ForecastError ErrorsOf(const Problem& p, const char* name, const Point& all,
+                       const std::array<Point, 2>& halves);
 
 }  // namespace contour::diagnosis

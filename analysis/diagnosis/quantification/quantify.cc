@@ -2,7 +2,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -10,11 +9,9 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
-#include "analysis/diagnosis/quantification/model_errors.h"
 #include "analysis/diagnosis/quantification/widen.h"
 #include "analysis/diagnosis/tuning/fit_effort.h"
 #include "analysis/prediction_error/bootstrap.h"
-#include "analysis/prediction_error/fitted_half.h"
 #include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
@@ -70,58 +67,6 @@ void DescribeBase(const Problem& problem, const Fit& fit, Diagnosis& out) {
   }
 }
 
-/// Without shapes from outside the catalogue, which no file holds: what they took is shared out anew.
-Fit KnownAlone(const Problem& problem, Fit fit) {
-  Point known = fit.point;
-  known.effects.clear();
-  known.amplitudes.clear();
-  for (std::size_t e = 0; e < fit.point.effects.size(); ++e) {
-    if (Outside(fit.point.effects[e]->kind)) continue;
-    known.effects.push_back(fit.point.effects[e]);
-    known.amplitudes.push_back(fit.point.amplitudes[e]);
-  }
-  if (known.effects.size() == fit.point.effects.size()) return fit;
-  return FitPoint(problem, std::move(known), FitEffort{});
-}
-
-/// What changed with time has come to its end: that is the axis as it is now. No file holds how it got there.
-void TakeEndOfDrift(const Problem& problem, const Fit& fit, StatedAxis& axis,
-                    std::vector<std::string>& notes) {
-  Point timed = fit.point, base = fit.point;
-  base.effects.clear();
-  base.amplitudes.clear();
-  timed.effects.clear();
-  timed.amplitudes.clear();
-  // Only what explains most; a small drift may as well be something else.
-  if (fit.point.effects.empty() || CauseNamed(fit.point.effects[0]->kind).extension != nullptr) return;
-  timed.effects.push_back(fit.point.effects[0]);
-  timed.amplitudes.push_back(fit.point.amplitudes[0]);
-  const AxisModel with = problem.Build(timed), without = problem.Build(base);
-  const auto end = [&](const AxisModel& m) {
-    double sum = 0.0;
-    const auto rows = std::min(problem.rows(), static_cast<std::size_t>(1.0 / problem.log.period_s));
-    for (std::size_t k = problem.rows() - rows; k < problem.rows() && m.level; ++k) sum += (*m.level)[k];
-    return 1.0 + sum / static_cast<double>(rows);
-  };
-  const double factor = end(with) / end(without);
-  StatedFriction& f = axis.friction;
-  for (double* level : {&f.Fc_plus, &f.Fc_minus, &f.Fs_plus, &f.Fs_minus}) *level *= factor;
-  (axis.two_inertia ? axis.load_inertia : axis.motor_inertia) += with.payload;
-  if (factor == 1.0 && with.payload == 0.0) return;
-  notes.emplace_back(
-      "What changed while the log was recorded stands in the extended model as it was in the log's last "
-      "second.");
-}
-
-/// What goes into a file: the model with all that has a name, and how good it is.
-void DescribeModel(const Problem& problem, const Fit& nominal, const Fit& all, Diagnosis& out) {
-  const Fit fit = KnownAlone(problem, all);
-  const std::array<Point, 2> halves = FitHalves(problem, fit);
-  out.fitted = FittedAxis(problem, fit, halves);
-  TakeEndOfDrift(problem, fit, *out.fitted, out.notes);
-  DescribeModelErrors(problem, nominal, fit, halves, out);
-}
-
 }  // namespace
 
 Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, const DiagnoseOptions& options,
@@ -136,8 +81,6 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
   }
   out.data_quality = problem.quality;
   DescribeBase(problem, fit, out);
-  Say(options, "errors of the models", 1.0);
-  DescribeModel(problem, nominal, fit, out);
   out.traces = MakeTraces(problem, nominal.point, fit.point);
   return fit;
 }

@@ -173,6 +173,7 @@ std::string FittedLooseFile(const std::string& file, const Diagnosis& found, con
     DropNumbers(e);
     e.input_delay.reset();
     e.current_lag.reset();
+    e.constant_torque.reset();
     IntoConfig(*found.fitted, content);
   }
   AddCauses(found.in_model, TemperatureOf(log).first_degC, e);
@@ -213,6 +214,8 @@ std::string ExtendedFile(const std::string& file, const std::string& axis, const
   if (numbers) {
     DropNumbers(extensions);
     IntoConfig(*found.fitted, alone);
+    // The only place that a machine file has for it.
+    if (extensions.constant_torque) extensions.constant_torque->torque_Nm = FiveDigits(found.fitted->offset);
   }
   AddCauses(causes, TemperatureOf(log).first_degC, extensions);
   if (model->kind == YamlValue::Kind::kMap && !model->entries.empty() && BlockStyle(file, *model))

@@ -39,6 +39,21 @@ TEST(BaseTerms, ANumberThatIsKnownForSureIsNoTerm) {
   EXPECT_NE(Find(MakeBaseTerms(stated, ModelOf(stated)), "s2"), nullptr);
 }
 
+TEST(BaseTerms, AConstantForceIsOneWhereItIsStated) {
+  StatedAxis stated = Stated();
+  EXPECT_EQ(Find(MakeBaseTerms(stated, ModelOf(stated)), "offset"), nullptr);
+  // As doubtful as friction, or as itself where it is larger; or as it is stated.
+  const double level = 0.5 * (stated.friction.Fc_plus + stated.friction.Fc_minus);
+  const auto sigma = [&] { return Find(MakeBaseTerms(stated, ModelOf(stated)), "offset")->sigma; };
+  stated.offset = -0.1 * level;
+  EXPECT_DOUBLE_EQ(sigma(), 0.1 * level);
+  stated.offset = 20.0 * level;
+  EXPECT_DOUBLE_EQ(sigma(), 2.0 * level);
+  stated.offset = -0.1 * level;
+  stated.sigma["offset"] = 0.5;
+  EXPECT_DOUBLE_EQ(sigma(), 0.05 * level);
+}
+
 TEST(BaseTerms, WithoutAStribeckDropItsNumbersAreNone) {
   StatedAxis stated = Stated();
   stated.friction.Fs_plus = stated.friction.Fc_plus;

@@ -2,22 +2,26 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/analysis/support/learnt_problem.h"
 
 namespace contour::diagnosis {
 namespace {
 
-TEST(ModelErrors, AWorseModelIsFurtherOffOverASecond) {
+TEST(ModelErrors, AreOfTheHalfThatHasNotSeenThem) {
   test::HiddenOptions o;
   o.duration_s = 20.0;
   o.parameter_spread = 0.0;
   test::LearntProblem made(test::MakeHiddenAxis(o));
-  const AxisModel good = made.problem.Build(made.point);
-  AxisModel bad = good;
-  bad.friction.Fc_plus *= 1.2;
-  const double near = FreeRunError(made.problem, good, 1.0, 0, made.problem.rows());
-  EXPECT_GT(near, 0.0);
-  EXPECT_GT(FreeRunError(made.problem, bad, 1.0, 0, made.problem.rows()), 2.0 * near);
+  Point bad = made.point;
+  for (std::size_t i = 0; i < made.problem.terms.size(); ++i)
+    if (made.problem.terms[i].name == "Fc") bad.base[i] += std::log(1.2);
+  const ForecastError errors = ErrorsOf(made.problem, "refitted", made.point, {bad, bad});
+  EXPECT_EQ(errors.model, "refitted");
+  EXPECT_GT(errors.free_run_used, 0.0);
+  EXPECT_GT(errors.free_run_unseen, 2.0 * errors.free_run_used);
+  EXPECT_GT(errors.one_step_unseen, errors.one_step_used);
 }
 
 }  // namespace

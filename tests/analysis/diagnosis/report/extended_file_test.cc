@@ -117,6 +117,30 @@ TEST(ExtendedFileTest, AModelAloneAndItsTables) {
   EXPECT_DOUBLE_EQ(stated.extras.friction_rel.position_m.front(), -0.01);
 }
 
+// The constant torque that a model states is a number of it, wherever it stands; what is found adds to it
+// once.
+TEST(ExtendedFileTest, AFittedConstantTorqueIsWrittenOnce) {
+  Cause offset;
+  offset.kind = "constant_torque";
+  offset.parameters["torque_Nm"] = {0.01, 0, 0.02};
+  const std::string alone =
+      "model:\n  motor_inertia_kgm2: 5e-5\n  constant_torque_Nm: 0.02\n"
+      "  friction: {Fc_plus_Nm: 0.03, Fc_minus_Nm: 0.03, sigma2_Nms_rad: 1e-4}\n"
+      "  extensions: {constant_torque: {torque_Nm: 0.005}}\n";
+  const std::string machine = WriteTestFile(
+      "machine.yaml", ExtendedFile(ExampleMachine("xy_emulated.yaml"), "x", Found({offset}), {}));
+  for (const std::string& file : {WriteTestFile("alone.yaml", alone), machine}) {
+    const std::string axis = file == machine ? "x" : "";
+    Diagnosis found = Found({offset});
+    found.in_model = found.causes;
+    found.fitted = ReadStatedAxis(file, axis);
+    found.fitted->offset = 0.03;
+    const StatedAxis again =
+        ReadStatedAxis(WriteTestFile("again.yaml", ExtendedFile(file, axis, found, {})), axis);
+    EXPECT_NEAR(again.offset, 0.04, 1e-9) << file;
+  }
+}
+
 TEST(ExtendedFileTest, NothingToAddIsNoFile) {
   const std::string file = ExampleMachine("xy_emulated.yaml");
   EXPECT_EQ(ExtendedFile(file, "x", Found({}), {}), "");

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "analysis/diagnosis/diagnose.h"
 #include "tools/validation/hidden/draw_setting.h"
@@ -25,13 +28,20 @@ class AsymmetricViscous : public testing::Test {
   }
   ~AsymmetricViscous() override { std::filesystem::remove_all(directory_); }
 
-  diagnosis::Diagnosis DiagnosisAt(double difference_rel) {
+  /// `stood_in`: of the difference that a constant torque of the model stands for, as least squares without
+  /// the other have it.
+  diagnosis::Diagnosis DiagnosisAt(double difference_rel, double stood_in = 0.0) {
     const std::string kind = "asymmetric_viscous";
     const Setting setting = DrawSetting(11, {kind}, Misfit::kNone, Length::kShort);
     Hidden hidden = DrawEffect(11, kind, setting);
     hidden.size = difference_rel;
     Record(setting, {hidden}, directory_);
-    const Recorded recorded = ReadRecorded(directory_);
+    Recorded recorded = ReadRecorded(directory_);
+    const std::vector<double>& q = recorded.log.position;
+    double travel = 0.0;
+    for (std::size_t k = 1; k < q.size(); ++k) travel += std::fabs(q[k] - q[k - 1]);
+    const double mean_speed = travel / (static_cast<double>(q.size()) * recorded.log.period_s);
+    recorded.stated.offset = -stood_in * 0.5 * difference_rel * recorded.stated.friction.s2 * mean_speed;
     return diagnosis::Diagnose(recorded.log, recorded.stated, {});
   }
 
@@ -49,6 +59,17 @@ TEST_F(AsymmetricViscous, IsNamedWithItsSize) {
   EXPECT_GE(size.high, kDifference);
   EXPECT_GT(cause.heldout_gain_low, 0.0);
   EXPECT_FALSE(cause.deciding_experiment.empty());
+}
+
+TEST_F(AsymmetricViscous, IsNamedWhereTheModelHasAConstantTorqueInItsPlace) {
+  const diagnosis::Diagnosis found = DiagnosisAt(-0.5 * kDifference, 1.0);
+  ASSERT_FALSE(found.causes.empty());
+  EXPECT_EQ(found.causes[0].kind, "asymmetric_viscous");
+  EXPECT_EQ(found.causes.size(), 1u);
+  ASSERT_TRUE(found.fitted);
+  const diagnosis::Interval size = found.causes[0].parameters.at("difference_rel");
+  EXPECT_LE(size.low, -0.5 * kDifference);
+  EXPECT_GE(size.high, -0.5 * kDifference);
 }
 
 TEST_F(AsymmetricViscous, IsNotNamedWhereThereIsNone) {
