@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/prediction_error/free_runs.h"
 #include "analysis/prediction_error/fit.h"
+#include "analysis/prediction_error/free_runs.h"
 
 namespace contour::diagnosis {
 namespace {

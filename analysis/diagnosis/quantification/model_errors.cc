@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/prediction_error/free_runs.h"
 #include "analysis/prediction_error/fitted_half.h"
+#include "analysis/prediction_error/free_runs.h"
 #include "config/number_text.h"
 
 namespace contour::diagnosis {

@@ -8,11 +8,11 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
-#include "analysis/prediction_error/free_run_fit.h"
 #include "analysis/diagnosis/quantification/model_errors.h"
 #include "analysis/diagnosis/quantification/widen.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/prediction_error/fitted_half.h"
+#include "analysis/prediction_error/free_run_fit.h"
 
 namespace contour::diagnosis {
 namespace {
