@@ -86,8 +86,15 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
   return steps;
 }
 
-// Sum of squares of the residual in every block, each with the parameters of the fold that did not see it.
-std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, Seen seen) {
+double InertiaAt(const Problem& problem, const Point& point) {
+  const AxisModel m = problem.Build(point);
+  return m.motor_inertia + (m.two_inertia ? m.load_inertia : 0.0);
+}
+
+// Sum of squares of the residual in every block, each with the parameters of the fold that did not see it. As
+// a torque it is what was not foreseen of the motion times an inertia: of all models the same one, or noise
+// of the reading alone would make the heavier of two models the worse one.
+std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, Seen seen, double inertia) {
   const std::size_t n = problem.rows();
   std::vector<Point> points;
   for (const Eigen::VectorXd& step : StepsWithout(problem, fit, seen))
@@ -98,9 +105,10 @@ std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, Seen 
     const Signal r = seen == Seen::kScale
                          ? Signal(raw[fold].begin() + static_cast<std::ptrdiff_t>(n), raw[fold].end())
                          : TorqueResidualFrom(problem, points[fold], raw[fold]);
+    const double unit = seen == Seen::kScale ? 1.0 : inertia / InertiaAt(problem, points[fold]);
     for (std::size_t b = 0; b < kHeldOutBlocks; ++b)
       for (std::size_t k = n * b / kHeldOutBlocks; k < n * (b + 1) / kHeldOutBlocks; ++k)
-        if (FoldOf(b, seen) == fold && problem.counted[k] != 0) squares[b] += r[k] * r[k];
+        if (FoldOf(b, seen) == fold && problem.counted[k] != 0) squares[b] += std::pow(unit * r[k], 2);
   }
   return squares;
 }
@@ -161,8 +169,10 @@ double Consistency(const Problem& problem, const Fit& without, const Fit& with, 
 void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks) {
   const Seen seen = SeenIn(with, scale);
+  const double inertia = InertiaAt(problem, without.point);
   const auto squares = [&](const Fit& fit) {
-    return seen == Seen::kWhite ? WhiteSquares(problem, fit, true) : HeldOutSquares(problem, fit, seen);
+    return seen == Seen::kWhite ? WhiteSquares(problem, fit, true)
+                                : HeldOutSquares(problem, fit, seen, inertia);
   };
   const std::vector<double> before = squares(without), after = squares(with);
   const double n = static_cast<double>(problem.rows()) / kHeldOutBlocks;

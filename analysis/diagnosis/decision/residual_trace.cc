@@ -15,7 +15,7 @@ Signal TorqueResidualFrom(const Problem& problem, const Point& point, const std:
   for (std::size_t k = 0; k + 1 < n; ++k)
     if (problem.counted[k] != 0 && problem.counted[k + 1] != 0)
       r[k] = -inertia * (gain[1] * raw[k] / T + gain[0] * (raw[k + 1] - raw[k]) / (T * T));
-  return Smooth(r, kAcceptance.residual_smoothing_s / T);
+  return Smooth(r, ResidualSmoothing(T));
 }
 
 Signal TorqueResidual(const Problem& problem, const Point& point) {
@@ -33,7 +33,7 @@ Traces MakeTraces(const Problem& problem, const Point& before, const Point& afte
   const AxisModel m = problem.Build(after);
   const Delivered delivered =
       DeliveredMeans(problem.log, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
-  t.measured = Smooth(delivered.mean, kAcceptance.residual_smoothing_s / problem.log.period_s);
+  t.measured = Smooth(delivered.mean, ResidualSmoothing(problem.log.period_s));
   t.position = s.position;
   t.velocity = s.velocity;
   t.acceleration = s.acceleration;

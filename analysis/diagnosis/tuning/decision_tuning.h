@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -87,6 +88,12 @@ constexpr std::size_t FewestRows() { return kScreening.blocks * kNoise.whitener_
 
 /// Kinds that are looked at in one turn, and hypotheses that are kept.
 constexpr std::size_t MostLookedAt() { return kHypotheses.most_kinds + 2; }
+
+/// The residual torque's smoothing in rows: of slower logs than 1 kHz as many as there, for what goes to and
+/// fro from row to row is noise of the reading.
+inline double ResidualSmoothing(double period_s) {
+  return kAcceptance.residual_smoothing_s / std::min(period_s, 1e-3);
+}
 
 /// Of small scores, what makes them alike: a likelihood ratio of one over the false-alarm rate for either.
 inline double AlikeScore() { return -4.0 * std::log(kRounds.false_alarm_rate); }

@@ -4,8 +4,8 @@ ripple are named, and the model file as written foresees what it has not seen.
 
     emps_test.py CONTOUR FOLDER [--strict]
 
-Without --strict, what is asked but not reached yet is printed, and no more is asked than that the model is no worse than
-the stated one.
+Without --strict, free runs of 405 and 1360 um are asked for in print only; what fails is a cause that is not named, or a
+model that is worse by more than a twentieth than the authors' own of either direction (418 and 1535 um).
 """
 import sys
 import tempfile
@@ -15,6 +15,7 @@ import diagnosed
 import emps
 
 SECOND_HALF_UM, PULSES_UM = 405.0, 1360.0
+EITHER_DIRECTION_UM = 418.0, 1535.0
 
 
 def main():
@@ -36,10 +37,11 @@ def main():
             errors.append("the ripple is not named")
         if second > SECOND_HALF_UM or pulses > PULSES_UM:
             errors.append(f"expected {SECOND_HALF_UM:.0f} and {PULSES_UM:.0f} um at most")
-        stated = 1787.0, 2171.0
-        if "--strict" not in sys.argv:
+        if errors and "--strict" not in sys.argv:
             print("\n".join(f"not reached: {e}" for e in errors))
-            errors = [] if second < 1.05 * stated[0] and pulses < 1.05 * stated[1] else ["worse than the stated model"]
+            errors = [e for e in errors if not e.startswith("expected")]
+            if second > 1.05 * EITHER_DIRECTION_UM[0] or pulses > 1.05 * EITHER_DIRECTION_UM[1]:
+                errors.append("worse than the authors' model of either direction")
         if errors:
             sys.exit("\n".join(errors) + "\n" + text)
 

@@ -23,6 +23,12 @@ TEST(DecisionTuning, TheModelsOwnErrorsAddMoreWhereFewerAlarmsAreAsked) {
 
 TEST(DecisionTuning, AnAmplitudeThatIsOffLeavesTheSquareOfItsShare) { EXPECT_EQ(StatedOffDrop(), 1e-4); }
 
+TEST(DecisionTuning, SlowLogsAreSmoothedOverAsManyRowsAsThoseOf1kHz) {
+  EXPECT_DOUBLE_EQ(ResidualSmoothing(1e-3), 1.3);
+  EXPECT_DOUBLE_EQ(ResidualSmoothing(0.02), 1.3);
+  EXPECT_DOUBLE_EQ(ResidualSmoothing(1e-4), 13.0);
+}
+
 TEST(DecisionTuning, AsManyDrawsLieBelowAnIntervalAsAboveIt) {
   EXPECT_EQ(HeldOutDraw(0.025), 37U);
   EXPECT_NEAR(static_cast<double>(HeldOutDraw(1.0 - 0.025)), kThreshold.flip_draws - 1.0 - 37.0, 1.0);
