@@ -58,5 +58,41 @@ TEST(Space, ACircleOfTheThirdAxisIsAsInThePlane) {
 
 TEST(Space, AHelixIsAsACircle) { ExpectAsInThePlane(RunInSpace("G17 G2 X0 Y0 Z-4 I5 P4 F600\n", 4.0)); }
 
+/// One axis runs on at feed, the other one starts slowly, again in the direction in which it stopped: what is
+/// hardest for friction compensation in programs of lines.
+SpaceRun SlowStart(const std::string& fast, const std::string& slow) {
+  std::string gcode = "G21 G90 G64 P0.005 F1200\n";
+  const auto to = [&](int fast_mm, const char* slow_mm) {
+    gcode += "G1 " + fast + std::to_string(fast_mm) + " " + slow + slow_mm + "\n";
+  };
+  to(10, "0");
+  to(20, "-0.6");
+  for (int i = 0; i < 4; ++i) {
+    to(30, "-0.6");
+    to(10, "-0.6");
+  }
+  to(30, "-0.6");
+  to(40, "-1.2");
+  to(60, "-1.2");
+  return RunInSpace(gcode, 0.0);
+}
+
+TEST(Space, ASlowStartOfTheThirdAxisIsAsInThePlane) {
+  const SpaceRun y = SlowStart("X", "Y"), x = SlowStart("Y", "X");
+  const SpaceRun z = SlowStart("X", "Z");
+  EXPECT_LT(z.peak_m, 1.5 * std::max(x.peak_m, y.peak_m));
+  EXPECT_LT(z.rms_m, 1.5 * std::max(x.rms_m, y.rms_m));
+}
+
+/// A pocket without its ramps is drawn within its own tolerance, friction and all.
+TEST(Space, APocketKeepsItsToleranceAtTheTable) {
+  const char* const text =
+      "G21 G64 P0.005 F1200\nG1 X17 Y10\nG2 X17 Y10 I-2 P2\n#1=1\no1 while [#1 le 3]\n#2=[#1*3]\n"
+      "G1 X[15+#2] Y10\nG1 Y[10+#1]\nG3 X[13+#2] Y[12+#1] I-2 J0\nG1 X[17-#2]\nG3 X[15-#2] Y[10+#1] I0 J-2\n"
+      "G1 Y[10-#1]\nG3 X[17-#2] Y[8-#1] I2 J0\nG1 X[13+#2]\nG3 X[15+#2] Y[10-#1] I0 J2\nG1 Y10\n#1=[#1+1]\n"
+      "o1 endwhile\nM2\n";
+  EXPECT_LT(RunInSpace(text, 0.0).peak_m, 5e-6);
+}
+
 }  // namespace
 }  // namespace contour::test

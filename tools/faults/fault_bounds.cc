@@ -187,8 +187,10 @@ RunBound MotionBound(const MachineConfig& machine, const FaultCase& c) {
     const MotionFault fault = MotionFaultOf(c.fault, JumpSize_mm(machine, c), seen_mm);
     const FaultBound at = BoundOf(run.machine, run.axis, fault, feed);
     bound.departure_m = std::max(bound.departure_m, 1e-3 * at.departure_mm);
-    // Slower than its feed the axis is only on the way: the feed itself says how long.
-    if (feed == c.feed_mm_s || !Moves(c.phase)) bound.time_s = std::max(bound.time_s, at.time_s);
+    // Slower than its feed the axis is only on the way: the feed itself says how long. After a change of feed
+    // it stays slower.
+    const bool stays = c.phase == Phase::kFeedChange && feed >= kLeastOfFeed * c.feed_mm_s;
+    if (feed == c.feed_mm_s || !Moves(c.phase) || stays) bound.time_s = std::max(bound.time_s, at.time_s);
   }
   // Before the fault the axis may be this far from its path already, and wound up.
   bound.departure_m += SettledError_m(run.axis);

@@ -193,7 +193,7 @@ class Run {
     if (!Reach("enabling", MachineState::kReady)) return false;
     TickFor(kSettle_s);
     if (c_.phase == Phase::kReset) return BreakDuringReset();
-    if (Moves(c_.phase) && !Move()) return false;
+    if ((Moves(c_.phase) || Paced(c_.phase)) && !Move()) return false;
     Break();
     return true;
   }
@@ -230,6 +230,7 @@ class Run {
     shape.constant_s = 0.08 + (slow ? 0.9 : 0.1) * random_.Uniform();
     shape.reverses = c_.phase == Phase::kReversal;
     shape.end_s = 2.0 + shape.constant_s + std::max(result_.time_bound_s, kWarning_s);
+    if (c_.phase == Phase::kHalted) shape.end_s = shape.constant_s;
     PerAxis<bool> moves(file_.machine.axes.size());
     const bool all = Draw(0, 1) == 1;
     PerAxis<double> start_m;
@@ -241,7 +242,8 @@ class Run {
     if (Paced(c_.phase)) {
       feeder_.emplace(machine_.mailbox());
       feeder_->Begin(std::make_unique<PathGenerator>(std::make_shared<TestPlan>(*path_, period_s_),
-                                                     ProgramLimits(file_.machine), period_s_, 1U));
+                                                     ProgramLimits(file_.machine), period_s_, 1U),
+                     {1.0, false, c_.phase == Phase::kHalted});
     } else {
       held_ = path_->Next(point_);
     }
@@ -267,6 +269,12 @@ class Run {
     return true;
   }
 
+  /// Not slower than what promises are made for.
+  double LessFeed() {
+    const double least = std::clamp(kLowestFeed_mm_s / c_.feed_mm_s, kLeastOfFeed, 0.95);
+    return random_.Uniform(least, std::max(kMostOfFeed, least));
+  }
+
   bool ChangePace() {
     const auto reaches = [&](auto pace_is) {
       const bool there = TickUntil(
@@ -275,7 +283,12 @@ class Run {
       Violated("the program did not come to another pace: " + Now());
       return false;
     };
-    const double slower = c_.phase == Phase::kFeedChange ? random_.Uniform(0.1, 0.7) : 0.0;
+    if (c_.phase == Phase::kHalted) {
+      if (!reaches([](double pace) { return pace == 0.0; })) return false;
+      for (int n = Draw(0, 300); n > 0; --n) Tick();
+      return true;
+    }
+    const double slower = c_.phase == Phase::kFeedChange ? LessFeed() : 0.0;
     feeder_->SetPace(slower);
     if (c_.phase == Phase::kFeedChange) {
       const double within = random_.Uniform(slower + 0.1 * (1.0 - slower), 0.99);

@@ -20,11 +20,16 @@ enum class Phase : std::uint8_t {
   kPaused,
   kResuming,
   kFeedChange,
+  kHalted,
 };
-inline constexpr std::array kPhases{Phase::kBringUp,  Phase::kIdle,         Phase::kEnabling,
-                                    Phase::kReady,    Phase::kAcceleration, Phase::kConstant,
-                                    Phase::kReversal, Phase::kStopping,     Phase::kReset,
-                                    Phase::kPaused,   Phase::kResuming,     Phase::kFeedChange};
+inline constexpr std::array kPhases{
+    Phase::kBringUp,  Phase::kIdle,       Phase::kEnabling, Phase::kReady, Phase::kAcceleration,
+    Phase::kConstant, Phase::kReversal,   Phase::kStopping, Phase::kReset, Phase::kPaused,
+    Phase::kResuming, Phase::kFeedChange, Phase::kHalted};
+
+/// Of the programmed feed, after a change of feed.
+inline constexpr double kLeastOfFeed = 0.1;
+inline constexpr double kMostOfFeed = 0.7;
 
 constexpr std::string_view Name(Phase phase) noexcept {
   switch (phase) {
@@ -52,6 +57,8 @@ constexpr std::string_view Name(Phase phase) noexcept {
       return "resuming";
     case Phase::kFeedChange:
       return "feed_change";
+    case Phase::kHalted:
+      return "halted";
   }
   return "unknown";
 }
@@ -62,9 +69,9 @@ constexpr bool Moves(Phase p) noexcept {
 }
 /// The program's pace is or was another than the programmed one.
 constexpr bool Paced(Phase p) noexcept {
-  return p == Phase::kPaused || p == Phase::kResuming || p == Phase::kFeedChange;
+  return p == Phase::kPaused || p == Phase::kResuming || p == Phase::kFeedChange || p == Phase::kHalted;
 }
 /// The machine holds the axes under torque.
-constexpr bool Holds(Phase p) noexcept { return p == Phase::kReady || p == Phase::kPaused || Moves(p); }
+constexpr bool Holds(Phase p) noexcept { return p == Phase::kReady || Moves(p) || Paced(p); }
 
 }  // namespace contour::faults

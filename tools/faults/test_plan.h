@@ -18,6 +18,8 @@ class TestPlan final : public MotionPlan {
     return static_cast<double>(points_.size() - 1) * period_s_;
   }
   void At(double time_s, PerAxis<ReferencePoint>& axes) const override;
+  /// At its end, as M0 in the last line has it.
+  [[nodiscard]] std::uint32_t Halts(double time_s) const override { return time_s >= duration_s() ? 1 : 0; }
   [[nodiscard]] double Distance_m(const PerAxis<double>& /*point_m*/) const override { return 0.0; }
   [[nodiscard]] double Turns(double /*time_s*/) const override { return 0.0; }
   [[nodiscard]] bool Scored(double /*time_s*/) const override { return false; }

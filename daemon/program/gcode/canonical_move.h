@@ -24,6 +24,7 @@ struct CanonicalMove {
   GcodeMove::Corner corner = GcodeMove::Corner::kContinuous;
   double tolerance_m = 0.0;
   GcodeEvent event;
+  bool naive_cam = false;  ///< under G64 Q
 };
 
 }  // namespace contour

@@ -6,7 +6,9 @@
 
 namespace contour {
 
-std::string IgnoredEvents(const GcodeMoves& program, const std::string& name, bool simulated) {
+namespace {
+
+std::string Unheard(const GcodeMoves& program, const std::string& name, bool simulated) {
   std::set<std::string> deaf;
   std::set<std::string> passed;
   int first = 0;
@@ -31,6 +33,15 @@ std::string IgnoredEvents(const GcodeMoves& program, const std::string& name, bo
     text += simulated ? "a simulation goes on at " + list(passed)
                       : list(passed) + " does not wait without --optional-stop";
   return text;
+}
+
+}  // namespace
+
+std::string IgnoredEvents(const GcodeMoves& program, const std::string& name, bool simulated) {
+  std::string text = Unheard(program, name, simulated);
+  if (program.naive_cam_line == 0) return text;
+  text += text.empty() ? name + ":" + std::to_string(program.naive_cam_line) + ": " : "; ";
+  return text + "the Q of G64 is not looked at: short moves are joined within its P";
 }
 
 }  // namespace contour

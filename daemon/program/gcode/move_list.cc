@@ -60,6 +60,7 @@ void MoveList::Add(const CanonicalMove& canonical) {
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
     if ((canonical.named >> k & 1U) != 0) Use(k, canonical.line);
   if (canonical.named != 0) named_line_ = canonical.line;
+  if (canonical.naive_cam && list_.naive_cam_line == 0) list_.naive_cam_line = canonical.line;
   switch (canonical.kind) {
     case CanonicalMove::Kind::kTraverse:
     case CanonicalMove::Kind::kFeed:
