@@ -49,6 +49,20 @@ TEST(FaultRun, TheSameRunGivesTheSameResult) {
   EXPECT_EQ(All(a), "");
 }
 
+TEST(FaultRun, APausedOrHaltedProgramHasMovedBefore) {
+  const EmulatedMachineFile file = Example();
+  for (const Phase phase : {Phase::kPaused, Phase::kHalted}) {
+    SCOPED_TRACE(Name(phase));
+    const RunResult r = RunFault(Case(Fault::kLogBlocked, phase, 50.0), {&file, 1});
+    EXPECT_EQ(All(r), "");
+    EXPECT_GT(r.departure_m, 1e-7) << "friction has left the axis off its path";
+    // Torque that is gone shows there, and stops the machine, as in motion.
+    const RunResult lost = RunFault(Case(Fault::kDriveFault, phase, 50.0), {&file, 1});
+    EXPECT_TRUE(lost.stopped);
+    EXPECT_EQ(All(lost), "");
+  }
+}
+
 TEST(FaultRun, ALostFrameStopsNothingInEitherMode) {
   const EmulatedMachineFile file = Example();
   for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
