@@ -12,7 +12,7 @@ import sys
 import tempfile
 import time
 
-from pause_through_daemon import Operator
+from pause_through_daemon import Operator, free_port
 
 FORWARD, FLOOD, SPEED = 21, 22, 5
 OUTPUTS = (f"{{program: {{spindle_forward: {{coil: {FORWARD}, settle_s: 1}}, flood: {{coil: {FLOOD}}}, "
@@ -47,12 +47,6 @@ class Modbus:
         while self.outputs() != wanted:
             assert time.monotonic() < until, (self.outputs(), wanted)
             time.sleep(0.02)
-
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 def check(operator, modbus):

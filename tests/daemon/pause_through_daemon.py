@@ -9,6 +9,7 @@ replays bit for bit.
 """
 import csv
 import json
+import socket
 import subprocess
 import sys
 import tempfile
@@ -16,13 +17,21 @@ import time
 from pathlib import Path
 
 
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
 class Operator:
-    def __init__(self, contourd, contour, machine_file, scratch, settings=("io={}",)):
+    def __init__(self, contourd, contour, machine_file, scratch, settings=None):
         self.contour, self.scratch = contour, Path(scratch)
         self.socket = str(self.scratch / "control.sock")
         self.log, self.messages = self.scratch / "run.lcmlog", self.scratch / "daemon.txt"
         command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", self.socket, "--log",
                    str(self.log), "--set", "telemetry.publish=false"]
+        # The emulated machine serves its I/O on a port, whoever asks.
+        settings = settings or ("io={}", f"emulator.io.port={free_port()}")
         command += [word for setting in settings for word in ("--set", setting)]
         with open(self.messages, "w", encoding="utf-8") as file:
             self.daemon = subprocess.Popen(command, stdout=file, stderr=file)
