@@ -205,8 +205,8 @@ struct ControllerConfig {
         "what `full` knows friction by: srukf, states of its filter beside one rigid mass; linear, "
         "learnt along the reference, outside a loop that knows motor and table apart (torque mode: "
         "goes by axes.<name>.loop). In a file that does not say it is linear where an axis's mode of motor "
-        "against table is below 300 Hz, in csp where the table on its screw swings below 110 Hz, and with "
-        "a linear scale");
+        "against table is below 300 Hz (times 1 ms over the cycle where that is longer), in csp where the "
+        "table on its screw, the motor held, swings below 110 Hz, and with a linear scale");
     v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
     v.Optional("supervision", supervision, "how the machine watches its own control");

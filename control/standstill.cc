@@ -56,8 +56,8 @@ void Standstill::Forget() noexcept {
   started_ = false;
 }
 
-std::optional<double> Standstill::Step(double error_m, double sent_N, bool moves) noexcept {
-  if (moves || !(bounds_.step_moves_m > 0.0)) {
+std::optional<double> Standstill::Step(double error_m, double sent_N, Motion motion) noexcept {
+  if (motion == Motion::kOwn || !(bounds_.step_moves_m > 0.0)) {
     Forget();
     return std::nullopt;
   }
@@ -72,6 +72,10 @@ std::optional<double> Standstill::Step(double error_m, double sent_N, bool moves
   if (standing_) {
     if (size_m < kEnds * unit_m_) return Held_N(error_m, sent_N);
     Leave();
+    return std::nullopt;
+  }
+  if (motion != Motion::kNone) {
+    quiet_ = 0;
     return std::nullopt;
   }
   // One that has tried for long is let off with more: its friction may be softer than stated.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 namespace contour {
@@ -22,10 +23,18 @@ class Standstill {
   explicit Standstill(const StandstillBounds& bounds) noexcept;
 
   void Forget() noexcept;
+  /// What there is to move in the cycles to come.
+  enum class Motion : std::uint8_t {
+    kNone,
+    /// Of other axes of the path: an axis that waits its turn is near the level of its friction, where the
+    /// bristles give way for next to nothing, and a constant force lets it creep. The loop goes on holding
+    /// it.
+    kOfOthers,
+    kOwn  ///< or an experiment pushes
+  };
   /// Once per cycle. `error_m`: the table as the observer sees it, beyond where it is to be; `sent_N`: what
-  /// was sent last; `moves`: the reference is about to, or an experiment pushes. The force to hold it by;
-  /// nothing: the loop has to act.
-  std::optional<double> Step(double error_m, double sent_N, bool moves) noexcept;
+  /// was sent last. The force to hold it by; nothing: the loop has to act.
+  std::optional<double> Step(double error_m, double sent_N, Motion motion) noexcept;
 
   [[nodiscard]] bool standing() const noexcept { return standing_; }
 

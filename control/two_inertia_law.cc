@@ -167,6 +167,8 @@ bool TwoInertiaLaw::Moves(const AxisHorizon& reference) const noexcept {
 
 void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   output.iterations = 0;
+  bool any_moves = false;
+  for (const AxisHorizon& reference : Reference(input)) any_moves = any_moves || Moves(reference);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& a = axes_[i];
     const AxisHorizon& reference = Reference(input)[i];
@@ -184,8 +186,10 @@ void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexc
     feedback_N += a.left_N;
     a.left_N *= a.left_kept;
     const double beyond_m = input.estimate[i].motion[2] - wanted[2];
-    const double force_N =
-        a.standstill.Step(beyond_m, a.sent_N[0], Moves(reference)).value_or(planned_N + feedback_N);
+    const Standstill::Motion motion = Moves(reference) ? Standstill::Motion::kOwn
+                                      : any_moves      ? Standstill::Motion::kOfOthers
+                                                       : Standstill::Motion::kNone;
+    const double force_N = a.standstill.Step(beyond_m, a.sent_N[0], motion).value_or(planned_N + feedback_N);
     output.feedforward_N[i] = planned_N;
     output.force_N[i] = std::clamp(force_N, -a.force_limit_N, a.force_limit_N);
     output.limit[i] = std::abs(force_N) > a.force_limit_N ? Reason::kTorqueLimit : Reason::kNone;

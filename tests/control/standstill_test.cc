@@ -7,6 +7,8 @@
 namespace contour {
 namespace {
 
+using Motion = Standstill::Motion;
+
 constexpr double kPeriod_s = 1e-3;
 constexpr double kStep_N = 0.8;
 
@@ -31,17 +33,27 @@ StandstillBounds Bounds() { return {kStep_N, kStep_N / 4e6, 5e-9, kPeriod_s}; }
 TEST(Standstill, BeginsOnceTheErrorIsSmallAndEndsBeforeAMotion) {
   Standstill stand(Bounds());
   int cycles = 0;
-  while (!stand.Step(1e-7, 10.0, false) && cycles < 1000) ++cycles;
+  while (!stand.Step(1e-7, 10.0, Motion::kNone) && cycles < 1000) ++cycles;
   EXPECT_EQ(cycles, 49);
-  EXPECT_FALSE(stand.Step(1e-7, 10.0, true).has_value());
-  EXPECT_FALSE(stand.Step(1e-7, 10.0, false).has_value()) << "it begins anew";
+  EXPECT_FALSE(stand.Step(1e-7, 10.0, Motion::kOwn).has_value());
+  EXPECT_FALSE(stand.Step(1e-7, 10.0, Motion::kNone).has_value()) << "it begins anew";
+}
+
+// Near the level of its friction it would creep under a constant force; one that has come to rest before is
+// left alone.
+TEST(Standstill, AnAxisThatWaitsForOthersIsHeldByItsLoop) {
+  Standstill stand(Bounds());
+  for (int i = 0; i < 1000; ++i) ASSERT_FALSE(stand.Step(1e-7, 10.0, Motion::kOfOthers).has_value()) << i;
+  for (int i = 0; i < 100; ++i) stand.Step(1e-7, 10.0, Motion::kNone);
+  ASSERT_TRUE(stand.standing());
+  EXPECT_TRUE(stand.Step(1e-7, 10.0, Motion::kOfOthers).has_value());
 }
 
 TEST(Standstill, AnAxisThatFrictionCannotHoldIsNeverLeftAlone) {
   StandstillBounds bounds = Bounds();
   bounds.step_moves_m = 0.0;
   Standstill stand(bounds);
-  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(stand.Step(0.0, 10.0, false).has_value());
+  for (int i = 0; i < 1000; ++i) EXPECT_FALSE(stand.Step(0.0, 10.0, Motion::kNone).has_value());
 }
 
 // With friction's stiffness as stated, and a third and three times of it.
@@ -49,23 +61,25 @@ TEST(Standstill, BringsTheAxisWithinAStepAndThenSendsOneTorque) {
   for (const double factor : {1.0 / 3.0, 1.0, 3.0}) {
     Held axis{4e6 * factor};
     Standstill stand(Bounds());
-    for (int i = 0; i < 80; ++i) axis.Send(stand.Step(0.0, axis.sent_N, false).value_or(0.0));
+    for (int i = 0; i < 80; ++i) axis.Send(stand.Step(0.0, axis.sent_N, Motion::kNone).value_or(0.0));
     axis.outside_N = 1.5 * kStep_N * std::min(1.0, factor);  // some creep, after the axis was let go
-    for (int i = 0; i < 4000; ++i) axis.Send(stand.Step(axis.position_m, axis.sent_N, false).value_or(0.0));
+    for (int i = 0; i < 4000; ++i)
+      axis.Send(stand.Step(axis.position_m, axis.sent_N, Motion::kNone).value_or(0.0));
     const double a_step_m = kStep_N / std::min(axis.stiffness_N_m, 4e6);
     EXPECT_LT(std::abs(axis.position_m), a_step_m) << factor;
     const int before = axis.changes;
-    for (int i = 0; i < 2000; ++i) axis.Send(stand.Step(axis.position_m, axis.sent_N, false).value_or(0.0));
+    for (int i = 0; i < 2000; ++i)
+      axis.Send(stand.Step(axis.position_m, axis.sent_N, Motion::kNone).value_or(0.0));
     EXPECT_EQ(axis.changes, before) << factor;
   }
 }
 
 TEST(Standstill, WhatIsLargerThanSomeStepsIsForTheLoop) {
   Standstill stand(Bounds());
-  for (int i = 0; i < 100; ++i) stand.Step(0.0, 10.0, false);
+  for (int i = 0; i < 100; ++i) stand.Step(0.0, 10.0, Motion::kNone);
   ASSERT_TRUE(stand.standing());
   int cycles = 0;
-  while (stand.Step(5e-6, 10.0, false) && cycles < 100) ++cycles;
+  while (stand.Step(5e-6, 10.0, Motion::kNone) && cycles < 100) ++cycles;
   EXPECT_LE(cycles, 3);
 }
 
