@@ -270,4 +270,20 @@ Extent ExtentOf(const CurvePiece& piece) {
   return e;
 }
 
+double DistanceToBox_m(const Extent& box, const PerAxis<double>& point_m) {
+  double squared = 0.0;
+  for (std::size_t i = 0; i < point_m.size(); ++i) {
+    const double outside = std::max({box.min_m[i] - point_m[i], 0.0, point_m[i] - box.max_m[i]});
+    squared += outside * outside;
+  }
+  return std::sqrt(squared);
+}
+
+void Enlarge(Extent& box, const Extent& by) {
+  for (std::size_t i = 0; i < box.min_m.size(); ++i) {
+    box.min_m[i] = std::min(box.min_m[i], by.min_m[i]);
+    box.max_m[i] = std::max(box.max_m[i], by.max_m[i]);
+  }
+}
+
 }  // namespace contour

@@ -52,5 +52,9 @@ struct Extent {
   PerAxis<double> max_m;
 };
 Extent ExtentOf(const CurvePiece& piece);
+/// From a point to the nearest of the box; 0 inside.
+double DistanceToBox_m(const Extent& box, const PerAxis<double>& point_m);
+/// The smallest box around both.
+void Enlarge(Extent& box, const Extent& by);
 
 }  // namespace contour

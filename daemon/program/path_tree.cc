@@ -10,22 +10,6 @@ namespace {
 constexpr std::size_t kLeaf = 4;    // moves in a box of the lowest level
 constexpr std::size_t kBranch = 4;  // boxes in a box
 
-double DistanceToBox_m(const Extent& box, const PerAxis<double>& point) {
-  double squared = 0.0;
-  for (std::size_t i = 0; i < point.size(); ++i) {
-    const double outside = std::max({box.min_m[i] - point[i], 0.0, point[i] - box.max_m[i]});
-    squared += outside * outside;
-  }
-  return std::sqrt(squared);
-}
-
-void Enlarge(Extent& box, const Extent& by) {
-  for (std::size_t i = 0; i < box.min_m.size(); ++i) {
-    box.min_m[i] = std::min(box.min_m[i], by.min_m[i]);
-    box.max_m[i] = std::max(box.max_m[i], by.max_m[i]);
-  }
-}
-
 }  // namespace
 
 PathTree::PathTree(const std::vector<ProgrammedMove>& moves) : moves_(moves), levels_(1) {

@@ -15,22 +15,6 @@ namespace {
 constexpr double kScoredAfter_s = 1.0;
 constexpr std::size_t kGroupSize = 16;
 
-double DistanceToBox_m(const Extent& box, const PerAxis<double>& point) {
-  double squared = 0.0;
-  for (std::size_t i = 0; i < point.size(); ++i) {
-    const double outside = std::max({box.min_m[i] - point[i], 0.0, point[i] - box.max_m[i]});
-    squared += outside * outside;
-  }
-  return std::sqrt(squared);
-}
-
-void Enlarge(Extent& box, const Extent& by) {
-  for (std::size_t i = 0; i < box.min_m.size(); ++i) {
-    box.min_m[i] = std::min(box.min_m[i], by.min_m[i]);
-    box.max_m[i] = std::max(box.max_m[i], by.max_m[i]);
-  }
-}
-
 }  // namespace
 
 PiecewisePlan::PiecewisePlan(std::vector<PieceRequest> requests, const PathTraits& traits,

@@ -21,6 +21,11 @@ ProgrammedPath::ProgrammedPath(std::vector<ProgrammedMove> moves) : moves_(std::
   begin_m_.push_back(way_m);
 }
 
+ProgrammedPath::ProgrammedPath(std::vector<ProgrammedMove> moves, Extent travel)
+    : ProgrammedPath(std::move(moves)) {
+  travel_ = std::move(travel);
+}
+
 std::size_t ProgrammedPath::MoveAt(double way_m) const {
   const auto after = std::upper_bound(begin_m_.begin(), begin_m_.end() - 1, way_m);
   return after == begin_m_.begin() ? 0 : static_cast<std::size_t>(after - begin_m_.begin()) - 1;

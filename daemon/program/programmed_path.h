@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/axis.h"
@@ -20,12 +21,17 @@ struct ProgrammedMove {
 class ProgrammedPath {
  public:
   explicit ProgrammedPath(std::vector<ProgrammedMove> moves);
+  /// `travel`: where the axes may be, and all of the moves are.
+  ProgrammedPath(std::vector<ProgrammedMove> moves, Extent travel);
 
   [[nodiscard]] std::size_t axis_count() const { return moves_.front().curve.start_m.size(); }
   [[nodiscard]] double length_m() const { return begin_m_.back(); }
   [[nodiscard]] std::size_t size() const { return moves_.size(); }
   [[nodiscard]] const ProgrammedMove& move(std::size_t i) const { return moves_[i]; }
   [[nodiscard]] double begin_m(std::size_t i) const { return begin_m_[i]; }  ///< i == size(): the end
+
+  /// Nothing: not bounded.
+  [[nodiscard]] const std::optional<Extent>& travel() const { return travel_; }
 
   /// The move at a way, clamped to the path; at a junction the later one.
   [[nodiscard]] std::size_t MoveAt(double way_m) const;
@@ -38,6 +44,7 @@ class ProgrammedPath {
  private:
   std::vector<ProgrammedMove> moves_;
   std::vector<double> begin_m_;
+  std::optional<Extent> travel_;
 };
 
 }  // namespace contour

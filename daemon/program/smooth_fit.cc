@@ -73,6 +73,13 @@ std::vector<PerAxis<double>> Coefficients(const ProgrammedPath& path, const std:
   return coefficients;
 }
 
+/// A spline lies between the smallest and the largest of its coefficients: with all of them within the axes'
+/// travel, so is the path.
+void KeepWithin(const Extent& travel, std::vector<PerAxis<double>>& coefficients) {
+  for (PerAxis<double>& c : coefficients)
+    for (std::size_t i = 0; i < c.size(); ++i) c[i] = std::clamp(c[i], travel.min_m[i], travel.max_m[i]);
+}
+
 /// Looks at every piece between knots, and notes where knots have to be closer.
 class Inspection {
  public:
@@ -136,6 +143,7 @@ SmoothPath SmoothPathThrough(const ProgrammedPath& path) {
   for (int round = 0;; ++round) {
     std::vector<double> knots = spacing.Knots();
     std::vector<PerAxis<double>> coefficients = Coefficients(path, knots, spacing.corners());
+    if (path.travel()) KeepWithin(*path.travel(), coefficients);
     SmoothPath smooth(std::move(knots), std::move(coefficients));
     if (round == kRounds || Inspection(path, smooth, spacing).Good()) return smooth;
     spacing.Shrink();

@@ -42,6 +42,18 @@ bool StopsBetween(const PieceRequest& before, const PieceRequest& after) {
   return turn > kTurnsBack && shorter_m > kSlip * before.tolerance_m;
 }
 
+// CheckRange() lets a move go so much farther, for the rounding of its numbers.
+constexpr double kRounding_m = 1e-9;
+
+Extent TravelOf(const PerAxis<PlanLimits>& limits) {
+  Extent travel;
+  for (const PlanLimits& l : limits) {
+    travel.min_m.push_back(l.position_min_m - kRounding_m);
+    travel.max_m.push_back(l.position_max_m + kRounding_m);
+  }
+  return travel;
+}
+
 }  // namespace
 
 StretchProgram::StretchProgram(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits)
@@ -104,7 +116,7 @@ double StretchProgram::Nominal_s(const Part& part, double way_m) const {
 std::shared_ptr<const Stretch> StretchProgram::MakeStretch(const Part& part) const {
   const auto at = [&](std::size_t i) { return moves_.begin() + static_cast<std::ptrdiff_t>(i); };
   return std::make_shared<const Stretch>(
-      ProgrammedPath(std::vector<ProgrammedMove>(at(part.first), at(part.end))), limits_);
+      ProgrammedPath(std::vector<ProgrammedMove>(at(part.first), at(part.end)), TravelOf(limits_)), limits_);
 }
 
 }  // namespace contour
