@@ -29,6 +29,7 @@ struct MachineSection {
   std::int32_t cycle_us = 1000;
   ControllerName controller = ControllerName::kFull;
   double path_tolerance_mm = 0.01;
+  double path_following_mm = 0.002;
   bool optional_stop = false;
   bool block_delete = true;
 
@@ -40,6 +41,11 @@ struct MachineSection {
     v.Optional("path_tolerance_mm", path_tolerance_mm, kPositive,
                "how far the table may leave the path of a program that does not say so itself: corners of "
                "G-code with G0 and with G64 without P, of squares without corners");
+    v.Optional(
+        "path_following_mm", path_following_mm, Range{0.0, 10.0},
+        "how far the table may be from the path that it is to follow, in corners and while friction is "
+        "still being learnt: planned paths keep so much of the tolerance free, but half of it at most; "
+        "`contour run` prints what the machine does");
     v.Optional("optional_stop", optional_stop, "M1 of a program waits for the operator, as M0 does");
     v.Optional("block_delete", block_delete, "lines of G-code that begin with a slash are left out");
   }

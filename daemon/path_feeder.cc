@@ -45,7 +45,7 @@ void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath
   margin_ = kFirstMargin;
   rest_ = 0;
   burst_ = 0;
-  holding_ = false;
+  ForgetHeld();
   mailbox_.SetPathSupply(true);
   Feed();
 }
@@ -54,7 +54,13 @@ void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath
 void PathFeeder::GiveAnew() {
   mailbox_.SkipPath();
   burst_ = mailbox_.path_capacity() / kKeptFree;
+  ForgetHeld();
+}
+
+void PathFeeder::ForgetHeld() {
   holding_ = false;
+  together_.clear();
+  gathers_ = gathered_ = false;
 }
 
 // What became of the law that was handed over last.
@@ -82,6 +88,7 @@ void PathFeeder::ChangePace() {
   switch (path_->ChangeFeed(progress.earliest + margin_, progress.end, wanted_, resume_)) {
     case PacedPath::Change::kPlanned:
       GiveAnew();
+      gathers_ = true;
       mailbox_.SetPathSupply(true);
       resuming_ = resume_;
       resume_ = Held::kNot;
@@ -135,6 +142,7 @@ bool PathFeeder::FeedNow() {
   for (;;) {
     // Points of a law that was refused are taken as fast as they come, and lead nowhere.
     if (path_->pending()) Hear();
+    if (!HandOverGathered()) return true;
     if (!holding_) {
       if (!path_->Ready(needed)) return true;
       if (!path_->Next(held_)) {
@@ -144,19 +152,40 @@ bool PathFeeder::FeedNow() {
       }
       holding_ = true;
     }
-    const std::size_t kept = burst_ > 0 ? 0 : mailbox_.path_capacity() / kKeptFree;
-    if (mailbox_.path_points_waiting() + kept >= mailbox_.path_capacity()) return true;
-    if (!mailbox_.PushPathPoint(held_)) return true;
-    burst_ -= burst_ > 0 ? 1 : 0;
+    if (!Push(held_)) return true;
     holding_ = false;
   }
+}
+
+bool PathFeeder::HandOverGathered() {
+  if (!gathered_) return true;
+  if (!mailbox_.PushPathPoints(together_.data(), together_.size())) return false;
+  burst_ -= std::min(burst_, together_.size());
+  together_.clear();
+  gathers_ = gathered_ = false;
+  return true;
+}
+
+// Without the points behind it, the first one of another law would leave the cycle nothing to go on with.
+bool PathFeeder::Push(const PathPoint& point) {
+  if (gathers_ && point.law == path_->law_number()) {
+    together_.push_back(point);
+    const std::size_t enough = std::min<std::size_t>(kBridge, mailbox_.path_capacity() / (2 * kKeptFree));
+    gathered_ = together_.size() >= enough || point.last;
+    return true;
+  }
+  const std::size_t kept = burst_ > 0 ? 0 : mailbox_.path_capacity() / kKeptFree;
+  if (mailbox_.path_points_waiting() + kept >= mailbox_.path_capacity()) return false;
+  if (!mailbox_.PushPathPoint(point)) return false;
+  burst_ -= burst_ > 0 ? 1 : 0;
+  return true;
 }
 
 void PathFeeder::Abandon() {
   const std::scoped_lock lock(planning_);
   path_.reset();
   waits_for_plan_ = false;
-  holding_ = false;
+  ForgetHeld();
   mailbox_.SetPathSupply(false);
 }
 

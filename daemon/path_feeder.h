@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "daemon/program/paced_path.h"
 #include "daemon/rt/command_mailbox.h"
@@ -51,9 +52,12 @@ class PathFeeder {
 
  private:
   bool FeedNow();
+  bool Push(const PathPoint& point);
+  bool HandOverGathered();
   void ChangePace();
   void Hear();
   void GiveAnew();
+  void ForgetHeld();
 
   CommandMailbox& mailbox_;
   std::mutex planning_;  ///< guards the path while it is used, and while a plan is taken and given
@@ -68,6 +72,10 @@ class PathFeeder {
   std::uint64_t margin_ = 0;    ///< points between what the cycle said was possible and what it is handed
   std::size_t burst_ = 0;       ///< points that may go where place is kept
   std::uint32_t rest_ = 0;      ///< calls until the next attempt
+  /// The first points of another law, until there are enough of them.
+  std::vector<PathPoint> together_;
+  bool gathers_ = false;
+  bool gathered_ = false;  ///< there are
   PathPoint held_;
   bool holding_ = false;
 };

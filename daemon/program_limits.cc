@@ -12,7 +12,7 @@ PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
     limits.push_back({name, l.position_mm[0] * 1e-3 + margin_m, l.position_mm[1] * 1e-3 - margin_m,
                       l.velocity_mm_s * 1e-3, l.acceleration_mm_s2 * 1e-3, l.jerk_mm_s3 * 1e-3, l.torque_Nm,
                       l.following_error_mm * 1e-3, mechanics.radius_m_rad, mechanics.mass_kg,
-                      machine.machine.path_tolerance_mm * 1e-3});
+                      machine.machine.path_tolerance_mm * 1e-3, machine.machine.path_following_mm * 1e-3});
   }
   return limits;
 }

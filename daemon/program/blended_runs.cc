@@ -7,10 +7,6 @@
 namespace contour {
 namespace {
 
-// What may lie between planned and real path in a corner while friction is still being learnt
-// (docs/comparing.md). The time that a blend saves goes with the cube root of its deviation, so that being
-// generous costs little.
-constexpr double kFollowing_m = 2e-6;
 constexpr double kJerkRise_s = 4e-3;
 
 BlendLeg LegOf(const RunRequest& run, const PieceRequest& next_to_corner) {
@@ -27,7 +23,7 @@ std::optional<CornerBlend> BlendBetween(const RunRequest& before, const RunReque
   if (!asks || last.curve.kind != CurvePiece::Kind::kLine || first.curve.kind != CurvePiece::Kind::kLine)
     return std::nullopt;
   return CornerBlend::Fastest(LegOf(before, last), LegOf(after, first), first.curve.start_m,
-                              BlendDeviation_m(last.tolerance_m), limits);
+                              BlendDeviation_m(last.tolerance_m, limits), limits);
 }
 
 BlendedJunction AsPlanned(const CornerBlend& blend) { return {blend, blend.leg(), blend.cut_m()}; }
@@ -58,8 +54,10 @@ void Fit(const RunRequest& run, const BlendedJunction& slower, BlendedJunction& 
 
 }  // namespace
 
-double BlendDeviation_m(double tolerance_m) {
-  return std::max(tolerance_m - kFollowing_m, 0.5 * tolerance_m);
+double BlendDeviation_m(double tolerance_m, const PerAxis<PlanLimits>& limits) {
+  double following_m = 0.0;
+  for (const PlanLimits& l : limits) following_m = std::max(following_m, l.path_following_m);
+  return std::max(tolerance_m - following_m, 0.5 * tolerance_m);
 }
 
 PerAxis<PlanLimits> WithJerk(PerAxis<PlanLimits> limits) {

@@ -16,8 +16,9 @@ struct BlendedJunction {
 };
 
 /// How far the path itself may leave the programmed one where the machine shall keep within `tolerance_m`:
-/// what is left is for following it.
-double BlendDeviation_m(double tolerance_m);
+/// what is left is for following it. The time that a blend saves goes with the cube root of its deviation, so
+/// that being generous costs little.
+double BlendDeviation_m(double tolerance_m, const PerAxis<PlanLimits>& limits);
 
 /// Blends need a limit of jerk; for axes without one it is what brings them to full acceleration within four
 /// milliseconds.

@@ -26,6 +26,8 @@ struct PlanLimits {
   double mass_kg = 0.0;  ///< everything that moves, seen at the table
   /// How far the table may leave the path of a program that says nothing about it; the smallest of the axes'.
   double path_tolerance_m = 1e-5;
+  /// How far the table may be from the path planned for it; the largest of the axes' counts.
+  double path_following_m = 2e-6;
 };
 
 /// The commanded circle of a circle program.

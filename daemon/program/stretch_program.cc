@@ -28,8 +28,8 @@ double Turn(const CurvePiece& before, const CurvePiece& after) {
   return std::sqrt(squared);
 }
 
-double Deviation_m(const PieceRequest& request) {
-  const double share_m = BlendDeviation_m(request.tolerance_m);
+double Deviation_m(const PieceRequest& request, const PerAxis<PlanLimits>& limits) {
+  const double share_m = BlendDeviation_m(request.tolerance_m, limits);
   return request.corner == GcodeMove::Corner::kExactPath ? kExactShare * share_m : share_m;
 }
 
@@ -73,7 +73,7 @@ StretchProgram::StretchProgram(const std::vector<PieceRequest>& requests, const 
     }
     if (last == nullptr || StopsBetween(*last, r))
       parts_.push_back({moves_.size(), moves_.size(), 0.0, r.halts});
-    moves_.push_back({r.curve, r.speed_m_s, Deviation_m(r), r.line});
+    moves_.push_back({r.curve, r.speed_m_s, Deviation_m(r, limits), r.line});
     parts_.back().end = moves_.size();
     parts_.back().dwell_s = r.dwell_s;
     last = &r;

@@ -79,6 +79,10 @@ class CommandMailbox {
     return Post(RequestKind::kTune, change);
   }
   bool PushPathPoint(const PathPoint& point) noexcept { return path_.Push(point); }
+  /// All of them at once, or none: the cycle never finds the first without the others.
+  bool PushPathPoints(const PathPoint* points, std::size_t count) noexcept {
+    return path_.PushAll(points, count);
+  }
   /// What has been pushed so far and was not taken yet is not wanted any more.
   void SkipPath() noexcept { skip_.store(path_.pushed(), std::memory_order_release); }
   /// Where the cycle has got to on the path.

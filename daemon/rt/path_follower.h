@@ -86,8 +86,11 @@ class PathFollower {
  private:
   enum class Mode : std::uint8_t { kHolding, kRunning, kStopping, kEnded };
   static constexpr std::size_t kCapacity = 1024;
-  /// How many cycles the points behind a splice may take to come, before the reserve for a stop is touched.
-  static constexpr std::uint64_t kSpliceMargin = 8;
+  /// What is left in front of a splice besides the reserve for a stop. The cycle that takes the first point
+  /// of another law may have no place for more; those behind it wait in the queue already (PathFeeder), and
+  /// each of the next cycles takes a share of them. One share covers that first cycle, and some in which none
+  /// come.
+  static constexpr std::uint64_t kSpliceMargin = kMaxPathPointsPerCycle;
   /// Points kept behind the present one, for the geometry of the contour error.
   static constexpr std::uint64_t kBehind = 8;
 
@@ -137,7 +140,7 @@ class PathFollower {
   std::array<Pace, kMaxHorizonPoints> pace_{};  ///< at the program's own pace the first one only, see PaceAt
   std::size_t begins_with_axes_ = 0;            ///< of the first point
   std::uint32_t law_ = 0;                       ///< of the points here
-  std::uint32_t refused_law_ = 0;               ///< the last that came too late
+  std::uint32_t refused_law_ = 0;               ///< the last whose first point came too late; 0 none
   std::array<Mark, kCapacity> marks_{};
   /// One ring for each axis: every cycle takes some tens of points that follow one another.
   std::array<std::array<ReferencePoint, kCapacity>, kMaxAxes> points_{};

@@ -12,7 +12,7 @@ struct PathProgress {
       kNowhere;                   ///< point from which on another law of time may begin; kNowhere: at none
   std::uint64_t end = 0;          ///< one past the newest point that is here
   std::uint32_t law = 0;          ///< law of time of the points that are here
-  std::uint32_t refused_law = 0;  ///< the last that began too early; 0 none
+  std::uint32_t refused_law = 0;  ///< the last whose first point came too late; 0 none
 };
 
 }  // namespace contour

@@ -38,6 +38,15 @@ class SpscRing {
     return true;
   }
 
+  /// All of them or none, and the consumer sees all of them at once. Producer only.
+  bool PushAll(const T* values, std::size_t count) noexcept {
+    const std::size_t head = head_.load(std::memory_order_relaxed);
+    if (head + count - tail_.load(std::memory_order_acquire) > mask_ + 1) return false;
+    for (std::size_t i = 0; i < count; ++i) slots_[(head + i) & mask_] = values[i];
+    head_.store(head + count, std::memory_order_release);
+    return true;
+  }
+
   /// Elements ever pushed. Producer only.
   [[nodiscard]] std::size_t pushed() const noexcept { return head_.load(std::memory_order_relaxed); }
   /// Gives back what is left of the first `count` elements ever pushed. Consumer only.
