@@ -103,7 +103,8 @@ TimeLaw::State TimeLaw::AtNode(std::size_t node) const {
 TimeLaw::State TimeLaw::At(double time_s) {
   PlanTo(time_s);
   time_s = std::max(0.0, time_s);
-  if (stops_ && time_s > last_s_) {
+  // At the very instant of its begin too: no node lies behind it.
+  if (stops_ && time_s >= last_s_) {
     // The ramp counts the speed that is lost.
     const JerkRamp ramp({0.0, -last_.acceleration_m_s2}, last_.speed_m_s,
                         {kNoLimit_m_s2, tail_jerk_m_s3_, 0.0});

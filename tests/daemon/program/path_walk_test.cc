@@ -88,6 +88,24 @@ TEST(PathWalk, HoldsAndResumesAnywhereWithinTheLimits) {
   }
 }
 
+// The last ramp begins at the very instant of a point.
+TEST(PathWalk, AHoldWhereItHardlyMovesRestsThere) {
+  const auto plan = PlanOf(Gcode("F3000\nG1 X60\n"));
+  for (int k = 0; k < 80; ++k) {
+    const auto walk = plan->Walk();
+    const double at_s = 1e-3 * k;
+    PerAxis<ReferencePoint> before, after;
+    walk->At(at_s, before);
+    walk->ChangeFeed(at_s, 0.0);
+    for (int later = 1; later < 300; ++later) {
+      walk->At(at_s + 1e-3 * later, after);
+      ASSERT_LE(after[0].position_m - before[0].position_m, 0.051e-3) << k << " " << later;
+      before = after;
+    }
+    EXPECT_EQ(after[0].velocity_m_s, 0.0) << k;
+  }
+}
+
 TEST(PathWalk, FeedIsScaledWithinTheLimits) {
   const auto plan = PlanOf(Gcode("F3000\nG1 X60\nG1 Y20\nG1 X0\n"));
   for (const double scale : {0.1, 0.5, 1.5, 2.0}) {
