@@ -18,7 +18,7 @@ TEST(WalkSearch, FeedsFromOneToTwoKeepLimitsAndPath) {
 }
 
 TEST(WalkSearch, HoldsAndAnyFeedsKeepLimitsAndPath) {
-  for (unsigned seed = 1; seed < 1 + Rounds(6) && !::testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 1; seed < 1 + Rounds(4) && !::testing::Test::HasFailure(); ++seed) {
     SCOPED_TRACE(seed);
     testing::WalkSearch(seed).Run(-1.0);
   }
