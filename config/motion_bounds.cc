@@ -82,6 +82,26 @@ double JumpSeen_m(const Axis& a, double feed_m_s) {
 // From a path that begins to go on without the axis to the answer of the loop.
 double Answer_s(const Axis& a) { return (a.t.loop_periods + 1.0 + a.t.begin_periods) * a.period_s; }
 
+// Until the path has gone on by what may be taken up while the reading stands.
+double GoneOn_s(const Axis& a, const Standing& standing, double begins, double feed_m_s) {
+  const double path_m = begins * standing.Path_m(a.t.loop_N_m);
+  const double shows_m_s = (1.0 - kSettlingShare * kLoopOvershoot) * feed_m_s;
+  if (begins <= 1.0) return path_m / shows_m_s;
+  // Under a reading that flickers inertia takes up a share, less the longer it lasts: the first time from
+  // which on both are exceeded.
+  const auto short_m = [&](double time_s) {
+    return path_m + begins * a.t.Inertial_N(standing, time_s) / a.t.loop_N_m - shows_m_s * time_s;
+  };
+  double early_s = 0.0, late_s = a.period_s;
+  while (short_m(late_s) > 0.0) late_s *= 2.0;
+  for (int i = 0; i < 50; ++i) {
+    const double middle_s = 0.5 * (early_s + late_s);
+    (short_m(middle_s) > 0.0 ? early_s : late_s) = middle_s;
+  }
+  // Our own loops' torque is looked at through a filter.
+  return late_s + (a.monitored.in_cascade ? 0.0 : (kChatter_periods + a.monitored.delay_cycles) * a.period_s);
+}
+
 // `begins`: how often the reading that stands may be taken for a new one.
 FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double feed_m_s) {
   const double infinity = std::numeric_limits<double>::infinity();
@@ -91,19 +111,18 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
     // At rest nothing asks for another force; what the force may change by moves presliding at its softest.
     const double soft_N_m = a.monitored.sigma0_N_m / kSofter;
     // In the time that the force is judged late, and after, it may break away.
-    return {1e3 * a.t.rest_force_N / soft_N_m + 1e3 * Slam_m(a, 0.0), Off_s(a)};
+    const double force_N = begins > 1.0 ? a.t.pushed_force_N : a.t.rest_force_N;
+    return {1e3 * force_N / soft_N_m + 1e3 * Slam_m(a, 0.0), Off_s(a)};
   }
   // What the loop made of the motion before may still be settling, by its share.
   // Seen by the reading's step to rest at once, or by the path going on for as long as the loop takes to
   // answer.
   const bool at_once = feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s);
-  const double path_m = begins * standing.Path_m(a.t.loop_N_m);
   const double begin_s = a.t.begin_periods * a.period_s;
   const double answer_s = begins * (a.t.loop_periods + 1.0) * a.period_s + begin_s;
   const double seen_s =
       at_once ? a.period_s
-              : std::max(path_m / feed_m_s / (1.0 - kSettlingShare * kLoopOvershoot) + a.period_s + begin_s,
-                         answer_s);
+              : std::max(GoneOn_s(a, standing, begins, feed_m_s) + a.period_s + begin_s, answer_s);
   // Until then the force is what moved the axis before, changed by what the loop makes of the standing
   // reading, and by no more than would show by itself; friction may fall from break-away to Coulomb's.
   const double built_N =

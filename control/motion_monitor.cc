@@ -57,9 +57,10 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   rest_reference_m_ = s.reference_m;
   rest_periods_ = 0;
   rest_least_N_ = rest_most_N_ = slow_force_N_;
+  pushed_least_N_ = pushed_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
   near_ = false;
-  same_ = near_periods_ = same_gone_ = near_gone_ = beyond_ = undelivered_ = 0;
+  same_ = near_periods_ = same_gone_ = near_gone_ = pushed_periods_ = beyond_ = undelivered_ = 0;
   report_seen_ = scale_seen_ = tells_none_ = false;
   doubt_ = Reason::kNone;
   doubt_lasts_ = false;
@@ -170,12 +171,11 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     settling_N_ = std::max(settling_N_, std::abs(slow_force_N_ - slower_force_N_));
   } else {
     near_periods_ += waited_periods_;
-    if (axis_.in_cascade) {
-      near_least_N_ = std::min(near_least_N_, slow_force_N_);
-      near_most_N_ = std::max(near_most_N_, slow_force_N_);
-    }
+    near_least_N_ = std::min(near_least_N_, slow_force_N_);
+    near_most_N_ = std::max(near_most_N_, slow_force_N_);
   }
   const double settling_N = kSettlingShare * settling_N_;
+  const bool by_push = !axis_.in_cascade && Pushed(s, settling_N);
   double loop_N_m = t_.loop_N_m;
   std::uint32_t answer_periods = t_.loop_periods;
   if (s.spring_N_m > 0.0) {
@@ -188,8 +188,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
       (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N) ||
       (near_periods_ >= t_.force_periods && near_most_N_ - near_least_N_ > t_.flickering_force_N);
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
-  const auto gone = [&](std::uint32_t& periods, double from_m, const Standing& standing) {
-    const double path_m = standing.Path_m(loop_N_m, settling_N);
+  const auto gone = [&](std::uint32_t& periods, double from_m, double path_m) {
     const double gone_m = s.reference_m - from_m;
     // An axis that had slipped far ahead rightly stands until the reference has come up with it.
     const double ahead_m = std::copysign(1.0, gone_m) * (s.position_m - from_m);
@@ -197,11 +196,42 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     periods = beyond ? periods + waited_periods_ : 0;
     return periods > t_.begin_periods;
   };
-  const bool by_path = gone(same_gone_, same_reference_m_, t_.frozen) && same_ >= answer_periods;
-  const bool by_flicker =
-      gone(near_gone_, near_reference_m_, t_.flickering) && near_periods_ >= answer_periods;
-  if (!by_force && !by_path && !by_flicker && !at_rest) return Reason::kNone;
+  bool by_path = false, by_flicker = false;
+  const double path_m = t_.frozen.Path_m(loop_N_m, settling_N);
+  if (std::abs(s.reference_m - same_reference_m_) > path_m) {
+    by_path = gone(same_gone_, same_reference_m_, path_m) && same_ >= answer_periods;
+  } else {
+    same_gone_ = 0;
+  }
+  if (std::abs(s.reference_m - near_reference_m_) > t_.flickering.Path_m(loop_N_m, settling_N)) {
+    // At a turning point inertia alone may hold a reading within the band for a while. And what our own loop
+    // answered is known: one that brakes at the same time may have answered nothing.
+    const double force_N = settling_N + t_.Inertial_N(t_.flickering, near_periods_ * period_s_);
+    const bool answered = axis_.in_cascade || near_most_N_ - near_least_N_ > t_.flickering.force_N + force_N;
+    const double flicker_path_m = answered ? t_.flickering.Path_m(loop_N_m, force_N) : HUGE_VAL;
+    by_flicker = gone(near_gone_, near_reference_m_, flicker_path_m) && near_periods_ >= answer_periods;
+  } else {
+    near_gone_ = 0;
+  }
+  if (!by_force && !by_path && !by_flicker && !by_push && !at_rest) return Reason::kNone;
   return Reason::kFeedbackFrozen;
+}
+
+// What flickers and is no motion may be added up by our own loops until it is a push. What stopped the axis
+// may be on its way for the first periods.
+bool MotionMonitor::Pushed(const MotionSample& s, double settling_N) noexcept {
+  if (near_periods_ < t_.force_periods) {
+    pushed_least_N_ = pushed_most_N_ = slow_force_N_;
+  } else {
+    pushed_least_N_ += t_.rest_fade * (slow_force_N_ - pushed_least_N_);
+    pushed_most_N_ += t_.rest_fade * (slow_force_N_ - pushed_most_N_);
+    pushed_least_N_ = std::min(pushed_least_N_, slow_force_N_);
+    pushed_most_N_ = std::max(pushed_most_N_, slow_force_N_);
+  }
+  double pushed_N = pushed_most_N_ - pushed_least_N_ - settling_N - t_.pushed_force_N;
+  if (pushed_N > 0.0) pushed_N -= t_.Inertial_N(t_.flickering, near_periods_ * period_s_);
+  pushed_periods_ = pushed_N > 0.0 && s.spring_N_m == 0.0 ? pushed_periods_ + waited_periods_ : 0;
+  return pushed_periods_ >= t_.pushed_periods;
 }
 
 Reason MotionMonitor::Momentum(double velocity_m_s, double explained_N, bool stands) noexcept {

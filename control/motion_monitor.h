@@ -56,9 +56,10 @@ class MotionMonitor {
          believed_, late_readings_, held_, forces_N_, report_before_N_, peak_N_, slow_force_N_,
          slower_force_N_, rest_reference_m_, rest_periods_, rest_least_N_, rest_most_N_, settling_N_,
          least_N_, most_N_, same_, same_reference_m_, near_, near_position_m_, near_reference_m_,
-         near_periods_, near_least_N_, near_most_N_, same_gone_, near_gone_, on_its_way_N_, force_N_,
-         unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_,
-         doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
+         near_periods_, near_least_N_, near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_,
+         pushed_periods_, on_its_way_N_, force_N_, unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_,
+         report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_,
+         scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -82,6 +83,7 @@ class MotionMonitor {
   inline Reason Judge(const MotionSample& s) noexcept;
   inline Reason Jump(const MotionSample& s, double force_N) noexcept;
   inline Reason Frozen(const MotionSample& s) noexcept;
+  inline bool Pushed(const MotionSample& s, double settling_N) noexcept;
   inline Reason Named(Reason found, const MotionSample& s, double force_N) noexcept;
   inline Reason Momentum(double velocity_m_s, double explained_N, bool stands) noexcept;
   inline void KeepDoubt(const MotionSample& s, double velocity_m_s, double explained_N) noexcept;
@@ -125,20 +127,22 @@ class MotionMonitor {
   double near_position_m_ = 0.0;
   double near_reference_m_ = 0.0;  ///< the reference when that began
   std::uint32_t near_periods_ = 0;
-  double near_least_N_ = 0.0, near_most_N_ = 0.0;  ///< csp: of the force, since then
-  std::uint32_t same_gone_ = 0, near_gone_ = 0;    ///< periods that the reference has been too far for that
-  double on_its_way_N_ = 0.0;                      ///< low-passed: a period's change of the torque
-  double force_N_ = 0.0;                           ///< low-passed torque
-  double unexplained_N_ = 0.0;                     ///< low-passed u - m a
-  double jitter_N_ = 0.0;                          ///< of it, what a SYNC that came late may have made
-  std::uint32_t beyond_ = 0;                       ///< readings in a row
-  double sent_N_ = 0.0, reported_N_ = 0.0;         ///< low-passed, for delivery
-  bool report_seen_ = false;                       ///< the report has been seen to be one, in this enabling
-  bool tells_none_ = false;                        ///< a report that has been seen shows no torque
-  Reason doubt_ = Reason::kNone;                   ///< see Doubt()
-  bool doubt_lasts_ = false;                       ///< until the axis strays no further
-  double astray_m_ = 0.0;                          ///< from the reference, at the reading before
-  std::uint32_t undelivered_ = 0;                  ///< periods in a row
+  double near_least_N_ = 0.0, near_most_N_ = 0.0;      ///< of the force, since then
+  double pushed_least_N_ = 0.0, pushed_most_N_ = 0.0;  ///< the same, fading, once it has stood for a while
+  std::uint32_t pushed_periods_ = 0;             ///< that it has changed by more than a standing axis bears
+  std::uint32_t same_gone_ = 0, near_gone_ = 0;  ///< periods that the reference has been too far for that
+  double on_its_way_N_ = 0.0;                    ///< low-passed: a period's change of the torque
+  double force_N_ = 0.0;                         ///< low-passed torque
+  double unexplained_N_ = 0.0;                   ///< low-passed u - m a
+  double jitter_N_ = 0.0;                        ///< of it, what a SYNC that came late may have made
+  std::uint32_t beyond_ = 0;                     ///< readings in a row
+  double sent_N_ = 0.0, reported_N_ = 0.0;       ///< low-passed, for delivery
+  bool report_seen_ = false;                     ///< the report has been seen to be one, in this enabling
+  bool tells_none_ = false;                      ///< a report that has been seen shows no torque
+  Reason doubt_ = Reason::kNone;                 ///< see Doubt()
+  bool doubt_lasts_ = false;                     ///< until the axis strays no further
+  double astray_m_ = 0.0;                        ///< from the reference, at the reading before
+  std::uint32_t undelivered_ = 0;                ///< periods in a row
   bool scale_seen_ = false;
   std::uint32_t scale_apart_ = 0;  ///< samples in a row
   double scale_offset_m_ = 0.0, scale_begin_m_ = 0.0;

@@ -11,8 +11,6 @@ namespace {
 constexpr double kBelowMode = 3.0;
 // Oscillations of a screw whose damping is not known are taken to last for so many periods of its mode.
 constexpr double kRinging_periods = 5.0;
-// Periods over which a chatter of the torque is averaged before it must have moved the axis.
-constexpr double kChatter_periods = 4.0;
 // Of the torque limit, what is left over friction and outside forces must do to be told from nothing.
 constexpr double kSureOfLimit = 0.9;
 // Largest share of the torque that may go unexplained: a table that was made much heavier than stated.
@@ -63,11 +61,12 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   MotionThresholds t;
   t.mass_kg = a.motor_mass_kg + a.table_mass_kg;
   t.light_kg = (1.0 - c.mass_error_rel) * t.mass_kg;
+  t.heavy_kg = (1.0 + c.mass_error_rel) * t.mass_kg;
   t.motor_kg = (1.0 - c.mass_error_rel) * a.motor_mass_kg;
   t.friction_N = c.friction_factor * a.Fs_N;
   t.viscous_Ns_m = c.friction_factor * a.sigma2_Ns_m;
   t.external_N = a.external_force_N;
-  t.screw_share_1_kg = 1.0 / t.motor_kg - 1.0 / ((1.0 + c.mass_error_rel) * t.mass_kg);
+  t.screw_share_1_kg = 1.0 / t.motor_kg - 1.0 / t.heavy_kg;
   // One misread reading comes twice into a second difference; rounding of three readings up to two counts.
   t.reading_m = (2.0 * c.misread_counts + 2.0) * a.count_m;
 
@@ -95,9 +94,13 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.flickering_force_N = t.friction_N + t.external_N + t.flickering.force_N;
   UseLoop(a.loop_Hz, a, period_s, t);
   t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
+  t.pushed_force_N = t.rest_force_N + t.flickering.force_N - t.frozen.force_N;
   t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));
   t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);
   t.begin_periods = a.delay_cycles + kLaterThanStated;
+  // Inertia holds what is pushed that long within the band.
+  t.pushed_periods = t.begin_periods +
+                     Periods(std::sqrt(2.0 * t.heavy_kg * t.flickering.moved_m / t.pushed_force_N), period_s);
   t.force_periods = Periods(kSameForForce_s, period_s);
   t.report_periods = kReport_s / period_s;
   t.undelivered_periods = Periods(kUndelivered_s, period_s);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "control/monitor_config.h"
@@ -36,6 +37,9 @@ struct Standing {
   }
 };
 
+/// Periods over which a chatter of the torque is averaged before it must have moved the axis.
+inline constexpr double kChatter_periods = 4.0;
+
 /// Share of a change of torque that may still be on its way back while a reading stands.
 inline constexpr double kSettlingShare = 0.05;
 
@@ -43,6 +47,7 @@ inline constexpr double kSettlingShare = 0.05;
 struct MotionThresholds {
   double mass_kg = 0.0;       ///< m, as stated
   double light_kg = 0.0;      ///< m, as light as it may be
+  double heavy_kg = 0.0;      ///< m, as heavy as it may be
   double motor_kg = 0.0;      ///< the motor's share alone, as light as it may be
   double friction_N = 0.0;    ///< largest friction at rest
   double viscous_Ns_m = 0.0;  ///< largest viscous friction
@@ -66,6 +71,8 @@ struct MotionThresholds {
   double filter = 0.0;                     ///< share of the new value in the filtered forces
   double loop_N_m = 0.0;                   ///< stiffness of the position loop, at least
   double rest_force_N = 0.0;               ///< change of force that counts under a reading that stands
+  double pushed_force_N = 0.0;             ///< the same under one that flickers, our own loops
+  std::uint32_t pushed_periods = 0;        ///< that it must go on for: until the axis has left the band
   std::uint32_t rest_periods = 0;          ///< csp: from the end of a motion until it does
   double rest_fade = 0.0;
   double settling_filter = 0.0;  ///< of the torque that a disturbance of before has changed
@@ -92,6 +99,12 @@ struct MotionThresholds {
   /// Of it, what the SYNCs make.
   [[nodiscard]] double Jitter_m(double velocity_m_s, double n, double before) const noexcept {
     return jitter_s * Weight(n, before) * (velocity_m_s < 0.0 ? -velocity_m_s : velocity_m_s);
+  }
+  /// Change of force that inertia alone takes up while the axis stays within the standing reading's band d
+  /// for a time T, at a turning point: of all motions whose acceleration changes evenly, the Chebyshev
+  /// polynomial of degree 3 stays in the narrowest band, and its force changes by 96 m d / T^2.
+  [[nodiscard]] double Inertial_N(const Standing& standing, double time_s) const noexcept {
+    return time_s > 0.0 ? 96.0 * heavy_kg * standing.moved_m / (time_s * time_s) : HUGE_VAL;
   }
   /// How much the middle one of three readings counts, over how much it does when they are evenly apart.
   [[nodiscard]] static double Weight(double n, double before) noexcept {

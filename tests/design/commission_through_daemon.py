@@ -7,6 +7,7 @@ The machine file is contradicted by half; the model that comes out must be near 
 must be off afterwards, and nothing may move without --yes.
 """
 import json
+import socket as sockets
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,12 @@ import time
 from pathlib import Path
 
 import yaml
+
+
+def free_port():
+    with sockets.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
 
 
 def main():
@@ -31,6 +38,8 @@ def main():
                   "telemetry.publish=false",
                   # With that much inertia the file's quick stop would be beyond the torque limit, which is refused.
                   "axes.x.drive.quick_stop_deceleration_rad_s2=15000", "axes.x.limits.safe_travel_mm=5"]
+    port = free_port()  # other tests may run beside this one
+    overrides += [f"emulator.io.port={port}"]
     with tempfile.TemporaryDirectory() as scratch:
         socket = f"{scratch}/control.sock"
         command = [contourd, "--config", machine_file, "--clock", "lockstep", "--controller", "mpc_observer", "--socket", socket]

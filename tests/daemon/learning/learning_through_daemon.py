@@ -7,6 +7,7 @@ From the second pass on the path is shifted by what the scales saw, after other 
 of all of it replays bit for bit.
 """
 import csv
+import socket as sockets
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,12 @@ import time
 from pathlib import Path
 
 LEARNT = "passes learnt from: "
+
+
+def free_port():
+    with sockets.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
 
 
 def wait_until_up(contour, socket, daemon, messages):
@@ -44,7 +51,7 @@ def main():
         machine.write_text(Path(machine_file).read_text(encoding="utf-8"), encoding="utf-8")
         program.write_text("{shape: circle, radius_mm: 0.1, frequency_hz: 2, turns: 3}", encoding="utf-8")
         command = [contourd, "--config", str(machine), "--clock", "lockstep", "--socket", socket, "--log", str(log)]
-        for override in ["io={}", "telemetry.publish=false", "learning.enabled=true", "axes.y.drive.bus=second",
+        for override in ["io={}", f"emulator.io.port={free_port()}", "telemetry.publish=false", "learning.enabled=true", "axes.y.drive.bus=second",
                          "buses.second={interface: loopback, bitrate_bit_s: 1000000}",
                          *(f"axes.{axis}.drive.linear_scale={{counts_per_mm: 10000}}" for axis in "xy")]:
             command += ["--set", override]
