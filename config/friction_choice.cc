@@ -21,6 +21,20 @@ constexpr double kMeasuredAt_us = 1000.0;
 // circles are worse or the axis is lost, from 119 Hz up they are equal or better.
 constexpr double kLowestOnHeldMotor_Hz = 110.0;
 
+// At rest the filter's loop goes to and fro between two steps of the drive's torque, and the bristles by 0.4
+// to 0.75 of what one step moves them. Held by a constant torque, as the linear law holds it, the axis
+// stands.
+constexpr double kLargestStepInWindUps = 0.5;
+constexpr double kTorqueSteps = 1000.0;  // of rated torque, 0x6071
+
+bool StepsMoveIt(const AxisConfig& config) {
+  const LoopAxis axis = LoopAxisOf(config);
+  const double level_N = 0.5 * (axis.friction.Fc_plus_N + axis.friction.Fc_minus_N);
+  const double step_N = axis.rated_force_N / kTorqueSteps;
+  return level_N > 0.0 &&
+         step_N * axis.axis.stiffness_N_m > kLargestStepInWindUps * level_N * axis.friction.sigma0_N_m;
+}
+
 double OnHeldMotor_Hz(const TwoInertiaAxis& axis) {
   return std::sqrt(axis.stiffness_N_m / axis.table_mass_kg) / (2.0 * std::numbers::pi);
 }
@@ -34,7 +48,8 @@ FrictionKind ChooseFriction(const MachineConfig& machine) {
     if (config.drive.linear_scale) return FrictionKind::kLinear;
     const TwoInertiaAxis axis = TwoInertiaAxisOf(config);
     const bool held = ModeFor(ControllerName::kFull, config.drive) == DriveMode::kCsp;
-    if (held ? OnHeldMotor_Hz(axis) < kLowestOnHeldMotor_Hz : ModeFrequency_Hz(axis) < lowest_mode_Hz)
+    if (held ? OnHeldMotor_Hz(axis) < kLowestOnHeldMotor_Hz
+             : ModeFrequency_Hz(axis) < lowest_mode_Hz || StepsMoveIt(config))
       return FrictionKind::kLinear;
   }
   return FrictionKind::kSrukf;

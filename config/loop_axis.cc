@@ -48,4 +48,9 @@ std::optional<LoopAxis> ScaleLoopAxisOf(const AxisConfig& axis) {
   return out;
 }
 
+double WindUpUnderForceStep_m(const AxisConfig& axis) {
+  const LoopAxis a = LoopAxisOf(axis);
+  return a.limits.force_step * a.rated_force_N / a.axis.stiffness_N_m;
+}
+
 }  // namespace contour

@@ -35,4 +35,7 @@ LoopAxis LoopAxisOf(const AxisConfig& axis);
 /// The same for the loop that goes by the linear scale as well; none where the drive has none.
 std::optional<LoopAxis> ScaleLoopAxisOf(const AxisConfig& axis);
 
+/// By how much its screw gives under the force step of `loop_limits`.
+double WindUpUnderForceStep_m(const AxisConfig& axis);
+
 }  // namespace contour

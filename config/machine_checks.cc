@@ -382,7 +382,7 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
         problems.Add("io.modbus.outputs." + shared,
                      "another output has this address, expected one of its own");
       const auto& speed = outputs.program->spindle_speed;
-      if (speed && speed->largest_rpm * speed->counts_per_rpm > 65535.0)
+      if (speed && speed->largest_rpm * speed->counts_per_rpm > std::numeric_limits<std::uint16_t>::max())
         problems.Add("io.modbus.outputs.program.spindle_speed.largest_rpm",
                      "its counts do not fit into a register of 16 bits, expected 65535 counts at most");
     }

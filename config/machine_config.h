@@ -29,7 +29,7 @@ struct MachineSection {
   std::int32_t cycle_us = 1000;
   ControllerName controller = ControllerName::kFull;
   double path_tolerance_mm = 0.01;
-  double path_following_mm = 0.002;
+  std::optional<double> path_following_mm;
   bool optional_stop = false;
   bool block_delete = true;
 
@@ -45,7 +45,7 @@ struct MachineSection {
         "path_following_mm", path_following_mm, Range{0.0, 10.0},
         "how far the table may be from the path that it is to follow, in corners and while friction is "
         "still being learnt: planned paths keep so much of the tolerance free, but half of it at most; "
-        "`contour run` prints what the machine does");
+        "none: what is expected of the axes' loops and screws, which `contour check` prints");
     v.Optional("optional_stop", optional_stop, "M1 of a program waits for the operator, as M0 does");
     v.Optional("block_delete", block_delete, "lines of G-code that begin with a slash are left out");
   }

@@ -82,9 +82,16 @@ double JumpSeen_m(const Axis& a, double feed_m_s) {
 // From a path that begins to go on without the axis to the answer of the loop.
 double Answer_s(const Axis& a) { return (a.t.loop_periods + 1.0 + a.t.begin_periods) * a.period_s; }
 
+// By what the path must go on under a reading that stands. In csp the torque is known by the drive's report
+// alone, and what that swings by may be a disturbance that settles.
+double Path_m(const Axis& a, const Standing& standing) {
+  const double swings_N = a.monitored.in_cascade ? a.t.rest_force_N - a.t.frozen.force_N : 0.0;
+  return standing.Path_m(a.t.loop_N_m, kSettlingShare * swings_N);
+}
+
 // Until the path has gone on by what may be taken up while the reading stands.
 double GoneOn_s(const Axis& a, const Standing& standing, double begins, double feed_m_s) {
-  const double path_m = begins * standing.Path_m(a.t.loop_N_m);
+  const double path_m = begins * Path_m(a, standing);
   const double shows_m_s = (1.0 - kSettlingShare * kLoopOvershoot) * feed_m_s;
   if (begins <= 1.0) return path_m / shows_m_s;
   // Under a reading that flickers inertia takes up a share, less the longer it lasts: the first time from
@@ -112,7 +119,12 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
     const double soft_N_m = a.monitored.sigma0_N_m / kSofter;
     // In the time that the force is judged late, and after, it may break away.
     const double force_N = begins > 1.0 ? a.t.pushed_force_N : a.t.rest_force_N;
-    return {1e3 * force_N / soft_N_m + 1e3 * Slam_m(a, 0.0), Off_s(a)};
+    // What a motion left may be all that friction bears; a drive's own loop then moves the axis at once, and
+    // small changes of its torque count only under a reading that has stood for a while.
+    const double free_s = a.monitored.in_cascade ? a.t.rest_periods * a.period_s : 0.0;
+    const double acceleration = (force_N + a.friction_drop_N) / a.t.light_kg;
+    const double away_m = force_N / soft_N_m + 0.5 * acceleration * free_s * free_s;
+    return {1e3 * (away_m + Slam_m(a, acceleration * free_s)), Off_s(a)};
   }
   // What the loop made of the motion before may still be settling, by its share.
   // Seen by the reading's step to rest at once, or by the path going on for as long as the loop takes to
@@ -215,7 +227,7 @@ std::vector<double> BoundFeeds_mm_s(const AxisConfig& axis) {
 double PromisedFeed_mm_s(const MachineConfig& config, const AxisConfig& axis) {
   if (axis.limits.slowest_feed_mm_s > 0.0) return axis.limits.slowest_feed_mm_s;
   const Axis a = Known(config, axis);
-  return std::max(kSlowestFeed_mm_s, 1e3 * a.t.frozen.Path_m(a.t.loop_N_m) / kShows_s);
+  return std::max(kSlowestFeed_mm_s, 1e3 * Path_m(a, a.t.frozen) / kShows_s);
 }
 
 double TellingFeed_mm_s(const MachineConfig& config, const AxisConfig& axis) {

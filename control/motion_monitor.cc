@@ -54,9 +54,8 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   slow_force_N_ = axis_.in_cascade ? s.reported_force_N : 0.0;
   least_N_ = most_N_ = slower_force_N_ = slow_force_N_;
   settling_N_ = 0.0;
-  rest_reference_m_ = s.reference_m;
-  rest_periods_ = 0;
   rest_least_N_ = rest_most_N_ = slow_force_N_;
+  drive_push_.Restart(s.reference_m);
   pushed_least_N_ = pushed_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
   near_ = false;
@@ -126,7 +125,8 @@ Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
 Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   // A force counts once it has acted for a whole period before this sample.
   const double settled_N = axis_.in_cascade ? s.reported_force_N : forces_N_[axis_.delay_cycles + 1];
-  slow_force_N_ += t_.frozen_filter * (settled_N - slow_force_N_);
+  const double swing_N = settled_N - slow_force_N_;
+  slow_force_N_ += t_.frozen_filter * swing_N;
   slower_force_N_ += t_.settling_filter * (slow_force_N_ - slower_force_N_);
   // A reading that is exactly the same, under another force or along a path that goes on.
   if (readings_ == 0 || s.position_m != position_m_) {
@@ -138,27 +138,10 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     least_N_ = std::min(least_N_, slow_force_N_);
     most_N_ = std::max(most_N_, slow_force_N_);
   }
-  // A drive's own loop at rest: nothing but readings changes its torque, so one that goes on changing under
-  // one and the same reading pushes against it.
-  if (s.reference_m != rest_reference_m_) {
-    rest_reference_m_ = s.reference_m;
-    rest_periods_ = 0;
-  } else {
-    rest_periods_ = std::min(rest_periods_ + waited_periods_, t_.rest_periods);
-  }
-  if (same_ == 0 || (axis_.in_cascade && rest_periods_ < t_.rest_periods))
-    rest_least_N_ = rest_most_N_ = slow_force_N_;
-  if (!axis_.in_cascade) {
-    // Our own loops answer more than readings, and outside forces that grow slowly: only what goes fast
-    // counts.
-    rest_least_N_ += t_.rest_fade * (slow_force_N_ - rest_least_N_);
-    rest_most_N_ += t_.rest_fade * (slow_force_N_ - rest_most_N_);
-  }
-  rest_least_N_ = std::min(rest_least_N_, slow_force_N_);
-  rest_most_N_ = std::max(rest_most_N_, slow_force_N_);
-  const std::uint32_t rest_periods = axis_.in_cascade ? t_.rest_periods : t_.force_periods;
   const bool at_rest =
-      s.spring_N_m == 0.0 && same_ >= rest_periods && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
+      axis_.in_cascade
+          ? drive_push_.Seen({s.reference_m, same_, waited_periods_, slow_force_N_, swing_N}, t_, period_s_)
+          : AtRest(s);
   // A reading that only flickers, along a path that goes on. A disturbance moves the axis, and only then may
   // its torque be on its way back: what a loop makes of a reading that stands is none.
   settling_N_ *= t_.settling_decay;
@@ -215,6 +198,17 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   }
   if (!by_force && !by_path && !by_flicker && !by_push && !at_rest) return Reason::kNone;
   return Reason::kFeedbackFrozen;
+}
+
+// Our own loops at rest answer more than readings, and outside forces that grow slowly: only what goes fast
+// counts.
+bool MotionMonitor::AtRest(const MotionSample& s) noexcept {
+  if (same_ == 0) rest_least_N_ = rest_most_N_ = slow_force_N_;
+  rest_least_N_ += t_.rest_fade * (slow_force_N_ - rest_least_N_);
+  rest_most_N_ += t_.rest_fade * (slow_force_N_ - rest_most_N_);
+  rest_least_N_ = std::min(rest_least_N_, slow_force_N_);
+  rest_most_N_ = std::max(rest_most_N_, slow_force_N_);
+  return s.spring_N_m == 0.0 && same_ >= t_.force_periods && rest_most_N_ - rest_least_N_ > t_.rest_force_N;
 }
 
 // What flickers and is no motion may be added up by our own loops until it is a push. What stopped the axis

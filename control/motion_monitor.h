@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "control/drive_push.h"
 #include "control/motion_thresholds.h"
 #include "control/torque_constant_watch.h"
 #include "core/reason.h"
@@ -54,11 +55,11 @@ class MotionMonitor {
   void Keep(StateKeeper& keep) noexcept {
     keep(watch_, until_learning_, readings_, position_m_, velocity_m_s_, waited_periods_, last_gap_periods_,
          believed_, late_readings_, held_, forces_N_, report_before_N_, peak_N_, slow_force_N_,
-         slower_force_N_, rest_reference_m_, rest_periods_, rest_least_N_, rest_most_N_, settling_N_,
-         least_N_, most_N_, same_, same_reference_m_, near_, near_position_m_, near_reference_m_,
-         near_periods_, near_least_N_, near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_,
-         pushed_periods_, on_its_way_N_, force_N_, unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_,
-         report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_,
+         slower_force_N_, rest_least_N_, rest_most_N_, drive_push_, settling_N_, least_N_, most_N_, same_,
+         same_reference_m_, near_, near_position_m_, near_reference_m_, near_periods_, near_least_N_,
+         near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_, pushed_periods_,
+         on_its_way_N_, force_N_, unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_, report_seen_,
+         undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_,
          scale_offset_m_, scale_begin_m_);
   }
 
@@ -83,6 +84,7 @@ class MotionMonitor {
   inline Reason Judge(const MotionSample& s) noexcept;
   inline Reason Jump(const MotionSample& s, double force_N) noexcept;
   inline Reason Frozen(const MotionSample& s) noexcept;
+  inline bool AtRest(const MotionSample& s) noexcept;
   inline bool Pushed(const MotionSample& s, double settling_N) noexcept;
   inline Reason Named(Reason found, const MotionSample& s, double force_N) noexcept;
   inline Reason Momentum(double velocity_m_s, double explained_N, bool stands) noexcept;
@@ -116,9 +118,8 @@ class MotionMonitor {
   double peak_N_ = 0.0;
   double slow_force_N_ = 0.0;  ///< for the frozen encoder
   double slower_force_N_ = 0.0;
-  double rest_reference_m_ = 0.0;
-  std::uint32_t rest_periods_ = 0;                 ///< since the reference moved
   double rest_least_N_ = 0.0, rest_most_N_ = 0.0;  ///< of the force, at rest, since the reading last changed
+  DrivePush drive_push_;                           ///< csp
   double settling_N_ = 0.0;                        ///< largest recent change of the force, fading
   double least_N_ = 0.0, most_N_ = 0.0;            ///< of the force, since the reading last changed
   std::uint32_t same_ = 0;                         ///< periods since then
@@ -149,11 +150,12 @@ class MotionMonitor {
 };
 
 /// Whether after this fault no ramp of the drive's will do: the encoder it would go by cannot be believed, or
-/// the torque is not there.
+/// the torque is not there. Where scale and encoder contradict each other it may be either; our own loop has
+/// brought the axis to rest before.
 constexpr bool RampInDoubt(Reason r) noexcept {
   return r == Reason::kFeedbackFrozen || r == Reason::kFeedbackJump || r == Reason::kFeedbackReversed ||
          r == Reason::kTorqueWithoutMotion || r == Reason::kTorqueNotDelivered ||
-         r == Reason::kScaleDisagrees;
+         r == Reason::kScaleDisagrees || r == Reason::kScaleDoubted;
 }
 
 }  // namespace contour

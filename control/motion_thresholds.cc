@@ -24,8 +24,17 @@ constexpr double kSettlingBegin_s = 0.05;
 constexpr double kSettlingEnd_s = 0.2;
 // Share of the report's error that is noise.
 constexpr double kReportNoise = 0.2;
-// After this long nothing of a motion is left in the feed-forward.
+// Our own loops: changes of force slower than this at rest may be from outside.
 constexpr double kRest_s = 0.5;
+// A filtered report has come down to the torque by most after so many of its time constants.
+constexpr double kReportSettles = 2.0;
+// csp: of what a report swings by around its mean over kChatter_periods, what that mean may change by: twice
+// that for noise and hum; for a report that is filtered over kReport_s what it still lags behind by.
+constexpr double kSwingNoise = 2.0;
+constexpr double kSwingTail = 1.2;
+// csp: for so long what a report swings by is remembered, and what it has changed by: a sensor that warms
+// drifts within minutes.
+constexpr double kPushForgotten_s = 2.0;
 // Time constants of the loop until it has answered.
 constexpr double kAnswer = 2.0;
 // How long a reading stands under our own loops before a small change of force must have moved it.
@@ -95,9 +104,17 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   UseLoop(a.loop_Hz, a, period_s, t);
   t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
   t.pushed_force_N = t.rest_force_N + t.flickering.force_N - t.frozen.force_N;
-  t.rest_periods = static_cast<std::uint32_t>(std::ceil(kRest_s / period_s));
+  t.rest_periods = Periods(kReportSettles * kReport_s, period_s);
+  t.push_fade = 1.0 - std::exp(-period_s / kPushForgotten_s);
+  // Its mean follows later still.
+  t.tail_decay = std::exp(-period_s / (kReport_s + 0.5 * kChatter_periods * period_s));
+  t.swing = std::max(kSwingNoise, kSwingTail * kReport_s / (kChatter_periods * period_s));
+  // Half of what a report's noise may be.
+  t.tail_N = 0.5 * (t.rest_force_N - t.frozen.force_N) / t.swing;
   t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);
   t.begin_periods = a.delay_cycles + kLaterThanStated;
+  // In long cycles a report has settled before what is under way has arrived.
+  t.rest_periods = std::max(t.rest_periods, t.begin_periods + 1);
   // Inertia holds what is pushed that long within the band.
   t.pushed_periods = t.begin_periods +
                      Periods(std::sqrt(2.0 * t.heavy_kg * t.flickering.moved_m / t.pushed_force_N), period_s);

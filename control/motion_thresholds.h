@@ -73,8 +73,12 @@ struct MotionThresholds {
   double rest_force_N = 0.0;               ///< change of force that counts under a reading that stands
   double pushed_force_N = 0.0;             ///< the same under one that flickers, our own loops
   std::uint32_t pushed_periods = 0;        ///< that it must go on for: until the axis has left the band
-  std::uint32_t rest_periods = 0;          ///< csp: from the end of a motion until it does
+  std::uint32_t rest_periods = 0;          ///< csp: that a reading must stand for small changes to count
   double rest_fade = 0.0;
+  double swing = 0.0;            ///< csp: of what a report swings by, what its mean may change by
+  double tail_N = 0.0;           ///< csp: by which a filtered report may still lag behind
+  double tail_decay = 0.0;       ///< of it
+  double push_fade = 0.0;        ///< csp: of what the force has changed and swung by
   double settling_filter = 0.0;  ///< of the torque that a disturbance of before has changed
   double settling_decay = 0.0;
   double frozen_filter = 0.0;

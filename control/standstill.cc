@@ -122,7 +122,9 @@ void Standstill::Correct(double mean_m) noexcept {
     moves_m_ = std::clamp(moved_m, kStiffest * unit_m_, unit_m_);
   }
   const double size_m = std::abs(mean_m);
-  steps_ = size_m > kCorrected * unit_m_ ? std::max(1.0, std::floor(kPart * size_m / moves_m_)) : 0.0;
+  // The first one is a single step: what it moves tells what more of them would.
+  const double most = steps_ > 0.0 ? std::max(1.0, std::floor(kPart * size_m / moves_m_)) : 1.0;
+  steps_ = size_m > kCorrected * unit_m_ ? most : 0.0;
   before_m_ = mean_m;
   target_N_ -= std::copysign(steps_ * bounds_.step_N, mean_m);
   ramp_N_ = std::max(1.0, steps_) * bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);

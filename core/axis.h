@@ -36,6 +36,8 @@ struct AxisFeedback {
   bool has_scale = false;
   std::uint32_t age_cycles = 0;  ///< 0 when fresh; counts up without feedback
   bool scale_fresh = false;      ///< table_position_m belongs to the last SYNC; not in the log
+  double late_s =
+      0.0;  ///< in CST: by which the answer came later than usual, as its SYNC may have; not in the log
 };
 
 /// What the cycle sends to a drive.

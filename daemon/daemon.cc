@@ -37,6 +37,7 @@
 #include "daemon/supervisor.h"
 #include "daemon/telemetry/telemetry_hub.h"
 #include "design/loop_choice.h"
+#include "design/path_following.h"
 #include "drivers/cia301/messages.h"
 #include "tools/machine/load_emulated_machine.h"
 
@@ -374,6 +375,8 @@ int RunOnce(const DaemonOptions& options, std::optional<std::string>& again) {
   // In the log, too: a replay has the same.
   const std::vector<std::string> loops = LoopsThatAreMissing(stated);
   overrides.insert(overrides.end(), loops.begin(), loops.end());
+  for (const std::string& following : PathFollowingIfMissing(LoadMachine(options.config, overrides)))
+    overrides.push_back(following);
   const MaybeEmulatedMachineFile file = LoadFile(options, overrides);
   const MachineSource source = ReadSource(options.config, overrides);
   // Before any thread starts, so that all inherit it.

@@ -1,13 +1,15 @@
 #include "daemon/output_words.h"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include "config/number_text.h"
 
 namespace contour {
 namespace {
 
-constexpr double kLargestTool = 65535.0;
+constexpr double kLargestTool = std::numeric_limits<std::uint16_t>::max();
 
 }  // namespace
 
@@ -53,7 +55,7 @@ std::vector<std::string> WordsOf(const MachineConfig& machine) {
   for (const int code : {3, 4, 5, 6, 7, 8, 9}) {
     GcodeEvent event;
     event.code = code;
-    if (Listens(outputs, event)) words.push_back("M" + std::to_string(code));
+    if (Listens(outputs, event)) words.push_back(NameOf(event));
   }
   if (outputs.spindle_speed) words.emplace_back("S");
   if (outputs.tool_number) words.emplace_back("T");

@@ -5,12 +5,12 @@
 #include <string>
 
 #include "config/number_text.h"
+#include "daemon/program/path_walk.h"
 
 namespace contour {
 namespace {
 
-/// As controls have it; PathWalk goes no further.
-constexpr double kLargestFeed_percent = 200.0;
+constexpr double kLargestFeed_percent = 100.0 * PathWalk::kLargestScale;
 
 }  // namespace
 

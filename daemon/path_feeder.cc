@@ -6,15 +6,15 @@
 namespace contour {
 namespace {
 
-/// So many points later than the cycle would take it a law begins: it takes time to plan and to hand over.
-/// After one that came too late it is twice as many.
-constexpr std::uint64_t kFirstMargin = 16;
-constexpr std::uint64_t kLargestMargin = 2048;
+/// So much later than the cycle would take it a law begins: it takes time to plan and to hand over. After one
+/// that came too late it is twice as much.
+constexpr double kFirstMargin_s = 0.016;
+constexpr double kLargestMargin_s = 2.0;
 /// Calls of Feed() after which is looked again for a way to another pace, where there was none.
 constexpr std::uint32_t kLookAgain = 32;
-/// Points that the cycle has besides what a stop needs, where those that come bring it to rest because
-/// planning is late: as long as this the supply may be held up.
-constexpr std::uint64_t kBridge = 256;
+/// That the cycle has besides what a stop needs, where the points that come bring it to rest because planning
+/// is late: as long as this the supply may be held up.
+constexpr double kBridge_s = 0.256;
 /// This part of the queue is kept free, so that behind the first point of another law there are enough at
 /// once.
 constexpr std::size_t kKeptFree = 4;
@@ -42,7 +42,7 @@ void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath
   }
   wanted_ = options.feed;
   resume_ = resuming_ = Held::kNot;
-  margin_ = kFirstMargin;
+  margin_ = path_->generator().PeriodsIn(kFirstMargin_s);
   rest_ = 0;
   burst_ = 0;
   ForgetHeld();
@@ -68,11 +68,11 @@ void PathFeeder::Hear() {
   const PathProgress progress = mailbox_.path_progress();
   if (progress.law == path_->law_number()) {
     path_->Taken();
-    margin_ = std::max(kFirstMargin, margin_ / 2);
+    margin_ = std::max(path_->generator().PeriodsIn(kFirstMargin_s), margin_ / 2);
   } else if (progress.refused_law == path_->law_number()) {
     GiveAnew();
     path_->Refused(progress.end);
-    margin_ = std::min(2 * margin_, kLargestMargin);
+    margin_ = std::min(2 * margin_, path_->generator().PeriodsIn(kLargestMargin_s));
     if (resume_ == Held::kNot) resume_ = resuming_;
   }
 }
@@ -127,6 +127,7 @@ bool PathFeeder::Feed() {
   duration_s_ = duration.duration_s;
   duration_exact_ = duration.exact;
   waits_for_plan_ = path_->waits_for_plan();
+  if (more) time_share_ = path_->TimeShare();
   return more;
 }
 
@@ -135,7 +136,7 @@ bool PathFeeder::FeedNow() {
   std::uint64_t needed = 0;  // nothing moves
   if (progress.earliest != PathProgress::kNowhere) {
     path_->ForgetBefore(std::min(progress.earliest, progress.end));
-    needed = progress.earliest + kBridge;
+    needed = progress.earliest + path_->generator().PeriodsIn(kBridge_s);
   }
   if (path_->pending()) Hear();
   if (!path_->pending() && (path_->feed() != wanted_ || resume_ != Held::kNot)) ChangePace();
@@ -170,7 +171,8 @@ bool PathFeeder::HandOverGathered() {
 bool PathFeeder::Push(const PathPoint& point) {
   if (gathers_ && point.law == path_->law_number()) {
     together_.push_back(point);
-    const std::size_t enough = std::min<std::size_t>(kBridge, mailbox_.path_capacity() / (2 * kKeptFree));
+    const std::size_t enough = std::min<std::size_t>(path_->generator().PeriodsIn(kBridge_s),
+                                                     mailbox_.path_capacity() / (2 * kKeptFree));
     gathered_ = together_.size() >= enough || point.last;
     return true;
   }

@@ -12,7 +12,8 @@
 namespace contour {
 
 /// Keeps the mailbox's path queue filled with a program's points, and makes the cycle change their feed. But
-/// for Announce(), PlanStep(), duration() and waits_for_plan() one thread: the mailbox's path writer.
+/// for Announce(), PlanStep(), duration(), time_share() and waits_for_plan() one thread: the mailbox's path
+/// writer.
 class PathFeeder {
  public:
   explicit PathFeeder(CommandMailbox& mailbox) : mailbox_(mailbox) {}
@@ -35,6 +36,9 @@ class PathFeeder {
   bool PlanStep();
   /// Of the program at its own feed, as far as that is known. Any thread.
   [[nodiscard]] PathWalk::Estimate duration() const { return {duration_s_, duration_exact_}; }
+  /// What is left of it takes this share of that, at the feed that it has been told to go to, where that is
+  /// more than the programmed one. Any thread.
+  [[nodiscard]] double time_share() const { return time_share_; }
   /// The program is slow or at rest because planning does not keep up. Any thread.
   [[nodiscard]] bool waits_for_plan() const { return waits_for_plan_; }
   /// Hands over what the queue has room for. Returns whether more is to come.
@@ -65,6 +69,7 @@ class PathFeeder {
   std::uint64_t program_ = 0;  ///< counts them
   std::atomic<double> duration_s_{0.0};
   std::atomic<bool> duration_exact_{true};
+  std::atomic<double> time_share_{1.0};
   std::atomic<bool> waits_for_plan_{false};
   double wanted_ = 1.0;
   Held resume_ = Held::kNot;

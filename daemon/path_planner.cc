@@ -5,6 +5,7 @@
 namespace contour {
 namespace {
 
+/// Where nothing is to be planned. Short against what is planned ahead, 128 periods at least (PacedPath).
 constexpr std::chrono::milliseconds kLookAgain{2};
 
 }  // namespace

@@ -61,6 +61,7 @@ class Pump {
   [[nodiscard]] std::optional<HaltStatus> halt() const { return halts_.status(); }
   /// Of the program that is supplied, or was last, at its own feed. Any thread.
   [[nodiscard]] PathWalk::Estimate program_duration() const { return feeder_.duration(); }
+  [[nodiscard]] double program_time_share() const { return feeder_.time_share(); }
   /// What has come so far of the program that runs, or ran last. Any thread.
   [[nodiscard]] TallyOfProgram tally() const { return tally_.tally(); }
 

@@ -356,6 +356,7 @@ MachineStatus Supervisor::Status() {
   const PathWalk::Estimate duration = parts_.pump.program_duration();
   out.program_duration_s = duration.duration_s;
   out.program_duration_estimated = !duration.exact;
+  out.program_time_share = parts_.pump.program_time_share();
   out.pace = pace_.Status(out.record);
   if (const TallyOfProgram tally = parts_.pump.tally(); tally.program_id == out.record.program_id) {
     out.program_ran_s = static_cast<double>(tally.cycles) * cycle_us_ * 1e-6;

@@ -63,8 +63,12 @@ double LargestTorque_Nm(const AxisConfig& axis, const CommissionLimits& limits) 
 
 CommissionLimits DefaultCommissionLimits(const AxisConfig& axis) {
   const AxisLimits& l = axis.limits;
-  return {std::min(kTravel_mm, kShareOfStroke * (l.position_mm[1] - l.position_mm[0])),
-          std::min(kSpeed_mm_s, kShareOfSpeed * l.velocity_mm_s), kShareOfTorque * l.torque_Nm};
+  const double stroke_mm = l.position_mm[1] - l.position_mm[0];
+  // A steep screw needs more than the usual way for the turn that is asked of it.
+  const double travel_mm =
+      std::max(std::min(kTravel_mm, kShareOfStroke * stroke_mm), kFewestTurns * axis.model.mechanics.lead_mm);
+  return {std::min(travel_mm, stroke_mm), std::min(kSpeed_mm_s, kShareOfSpeed * l.velocity_mm_s),
+          kShareOfTorque * l.torque_Nm};
 }
 
 CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string& name, double position_mm,

@@ -14,8 +14,8 @@ struct CommissionLimits {
   double max_torque_Nm = 0.0;
 };
 
-/// Shares of the axis's limits: a tenth of the stroke and at most 20 mm, four tenths of the speed and at most
-/// 100 mm/s, six tenths of the torque.
+/// Shares of the axis's limits: a tenth of the stroke and at most 20 mm, but a turn of the motor, four tenths
+/// of the speed and at most 100 mm/s, six tenths of the torque.
 CommissionLimits DefaultCommissionLimits(const AxisConfig& axis);
 
 /// One motion, as a program of its own.

@@ -45,6 +45,32 @@ void FrictionAlong::Lay(const ReferencePoint& point, const Node& from, const Kno
   node.acceleration_m_s2 = point.acceleration_m_s2;
 }
 
+bool FrictionAlong::Still() const noexcept {
+  for (std::size_t j = 0; j < known_; ++j) {
+    const Node& node = At(j);
+    if (node.velocity_m_s != 0.0 || node.position_m != At(0).position_m) return false;
+  }
+  return known_ > 0;
+}
+
+double FrictionAlong::Carried_N(const FrictionTerms& parameters) const noexcept {
+  double sum_N = 0.0;
+  for (std::size_t i = 0; i < kFrictionTerms; ++i)
+    if (LinearFriction::Carried(i)) sum_N += parameters[i] * terms(0)[i];
+  return sum_N;
+}
+
+void FrictionAlong::Relax(double share) noexcept {
+  for (std::size_t j = 0; j < known_; ++j) {
+    Node& node = At(j);
+    for (double& bristle : node.memory.dahl) bristle *= share;
+    for (double& stop : node.memory.stop) stop *= share;
+    for (double& sign : node.memory.relaxed) sign *= share;
+    for (std::size_t i = 0; i < kFrictionTerms; ++i)
+      if (LinearFriction::Carried(i)) node.terms[i] *= share;
+  }
+}
+
 void FrictionAlong::Follow(const AxisHorizon& reference, std::size_t points,
                            const KnownEffects& known) noexcept {
   const std::size_t count = std::min({points, reference.size(), kMost});

@@ -26,6 +26,13 @@ class FrictionAlong {
   /// what element 1 was in the cycle before.
   void Follow(const AxisHorizon& reference, std::size_t points, const KnownEffects& known) noexcept;
 
+  /// Nothing moves on the way.
+  [[nodiscard]] bool Still() const noexcept;
+  /// What the bristles carry comes to this share of it. Only where it is still.
+  void Relax(double share) noexcept;
+  /// What of a friction with these parameters is carried by bristles.
+  [[nodiscard]] double Carried_N(const FrictionTerms& parameters) const noexcept;
+
   [[nodiscard]] const LinearFriction& basis() const noexcept { return basis_; }
   [[nodiscard]] std::size_t size() const noexcept { return known_; }
   [[nodiscard]] const FrictionTerms& terms(std::size_t point) const noexcept { return At(point).terms; }

@@ -112,7 +112,7 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
 [[gnu::always_inline]] inline void FrictionLearner::Along(const FrictionTerms& filtered,
                                                           FrictionTerms& along) const noexcept {
   Quads sum{};
-  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
+  for (std::size_t i = 0; i < friction_term::kUsed; ++i) {
     const double f = filtered[i];
     const double* row = covariance_[i].data();
     for (std::size_t q = 0; q < kQuads; ++q) {
@@ -127,7 +127,7 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
 [[gnu::always_inline]] inline void FrictionLearner::Shrink(const FrictionTerms& along) noexcept {
   Quads of{};
   for (std::size_t q = 0; q < kQuads; ++q) wide::Load(along.data() + 4 * q, of[q]);
-  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
+  for (std::size_t i = 0; i < friction_term::kUsed; ++i) {
     const double part = along[i];
     double* row = covariance_[i].data();
     for (std::size_t q = 0; q < kQuads; ++q) {

@@ -23,37 +23,57 @@ struct InnovationGate {
 
 /// Which gate a reading has to pass. One reading that is suddenly off may come of a SYNC that came late, or
 /// of a flipped bit; the next one tells. So the first is left out, and what lasts is believed, until readings
-/// have been as foretold for a while: to leave out one of every few would make a loop swing by itself.
+/// have been as foretold for a while: to leave out one of every few would make a loop swing by itself. Nor is
+/// sudden what follows from readings that were off before: at speed SYNCs come a little late or early all the
+/// time, and a loop that answers one of them rings.
 class SuddenGate {
  public:
   SuddenGate(const InnovationGate& gate, double sudden_m) noexcept
       : gate_{gate.sigmas, kTwoPeriods * gate.absolute},
-        first_{gate.sigmas, std::min(gate.absolute, sudden_m)} {}
+        sudden_m_(std::min(gate.absolute, sudden_m)),
+        first_{gate.sigmas, sudden_m_} {}
 
   [[nodiscard]] const InnovationGate& gate() const noexcept { return off_ || lasts_ > 0 ? gate_ : first_; }
-  void After(double innovation_m, double std_m) noexcept {
-    const bool off = !(std::abs(innovation_m) <= std::max(first_.sigmas * std_m, first_.absolute));
-    if (off && (off_ || lasts_ > 0))
+  /// What no reading in a row with others may be further off by.
+  [[nodiscard]] double most_m() const noexcept { return gate_.absolute; }
+  /// Whether this reading is to be left out. To be asked once of each.
+  bool LeavesOut(double innovation_m, double std_m) noexcept {
+    const double size_m = std::abs(innovation_m);
+    const double usual_m = gate_.sigmas * std_m;
+    const bool off = !(size_m <= std::max(usual_m, first_.absolute));
+    const bool believes = off_ || lasts_ > 0;
+    lately_m_ = std::max(kKeeps * lately_m_, off ? 0.0 : size_m);
+    first_.absolute = std::min(std::max(sudden_m_, kTwoPeriods * lately_m_), gate_.absolute);
+    if (off && believes)
       lasts_ = kBelieved;
     else if (lasts_ > 0)
       --lasts_;
     off_ = off;
+    return off && !(believes && size_m <= std::max(usual_m, gate_.absolute));
   }
+  /// The same of one that was judged by gate().
+  void After(double innovation_m, double std_m) noexcept { LeavesOut(innovation_m, std_m); }
   void Reset() noexcept {
     off_ = false;
     lasts_ = 0;
+    lately_m_ = 0.0;
+    first_.absolute = sudden_m_;
   }
 
- private:
   /// What a force has done in two periods, over one.
   static constexpr double kTwoPeriods = 4.0;
   /// Readings in a row as foretold: more than a period of any swing of a loop.
   static constexpr int kBelieved = 100;
+  /// In which what they were off by before is forgotten; at each.
+  static constexpr double kKeeps = 1.0 - 1.0 / kBelieved;
 
+ private:
   InnovationGate gate_;
-  InnovationGate first_;
-  bool off_ = false;  ///< the reading before was suddenly off
-  int lasts_ = 0;     ///< readings until one that is off is left out again
+  double sudden_m_;
+  InnovationGate first_;   ///< of a reading that follows others as foretold
+  bool off_ = false;       ///< the reading before was suddenly off
+  int lasts_ = 0;          ///< readings until one that is off is left out again
+  double lately_m_ = 0.0;  ///< largest innovation that was not off, forgotten in as many readings
 };
 
 /// An encoder that disagrees for so long has really moved: filters start again from it.

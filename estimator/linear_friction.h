@@ -64,6 +64,13 @@ class LinearFriction {
   [[nodiscard]] const FrictionScale& scale() const noexcept { return scale_; }
   static constexpr double kViscousSpeeds = 25.0;
 
+  /// The term is of bristles: it stays when the axis stands, and may give way then.
+  static constexpr bool Carried(std::size_t term) noexcept {
+    using namespace friction_term;  // NOLINT(google-build-using-namespace): names of terms only
+    return term < kConstant || (term >= kStribeck && term < kDamping) ||
+           (term >= kTurn && term < kEvenTurn) || term == kStroke;
+  }
+
   /// The fading of the Stribeck terms, then of the even one and the slow bristle, at a speed in vs.
   static std::array<double, 3> StribeckAt(double speed) noexcept;
 

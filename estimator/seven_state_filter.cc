@@ -346,14 +346,15 @@ void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
                              model_.Friction_N(end, end_at, Input(end_at, {})));
 }
 
-// The covariance says what noise does. Innovations larger than it expects (a wrong model) widen the band in
-// proportion, and a wrong mass is seen by nothing but the acceleration it is multiplied with.
+// Only ratios of the noises set the gains, so what is stated of them may be too much by any factor:
+// innovations say by how much, and where they are larger (a wrong model) they widen the band. A wrong mass is
+// seen by nothing but the acceleration it is multiplied with.
 template <class Core>
 double SevenStateFilter<Core>::FrictionStd_N(double acceleration_m_s2) const noexcept {
   const double filter_N =
       core_.Std({0.0, model_.sigma2_Ns_m(), 1.0, 1.0, 0.0, 0.0, 0.0}, kVelocity, kLevelPlus);
   const double mass_N = setup_.config.mass_std * setup_.mechanics.mass_kg * acceleration_m_s2;
-  return std::sqrt(std::max(1.0, surprise_) * filter_N * filter_N + mass_N * mass_N);
+  return std::sqrt(surprise_ * filter_N * filter_N + mass_N * mass_N);
 }
 
 template <class Core>
@@ -372,14 +373,17 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
       gated_in_a_row_ = result == UpdateResult::kGated ? gated_in_a_row_ + 1 : 0;
       if (result == UpdateResult::kOk) {
         const double ratio = innovation.value / innovation.std;
-        surprise_ += surprise_share_ * (ratio * ratio - surprise_);
+        // A reading that stands says nothing of how well friction is known.
+        const double least = in.at_rest ? std::min(1.0, surprise_) : 0.0;
+        surprise_ += surprise_share_ * (std::max(least, ratio * ratio) - surprise_);
       }
       if (result == UpdateResult::kGated) out.limit = Reason::kInnovationGated;
       if (gated_in_a_row_ != 0 && StartsAgain(gated_in_a_row_, setup_.period_s)) Follow(in.position_m);
     }
     out.innovation_m = innovation.value;
     out.innovation_std_m = innovation.std;
-    if (frozen_) core_.x[kLogSigma0] -= forget_share_ * core_.x[kLogSigma0];
+    // What a corner or a fast reversal left of it may be anything, and at rest the axis stands by it.
+    if (frozen_ || in.at_rest) core_.x[kLogSigma0] -= forget_share_ * core_.x[kLogSigma0];
     JudgeLevel(in.at_rest);
     const bool bounded = Bound();
     if (!in.at_rest && adapts()) {

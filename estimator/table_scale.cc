@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/gaussian.h"
 #include "estimator/turn.h"
 
 namespace contour {
@@ -45,6 +46,7 @@ TableScale::TableScale(const Setup& s) noexcept
 
 void TableScale::Reset() noexcept {
   sudden_ = doubted_ = 0;
+  lately_m_ = 0.0;
   doubt_ = missing_ < lost_ ? Reason::kNone : Reason::kScaleLost;
   filtering_ = false;
   center_m_ = 0.0;
@@ -102,7 +104,12 @@ void TableScale::Filter(const Sample& s) noexcept {
 bool TableScale::Plausible() const noexcept {
   const double screw_N = quick_[1] - setup_.motor_mass_kg * quick_m_s2_;
   const double off_m = quick_[0] - low_[kLead] - screw_N / setup_.stiffness_N_m - center_m_;
-  return std::abs(off_m) <= Allowed_m(screw_N, quick_m_s2_);
+  // A SYNC that comes late makes a speed too high and the next too low: to the acceleration that is a push
+  // and twice as large a pull.
+  const double jitter_m_s2 =
+      2.0 * kQuickShare * setup_.sample_jitter_s * std::abs(quick_[2]) / (setup_.period_s * setup_.period_s);
+  const double jitter_m = setup_.motor_mass_kg * jitter_m_s2 / setup_.stiffness_N_m;
+  return std::abs(off_m) <= Allowed_m(screw_N, quick_m_s2_) + jitter_m;
 }
 
 void TableScale::Step(const Sample& s) noexcept {
@@ -139,9 +146,14 @@ void TableScale::Step(const Sample& s) noexcept {
   fit_.Learn({beyond_m, screw_N, low_[kTravel], low_[kCos], low_[kSin], acceleration_m_s2_, s.moves});
 }
 
-bool TableScale::Sudden(double off_m) noexcept {
-  if (std::abs(off_m) <= setup_.sudden_m) {
+bool TableScale::Sudden(double off_m, double velocity_m_s) noexcept {
+  const double size_m = std::abs(off_m);
+  const double forced_m = setup_.sudden_m + setup_.sample_jitter_s * std::abs(velocity_m_s);
+  lately_m_ *= SuddenGate::kKeeps;
+  // As there, what a loop makes of a reading that was off is not sudden.
+  if (size_m <= std::max(forced_m, SuddenGate::kTwoPeriods * lately_m_)) {
     sudden_ = 0;
+    lately_m_ = std::max(lately_m_, size_m);
     return false;
   }
   if (++sudden_ >= lost_ && doubt_ == Reason::kNone) doubt_ = Reason::kScaleDoubted;

@@ -27,8 +27,9 @@ class TableScale {
     double level_N = 1.0;             ///< as commissioned
     double acceleration_m_s2 = 10.0;  ///< of paths, at most
     double turn_m = 5e-3;
-    double reading_m = 1e-8;  ///< step of the encoder
-    double sudden_m = 1e-6;   ///< so far forces take the table in a period besides what is foreseen
+    double reading_m = 1e-8;       ///< step of the encoder
+    double sudden_m = 1e-6;        ///< so far forces take the table in a period besides what is foreseen
+    double sample_jitter_s = 0.0;  ///< by which a SYNC may come late or early
     bool learns = true;
   };
   struct Sample {
@@ -47,9 +48,9 @@ class TableScale {
   /// The axis is enabled anew: as commissioned, and believed until something speaks against it.
   void Reset() noexcept;
   void Step(const Sample& sample) noexcept;
-  /// By how much the newest reading is off from where the table was expected: further than anything takes it,
-  /// and it is not to be used. What lasts is doubted.
-  bool Sudden(double off_m) noexcept;
+  /// By how much the newest reading is off from where the table was expected, at this speed: further than a
+  /// force or a SYNC that came late takes it, and it is not to be used. What lasts is doubted.
+  bool Sudden(double off_m, double velocity_m_s) noexcept;
 
   /// Why it is not believed: kNone, kScaleLost or kScaleDoubted. Stays until the axis is enabled anew. A
   /// doubt is told some readings after it has begun: the motion monitor, which looks at larger distances, may
@@ -93,6 +94,7 @@ class TableScale {
   double position_m_ = 0.0, table_m_ = 0.0, lead_m_ = 0.0;
   int periods_ = 0;  // since that sample
   int missing_ = 0, sudden_ = 0, doubted_ = 0;
+  double lately_m_ = 0.0;  // largest that readings were off by, forgotten in a hundred
   Reason doubt_ = Reason::kNone;
   bool filtering_ = false;
   std::array<double, kSignals> low_{};

@@ -20,15 +20,6 @@ constexpr double kTurnPart = 0.08;
 constexpr double kStrokePart = 0.5;
 // Friction at its largest place of stroke and turn over the level, whose range is bounded.
 constexpr double kOverPlaces = 1.25;
-// Of the force that accelerates the axis: what it is off by beside the mass, and of viscous friction.
-constexpr double kInertialPart = 0.03;
-// Of kInertialPart, what is left in torque mode, where what a period gave is known and the mass is learnt.
-constexpr double kInertialByCommand = 0.2;
-// A force that goes on changing is off by more than it changes by until half of it shows: in variances.
-constexpr double kLateByMore = 2.0;
-// A change of this moment counts as far as it is more than noise makes of it in 19 of 20 samples; in
-// variances of the noise, which a difference has twice.
-constexpr double kNoiseOfChange = 2.0 * 4.0;
 // A workpiece may have been mounted since the mass was stated.
 constexpr double kMassStds = 2.0;
 constexpr double kViscousPart = 0.3;
@@ -89,7 +80,7 @@ FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFri
   learner.std[kViscous] = kShape * level_N + kViscousPart * friction.sigma2_Ns_m *
                                                  LinearFriction::kViscousSpeeds * friction.vs_m_s;
   learner.std[kMass] = kMassStds * c.mass_std * s.filter.mechanics.mass_kg;
-  learner.inertial_kg = kInertialPart * s.filter.mechanics.mass_kg;
+  learner.inertial_kg = TwoInertiaEstimator::kInertialPart * s.filter.mechanics.mass_kg;
   learner.level_std = c.initial_level_std;
   learner.response = ResponseToFriction(s);
   learner.level_N = level_N;
@@ -142,6 +133,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       wind_up_(WindUpTuning(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
       lead_(Lead(s.axis), s.filter.period_s),
+      resting_(MakeBasis(s).scale().level_N, s.filter.config.lasting_force, s.filter.period_s),
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
       before_screw_(s.filter.friction.motor_share),
       surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
@@ -155,7 +147,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
   keep(along_, side_, nodes_, observer_, learner_, wind_up_, lag_, scale_, by_scale_, lead_, given_N_,
-       acted_N_, found_N_, newest_, surprise_N2_, noise_N2_, variance_N2_, unexplained_N_, elapsed_,
+       resting_, acted_N_, found_N_, newest_, surprise_N2_, noise_N2_, variance_N2_, unexplained_N_, elapsed_,
        temperature_degC_, at_rest_, frozen_);
 }
 
@@ -169,6 +161,7 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
   wind_up_.Reset();
   lag_.Reset();
   lead_.Reset();
+  resting_.Move();
   given_N_ = {};
   acted_N_ = 0.0;
   found_N_ = {};
@@ -271,63 +264,6 @@ AxisEstimate TwoInertiaEstimator::Update(const AxisEstimatorInput& in) noexcept 
   believed.limit = out.limit;
   ++elapsed_;
   return believed;
-}
-
-void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept {
-  const std::size_t period = elapsed_;
-  if (along_.size() == 0) return;
-  const double velocity_m_s = 0.5 * (along_.velocity_m_s(period) + along_.velocity_m_s(period + 1));
-  at_rest_ = in.at_rest && velocity_m_s == 0.0;
-  FrictionTerms terms;
-  for (std::size_t i = 0; i < kFrictionTerms; ++i)
-    terms[i] = 0.5 * (along_.terms(period)[i] + along_.terms(period + 1)[i]);
-  const double used_N = 0.5 * (At(period).learnt_N + At(period + 1).learnt_N);
-  unexplained_N_ =
-      learner_.Learn(terms, used_N, observer_.disturbance_N(), std::abs(velocity_m_s), may && !at_rest_);
-  Doubt(terms[kMass]);
-  if (at_rest_) learner_.Rest();
-  if (may && !at_rest_ && !scale_)
-    LearnWindUp(in);
-  else
-    wind_up_.Pause();
-}
-
-// What the force has changed by since the observer could see it is what is off in between: on average, and at
-// this moment. Noise of single samples is in a difference of two of them twice; a second difference, which a
-// force that goes on changing hardly has, has six times its variance. And what accelerates the axis is off.
-void TwoInertiaEstimator::Doubt(double acceleration_m_s2) noexcept {
-  newest_ = (newest_ + 1) % found_N_.size();
-  found_N_[newest_] = unexplained_N_;
-  const auto before_N = [this](std::size_t periods) {
-    return found_N_[(newest_ + found_N_.size() - periods) % found_N_.size()];
-  };
-  const double change_N = unexplained_N_ - before_N(settle_);
-  const double bend_N = change_N - before_N(settle_) + before_N(2 * settle_);
-  surprise_N2_ += surprise_share_ * (change_N * change_N - surprise_N2_);
-  noise_N2_ += surprise_share_ * (bend_N * bend_N / 6.0 - noise_N2_);
-  const double last_N2 = std::max(0.0, change_N * change_N - kNoiseOfChange * noise_N2_);
-  const double inertial_N = kInertialPart * (setup_.reported_torque ? 1.0 : kInertialByCommand) *
-                            setup_.mechanics.mass_kg * acceleration_m_s2;
-  const double late_N2 = kLateByMore * std::max(0.0, surprise_N2_ - 2.0 * noise_N2_);
-  variance_N2_ = late_N2 + noise_N2_ + last_N2 + inertial_N * inertial_N;
-}
-
-void TwoInertiaEstimator::LearnWindUp(const AxisEstimatorInput& in) noexcept {
-  if (!wind_up_.learns()) return;
-  WindUpFit::Sample sample;
-  const double velocity_m_s = along_.velocity_m_s(elapsed_ + 1);
-  sample.alone = in.alone;
-  sample.position_m = in.position_m;
-  sample.force_N = acted_N_ + At(elapsed_).driving_N;
-  sample.mass_kg = setup_.mechanics.mass_kg + learner_.parameters()[kMass];
-  sample.direction = velocity_m_s > 0.0 ? 1 : velocity_m_s < 0.0 ? -1 : 0;
-  if (wind_up_.NeedsLevels(sample.direction)) {
-    const bool forward = velocity_m_s >= 0.0;
-    sample.level_N = learner_.SlidingLevel_N(forward, 0.0);
-    sample.level_ratio = learner_.SlidingLevel_N(forward, std::abs(velocity_m_s)) / sample.level_N;
-    sample.sigma0_N_m = setup_.friction.sigma0_N_m;
-  }
-  wind_up_.Learn(sample);
 }
 
 AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const noexcept {

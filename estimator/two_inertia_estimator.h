@@ -18,6 +18,7 @@
 #include "estimator/friction_along.h"
 #include "estimator/friction_learner.h"
 #include "estimator/known_effects.h"
+#include "estimator/resting_bristles.h"
 #include "estimator/side_mode_force.h"
 #include "estimator/table_scale.h"
 #include "estimator/two_inertia_observer.h"
@@ -39,9 +40,13 @@ class TwoInertiaEstimator {
     KnownEffects known;
     std::vector<SideMode> side_modes;
     double acceleration_m_s2 = 10.0;  ///< of paths, at most
+    double sample_jitter_s = 0.0;     ///< by which a SYNC may come late or early
     bool has_scale = false;
     std::optional<TwoInertiaLoop> scale_loop{};  ///< of the loop that goes by the linear scale
   };
+
+  /// Of the force that accelerates the axis: what it is off by beside the mass, and of viscous friction.
+  static constexpr double kInertialPart = 0.03;
 
   /// Throws std::invalid_argument when a value makes no sense.
   explicit TwoInertiaEstimator(const Setup& setup);
@@ -90,6 +95,7 @@ class TwoInertiaEstimator {
   void LeaveScale(double position_m) noexcept;
   void Learn(const AxisEstimatorInput& in, bool may) noexcept;
   void LearnWindUp(const AxisEstimatorInput& in) noexcept;
+  void Rest() noexcept;
   void Doubt(double acceleration_m_s2) noexcept;
   [[nodiscard]] AxisEstimate Believed(const AxisEstimatorInput& in) const noexcept;
 
@@ -107,6 +113,7 @@ class TwoInertiaEstimator {
   bool loop_takes_scale_ = false;
   bool by_scale_ = false;  ///< the observer goes by it
   CascadeLead lead_;
+  RestingBristles resting_;
   double most_N_ = 0.0;          ///< that friction along the reference may be
   double motor_share_ = 0.0;     ///< of the mass
   double before_screw_ = 0.0;    ///< share of the friction that acts there

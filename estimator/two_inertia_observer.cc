@@ -72,18 +72,34 @@ void TwoInertiaObserver::Predict(const PeriodForces& forces, double beyond_m) no
 }
 
 TwoInertiaObserver::Seen TwoInertiaObserver::Judge(double innovation_m, double std_m) noexcept {
-  Seen seen{innovation_m, std_m, false};
-  const InnovationGate gate = gate_.gate();
-  const double size_m = std::abs(innovation_m);
-  seen.gated = !(size_m <= std::max(gate.sigmas * std_m, gate.absolute));
-  gate_.After(innovation_m, std_m);
-  return seen;
+  return {innovation_m, std_m, gate_.LeavesOut(innovation_m, std_m)};
+}
+
+// Three in a row that are off and agree on a motion: it is the axis that moves so, and what was foretold is
+// wrong. To hear nothing until time is up would take a moving axis far from its path.
+bool TwoInertiaObserver::AgreesWithGated(double position_m) noexcept {
+  ++gated_in_a_row_;
+  const double bend_m = position_m - 2.0 * gated_m_[0] + gated_m_[1];
+  const bool agrees = gated_in_a_row_ > gated_m_.size() && std::abs(bend_m) <= gate_.most_m();
+  gated_m_[1] = gated_m_[0];
+  gated_m_[0] = position_m;
+  return agrees;
+}
+
+// Moving as the readings do, under no force beyond what is known.
+void TwoInertiaObserver::GoOnByGated(double position_m, double table_m) noexcept {
+  const double velocity_m_s = (gated_m_[0] - gated_m_[1]) / period_s_;
+  Reset(position_m, table_m);
+  motion_[1] = motion_[3] = velocity_m_s;
 }
 
 TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m) noexcept {
   const Seen seen = Judge(position_m - motion_[0], innovation_std_m_);
   if (seen.gated) {
-    if (StartsAgain(++gated_in_a_row_, period_s_)) Reset(position_m);
+    if (AgreesWithGated(position_m))
+      GoOnByGated(position_m, position_m);
+    else if (StartsAgain(gated_in_a_row_, period_s_))
+      Reset(position_m);
     return seen;
   }
   gated_in_a_row_ = 0;
@@ -96,8 +112,11 @@ TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m,
                                                      std::optional<double> table_m) noexcept {
   const Seen seen = Judge(position_m - beyond_m_ - motion_[0], scale_innovation_std_m_);
   if (seen.gated) {
-    if (StartsAgain(++gated_in_a_row_, period_s_))
-      Reset(position_m, table_m.value_or(position_m - beyond_m_));
+    const double there_m = table_m.value_or(position_m - beyond_m_);
+    if (AgreesWithGated(position_m))
+      GoOnByGated(position_m, there_m);
+    else if (StartsAgain(gated_in_a_row_, period_s_))
+      Reset(position_m, there_m);
     return seen;
   }
   gated_in_a_row_ = 0;

@@ -68,11 +68,15 @@ class TwoInertiaObserver {
   [[nodiscard]] const TwoInertiaLoop& loop() const noexcept { return loop_; }
   [[nodiscard]] bool Sound() const noexcept;
 
-  void Keep(StateKeeper& keep) noexcept { keep(motion_, disturbance_N_, beyond_m_, gate_, gated_in_a_row_); }
+  void Keep(StateKeeper& keep) noexcept {
+    keep(motion_, disturbance_N_, beyond_m_, gate_, gated_in_a_row_, gated_m_);
+  }
 
  private:
   using Gain = std::array<std::array<double, 2>, kObserverStates>;
   Seen Judge(double innovation_m, double std_m) noexcept;
+  bool AgreesWithGated(double position_m) noexcept;
+  void GoOnByGated(double position_m, double table_m) noexcept;
 
   TwoInertiaLoop loop_;
   Gain scale_gain_{};
@@ -86,6 +90,7 @@ class TwoInertiaObserver {
   double disturbance_N_ = 0.0;
   double beyond_m_ = 0.0;
   std::uint32_t gated_in_a_row_ = 0;
+  std::array<double, 2> gated_m_{};  ///< the newest readings that were left out, newest first
 };
 
 }  // namespace contour

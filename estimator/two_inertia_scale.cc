@@ -25,6 +25,7 @@ std::unique_ptr<TableScale> TwoInertiaEstimator::MakeScale(const Setup& s, doubl
   scale.friction_N = most_N;
   scale.level_N = level_N;
   scale.acceleration_m_s2 = s.acceleration_m_s2;
+  scale.sample_jitter_s = s.sample_jitter_s;
   scale.turn_m = 2.0 * std::numbers::pi * s.filter.mechanics.radius_m_rad;
   scale.reading_m = std::sqrt(12.0) * s.filter.measurement_std_m;
   scale.sudden_m = scale.reading_m + 0.5 * kSuddenFrictions * most_N / s.axis.table_mass_kg *
@@ -62,7 +63,7 @@ void TwoInertiaEstimator::LeaveScale(double position_m) noexcept {
 TwoInertiaObserver::Seen TwoInertiaEstimator::Correct(const AxisEstimatorInput& in) noexcept {
   if (!by_scale_) return observer_.Correct(in.position_m);
   std::optional<double> table_m;
-  if (in.scale_fresh && !scale_->Sudden(scale_->table_m() - observer_.motion()[2]))
+  if (in.scale_fresh && !scale_->Sudden(scale_->table_m() - observer_.motion()[2], observer_.motion()[3]))
     table_m = scale_->table_m();
   if (!scale_->believed()) {
     LeaveScale(in.position_m);

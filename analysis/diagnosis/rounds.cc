@@ -11,6 +11,7 @@
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
+#include "analysis/diagnosis/decision/own_noise.h"
 #include "analysis/diagnosis/quantification/detectable.h"
 #include "analysis/diagnosis/quantification/jitter_cause.h"
 #include "analysis/diagnosis/screening/screen.h"
@@ -32,6 +33,7 @@ struct Rounds {
   std::size_t stated_with = std::numeric_limits<std::size_t>::max();
   bool first = true, jitter_known = false;
   int further_orders = 0;
+  int begun_anew = 0;               ///< from a base that lies lower
   std::vector<Cause> leading = {};  ///< known causes in place of a shape from outside the catalogue
 };
 
@@ -153,6 +155,8 @@ Next Take(const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& thres
   const bool further = Known(kind, r.out) && r.further_orders++ < r.options.most_effects;
   if (Outside(kind)) KeepLeadingKnown(r.problem, r.accepted.fit, threshold, hypotheses, r.leading);
   AcceptFirst(r.problem, hypotheses, threshold, r.accepted, r.out);
+  std::erase_if(r.out.causes.back().indistinguishable_from,
+                [&](const std::string& other) { return Among(r.options.exclude, other); });
   if (Outside(kind)) return Next::kEnd;
   return further ? Next::kSameRound : Next::kNextRound;
 }
@@ -170,10 +174,19 @@ Next OneRound(int round, Rounds& r) {
     const Next next = TryOthers(seen, r);
     return next == Next::kEnd ? EndWithJitter(seen, r) : next;
   }
-  // Noise as the best candidate leaves it.
-  r.problem.LearnNoise(hypotheses[0].fit.point);
+  // Noise as the best candidate leaves it. Of a model that has a cause that holds it is not far from that.
+  if (r.accepted.places.empty())
+    LearnNoiseOfLikeliest(r.problem, hypotheses);
+  else
+    r.problem.LearnNoise(hypotheses[0].fit.point);
   Say(r.options, "candidate hypotheses under the noise that is left", 0.35 + 0.25 * round);
-  FitAgain(r.problem, r.accepted.fit, hypotheses);
+  if (FitAgain(r.problem, r.accepted.fit, hypotheses) && r.begun_anew++ < kHypotheses.most_turns) {
+    // What they were to explain was where the base lay.
+    r.tried.clear();
+    r.problem.LearnNoise(r.accepted.fit.point);
+    Rewhiten(r.problem, r.accepted.fit);
+    return Next::kSameRound;
+  }
   if (hypotheses[0].no_fault && hypotheses[0].score > Asked(r.problem, hypotheses[0], seen.threshold)) {
     // No cause of a deviation, but there; unless the model has it, others stand for it.
     r.accepted.fit = std::move(hypotheses[0].fit);

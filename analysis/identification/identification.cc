@@ -112,6 +112,7 @@ void TakeScrew(Identification& id, const std::vector<Measured>& records, int thr
     axis.side = s.axis.side;
     axis.delay_s = s.axis.delay_s;
     axis.lag_s = s.axis.lag_s;
+    axis.answer = s.axis.answer;
     // The bristle, too: sliding and shaken, it is a spring and a relaxation of some 100 Hz.
     axis.friction.s0 = s.axis.friction.s0;
   }
@@ -122,6 +123,7 @@ void TakeScrew(Identification& id, const std::vector<Measured>& records, int thr
     axis.two_inertia = axis.friction_on_load = false;
     axis.delay_s = s.axis.delay_s;
     axis.lag_s = s.axis.lag_s;
+    axis.answer = s.axis.answer;
   }
   if (id.wind_up.found) axis.stiffness = id.wind_up.stiffness_N_m;
   if (s.verdict == ShakenScrew::Verdict::kNotSeen) {
@@ -142,6 +144,7 @@ void TakeSteps(Identification& id, const std::vector<Measured>& records, int thr
   if (!id.sliding.found) throw std::runtime_error("cannot identify friction: " + id.sliding.why_not);
   diagnosis::StatedFriction& f = axis.friction;
   SetMass(axis, id.sliding.mass_kg);
+  if (id.sliding.offset_N != 0.0) axis.offset = id.sliding.offset_N;
   f.Fc_plus = id.sliding.Fc_plus_N;
   f.Fc_minus = id.sliding.Fc_minus_N;
   f.Fs_plus = id.sliding.Fs_plus_N;
@@ -195,7 +198,7 @@ void StateRigid(Identification& id) {
   axis.stiffness = std::max(stated.stiffness, kRigidBeyondLeast * least_N_m);
   axis.two_inertia = true;
   axis.friction_on_load = stated.friction_on_load;
-  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness, kRigidSigma, true});
+  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness, kRigidSigma, true, 0.0});
   id.notes.push_back(
       FormatText("the axis is rigid: shaken up to %.0f Hz, it shows no screw with a resonance below %.0f Hz. "
                  "The masses are "
@@ -236,7 +239,7 @@ void FitAll(Identification& id, const std::vector<Measured>& records, int thread
 void LookAgain(Identification& id, const std::vector<Measured>& records) {
   const TableAxis& axis = id.fit.axis;
   id.stribeck = StribeckPoints(AllInstants(records, axis, kStride), axis);
-  const FollowGain gain = MakeFollowGain(axis, records.front().period_s, 60.0);
+  const FollowGain gain = FollowGainFor(axis, records.front());
   double offset_s = 0.0;
   for (const Measured& r : records) {
     std::vector<double> friction(r.size(), 0.0), place(r.size(), 0.0);
@@ -281,6 +284,8 @@ Measured ToMeasured(const diagnosis::AxisLog& log, const TableAxis& axis, double
     m.force_N.push_back(log.command[k] / r);
     m.position_m.push_back(log.position[k] * r);
   }
+  for (const double u : log.offset) m.offset_N.push_back(u / r);
+  for (const double u : log.reported) m.reported_N.push_back(u / r);
   return m;
 }
 
@@ -321,6 +326,11 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
   }
 
   FitAll(id, records, options.threads, report);
+  if (records.front().led_by_drive())
+    id.notes.push_back(
+        "the bristle's damping and its decay stay as stated: the drive's reports of its torque are too "
+        "coarse "
+        "to show them");
   report("report", 0.97);
   LookAgain(id, records);
   if (!id.fit.axis.two_inertia && id.stated.two_inertia) StateRigid(id);

@@ -39,6 +39,8 @@ struct FittedParameter {
   double value = 0.0;
   double sigma = 0.0;  ///< relative for logarithmic ones, else absolute
   bool relative = true;
+  /// How far slow and quick forces disagree about it, in standard deviations of that (Disagreement).
+  double halves_apart = 0.0;
 };
 
 /// Standard deviation of a parameter; 0: it was not moved.

@@ -18,7 +18,6 @@ constexpr double kLeastShaking = 0.2;
 constexpr double kLeast_s = 1.0;  ///< of shaken sliding, all segments together
 /// The highest frequency that shook the axis over the lowest: less of a range shows no screw.
 constexpr double kLeastRange = 2.0;
-constexpr double kFollow_Hz = 60.0;
 /// Starts: antiresonances a twentieth apart, shares of the table in the whole mass.
 constexpr double kNextStart = 1.05;
 constexpr double kShares[] = {0.05, 0.12, 0.25, 0.5};
@@ -32,6 +31,8 @@ constexpr int kLongestDescent = 5;
 /// the motion so much better than one does.
 constexpr double kKnownStiffness = 0.2;
 constexpr double kLeastGain_log = 5e-3;
+/// Standard deviations that the halves of a record of such an axis are apart at the most, one in a hundred.
+constexpr double kHalvesAgree = 2.6;
 
 /// A part of the table that swings: tried from these shares of it, at frequencies so far apart; it is one
 /// when it foresees so much better.
@@ -40,6 +41,9 @@ constexpr double kNextSide = 1.08;
 constexpr std::size_t kSidesRefined = 3;
 constexpr double kSidesApart = 0.15;
 constexpr double kLeastSideGain_log = 1e-2;
+/// It stays when its share is known so well, in standard deviations, or when it foresees that much better.
+constexpr double kSureOfSide = 3.0;
+constexpr double kSurelyBetter_log = 0.1;
 
 double Hz(double stiffness, double mass) { return std::sqrt(stiffness / mass) / (2.0 * std::numbers::pi); }
 
@@ -65,12 +69,16 @@ Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
   s.force_N.assign(d.force_N.begin() + from, d.force_N.begin() + to);
   s.position_m.assign(d.position_m.begin() + from, d.position_m.begin() + to);
   s.present.assign(d.present.begin() + from, d.present.begin() + to);
+  if (d.led_by_drive()) {
+    s.offset_N.assign(d.offset_N.begin() + from, d.offset_N.begin() + to);
+    s.reported_N.assign(d.reported_N.begin() + from, d.reported_N.begin() + to);
+  }
   return s;
 }
 
 /// Log of the prediction error that is left when each error is foreseen from those before it.
 double LogError(const TableAxis& axis, const std::vector<Measured>& segments) {
-  const FollowGain gain = MakeFollowGain(axis, segments.front().period_s, kFollow_Hz);
+  const FollowGain gain = FollowGainFor(axis, segments.front());
   std::vector<double> all;
   for (const Measured& s : segments) {
     const std::vector<double> e = PredictionErrors_m(axis, s, gain);
@@ -105,6 +113,12 @@ FitOptions Options(bool screw, bool spread, int threads) {
             "sigma1_Ns_m",
             "sigma1_decay_mm_s",
             "sigma2_Ns_m",
+            "answer_gain",
+            "answer_delay_s",
+            "answer_next",
+            "answer_step",
+            "answer_after_1",
+            "answer_after_2",
             "side_share",
             "side_frequency_Hz",
             "side_damping",
@@ -236,6 +250,33 @@ void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& s
   }
 }
 
+/// Where slow and quick forces tell of two axes, the one that was fitted is neither: a part that swings, say.
+/// The whole fit then is as unsure as they are apart, as physicists have it of measurements that disagree.
+void WidenByHalves(std::vector<FittedParameter>& parameters) {
+  for (FittedParameter& p : parameters)
+    if (p.halves_apart > kHalvesAgree) p.sigma *= p.halves_apart;
+}
+
+/// The last fit, from the best of two masses alone or with a part that swings. A share that could as well be
+/// none is none: what the model lacks otherwise may look like one.
+JointFit WithSideWhereSure(std::pair<double, TableAxis>& best, const std::vector<Measured>& segments,
+                           const Band& band, int threads) {
+  FitOptions last = Options(true, true, threads);
+  last.refine = true;
+  last.rounds = 1;
+  const std::pair<double, TableAxis> alone = best;
+  TakeSide(best, segments, band, threads);
+  JointFit fit = FitJointly(best.second, segments, last);
+  if (!(fit.axis.side.share > 0.0)) return fit;
+  std::vector<FittedParameter> widened = fit.parameters;
+  WidenByHalves(widened);
+  if (fit.axis.side.share > kSureOfSide * Sigma(widened, "side_share") ||
+      alone.first - best.first > kSurelyBetter_log)
+    return fit;
+  best = alone;
+  return FitJointly(best.second, segments, last);
+}
+
 }  // namespace
 
 std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const TableAxis& axis) {
@@ -288,11 +329,7 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
     if (found.first < best.first) best = found;
     if (same) break;
   }
-  TakeSide(best, segments, band, threads);
-  FitOptions last = Options(true, true, threads);
-  last.refine = true;
-  last.rounds = 1;
-  JointFit fit = FitJointly(best.second, segments, last);
+  JointFit fit = WithSideWhereSure(best, segments, band, threads);
   s.axis = fit.axis;
   s.antiresonance_Hz = Hz(s.axis.stiffness, s.axis.load_inertia);
   s.resonance_Hz = s.antiresonance_Hz * std::sqrt(s.axis.mass_kg() / s.axis.motor_inertia);
@@ -301,6 +338,7 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
                      Sigma(s.parameters, "screw_stiffness_N_um") < kKnownStiffness;
   s.verdict = screw ? ShakenScrew::Verdict::kFound : ShakenScrew::Verdict::kRigid;
   if (!screw) s.axis = rigid;
+  WidenByHalves(s.parameters);
   return s;
 }
 

@@ -7,6 +7,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "analysis/axis_model/linear_axis.h"
+#include "analysis/identification/own_force.h"
 #include "analysis/prediction_error/steady_gain.h"
 #include "estimator/exponential.h"
 
@@ -23,6 +24,9 @@ constexpr double kNoStep_s = 1e-9;
 constexpr int kLongestGap = 5;
 constexpr double kMoving_m_s = 50e-6;
 constexpr double kBristleCorrection = 0.05;
+constexpr double kFollow_Hz = 60.0;
+/// Of a value that is rounded, and noisy by about as much: standard deviation over its step.
+constexpr double kRoundedNoise = 0.4;
 
 struct Discrete {
   Eigen::Matrix4d a;
@@ -72,19 +76,48 @@ double Place(const LevelVariation& v, double x_m) {
 
 }  // namespace
 
-FollowGain MakeFollowGain(const TableAxis& axis, double period_s, double bandwidth_Hz) {
+namespace {
+
+/// `ratio`: movement in a period by a disturbance, of the noise of a reading. `on_motor` is the share of that
+/// disturbance's variance that acts there.
+FollowGain SteadyFollowGain(const TableAxis& axis, double period_s, double ratio, double on_table,
+                            double on_motor) {
   const Discrete d = Over(axis, 0.0, period_s);
-  // A disturbance of 1 N for a period; the noise then sets the bandwidth: omega^2 T^2 = ratio of the two.
-  const double omega_t = std::min(1.0, 2.0 * std::numbers::pi * bandwidth_Hz * period_s);
-  const double move_m = period_s * period_s / axis.mass_kg();
-  const double noise_m = move_m / (omega_t * omega_t);
+  const double noise_m = period_s * period_s / axis.mass_kg() / ratio;
   const Eigen::Vector4d motor = d.command + d.delayed;
-  const Eigen::Matrix4d q = d.table * d.table.transpose() + 0.1 * motor * motor.transpose();
+  const Eigen::Matrix4d q = on_table * d.table * d.table.transpose() + on_motor * motor * motor.transpose();
   const int n = axis.two_inertia ? 4 : 2;
   FollowGain gain = FollowGain::Zero();
   gain.head(n) = diagnosis::SteadyGain(d.a.topLeftCorner(n, n), q.topLeftCorner(n, n), noise_m * noise_m,
                                        1e6 * q.topLeftCorner(n, n));
   return gain;
+}
+
+}  // namespace
+
+FollowGain MakeFollowGain(const TableAxis& axis, double period_s, double bandwidth_Hz) {
+  // A disturbance of 1 N for a period; the noise then sets the bandwidth: omega^2 T^2 = ratio of the two.
+  const double omega_t = std::min(1.0, 2.0 * std::numbers::pi * bandwidth_Hz * period_s);
+  return SteadyFollowGain(axis, period_s, omega_t * omega_t, 1.0, 0.1);
+}
+
+double ReportStep_N(const Measured& data) {
+  double step_N = 0.0;
+  if (!data.led_by_drive()) return step_N;
+  for (std::size_t k = 1; k < data.size(); ++k) {
+    const double change_N = std::fabs(data.reported_N[k] - data.reported_N[k - 1]);
+    if (change_N > 1e-9 && (step_N == 0.0 || change_N < step_N)) step_N = change_N;
+  }
+  return step_N;
+}
+
+FollowGain FollowGainFor(const TableAxis& axis, const Measured& data, double factor) {
+  const double least = std::min(1.0, 2.0 * std::numbers::pi * kFollow_Hz * factor * data.period_s);
+  if (!data.led_by_drive()) return SteadyFollowGain(axis, data.period_s, least * least, 1.0, 0.1);
+  const double noise_m = kRoundedNoise * data.position_step_m;
+  const double move_m = kRoundedNoise * ReportStep_N(data) * data.period_s * data.period_s / axis.mass_kg();
+  const double ratio = factor * factor * std::max(least * least, move_m / std::max(noise_m, 1e-12));
+  return SteadyFollowGain(axis, data.period_s, ratio, 0.1, 1.0);
 }
 
 Simulation::Simulation(const TableAxis& axis, const Measured& data, const FollowGain& gain)
@@ -113,9 +146,12 @@ Simulation::Simulation(const TableAxis& axis, const Measured& data, const Follow
     rubbing_.push_back(motor);
   }
   for (const MotorWave& w : axis.cogging) cogs_ = cogs_ || w.order > 0.0;
+  if (data.led_by_drive()) own_ = std::make_unique<OwnForce>(OwnForceOf(axis, data));
   MakePieces(stiff);
-  cogging_N_.assign(pieces_.size(), 0.0);
+  direct_N_.assign(pieces_.size(), 0.0);
 }
+
+Simulation::~Simulation() = default;
 
 void Simulation::MakePieces(const TableAxis& stiff) {
   const double delay = std::max(0.0, axis_.delay_s);
@@ -139,13 +175,14 @@ void Simulation::MakePieces(const TableAxis& stiff) {
 
 void Simulation::Start() {
   const double here = data_.position_m[k_];
-  force_N_ = data_.force_N[k_] + axis_.offset;
-  state_ << here, 0.0, !axis_.two_inertia ? here : here - force_N_ / axis_.stiffness, 0.0;
+  const double whole_N = (own_ ? data_.reported_N[k_] : data_.force_N[k_]) + axis_.offset;
+  force_N_ = own_ ? own_->offset_N[k_] + axis_.offset : whole_N;
+  state_ << here, 0.0, !axis_.two_inertia ? here : here - whole_N / axis_.stiffness, 0.0;
   if (k_ > 0 && data_.present[k_ - 1] != 0)
     state_(1) = state_(3) = (here - data_.position_m[k_ - 1]) / data_.period_s;
   const double most = std::min(axis_.friction.Fc_plus, axis_.friction.Fc_minus) / axis_.friction.s0;
   for (Rubbing& r : rubbing_) {
-    r.z_m = std::clamp(force_N_ / axis_.friction.s0, -most, most);
+    r.z_m = std::clamp(whole_N / axis_.friction.s0, -most, most);
     r.force_N = BristleForce_N(r);
   }
   side_.place_m = state_(2);
@@ -206,11 +243,12 @@ void Simulation::Prepare() {
     r.force_N = BristleForce_N(r);
   }
   if (cogs_) PrepareCogging();
+  if (own_) AddOwnForce();
 }
 
 /// At the middle of each piece, as if the motor went on at its speed: a rotation from piece to piece.
 void Simulation::PrepareCogging() {
-  std::fill(cogging_N_.begin(), cogging_N_.end(), 0.0);
+  std::fill(direct_N_.begin(), direct_N_.end(), 0.0);
   const double h = data_.period_s / kSubSteps;
   for (const MotorWave& w : axis_.cogging) {
     if (w.order <= 0.0) continue;
@@ -221,7 +259,7 @@ void Simulation::PrepareCogging() {
     const double dc = std::cos(turn), ds = std::sin(turn);
     double from_s = 0.0;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      cogging_N_[i] += w.cosine_N * c + w.sine_N * s;
+      direct_N_[i] += w.cosine_N * c + w.sine_N * s;
       from_s += pieces_[i].step_s;
       // Both parts of the sub-step that the delay cuts have the same.
       if (std::fmod(from_s + kNoStep_s, h) > 2.0 * kNoStep_s) continue;
@@ -229,6 +267,17 @@ void Simulation::PrepareCogging() {
       s = s * dc + c * ds;
       c = next;
     }
+  }
+}
+
+void Simulation::AddOwnForce() {
+  if (!cogs_) std::fill(direct_N_.begin(), direct_N_.end(), 0.0);
+  double from_s = 0.0;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const double to_s = from_s + pieces_[i].step_s;
+    direct_N_[i] += PartOfPeriod_N(own_->at_N[k_], own_->at_N[k_ + 1], own_->mean_N[k_],
+                                   from_s / data_.period_s, to_s / data_.period_s);
+    from_s = to_s;
   }
 }
 
@@ -252,7 +301,7 @@ void Simulation::Advance(const Piece& p, double command_N, double motor_N) {
     from_m[i] = state_(r.place);
   }
   state_ = p.flow * state_ + p.delayed * force_N_ + p.command * command_N;
-  if (cogs_) state_ += p.motor * motor_N;
+  if (cogs_ || own_) state_ += p.motor * motor_N;
   force_N_ = command_N + (force_N_ - command_N) * p.lag_left;
   for (std::size_t i = 0; i < rubbing_.size(); ++i) {
     Rubbing& r = rubbing_[i];
@@ -282,10 +331,11 @@ double Simulation::Next() {
   }
   Prepare();
   const std::size_t now = k >= whole_delay_ ? k - whole_delay_ : 0;
-  const double newer = data_.force_N[now] + axis_.offset;
-  const double older = data_.force_N[now > 0 ? now - 1 : 0] + axis_.offset;
+  const std::vector<double>& sent_N = own_ ? data_.offset_N : data_.force_N;
+  const double newer = sent_N[now] + axis_.offset;
+  const double older = sent_N[now > 0 ? now - 1 : 0] + axis_.offset;
   for (std::size_t i = 0; i < pieces_.size(); ++i)
-    Advance(pieces_[i], pieces_[i].older ? older : newer, cogging_N_[i]);
+    Advance(pieces_[i], pieces_[i].older ? older : newer, direct_N_[i]);
   ++k_;
   if (k_ >= data_.size() || data_.present[k_] == 0) {
     // Nobody knows what was commanded in a long gap: begin anew behind it.

@@ -2,21 +2,28 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "analysis/identification/table_axis.h"
 
 namespace contour::identify {
 
+struct OwnForce;
+
 /// What was measured, in table units. Timing as diagnosis::AxisLog states it.
 struct Measured {
   double period_s = 1e-3;
-  double position_step_m = 0.0;       ///< one count of the encoder
-  std::vector<double> force_N;        ///< command / R
+  double position_step_m = 0.0;  ///< one count of the encoder
+  std::vector<double> force_N;   ///< command / R
+  /// Where the drive closes its own loop: the offset that it was sent, in the place of the command, and what
+  /// it said that it gave at the instant of the position. Empty elsewhere.
+  std::vector<double> offset_N, reported_N;
   std::vector<double> position_m;     ///< R theta
   std::vector<double> table_m;        ///< linear scale; empty without one
   std::vector<std::uint8_t> present;  ///< 0: no sample at this grid point
   [[nodiscard]] std::size_t size() const { return force_N.size(); }
+  [[nodiscard]] bool led_by_drive() const { return !reported_N.empty(); }
 };
 
 /// How the simulation follows the measured position: x_m, v_m, x_t, v_t per metre of prediction error.
@@ -25,6 +32,12 @@ using FollowGain = Eigen::Vector4d;
 /// Steady-state Kalman gain of the axis without friction, for a disturbance that makes the prediction follow
 /// the measurement at about `bandwidth_Hz`.
 FollowGain MakeFollowGain(const TableAxis& axis, double period_s, double bandwidth_Hz);
+/// Of the torque that a drive reports, the smallest that was seen; 0 without reports.
+double ReportStep_N(const Measured& data);
+/// The gain for a record: of 60 Hz where the torque is known, times `factor`. What a drive reports of its own
+/// loop is rounded, and in error where nobody knows: there the position is believed as far as that asks for,
+/// or an axis that sticks would seem to give less to a force than it does.
+FollowGain FollowGainFor(const TableAxis& axis, const Measured& data, double factor = 1.0);
 
 /// The axis's own motion one period after the other, led by the torque that was sent and corrected by the
 /// position that was measured. The screw and viscous friction are stepped exactly (matrix exponential), the
@@ -34,6 +47,9 @@ class Simulation {
   static constexpr int kSubSteps = 5;
 
   Simulation(const TableAxis& axis, const Measured& data, const FollowGain& gain);
+  ~Simulation();
+  Simulation(const Simulation&) = delete;
+  Simulation& operator=(const Simulation&) = delete;
 
   /// Goes on to the next grid point; returns measured minus predicted position, NaN where there is nothing
   /// to compare (no sample, or the first ones after a gap).
@@ -69,6 +85,7 @@ class Simulation {
   [[nodiscard]] double BristleDamping_Ns_m(const Rubbing& r, double velocity_m_s) const;
   void Prepare();
   void PrepareCogging();
+  void AddOwnForce();
   void Swing(double half_step_s);
   void Correct(double error_m);
 
@@ -98,7 +115,8 @@ class Simulation {
   int absent_ = 0;                                 ///< grid points without a sample, up to here
   double factor_plus_ = 1.0, factor_minus_ = 1.0;  ///< of the levels, at this period's place
   bool cogs_ = false;
-  std::vector<double> cogging_N_;  ///< over the pieces of this period
+  std::unique_ptr<OwnForce> own_;  ///< of a drive that closes its own loop
+  std::vector<double> direct_N_;   ///< what acts on the motor at once, over the pieces of this period
   std::size_t whole_delay_ = 0;
 };
 

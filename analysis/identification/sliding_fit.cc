@@ -43,6 +43,25 @@ Eigen::MatrixXd Regressors(const std::vector<const Instant*>& rows, double vs, d
   return x;
 }
 
+/// Levels that oppose motion, from the coefficients of a regression. Sliding does not tell levels that differ
+/// between the directions from a constant force; but where the force does not oppose one direction at all,
+/// something pulls (a weight): then the difference is taken for that.
+bool TakeLevels(const Eigen::VectorXd& b, SlidingFit& fit) {
+  const double least = std::min({b(2), b(3), b(2) + b(4), b(3) + b(5)});
+  const double offset_N = least > 0.0 ? 0.0 : 0.5 * (b(3) - b(2));
+  const double plus_N = b(2) + offset_N, minus_N = b(3) - offset_N;
+  if (!(std::min({b(0), plus_N, minus_N, plus_N + b(4), minus_N + b(5)}) > 0.0)) return false;
+  fit.found = true;
+  fit.offset_N = offset_N;
+  fit.mass_kg = b(0);
+  fit.sigma2_Ns_m = std::max(0.0, b(1));
+  fit.Fc_plus_N = plus_N;
+  fit.Fc_minus_N = minus_N;
+  fit.Fs_plus_N = plus_N + std::max(0.0, b(4));
+  fit.Fs_minus_N = minus_N + std::max(0.0, b(5));
+  return true;
+}
+
 }  // namespace
 
 bool Slides(const Instant& i) {
@@ -78,16 +97,8 @@ SlidingFit FitSliding(const std::vector<Instant>& instants, double exponent, dou
     normal.diagonal().array() += 1e-9 * normal.diagonal().maxCoeff();
     const Eigen::VectorXd b = normal.ldlt().solve(x.transpose() * force);
     const double rest = (force - x * b).squaredNorm();
-    const bool sensible = b(0) > 0.0 && b(2) > 0.0 && b(3) > 0.0 && b(2) + b(4) > 0.0 && b(3) + b(5) > 0.0;
-    if (!sensible || rest >= best) continue;
+    if (rest >= best || !TakeLevels(b, fit)) continue;
     best = rest;
-    fit.found = true;
-    fit.mass_kg = b(0);
-    fit.sigma2_Ns_m = std::max(0.0, b(1));
-    fit.Fc_plus_N = b(2);
-    fit.Fc_minus_N = b(3);
-    fit.Fs_plus_N = b(2) + std::max(0.0, b(4));
-    fit.Fs_minus_N = b(3) + std::max(0.0, b(5));
     fit.vs_m_s = vs;
     fit.residual_rms_N = std::sqrt(rest / static_cast<double>(rows.size()));
   }

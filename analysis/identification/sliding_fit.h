@@ -16,6 +16,7 @@ struct SlidingFit {
   double mass_kg = 0.0;
   double Fc_plus_N = 0.0, Fc_minus_N = 0.0;
   double Fs_plus_N = 0.0, Fs_minus_N = 0.0;
+  double offset_N = 0.0;  ///< constant force; only where friction alone would not oppose motion
   double vs_m_s = 0.0;
   double sigma2_Ns_m = 0.0;
   double residual_rms_N = 0.0;

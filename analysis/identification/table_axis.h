@@ -35,6 +35,16 @@ struct SideMass {
   double frequency_Hz = 0.0, damping_ratio = 0.02;
 };
 
+/// What the loop that a drive closes answers to a step of the offset that it is sent, within the same period:
+/// a ramp against it, since the motor gathers speed, and what is not so simple.
+struct DriveAnswer {
+  double gain = 0.0;  ///< N of the ramp after a period for each N of the step: velocity gain times period
+  double delay_s = 0.2e-3;
+  /// What is quicker: of the period's mean for each N of the step at the end of the period, at its beginning,
+  /// and of those before.
+  std::array<double, 4> step{};
+};
+
 /// An axis as identification sees it: the axis model of diagnosis with the table's travel as its coordinate
 /// (q in m, u in N, inertias in kg; the motor is R theta with the mass Jm / R^2), and what only
 /// identification asks for. One mass (not two_inertia): motor_inertia is everything.
@@ -44,6 +54,7 @@ struct TableAxis : diagnosis::AxisModel {
   LevelVariation variation;
   /// Share of all friction that acts on the motor; where friction_on_load.
   double motor_friction_share = 0.0;
+  DriveAnswer answer;
   std::array<MotorWave, kMostWaves> cogging{};
   SideMass side;
 

@@ -18,6 +18,9 @@ constexpr double kFarAboveNoise = 40.0;
 /// Largest over smallest accelerance of a shaken axis that counts as rigid.
 constexpr double kLeastDip = 2.5;
 constexpr double kSeen = 0.6;  ///< coherence
+/// Standard deviation of the stiffness; a catalogue has 0.4. What feeds the wind-up forward by a stiffness
+/// that is less sure is no better with it.
+constexpr double kLeastKnownStiffness = 0.15;
 
 std::string Numbers(const Identification& id) {
   for (const FittedParameter& p : id.fit.parameters) {
@@ -39,6 +42,20 @@ std::string Holes(const Identification& id) {
       "%.1f %% of the cycles are missing: give this computer less to do, or take the log of "
       "contourd --log and contour identify",
       100.0 * id.missing_share);
+}
+
+/// A screw that slow and quick forces do not agree about, or that the drive's reports hide.
+std::string UnknownScrew(const Identification& id) {
+  if (id.shaken.verdict != ShakenScrew::Verdict::kFound) return {};
+  const double sigma = Sigma(id.fit.parameters, "screw_stiffness_N_um");
+  if (!(sigma > kLeastKnownStiffness)) return {};
+  return FormatText(
+      "the screw's stiffness came out with a standard deviation of %.0f %%: what shaking shows of it does "
+      "not "
+      "fit together; something besides the screw swings (contour diagnose names it), or the torque is not "
+      "all "
+      "that acts",
+      100.0 * sigma);
 }
 
 std::string Misfit(const Identification& id) {
@@ -83,7 +100,7 @@ std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoin
 }
 
 std::string WhyUnusable(const Identification& id) {
-  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), Misfit(id)})
+  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), Misfit(id)})
     if (!why.empty()) return why;
   if (id.fit.unsettled > kMostUnsettled)
     return FormatText(

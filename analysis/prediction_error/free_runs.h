@@ -7,7 +7,8 @@
 
 namespace contour::diagnosis {
 
-/// Length of free runs.
+/// Length of free runs, as reports state them: some strokes and reversals. In much longer ones the smallest
+/// error of force adds up.
 inline constexpr double kFreeRun_s = 1.0;
 
 /// Of a log, cut as for fitted halves.

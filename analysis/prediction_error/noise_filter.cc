@@ -186,6 +186,14 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
   std::copy(taps.begin(), taps.end(), taps_.begin());
 }
 
+double NoiseFilter::LogVariances(const std::vector<std::uint8_t>& counted) const {
+  const auto columns = static_cast<std::size_t>(linear_->states + 1);
+  double sum = 0.0;
+  for (std::size_t k = 1; k < counted.size(); ++k)
+    if (counted[k] != 0) sum -= 2.0 * std::log(static_cast<double>(gain_[k * columns - 1]) * taps_[0]);
+  return sum;
+}
+
 void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* const> out,
                         const std::vector<std::uint8_t>& counted, const double* weight,
                         std::span<const Segment> segments) const {

@@ -42,6 +42,9 @@ class NoiseFilter {
   Gradient Back(const std::vector<double>& white, const std::vector<std::uint8_t>& counted,
                 const double* weight) const;
 
+  /// Sum over the rows that count of the logarithm of the variance that an innovation is divided by.
+  double LogVariances(const std::vector<std::uint8_t>& counted) const;
+
   bool learnt() const { return linear_ != nullptr; }
   const LinearModel& linear() const { return *linear_; }
   double torque_noise() const { return torque_noise_; }

@@ -310,6 +310,16 @@ void Problem::LearnNoise(const Point& point) {
   WeighExcerpt();
 }
 
+double Problem::LogNoise() const {
+  const std::size_t n = rows();
+  double sum = noise.LogVariances(counted);
+  for (std::size_t k = 0; k < data_size(); ++k) {
+    if (root_weight[k] <= 0.0) continue;
+    sum -= 2.0 * std::log(root_weight[k] * (k < n ? 1.0 : scale_noise.taps()[0]));
+  }
+  return sum;
+}
+
 void Problem::WeighExcerpt() {
   const std::size_t m = excerpt.row.size(), n = rows();
   excerpt_weight_.assign(data_size(Extent::kExcerpt), 0.0);

@@ -79,6 +79,9 @@ class Problem {
                                                                  std::span<const SharedEffect> effects) const;
   /// Ratio of the noises of torque and reading, the colour that is left, then the level from place to place.
   void LearnNoise(const Point& point);
+  /// What the noise learnt adds to |r|^2 in -2 log likelihood, up to a constant: points whose noise was
+  /// learnt at each of them compare by the sum of both.
+  [[nodiscard]] double LogNoise() const;
   /// Traces the point and renews what regressors are made of.
   void LearnSignals(const Point& point);
   void LearnOutliers(const Point& point);

@@ -25,7 +25,10 @@ struct AxisLog {
   /// All vectors have one element per grid point from the first to the last row: a missing row has
   /// present[k] == 0 and the last known command (a drive goes on with it), position NaN.
   std::vector<std::uint8_t> present;
-  std::vector<double> command;             ///< u, as commanded and quantised
+  std::vector<double> command;  ///< u, as commanded and quantised
+  /// Where the drive closes its own loop, and `command` is made of these: u that was sent besides, timed as a
+  /// command, and u that the drive said it gave at t_k. Empty elsewhere.
+  std::vector<double> offset, reported;
   std::vector<double> position;            ///< q, as measured and quantised; NaN where missing
   std::vector<double> table_position_m;    ///< linear scale; empty without one
   std::vector<double> temperature_degC;    ///< empty without one

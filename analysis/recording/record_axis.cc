@@ -62,7 +62,11 @@ double AxisRecorder::seconds() const {
 diagnosis::AxisLog AxisRecorder::Take() {
   log_.rows = static_cast<std::size_t>(std::count(log_.present.begin(), log_.present.end(), 1));
   log_.missing = log_.size() - log_.rows;
-  if (torque_.reported) CommandFromReports();
+  if (torque_.reported) {
+    log_.offset = log_.command;
+    log_.reported = reported_Nm_;
+    CommandFromReports();
+  }
   reported_Nm_.clear();
   const auto& table = log_.table_position_m;
   if (std::all_of(table.begin(), table.end(), [](double x) { return std::isnan(x); }))

@@ -64,6 +64,17 @@ std::string WhyUnusable(const Problem& problem, const Fit& fit, const StatedAxis
   return {};
 }
 
+/// Friction and a constant force act alike on an axis that goes in one direction; of the other such a log
+/// says nothing.
+void SayOneDirection(const RoughFit& rough, FittedNumbers& out) {
+  if (!rough.one_direction) return;
+  for (const char* level : {"Fc", "Fs"}) out.axis.sigma[level] = kFree;
+  out.notes.emplace_back(
+      "The log moves in one direction only: its friction and a constant force cannot be told apart. The "
+      "Coulomb level is the sum of both, and that of the other direction is taken to be the same; record "
+      "strokes in both.");
+}
+
 }  // namespace
 
 FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
@@ -84,6 +95,7 @@ FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
   }
   out.axis = FittedAxis(problem, fit, FitHalves(problem, fit));
   out.unusable = WhyUnusable(problem, fit, out.axis, rough);
+  SayOneDirection(rough, out);
   return out;
 }
 

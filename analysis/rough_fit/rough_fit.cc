@@ -80,6 +80,7 @@ void Solve(const Motion& m, double independent_rows, RoughFit& out) {
     return;
   }
   const bool up = normal(1, 1) > 0.0, down = normal(2, 2) > 0.0;
+  out.one_direction = !(up && down);
   for (int i = 1; i < 3; ++i)
     if (normal(i, i) == 0.0) normal(i, i) = 1.0;
   // In units in which every column has length 1.

@@ -14,10 +14,11 @@ struct RoughFit {
   double inertia = 0.0;
   double inertia_sigma_rel = 0.0;
   double coulomb = 0.0, viscous = 0.0;
-  double unexplained = 1.0;  ///< share of the command's square
-  double max_speed = 0.0;    ///< of q
-  double travel = 0.0;       ///< between the extremes of q
-  double typical = 0.0;      ///< root mean square of the command
+  double unexplained = 1.0;    ///< share of the command's square
+  bool one_direction = false;  ///< it never slides in the other
+  double max_speed = 0.0;      ///< of q
+  double travel = 0.0;         ///< between the extremes of q
+  double typical = 0.0;        ///< root mean square of the command
 };
 
 /// In the units of the log's command.

@@ -176,7 +176,9 @@ json TimeLeft_s(const MachineStatus& s) {
   const bool goes = s.record.state == MachineState::kRunning && !s.pace.pause_wanted;
   if (!goes || s.pace.feed_percent <= 0.0 || s.program_duration_s <= 0.0) return nullptr;
   const double feed = 0.01 * (s.pace.feed_fixed ? std::min(100.0, s.pace.feed_percent) : s.pace.feed_percent);
-  return std::max(0.0, s.program_duration_s - s.record.path_time_s) / feed;
+  const double left_s = std::max(0.0, s.program_duration_s - s.record.path_time_s);
+  // Above the programmed feed the axes may bind.
+  return feed > 1.0 ? left_s * std::clamp(s.program_time_share, 1.0 / feed, 1.0) : left_s / feed;
 }
 
 json Halt(const std::optional<HaltStatus>& halt) {

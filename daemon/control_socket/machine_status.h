@@ -72,6 +72,7 @@ struct MachineStatus {
   std::string reason_text;          ///< sentence on record.reason; empty when there is none
   std::string program_name;         ///< of record.program_id; may be empty
   double program_duration_s = 0.0;  ///< 0 unknown
+  double program_time_share = 1.0;  ///< of what is left, at a feed above 100 %
   bool program_duration_estimated = false;  ///< it is not planned to its end yet
   double program_ran_s = 0.0;               ///< so far, pauses among it
   double contour_error_peak_m = 0.0;        ///< of this program so far, at the encoders

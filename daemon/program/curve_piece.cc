@@ -201,6 +201,16 @@ CurvePiece HelixPiece(const PerAxis<double>& from_m, const PerAxis<double>& to_m
   return piece;
 }
 
+CurvePiece PartOfArc(const CurvePiece& arc, double from_m, double to_m) {
+  CurvePiece part = arc;
+  const double rad_m = arc.sweep_rad / arc.length_m;
+  part.start_m = PointAt(arc, from_m).position_m;
+  part.length_m = to_m - from_m;
+  part.start_rad = arc.start_rad + from_m * rad_m;
+  part.sweep_rad = part.length_m * rad_m;
+  return part;
+}
+
 CurvePiece SinePiece(const PerAxis<double>& middle_m, std::size_t axis, double amplitude_m, int cycles) {
   CurvePiece piece = PointPiece(middle_m);
   piece.kind = CurvePiece::Kind::kSine;

@@ -38,6 +38,8 @@ CurvePiece ArcPiece(const PerAxis<double>& from_m, std::array<std::size_t, 2> pl
 /// ends.
 CurvePiece HelixPiece(const PerAxis<double>& from_m, const PerAxis<double>& to_m,
                       std::array<std::size_t, 2> plane, std::array<double, 2> centre_m, double sweep_rad);
+/// What lies between two s of an arc or a helix.
+CurvePiece PartOfArc(const CurvePiece& arc, double from_m, double to_m);
 /// p = start + amplitude sin(s / amplitude) on one axis.
 CurvePiece SinePiece(const PerAxis<double>& middle_m, std::size_t axis, double amplitude_m, int cycles);
 

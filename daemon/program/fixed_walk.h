@@ -22,6 +22,7 @@ class FixedWalk : public PathWalk {
   [[nodiscard]] std::uint32_t Halts(double time_s) override { return plan_->Halts(time_s); }
   [[nodiscard]] double ProgramTime_s(double time_s) override { return time_s; }
   [[nodiscard]] double duration_s() override { return plan_->duration_s(); }
+  [[nodiscard]] double TimeShare(double /*time_s*/) override { return 1.0; }
   [[nodiscard]] Estimate ProgramDuration() override { return {plan_->duration_s(), true}; }
   [[nodiscard]] double planned_s() override { return std::numeric_limits<double>::infinity(); }
   void PlanStep() override {}

@@ -7,7 +7,7 @@
 namespace contour {
 
 GcodeMoves ParseGcode(std::string_view text, const std::string& name, const GcodeSettings& settings) {
-  MoveList list(name, settings.start_m);
+  MoveList list(name, settings);
   ProgramRun(text, name, settings, [&](const CanonicalMove& move) { list.Add(move); }).Run();
   return list.Finish();
 }

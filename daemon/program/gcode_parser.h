@@ -16,6 +16,9 @@ struct GcodeSettings {
   std::optional<std::array<double, 6>> zero_m;
   /// Where the machine stands when the program starts, from program zero.
   std::array<double, 6> start_m{};
+  /// G64 Q joins no move of this line or a later one with one of the lines before.
+  int begins_at_line = 0;
+  bool joins_lines = true;  ///< false: G64 Q joins nothing
 };
 
 /// Reads RS-274 G-code as docs/programs.md lists it. `name` stands for the file in messages.

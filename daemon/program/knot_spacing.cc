@@ -23,6 +23,8 @@ constexpr double kArcShare = 0.1;
 constexpr double kArcTolerance = 0.05;
 // A change of direction that comes from rounding. Larger ones count, as many of them may follow each other.
 constexpr double kRounding_rad = 1e-8;
+// Knots that are nearer to each other are the same.
+constexpr double kSameKnot_m = 1e-12;
 // How fast spacing may change along the path.
 constexpr double kSlope = 0.5;
 
@@ -53,12 +55,23 @@ struct Ramp {
 
 }  // namespace
 
-KnotSpacing::KnotSpacing(const ProgrammedPath& path) : length_m_(path.length_m()) {
+KnotSpacing::KnotSpacing(const ProgrammedPath& path, const std::vector<double>& fixed)
+    : fixed_(fixed), to_m_(path.to_m()), length_m_(path.to_m() - path.from_m()) {
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (path.move(i).curve.radius_m > 0.0) AddArc(path, i);
     if (i + 1 < path.size()) AddJunction(path, i);
   }
+  GoOnFromFixed();
   LimitSlope();
+}
+
+// Spacing goes on from what it is already, unless a lone corner has ended there.
+void KnotSpacing::GoOnFromFixed() {
+  const double at_m = fixed_.back(), last_m = at_m - fixed_[fixed_.size() - 2];
+  if (last_m == 0.0) return;
+  for (const LoneCorner& c : corners_)
+    if (std::abs(c.at_m + c.outer_m - at_m) <= kSameKnot_m) return;
+  controls_.insert(controls_.begin(), {at_m, last_m});
 }
 
 void KnotSpacing::AddJunction(const ProgrammedPath& path, std::size_t before) {
@@ -76,7 +89,7 @@ void KnotSpacing::AddJunction(const ProgrammedPath& path, std::size_t before) {
   if (AddLone(path, before, change)) return;
   double spacing = turn > 0.0 ? kCornerWidth * tolerance / turn : length_m_;
   if (bend > 0.0) spacing = std::min(spacing, std::sqrt(kBendWidth * tolerance / bend));
-  controls_.push_back({at, std::min(spacing, length_m_)});
+  AddControl(at, std::min(spacing, length_m_));
 }
 
 bool KnotSpacing::AddLone(const ProgrammedPath& path, std::size_t before, const PerAxis<double>& change) {
@@ -105,8 +118,7 @@ void KnotSpacing::AddArc(const ProgrammedPath& path, std::size_t move) {
   const double accurate = std::pow(100.0 * kArcTolerance * m.tolerance_m * radius * radius * radius, 0.25);
   const double spacing = std::min(kArcShare * radius, accurate);
   const int steps = 1 + static_cast<int>(2.0 * m.curve.length_m / spacing);
-  for (int k = 0; k <= steps; ++k)
-    controls_.push_back({path.begin_m(move) + m.curve.length_m * k / steps, spacing});
+  for (int k = 0; k <= steps; ++k) AddControl(path.begin_m(move) + m.curve.length_m * k / steps, spacing);
 }
 
 void KnotSpacing::LimitSlope() {
@@ -181,18 +193,19 @@ void KnotSpacing::Fill(double from_m, double to_m, std::size_t& control, std::ve
 }
 
 std::vector<double> KnotSpacing::Knots() const {
-  std::vector<double> knots(4, 0.0);
+  std::vector<double> knots = fixed_;
   std::size_t control = 0;
   const auto add = [&](double knot) {
-    if (knot > knots.back() + 1e-12) knots.push_back(knot);
+    if (knot > knots.back() + kSameKnot_m) knots.push_back(knot);
   };
   for (const LoneCorner& c : corners_) {
+    if (c.at_m <= fixed_.back()) continue;
     Fill(knots.back(), c.at_m - c.outer_m, control, knots);
     for (const double side_m : {-c.outer_m, -c.inner_m, 0.0, c.inner_m, c.outer_m}) add(c.at_m + side_m);
   }
-  Fill(knots.back(), length_m_, control, knots);
-  while (knots.size() > 4 && knots.back() > length_m_ * (1.0 - 1e-12)) knots.pop_back();
-  knots.insert(knots.end(), 4, length_m_);
+  Fill(knots.back(), to_m_, control, knots);
+  while (knots.size() > fixed_.size() && knots.back() > to_m_ - 1e-12 * length_m_) knots.pop_back();
+  knots.insert(knots.end(), 4, to_m_);
   return knots;
 }
 

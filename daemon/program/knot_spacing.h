@@ -23,11 +23,12 @@ struct LoneCorner {
 /// corrects.
 class KnotSpacing {
  public:
-  explicit KnotSpacing(const ProgrammedPath& path);
+  /// `fixed`: knots that are there already.
+  KnotSpacing(const ProgrammedPath& path, const std::vector<double>& fixed);
 
   [[nodiscard]] const std::vector<LoneCorner>& corners() const { return corners_; }
 
-  /// Knots from start to end, lone corners in the middle of five.
+  /// Those that are fixed and more of them to the end, lone corners in the middle of five.
   [[nodiscard]] std::vector<double> Knots() const;
 
   /// Largest change of the unit tangent at one of the junctions before..end of moves.
@@ -44,11 +45,17 @@ class KnotSpacing {
     double factor = 1.0;
   };
   [[nodiscard]] bool AddLone(const ProgrammedPath& path, std::size_t before, const PerAxis<double>& change);
+  void GoOnFromFixed();
+  void AddControl(double at_m, double spacing_m) {
+    if (at_m > fixed_.back()) controls_.push_back({at_m, spacing_m});
+  }
   void AddJunction(const ProgrammedPath& path, std::size_t before);
   void AddArc(const ProgrammedPath& path, std::size_t move);
   void LimitSlope();
   void Fill(double from_m, double to_m, std::size_t& control, std::vector<double>& knots) const;
 
+  const std::vector<double>& fixed_;
+  double to_m_;
   double length_m_;
   std::vector<double> turns_;  ///< change of the unit tangent after each move
   std::vector<LoneCorner> corners_;

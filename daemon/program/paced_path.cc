@@ -10,15 +10,12 @@
 namespace contour {
 namespace {
 
-// A program that ends on a grid point but for rounding does not get another point.
-constexpr double kRounding = 1e-6;
+constexpr double kRounding = PathGenerator::kRounding;
 /// Laws that are older than this are of no use to anybody.
-constexpr std::uint64_t kRemembered = 4096;
+constexpr double kRemembered_s = 4.0;
 constexpr int kHalvings = 40;
 /// Of the pace that is wanted.
 constexpr double kSlowest = 1e-3;
-/// Of the programmed feed; the largest that operators may ask for.
-constexpr double kLargestScale = 2.0;
 
 std::unique_ptr<PathWalk> WalkOf(const PathGenerator& generator) {
   std::unique_ptr<PathWalk> walk = generator.plan()->Walk();
@@ -26,12 +23,14 @@ std::unique_ptr<PathWalk> WalkOf(const PathGenerator& generator) {
   return walk;
 }
 
-/// A way to rest is looked for once in so many points, and begins so many points later.
-constexpr std::uint64_t kStride = 32;
+/// A way to rest is looked for once in so long, and begins so long later.
+constexpr double kStride_s = 0.032;
+/// So much more is planned than a motion at the axes' largest velocities needs to come to rest.
+constexpr double kBesides_s = 4.0 * kStride_s;
 /// Ramps are longer than the shortest that the limits allow at constant speed, where the path bends.
 constexpr double kLongerRamp = 4.0;
-/// What is not needed any more is given up in lots of so many points; differences look a few points back.
-constexpr std::uint64_t kForgetAtOnce = 256;
+/// What is not needed any more is given up in lots of so long; differences look a few points back.
+constexpr double kForgetAtOnce_s = 0.256;
 constexpr std::uint64_t kLooksBack = 64;
 /// Periods of plan that are left where it rests.
 constexpr double kRoom = 4.0;
@@ -47,7 +46,7 @@ double EnoughAhead(const PerAxis<PlanLimits>& limits, double period_s) {
     ramp_s = std::max(ramp_s, 1.5 * l.velocity_m_s / l.acceleration_m_s2);
     if (l.jerk_m_s3 > 0.0) ramp_s = std::max(ramp_s, std::sqrt(6.0 * l.velocity_m_s / l.jerk_m_s3));
   }
-  return kLongerRamp * ramp_s / period_s + 4.0 * static_cast<double>(kStride);
+  return (kLongerRamp * ramp_s + kBesides_s) / period_s;
 }
 
 }  // namespace
@@ -62,7 +61,7 @@ PacedPath::PacedPath(std::unique_ptr<PathGenerator> generator, const Options& op
       enough_(EnoughAhead(generator_->limits(), generator_->period_s())),
       law_(std::min(options.feed, 1.0)) {
   if (feed_ > 1.0 && feed_may_exceed()) {
-    scale_ = std::min(feed_, kLargestScale);
+    scale_ = std::min(feed_, PathWalk::kLargestScale);
     walk_->ChangeFeed(0.0, scale_);
   }
   // A program begins at rest, so there is a way to the end of its first line.
@@ -154,7 +153,7 @@ bool PacedPath::MayGoOn() {
   }
   const bool rests = law_.rate() == 0.0 && law_.At(law_.settled()).time + kRoom < planned;
   if (waits_for_plan_ || rests || (stop_ && next_ < stop_->begin)) return true;
-  const std::uint64_t later = next_ + kStride;
+  const std::uint64_t later = next_ + generator_->PeriodsIn(kStride_s);
   if (const auto law = Ramp().From(law_, static_cast<double>(later), 0.0, planned)) {
     stop_ = Stop{later, *law};
     return true;
@@ -178,8 +177,13 @@ void PacedPath::GoOnWithPlan() {
   waits_for_plan_ = false;
 }
 
+double PacedPath::TimeShare() const {
+  if (scale_ <= 1.0 || ended_) return 1.0;
+  return walk_->TimeShare(law_.At(static_cast<double>(next_)).time * generator_->period_s());
+}
+
 void PacedPath::ForgetBefore(std::uint64_t index) {
-  if (index < forgotten_ + kForgetAtOnce) return;
+  if (index < forgotten_ + generator_->PeriodsIn(kForgetAtOnce_s)) return;
   forgotten_ = index;
   const std::uint64_t needed = index - std::min(index, kLooksBack);
   const double time_s = law_.At(static_cast<double>(needed)).time * generator_->period_s();
@@ -253,7 +257,7 @@ void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end
   feed_ = feed;
   stop_.reset();
   const std::uint64_t oldest = std::min(begin, end);
-  law_.ForgetBefore(static_cast<double>(oldest > kRemembered ? oldest - kRemembered : 0));
+  law_.ForgetBefore(static_cast<double>(oldest - std::min(oldest, generator_->PeriodsIn(kRemembered_s))));
   ++issued_;
   pending_ = true;
   pending_from_ = begin;
@@ -264,7 +268,7 @@ void PacedPath::Adopt(const PaceLaw& law, std::uint64_t begin, std::uint64_t end
 // Below the programmed feed by the pace, above it by the walk, whose feed is changed at the pace 1 or at rest
 // only: one of the two changes at a time.
 PacedPath::Step PacedPath::StepTowards(double feed, double begin, double from_rate) const {
-  const double scale = std::clamp(feed, 1.0, kLargestScale);
+  const double scale = std::clamp(feed, 1.0, PathWalk::kLargestScale);
   if (feed <= 0.0 || !feed_may_exceed() || scale == scale_) return {std::min(feed, 1.0), scale_, false, true};
   const bool steady = law_.AimAt(begin).reached;
   if (steady && from_rate == 0.0) return {std::min(feed, 1.0), scale, true, true};

@@ -77,6 +77,10 @@ class PacedPath {
   [[nodiscard]] bool waits_for_plan() const { return waits_for_plan_; }
   [[nodiscard]] PathWalk::Estimate ProgramDuration() { return walk_->ProgramDuration(); }
 
+  /// What is left takes this share of its time at the programmed feed, at the largest pace of the feed that
+  /// it has been told to go to.
+  [[nodiscard]] double TimeShare() const;
+
   /// The newest halt that points have been handed out for; number 0: there was none.
   [[nodiscard]] const Halt& halt() const { return halt_; }
   [[nodiscard]] bool pending() const { return pending_; }

@@ -3,12 +3,6 @@
 #include <cmath>
 
 namespace contour {
-namespace {
-
-// A duration that is a whole number of periods but for rounding does not get another point.
-constexpr double kRounding = 1e-6;
-
-}  // namespace
 
 PathGenerator::PathGenerator(const Program& program, const PerAxis<double>& start_m,
                              const PerAxis<PlanLimits>& limits, double period_s, std::uint32_t program_id)
@@ -18,9 +12,11 @@ PathGenerator::PathGenerator(std::shared_ptr<const MotionPlan> plan, const PerAx
                              double period_s, std::uint32_t program_id)
     : plan_(std::move(plan)), limits_(limits), period_s_(period_s), program_id_(program_id) {}
 
-std::uint64_t PathGenerator::points() const {
-  return static_cast<std::uint64_t>(std::ceil(plan_->duration_s() / period_s_ - kRounding)) + 1;
+std::uint64_t PathGenerator::PeriodsIn(double time_s) const {
+  return static_cast<std::uint64_t>(std::ceil(time_s / period_s_ - kRounding));
 }
+
+std::uint64_t PathGenerator::points() const { return PeriodsIn(plan_->duration_s()) + 1; }
 
 bool PathGenerator::Next(PathPoint& point) {
   if (done_) return false;

@@ -15,6 +15,9 @@ namespace contour {
 /// once. Not for the real-time thread.
 class PathGenerator {
  public:
+  /// Of a period. What is a whole number of them but for that does not get another point.
+  static constexpr double kRounding = 1e-6;
+
   /// Throws ProgramError when the program does not fit the machine (see PlanMotion).
   PathGenerator(const Program& program, const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits,
                 double period_s, std::uint32_t program_id);
@@ -33,6 +36,8 @@ class PathGenerator {
   [[nodiscard]] double period_s() const { return period_s_; }
   [[nodiscard]] std::uint32_t program_id() const { return program_id_; }
   [[nodiscard]] const std::shared_ptr<const PathOffsets>& offsets() const { return offsets_; }
+  /// So many that a time is not longer than they are.
+  [[nodiscard]] std::uint64_t PeriodsIn(double time_s) const;
   /// Altogether; plans all of the program.
   [[nodiscard]] std::uint64_t points() const;
   [[nodiscard]] std::uint64_t points_done() const { return next_; }

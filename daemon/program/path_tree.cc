@@ -7,50 +7,72 @@
 namespace contour {
 namespace {
 
-constexpr std::size_t kLeaf = 4;    // moves in a box of the lowest level
+constexpr std::size_t kLeaf = 8;    // moves in a box of the lowest level
 constexpr std::size_t kBranch = 4;  // boxes in a box
+
+float Below(double x) {
+  return std::nextafter(static_cast<float>(x), -std::numeric_limits<float>::infinity());
+}
+float Above(double x) {
+  return std::nextafter(static_cast<float>(x), std::numeric_limits<float>::infinity());
+}
 
 }  // namespace
 
-PathTree::PathTree(const std::vector<ProgrammedMove>& moves) : moves_(moves), levels_(1) {
+PathTree::PathTree(const MoveStore& moves) : moves_(moves), axes_(moves.start_m().size()), levels_(1) {
   for (std::size_t i = 0; i < moves.size(); ++i) {
-    const Extent box = ExtentOf(moves[i].curve);
-    if (i % kLeaf == 0) {
-      levels_[0].push_back(box);
-    } else {
-      Enlarge(levels_[0].back(), box);
+    const Extent box = ExtentOf(moves.Curve(i));
+    i % kLeaf == 0 ? Append(box, levels_[0]) : EnlargeLast(box, levels_[0]);
+  }
+  while (Count(levels_.size() - 1) > 1) {
+    const std::size_t below = levels_.size() - 1;
+    levels_.emplace_back();
+    for (std::size_t i = 0; i < Count(below); ++i) {
+      const Extent box = Box(below, i);
+      i % kBranch == 0 ? Append(box, levels_.back()) : EnlargeLast(box, levels_.back());
     }
   }
-  while (levels_.back().size() > 1) {
-    std::vector<Extent> above;
-    const std::vector<Extent>& below = levels_.back();
-    for (std::size_t i = 0; i < below.size(); ++i) {
-      if (i % kBranch == 0) {
-        above.push_back(below[i]);
-      } else {
-        Enlarge(above.back(), below[i]);
-      }
-    }
-    levels_.push_back(std::move(above));
+}
+
+void PathTree::Append(const Extent& box, Boxes& boxes) const {
+  for (std::size_t k = 0; k < axes_; ++k) boxes.push_back(Below(box.min_m[k]));
+  for (std::size_t k = 0; k < axes_; ++k) boxes.push_back(Above(box.max_m[k]));
+}
+
+void PathTree::EnlargeLast(const Extent& box, Boxes& boxes) const {
+  float* const least = &boxes[boxes.size() - 2 * axes_];
+  for (std::size_t k = 0; k < axes_; ++k) {
+    least[k] = std::min(least[k], Below(box.min_m[k]));
+    least[axes_ + k] = std::max(least[axes_ + k], Above(box.max_m[k]));
   }
+}
+
+Extent PathTree::Box(std::size_t level, std::size_t index) const {
+  const float* const least = &levels_[level][index * 2 * axes_];
+  Extent box;
+  for (std::size_t k = 0; k < axes_; ++k) {
+    box.min_m.push_back(static_cast<double>(least[k]));
+    box.max_m.push_back(static_cast<double>(least[axes_ + k]));
+  }
+  return box;
 }
 
 void PathTree::Search(std::size_t level, std::size_t index, const PerAxis<double>& point_m,
                       double& nearest_m) const {
-  if (DistanceToBox_m(levels_[level][index], point_m) >= nearest_m) return;
+  if (DistanceToBox_m(Box(level, index), point_m) >= nearest_m) return;
   if (level == 0) {
     const std::size_t end = std::min(moves_.size(), (index + 1) * kLeaf);
     for (std::size_t i = index * kLeaf; i < end; ++i)
-      nearest_m = std::min(nearest_m, contour::Distance_m(moves_[i].curve, point_m));
+      nearest_m = std::min(nearest_m, contour::Distance_m(moves_.Curve(i), point_m));
     return;
   }
   // The nearest box first: the others are then mostly out of the question.
   const std::size_t begin = index * kBranch;
-  const std::size_t end = std::min(levels_[level - 1].size(), begin + kBranch);
+  const std::size_t end = std::min(Count(level - 1), begin + kBranch);
   std::size_t first = begin;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = begin; i < end; ++i) {
-    const double distance = DistanceToBox_m(levels_[level - 1][i], point_m);
+    const double distance = DistanceToBox_m(Box(level - 1, i), point_m);
     if (distance < least) {
       least = distance;
       first = i;

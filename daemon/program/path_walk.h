@@ -24,6 +24,9 @@ namespace contour {
 /// back. A change that may have to be withdrawn is made on a Clone(), which gives the same points until then.
 class PathWalk {
  public:
+  /// Of the programmed feed: as far as feed overrides of machine tools go.
+  static constexpr double kLargestScale = 2.0;
+
   virtual ~PathWalk() = default;
 
   /// Reference at a time since the start, held at the end, or where it rests.
@@ -32,9 +35,10 @@ class PathWalk {
   /// Is the end of the program later than this? Never false while it rests on the way.
   [[nodiscard]] virtual bool GoesOnAfter(double time_s) = 0;
 
-  /// Feed times `scale` (0 to 2) as soon after `time_s` as the axes' limits allow; 0: to rest on the path, as
-  /// soon as they allow. Rapids are scaled down, but never up. Returns the time up to which nothing has
-  /// changed, at most 3 ms after `time_s`. A new scale above 0 counts at once, also while it comes to rest.
+  /// Feed times `scale` (0 to kLargestScale) as soon after `time_s` as the axes' limits allow; 0: to rest on
+  /// the path, as soon as they allow. Rapids are scaled down, but never up. Returns the time up to which
+  /// nothing has changed, at most 3 ms after `time_s`. A new scale above 0 counts at once, also while it
+  /// comes to rest.
   virtual double ChangeFeed(double time_s, double scale) = 0;
 
   /// From when on it rests on the way, by a ChangeFeed to 0; infinite: it does not.
@@ -60,6 +64,10 @@ class PathWalk {
     bool exact = false;
   };
   [[nodiscard]] virtual Estimate ProgramDuration() = 0;
+
+  /// How long the rest of what is planned takes from a time on, as a share of what it takes at the programmed
+  /// feed: where the axes' limits bind, twice the feed is less than twice as fast. 1 where that is not known.
+  [[nodiscard]] virtual double TimeShare(double time_s) = 0;
 
   /// Times before this need no planning when they are asked for; infinite: none do.
   [[nodiscard]] virtual double planned_s() = 0;

@@ -52,7 +52,7 @@ double Jerk(const PlanLimits& limits) { return limits.jerk_m_s3 > 0.0 ? limits.j
 
 }  // namespace
 
-void CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits) {
+Extent CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits) {
   const Extent extent = ExtentOf(request.curve);
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const PlanLimits& l = limits[i];
@@ -63,6 +63,7 @@ void CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits) 
       Refuse(request, l.axis, "position", extent.max_m[i] * 1e3, l.position_max_m * 1e3, "mm");
     }
   }
+  return extent;
 }
 
 void CheckPiece(const PieceRequest& request, const PerAxis<PlanLimits>& limits) {

@@ -9,8 +9,8 @@ namespace contour {
 /// jerk of a curve followed at this speed. Throws ProgramError naming axis, value and limit.
 void CheckPiece(const PieceRequest& request, const PerAxis<PlanLimits>& limits);
 
-/// Its part about the position range.
-void CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits);
+/// Its part about the position range; returns where the piece is.
+Extent CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits);
 
 /// Largest speed along the piece that the axes' velocity limits allow.
 double LargestSpeed_m_s(const CurvePiece& curve, const PerAxis<PlanLimits>& limits);

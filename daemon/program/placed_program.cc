@@ -43,6 +43,8 @@ Program ReadPlaced(const ProgramSource& source, const Placement& place, const Pe
   constexpr std::string_view kLetters = "xyzuvw";
   GcodeSettings settings;
   settings.block_delete = part.block_delete.value_or(settings.block_delete);
+  settings.begins_at_line = part.from_line;
+  settings.joins_lines = !part.single_block;
   if (options.referenced) settings.zero_m.emplace();
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const std::size_t letter = limits[i].axis.size() == 1 ? kLetters.find(limits[i].axis[0]) : kLetters.npos;

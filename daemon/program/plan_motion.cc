@@ -275,7 +275,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     const std::string where = place.program.name + ":" + std::to_string(program.letter_lines[k]);
     axis.push_back(Find(place, std::string(1, static_cast<char>(program.letters[k] - 'A' + 'a')), where));
   }
-  std::vector<PieceRequest> requests;
+  StretchProgram stretches(place.start_m, place.limits, program.moves.size());
   double longest_s = 0.0;
   PerAxis<double> zero_m = place.start_m;
   for (std::size_t k = 0; k < axis.size(); ++k) zero_m[axis[k]] -= program.start_m[k];
@@ -286,7 +286,8 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     while (passed < halts.size() && halts[passed].before_move <= move) ++passed;
     return passed;
   };
-  for (const GcodeMove& move : program.moves) {
+  for (std::size_t i = 0; i < program.moves.size(); ++i) {
+    const GcodeMove& move = program.moves[i];
     PerAxis<double> target = at;
     for (std::size_t k = 0; k < axis.size(); ++k) target[axis[k]] = zero_m[axis[k]] + move.target_m[k];
     PieceRequest request;
@@ -294,7 +295,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     request.speed_m_s = move.kind == GcodeMove::Kind::kRapid ? 0.0 : move.feed_m_s;
     request.dwell_s = move.dwell_s;
     request.line = move.line;
-    request.halts = halts_before(requests.size());
+    request.halts = halts_before(i);
     request.corner = move.corner;
     request.tolerance_m =
         move.corner == GcodeMove::Corner::kBlended ? move.tolerance_m : PathTolerance_m(place.limits);
@@ -310,18 +311,20 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
         request.curve = Helix(zero_m, at, target, {axis[move.plane[0]], axis[move.plane[1]]}, move);
         break;
     }
-    requests.push_back(request);
     // An arc's end may miss its target by a few decimals; the next move begins where it ended.
     at = move.kind == GcodeMove::Kind::kArc ? PointAt(request.curve, request.curve.length_m).position_m
                                             : target;
+    stretches.Add(request, at);
     longest_s += move.dwell_s + (request.speed_m_s > 0.0 ? request.curve.length_m / request.speed_m_s : 0.0);
   }
   if (!(longest_s <= kLongest_s)) RefuseDuration(place.program);
   if (passed < halts.size()) {
-    requests.push_back(Dwell(place, at, 0.0));
-    requests.back().halts = halts_before(program.moves.size());
+    PieceRequest end = Dwell(place, at, 0.0);
+    end.halts = halts_before(program.moves.size());
+    stretches.Add(end, at);
   }
-  return std::make_shared<StretchPlan>(requests, place.limits);
+  if (stretches.parts().empty()) stretches.Add(Dwell(place, at, 0.0), at);
+  return std::make_shared<StretchPlan>(std::move(stretches));
 }
 
 }  // namespace

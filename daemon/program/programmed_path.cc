@@ -11,19 +11,16 @@ constexpr double kStep_rad = 0.05;
 
 }  // namespace
 
-ProgrammedPath::ProgrammedPath(std::vector<ProgrammedMove> moves) : moves_(std::move(moves)) {
+ProgrammedPath::ProgrammedPath(std::vector<ProgrammedMove> moves, double from_m,
+                               const std::optional<Extent>& travel)
+    : moves_(std::move(moves)), travel_(travel) {
   begin_m_.reserve(moves_.size() + 1);
-  double way_m = 0.0;
+  double way_m = from_m;
   for (const ProgrammedMove& m : moves_) {
     begin_m_.push_back(way_m);
     way_m += m.curve.length_m;
   }
   begin_m_.push_back(way_m);
-}
-
-ProgrammedPath::ProgrammedPath(std::vector<ProgrammedMove> moves, Extent travel)
-    : ProgrammedPath(std::move(moves)) {
-  travel_ = std::move(travel);
 }
 
 std::size_t ProgrammedPath::MoveAt(double way_m) const {

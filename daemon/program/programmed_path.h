@@ -17,15 +17,17 @@ struct ProgrammedMove {
   int line = 0;
 };
 
-/// Moves one after the other, by the way covered since the first began.
+/// Moves one after the other, by the way covered since the first of their stretch began.
 class ProgrammedPath {
  public:
-  explicit ProgrammedPath(std::vector<ProgrammedMove> moves);
-  /// `travel`: where the axes may be, and all of the moves are.
-  ProgrammedPath(std::vector<ProgrammedMove> moves, Extent travel);
+  /// `from_m`: way at which the first of them begins. `travel`: where the axes may be, and all of the moves
+  /// are.
+  explicit ProgrammedPath(std::vector<ProgrammedMove> moves, double from_m = 0.0,
+                          const std::optional<Extent>& travel = std::nullopt);
 
   [[nodiscard]] std::size_t axis_count() const { return moves_.front().curve.start_m.size(); }
-  [[nodiscard]] double length_m() const { return begin_m_.back(); }
+  [[nodiscard]] double from_m() const { return begin_m_.front(); }
+  [[nodiscard]] double to_m() const { return begin_m_.back(); }
   [[nodiscard]] std::size_t size() const { return moves_.size(); }
   [[nodiscard]] const ProgrammedMove& move(std::size_t i) const { return moves_[i]; }
   [[nodiscard]] double begin_m(std::size_t i) const { return begin_m_[i]; }  ///< i == size(): the end

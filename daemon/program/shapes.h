@@ -315,7 +315,6 @@ struct GcodeMoves {
   std::array<double, 6>
       start_m{};  ///< per letter: where the machine stands when it starts, from program zero
   std::vector<GcodeMove> moves;
-  int naive_cam_line = 0;          ///< first move under G64 Q; 0: none
   std::vector<GcodeEvent> events;  ///< in their order; the move before a hold ends in a stop
 };
 

@@ -17,6 +17,9 @@ constexpr double kTurnOfPiece = 0.15;
 constexpr double kSmoothShare = 0.3;
 constexpr double kAim =
     0.97;  // of the tolerance; between the places that are looked at it may be a little more
+// Where the knots were decided with other ones behind them. Those are corrected for it a few times only.
+constexpr double kAimAtFixed = 0.985;
+constexpr int kRoundsAtFixed = 8;
 
 double Distance_m(const PerAxis<double>& a, const PerAxis<double>& b) {
   double sum = 0.0;
@@ -83,15 +86,15 @@ void KeepWithin(const Extent& travel, std::vector<PerAxis<double>>& coefficients
 /// Looks at every piece between knots, and notes where knots have to be closer.
 class Inspection {
  public:
-  Inspection(const ProgrammedPath& path, const SmoothPath& smooth, KnotSpacing& spacing)
-      : path_(path), smooth_(smooth), spacing_(spacing) {}
+  Inspection(const ProgrammedPath& path, const SmoothPath& smooth, KnotSpacing& spacing, double fixed_to_m)
+      : path_(path), smooth_(smooth), spacing_(spacing), fixed_to_m_(fixed_to_m) {}
 
-  /// Is the spline near enough everywhere?
-  bool Good() {
+  /// Is the spline near enough everywhere from a piece on?
+  bool GoodFrom(std::size_t first_piece) {
     std::size_t corner = 0;
     std::size_t move = 0;
     const auto& corners = spacing_.corners();
-    for (std::size_t piece = 0; piece < smooth_.pieces(); ++piece) {
+    for (std::size_t piece = first_piece; piece < smooth_.pieces(); ++piece) {
       const double from = smooth_.break_m(piece), to = smooth_.break_m(piece + 1);
       const double middle = 0.5 * (from + to);
       while (corner < corners.size() && corners[corner].at_m + corners[corner].outer_m < middle) ++corner;
@@ -109,7 +112,7 @@ class Inspection {
     std::size_t end = move;
     for (; end + 1 < path_.size() && path_.begin_m(end + 1) < to; ++end)
       if (path_.begin_m(end + 1) > from) LookAt(path_.begin_m(end + 1), piece);
-    if (end == move) return;
+    if (end == move || from < fixed_to_m_) return;
     // Moves that follow a curve by small turns: the spline shall follow the curve.
     const PathDerivatives q = smooth_.At(0.5 * (from + to), piece);
     double squared = 0.0;
@@ -121,7 +124,7 @@ class Inspection {
   }
 
   void LookAt(double way_m, std::size_t piece) {
-    const double allowed = kAim * path_.Tolerance_m(way_m);
+    const double allowed = (way_m <= fixed_to_m_ ? kAimAtFixed : kAim) * path_.Tolerance_m(way_m);
     const double off = Distance_m(smooth_.At(way_m, piece).position_m, path_.At(way_m));
     if (off <= allowed) return;
     good_ = false;
@@ -133,19 +136,23 @@ class Inspection {
   const ProgrammedPath& path_;
   const SmoothPath& smooth_;
   KnotSpacing& spacing_;
+  double fixed_to_m_;
   bool good_ = true;
 };
 
 }  // namespace
 
-SmoothPath SmoothPathThrough(const ProgrammedPath& path) {
-  KnotSpacing spacing(path);
+SmoothFit SmoothPathThrough(const ProgrammedPath& path, const FixedKnots& fixed) {
+  KnotSpacing spacing(path, fixed.knots_m);
+  const double fixed_to_m = fixed.knots_m.back();
   for (int round = 0;; ++round) {
     std::vector<double> knots = spacing.Knots();
     std::vector<PerAxis<double>> coefficients = Coefficients(path, knots, spacing.corners());
     if (path.travel()) KeepWithin(*path.travel(), coefficients);
     SmoothPath smooth(std::move(knots), std::move(coefficients));
-    if (round == kRounds || Inspection(path, smooth, spacing).Good()) return smooth;
+    const std::size_t first = (round < kRoundsAtFixed ? fixed.settled : fixed.knots_m.size() - 1) - 3;
+    if (round == kRounds || Inspection(path, smooth, spacing, fixed_to_m).GoodFrom(first))
+      return {std::move(smooth), spacing.corners()};
     spacing.Shrink();
   }
 }

@@ -14,6 +14,15 @@ std::size_t SmoothPath::PieceAt(double way_m) const {
   return static_cast<std::size_t>(std::upper_bound(first, last, way_m) - first);
 }
 
+SmoothPath SmoothPath::Between(std::size_t first_knot, std::size_t last_knot) const {
+  const auto knot = [&](std::size_t i) { return knots_.begin() + static_cast<std::ptrdiff_t>(i); };
+  const auto coefficient = [&](std::size_t i) {
+    return coefficients_.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  return {std::vector<double>(knot(first_knot - 3), knot(last_knot + 4)),
+          std::vector<PerAxis<double>>(coefficient(first_knot - 3), coefficient(last_knot))};
+}
+
 PerAxis<double> SmoothPath::Position(double way_m) const { return At(way_m).position_m; }
 
 PathDerivatives SmoothPath::At(double way_m, std::size_t piece) const {

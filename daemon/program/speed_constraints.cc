@@ -21,9 +21,9 @@ void LimitSpeed(const Stretch& stretch, const SpeedGoal& goal, double feed_m_s,
                 SpeedConstraints::Place& node) {
   double squared = 0.0;
   double axes = kInfinite;
-  for (std::size_t i = 0; i < stretch.limits.size(); ++i) {
+  for (std::size_t i = 0; i < stretch.limits().size(); ++i) {
     squared += Squared(node.first[i]);
-    axes = std::min(axes, Squared(stretch.limits[i].velocity_m_s / node.first[i]));
+    axes = std::min(axes, Squared(stretch.limits()[i].velocity_m_s / node.first[i]));
   }
   node.cap = std::min(node.cap, axes);
   // A rapid has no feed of its own: scaled down, it is a share of what the axes allow.
@@ -40,15 +40,14 @@ SpeedConstraints ConstraintsOf(const Stretch& stretch, const RestMap& map, const
                                const SpeedSpline& speed, std::size_t first_node, std::size_t last_node) {
   SpeedConstraints c;
   c.intervals.resize(last_node - first_node);
-  for (const PlanLimits& l : stretch.limits) {
+  for (const PlanLimits& l : stretch.limits()) {
     c.acceleration.push_back(kUsed * l.acceleration_m_s2);
     c.jerk.push_back(kJerkUsed * l.jerk_m_s3);
   }
-  const ProgrammedPath& path = stretch.programmed;
   for (std::size_t k = 0; k < c.intervals.size(); ++k) {
     const double from = speed.u[first_node + k], to = speed.u[first_node + k + 1];
     const double middle = 0.5 * (from + to);
-    const double feed = path.move(path.MoveAt(map.At(middle).way_m)).feed_m_s;
+    const double feed = stretch.Feed_m_s(map.At(middle).way_m);
     for (std::size_t m = 0; m < kSpeedPlaces; ++m) {
       const double u =
           m + 1 == kSpeedPlaces ? to : from + (to - from) * static_cast<double>(m) / (kSpeedPlaces - 1);
@@ -67,11 +66,11 @@ SpeedConstraints ConstraintsOf(const Stretch& stretch, const RestMap& map, const
   return c;
 }
 
-double SafeFloor(const Stretch& stretch, const RestMap& map, const SpeedSpline& speed,
-                 const SpeedGoal& goal) {
+double SafeFloor(const Stretch& stretch, const RestMap& map, const SpeedSpline& speed, const SpeedGoal& goal,
+                 std::size_t first_node) {
   double floor = kInfinite;
   constexpr std::size_t kBlock = 1024;
-  for (std::size_t begin = 0; begin + 1 < speed.u.size(); begin += kBlock) {
+  for (std::size_t begin = first_node; begin + 1 < speed.u.size(); begin += kBlock) {
     const std::size_t end = std::min(begin + kBlock, speed.u.size() - 1);
     const SpeedConstraints c = ConstraintsOf(stretch, map, goal, speed, begin, end);
     for (const auto& places : c.intervals) {
@@ -84,6 +83,23 @@ double SafeFloor(const Stretch& stretch, const RestMap& map, const SpeedSpline& 
     }
   }
   return kFloorShare * floor;
+}
+
+double LargestUse(const SpeedConstraints& c, const SpeedSpline& speed, std::size_t first_node) {
+  double used = 0.0;
+  for (std::size_t k = 0; k < c.intervals.size(); ++k) {
+    const std::size_t i = first_node + k;
+    const IntervalWeights weights = WeightsOf(speed, i);
+    for (std::size_t m = 0; m < kSpeedPlaces; ++m) {
+      const auto of = [&](const SpeedWeights& w) {
+        return w[0] * speed.beta[i] + w[1] * speed.beta[i + 1] + w[2] * speed.beta[i + 2];
+      };
+      const double w = of(weights.value[m]);
+      used = std::max({used, UseOf(c, c.intervals[k][m], w, of(weights.slope[m]), of(weights.bend)),
+                       w / c.intervals[k][m].cap});
+    }
+  }
+  return used;
 }
 
 }  // namespace contour

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "daemon/program/speed_optimiser.h"
@@ -24,5 +26,22 @@ struct SpeedConstraints {
 
 SpeedConstraints ConstraintsOf(const Stretch& stretch, const RestMap& map, const SpeedGoal& goal,
                                const SpeedSpline& speed, std::size_t first_node, std::size_t last_node);
+
+/// Share of the limits of acceleration and jerk that the motion takes at a place; `slope` and `bend` are
+/// derivatives of w by the parameter.
+inline double UseOf(const SpeedConstraints& c, const SpeedConstraints::Place& p, double w, double slope,
+                    double bend) {
+  double used = 0.0;
+  for (std::size_t a = 0; a < p.first.size(); ++a) {
+    used = std::max(
+        {used, std::abs(p.second[a] * w + 0.5 * p.first[a] * slope) / c.acceleration[a],
+         std::sqrt(w) * std::abs(p.third[a] * w + 1.5 * p.second[a] * slope + 0.5 * p.first[a] * bend) /
+             c.jerk[a]});
+  }
+  return used;
+}
+
+/// The largest share of all limits in the intervals of `c`, the first of which begins at `first_node`.
+double LargestUse(const SpeedConstraints& c, const SpeedSpline& speed, std::size_t first_node);
 
 }  // namespace contour

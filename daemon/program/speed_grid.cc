@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace contour {
 namespace {
@@ -24,22 +25,19 @@ struct Reach {
   double jerk_m_s3 = kInfinite;
 };
 
-Reach ReachAt(const Stretch& stretch, double way_m) {
-  const PathDerivatives q = stretch.smooth.At(way_m);
+Reach ReachAlong(const Stretch& stretch, const PerAxis<double>& tangent) {
   Reach reach;
-  for (std::size_t i = 0; i < q.first.size(); ++i) {
-    const double share = std::abs(q.first[i]);
+  for (std::size_t i = 0; i < tangent.size(); ++i) {
+    const double share = std::abs(tangent[i]);
     if (share < 1e-9) continue;
-    reach.acceleration_m_s2 = std::min(reach.acceleration_m_s2, stretch.limits[i].acceleration_m_s2 / share);
-    reach.jerk_m_s3 = std::min(reach.jerk_m_s3, stretch.limits[i].jerk_m_s3 / share);
+    reach.acceleration_m_s2 =
+        std::min(reach.acceleration_m_s2, stretch.limits()[i].acceleration_m_s2 / share);
+    reach.jerk_m_s3 = std::min(reach.jerk_m_s3, stretch.limits()[i].jerk_m_s3 / share);
   }
   return reach;
 }
 
-double Feed_m_s(const Stretch& stretch, double way_m) {
-  const double feed = stretch.programmed.move(stretch.programmed.MoveAt(way_m)).feed_m_s;
-  return feed > 0.0 ? feed : kInfinite;
-}
+double FeedOr(double feed_m_s) { return feed_m_s > 0.0 ? feed_m_s : kInfinite; }
 
 /// Largest speed of the parameter at one place by itself, and by feed and velocity alone.
 struct Caps {
@@ -51,7 +49,7 @@ Caps CapsAt(const Stretch& stretch, const ParameterDerivatives& x, double feed_m
   Caps caps;
   double squared = 0.0;
   for (std::size_t i = 0; i < x.first.size(); ++i) {
-    const PlanLimits& l = stretch.limits[i];
+    const PlanLimits& l = stretch.limits()[i];
     squared += x.first[i] * x.first[i];
     caps.feed = std::min(caps.feed, l.velocity_m_s / std::abs(x.first[i]));
     caps.speed = std::min({caps.speed, std::sqrt(l.acceleration_m_s2 / std::abs(x.second[i])),
@@ -78,6 +76,7 @@ struct Part {
     return std::min({cap, std::sqrt(speed_begin * speed_begin + change * (u - from)),
                      std::sqrt(speed_end * speed_end + change * (to - u))});
   }
+  [[nodiscard]] double CruiseSpeed() const { return std::max(1e-12, std::min(begin.feed, 1e6)); }
   /// Where the feed is reached and left; from > to: nowhere.
   [[nodiscard]] double CruiseBegin() const {
     if (begin.speed < begin.feed || end.speed < end.feed) return to + 1.0;
@@ -91,22 +90,29 @@ struct Part {
   }
 };
 
-std::vector<double> Places(const Stretch& stretch, const RestMap& map) {
-  const double from = map.At(0.0).way_m, to = map.At(map.end_u()).way_m;
-  std::vector<double> ways{from + 0.5 * map.begin_width(), to - 0.5 * map.end_width()};
-  for (std::size_t i = 1; i < stretch.smooth.pieces(); ++i) ways.push_back(stretch.smooth.break_m(i));
-  const ProgrammedPath& path = stretch.programmed;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    if (path.move(i).feed_m_s != path.move(i - 1).feed_m_s) ways.push_back(path.begin_m(i));
+double SinceAtEnd(const Part& p) {
+  const double begin = p.CruiseBegin(), end = p.CruiseEnd();
+  const bool whole = begin <= p.from && end >= p.to;
+  return whole                         ? p.since_s + (p.to - p.from) / p.CruiseSpeed()
+         : end >= p.to && begin < p.to ? (p.to - begin) / p.CruiseSpeed()
+                                       : 0.0;
+}
+
+/// From one parameter to another, which may be the stretch's end.
+std::vector<double> Places(const Stretch& stretch, const RestMap& map, double from_u, double to_u) {
+  const double from = map.At(from_u).way_m, to = map.At(to_u).way_m;
+  std::vector<double> ways = stretch.Jumps_m(from, to);
+  ways.push_back(map.At(map.begin_width()).way_m);
+  ways.push_back(map.At(map.end_u() - map.end_width()).way_m);
   std::sort(ways.begin(), ways.end());
-  std::vector<double> places{0.0};
+  std::vector<double> places{from_u};
   double last = from;
   for (const double way : ways) {
     if (way < last + kSame_m || way > to - kSame_m) continue;
     places.push_back(map.Inverse(way));
     last = way;
   }
-  places.push_back(map.end_u());
+  places.push_back(to_u);
   return places;
 }
 
@@ -116,10 +122,10 @@ Part MakePart(const Stretch& stretch, const RestMap& map, double feed_scale, dou
   part.to = to;
   const double middle = 0.5 * (from + to);
   const double way = map.At(middle).way_m;
-  const double feed = feed_scale * Feed_m_s(stretch, way);
+  const double feed = feed_scale * FeedOr(stretch.Feed_m_s(way));
   part.begin = CapsAt(stretch, AtParameter(stretch, map, from, middle), feed);
   part.end = CapsAt(stretch, AtParameter(stretch, map, to, middle), feed);
-  part.reach = ReachAt(stretch, way);
+  part.reach = ReachAlong(stretch, stretch.At(way).first);
   const double top = std::min(std::max(part.begin.feed, part.end.feed), 1e3);
   // A change of speed at the jerk limit takes at least half as long again as this.
   const double gentle = std::min(part.reach.acceleration_m_s2, 0.5 * std::sqrt(part.reach.jerk_m_s3 * top));
@@ -130,15 +136,20 @@ Part MakePart(const Stretch& stretch, const RestMap& map, double feed_scale, dou
   return part;
 }
 
-void GuessSpeeds(std::vector<Part>& parts) {
+/// Forwards, from the speed at the begin.
+void GuessForwards(std::vector<Part>& parts, double speed) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Part& p = parts[i];
-    const double reached = i == 0 ? kInfinite
+    const double reached = i == 0 ? speed
                                   : std::sqrt(std::pow(parts[i - 1].speed_begin, 2) +
                                               parts[i - 1].change * (p.from - parts[i - 1].from));
     p.speed_begin = std::min({p.begin.speed, i == 0 ? kInfinite : parts[i - 1].end.speed, reached});
   }
-  double after = kInfinite;
+}
+
+/// And backwards, from the speed at the end.
+void GuessBackwards(std::vector<Part>& parts, double speed) {
+  double after = speed;
   for (std::size_t i = parts.size(); i-- > 0;) {
     Part& p = parts[i];
     const double by_start = std::sqrt(p.speed_begin * p.speed_begin + p.change * (p.to - p.from));
@@ -150,16 +161,10 @@ void GuessSpeeds(std::vector<Part>& parts) {
 }
 
 /// Times from the last and to the next place where speed has to change.
-void CountCruise(std::vector<Part>& parts) {
-  double since = 0.0;
+void CountCruise(std::vector<Part>& parts, double since) {
   for (Part& p : parts) {
     p.since_s = since;
-    const double begin = p.CruiseBegin(), end = p.CruiseEnd();
-    const bool whole = begin <= p.from && end >= p.to;
-    const double speed = std::max(1e-12, std::min(p.begin.feed, 1e6));
-    since = whole                         ? since + (p.to - p.from) / speed
-            : end >= p.to && begin < p.to ? (p.to - begin) / speed
-                                          : 0.0;
+    since = SinceAtEnd(p);
   }
   double until = 0.0;
   for (std::size_t i = parts.size(); i-- > 0;) {
@@ -167,9 +172,8 @@ void CountCruise(std::vector<Part>& parts) {
     p.until_s = until;
     const double begin = p.CruiseBegin(), end = p.CruiseEnd();
     const bool whole = begin <= p.from && end >= p.to;
-    const double speed = std::max(1e-12, std::min(p.begin.feed, 1e6));
-    until = whole                             ? until + (p.to - p.from) / speed
-            : begin <= p.from && end > p.from ? (end - p.from) / speed
+    until = whole                             ? until + (p.to - p.from) / p.CruiseSpeed()
+            : begin <= p.from && end > p.from ? (end - p.from) / p.CruiseSpeed()
                                               : 0.0;
   }
 }
@@ -207,38 +211,82 @@ void Divide(const Part& p, std::vector<double>& grid) {
   grid.push_back(p.to);
 }
 
+/// So many of the first parts will move as they are guessed to, whatever comes behind the last: also if that
+/// is a stop.
+std::size_t Decided(std::vector<Part> parts, double speed) {
+  GuessForwards(parts, speed);
+  std::vector<Part> stopping = parts;
+  GuessBackwards(parts, kInfinite);
+  GuessBackwards(stopping, 0.0);
+  std::size_t decided = 0;
+  while (decided < parts.size() && stopping[decided].speed_end == parts[decided].speed_end) ++decided;
+  return decided;
+}
+
+/// Nodes of the parts that are decided, up to the one that reaches `until_u`; returns from where it goes on.
+SpeedGrid::Begin Nodes(std::vector<Part> parts, std::size_t decided, const SpeedGrid::Begin& begin,
+                       double until_u, std::vector<double>& nodes) {
+  GuessForwards(parts, begin.speed);
+  const std::vector<Part> forwards = parts;
+  GuessBackwards(parts, kInfinite);
+  CountCruise(parts, begin.since_s);
+  std::size_t done = 0;
+  for (; done < decided && parts[done].from < until_u; ++done) Divide(parts[done], nodes);
+  const Part& last = parts[done - 1];
+  const double speed = done < parts.size() ? forwards[done].speed_begin : last.speed_end;
+  return {last.to, speed, SinceAtEnd(last)};
+}
+
 }  // namespace
 
 double StepTime_s(const Stretch& stretch, double way_m, double speed_m_s) {
-  return StepTime_s(ReachAt(stretch, way_m), speed_m_s);
+  return StepTime_s(ReachAlong(stretch, stretch.At(way_m).first), speed_m_s);
 }
 
 RestMap RestMapFor(const Stretch& stretch, double from_m) {
-  const double to_m = stretch.smooth.length_m();
-  const auto width = [&](double way, double inside) {
-    const Reach reach = ReachAt(stretch, way);
-    double speed = Feed_m_s(stretch, inside);
-    const PathDerivatives q = stretch.smooth.At(way);
-    for (std::size_t i = 0; i < q.first.size(); ++i)
-      speed = std::min(speed, stretch.limits[i].velocity_m_s / std::abs(q.first[i]));
+  const double to_m = stretch.length_m();
+  const auto width = [&](const PerAxis<double>& tangent, double feed_m_s) {
+    const Reach reach = ReachAlong(stretch, tangent);
+    double speed = FeedOr(feed_m_s);
+    for (std::size_t i = 0; i < tangent.size(); ++i)
+      speed = std::min(speed, stretch.limits()[i].velocity_m_s / std::abs(tangent[i]));
     if (!std::isfinite(speed) || !std::isfinite(reach.jerk_m_s3)) return to_m - from_m;
     const double rise_s =
         std::min(reach.acceleration_m_s2 / reach.jerk_m_s3, std::sqrt(speed / reach.jerk_m_s3));
     return reach.jerk_m_s3 * rise_s * rise_s * rise_s / 3.0;
   };
-  return {from_m, to_m, width(from_m, from_m), width(to_m, to_m)};
+  return {from_m, to_m, width(stretch.At(from_m).first, stretch.Feed_m_s(from_m)),
+          width(stretch.EndTangent(), stretch.EndFeed_m_s())};
 }
 
-std::vector<double> SpeedGrid(const Stretch& stretch, const RestMap& map, double feed_scale) {
-  const std::vector<double> places = Places(stretch, map);
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i + 1 < places.size(); ++i)
-    parts.push_back(MakePart(stretch, map, feed_scale, places[i], places[i + 1]));
-  GuessSpeeds(parts);
-  CountCruise(parts);
-  std::vector<double> grid{0.0};
-  for (const Part& p : parts) Divide(p, grid);
-  return grid;
+void SpeedGrid::Extend(Stretch& stretch, const RestMap& map, double until_u, std::vector<double>& nodes) {
+  std::size_t sections = 1;
+  const auto know_more = [&] {
+    for (std::size_t i = 0; i < sections; ++i) stretch.Extend();
+    sections *= 2;
+  };
+  while (!complete_) {
+    const bool all = stretch.all_known();
+    const double to_u = all ? map.end_u() : map.Inverse(stretch.known_to_m());
+    if (!all && to_u <= begin_.at_u) {
+      know_more();
+      continue;
+    }
+    const std::vector<double> places = Places(stretch, map, begin_.at_u, to_u);
+    std::vector<Part> parts;
+    for (std::size_t i = 0; i + 1 < places.size(); ++i)
+      parts.push_back(MakePart(stretch, map, feed_scale_, places[i], places[i + 1]));
+    const std::size_t decided = all ? parts.size() : Decided(parts, begin_.speed);
+    // Half of what is known at least, so that no place is looked at more than a few times.
+    const double enough_u = std::min(until_u, 0.5 * (begin_.at_u + to_u));
+    if (decided == 0 || (!all && parts[decided - 1].to < enough_u)) {
+      know_more();
+      continue;
+    }
+    begin_ = Nodes(std::move(parts), decided, begin_, until_u, nodes);
+    complete_ = begin_.at_u == map.end_u();
+    return;
+  }
 }
 
 }  // namespace contour

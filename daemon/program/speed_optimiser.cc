@@ -147,13 +147,7 @@ class Window {
         const double w = Dot(local_.beta, i, weights_[i].value[m]);
         const double s = Dot(local_.beta, i, weights_[i].slope[m]);
         const double b = Dot(local_.beta, i, weights_[i].bend);
-        double used = 0.0;
-        for (std::size_t a = 0; a < p.first.size(); ++a) {
-          used = std::max(
-              {used, std::abs(p.second[a] * w + 0.5 * p.first[a] * s) / constraints_.acceleration[a],
-               std::sqrt(w) * std::abs(p.third[a] * w + 1.5 * p.second[a] * s + 0.5 * p.first[a] * b) /
-                   constraints_.jerk[a]});
-        }
+        const double used = UseOf(constraints_, p, w, s, b);
         const double allowed = stopping() ? kAllowedInStop : kAllowed;
         p.allowance = std::max(1.0, allowed * used);
         p.cap = std::max(p.cap, allowed * w);

@@ -14,9 +14,9 @@ struct SpeedGoal {
   bool feed_may_exceed = false;  ///< the feed was lowered on the way: it is met as soon as the limits allow
 };
 
-/// Largest square of a parameter's constant speed that keeps every limit between two nodes, with room to
-/// spare.
-double SafeFloor(const Stretch& stretch, const RestMap& map, const SpeedSpline& speed, const SpeedGoal& goal);
+/// Largest square of a parameter's constant speed that keeps every limit from a node on, with room to spare.
+double SafeFloor(const Stretch& stretch, const RestMap& map, const SpeedSpline& speed, const SpeedGoal& goal,
+                 std::size_t first_node);
 
 /// Raises the coefficients first..last of `speed` (or lowers them, for a lower feed) to the fastest motion
 /// within the limits of velocity, acceleration and jerk of every axis, the others staying. They must keep the

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace contour {
 namespace {
@@ -10,10 +11,8 @@ constexpr double kScoredAfter_s = 1.0;
 
 }  // namespace
 
-StretchPlan::StretchPlan(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits)
-    : program_(std::make_shared<const StretchProgram>(requests, limits)),
-      tree_(program_->moves()),
-      walk_(program_) {}
+StretchPlan::StretchPlan(StretchProgram program)
+    : program_(std::make_shared<const StretchProgram>(std::move(program))), walk_(program_) {}
 
 double StretchPlan::duration_s() const {
   const std::lock_guard lock(mutex_);
@@ -36,7 +35,10 @@ void StretchPlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
 }
 
 double StretchPlan::Distance_m(const PerAxis<double>& point_m) const {
-  if (!tree_.empty()) return tree_.Distance_m(point_m);
+  if (!is_hold()) {
+    std::call_once(tree_made_, [this] { tree_ = std::make_unique<const PathTree>(program_->moves()); });
+    return tree_->Distance_m(point_m);
+  }
   double squared = 0.0;
   for (std::size_t i = 0; i < point_m.size(); ++i)
     squared += std::pow(point_m[i] - program_->start_m()[i], 2);
@@ -48,7 +50,7 @@ bool StretchPlan::Scored(double time_s) const {
 }
 
 bool StretchPlan::Moves(std::size_t axis) const {
-  return !tree_.empty() && tree_.box().max_m[axis] > tree_.box().min_m[axis];
+  return program_->box().max_m[axis] > program_->box().min_m[axis];
 }
 
 bool StretchPlan::GoesOnAfter(double time_s) const {

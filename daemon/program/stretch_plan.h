@@ -2,10 +2,10 @@
 
 #include <memory>
 #include <mutex>
-#include <vector>
+#include <optional>
 
+#include "daemon/program/motion_plan.h"
 #include "daemon/program/path_tree.h"
-#include "daemon/program/piecewise_plan.h"
 #include "daemon/program/stretch_walk.h"
 
 namespace contour {
@@ -14,8 +14,7 @@ namespace contour {
 /// velocity, acceleration and jerk of every axis within its limits. Planned as far as it is asked for.
 class StretchPlan : public MotionPlan {
  public:
-  /// Throws ProgramError when a move leaves an axis's range.
-  StretchPlan(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits);
+  explicit StretchPlan(StretchProgram program);
 
   [[nodiscard]] std::size_t axis_count() const override { return program_->start_m().size(); }
   [[nodiscard]] double duration_s() const override;
@@ -26,18 +25,19 @@ class StretchPlan : public MotionPlan {
   [[nodiscard]] double Turns(double) const override { return 0.0; }
   [[nodiscard]] bool Scored(double time_s) const override;
   [[nodiscard]] std::optional<CommandedCircle> circle() const override { return std::nullopt; }
-  [[nodiscard]] bool is_hold() const override { return tree_.empty(); }
+  [[nodiscard]] bool is_hold() const override { return program_->moves().empty(); }
   [[nodiscard]] bool Moves(std::size_t axis) const override;
   [[nodiscard]] bool GoesOnAfter(double time_s) const override;
   [[nodiscard]] std::unique_ptr<PathWalk> Walk() const override;
   [[nodiscard]] bool feed_may_change() const override { return true; }
 
-  [[nodiscard]] const StretchProgram& program() const { return *program_; }
+  [[nodiscard]] const std::shared_ptr<const StretchProgram>& program() const { return program_; }
 
  private:
   std::shared_ptr<const StretchProgram> program_;
-  PathTree tree_;
-  mutable std::mutex mutex_;  ///< of what is planned so far
+  mutable std::once_flag tree_made_;
+  mutable std::unique_ptr<const PathTree> tree_;  ///< made when a distance is asked for first
+  mutable std::mutex mutex_;                      ///< of what is planned so far
   mutable StretchWalk walk_;
 };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "daemon/program/blended_runs.h"
 #include "daemon/program/piece_limits.h"
@@ -19,6 +18,8 @@ constexpr double kExactShare = 0.1;
 // tolerance's size.
 constexpr double kTurnsBack = 1.992;
 constexpr double kSlip = 2.0;
+// Moves from one mark of time to the next.
+constexpr std::size_t kMark = 64;
 
 double Turn(const CurvePiece& before, const CurvePiece& after) {
   const CurvePoint end = PointAt(before, before.length_m), begin = PointAt(after, 0.0);
@@ -33,90 +34,83 @@ double Deviation_m(const PieceRequest& request, const PerAxis<PlanLimits>& limit
   return request.corner == GcodeMove::Corner::kExactPath ? kExactShare * share_m : share_m;
 }
 
-bool StopsBetween(const PieceRequest& before, const PieceRequest& after) {
-  if (before.dwell_s > 0.0 || before.halts != after.halts || before.corner == GcodeMove::Corner::kExactStop)
-    return true;
-  const double turn = Turn(before.curve, after.curve);
-  if (before.corner == GcodeMove::Corner::kExactPath) return turn > kTangentAngle_rad;
-  const double shorter_m = std::min(before.curve.length_m, after.curve.length_m);
-  return turn > kTurnsBack && shorter_m > kSlip * before.tolerance_m;
-}
-
-// CheckRange() lets a move go so much farther, for the rounding of its numbers.
-constexpr double kRounding_m = 1e-9;
-
-Extent TravelOf(const PerAxis<PlanLimits>& limits) {
-  Extent travel;
-  for (const PlanLimits& l : limits) {
-    travel.min_m.push_back(l.position_min_m - kRounding_m);
-    travel.max_m.push_back(l.position_max_m + kRounding_m);
-  }
-  return travel;
-}
-
 }  // namespace
 
-StretchProgram::StretchProgram(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits)
-    : limits_(WithJerk(limits)), start_m_(requests.front().curve.start_m) {
-  const PieceRequest* last = nullptr;
-  moves_.reserve(requests.size());
-  for (const PieceRequest& r : requests) {
-    CheckRange(r, limits);
-    if (r.curve.length_m == 0.0) {
-      if (r.curve.kind != CurvePiece::Kind::kPoint) continue;
-      // A dwell, of whatever time, is a stop.
-      if (parts_.empty() || parts_.back().halts != r.halts)
-        parts_.push_back({moves_.size(), moves_.size(), 0.0, r.halts});
-      parts_.back().dwell_s += r.dwell_s;
-      last = nullptr;
-      continue;
-    }
-    if (last == nullptr || StopsBetween(*last, r))
-      parts_.push_back({moves_.size(), moves_.size(), 0.0, r.halts});
-    moves_.push_back({r.curve, r.speed_m_s, Deviation_m(r, limits), r.line});
-    parts_.back().end = moves_.size();
-    parts_.back().dwell_s = r.dwell_s;
-    last = &r;
-  }
-  if (parts_.empty()) parts_.push_back({});
-  CountNominal();
+StretchProgram::StretchProgram(const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits,
+                               std::size_t moves)
+    : limits_(WithJerk(limits)), stated_(limits), moves_(start_m), box_{start_m, start_m} {
+  moves_.Reserve(moves);
+  marks_.reserve(moves / kMark + 1);
 }
 
-void StretchProgram::CountNominal() {
-  nominal_.reserve(moves_.size() + 1);
-  Nominal now;
-  for (const Part& part : parts_) {
-    for (std::size_t i = part.first; i < part.end; ++i) {
-      nominal_.push_back(now);
-      const ProgrammedMove& m = moves_[i];
-      const double largest_m_s = LargestSpeed_m_s(m.curve, limits_);
-      const double speed_m_s = m.feed_m_s > 0.0 ? std::min(m.feed_m_s, largest_m_s) : largest_m_s;
-      now.before_s += m.curve.length_m / speed_m_s;
-      now.before_m += m.curve.length_m;
-    }
-    now.before_s += part.dwell_s;
+bool StretchProgram::StopsBefore(const PieceRequest& request) const {
+  if (last_.curve.length_m == 0.0 || last_.dwell_s > 0.0 || last_.halts != request.halts ||
+      last_.corner == GcodeMove::Corner::kExactStop)
+    return true;
+  const double turn = Turn(last_.curve, request.curve);
+  if (last_.corner == GcodeMove::Corner::kExactPath) return turn > kTangentAngle_rad;
+  const double shorter_m = std::min(last_.curve.length_m, request.curve.length_m);
+  return turn > kTurnsBack && shorter_m > kSlip * last_.tolerance_m;
+}
+
+// A dwell, of whatever time, is a stop.
+void StretchProgram::AddDwell(const PieceRequest& r) {
+  if (parts_.empty() || parts_.back().halts != r.halts)
+    parts_.push_back({moves_.size(), moves_.size(), 0.0, r.halts, 0.0, nominal_s(), 0.0});
+  parts_.back().dwell_s += r.dwell_s;
+  last_ = {};
+}
+
+double StretchProgram::Time_s(const ProgrammedMove& m) const {
+  const double largest_m_s = LargestSpeed_m_s(m.curve, limits_);
+  return m.curve.length_m / (m.feed_m_s > 0.0 ? std::min(m.feed_m_s, largest_m_s) : largest_m_s);
+}
+
+void StretchProgram::Add(const PieceRequest& r, const PerAxis<double>& end_m) {
+  const Extent extent = CheckRange(r, stated_);
+  if (r.curve.length_m == 0.0) {
+    if (r.curve.kind == CurvePiece::Kind::kPoint) AddDwell(r);
+    return;
   }
-  nominal_.push_back(now);
+  Enlarge(box_, extent);
+  if (StopsBefore(r)) parts_.push_back({moves_.size(), moves_.size(), 0.0, r.halts, 0.0, nominal_s(), 0.0});
+  moves_.Add({r.curve, r.speed_m_s, Deviation_m(r, stated_), r.line}, end_m);
+  Part& part = parts_.back();
+  const std::size_t i = part.end++;
+  if (i % kMark == 0) marks_.push_back({part.moves_s, part.length_m});
+  const ProgrammedMove move = moves_.Move(i);
+  part.moves_s += Time_s(move);
+  part.length_m += move.curve.length_m;
+  part.dwell_s = r.dwell_s;
+  last_ = r;
+}
+
+double StretchProgram::nominal_s() const {
+  if (parts_.empty()) return 0.0;
+  return parts_.back().begin_s + parts_.back().moves_s + parts_.back().dwell_s;
 }
 
 double StretchProgram::Nominal_s(const Part& part, double way_m) const {
-  const double at_m = nominal_[part.first].before_m + way_m;
-  const auto first = nominal_.begin() + static_cast<std::ptrdiff_t>(part.first);
-  const auto end = nominal_.begin() + static_cast<std::ptrdiff_t>(part.end);
-  const auto after =
-      std::upper_bound(first, end, at_m, [](double m, const Nominal& n) { return m < n.before_m; });
-  if (after == first) return first->before_s;
-  const Nominal& from = *(after - 1);
-  const Nominal& to = *after;
-  const double length_m = to.before_m - from.before_m;
-  if (!(length_m > 0.0)) return from.before_s;
-  return from.before_s + (to.before_s - from.before_s) * std::min(1.0, (at_m - from.before_m) / length_m);
+  if (way_m >= part.length_m) return part.begin_s + part.moves_s;
+  const std::size_t first = (part.first + kMark - 1) / kMark, end = (part.end + kMark - 1) / kMark;
+  const auto at = [&](std::size_t mark) { return marks_.begin() + static_cast<std::ptrdiff_t>(mark); };
+  const auto after = std::upper_bound(at(first), at(std::max(first, end)), way_m,
+                                      [](double m, const Mark& mark) { return m < mark.since_m; });
+  const auto mark = static_cast<std::size_t>(after - marks_.begin());
+  Mark now = mark > first ? marks_[mark - 1] : Mark{};
+  for (std::size_t i = mark > first ? (mark - 1) * kMark : part.first; i < part.end; ++i) {
+    const ProgrammedMove move = moves_.Move(i);
+    const double time_s = Time_s(move), left_m = way_m - now.since_m;
+    if (left_m < move.curve.length_m)
+      return part.begin_s + now.since_s + time_s * std::max(0.0, left_m) / move.curve.length_m;
+    now.since_m += move.curve.length_m;
+    now.since_s += time_s;
+  }
+  return part.begin_s + part.moves_s;
 }
 
-std::shared_ptr<const Stretch> StretchProgram::MakeStretch(const Part& part) const {
-  const auto at = [&](std::size_t i) { return moves_.begin() + static_cast<std::ptrdiff_t>(i); };
-  return std::make_shared<const Stretch>(
-      ProgrammedPath(std::vector<ProgrammedMove>(at(part.first), at(part.end)), TravelOf(limits_)), limits_);
+std::size_t StretchProgram::bytes() const {
+  return moves_.bytes() + parts_.capacity() * sizeof(Part) + marks_.capacity() * sizeof(Mark);
 }
 
 }  // namespace contour

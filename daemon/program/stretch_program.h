@@ -1,15 +1,15 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <vector>
 
+#include "daemon/program/move_store.h"
 #include "daemon/program/piecewise_plan.h"
-#include "daemon/program/stretch.h"
 
 namespace contour {
 
-/// A program of straight moves and arcs, divided into stretches that are driven without a stop.
+/// A program of straight moves and arcs, divided into parts that are driven without a stop. All that is kept
+/// of it: what moves take in a MoveStore, a quarter of a byte each for times, 64 bytes a stop.
 class StretchProgram {
  public:
   struct Part {
@@ -17,35 +17,50 @@ class StretchProgram {
     std::size_t end = 0;  ///< moves first..end; none: only a dwell
     double dwell_s = 0.0;
     std::uint32_t halts = 0;  ///< places before it at which the program waits
+    double length_m = 0.0;
+    double begin_s = 0.0;  ///< by feeds, lengths and dwells alone
+    double moves_s = 0.0;
   };
 
-  /// Checks the way of every move against the axes' ranges; feeds are as fast as the axes follow. Throws
-  /// ProgramError.
-  StretchProgram(const std::vector<PieceRequest>& requests, const PerAxis<PlanLimits>& limits);
+  /// Feeds are as fast as the axes follow. `moves`: about so many are to come.
+  StretchProgram(const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits, std::size_t moves = 0);
+
+  /// Checks the way of the move against the axes' ranges. Throws ProgramError. It begins where the last one
+  /// ended; `end_m` is where it ends.
+  void Add(const PieceRequest& request, const PerAxis<double>& end_m);
 
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
-  [[nodiscard]] const std::vector<ProgrammedMove>& moves() const { return moves_; }
-  [[nodiscard]] const PerAxis<double>& start_m() const { return start_m_; }
-  [[nodiscard]] std::shared_ptr<const Stretch> MakeStretch(const Part& part) const;
+  [[nodiscard]] const MoveStore& moves() const { return moves_; }
+  [[nodiscard]] const PerAxis<double>& start_m() const { return moves_.start_m(); }
+  /// With a jerk above 0.
+  [[nodiscard]] const PerAxis<PlanLimits>& limits() const { return limits_; }
+  /// Around everything.
+  [[nodiscard]] const Extent& box() const { return box_; }
 
   /// How long it takes by feeds, lengths and dwells alone, with no time for getting faster and slower: of all
   /// of it, and up to a way of a part.
-  [[nodiscard]] double nominal_s() const { return nominal_.back().before_s; }
+  [[nodiscard]] double nominal_s() const;
   [[nodiscard]] double Nominal_s(const Part& part, double way_m) const;
 
- private:
-  void CountNominal();
+  [[nodiscard]] std::size_t bytes() const;
 
-  PerAxis<PlanLimits> limits_;
-  PerAxis<double> start_m_;
-  std::vector<ProgrammedMove> moves_;
+ private:
+  void AddDwell(const PieceRequest& request);
+  [[nodiscard]] double Time_s(const ProgrammedMove& move) const;
+  [[nodiscard]] bool StopsBefore(const PieceRequest& request) const;
+
+  PerAxis<PlanLimits> limits_;  ///< with jerk
+  PerAxis<PlanLimits> stated_;
+  MoveStore moves_;
   std::vector<Part> parts_;
-  /// Before each move, and after the last.
-  struct Nominal {
-    double before_s = 0.0;
-    double before_m = 0.0;
+  Extent box_;
+  PieceRequest last_;  ///< of the newest move; without length: there is none to go on from
+  /// Before every so many moves, since the begin of their part.
+  struct Mark {
+    double since_s = 0.0;
+    double since_m = 0.0;
   };
-  std::vector<Nominal> nominal_;
+  std::vector<Mark> marks_;
 };
 
 }  // namespace contour

@@ -10,6 +10,8 @@ namespace {
 constexpr double kNever_s = std::numeric_limits<double>::infinity();
 constexpr double kRounding_s = 1e-9;
 constexpr double kBetweenLegs_s = 1e-3;
+// Over less, no share of time is told.
+constexpr double kSomeTime_s = 1e-2;
 // Laws kept besides those that cannot be made again.
 constexpr std::size_t kHeld = 4;
 
@@ -46,17 +48,21 @@ TimeLaw* StretchWalk::LawOf(std::size_t leg) {
   const StretchProgram::Part& part = program_->parts()[l.part];
   if (part.first == part.end) return nullptr;
   if (!l.law) {
-    // What is left of a stretch is the same stretch.
-    std::shared_ptr<const Stretch> stretch;
-    for (const std::size_t other : held_)
-      if (other < legs_.size() && legs_[other].law && legs_[other].part == l.part)
-        stretch = legs_[other].law->shared_stretch();
-    if (!stretch) stretch = program_->MakeStretch(part);
-    l.law = std::make_unique<TimeLaw>(std::move(stretch), l.from_m, l.scale);
+    l.law = std::make_unique<TimeLaw>(StretchOf(l), l.from_m, l.scale);
     held_.push_back(leg);
     if (!forgets_) GiveUpLaws(leg);
   }
   return l.law.get();
+}
+
+// What is left of a stretch is the same stretch.
+Stretch StretchWalk::StretchOf(const Leg& leg) const {
+  for (const std::size_t other : held_) {
+    if (other >= legs_.size() || !legs_[other].law || legs_[other].part != leg.part) continue;
+    const Stretch& stretch = legs_[other].law->stretch();
+    if (stretch.known_from_m() <= leg.from_m) return stretch;
+  }
+  return {program_, leg.part};
 }
 
 void StretchWalk::GiveUpLaws(std::size_t but) {
@@ -72,6 +78,7 @@ void StretchWalk::ForgetBefore(double time_s) {
   forgets_ = true;
   const std::size_t leg = LegAt(time_s);
   legs_.erase(legs_.begin(), legs_.begin() + static_cast<std::ptrdiff_t>(leg));
+  if (legs_.front().law) legs_.front().law->ForgetBefore(time_s - legs_.front().begin_s);
   gone_ += leg;
   std::vector<std::size_t> held;
   for (const std::size_t h : held_)
@@ -107,6 +114,14 @@ PathWalk::Estimate StretchWalk::ProgramDuration() {
   return {planned + longer * (program_->nominal_s() - nominal_s), false};
 }
 
+double StretchWalk::TimeShare(double time_s) {
+  const double planned = complete_ ? end_s_ : planned_s();
+  if (!own_ || !(planned < kNever_s)) return 1.0;
+  const double takes_s = planned - kRounding_s - time_s;
+  const double at_feed_s = ProgramTime_s(planned - kRounding_s) - ProgramTime_s(time_s);
+  return takes_s > kSomeTime_s && at_feed_s > kSomeTime_s ? takes_s / at_feed_s : 1.0;
+}
+
 void StretchWalk::Extend(double time_s) {
   while (!complete_ && !(rests_from_s_ < kNever_s)) {
     const std::size_t last = legs_.size() - 1;
@@ -140,9 +155,7 @@ std::size_t StretchWalk::LegAt(double time_s) {
 }
 
 PerAxis<double> StretchWalk::StartOf(const StretchProgram::Part& part) const {
-  if (part.first == 0) return program_->start_m();
-  const CurvePiece& before = program_->moves()[part.first - 1].curve;
-  return PointAt(before, before.length_m).position_m;
+  return program_->moves().Begin(part.first);
 }
 
 void StretchWalk::At(double time_s, PerAxis<ReferencePoint>& axes) {
@@ -157,7 +170,7 @@ void StretchWalk::At(double time_s, PerAxis<ReferencePoint>& axes) {
     return;
   }
   const TimeLaw::State s = law->At(time_s - legs_[leg].begin_s);
-  const PathDerivatives q = law->stretch().smooth.At(s.way_m);
+  const PathDerivatives q = law->stretch().At(s.way_m);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     axes[i].position_m = q.position_m[i];
     axes[i].velocity_m_s = q.first[i] * s.speed_m_s;
@@ -207,8 +220,7 @@ int StretchWalk::Line(double time_s) {
   const std::size_t leg = LegAt(time_s);
   TimeLaw* law = LawOf(leg);
   if (law == nullptr) return 0;
-  const ProgrammedPath& path = law->stretch().programmed;
-  return path.move(path.MoveAt(law->At(time_s - legs_[leg].begin_s).way_m)).line;
+  return law->stretch().Line(law->At(time_s - legs_[leg].begin_s).way_m);
 }
 
 double StretchWalk::BeginOf_s(std::size_t part) {
@@ -238,6 +250,16 @@ double StretchWalk::ProgramTime_s(double time_s) {
   // A dwell takes the time that it takes.
   const double dwelt_s = law != nullptr && law->stops_on_the_way() ? 0.0 : std::max(0.0, since_s - moved_s);
   return moves_s + std::min(dwelt_s, program_->parts()[part].dwell_s);
+}
+
+StretchWalk::Kept StretchWalk::kept() const {
+  Kept kept = own_ ? own_->kept() : Kept{};
+  for (const Leg& l : legs_) {
+    if (!l.law) continue;
+    kept.moves += l.law->stretch().moves_kept();
+    kept.nodes += l.law->nodes();
+  }
+  return kept;
 }
 
 }  // namespace contour

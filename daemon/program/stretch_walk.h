@@ -27,11 +27,18 @@ class StretchWalk : public PathWalk {
   [[nodiscard]] double ProgramTime_s(double time_s) override;
   [[nodiscard]] double duration_s() override;
   [[nodiscard]] Estimate ProgramDuration() override;
+  [[nodiscard]] double TimeShare(double time_s) override;
   [[nodiscard]] double planned_s() override;
   void PlanStep() override;
   void ForgetBefore(double time_s) override;
   /// Legs that are kept, with and without a law.
   [[nodiscard]] std::size_t legs() const { return legs_.size(); }
+  /// Of all of them: moves of which the path is kept, and nodes of the speed along it.
+  struct Kept {
+    std::size_t moves = 0;
+    std::size_t nodes = 0;
+  };
+  [[nodiscard]] Kept kept() const;
   [[nodiscard]] std::unique_ptr<PathWalk> Clone() const override {
     return std::make_unique<StretchWalk>(*this);
   }
@@ -50,6 +57,7 @@ class StretchWalk : public PathWalk {
   [[nodiscard]] std::size_t LegAt(double time_s);
   /// The law of a leg, made again where it was given up; null: only a dwell.
   TimeLaw* LawOf(std::size_t leg);
+  [[nodiscard]] Stretch StretchOf(const Leg& leg) const;
   void GiveUpLaws(std::size_t but);
   /// Of a walk whose feed never changes: when a part begins, and when it is at a way of that part.
   [[nodiscard]] double BeginOf_s(std::size_t part);

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "daemon/program/jerk_ramp.h"
-#include "daemon/program/speed_grid.h"
+#include "daemon/program/safe_slowing.h"
+#include "daemon/program/speed_constraints.h"
 #include "daemon/program/speed_refinement.h"
 
 namespace contour {
@@ -23,10 +25,23 @@ constexpr double kTailShare = 0.4;
 constexpr double kTail_s = 3e-3;
 constexpr double kTailSteps = 0.5;
 constexpr double kEven_s = 1e-4;
+// What is safe may be slowed down to by so much of the limits, of which it takes up a part itself: less where
+// that is not enough. And it becomes so much less at once than it needs to, as the next piece may need it.
+constexpr double kBoldest = 0.32;
+constexpr double kGentlest = 0.08;
+constexpr double kLower = 0.5;
+// Nodes behind a window whose coefficients it depends on.
+constexpr std::size_t kBeyondWindow = 6;
+// Nodes are given up in lots, but for the last few: a node's speed depends on those next to it.
+constexpr std::size_t kForgetAtOnce = 128;
+constexpr std::size_t kLooksBack = 4;
+constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 constexpr double kNoLimit_m_s2 = 1e12;
 // Nodes for a change of feed at once, and how often those of a stop are found anew.
 constexpr std::size_t kChange = 250;
 constexpr int kStopRounds = 3;
+// For finding a place by its time.
+constexpr int kMostSteps = 80;
 
 /// artanh(z) / z by the square of z, which may be negative: then it is arctan(|z|) / |z|.
 double ArtanhOverArgument(double squared) {
@@ -38,12 +53,58 @@ double ArtanhOverArgument(double squared) {
 
 }  // namespace
 
-TimeLaw::TimeLaw(std::shared_ptr<const Stretch> stretch, double from_m, double feed_scale)
-    : stretch_(std::move(stretch)), map_(RestMapFor(*stretch_, from_m)), time_s_{0.0} {
+TimeLaw::TimeLaw(Stretch stretch, double from_m, double feed_scale)
+    : stretch_(std::move(stretch)), ahead_(0.0, feed_scale), time_s_{0.0} {
+  while (!stretch_.all_known() && stretch_.known_to_m() <= from_m) stretch_.Extend();
+  map_ = RestMapFor(stretch_, from_m);
   goal_.feed_scale = feed_scale;
-  speed_.u = SpeedGrid(*stretch_, map_, feed_scale);
-  goal_.floor = SafeFloor(*stretch_, map_, speed_, goal_);
-  speed_.beta.assign(speed_.u.size() + 1, goal_.floor);
+  speed_.u = {0.0};
+}
+
+// Beyond what has been planned it goes at a speed that is safe wherever the path is known, and there are
+// nodes enough to slow down to what is safe on the next piece of it.
+void TimeLaw::KnowAhead(std::size_t settled) {
+  while (!ahead_.complete()) {
+    const std::size_t last = settled + kWindow + kBeyondWindow;
+    if (last < speed_.u.size()) {
+      const double unplanned = speed_.u.back() - std::max(speed_.u[last], optimised_u_);
+      if (unplanned >= SafeSlowing(stretch_.limits(), kGentlest, 0.0, goal_.floor).way()) return;
+    }
+    std::vector<double> nodes;
+    ahead_.Extend(stretch_, map_, std::numeric_limits<double>::infinity(), nodes);
+    Append(nodes);
+  }
+}
+
+void TimeLaw::Append(const std::vector<double>& nodes) {
+  const std::size_t from = speed_.u.size() - 1;
+  for (const double u : nodes)
+    if (u > speed_.u.back()) speed_.u.push_back(u);
+  if (!grid_.empty()) grid_.insert(grid_.end(), nodes.begin(), nodes.end());
+  if (speed_.u.size() == from + 1) return;
+  speed_.beta.resize(speed_.u.size() + 1, goal_.floor);
+  const double floor = SafeFloor(stretch_, map_, speed_, goal_, from);
+  if (from == 0) {
+    std::fill(speed_.beta.begin(), speed_.beta.end(), floor);
+    goal_.floor = floor;
+  } else if (floor < goal_.floor) {
+    LowerFloor(from, kLower * floor);
+  }
+}
+
+void TimeLaw::LowerFloor(std::size_t node, double floor) {
+  std::fill(speed_.beta.begin() + static_cast<std::ptrdiff_t>(node), speed_.beta.end(), floor);
+  const double at_u = 0.5 * (speed_.u[node - 1] + speed_.u[node]);
+  for (double share = kBoldest; share >= kGentlest; share *= 0.5) {
+    const SafeSlowing slowing(stretch_.limits(), share, floor, goal_.floor);
+    if (share < kBoldest && at_u - slowing.way() < optimised_u_) break;
+    std::size_t first = node;
+    for (; first > 1 && speed_.u[first - 1] > std::max(optimised_u_, at_u - slowing.way()); --first)
+      speed_.beta[first - 1] = slowing.SquareBefore(at_u - 0.5 * (speed_.u[first - 2] + speed_.u[first - 1]));
+    first -= std::min<std::size_t>(first, 3);
+    if (LargestUse(ConstraintsOf(stretch_, map_, goal_, speed_, first, node), speed_, first) <= 1.0) break;
+  }
+  goal_.floor = floor;
 }
 
 double TimeLaw::TimeWithin(std::size_t i, double since_u) const {
@@ -64,24 +125,26 @@ void TimeLaw::Refine(std::size_t node) {
   if (grid_.empty()) return;
   RefineByGrid(grid_, node, kWindow, speed_);
   // Where the feed was kept before, it changes now.
-  if (node == changed_) RefineForChange(*stretch_, map_, node, kChange, 0.0, speed_);
+  if (node == changed_) RefineForChange(stretch_, map_, node, kChange, 0.0, speed_);
 }
 
 void TimeLaw::PlanWindow() {
   const std::size_t settled = time_s_.size() - 1;
+  KnowAhead(settled);
   Refine(settled);
   const std::size_t end = speed_.u.size() - 1;
   // The state at a node is that of its two coefficients; at the very start both are free.
   const std::size_t first = settled == 0 ? 0 : settled + 2;
   const std::size_t last = std::min(end + 1, first + kWindow);
-  if (first <= last) OptimiseSpeed(*stretch_, map_, goal_, first, last, speed_);
+  if (first <= last) OptimiseSpeed(stretch_, map_, goal_, first, last, speed_);
   if (goal_.feed_may_exceed && goal_.feed_scale > 0.0 && first <= last)
-    OptimiseSpeed(*stretch_, map_, goal_, first, last, speed_);
+    OptimiseSpeed(stretch_, map_, goal_, first, last, speed_);
+  optimised_u_ = std::max(optimised_u_, speed_.u[std::min(last, end)]);
   Settle(last > end ? end : std::min(end, settled + kSettled));
 }
 
 void TimeLaw::PlanTo(double time_s) {
-  while (!stops_ && time_s_.back() <= time_s && time_s_.size() < speed_.u.size()) PlanWindow();
+  while (!stops_ && time_s_.back() <= time_s && GoesOn()) PlanWindow();
 }
 
 bool TimeLaw::GoesOnAfter(double time_s) {
@@ -102,7 +165,7 @@ TimeLaw::State TimeLaw::AtNode(std::size_t node) const {
 
 TimeLaw::State TimeLaw::At(double time_s) {
   PlanTo(time_s);
-  time_s = std::max(0.0, time_s);
+  time_s = std::max(time_s_[forgets_ ? 1 : 0], time_s);
   // At the very instant of its begin too: no node lies behind it.
   if (stops_ && time_s >= last_s_) {
     // The ramp counts the speed that is lost.
@@ -128,11 +191,15 @@ TimeLaw::State TimeLaw::At(double time_s) {
 double TimeLaw::SinceNode(std::size_t i, double since_s) const {
   const double width = speed_.width(i);
   const double value = speed_.Value(i), slope = speed_.Slope(i), bend = speed_.Bend(i);
-  double e = width * since_s / (time_s_[i + 1] - time_s_[i]);
-  for (int k = 0; k < 8; ++k) {
+  double e = std::min(width, width * since_s / (time_s_[i + 1] - time_s_[i]));
+  // Newton's steps; where a speed that falls by much leads them astray, halvings.
+  double low = 0.0, high = width;
+  for (int k = 0; k < kMostSteps; ++k) {
     const double off_s = since_s - TimeWithin(i, e);
-    e = std::clamp(e + off_s * std::sqrt(value + e * (slope + 0.5 * e * bend)), 0.0, width);
     if (std::abs(off_s) < 1e-13) break;
+    (off_s > 0.0 ? low : high) = e;
+    e += off_s * std::sqrt(value + e * (slope + 0.5 * e * bend));
+    if (!(e > low && e < high)) e = 0.5 * (low + high);
   }
   return e;
 }
@@ -144,11 +211,11 @@ double TimeLaw::planned_way_m() const {
 
 double TimeLaw::TimeAt_s(double way_m) {
   const double at_u = map_.Inverse(way_m);
-  while (time_s_.size() < speed_.u.size() && speed_.u[time_s_.size() - 1] < at_u) PlanWindow();
+  while (GoesOn() && speed_.u[time_s_.size() - 1] < at_u) PlanWindow();
   const auto settled = speed_.u.begin() + static_cast<std::ptrdiff_t>(time_s_.size());
   const auto after = std::upper_bound(speed_.u.begin(), settled, at_u);
   if (after == settled) return time_s_.back();
-  if (after == speed_.u.begin()) return 0.0;
+  if (after == speed_.u.begin()) return time_s_.front();
   const auto i = static_cast<std::size_t>(after - speed_.u.begin()) - 1;
   return time_s_[i] + TimeWithin(i, at_u - speed_.u[i]);
 }
@@ -175,9 +242,38 @@ double TimeLaw::ChangeFeed(double time_s, double scale) {
   goal_.feed_may_exceed = scale < goal_.feed_scale || goal_.feed_may_exceed;
   goal_.feed_scale = scale;
   changed_ = node;
-  if (scale > 0.0) grid_ = SpeedGrid(*stretch_, map_, scale);
+  if (scale > 0.0) MakeGrid(node);
   if (scale == 0.0) EndBySlowing();
   return time_s_[node];
+}
+
+void TimeLaw::MakeGrid(std::size_t node) {
+  ahead_ = SpeedGrid(speed_.u[node], goal_.feed_scale);
+  std::vector<double> nodes{speed_.u[node]};
+  while (!ahead_.complete() && ahead_.at_u() < speed_.u.back())
+    ahead_.Extend(stretch_, map_, speed_.u.back(), nodes);
+  grid_.clear();
+  Append(nodes);
+  grid_ = std::move(nodes);
+}
+
+void TimeLaw::ForgetBefore(double time_s) {
+  const auto after = std::upper_bound(time_s_.begin(), time_s_.end(), time_s);
+  const auto at = static_cast<std::size_t>(after - time_s_.begin());
+  // What is decided next begins at the last node that is settled.
+  const std::size_t needed = std::min(at, time_s_.size() - 1);
+  if (needed < kForgetAtOnce + kLooksBack) return;
+  const std::size_t gone = needed - kLooksBack;
+  const auto drop = [&](std::vector<double>& v) {
+    v.erase(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(gone));
+  };
+  drop(time_s_);
+  drop(speed_.u);
+  drop(speed_.beta);
+  changed_ = changed_ < gone ? kNowhere : changed_ - gone;
+  grid_.erase(grid_.begin(), std::lower_bound(grid_.begin(), grid_.end(), speed_.u.front()));
+  forgets_ = true;
+  stretch_.ForgetBefore(map_.At(speed_.u.front()).way_m);
 }
 
 bool TimeLaw::EndWithin(std::size_t from, double slow_m_s, double jerk_m_s3) {
@@ -202,19 +298,19 @@ bool TimeLaw::EndWithin(std::size_t from, double slow_m_s, double jerk_m_s3) {
 
 void TimeLaw::EndBySlowing() {
   double jerk = std::numeric_limits<double>::infinity();
-  for (const PlanLimits& l : stretch_->limits) jerk = std::min(jerk, kTailShare * l.jerk_m_s3);
+  for (const PlanLimits& l : stretch_.limits()) jerk = std::min(jerk, kTailShare * l.jerk_m_s3);
   const std::size_t from = time_s_.size() - 1;
   const State now = AtNode(from);
-  const double step_s = StepTime_s(*stretch_, now.way_m, now.speed_m_s);
+  const double step_s = StepTime_s(stretch_, now.way_m, now.speed_m_s);
   const double tail_s = std::isfinite(step_s) ? std::max(kTail_s, kTailSteps * step_s) : kTail_s;
   const double slow_m_s = jerk * tail_s * tail_s;
   // The place of rest shows once it has been planned, and then needs nodes.
   for (int round = 0; round < kStopRounds; ++round) {
     time_s_.resize(from + 1);
-    RefineForChange(*stretch_, map_, from, kWindow, 0.25 * slow_m_s, speed_);
+    RefineForChange(stretch_, map_, from, kWindow, 0.25 * slow_m_s, speed_);
     PlanWindow();
   }
-  for (std::size_t next = from; !EndWithin(next, slow_m_s, jerk) && time_s_.size() < speed_.u.size();) {
+  for (std::size_t next = from; !EndWithin(next, slow_m_s, jerk) && GoesOn();) {
     next = time_s_.size() - 1;
     PlanWindow();
   }

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <limits>
-#include <memory>
 #include <vector>
 
+#include "daemon/program/speed_grid.h"
 #include "daemon/program/speed_optimiser.h"
 #include "daemon/program/stretch.h"
 
@@ -15,7 +15,7 @@ namespace contour {
 /// what a plan of the whole stretch would be. Its feed can be changed on the way.
 class TimeLaw {
  public:
-  TimeLaw(std::shared_ptr<const Stretch> stretch, double from_m, double feed_scale);
+  TimeLaw(Stretch stretch, double from_m, double feed_scale);
 
   struct State {
     double way_m = 0.0;
@@ -40,16 +40,26 @@ class TimeLaw {
   double ChangeFeed(double time_s, double scale);
   [[nodiscard]] bool stops_on_the_way() const { return stops_; }
 
-  [[nodiscard]] const Stretch& stretch() const { return *stretch_; }
-  [[nodiscard]] const std::shared_ptr<const Stretch>& shared_stretch() const { return stretch_; }
+  /// Times before this will not be asked for again.
+  void ForgetBefore(double time_s);
+  /// As far as it is known.
+  [[nodiscard]] const Stretch& stretch() const { return stretch_; }
+  /// Nodes that are kept.
+  [[nodiscard]] std::size_t nodes() const { return speed_.u.size(); }
 
  private:
+  void KnowAhead(std::size_t settled);
+  void Append(const std::vector<double>& nodes);
+  void LowerFloor(std::size_t node, double floor);
+  void MakeGrid(std::size_t node);
   void PlanWindow();
   void Refine(std::size_t node);
   void PlanTo(double time_s);
   void Settle(std::size_t node);
   void EndBySlowing();
   bool EndWithin(std::size_t from, double slow_m_s, double jerk_m_s3);
+  /// Is there more to plan before the stretch's end?
+  [[nodiscard]] bool GoesOn() const { return !ahead_.complete() || time_s_.size() < speed_.u.size(); }
   [[nodiscard]] State AtNode(std::size_t node) const;
   [[nodiscard]] double TimeWithin(std::size_t i, double since_u) const;
   /// How far after node i it is at a time since then.
@@ -57,10 +67,13 @@ class TimeLaw {
   /// The first node after a time, made there if need be.
   std::size_t NodeAfter(double time_s);
 
-  std::shared_ptr<const Stretch> stretch_;
+  Stretch stretch_;
   RestMap map_;
   SpeedGoal goal_;
   SpeedSpline speed_;
+  SpeedGrid ahead_;
+  double optimised_u_ = 0.0;  ///< the speed has been decided up to here, if not settled
+  bool forgets_ = false;
   std::vector<double> grid_;    ///< nodes for a feed that was changed to; empty: it was not
   std::vector<double> time_s_;  ///< of the nodes that are settled
   std::size_t changed_ = 0;     ///< node from which the present feed counts

@@ -14,6 +14,11 @@ constexpr double kBlend_s = 0.03;
 /// More grid points than that are not told apart: readings so far apart say nothing of each other.
 constexpr std::uint64_t kMostSkipped = 1'000'000;
 
+/// Of the longest frame: more than stuff bits of the frames before a SYNC make of its time.
+constexpr double kStuffing = 0.25;
+/// Of an encoder, that neighbouring readings may be off by.
+constexpr double kSteps = 4.0;
+
 PerAxis<double> Zeros(std::size_t n) {
   PerAxis<double> zeros(n);
   for (double& z : zeros) z = 0.0;
@@ -34,7 +39,9 @@ Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAx
       unreferenced_travel_m(1e-3 * cycle.axes[index].limits.unreferenced_travel_mm),
       following_error_m(1e-3 * cycle.axes[index].limits.following_error_mm),
       position_min_m(1e-3 * cycle.axes[index].limits.position_mm[0]),
-      position_max_m(1e-3 * cycle.axes[index].limits.position_mm[1]) {}
+      position_max_m(1e-3 * cycle.axes[index].limits.position_mm[1]),
+      late_from_s(kStuffing * monitored.sample_jitter_s),
+      late_from_m(kSteps * monitored.count_m) {}
 
 Cycle::Cycle(const CycleConfig& config)
     : period_s_(config.cycle_us * 1e-6),
@@ -169,6 +176,7 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
+    if (f.late_s > axes_[i].late_from_s) TakeLateness(i, f.late_s);
     stale = stale || (f.valid && !f.fresh);
     follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
   }
@@ -195,7 +203,7 @@ FaultSeen Cycle::Contradiction(const Feedback& feedback) noexcept {
     s.reference_m = AtSample(i).position_m;
     s.spring_N_m = csp_ ? 0.0 : control_in_.reference[i][1].spring_N_m;
     s.has_scale = f.has_scale && (f.scale_fresh || !two_inertias_);
-    s.table_position_m = f.table_position_m;
+    s.table_position_m = f.has_scale ? TableAt_m(i, f) : 0.0;
     const Reason reason = axis.monitor.Step(s);
     if (reason != Reason::kNone && first.reason == Reason::kNone)
       first = {reason, static_cast<std::uint8_t>(i)};

@@ -93,6 +93,8 @@ class Cycle {
     double following_error_m;
     double position_min_m;
     double position_max_m;
+    double late_from_s;  ///< bit stuffing makes answers late by less
+    double late_from_m;  ///< less is of the encoder's steps
 
     void Keep(StateKeeper& keep) noexcept {
       keep(estimator, observer, monitor, sent_force_N, reported_N, in_period, wanted_torque_Nm, position_m,
@@ -108,6 +110,8 @@ class Cycle {
   // What Act is made of, in its order:
   const Feedback& Observe(const CycleInput& in) noexcept;
   [[nodiscard]] FaultSeen Contradiction(const Feedback& feedback) noexcept;
+  void TakeLateness(std::size_t index, double late_s) noexcept;
+  [[nodiscard]] double TableAt_m(std::size_t index, const AxisFeedback& feedback) const noexcept;
   const Estimates& Estimate(const Feedback& feedback, const IoInput& io) noexcept;
   void WatchItself(const Feedback& feedback, const Estimates& estimate) noexcept;
   [[nodiscard]] Situation Assess(const CycleInput& in, const Estimates& estimate) const noexcept;

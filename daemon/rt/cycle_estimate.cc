@@ -1,10 +1,34 @@
 #include "daemon/rt/cycle.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
 // What the axes do and what holds them back, as of the newest feedback.
 namespace contour {
+namespace {
+
+/// Of what a reading is off by, what lateness must leave of it at most to have made it.
+constexpr double kExplains = 0.5;
+
+}  // namespace
+
+// A SYNC that another frame held up latches a later position, and the answer to it comes as much later. The
+// answer alone may be late as well: what is nearer to where the axis was foreseen tells.
+void Cycle::TakeLateness(std::size_t index, double late_s) noexcept {
+  Axis& axis = axes_[index];
+  const AxisEstimate& foreseen = estimates_[index];
+  const double late_m = late_s * foreseen.predicted_velocity_m_s;
+  const double off_m = axis.position_m - foreseen.predicted_position_m;
+  if (std::abs(late_m) > axis.late_from_m && std::abs(off_m - late_m) < kExplains * std::abs(off_m))
+    axis.position_m -= late_m;
+}
+
+// The scale was read at the same instant.
+double Cycle::TableAt_m(std::size_t index, const AxisFeedback& feedback) const noexcept {
+  const Axis& axis = axes_[index];
+  return feedback.table_position_m + axis.position_m - feedback.position_rad * axis.radius_m_rad;
+}
 
 const Cycle::Estimates& Cycle::Estimate(const Feedback& feedback, const IoInput& io) noexcept {
   const bool holds = transitions_.holds_torque();
@@ -17,7 +41,7 @@ const Cycle::Estimates& Cycle::Estimate(const Feedback& feedback, const IoInput&
     AxisEstimatorInput input;
     input.position_m = axis.position_m;
     input.fresh = f.fresh && axis.monitor.believed();
-    input.scale_m = f.table_position_m;
+    if (f.has_scale) input.scale_m = TableAt_m(i, f);
     input.scale_fresh = f.scale_fresh;
     input.force_N = axis.sent_force_N;
     if (by_reported_torque_) {

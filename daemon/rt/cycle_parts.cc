@@ -158,6 +158,8 @@ AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis) {
   setup.known = a.known;
   setup.side_modes = a.side_modes;
   setup.acceleration_m_s2 = 1e-3 * a.limits.acceleration_mm_s2;
+  setup.sample_jitter_s =
+      kLongestFrame_bits / config.master.buses[config.master.axes[axis].bus].bitrate_bit_s;
   setup.has_scale = a.has_scale;
   if (LoopTakesScale(config, axis)) setup.scale_loop = ScaleLoopOf(config, axis, 1.0);
   return AxisEstimator(setup);

@@ -170,7 +170,7 @@ void Transitions::StopFor(FaultSeen why, Orders& orders) noexcept {
 void Transitions::BeginStop(Orders& orders, FaultSeen why, MachineState after) noexcept {
   reason_ = why.reason;
   where_ = why.where;
-  voltage_off_ = false;
+  voltage_off_ = after == MachineState::kFaulted && RampInDoubt(why.reason);
   after_stop_ = after;
   orders.stop_path = true;
   Enter(MachineState::kStopping);

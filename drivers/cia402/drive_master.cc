@@ -79,7 +79,7 @@ void DriveMaster::StartBringUp() noexcept {
     feedback_[i].drive_state = DriveState::kUnknown;
     feedback_[i].age_cycles = 0;
     axes_[i].walk.Reset();
-    axes_[i].earliest_answer_ns = kNeverAnswered;
+    axes_[i].earliest_answer_ns = axes_[i].usual_answer_ns = kNeverAnswered;
     axes_[i].behind = false;
   }
 }

@@ -156,8 +156,8 @@ class DriveMaster {
     /// What is configured stays as constructed.
     void Keep(StateKeeper& keep) noexcept {
       keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, let_go_cycles, reported,
-           reported_cycle, alive_cycle, answer_cycle, behind, earliest_answer_ns, reference, was_enabled,
-           boot_up_due, seen_before, last_seen_rad, offset_rad);
+           reported_cycle, alive_cycle, answer_cycle, behind, earliest_answer_ns, usual_answer_ns, reference,
+           was_enabled, boot_up_due, seen_before, last_seen_rad, offset_rad);
     }
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;
@@ -185,6 +185,7 @@ class DriveMaster {
     std::uint64_t answer_cycle = 0;                    ///< cycle of the last feedback
     bool behind = false;                               ///< that was an answer to the SYNC before
     std::int64_t earliest_answer_ns = kNeverAnswered;  ///< after the grid point whose SYNC it answers
+    std::int64_t usual_answer_ns = kNeverAnswered;     ///< the same lately
     ReferenceState reference = ReferenceState::kAbsolute;
     bool was_enabled = false;    ///< ever, in this daemon's life
     bool boot_up_due = false;    ///< NMT reset communication was sent: its boot-up message is no restart
@@ -211,6 +212,7 @@ class DriveMaster {
   [[nodiscard]] bool Heard(std::size_t axis) const noexcept;
   void OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept;
   bool AnswersNewestSync(Axis& axis, const AxisFeedback& feedback, std::int64_t stamp_ns) const noexcept;
+  [[nodiscard]] double Late_s(Axis& axis, std::int64_t stamp_ns) const noexcept;
   void Supervise(std::size_t axis) noexcept;
   void StartPdos() noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;

@@ -180,7 +180,11 @@ TEST(LoadEmulatedMachine, ReadsBothParts) {
       LoadEmulatedMachine(ExampleMachine("xy_emulated.yaml"), {"emulator.seed=7"});
   EXPECT_EQ(file.emulator.seed, 7U);
   EXPECT_EQ(file.emulator.axes.at("y").friction.Fs_minus_N, 53.0);
-  EXPECT_EQ(WriteYaml(file.machine), WriteYaml(LoadMachine(ExampleMachine("xy_emulated.yaml"))));
+  // What it is expected to follow by is added.
+  MachineConfig machine = file.machine;
+  EXPECT_GT(machine.machine.path_following_mm.value_or(0.0), 0.0);
+  machine.machine.path_following_mm.reset();
+  EXPECT_EQ(WriteYaml(machine), WriteYaml(LoadMachine(ExampleMachine("xy_emulated.yaml"))));
 }
 
 TEST(LoadEmulatedMachine, AxesMustMatch) {
@@ -223,6 +227,10 @@ TEST(LoadMachine, FrictionIsKnownByWhatTheScrewsModeAllowsUnlessTheFileSays) {
   EXPECT_EQ(friction({heavy}), FrictionKind::kLinear) << "216 Hz";
   EXPECT_EQ(friction({heavy, "control.friction=srukf"}), FrictionKind::kSrukf);
   EXPECT_EQ(friction({heavy, csp_x, csp_y}), FrictionKind::kSrukf);
+  // One step of the torque, 0.8 N, moves the bristles by 0.53 um, where friction winds the screw up by 0.87.
+  const std::string bristle = "axes.x.model.friction.sigma0_N_m=1.5e6";
+  EXPECT_EQ(friction({bristle}), FrictionKind::kLinear);
+  EXPECT_EQ(friction({bristle, csp_x, csp_y}), FrictionKind::kSrukf);
   EXPECT_EQ(friction({soft, csp_x, csp_y}), FrictionKind::kLinear) << "100 Hz";
   // Only what knows the table has a use for its scale.
   EXPECT_EQ(friction({csp_x, csp_y, "axes.x.drive.linear_scale={counts_per_mm: 200000}",

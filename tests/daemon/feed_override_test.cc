@@ -170,5 +170,34 @@ TEST(FeedOverrideTest, WaitsWhereTheProgramSaysAtAnyFeed) {
   }
 }
 
+// Where the axes bind, twice the feed is not twice as fast: what is left is told by what is planned.
+TEST(FeedOverrideTest, WhatIsLeftAtTwiceTheFeedIsWhatTheAxesAllow) {
+  const PerAxis<PlanLimits> limits = WithTolerance(Limits(0.25, 5.0, 200.0));
+  std::string tight = "F60000\n", free = "F600\n";
+  for (int k = 0; k < 40; ++k) tight += "G3 X0 Y0 I-1\n";
+  for (int k = 0; k < 6; ++k) free += "G1 X30\nG1 X0\n";
+  for (const std::string& text : {tight, free}) {
+    SCOPED_TRACE(text.substr(0, 20));
+    Way way(text, limits, {2.0, false, false, PacedPath::Options::Planning::kAheadOrSlower});
+    const double duration_s = way.plan().duration_s();
+    const auto go_on = [&] {
+      way.feeder().PlanStep();
+      way.Cycle();
+    };
+    while (way.place().time_s < 0.4 * duration_s) go_on();
+    const double at_s = way.place().time_s;
+    const int cycles = way.cycles();
+    const double left_s = (duration_s - at_s) * way.feeder().time_share();
+    while (!way.ended()) go_on();
+    const double took_s = kPeriod_s * (way.cycles() - cycles);
+    EXPECT_NEAR(left_s, took_s, 0.1 * took_s);
+    if (text == tight) {
+      EXPECT_GT(left_s, 0.9 * (duration_s - at_s)) << "as fast as it may be already";
+    } else {
+      EXPECT_LT(left_s, 0.6 * (duration_s - at_s));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace contour

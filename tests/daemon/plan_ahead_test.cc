@@ -104,6 +104,29 @@ TEST(PlanAheadTest, APlannerThatIsHeldBackOnlySlowsItDown) {
   EXPECT_GT(waited, 1000) << "the test shall see plans that are late";
 }
 
+// What the cycle has in hand where no more is planned is a time, whatever its period.
+TEST(PlanAheadTest, TheSupplyIsHeldUpAsLongWithShortCycles) {
+  PerAxis<PlanLimits> limits = WithTolerance(Limits(0.25, 5.0, 3.0));
+  const auto waiting_s = [&](double period_s) {
+    CommandMailbox mailbox(16, 1 << 16);
+    PathFeeder feeder(mailbox);
+    const Program program = ParseProgram(LongProgram(), "program of the test", ProgramFormat::kGcode);
+    feeder.Begin(std::make_unique<PathGenerator>(program, test::Origin(), limits, period_s, 1), Ahead());
+    while (mailbox.path_points_waiting() == 0) {
+      feeder.PlanStep();
+      feeder.Feed();
+    }
+    const std::size_t in_swing = mailbox.path_points_waiting();
+    PathProgress progress;
+    progress.earliest = in_swing;
+    mailbox.TellProgress(progress);
+    feeder.Feed();
+    return static_cast<double>(mailbox.path_points_waiting() - in_swing) * period_s;
+  };
+  EXPECT_GT(waiting_s(1e-3), 0.1);
+  EXPECT_NEAR(waiting_s(1e-3), waiting_s(0.25e-3), 0.02);
+}
+
 TEST(PlanAheadTest, HowLongItTakesIsEstimatedBetterAndBetter) {
   const PerAxis<PlanLimits> limits = WithTolerance(Limits(0.25, 5.0, 200.0));
   Way way(LongProgram(), limits, Ahead(), ProgramFormat::kGcode, kQueue);

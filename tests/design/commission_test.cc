@@ -39,6 +39,16 @@ TEST(CommissionPlanTest, KeepsToTheTravelAlsoNearAnEnd) {
   }
 }
 
+TEST(CommissionPlanTest, DefaultLimitsAreEnoughForEverySteepness) {
+  MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/xy_emulated.yaml");
+  AxisConfig& axis = machine.axes.at("x");
+  for (const double lead_mm : {1.0, 5.0, 40.0}) {
+    axis.model.mechanics.lead_mm = lead_mm;
+    axis.limits.torque_Nm = 20.0;
+    EXPECT_NO_THROW(PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis))) << lead_mm;
+  }
+}
+
 TEST(CommissionPlanTest, RefusesWhatDoesNotFitAndSaysWhatDoes) {
   EXPECT_NE(Refusal(0.0, {500.0, 100.0, 0.9}).find("--travel_mm: found 500"), std::string::npos);
   EXPECT_NE(Refusal(0.0, {3.0, 100.0, 0.9}).find("whole turn"), std::string::npos);

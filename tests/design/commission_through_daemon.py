@@ -7,7 +7,6 @@ The machine file is contradicted by half; the model that comes out must be near 
 must be off afterwards, and nothing may move without --yes.
 """
 import json
-import socket as sockets
 import subprocess
 import sys
 import tempfile
@@ -16,11 +15,8 @@ from pathlib import Path
 
 import yaml
 
-
-def free_port():
-    with sockets.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from free_port import free_port  # noqa: E402
 
 
 def main():

@@ -53,6 +53,7 @@ TEST_P(Soundness, AMillionStepsStayFinite) {
   }
 }
 
+// But for the bristle's stiffness, which goes back to the commissioned one: a corner may have left anything.
 TEST_P(Soundness, ThirtySecondsOfStandstillChangeNoParameter) {
   Loop loop(GetParam(), WrongMechanics(), WrongFriction(), {});
   const SmoothSine motion{100e-6, 0.785, 0.2, 2.7};
@@ -64,7 +65,13 @@ TEST_P(Soundness, ThirtySecondsOfStandstillChangeNoParameter) {
     const AxisEstimate e = loop.Step(motion);
     ASSERT_NEAR(e.g_plus_N, before.g_plus_N, 1e-9) << k;  // rounding only
     ASSERT_NEAR(e.g_minus_N, before.g_minus_N, 1e-9) << k;
-    ASSERT_NEAR(e.sigma0_N_m, before.sigma0_N_m, 1e-9 * before.sigma0_N_m) << k;
+    const double commissioned_N_m = WrongFriction().sigma0_N_m;
+    ASSERT_LE(std::abs(e.sigma0_N_m - commissioned_N_m),
+              std::abs(before.sigma0_N_m - commissioned_N_m) + 1e-9 * before.sigma0_N_m)
+        << k;
+    if (SevenStates() && k > 2000) {
+      ASSERT_NEAR(e.sigma0_N_m, commissioned_N_m, 1e-6 * commissioned_N_m) << k;
+    }
     ASSERT_FALSE(e.diverged);
     if (SevenStates()) {
       ASSERT_LT(e.friction_std_N, 10.0) << k;

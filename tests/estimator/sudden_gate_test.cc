@@ -38,5 +38,27 @@ TEST(SuddenGate, OfReadingsThatGoOnBeingOffNoneIsLeftOut) {
   EXPECT_FALSE(Passes(gate, 1e-6, kStd_m)) << "it is over";
 }
 
+// Before: a loop that answered a late SYNC by ringing had its readings left out, and rang more; t30s of the
+// family, with its scale, at 2.5 mm/s, was lost of a reading that was off by 0.3 um.
+TEST(SuddenGate, WhatRingsAfterAReadingIsNotSudden) {
+  constexpr double kStd_m = 84e-9;
+  SuddenGate gate({12.0, 20e-6}, 0.8e-6);
+  for (const double innovation_m : {2e-8, 0.30e-6, -0.90e-6, 1.10e-6, -1.6e-6, 1.3e-6}) {
+    EXPECT_FALSE(gate.LeavesOut(innovation_m, kStd_m)) << innovation_m;
+  }
+}
+
+// Before: at 0.12 m/s on the 100 kg table of the family readings were off by half a micrometre all the time,
+// so one that was off by ten of a late SYNC was taken for what lasts. A lost set-point ended 19 mm away.
+TEST(SuddenGate, OneReadingIsLeftOutAmongOthersThatAreOffByLess) {
+  constexpr double kStd_m = 47e-9;
+  SuddenGate gate({12.0, 20e-6}, 0.2e-6);
+  for (int i = 0; i < 60; ++i)
+    gate.LeavesOut((i % 2 == 0 ? 1.0 : -1.0) * (0.4e-6 + 0.1e-6 * (i % 3)), kStd_m);
+  EXPECT_FALSE(gate.LeavesOut(0.8e-6, kStd_m));
+  EXPECT_TRUE(gate.LeavesOut(-10.3e-6, kStd_m));
+  EXPECT_FALSE(gate.LeavesOut(0.5e-6, kStd_m));
+}
+
 }  // namespace
 }  // namespace contour

@@ -16,8 +16,13 @@ constexpr double kZero_m = 0.123;
 /// Two inertias under a controller that knows the truth; what is held against the scale is wrong by 30 %.
 class ScaledAxis {
  public:
-  explicit ScaledAxis(const test::FamilyAxis& member, double stiffness = 0.7)
-      : axis(test::Truth(member)), setup_(SetupOf(member, stiffness)), scale(setup_) {}
+  explicit ScaledAxis(const test::FamilyAxis& member, double stiffness = 0.7, double jitter_s = 0.0)
+      : axis(test::Truth(member)), setup_(SetupOf(member, stiffness)), scale(WithJitter(setup_, jitter_s)) {}
+
+  static TableScale::Setup& WithJitter(TableScale::Setup& s, double jitter_s) {
+    s.sample_jitter_s = jitter_s;
+    return s;
+  }
 
   static TableScale::Setup SetupOf(const test::FamilyAxis& member, double stiffness) {
     TableScale::Setup s;
@@ -46,8 +51,9 @@ class ScaledAxis {
     s.enabled = true;
     s.moves = true;
     s.fresh = true;
-    s.position_m = encoder_.Read(axis.s.motor_m);
-    s.scale_m = kZero_m + axis.s.table_m;
+    const double late_s = setup_.sample_jitter_s * Late();
+    s.position_m = encoder_.Read(axis.s.motor_m + late_s * axis.s.motor_m_s);
+    s.scale_m = kZero_m + axis.s.table_m + late_s * axis.s.table_m_s;
     s.scale_fresh = read(s.scale_m);
     s.force_N = 0.8 * sent_N_ + 0.2 * before_N_;
     scale.Step(s);
@@ -68,6 +74,12 @@ class ScaledAxis {
  private:
   TableScale::Setup setup_;
   test::Encoder encoder_;
+  /// Of a frame that holds the SYNC up: any share, in a fixed order.
+  double Late() {
+    draw_ = draw_ * 1664525U + 1013904223U;
+    return static_cast<double>(draw_ >> 8) / static_cast<double>(1U << 24);
+  }
+  std::uint32_t draw_ = 1;
   double sent_N_ = 0.0, before_N_ = 0.0;
   int k_ = 0;
 
@@ -91,6 +103,23 @@ TEST(TableScale, IsBelievedOnEveryAxisWithAModelThatIsOff) {
             1.0 / (stiffness * member.stiffness_N_m) + a.scale.fit().extra_compliance_m_N();
         EXPECT_NEAR(compliance_m_N * member.stiffness_N_m, 1.0, 0.08) << member.name << " " << stiffness;
       }
+    }
+  }
+}
+
+// Before: at speed what a late SYNC made of the acceleration, and of the table's way in a period, was taken
+// for a lie of the scale: m100s and t30s of the family stopped in sound programs.
+TEST(TableScale, IsBelievedWhereSyncsComeLate) {
+  for (const test::FamilyAxis& member : test::kFamily) {
+    ScaledAxis a(member, 1.0, 135e-6);
+    a.Enable();
+    double predicted_m = 0.0;
+    for (int k = 0; k < 3000; ++k) {
+      a.Step(50e-3, 1.0, [](double&) { return true; });
+      const double speed_m_s = a.axis.s.table_m_s;
+      if (k > 0) a.scale.Sudden(a.scale.table_m() - predicted_m, speed_m_s);
+      predicted_m = a.axis.s.table_m;
+      ASSERT_TRUE(a.scale.believed()) << member.name << " " << k;
     }
   }
 }

@@ -77,6 +77,15 @@ TEST_P(TestPathOfXy, TurnsOnceWhenItSays) {
   EXPECT_TRUE(w.last.last);
 }
 
+// Before: 0.45 m where 0.4 m were free, and the machine stopped at its position limit.
+TEST_P(TestPathOfXy, TurnsWithinAShortTravel) {
+  machine_.axes.at("x").limits.position_mm = {-60.0, 60.0};
+  const Walked w = Walk(true, 1.0);
+  EXPECT_EQ(w.turns, 1);
+  EXPECT_LT(w.farthest_m, 0.06);
+  EXPECT_NEAR(w.turned_s, reversal_s_, 2e-3);
+}
+
 INSTANTIATE_TEST_SUITE_P(Feeds, TestPathOfXy, ::testing::Values(0.01, 1.0, 30.0, 250.0));
 
 }  // namespace

@@ -7,6 +7,7 @@ import numpy as np
 
 from draw_axis import TICK_S, TURN
 from friction_laws import LAWS
+from tune_loop import loop_band
 
 SUB = 10
 STEP_S = TICK_S / SUB
@@ -32,12 +33,17 @@ def transition(j1, j2, k, d):
     return left @ (np.eye(4) + 0.5 * STEP_S * a), left @ b * STEP_S
 
 
-def coloured(random, ticks, axes):
+def deviates(seeds, stream, ticks):
+    """Of every axis its own: what it is drawn beside changes nothing."""
+    return np.stack([np.random.default_rng([int(seed), 3, stream]).normal(size=ticks) for seed in seeds], 1)
+
+
+def coloured(ticks, axes):
     """Torque noise by tick: white, and a first-order one with its corner."""
     n = len(axes["white"])
     keep = np.exp(-TURN * axes["corner_Hz"] * TICK_S)
-    out, slow = random.normal(size=(ticks, n)), np.zeros(n)
-    drive = random.normal(size=(ticks, n)) * np.sqrt(1.0 - keep**2)
+    out, slow = deviates(axes["seed"], 0, ticks), np.zeros(n)
+    drive = deviates(axes["seed"], 1, ticks) * np.sqrt(1.0 - keep**2)
     for k in range(ticks):
         slow = keep * slow + drive[k]
         out[k] = axes["white"] * out[k] + axes["coloured"] * slow
@@ -48,7 +54,7 @@ class Controller:
     """Position P, speed PI, with the axis's own inertia and friction fed forward; on quantised positions."""
 
     def __init__(self, a):
-        band = TURN * np.minimum(18.0, np.maximum(7.0, 0.3 * a["mode_Hz"]))
+        band = loop_band(a)
         self.kv, self.kp, self.ki = band * a["inertia"], band / 4.0, band / 5.0
         self.a, self.last, self.speed, self.sum = a, None, 0.0, np.zeros(len(band))
 
@@ -64,7 +70,7 @@ class Controller:
 
 
 class Batch:
-    def __init__(self, axes, effects, motions, law, seed):
+    def __init__(self, axes, effects, motions, law):
         self.n = len(axes)
         keys = [k for k, v in axes[0].items() if isinstance(v, (int, float, np.floating, np.integer))]
         self.a = stacked(axes, keys)
@@ -72,9 +78,9 @@ class Batch:
         self.ticks = max(len(m[0]) for m in motions)
         pad = lambda x: np.concatenate([x, np.full(self.ticks - len(x), x[-1])])
         self.target, self.push, self.other = (np.stack([pad(m[i]) for m in motions], 1) for i in range(3))
-        self.law, self.random = LAWS[law](self.a), np.random.default_rng([seed, 3])
+        self.law = LAWS[law](self.a)
         self.soft = np.zeros(self.n)
-        self.lengths = [len(m[0]) for m in motions]
+        self.lengths = np.array([len(m[0]) for m in motions], float)
         self.x, self.torque = np.zeros((self.n, 4)), np.zeros(self.n)
         self.x[:, 0] = self.x[:, 2] = self.target[0]
         self.acceleration, self.temperature = np.zeros(self.n), np.full(self.n, 21.0)
@@ -94,13 +100,14 @@ class Batch:
         a, e = self.a, self.e
         x = self.x[:, 2] * a["lever_m"] / a["stroke_m"]
         along = 1.0 + e["along"] * np.sin(TURN * e["along_periods"] * x + e["phase"])
-        in_time = 1.0 + e["drift"] * k / self.ticks
+        in_time = 1.0 + e["drift"] * np.minimum(1.0, k / self.lengths)
         net = np.abs(self.total * self.acceleration)
         self.level_factor = along * in_time + e["load_friction"] * net / a["Fc"]
-        self.slow_torque = e["offset"] - e["spring"] * 2.0 * x
+        # What pulls from outside pulls at the table.
+        self.outside = e["offset"] - e["spring"] * 2.0 * x
         k = min(max(k, 1), self.ticks - 2)
         other = (self.other[k + 1] - 2.0 * self.other[k] + self.other[k - 1]) / TICK_S**2
-        self.slow_torque = self.slow_torque - e["cross"] * other
+        self.outside = self.outside - e["cross"] * other
         self.viscous = a["sigma2"] * (1.0 + e["rate_1_K"] * (self.temperature - 21.0))
 
     def friction(self, w, q):
@@ -110,7 +117,8 @@ class Batch:
         ripple = 1.0 + e["ripple"] * np.sin(e["ripple_order"] * q + e["phase"])
         level = (a["Fc"] + (a["Fs"] - a["Fc"]) * shape) * np.maximum(0.05, self.level_factor * ripple + 0.5 * e["asymmetry"] * side)
         hard = self.law.torque(w, level * (1.0 - e["soft_share"]), STEP_S)
-        stiffness = a["sigma0"] * np.maximum(e["soft_ratio"], 1e-3)
+        # Softer in travel, whatever its share: one that breaks away where the rest does is no other element.
+        stiffness = a["sigma0"] * np.maximum(e["soft_share"] * e["soft_ratio"], 1e-6)
         self.soft = (self.soft + STEP_S * w) / (1.0 + STEP_S * np.abs(w) * stiffness / (level * np.maximum(e["soft_share"], 1e-9)))
         drag = self.viscous * w * (1.0 + 0.5 * e["asymmetry_viscous"] * side) + e["square_drag"] * w * np.abs(w) / a["fast_rad_s"] ** 2
         return hard + stiffness * self.soft * (e["soft_share"] > 0.0) + drag
@@ -127,11 +135,11 @@ class Batch:
         w = np.where(on_load, x[:, 3], x[:, 1]) + 0.5 * STEP_S * self.last_acceleration
         friction = self.friction(w, q1)
         motor = motor - e["cogging"] * np.sin(e["cogging_order"] * q1 + e["phase"])
-        motor = motor + self.slow_torque - e["vibration"] * np.sin(TURN * e["vibration_Hz"] * t)
+        outside = self.outside - e["vibration"] * np.sin(TURN * e["vibration_Hz"] * t)
         twist, spin = x[:, 0] - x[:, 2], x[:, 1] - x[:, 3]
         free = np.clip(twist, -0.5 * e["gap"], 0.5 * e["gap"])
         lost = self.k * free + self.d * spin * (np.abs(twist) < 0.5 * e["gap"])
-        forces = np.stack([motor + lost - np.where(on_load, 0.0, friction), -lost - np.where(on_load, friction, 0.0)], 1)
+        forces = np.stack([motor + lost - np.where(on_load, 0.0, friction), outside - lost - np.where(on_load, friction, 0.0)], 1)
         new = np.einsum("nij,nj->ni", self.ad, x) + np.einsum("nij,nj->ni", self.bd, forces)
         side = np.where(on_load, new[:, 3] - x[:, 3], new[:, 1] - x[:, 1])
         self.last_acceleration = side / STEP_S
@@ -140,18 +148,19 @@ class Batch:
 
     def run(self):
         a, e = self.a, self.e
-        noise = coloured(self.random, self.ticks, a)
+        noise = coloured(self.ticks, a)
         first = np.floor((np.arange(SUB)[:, None] - np.round((a["delay_s"] + e["more_delay_s"]) / STEP_S)[None, :]) / SUB).astype(int)
         commands, out = np.zeros((self.ticks + 8, self.n)), {k: np.zeros((self.ticks, self.n)) for k in ("q", "table", "temperature")}
         count, everyone = TURN / a["counts"], np.arange(self.n)
-        controller, wander = Controller(a), np.zeros(self.n)
+        controller, wander = Controller({**a, "damping": self.d}), np.zeros(self.n)
         self.last_acceleration, self.heat = np.zeros(self.n), np.zeros(self.n)
         keep = np.exp(-TICK_S / a["wander_s"])
         speed = np.gradient(self.target, TICK_S, axis=0)
         acceleration = np.gradient(speed, TICK_S, axis=0)
-        late = self.random.normal(size=(self.ticks, self.n)) * e["jitter_s"]
+        late = deviates(a["seed"], 2, self.ticks) * e["jitter_s"]
+        wandering = deviates(a["seed"], 4, self.ticks) * np.sqrt(1.0 - keep**2) * a["wander_m"]
         for k in range(self.ticks):
-            changed = (e["payload_at"] >= 0.0) & (k >= e["payload_at"] * self.ticks)
+            changed = (e["payload_at"] >= 0.0) & (k >= e["payload_at"] * self.lengths)
             if changed.any():
                 e["payload_at"][changed] = -1.0
                 self.make_mechanics()
@@ -161,7 +170,7 @@ class Batch:
             u = controller.command(q, self.target[k], speed[k], acceleration[k]) + self.push[k]
             u = np.round(np.clip(u, -2.0 * a["rated"], 2.0 * a["rated"]) / a["torque_step"]) * a["torque_step"]
             commands[k + 8] = u
-            wander = keep * wander + np.sqrt(1.0 - keep**2) * a["wander_m"] * self.random.normal(size=self.n)
+            wander = keep * wander + wandering[k]
             x = self.x[:, 2] * a["lever_m"]
             x = x + e["pitch"] * np.sin(TURN * e["pitch_periods"] * x / a["stroke_m"] + e["phase"]) + wander
             out["q"][k], out["table"][k] = q, np.round(x / a["scale_step_m"]) * a["scale_step_m"]

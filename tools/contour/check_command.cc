@@ -13,8 +13,10 @@
 #include "config/yaml_tree.h"
 #include "daemon/program/gcode_parser.h"
 #include "daemon/program/program.h"
+#include "design/loop_choice.h"
 #include "tools/contour/check_report.h"
 #include "tools/contour/loop_section.h"
+#include "tools/contour/path_section.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour {
@@ -83,6 +85,9 @@ int RunCheck(const Options& options) {
   const LoopSection loops = JudgeLoops(file.machine);
   std::cout << CheckReport(file.machine) << loops.text << std::flush;
   if (!loops.refused.empty()) throw ConfigError(WithPlaces(options, loops.refused));
+  std::vector<std::string> with_loops = options.set;
+  for (std::string& loop : LoopsThatAreMissing(file.machine)) with_loops.push_back(std::move(loop));
+  std::cout << PathSection(LoadMaybeEmulatedMachine(options.file, with_loops).machine) << std::flush;
   return CheckInterfaces(file.machine);
 }
 

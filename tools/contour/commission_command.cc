@@ -257,6 +257,11 @@ void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& p
 /// The model of what was recorded, and the axis's loop for it.
 void IdentifyAxis(const MachineConfig& machine, Watchman& watchman, const Options& options) {
   IdentificationJob job;
+  // Of what the drive's own loop does to a chirp its reports show but two values a period.
+  if (ModeFor(machine.machine.controller, machine.axes.at(options.axis).drive) == DriveMode::kCsp)
+    job.to_try =
+        "in csp the torque is what the drive reports, which does not show all of it: where the drive can, "
+        "commission in torque mode (drive.mode: cst)";
   job.stated = diagnosis::ToStatedAxis(machine, options.axis);
   job.model = machine.axes.at(options.axis).model;
   job.logs.push_back(watchman.recorder().Take());
@@ -306,7 +311,7 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
   sub->add_option("--axis", options->axis, "The axis")->required();
   AddSocketOption(*sub, options->socket);
   sub->add_option("--travel_mm", options->travel_mm,
-                  "Whole way (default: a tenth of the stroke, at most 20 mm)");
+                  "Whole way (default: a tenth of the stroke, at most 20 mm; a turn of the motor at least)");
   sub->add_option("--max_speed_mm_s", options->max_speed_mm_s,
                   "Largest speed (default: 40 % of the axis's limit, at most 100 mm/s)");
   sub->add_option("--max_torque_Nm", options->max_torque_Nm,

@@ -5,10 +5,12 @@
 #include <stdexcept>
 
 #include "analysis/parallel/parallel_for.h"
+#include "config/friction_choice.h"
 #include "config/loop_axis.h"
 #include "config/yaml_writer.h"
 #include "design/loop_report.h"
 #include "design/loop_search.h"
+#include "drivers/cia402/mode_for.h"
 
 namespace contour {
 
@@ -32,12 +34,28 @@ void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, con
     return;
   }
   std::ofstream out(file, std::ios::binary);
-  out << "# Found by contour commission from the model of axis " << axis << ": axes." << axis
+  out << "# Found by contour from the model of axis " << axis << ": axes." << axis
       << ".loop of a machine file, or its file.\n"
       << WriteYaml(found.tuning);
   out.close();
   if (!out) throw std::runtime_error("cannot write " + file.string());
   std::cout << "wrote " << file.string() << "\n";
+}
+
+void FindLoopWhereItIsNoLongerGood(const MachineConfig& machine, const std::string& axis,
+                                   const ModelConfig& model, const std::filesystem::path& file) {
+  MachineConfig now = machine;
+  AxisConfig& config = now.axes.at(axis);
+  config.model = model;
+  if (!config.loop || ModeFor(now.machine.controller, config.drive) != DriveMode::kCst) return;
+  const bool linear = machine.control.friction == FrictionKind::kLinear;
+  if (!linear && ChooseFriction(now) != FrictionKind::kLinear) return;
+  const LoopReport report = ReportOn(LoopAxisOf(config), *config.loop, 1e-6 * now.machine.cycle_us);
+  const std::string wrong = WhatIsWrong(report.verdict);
+  if (wrong.empty()) return;
+  std::cout << "with this model the loop of axis " << axis << " does not keep its limits (" << wrong
+            << "). contourd runs with it until the machine file has another one:\n";
+  FindAndWriteLoop(machine, axis, model, file);
 }
 
 }  // namespace contour

@@ -12,4 +12,9 @@ namespace contour {
 void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, const ModelConfig& model,
                       const std::filesystem::path& file);
 
+/// The same for a model that came to an axis with a loop, where that does not keep its limits with it; else
+/// nothing.
+void FindLoopWhereItIsNoLongerGood(const MachineConfig& machine, const std::string& axis,
+                                   const ModelConfig& model, const std::filesystem::path& file);
+
 }  // namespace contour

@@ -13,11 +13,14 @@
 #include "analysis/text/format_text.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
+#include "config/yaml_reader.h"
+#include "config/yaml_writer.h"
 #include "core/exit_status.h"
 #include "daemon/control_socket/base64.h"
 #include "drivers/cia402/mode_for.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/contour/daemon_link.h"
+#include "tools/contour/new_daemon.h"
 
 namespace contour {
 namespace {
@@ -32,6 +35,22 @@ constexpr std::chrono::seconds kBeginAnew{60};
 constexpr double kRounding = 1.001;
 
 const bool kTerminal = ::isatty(STDERR_FILENO) != 0;
+
+ModelConfig ModelOf(const std::string& yaml) {
+  ModelConfig model;
+  std::vector<std::string> errors;
+  ReadYaml(ParseYamlText(yaml, "the model"), model, "model", errors);
+  if (!errors.empty()) throw ConfigError(errors);
+  return model;
+}
+
+/// The daemon's errors begin with the model that it was given.
+std::string WhyRefused(std::string error, const std::string& model) {
+  const std::size_t at = error.find(model);
+  if (!model.empty() && at != std::string::npos) error.erase(0, at + model.size());
+  error.erase(0, error.find_first_not_of(": \n"));
+  return "contourd does not take it: " + error;
+}
 
 void ClearLine() {
   if (kTerminal) std::fputs("\r\x1b[K", stderr);
@@ -222,26 +241,21 @@ improve::Drawing DaemonMachine::Run(const improve::ProgramText& program) {
 }
 
 void DaemonMachine::LoadModel(const std::string& yaml) {
-  AskOrThrow(*client_, {{"request", "load_model"}, {"axis", setup_.axis}, {"model", yaml}});
   const auto deadline = std::chrono::steady_clock::now() + kBeginAnew;
-  // Its end of the connection closes when it ends, and somebody listens again when it has begun anew.
+  // Its end of the connection closes when it ends, at times before its answer has come.
   try {
+    const json reply = client_->Ask({{"request", "load_model"}, {"axis", setup_.axis}, {"model", yaml}});
+    if (!reply.value("ok", false)) throw improve::ModelRefused(WhyRefused(reply.value("error", ""), yaml));
     while (std::chrono::steady_clock::now() < deadline) client_->Listen(kLookEvery);
     throw std::runtime_error("contourd did not begin anew");
   } catch (const ConnectionLost&) {
     client_.reset();
   }
-  while (!client_) {
-    try {
-      client_ = std::make_unique<ControlClient>(ConnectToDaemon(setup_.socket));
-    } catch (const EnvironmentError&) {
-      if (std::chrono::steady_clock::now() > deadline)
-        throw std::runtime_error("contourd ended and did not begin anew; its messages say why");
-      std::this_thread::sleep_for(kLookEvery);
-    }
-  }
+  client_ = ConnectToNewDaemon([this] { return ConnectToDaemon(setup_.socket); }, deadline);
   WaitForStatus(
       *client_, [](const json& s) { return s.at("state") == "Idle"; }, kStateLimit);
+  if (!yaml.empty() && WriteYaml(Machine().axes.at(setup_.axis).model) != WriteYaml(ModelOf(yaml)))
+    throw std::runtime_error("contourd began anew, but not with the model that it was given");
 }
 
 void DaemonMachine::Say(const std::string& line) {

@@ -27,7 +27,7 @@ ModelConfig IdentifyAndReport(const IdentificationJob& job) {
   const double cycles = id.seconds / id.period_s;
   id.missing_share = std::max(id.missing_share, static_cast<double>(job.lost_cycles) / std::max(1.0, cycles));
   if (const std::string why = identify::WhyUnusable(id); !why.empty())
-    throw std::runtime_error("no model was written: " + why);
+    throw std::runtime_error("no model was written: " + why + (job.to_try.empty() ? "" : "; " + job.to_try));
   const ModelConfig model = identify::ToModel(id, job.model);
   identify::WriteModelFile(job.out, model, id, job.sources);
   std::cout << identify::ResultTable(id, job.model, model) << "wrote " << job.out.string() << "\n";

@@ -21,6 +21,7 @@ struct IdentificationJob {
   std::filesystem::path report;      ///< directory; empty: none
   int threads = 0;                   ///< 0: one per processor
   std::uint64_t lost_cycles = 0;     ///< that a record should have and has not
+  std::string to_try;                ///< told with a refusal: what else may help
 };
 
 /// Identifies, with progress on a terminal; writes the model, and with a report directory identification.json

@@ -22,6 +22,7 @@
 #include "daemon/program/program.h"
 #include "daemon/program_limits.h"
 #include "design/commission_plan.h"
+#include "tools/contour/commission_loop.h"
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/daemon_machine.h"
 #include "tools/contour/draw_pictures.h"
@@ -44,7 +45,7 @@ struct Options {
   double machine_minutes = 15.0;
   std::size_t passes = 3;
   double false_alarm_rate = diagnosis::DiagnoseOptions{}.false_alarm_rate;
-  std::string out, report, write, truth;
+  std::string out, loop, report, write, truth;
   int threads = 0;
   bool yes = false;
 };
@@ -142,12 +143,15 @@ void WriteResult(const improve::ImproveResult& result, const improve::ImproveReq
   };
   drawn("path_before", result.before.path);
   drawn("check_before", result.before.check);
-  drawn("path_after", result.after.path);
-  drawn("check_after", result.after.check);
+  const improve::Trial* best = result.chosen();
+  if (best != nullptr) {
+    drawn("path_after", best->drawn.path);
+    drawn("check_after", best->drawn.check);
+  }
   std::cout << improve::ImproveText(result, request);
-  if (result.fitted && result.judgement.keep) {
+  if (best != nullptr && result.judgement.keep) {
     const std::string out = options.out.empty() ? options.axis + "_model.yaml" : options.out;
-    const std::string model = WriteYaml(*result.fitted);
+    const std::string model = WriteYaml(best->model);
     WriteFile(out, "# model of axis " + options.axis + " by contour improve\n" + model);
     std::cout << "model: " << out << "; contourd runs with it until it ends\n";
     if (!options.write.empty()) {
@@ -155,6 +159,8 @@ void WriteResult(const improve::ImproveResult& result, const improve::ImproveReq
                 WithAxisBlock(ReadTextFile(options.write), options.write, options.axis, "model", model));
       std::cout << "wrote axes." << options.axis << ".model of " << options.write << "\n";
     }
+    FindLoopWhereItIsNoLongerGood(result.machine, options.axis, best->model,
+                                  options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
   }
   DrawPictures("plot_improve.py", report);
   std::cout << "report: " << report.string() << "\n";
@@ -183,14 +189,16 @@ int RunImprove(const Options& options) {
   };
   const improve::ImproveResult result = improve::ImproveSequence(daemon, request, diagnose).Run();
   improve::TruthFiles truth;
-  if (!options.truth.empty()) truth = {options.truth, options.truth + ".1"};
+  // The daemon numbers the files of its new beginnings, one for each model that was tried.
+  if (!options.truth.empty())
+    truth = {options.truth, options.truth + "." + std::to_string(result.best.value_or(0) + 1)};
   WriteResult(result, request, truth, options);
   return kExitDone;
 }
 
 void AddLimits(CLI::App& sub, Options& options) {
   sub.add_option("--travel_mm", options.travel_mm,
-                 "Whole way (default: a tenth of the stroke, at most 20 mm)");
+                 "Whole way (default: a tenth of the stroke, at most 20 mm; a turn of the motor at least)");
   sub.add_option("--max_speed_mm_s", options.max_speed_mm_s,
                  "Largest speed (default: 40 % of the axis's limit, at most 100 mm/s)");
   sub.add_option("--max_torque_Nm", options.max_torque_Nm,
@@ -219,6 +227,8 @@ void AddImproveCommand(CLI::App& app, Action& action) {
   sub->add_option("--false-alarm-rate", options->false_alarm_rate, "As of contour diagnose")
       ->check(CLI::Range(1e-4, 0.5));
   sub->add_option("--out", options->out, "Model file to write (default: NAME_model.yaml)");
+  sub->add_option("--loop", options->loop,
+                  "Loop to write where the axis's own is not for the kept model (default: NAME_loop.yaml)");
   sub->add_option("--write", options->write, "Machine file to write the model into as well, where it is kept")
       ->check(CLI::ExistingFile);
   sub->add_option("--report", options->report, "Directory of the report (default: NAME_improve)");

@@ -248,9 +248,7 @@ EventUse EventsFor(const Options& options, const json& status) {
   EventUse use;
   use.optional_stop = *PartFor(options, status).optional_stop;
   use.switches = [outputs](const GcodeEvent& event) {
-    const std::string word =
-        event.letter == 'M' ? "M" + std::to_string(event.code) : std::string(1, event.letter);
-    return std::find(outputs.begin(), outputs.end(), word) != outputs.end();
+    return std::find(outputs.begin(), outputs.end(), NameOf(event)) != outputs.end();
   };
   return use;
 }

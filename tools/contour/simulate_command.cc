@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "config/number_text.h"
 #include "core/exit_status.h"
 #include "daemon/make_log_header.h"
 #include "daemon/output_words.h"
+#include "daemon/program/path_walk.h"
 #include "daemon/program/program.h"
 #include "tools/contour/ignored_words.h"
 #include "tools/contour/result_line.h"
@@ -48,6 +50,8 @@ std::string Line(const SimulationResult& result, const SimulationRequest& reques
   return ResultLine(line);
 }
 
+constexpr double kLargestFeed_percent = 100.0 * PathWalk::kLargestScale;
+
 /// PERCENT or PERCENT@SECONDS.
 FeedFrom FeedOf(const std::string& text) {
   double percent = 0.0, time_s = 0.0;
@@ -56,9 +60,10 @@ FeedFrom FeedOf(const std::string& text) {
   stream >> percent;
   if (stream && !stream.eof()) stream >> at >> time_s;
   std::string rest;
-  if (!stream || at != '@' || stream >> rest || !(percent >= 0.0 && percent <= 200.0) || !(time_s >= 0.0))
-    throw CLI::ValidationError("--feed",
-                               "found '" + text + "', expected PERCENT or PERCENT@SECONDS, 0 to 200 percent");
+  if (!stream || at != '@' || stream >> rest || !(percent >= 0.0 && percent <= kLargestFeed_percent) ||
+      !(time_s >= 0.0))
+    throw CLI::ValidationError("--feed", "found '" + text + "', expected PERCENT or PERCENT@SECONDS, 0 to " +
+                                             RoundedText(kLargestFeed_percent) + " percent");
   return {time_s, 0.01 * percent};
 }
 

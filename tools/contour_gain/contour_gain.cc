@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/axis_model/scale_parameter.h"
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/extensions_of.h"
 #include "config/number_text.h"
@@ -49,23 +50,11 @@ EmulatedAxisConfig Emulated(const StatedAxis& a, const AxisConfig& config) {
 
 /// The stated axis with its numbers as fitted.
 StatedAxis Fitted(StatedAxis a, const Diagnosis& found) {
-  const auto scale = [&](const char* name, std::initializer_list<double*> values) {
-    for (const BaseParameter& p : found.base)
-      if (p.name == name && p.stated != 0.0 && std::isfinite(p.fitted))
-        for (double* value : values) *value *= p.fitted / p.stated;
-  };
-  StatedFriction& f = a.friction;
-  scale("inertia", {&a.motor_inertia});
-  scale("load_inertia", {&a.load_inertia});
-  scale("stiffness", {&a.stiffness});
-  scale("damping", {&a.damping});
-  scale("Fc", {&f.Fc_plus, &f.Fc_minus});
-  scale("Fs", {&f.Fs_plus, &f.Fs_minus});
-  scale("vs", {&f.vs});
-  scale("s0", {&f.s0});
-  scale("s1", {&f.s1});
-  scale("s2", {&f.s2});
-  scale("lag", {&a.lag_s});
+  for (const BaseParameter& p : found.base) {
+    if (p.stated == 0.0 || !std::isfinite(p.fitted)) continue;
+    const double factor = p.fitted / p.stated;
+    if (!ScaleParameter(a, p.name, factor) && p.name == "lag") a.lag_s *= factor;
+  }
   return a;
 }
 

@@ -111,6 +111,19 @@ Finding Throttling(const Computer& c) {
           "sysctl -w kernel.sched_rt_runtime_us=-1"};
 }
 
+Finding LockupWatchdog(const Computer& c, int cpu) {
+  const std::string name = "lockup_watchdog";
+  if (c.Number("proc/sys/kernel/soft_watchdog").value_or(0) == 0)
+    return {name, Level::kGood, "no watchdog for lockups takes the CPU from real-time threads", ""};
+  const auto watched = c.Line("proc/sys/kernel/watchdog_cpumask");
+  if (watched && cpu >= 0 && !Cpus(*watched).contains(cpu))
+    return {name, Level::kGood, "the watchdog for lockups leaves CPU " + std::to_string(cpu) + " out", ""};
+  return {
+      name, Level::kAdvice,
+      "the kernel's watchdog for lockups takes the CPU from any thread every few seconds, for microseconds",
+      "sysctl -w kernel.soft_watchdog=0"};
+}
+
 Finding GroupScheduling(const Computer& c, int priority) {
   const std::string release = c.Line("proc/sys/kernel/osrelease").value_or("");
   const bool groups = c.Exists("sys/fs/cgroup/cpu/cpu.rt_runtime_us") ||
@@ -258,6 +271,7 @@ std::vector<Finding> Examine(const ExaminationRequest& request) {
   std::vector<Finding> findings{Kernel(computer),
                                 Isolation(computer, request.cpu),
                                 Throttling(computer),
+                                LockupWatchdog(computer, request.cpu),
                                 GroupScheduling(computer, request.priority),
                                 Governor(computer, request.cpu),
                                 Priority(computer, request.priority),

@@ -54,6 +54,7 @@ constexpr std::array kRows{
     Expectation{F::kTorqueLostSilently,      kMayStop, kStops,   {R::kTorqueWithoutMotion, R::kFollowingError}},
     Expectation{F::kTorqueHalved,            kGoesOn,  kGoesOn,  {}},
     Expectation{F::kLogBlocked,              kGoesOn,  kGoesOn,  {}},
+    Expectation{F::kBusTraffic,              kGoesOn,  kGoesOn,  {}},
     Expectation{F::kGridPointsSkipped,       kMayStop, kStops,   {R::kGridPointsSkipped, R::kFeedbackJump}},
     Expectation{F::kCyclesLate,              kStops,   kStops,   {R::kCyclesLate, R::kFollowingError}},
     Expectation{F::kPositionBitTop,          kMayStop, kMayStop, {R::kFeedbackJump, R::kVelocityLimit}},

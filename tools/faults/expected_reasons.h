@@ -33,10 +33,20 @@ struct ExpectedHere {
   Outcome outcome = Outcome::kMayStop;
   std::array<Reason, 2> reasons{};
   Reason of_phase = Reason::kNone;
+  /// A linear scale contradicts an encoder that lies; it may be the first to.
+  bool by_scale = false;
   [[nodiscard]] bool Allows(Reason reason) const noexcept {
+    if (by_scale && (reason == Reason::kScaleDisagrees || reason == Reason::kScaleDoubted)) return true;
     return reason != Reason::kNone && (reason == reasons[0] || reason == reasons[1] || reason == of_phase);
   }
 };
+
+/// The encoder says what is not so.
+[[nodiscard]] constexpr bool EncoderLies(Fault fault) noexcept {
+  return fault == Fault::kEncoderReversed || fault == Fault::kEncoderJump ||
+         fault == Fault::kEncoderJumpLarge || fault == Fault::kEncoderFrozen ||
+         fault == Fault::kEncoderFlickers;
+}
 /// `crawls`: so slow that an axis without torque and an encoder that stands look the same, without a scale.
 ExpectedHere ExpectedIn(Fault fault, Phase phase, bool crawls = false) noexcept;
 

@@ -57,6 +57,7 @@ enum class Fault : std::uint8_t {
   kTorqueHalved,
   // The computer.
   kLogBlocked,
+  kBusTraffic,
   kGridPointsSkipped,
   kCyclesLate,
   kPositionBitTop,
@@ -124,6 +125,8 @@ inline constexpr std::array kFaults{
     FaultName{Fault::kTorqueLostSilently, "torque_lost_silently", "no torque, 0x6077 tells the current's"},
     FaultName{Fault::kTorqueHalved, "torque_halved", "half the torque, 0x6077 tells the current's"},
     FaultName{Fault::kLogBlocked, "log_blocked", "nobody empties the telemetry queue"},
+    FaultName{Fault::kBusTraffic, "bus_traffic",
+              "other nodes send long frames beside ours and hold SYNCs up"},
     FaultName{Fault::kGridPointsSkipped, "grid_points_skipped",
               "the computer sleeps for as many cycles as feedback may be missing"},
     FaultName{Fault::kCyclesLate, "cycles_late", "the frames of every cycle leave late"},

@@ -37,6 +37,7 @@ Promise PromiseOf(Fault fault) {
     case Fault::kEncoderJumpTiny:
     case Fault::kTorqueHalved:
     case Fault::kLogBlocked:
+    case Fault::kBusTraffic:
       return Promise::kNothing;
     case Fault::kFeedbackFramesLost:
     case Fault::kFeedbackFramesLate:

@@ -59,6 +59,8 @@ class Run {
     if (!proof_ && (c.fault == Fault::kEncoderJump || c.fault == Fault::kEncoderJumpLarge) &&
         !JumpIsSeen(file_.machine, c) && expected_.outcome == Outcome::kStops)
       expected_.outcome = Outcome::kMayStop;
+    const auto axis = std::next(file_.machine.axes.begin(), static_cast<std::ptrdiff_t>(c.axis));
+    expected_.by_scale = !proof_ && EncoderLies(c.fault) && axis->second.drive.linear_scale.has_value();
     powerless_ = c.fault == Fault::kTorqueLost || c.fault == Fault::kTorqueLostSilently;
     if (powerless_) watch_.SetPowerless(c.axis);
     // What is seen later than usual, because others may not look, has no bound.

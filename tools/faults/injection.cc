@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::int64_t kMs_ns = 1'000'000;
 constexpr std::uint16_t kHighestPriorityUnused = 0x001;  ///< CANopen has nothing there
+constexpr std::uint16_t kTrafficId = 0x4FE;              ///< fourth TPDO of node 126: behind ours in priority
 constexpr int kBurstFrames = 8;
 constexpr double kBitsOfLongFrame = 105.0;
 constexpr int kLateCycles = 5;
@@ -162,6 +163,13 @@ void Injection::Intrude() {
           std::next(config_.buses.begin(), static_cast<std::ptrdiff_t>(bus_))->second.master_node_id;
       return intruder.Begin(HeartbeatFrame(static_cast<std::uint8_t>(master), NmtState::kOperational),
                             10 * kMs_ns, -1, somewhen_ns);
+    }
+    case Fault::kBusTraffic: {
+      // Of nobody's here, so that every SYNC meets them at another instant.
+      CanFrame f{kTrafficId, 8, {}};
+      f.data = {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55};
+      const double some_ns = static_cast<double>(period_ns) * random_.Uniform(1.15, 1.85);
+      return intruder.Begin(f, static_cast<std::int64_t>(some_ns), -1, somewhen_ns);
     }
     case Fault::kForeignSdo: {
       CanFrame f{Id(cob::kSdoRequest), 8, {}};

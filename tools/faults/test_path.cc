@@ -11,6 +11,7 @@ namespace {
 /// Of the limits, so that a stop on the path has room.
 constexpr double kShareOfLimits = 0.7;
 constexpr double kShareOfTravel = 0.8;
+constexpr double kSlower = 0.95;
 constexpr double kShortestRamp_periods = 20.0;
 /// Of 3 u^2 - 2 u^3: the steepest slope and the largest second derivative.
 constexpr double kSlope = 1.5;
@@ -26,20 +27,32 @@ TestPath::TestPath(const Shape& shape, const MachineConfig& machine, const PerAx
       program_id_(program_id),
       period_s_(machine.machine.cycle_us * 1e-6),
       travel_m_(1e9) {
-  ramp_s_ = kShortestRamp_periods * period_s_;
   std::size_t i = 0;
   for (const auto& [name, axis] : machine.axes) {
-    if (moves_[i]) {
-      const double v = shape_.feed_m_s / kShareOfLimits;
-      ramp_s_ = std::max({ramp_s_, kSlope * v / (1e-3 * axis.limits.acceleration_mm_s2),
-                          std::sqrt(kCurvature * v / (1e-3 * axis.limits.jerk_mm_s3))});
+    if (moves_[i])
       travel_m_ = std::min({travel_m_, kShareOfTravel * (1e-3 * axis.limits.position_mm[1] - start_m[i]),
                             kShareOfTravel * (start_m[i] - 1e-3 * axis.limits.position_mm[0])});
-    }
     ++i;
   }
-  ramp_s_ = period_s_ * std::ceil(ramp_s_ / period_s_);
+  ramp_s_ = Ramp_s(machine);
+  // An axis whose travel is too short for its feed turns at a lower one.
+  while (shape_.reverses && shape_.feed_m_s * (ramp_s_ + shape_.constant_s) > travel_m_) {
+    shape_.feed_m_s *= kSlower;
+    ramp_s_ = Ramp_s(machine);
+  }
   Begin(Part::kUp, 0.0, shape_.feed_m_s, ramp_s_);
+}
+
+double TestPath::Ramp_s(const MachineConfig& machine) const {
+  double ramp_s = kShortestRamp_periods * period_s_;
+  std::size_t i = 0;
+  for (const auto& [name, axis] : machine.axes) {
+    if (!moves_[i++]) continue;
+    const double v = shape_.feed_m_s / kShareOfLimits;
+    ramp_s = std::max({ramp_s, kSlope * v / (1e-3 * axis.limits.acceleration_mm_s2),
+                       std::sqrt(kCurvature * v / (1e-3 * axis.limits.jerk_mm_s3))});
+  }
+  return period_s_ * std::ceil(ramp_s / period_s_);
 }
 
 void TestPath::Begin(Part part, double from_m_s, double to_m_s, double seconds) {

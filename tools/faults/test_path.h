@@ -36,6 +36,7 @@ class TestPath {
  private:
   enum class Part : std::uint8_t { kUp, kConstant, kTurn, kAway, kDown, kEnded };
   [[nodiscard]] double TurnRamp_s() const noexcept { return 2.0 * ramp_s_; }
+  [[nodiscard]] double Ramp_s(const MachineConfig& machine) const;
   void Begin(Part part, double from_m_s, double to_m_s, double seconds);
 
   Shape shape_;

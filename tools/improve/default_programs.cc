@@ -14,8 +14,8 @@ constexpr double kRadius_mm = 10.0;
 constexpr double kSpeed_mm_s = 50.0;
 constexpr double kShareOfWay = 0.45;
 constexpr double kShareOfSpeed = 0.9;
-/// Of the axis's acceleration, that the curve may take.
-constexpr double kShareOfAcceleration = 0.5;
+/// Of the axis's acceleration and jerk, that the curve may take.
+constexpr double kShareOfCurve = 0.5;
 /// The other program: shares of the first one's size and speed that no small whole numbers divide, so that
 /// places, speeds and accelerations at the reversals are others.
 constexpr double kSmaller = 0.62;
@@ -28,16 +28,18 @@ struct Curve {
 /// What the limits allow; `size` and `speed` are shares.
 Curve CurveFor(const MachineConfig& machine, const WorkingSpace& space, double size, double speed) {
   double way_mm = 2e3;
-  double speed_mm_s = kSpeed_mm_s, acceleration_mm_s2 = 1e9;
+  double speed_mm_s = kSpeed_mm_s, acceleration_mm_s2 = 1e9, jerk_mm_s3 = 1e12;
   for (std::size_t i = 0; i < space.names.size(); ++i) {
     way_mm = std::min(way_mm, 1e3 * (space.axes[i].high_m - space.axes[i].low_m));
     speed_mm_s = std::min(speed_mm_s, kShareOfSpeed * 1e3 * space.axes[i].max_speed_m_s);
-    acceleration_mm_s2 =
-        std::min(acceleration_mm_s2, machine.axes.at(space.names[i]).limits.acceleration_mm_s2);
+    const AxisLimits& limits = machine.axes.at(space.names[i]).limits;
+    acceleration_mm_s2 = std::min(acceleration_mm_s2, limits.acceleration_mm_s2);
+    jerk_mm_s3 = std::min(jerk_mm_s3, limits.jerk_mm_s3);
   }
   Curve curve{size * std::min(kRadius_mm, kShareOfWay * way_mm), speed * speed_mm_s};
-  curve.speed_mm_s =
-      std::min(curve.speed_mm_s, std::sqrt(kShareOfAcceleration * acceleration_mm_s2 * curve.radius_mm));
+  const double r_mm = curve.radius_mm;
+  curve.speed_mm_s = std::min({curve.speed_mm_s, std::sqrt(kShareOfCurve * acceleration_mm_s2 * r_mm),
+                               std::cbrt(kShareOfCurve * jerk_mm_s3 * r_mm * r_mm)});
   return curve;
 }
 

@@ -22,6 +22,10 @@ bool Matters(const Cause& cause, const Diagnosis& found) {
   return cause.log_evidence_gain >= kMatters * all;
 }
 
+bool Has(const std::vector<ProgramText>& programs, const std::string& text) {
+  return std::any_of(programs.begin(), programs.end(), [&](const ProgramText& p) { return p.text == text; });
+}
+
 }  // namespace
 
 std::string WhatIsOpen(const Diagnosis& found) {
@@ -46,16 +50,19 @@ std::string WhatIsOpen(const Diagnosis& found) {
 
 std::vector<ProgramText> DecidingPrograms(const Diagnosis& found, const std::vector<ProgramText>& done) {
   std::vector<ProgramText> out;
-  const auto known = [](const std::vector<ProgramText>& programs, const std::string& text) {
-    return std::any_of(programs.begin(), programs.end(),
-                       [&](const ProgramText& p) { return p.text == text; });
-  };
   for (const Cause& c : found.causes) {
     if (c.indistinguishable_from.empty() || !Matters(c, found)) continue;
-    if (c.deciding_program.empty() || known(done, c.deciding_program) || known(out, c.deciding_program))
-      continue;
+    if (c.deciding_program.empty() || Has(done, c.deciding_program) || Has(out, c.deciding_program)) continue;
     out.push_back({"what decides on " + c.kind, c.deciding_program, ProgramFormat::kYaml});
   }
+  return out;
+}
+
+std::vector<ProgramText> NotYetRun(const std::vector<ProgramText>& programs,
+                                   const std::vector<ProgramText>& done) {
+  std::vector<ProgramText> out;
+  for (const ProgramText& p : programs)
+    if (!Has(done, p.text)) out.push_back(p);
   return out;
 }
 

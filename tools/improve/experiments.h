@@ -18,6 +18,10 @@ std::string WhatIsOpen(const diagnosis::Diagnosis& found);
 std::vector<ProgramText> DecidingPrograms(const diagnosis::Diagnosis& found,
                                           const std::vector<ProgramText>& done);
 
+/// Those of `programs` that are not among `done`.
+std::vector<ProgramText> NotYetRun(const std::vector<ProgramText>& programs,
+                                   const std::vector<ProgramText>& done);
+
 /// What can be run of `programs` inside the space and within `time_s` of machine time, in their order; why
 /// not of the others is added to `left_out`.
 std::vector<Placed> Runnable(const std::vector<ProgramText>& programs, const WorkingSpace& space,

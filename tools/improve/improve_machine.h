@@ -15,6 +15,12 @@ class Refused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The daemon's checks say no to a model. Nothing has changed.
+class ModelRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// The machine and its operator, as improving a model needs them. Functions throw std::runtime_error when
 /// something is not as it should be; the axes stand still then.
 class ImproveMachine {
@@ -31,7 +37,7 @@ class ImproveMachine {
   /// Runs a program from where the machine stands, watched.
   virtual Drawing Run(const ProgramText& program) = 0;
   /// Another model of the improved axis (keys of `model:`), or with nothing the machine file's. Leads to
-  /// Idle.
+  /// Idle. Throws ModelRefused.
   virtual void LoadModel(const std::string& yaml) = 0;
   virtual void Say(const std::string& line) = 0;
 };

@@ -7,6 +7,7 @@
 
 #include "analysis/diagnosis/report/diagnosis_json.h"
 #include "analysis/text/format_text.h"
+#include "config/extended_model.h"
 #include "config/number_text.h"
 
 namespace contour::improve {
@@ -44,14 +45,21 @@ json SeriesJson(const Series& series, const ImproveRequest& request, const Machi
           {"check", ErrorsJson(series.check, request, request.check.program, yardstick, table)}};
 }
 
-json ComparisonJson(const std::optional<Comparison>& c) {
-  if (!c) return {};
-  return {{"before_um", c->before_um}, {"after_um", c->after_um}, {"repeatability_um", c->repeatability_um}};
+json ComparisonJson(const Comparison& c) {
+  return {{"before_um", c.before_um}, {"after_um", c.after_um}, {"repeatability_um", c.repeatability_um}};
+}
+
+json TrialJson(const Trial& t) {
+  return {{"from", t.from},
+          {"path", ComparisonJson(t.path)},
+          {"check", ComparisonJson(t.check)},
+          {"better", t.judgement.keep},
+          {"why", t.judgement.why}};
 }
 
 MachineConfig Yardstick(const ImproveResult& result, const ImproveRequest& request) {
   MachineConfig machine = result.machine;
-  if (result.fitted) machine.axes.at(request.axis).model = *result.fitted;
+  if (result.yardstick) machine.axes.at(request.axis).model = *result.yardstick;
   return machine;
 }
 
@@ -59,20 +67,18 @@ bool HasScale(const ImproveResult& result, const ImproveRequest& request) {
   return result.machine.axes.at(request.axis).drive.linear_scale.has_value();
 }
 
-std::string Line(const char* what, const std::optional<Comparison>& c) {
-  if (!c) return "";
-  return FormatText("  %-34s %10.3f %10.3f %8.0f %%   %.3f\n", what, c->before_um, c->after_um,
-                    100.0 * (c->after_um / c->before_um - 1.0), c->repeatability_um);
+std::string Line(const char* what, const Comparison& c) {
+  return FormatText("  %-34s %10.3f %10.3f %8.0f %%   %.3f\n", what, c.before_um, c.after_um,
+                    100.0 * (c.after_um / c.before_um - 1.0), c.repeatability_um);
 }
 
 /// The screw's stiffness moves the table and hardly the motor.
 bool StiffnessChanged(const ImproveResult& result, const ImproveRequest& request) {
   constexpr double kChanged = 0.1;  ///< less is what commissioning leaves open
-  if (!result.fitted) return false;
-  const ModelConfig& old = result.machine.axes.at(request.axis).model;
-  const double was = old.mechanics.screw_stiffness_N_um;
-  return result.fitted->extensions.compliance.has_value() != old.extensions.compliance.has_value() ||
-         std::abs(result.fitted->mechanics.screw_stiffness_N_um / was - 1.0) > kChanged;
+  if (result.chosen() == nullptr) return false;
+  const double was = Extended(result.machine.axes.at(request.axis).model).mechanics.screw_stiffness_N_um;
+  const double is = Extended(result.chosen()->model).mechanics.screw_stiffness_N_um;
+  return std::abs(is / was - 1.0) > kChanged;
 }
 
 }  // namespace
@@ -92,10 +98,13 @@ std::string ImproveJson(const ImproveResult& result, const ImproveRequest& reque
     out["diagnosed"].push_back(entry);
   }
   out["before"] = SeriesJson(result.before, request, yardstick, Load(truth.before, request.space.names));
-  if (!result.after.path.empty())
-    out["after"] = SeriesJson(result.after, request, yardstick, Load(truth.after, request.space.names));
   out["compared_at"] = HasScale(result, request) ? "scale" : "believed_table";
-  out["compared"] = {{"path", ComparisonJson(result.path)}, {"check", ComparisonJson(result.check)}};
+  out["tried"] = json::array();
+  for (const Trial& t : result.tried) out["tried"].push_back(TrialJson(t));
+  if (const Trial* best = result.chosen()) {
+    out["after"] = SeriesJson(best->drawn, request, yardstick, Load(truth.after, request.space.names));
+    out["compared"] = {{"path", ComparisonJson(best->path)}, {"check", ComparisonJson(best->check)}};
+  }
   out["kept"] = result.judgement.keep;
   out["why"] = result.judgement.why;
   return out.dump(2) + "\n";
@@ -103,13 +112,15 @@ std::string ImproveJson(const ImproveResult& result, const ImproveRequest& reque
 
 std::string ImproveText(const ImproveResult& result, const ImproveRequest& request) {
   std::string text;
-  if (result.path) {
+  if (!result.tried.empty())
     text +=
         FormatText("largest error, um, mean of %zu passes, %s:\n", request.passes,
                    HasScale(result, request) ? "at the scale" : "at the encoder less the screw's wind-up");
-    text += FormatText("  %-34s %10s %10s %10s   %s\n", "", "before", "after", "change", "chance");
-    text += Line(request.path.program.name.c_str(), result.path);
-    text += Line(request.check.program.name.c_str(), result.check);
+  for (const Trial& t : result.tried) {
+    text += FormatText("  %-34s %10s %10s %10s   %s\n", ("model by " + t.from + ",").c_str(), "before",
+                       "after", "change", "chance");
+    text += Line(request.path.program.name.c_str(), t.path);
+    text += Line(request.check.program.name.c_str(), t.check);
   }
   if (!HasScale(result, request) && StiffnessChanged(result, request))
     text +=

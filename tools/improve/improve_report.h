@@ -7,8 +7,8 @@
 
 namespace contour::improve {
 
-/// Truth files of an emulated machine, as contourd wrote them with the old model and with the new one; empty
-/// without them. They are told and never decided by.
+/// Truth files of an emulated machine, as contourd wrote them with the old model and with the best of the new
+/// ones; empty without them. They are told and never decided by.
 struct TruthFiles {
   std::filesystem::path before, after;
 };

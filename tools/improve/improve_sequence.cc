@@ -15,6 +15,7 @@
 namespace contour::improve {
 namespace {
 
+constexpr const char* kWithChirp = "path and chirp";
 constexpr std::size_t kDiagnosedPasses = 2;
 /// As commissioning has it.
 constexpr double kMostLost = 0.01;
@@ -29,6 +30,12 @@ PerAxis<double> Middle(const WorkingSpace& space) {
 std::string TextOf(const ModelConfig& model) {
   ModelConfig copy = model;
   return WriteYaml(copy);
+}
+
+/// Kept before not kept, then by what is left of the error on the program that nothing was fitted on.
+bool Better(const Trial& a, const Trial& b) {
+  if (a.judgement.keep != b.judgement.keep) return a.judgement.keep;
+  return a.check.after_um < b.check.after_um;
 }
 
 }  // namespace
@@ -58,20 +65,18 @@ void ImproveSequence::RunSteps() {
   machine_.Ask("The axes will be enabled and will move: " + request_.path.program.name + ", and " +
                request_.check.program.name + ".");
   result_.before = DrawAll("before");
+  series_s_ = result_.machine_time_s;
   Find();
   machine_.Disable();
   enabled_ = false;
-  FitModel();
-  if (!result_.fitted) {
+  const std::vector<Candidate> candidates = Candidates();
+  if (candidates.empty()) {
     result_.judgement = {false, "nothing was found that changes the model"};
     return;
   }
-  Load(*result_.fitted);
-  result_.after = DrawAll("after");
-  machine_.Disable();
-  enabled_ = false;
-  Decide();
-  if (!result_.judgement.keep) Restore();
+  TakeYardstick();
+  TryAll(candidates);
+  KeepBest();
 }
 
 /// A record with holes says less of the axis, and not how large the largest error was: then once more.
@@ -113,29 +118,24 @@ Series ImproveSequence::DrawAll(const std::string& when) {
   return series;
 }
 
-double ImproveSequence::TimeOfSeries_s() const {
-  return static_cast<double>(request_.passes + 1) * (request_.path.duration_s + request_.check.duration_s);
-}
-
 void ImproveSequence::Find() {
   // Of passes that are alike two say what there is to say.
   for (std::size_t i = 0; i < kDiagnosedPasses; ++i) logs_.push_back(result_.before.path[i].log);
   Diagnose(request_.path.program.name);
-  const std::string& open = result_.diagnosed.back().open;
-  if (open.empty()) {
-    Experiment(request_.shaking, "No path shows the stiffness of the screw", "path and chirp");
-    return;
-  }
-  // First what all axes need, then what decides between what that leaves.
-  Experiment(request_.experiments, "Left open: " + open, "path and experiments");
+  Experiment(request_.shaking, "No path shows the stiffness of the screw", kWithChirp);
+  if (result_.diagnosed.back().open.empty()) return;
+  // First what decides between the causes that are left, then what every axis needs.
   const std::vector<ProgramText> deciding = DecidingPrograms(result_.diagnosed.back().found, run_);
   if (!deciding.empty())
-    Experiment(deciding, "Left open: " + result_.diagnosed.back().open, "all of it and what decides");
+    Experiment(deciding, "Left open: " + result_.diagnosed.back().open, "path, chirp and what decides");
+  if (result_.diagnosed.back().open.empty()) return;
+  Experiment(NotYetRun(request_.experiments, run_), "Left open: " + result_.diagnosed.back().open,
+             "path and experiments");
 }
 
 void ImproveSequence::Experiment(const std::vector<ProgramText>& programs, const std::string& why,
                                  const std::string& on) {
-  const double left_s = request_.machine_time_s - result_.machine_time_s - TimeOfSeries_s();
+  const double left_s = request_.machine_time_s - result_.machine_time_s - series_s_;
   const std::vector<Placed> runnable =
       Runnable(programs, request_.space, request_.limits, Middle(request_.space), left_s, result_.left_out);
   run_.insert(run_.end(), programs.begin(), programs.end());
@@ -163,23 +163,73 @@ void ImproveSequence::Diagnose(const std::string& on) {
                diagnosis::VerdictText(d.found));
 }
 
-void ImproveSequence::FitModel() {
+/// Of every diagnosis, the one of most records first: what experiments add may be what no cause describes,
+/// and then the path alone says more of the path.
+std::vector<Candidate> ImproveSequence::Candidates() const {
   const ModelConfig& old = result_.machine.axes.at(request_.axis).model;
-  const diagnosis::LogTemperature temperature = diagnosis::TemperatureOf(logs_.front());
-  ModelConfig fitted = FittedModel(old, result_.diagnosed.back().found, temperature.first_degC);
-  if (TextOf(fitted) != TextOf(old)) result_.fitted = std::move(fitted);
+  const diagnosis::StatedAxis stated = diagnosis::ToStatedAxis(result_.machine, request_.axis);
+  const double first_degC = diagnosis::TemperatureOf(logs_.front()).first_degC;
+  std::vector<Candidate> out;
+  for (auto d = result_.diagnosed.rbegin(); d != result_.diagnosed.rend(); ++d)
+    for (ModelConfig& model : FittedModels(old, stated, d->found, first_degC)) {
+      const bool known = std::any_of(out.begin(), out.end(),
+                                     [&](const Candidate& c) { return TextOf(c.model) == TextOf(model); });
+      if (!known) out.push_back({d->on, d->open.empty(), std::move(model)});
+    }
+  return out;
 }
 
-void ImproveSequence::Load(const ModelConfig& model) {
-  machine_.Ask("contourd will begin anew with the new model of axis " + request_.axis +
-               "; then the axes will be enabled and will draw both programs again.");
-  loaded_ = true;
-  machine_.LoadModel(TextOf(model));
+/// The screw is what the chirp shows by one-step errors. A candidate judged by its own screw would see the
+/// error that it makes itself as one that was there before.
+void ImproveSequence::TakeYardstick() {
+  const ModelConfig& old = result_.machine.axes.at(request_.axis).model;
+  const diagnosis::StatedAxis stated = diagnosis::ToStatedAxis(result_.machine, request_.axis);
+  const double first_degC = diagnosis::TemperatureOf(logs_.front()).first_degC;
+  result_.yardstick = old;
+  for (const Diagnosed& d : result_.diagnosed) {
+    const std::vector<ModelConfig> models = FittedModels(old, stated, d.found, first_degC);
+    if (!models.empty()) result_.yardstick = models.back();
+    if (d.on == kWithChirp) return;
+  }
 }
 
-void ImproveSequence::Decide() {
+/// Until one whose diagnosis leaves nothing open draws better, or the time is over.
+void ImproveSequence::TryAll(const std::vector<Candidate>& candidates) {
+  for (const Candidate& c : candidates) {
+    if (result_.machine_time_s + series_s_ > request_.machine_time_s) {
+      result_.left_out.push_back("the model by " + c.from + ": there is no time to draw with it");
+      continue;
+    }
+    try {
+      Load(c.model, "; then the axes will be enabled and will draw both programs again.");
+    } catch (const ModelRefused& e) {
+      result_.left_out.push_back("the model by " + c.from + ": " + e.what());
+      continue;
+    }
+    Series drawn = DrawAll("with the model by " + c.from);
+    machine_.Disable();
+    enabled_ = false;
+    result_.tried.push_back(Judged(c, std::move(drawn), candidates.size()));
+    const Judgement& judgement = result_.tried.back().judgement;
+    machine_.Say((judgement.keep ? "better: " : "not better: ") + judgement.why);
+    if (judgement.keep && c.decided) return;
+  }
+}
+
+void ImproveSequence::Load(const ModelConfig& model, const std::string& then) {
+  machine_.Ask("contourd will begin anew with the new model of axis " + request_.axis + then);
+  const bool before = std::exchange(loaded_, true);
+  try {
+    machine_.LoadModel(TextOf(model));
+  } catch (const ModelRefused&) {
+    loaded_ = before;
+    throw;
+  }
+}
+
+Trial ImproveSequence::Judged(const Candidate& candidate, Series drawn, std::size_t candidates) const {
   MachineConfig yardstick = result_.machine;
-  yardstick.axes.at(request_.axis).model = *result_.fitted;
+  yardstick.axes.at(request_.axis).model = *result_.yardstick;
   double resolution_um = 0.0;
   for (const auto& [name, axis] : yardstick.axes)
     resolution_um =
@@ -188,11 +238,30 @@ void ImproveSequence::Decide() {
                            const Placed& program) {
     return Compare({Peaks_um(before, request_, program.program, yardstick),
                     Peaks_um(after, request_, program.program, yardstick)},
-                   resolution_um);
+                   resolution_um, candidates);
   };
-  result_.path = compare(result_.before.path, result_.after.path, request_.path);
-  result_.check = compare(result_.before.check, result_.after.check, request_.check);
-  result_.judgement = Judge(*result_.path, *result_.check);
+  Trial t{candidate.from, candidate.model, std::move(drawn), {}, {}, {}};
+  t.path = compare(result_.before.path, t.drawn.path, request_.path);
+  t.check = compare(result_.before.check, t.drawn.check, request_.check);
+  t.judgement = Judge(t.path, t.check);
+  return t;
+}
+
+/// The model that is loaded in the end is the best of those that are kept, or the old one.
+void ImproveSequence::KeepBest() {
+  for (std::size_t i = 0; i < result_.tried.size(); ++i)
+    if (!result_.best || Better(result_.tried[i], result_.tried[*result_.best])) result_.best = i;
+  if (!result_.best) {
+    result_.judgement = {false, result_.left_out.empty() ? "there was no time to draw with another model"
+                                                         : result_.left_out.back()};
+    return;
+  }
+  const Trial& best = result_.tried[*result_.best];
+  result_.judgement = best.judgement;
+  if (!best.judgement.keep)
+    Restore();
+  else if (*result_.best + 1 < result_.tried.size())
+    Load(best.model, ", the best of those that were drawn with.");
 }
 
 /// The machine file's own model, or what had been loaded in its place before.

@@ -36,23 +36,42 @@ struct Diagnosed {
   diagnosis::Diagnosis found;
 };
 
+/// A model that came of a diagnosis.
+struct Candidate {
+  std::string from;  ///< what had been recorded
+  bool decided = false;
+  ModelConfig model;
+};
+
+/// A candidate as it drew.
+struct Trial {
+  std::string from;
+  ModelConfig model;
+  Series drawn;
+  Comparison path, check;
+  Judgement judgement;
+};
+
 struct ImproveResult {
   MachineConfig machine;  ///< as it was
-  Series before, after;
+  Series before;
   std::vector<Diagnosed> diagnosed;
   std::vector<std::string> experiments, left_out;
-  std::optional<ModelConfig> fitted;  ///< nothing: no other model came out
+  std::vector<Trial> tried;
+  std::optional<ModelConfig> yardstick;  ///< of what stands between motor and table, for all drawings
+  std::optional<std::size_t> best;  ///< of those tried, whether it is kept or not; nothing: none came out
   double machine_time_s = 0.0;
-  std::optional<Comparison> path, check;
   Judgement judgement;
+
+  [[nodiscard]] const Trial* chosen() const { return best ? &tried[*best] : nullptr; }
 };
 
 /// What is found in records of the axis; the engine of `contour diagnose`.
 using DiagnoseAxis =
     std::function<diagnosis::Diagnosis(const diagnosis::AxisLog&, const diagnosis::StatedAxis&)>;
 
-/// Draws, diagnoses, has the experiments run that decide, loads the model that comes of it, draws again and
-/// keeps the better one. Whatever ends it early, an operator's no, an interrupt or a fault, the torque is off
+/// Draws, diagnoses, has the experiments run that decide, loads the models that come of it, draws again and
+/// keeps the best. Whatever ends it early, an operator's no, an interrupt or a fault, the torque is off
 /// and the old model loaded when it throws.
 class ImproveSequence {
  public:
@@ -67,11 +86,13 @@ class ImproveSequence {
   void Find();
   void Experiment(const std::vector<ProgramText>& programs, const std::string& why, const std::string& on);
   void Diagnose(const std::string& on);
-  void FitModel();
-  void Load(const ModelConfig& model);
-  void Decide();
+  [[nodiscard]] std::vector<Candidate> Candidates() const;
+  void TakeYardstick();
+  void TryAll(const std::vector<Candidate>& candidates);
+  void Load(const ModelConfig& model, const std::string& then);
+  [[nodiscard]] Trial Judged(const Candidate& candidate, Series drawn, std::size_t candidates) const;
+  void KeepBest();
   void Restore();
-  [[nodiscard]] double TimeOfSeries_s() const;
 
   ImproveMachine& machine_;
   ImproveRequest request_;
@@ -79,6 +100,7 @@ class ImproveSequence {
   ImproveResult result_;
   std::vector<diagnosis::AxisLog> logs_;
   std::vector<ProgramText> run_;  ///< experiments, so that none is run again
+  double series_s_ = 0.0;         ///< that drawing all of it took, ways and repeats included
   bool enabled_ = false, loaded_ = false;
 };
 

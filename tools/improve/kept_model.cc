@@ -1,8 +1,8 @@
 #include "tools/improve/kept_model.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
@@ -11,8 +11,8 @@
 namespace contour::improve {
 namespace {
 
-/// Student's 97.5 % quantile by degrees of freedom, 2 to 10; beyond, the last is a little too careful.
-constexpr std::array<double, 9> kStudent{4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
+/// Of keeping a model that is no better.
+constexpr double kChance = 0.025;
 
 double Mean(const std::vector<double>& x) {
   return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
@@ -31,7 +31,23 @@ std::string InNumbers(const char* what, const Comparison& c) {
 
 }  // namespace
 
-Comparison Compare(const Repeats& r, double resolution_um) {
+/// By the angle t = sqrt(n) tan(a), whose density is cos(a)^(n - 1): smooth, and of finite range.
+double StudentQuantile(std::size_t freedom, double probability) {
+  constexpr int kSteps = 4000;
+  const double step = 0.5 * std::numbers::pi / kSteps;
+  const auto density = [&](double angle) {
+    return std::pow(std::cos(angle), static_cast<double>(freedom) - 1.0);
+  };
+  double half = 0.0;
+  for (int i = 0; i < kSteps; ++i) half += density((i + 0.5) * step);
+  double above = 2.0 * probability * half;
+  int i = kSteps - 1;
+  for (; i > 0 && above > density((i + 0.5) * step); --i) above -= density((i + 0.5) * step);
+  const double angle = (i + 1 - above / density((i + 0.5) * step)) * step;
+  return std::sqrt(static_cast<double>(freedom)) * std::tan(angle);
+}
+
+Comparison Compare(const Repeats& r, double resolution_um, std::size_t candidates) {
   if (r.before_um.size() < 2 || r.after_um.size() < 2)
     throw std::invalid_argument("two passes before and two after are needed");
   Comparison c;
@@ -42,7 +58,9 @@ Comparison Compare(const Repeats& r, double resolution_um) {
                           static_cast<double>(freedom);
   const double shares =
       1.0 / static_cast<double>(r.before_um.size()) + 1.0 / static_cast<double>(r.after_um.size());
-  const double quantile = kStudent[std::min(freedom - 2, kStudent.size() - 1)];
+  const double quantile =
+      StudentQuantile(freedom, kChance / static_cast<double>(std::max<std::size_t>(1, candidates)));
+  c.deviation_um = std::max(resolution_um, std::sqrt(variance * shares));
   c.repeatability_um = std::max(resolution_um, quantile * std::sqrt(variance * shares));
   return c;
 }
@@ -56,7 +74,9 @@ Judgement Judge(const Comparison& path, const Comparison& check) {
             "the new model is not better on the program that it was not fitted on, beyond "
             "repeatability: " +
                 InNumbers("largest error", check)};
-  if (path.worse()) return {false, "the new model is worse on the path: " + InNumbers("largest error", path)};
+  if (path.higher())
+    return {false, "the new model is higher on the path, by more than repeats usually differ: " +
+                       InNumbers("largest error", path)};
   return {true, InNumbers("largest error on the program that it was not fitted on", check)};
 }
 

@@ -10,8 +10,8 @@
 namespace contour::improve {
 namespace {
 
-/// Programs stay this far inside: the axis follows its reference with an error.
-constexpr double kMargin_m = 0.15e-3;
+/// Of the way at most, that programs stay inside.
+constexpr double kMarginOfWay = 0.0075;
 /// A program is looked at this often for how far it goes.
 constexpr double kLook_s = 2e-3;
 /// Nearer than this, an axis is where it is wanted.
@@ -67,6 +67,7 @@ WorkingSpace SpaceFor(const MachineConfig& machine, const std::string& axis, con
     AxisSpace s;
     s.low_m = std::clamp(position_m[i] - 0.5 * way_m, low_m, high_m - way_m);
     s.high_m = s.low_m + way_m;
+    s.margin_m = std::min(1e-3 * l.following_error_mm, kMarginOfWay * way_m);
     s.max_speed_m_s = 1e-3 * std::min(limits.max_speed_mm_s, l.velocity_mm_s);
     s.max_torque_Nm = torque_share * l.torque_Nm;
     if (name == axis) space.axis = i;
@@ -88,7 +89,7 @@ Placed Place(const ProgramText& program, const WorkingSpace& space, const PerAxi
     const AxisSpace& s = space.axes[i];
     out.moves.push_back(plan->Moves(i));
     if (e.high_m == e.low_m) continue;
-    const double room_m = s.high_m - s.low_m - 2.0 * kMargin_m;
+    const double room_m = s.high_m - s.low_m - 2.0 * s.margin_m;
     if (e.high_m - e.low_m > room_m)
       throw ConfigError({FormatText(
           "%s: goes over %.3f mm of axis %s, expected at most %.3f mm (--travel_mm "
@@ -100,7 +101,7 @@ Placed Place(const ProgramText& program, const WorkingSpace& space, const PerAxi
           "(--max_speed_mm_s)",
           program.name.c_str(), space.names[i].c_str(), 1e3 * e.speed_m_s, 1e3 * s.max_speed_m_s)});
     out.start_m[i] =
-        std::clamp(preferred_m[i], s.low_m + kMargin_m - e.low_m, s.high_m - kMargin_m - e.high_m);
+        std::clamp(preferred_m[i], s.low_m + s.margin_m - e.low_m, s.high_m - s.margin_m - e.high_m);
   }
   PlanMotion(parsed, out.start_m, limits);  // torque, spring and all the rest
   return out;

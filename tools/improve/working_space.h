@@ -12,6 +12,8 @@ namespace contour::improve {
 /// What each axis is allowed; limits of the one that is improved, and of the others in proportion.
 struct AxisSpace {
   double low_m = 0.0, high_m = 0.0;
+  double margin_m =
+      0.0;  ///< that programs stay inside: an axis follows with an error, but with no larger one
   double max_speed_m_s = 0.0;
   double max_torque_Nm = 0.0;
 };

@@ -6,6 +6,7 @@
 #include "config/load_machine.h"
 #include "config/yaml_reader.h"
 #include "design/loop_choice.h"
+#include "design/path_following.h"
 
 namespace contour {
 namespace {
@@ -47,6 +48,8 @@ EmulatedMachineFile LoadEmulatedMachine(const std::string& path, const std::vect
     with_loops.insert(with_loops.begin(), overrides.begin(), overrides.end());
     file = LoadMaybeEmulatedMachine(path, with_loops);
   }
+  if (!file.machine.machine.path_following_mm)
+    file.machine.machine.path_following_mm = ExpectedFollowing_mm(file.machine);
   if (!file.has_emulator)
     throw ConfigError({path + ": emulator: missing, expected a map of keys: the machine to emulate"});
   return {std::move(file.machine), std::move(file.emulator)};

@@ -14,7 +14,8 @@ struct EmulatedMachineFile {
   EmulatorConfig emulator;
 };
 
-/// Reads and checks everything. `machine` is exactly what LoadMachine gives. Throws ConfigError with all that
+/// Reads and checks everything. `machine` is what LoadMachine gives, with what is chosen where the file says
+/// nothing: loops, and machine.path_following_mm. Throws ConfigError with all that
 /// is wrong; a file without `emulator:`, or one that emulates other axes than `axes:` has, is wrong here.
 EmulatedMachineFile LoadEmulatedMachine(const std::string& path,
                                         const std::vector<std::string>& overrides = {});

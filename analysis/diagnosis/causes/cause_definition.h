@@ -119,6 +119,9 @@ struct CauseDefinition {
   Required<bool> judged_at_scale;
   /// When a torque begins to act or a position was read.
   Required<bool> about_timing;
+  /// What it does to an axis that slides or is stuck. Kinds that do the same are told apart by how the
+  /// bristle bends, and by nothing else. Empty: nothing that another kind does.
+  Required<std::string_view> same_in_sliding;
 };
 
 inline constexpr std::span<const ModelError> kNoModelErrors;

@@ -90,6 +90,7 @@ constexpr CauseDefinition cogging = {
     .refuted_by_mismatch = false,
     .acts_at_reversals = false,
     .judged_at_scale = false,
-    .about_timing = false};
+    .about_timing = false,
+    .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

@@ -76,6 +76,7 @@ constexpr CauseDefinition current_lag = {
     .refuted_by_mismatch = false,
     .acts_at_reversals = false,
     .judged_at_scale = false,
-    .about_timing = true};
+    .about_timing = true,
+    .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

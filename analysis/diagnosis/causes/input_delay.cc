@@ -74,6 +74,7 @@ constexpr CauseDefinition input_delay = {
     .refuted_by_mismatch = false,
     .acts_at_reversals = false,
     .judged_at_scale = false,
-    .about_timing = true};
+    .about_timing = true,
+    .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

@@ -44,6 +44,7 @@ constexpr CauseDefinition outside_friction_of_time = {
     .refuted_by_mismatch = true,
     .acts_at_reversals = false,
     .judged_at_scale = false,
-    .about_timing = false};
+    .about_timing = false,
+    .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

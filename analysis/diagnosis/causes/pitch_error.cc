@@ -128,6 +128,7 @@ constexpr CauseDefinition pitch_error = {
     .refuted_by_mismatch = false,
     .acts_at_reversals = false,
     .judged_at_scale = true,
-    .about_timing = false};
+    .about_timing = false,
+    .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

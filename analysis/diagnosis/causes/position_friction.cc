@@ -93,6 +93,7 @@ constexpr CauseDefinition position_friction = {.name = kName,
                                                .refuted_by_mismatch = false,
                                                .acts_at_reversals = false,
                                                .judged_at_scale = false,
-                                               .about_timing = false};
+                                               .about_timing = false,
+                                               .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

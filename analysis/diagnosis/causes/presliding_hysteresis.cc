@@ -76,6 +76,7 @@ constexpr CauseDefinition presliding_hysteresis = {
     .refuted_by_mismatch = false,
     .acts_at_reversals = true,
     .judged_at_scale = false,
-    .about_timing = false};
+    .about_timing = false,
+    .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

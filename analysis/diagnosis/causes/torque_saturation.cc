@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/causes/effect_parts.h"
@@ -8,6 +9,14 @@ namespace contour::diagnosis::causes {
 namespace {
 
 constexpr std::string_view kName = "torque_saturation";
+
+/// Where the loss is told: rated torque, or the largest that the log asks for where none is stated.
+double ToldAt(const Problem& p) {
+  if (p.stated.rated > 0.0) return p.stated.rated;
+  double largest = 0.0;
+  for (const double u : p.log.command) largest = std::max(largest, std::fabs(u));
+  return largest;
+}
 
 constexpr ModelError kErrors[] = {{"loss_at_rated_rel", 0.01}};
 
@@ -37,7 +46,8 @@ constexpr CauseDefinition torque_saturation = {
     .advice = "Lower the torque limit or the accelerations, or state the saturation.",
     .grid =
         [](const Problem& p, std::vector<SharedEffect>& out) {
-          const double rated = std::max(p.stated.rated, 1e-12);
+          const double rated = ToldAt(p);
+          if (!(rated > 0.0)) return;
           out.push_back(WithForce(
               Custom({std::string(kName), "", 1}, {.steps = {5e-3}, .low = {-0.3}, .high = {0.5}},
                      [rated](const auto& a, AxisModel& m) { m.saturation += a[0] / (rated * rated); }),
@@ -66,6 +76,7 @@ constexpr CauseDefinition torque_saturation = {
     .refuted_by_mismatch = false,
     .acts_at_reversals = false,
     .judged_at_scale = false,
-    .about_timing = false};
+    .about_timing = false,
+    .same_in_sliding = ""};
 
 }  // namespace contour::diagnosis::causes

@@ -15,6 +15,23 @@
 namespace contour::diagnosis {
 namespace {
 
+/// A bristle that bends by less than two counts of the encoder shows in no row.
+bool BristleShows(const Problem& problem, const Fit& fit) {
+  const StatedFriction f = problem.Build(fit.point).friction;
+  return f.Fc_plus > 2.0 * problem.stated.position_step * f.s0;
+}
+
+/// Kinds that do the same to an axis whose bristle does not show.
+void AddSameInSliding(const Problem& problem, const Fit& fit, Cause& cause) {
+  const std::string_view same = *CauseNamed(cause.kind).same_in_sliding;
+  if (same.empty() || BristleShows(problem, fit)) return;
+  std::vector<std::string>& others = cause.indistinguishable_from;
+  for (const CauseDefinition* c : AllCauses())
+    if (*c->same_in_sliding == same && *c->name != cause.kind &&
+        std::find(others.begin(), others.end(), *c->name) == others.end())
+      others.emplace_back(*c->name);
+}
+
 /// What the hypotheses scored, and which of them cannot be told from the first.
 void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                     const ScoreThreshold& threshold, const Accepted& accepted, Cause& cause, Diagnosis& out) {
@@ -35,6 +52,7 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
         !ExplainsSomethingElse(problem, best.fit, r) && !ExplainsSomethingElse(problem, r.fit, best))
       cause.indistinguishable_from.push_back(kind);
   }
+  AddSameInSliding(problem, best.fit, cause);
 }
 
 }  // namespace

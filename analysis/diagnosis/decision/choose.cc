@@ -1,23 +1,40 @@
 #include "analysis/diagnosis/decision/choose.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "analysis/diagnosis/adequacy/remaining_structure.h"
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/decision/chi_square.h"
 #include "analysis/diagnosis/decision/held_out.h"
 #include "analysis/diagnosis/decision/tested_score.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
+#include "analysis/diagnosis/tuning/statistics.h"
 
 namespace contour::diagnosis {
 namespace {
+
+/// At a share of the asked rate.
+bool GainsBeyondChance(const Cause& cause, double rate) {
+  const double of_kind = rate / static_cast<double>(AllCauses().size());
+  const double deviations = std::sqrt(ChiSquareQuantile(1, 2.0 * of_kind));
+  return cause.heldout_gain > deviations / kNormal95 * (cause.heldout_gain - cause.heldout_gain_low);
+}
 
 bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested,
            const ScoreThreshold& threshold) {
   // From outside the catalogue only what is beyond doubt.
   const double least = Asked(problem, r, threshold);
   if (tested <= (Outside(r.effect().kind) ? least + kHypotheses.new_noise_score : least)) return false;
+  // A force of any shape follows slow noise, and a scale that wanders: it has to show without a shape, too. A
+  // level of friction does not: noise has no direction.
+  if (Outside(r.effect().kind) && !r.effect().force.empty()) {
+    const RemainingStructure most = FindStructure(problem, current, threshold.rate)[0];
+    if (!(most.score > most.asked)) return false;
+  }
   // What does harm in the half of the log that it was not fitted on is no cause. A factor on all forces and
   // on the torque moves nothing that it could harm.
   const CauseDefinition& definition = CauseNamed(r.effect().kind);
@@ -25,8 +42,10 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     Cause cause;
     std::vector<BlockGain> blocks;
     HeldOutGain(problem, current, r.fit, definition.judged_at_scale, cause, blocks);
-    // A scale's noise is never white: there, only what others of its rows confirm.
-    if ((definition.judged_at_scale ? cause.heldout_gain_low : cause.heldout_gain_high) < 0.0) return false;
+    if (cause.heldout_gain_high < 0.0) return false;
+    // A scale's noise is never white: there, only what others of its rows confirm, and with no more chance
+    // than every kind has.
+    if (definition.judged_at_scale && !GainsBeyondChance(cause, threshold.rate)) return false;
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;

@@ -313,6 +313,12 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
   }
 }
 
+Point WithoutLast(Point point) {
+  point.effects.pop_back();
+  point.amplitudes.pop_back();
+  return point;
+}
+
 FitEffort EffortAgain(const Fit& current, bool best) {
   const double enough = kScreening.negligible_share;
   return best ? WorthFrom(current, FitEffort{}, kHypotheses.given_up_share * enough)
@@ -321,7 +327,7 @@ FitEffort EffortAgain(const Fit& current, bool best) {
 
 }  // namespace
 
-void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses) {
+bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses) {
   Rewhiten(problem, current);
   for (Hypothesis& r : hypotheses) {
     if (r.given_up) continue;
@@ -333,18 +339,13 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   GiveUpFarBehind(problem, kHypotheses.may_matter_share, hypotheses);
   for (Hypothesis& r : hypotheses)
     if (!r.given_up) RewhitenSensitivities(problem, r.fit);
-  // A basin may end in two places: the base goes on from where the best hypothesis's lies, where that is
-  // lower.
-  Point other = hypotheses[0].fit.point;
-  other.effects.pop_back();
-  other.amplitudes.pop_back();
-  const bool there = CostAt(problem, other) < current.cost;
+  // A basin may end in two places: the base goes on from where the best hypothesis's lies, too.
   const double best = hypotheses[0].score;
   // A base is as well known as the scores need it.
   FitEffort base = FitEffort{};
   base.close_enough = std::max(base.close_enough, kScreening.negligible_share * best);
-  std::vector<InitialGuess> guesses = {
-      {there ? std::move(other) : current.point, base, nullptr, there ? nullptr : &current}};
+  std::vector<InitialGuess> guesses = {{current.point, base, nullptr, &current},
+                                       {WithoutLast(hypotheses[0].fit.point), base}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const Hypothesis& r = hypotheses[i];
@@ -353,9 +354,13 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
     again.push_back(i);
     guesses.push_back({r.fit.point, EffortAgain(current, i == 0), nullptr, &hypotheses[i].fit});
   }
+  const double before = hypotheses[0].fit.cost;
   std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
-  current = std::move(fits[0]);
-  for (std::size_t i = 0; i < again.size(); ++i) hypotheses[again[i]].fit = std::move(fits[i + 1]);
+  const bool lower = fits[1].cost < fits[0].cost;
+  // Most of what the best hypothesis was to explain.
+  const bool elsewhere = fits[0].cost - fits[1].cost > kHypotheses.half_share * (fits[0].cost - before);
+  current = std::move(fits[lower ? 1 : 0]);
+  for (std::size_t i = 0; i < again.size(); ++i) hypotheses[again[i]].fit = std::move(fits[i + 2]);
   for (Hypothesis& r : hypotheses)
     if (!r.given_up) Judge(problem, current, r);
   const Effect* const first = &hypotheses[0].effect();
@@ -364,6 +369,7 @@ void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   OneOfEach(hypotheses);
   if (&hypotheses[0].effect() != first)
     hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), QuickToTheEnd());
+  return lower && elsewhere;
 }
 
 }  // namespace contour::diagnosis

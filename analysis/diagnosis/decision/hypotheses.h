@@ -23,7 +23,8 @@ bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, con
 bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
              const ScoreThreshold& threshold);
 
-/// Under noise learnt since: the base, and the hypotheses, those that may still win fitted anew.
-void FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses);
+/// Under noise learnt since: the base, and the hypotheses, those that may still win fitted anew. Whether the
+/// base was found to lie elsewhere, which is most of what the best hypothesis was to explain.
+bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses);
 
 }  // namespace contour::diagnosis

@@ -102,14 +102,6 @@ double VarianceRatio(const Problem& problem, const std::string& kind, const Eige
   return most;
 }
 
-/// Kinds that are numbers of the base: they share the asked rate.
-double KindsInBase(const Problem& problem) {
-  const auto all = AllCauses();
-  return static_cast<double>(std::max<std::ptrdiff_t>(
-      1, std::count_if(all.begin(), all.end(),
-                       [&](const CauseDefinition* c) { return InBase(problem, std::string(*c->name)); })));
-}
-
 double ByChanceAndErrors(const Problem& problem, const ScoreThreshold& threshold) {
   if (!threshold.model_error) return threshold.flips;
   const double errors = AllowancePerRow(threshold.rate) * static_cast<double>(problem.rows());
@@ -147,10 +139,11 @@ double Threshold(const Problem& problem, const ScoreThreshold& threshold, const 
   double left = threshold.LeakageAs(effect.kind);
   if (!InBase(problem, effect.kind))
     return ByChanceAndErrors(problem, threshold) + left / score_scale.overdispersion;
-  // The stated uncertainties say what chance does here.
+  // The stated uncertainties say what chance does here; every kind has its share of the asked rate.
   const std::size_t degrees = std::max<std::size_t>(1, FreedTerms(problem, effect.kind).size());
   const double by_chance = ChiSquareQuantile(
-      degrees, std::max(threshold.rate / KindsInBase(problem), kThreshold.beyond_stated_rate));
+      degrees,
+      std::max(threshold.rate / static_cast<double>(AllCauses().size()), kThreshold.beyond_stated_rate));
   if (threshold.accepted == 0) return by_chance - Penalty(effect);
   // At its worst residual leakage of chi^2 moves the number by its root, in standard errors of the log.
   const double moved = score_scale.variance_ratio * left;

@@ -93,8 +93,6 @@ bool TakeFreeRuns(const Problem& problem, const Accepted& accepted, Fit& fit, st
                                         FitFreeRuns(problem, halves[1], freedom, Parts::kOdd)};
   const ForecastError errors = Extended(problem, free, by_half);
   ForecastError& now = out.model_errors.back();
-  std::fprintf(stderr, "freerun used %.4g -> %.4g unseen %.4g -> %.4g\n", now.free_run_used,
-               errors.free_run_used, now.free_run_unseen, errors.free_run_unseen);
   if (!(errors.free_run_unseen < (1.0 - kScreening.little_share) * now.free_run_unseen)) return false;
   now = errors;
   fit = std::move(free);
@@ -128,8 +126,8 @@ void DescribeModel(const Problem& problem, const Fit& nominal, const Fit& all, c
     if (fit.point.effects.size() == all.point.effects.size()) DescribeSizes(problem, fit, accepted, out);
     out.notes.emplace_back(
         "The model is not complete, so the numbers in its file are those that foresee free runs best: they "
-        "do so "
-        "on parts of the log that they were not fitted on. The sizes told above are of one-step errors.");
+        "do so on parts of the log that they were not fitted on. The sizes told above are of one-step "
+        "errors.");
   }
   std::erase_if(out.in_model, [](const Cause& c) { return Outside(c.kind); });
   out.fitted = FittedAxis(problem, fit, halves);

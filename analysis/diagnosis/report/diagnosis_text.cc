@@ -42,18 +42,20 @@ std::string Listed(const std::vector<std::string>& items, const char* last) {
   return out;
 }
 
-std::string Sizes(const Cause& cause) {
+std::string Sizes(const Cause& cause, ExtensionUnits units) {
   std::string out;
-  for (const auto& [name, p] : cause.parameters)
+  for (const auto& [in_Nm, p] : cause.parameters) {
+    const std::string name = RenamedToFile(units, in_Nm);
     out += (out.empty() ? "" : "; ") + ParameterWords(name) + " " + ValueWords(name, p.value) +
            " (95 %: " + ValueWords(name, p.low) + " to " + ValueWords(name, p.high) + ")";
+  }
   return out;
 }
 
-std::string CauseText(const Cause& cause, std::size_t number) {
+std::string CauseText(const Cause& cause, std::size_t number, ExtensionUnits units) {
   std::string out = Wrapped(
       std::to_string(number) + ". " + (cause.part_of_it ? "Part of it: " : "") + KindWords(cause.kind), 0);
-  if (!cause.parameters.empty()) out += Wrapped("Size: " + Sizes(cause) + ".", 3);
+  if (!cause.parameters.empty()) out += Wrapped("Size: " + Sizes(cause, units) + ".", 3);
   out += Wrapped(
       "How sure: log evidence " + RoundedText(cause.log_evidence_gain) + " nats over the model without it.",
       3);
@@ -73,6 +75,10 @@ std::string CauseText(const Cause& cause, std::size_t number) {
 }
 
 }  // namespace
+
+ExtensionUnits UnitsIn(const Diagnosis& d) {
+  return d.fitted && d.fitted->linear ? ExtensionUnits::kOfLinearAxis : ExtensionUnits::kOfScrew;
+}
 
 std::string VerdictText(const Diagnosis& d) {
   const std::string rate = Percent(d.false_alarm_rate);
@@ -99,7 +105,7 @@ std::string VerdictText(const Diagnosis& d) {
 
 std::string DiagnosisText(const Diagnosis& d) {
   std::string out = Wrapped(VerdictText(d), 0);
-  for (std::size_t i = 0; i < d.causes.size(); ++i) out += "\n" + CauseText(d.causes[i], i + 1);
+  for (std::size_t i = 0; i < d.causes.size(); ++i) out += "\n" + CauseText(d.causes[i], i + 1, UnitsIn(d));
   if (d.bootstrap_runs > 0)
     out += "\n" + Wrapped("Intervals of the sizes: from " + std::to_string(d.bootstrap_runs) +
                               " refits with the residual of every stroke at random.",

@@ -27,13 +27,15 @@ void Check(const std::ofstream& out, const std::filesystem::path& file) {
   if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
-Json CauseJson(const Cause& c) {
+Json CauseJson(const Cause& c, ExtensionUnits units) {
   Json parameters = Json::array();
-  for (const auto& [name, p] : c.parameters)
+  for (const auto& [in_Nm, p] : c.parameters) {
+    const std::string name = RenamedToFile(units, in_Nm);
     parameters.push_back({{"name", ParameterWords(name)},
                           {"value", ValueWords(name, p.value)},
                           {"low", ValueWords(name, p.low)},
                           {"high", ValueWords(name, p.high)}});
+  }
   Json shapes = Json::array();
   for (const ShapeTable& t : c.shapes)
     shapes.push_back({{"abscissa", t.abscissa},
@@ -62,8 +64,10 @@ Json CauseJson(const Cause& c) {
 Json DetectableJson(const Diagnosis& d) {
   Json rows = Json::array();
   for (const auto& [kind, sizes] : d.smallest_detectable)
-    for (const auto& [name, size] : sizes)
+    for (const auto& [in_Nm, size] : sizes) {
+      const std::string name = RenamedToFile(UnitsIn(d), in_Nm);
       rows.push_back({{"kind", kind}, {"name", ParameterWords(name)}, {"size", ValueWords(name, size)}});
+    }
   return rows;
 }
 
@@ -126,7 +130,7 @@ void WriteReportData(const std::filesystem::path& dir, const AxisLog& log, const
                      const Diagnosis& found, const std::string& extended_model,
                      const std::optional<ContourGain>& contour) {
   Json causes = Json::array();
-  for (const Cause& c : found.causes) causes.push_back(CauseJson(c));
+  for (const Cause& c : found.causes) causes.push_back(CauseJson(c, UnitsIn(found)));
   Json gain = nullptr;
   if (contour)
     gain = {

@@ -122,6 +122,10 @@ Jitter TestJitter(const Problem& problem, const Fit& fit) {
   const double per = GainOfReading(problem) * top(kSpeed);
   out.sigma_s2 = sigma / per;
   out.rms_s = std::sqrt(std::max(c(kSpeed), 0.0) / per);
+  // Rounding errors grow with the speed, too, until they are white: what is no more than all of them may be
+  // that.
+  out.rounding_s = problem.stated.position_step * std::sqrt(kUniformVariance / top(kSpeed));
+  if (out.rms_s < out.rounding_s) out.drop = 0.0;
   out.sigma_s = 0.5 * sigma / per / std::max(out.rms_s, std::sqrt(sigma / per));
   return out;
 }

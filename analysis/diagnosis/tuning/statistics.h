@@ -11,6 +11,8 @@ inline constexpr double kTail95 = 0.025;
 inline constexpr double kNormal90 = 1.2816;
 /// A normal distribution's deviation over its median absolute deviation.
 inline constexpr double kNormalMad = 1.4826;
+/// Variance of a rounding error, over the square of the step.
+inline constexpr double kUniformVariance = 1.0 / 12.0;
 /// Of the second difference of white noise, over the noise's own: 1 + 2^2 + 1.
 inline constexpr double kVarianceOfSecondDifference = 6.0;
 

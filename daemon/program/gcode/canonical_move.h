@@ -24,7 +24,7 @@ struct CanonicalMove {
   GcodeMove::Corner corner = GcodeMove::Corner::kContinuous;
   double tolerance_m = 0.0;
   GcodeEvent event;
-  bool naive_cam = false;  ///< under G64 Q
+  double naive_cam_m = 0.0;  ///< G64 Q: straight moves within it become one; 0: they stay as they are
 };
 
 }  // namespace contour

@@ -6,18 +6,14 @@
 
 namespace contour {
 
-namespace {
-
-std::string Unheard(const GcodeMoves& program, const std::string& name, bool simulated) {
+std::string IgnoredEvents(const GcodeMoves& program, const std::string& name, bool simulated) {
   std::set<std::string> deaf;
   std::set<std::string> passed;
   int first = 0;
   for (const GcodeEvent& event : program.events) {
     const bool waits_here = event.waits && !simulated;
     if (waits_here || (event.acts && !event.waits)) continue;
-    const std::string word =
-        event.letter == 'M' ? "M" + std::to_string(event.code) : std::string(1, event.letter);
-    (event.waits || event.holds() ? passed : deaf).insert(word);
+    (event.waits || event.holds() ? passed : deaf).insert(NameOf(event));
     if (first == 0) first = event.line;
   }
   if (first == 0) return "";
@@ -33,15 +29,6 @@ std::string Unheard(const GcodeMoves& program, const std::string& name, bool sim
     text += simulated ? "a simulation goes on at " + list(passed)
                       : list(passed) + " does not wait without --optional-stop";
   return text;
-}
-
-}  // namespace
-
-std::string IgnoredEvents(const GcodeMoves& program, const std::string& name, bool simulated) {
-  std::string text = Unheard(program, name, simulated);
-  if (program.naive_cam_line == 0) return text;
-  text += text.empty() ? name + ":" + std::to_string(program.naive_cam_line) + ": " : "; ";
-  return text + "the Q of G64 is not looked at: short moves are joined within its P";
 }
 
 }  // namespace contour

@@ -106,7 +106,7 @@ void GcodeInterpreter::PathControl(const Block& block) {
   for (const char letter : {'p', 'q'})
     if (block.Has(letter) && block.Get(letter)->value < 0.0)
       block.FailAtWord(letter, "G64: expected a tolerance that is not negative");
-  naive_cam_ = block.Has('q') && block.Get('q')->value > 0.0;
+  naive_cam_m_ = block.Has('q') ? block.Get('q')->value * unit_m_ : 0.0;
   tolerance_m_ = block.Has('p') ? block.Get('p')->value * unit_m_ : 0.0;
   corner_ = tolerance_m_ > 0.0 ? GcodeMove::Corner::kBlended : GcodeMove::Corner::kContinuous;
 }
@@ -212,7 +212,7 @@ CanonicalMove GcodeInterpreter::NewMove(CanonicalMove::Kind kind, const AxisValu
   move.in_sub = in_sub_;
   move.target_m = target_m;
   move.corner = corner_;
-  move.naive_cam = naive_cam_;
+  move.naive_cam_m = naive_cam_m_;
   if (corner_ == GcodeMove::Corner::kBlended) move.tolerance_m = tolerance_m_;
   return move;
 }

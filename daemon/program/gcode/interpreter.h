@@ -69,7 +69,7 @@ class GcodeInterpreter {
   int motion_ = 800;
   GcodeMove::Corner corner_ = GcodeMove::Corner::kContinuous;
   double tolerance_m_ = 0.0;
-  bool naive_cam_ = false;
+  double naive_cam_m_ = 0.0;
 };
 
 }  // namespace contour

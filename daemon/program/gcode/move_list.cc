@@ -60,7 +60,6 @@ void MoveList::Add(const CanonicalMove& canonical) {
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
     if ((canonical.named >> k & 1U) != 0) Use(k, canonical.line);
   if (canonical.named != 0) named_line_ = canonical.line;
-  if (canonical.naive_cam && list_.naive_cam_line == 0) list_.naive_cam_line = canonical.line;
   switch (canonical.kind) {
     case CanonicalMove::Kind::kTraverse:
     case CanonicalMove::Kind::kFeed:
@@ -70,12 +69,14 @@ void MoveList::Add(const CanonicalMove& canonical) {
       AddArc(canonical);
       break;
     case CanonicalMove::Kind::kDwell: {
+      naive_cam_.Break();
       GcodeMove move = NewMove(canonical, GcodeMove::Kind::kDwell);
       move.dwell_s = canonical.dwell_s;
       Push(move, canonical.line);
       break;
     }
     case CanonicalMove::Kind::kEvent: {
+      naive_cam_.Break();
       GcodeEvent event = canonical.event;
       event.before_move = list_.moves.size();
       if (event.holds() && !list_.moves.empty()) list_.moves.back().corner = GcodeMove::Corner::kExactStop;
@@ -93,7 +94,49 @@ void MoveList::AddStraight(const CanonicalMove& canonical) {
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
     (k < 3 ? xyz : uvw) += std::pow(canonical.target_m[k] - at_m_[k], 2);
   if (!rapid) move.feed_m_s = canonical.feed_m_s * (xyz > 0.0 ? std::sqrt(1.0 + uvw / xyz) : 1.0);
-  Push(move, canonical.line);
+  if (!naive_cam_.Joins(at_m_, move, JoinsWithin_m(canonical))) return Push(move, canonical.line);
+  GcodeMove& longer = list_.moves.back();
+  longer.line = move.line;
+  longer.in_sub = longer.in_sub || move.in_sub;
+  longer.target_m = at_m_ = move.target_m;
+}
+
+// Who begins at a line has to stand where that line begins.
+double MoveList::JoinsWithin_m(const CanonicalMove& canonical) {
+  const int begin = settings_.begins_at_line;
+  if (begin > 0 && !list_.moves.empty()) {
+    const GcodeMove& last = list_.moves.back();
+    if ((last.line < begin) != (canonical.line < begin) || last.line == begin || canonical.line == begin ||
+        last.in_sub != canonical.in_sub)
+      naive_cam_.Break();
+  }
+  return settings_.joins_lines ? canonical.naive_cam_m : 0.0;
+}
+
+/// As LinuxCNC has it, an arc in XY that is nearer to its chord than Q is two straight moves, which may be
+/// joined with others.
+bool MoveList::AddAsLines(const CanonicalMove& canonical, double sweep_rad) {
+  if (std::abs(canonical.turns) > 1) return false;  // its middle may be where it begins
+  const bool blends =
+      canonical.corner == GcodeMove::Corner::kBlended || canonical.corner == GcodeMove::Corner::kContinuous;
+  const double within_m = JoinsWithin_m(canonical);
+  if (!blends || within_m <= 0.0 || canonical.plane[0] != 0 || canonical.plane[1] != 1) return false;
+  const PlanePoint from = InPlane(at_m_, canonical);
+  const double radius_m = Distance(from, canonical.centre_m);
+  if (radius_m * (1.0 - std::cos(std::min(0.5 * std::abs(sweep_rad), std::numbers::pi))) >= within_m)
+    return false;
+  const double c = std::cos(0.5 * sweep_rad), s = std::sin(0.5 * sweep_rad);
+  const double dx = from[0] - canonical.centre_m[0], dy = from[1] - canonical.centre_m[1];
+  CanonicalMove half = canonical;
+  half.kind = CanonicalMove::Kind::kFeed;
+  for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
+    half.target_m[k] = 0.5 * (at_m_[k] + canonical.target_m[k]);
+  half.target_m[0] = canonical.centre_m[0] + c * dx - s * dy;
+  half.target_m[1] = canonical.centre_m[1] + s * dx + c * dy;
+  AddStraight(half);
+  half.target_m = canonical.target_m;
+  AddStraight(half);
+  return true;
 }
 
 /// A circle of two radii is what a program with few decimals asks for. Up to three quarters of a turn it
@@ -106,6 +149,8 @@ void MoveList::AddArc(const CanonicalMove& canonical) {
   const PlanePoint& centre = canonical.centre_m;
   const ArcEnds ends{InPlane(at_m_, canonical), InPlane(canonical.target_m, canonical), canonical.turns > 0};
   const double sweep = SweepOf_rad(ends, centre, canonical.turns);
+  if (AddAsLines(canonical, sweep)) return;
+  naive_cam_.Break();
   const double from = Distance(ends.from_m, centre), to = Distance(ends.to_m, centre);
   if (std::abs(from - to) <= kSameRadius_m) return AddPart(canonical, centre, sweep, canonical.target_m);
   if (std::abs(sweep) <= kThreeQuarters_rad) {

@@ -5,16 +5,17 @@
 
 #include "daemon/program/gcode/arc_geometry.h"
 #include "daemon/program/gcode/canonical_move.h"
+#include "daemon/program/gcode/naive_cam.h"
+#include "daemon/program/gcode_parser.h"
 
 namespace contour {
 
 /// Canonical moves as a path: without moves that go nowhere, arcs whose two radii differ as arcs that meet
-/// both ends, feeds along all axes.
+/// both ends, feeds along all axes; straight moves joined as G64 Q says.
 class MoveList {
  public:
-  /// `start_m`: where the machine stands, from program zero.
-  explicit MoveList(const std::string& name, const AxisValues& start_m = {})
-      : name_(name), start_m_(start_m), at_m_(start_m) {}
+  MoveList(const std::string& name, const GcodeSettings& settings)
+      : name_(name), settings_(settings), start_m_(settings.start_m), at_m_(settings.start_m) {}
 
   void Add(const CanonicalMove& move);
   /// Throws ProgramError when there is no move.
@@ -24,6 +25,8 @@ class MoveList {
   void Use(std::size_t axis, int line);
   GcodeMove NewMove(const CanonicalMove& canonical, GcodeMove::Kind kind);
   void AddStraight(const CanonicalMove& canonical);
+  [[nodiscard]] double JoinsWithin_m(const CanonicalMove& canonical);
+  bool AddAsLines(const CanonicalMove& canonical, double sweep_rad);
   void AddArc(const CanonicalMove& canonical);
   void AddPart(const CanonicalMove& canonical, const PlanePoint& centre_m, double sweep_rad,
                const AxisValues& end_m);
@@ -31,6 +34,8 @@ class MoveList {
   void Pack();
 
   const std::string& name_;
+  const GcodeSettings& settings_;
+  NaiveCam naive_cam_;
   GcodeMoves list_;
   AxisValues start_m_;
   AxisValues at_m_;

@@ -36,6 +36,10 @@ std::vector<ProgramHalt> HaltsOf(const GcodeMoves& program) {
   return halts;
 }
 
+std::string NameOf(const GcodeEvent& event) {
+  return event.letter == 'M' ? "M" + std::to_string(event.code) : std::string(1, event.letter);
+}
+
 std::string WordOf(const GcodeEvent& event) {
   std::array<char, 48> text{};
   if (event.letter != 'M') {

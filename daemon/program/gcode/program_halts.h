@@ -31,6 +31,9 @@ void UseEvents(GcodeMoves& program, const std::string& name, const EventUse& use
 /// The places at which the marked events are carried out, in order. MotionPlan::Halts counts them.
 std::vector<ProgramHalt> HaltsOf(const GcodeMoves& program);
 
+/// Without its number: M3, S, T. By this the status names what has an output, and messages what has none.
+std::string NameOf(const GcodeEvent& event);
+
 /// As a program writes it: M0, S1000, T5 M6.
 std::string WordOf(const GcodeEvent& event);
 

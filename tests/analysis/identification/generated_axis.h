@@ -18,6 +18,8 @@ struct GeneratedAxis {
   /// Seconds into the run to the wanted position, m, and an extra force, N.
   using Path = std::function<double(double time_s)>;
   identify::Measured Drive(double seconds, const Path& position_m, const Path& extra_N) const;
+  /// Led by the drive's own loop, eight times a period; the extra force is its offset.
+  identify::Measured LedByDrive(double seconds, const Path& position_m, const Path& offset_N) const;
 };
 
 /// The nominal axis without variation over place and turn, and the model that states it exactly.

@@ -28,6 +28,21 @@ TEST(SlidingFitTest, FindsMassLevelsStribeckVelocityAndViscousFriction) {
   EXPECT_NEAR(fit.vs_m_s / truth.friction.vs, 1.0, 0.25);
 }
 
+/// A weight larger than friction: down it goes by itself.
+TEST(SlidingFitTest, AWeightIsNoFriction) {
+  const TableAxis truth = Exactly(PlainAxis());
+  const double weight_N = 1.3 * truth.friction.Fc_minus;
+  auto instants = identify::Kinematics(SlidingRecord(), 1e-3, 0.2e-3, 4, 4);
+  for (identify::Instant& i : instants) i.force_N += weight_N;
+  const auto fit = identify::FitSliding(instants, 1.0, truth.radius_m_rad);
+  ASSERT_TRUE(fit.found) << fit.why_not;
+  const double mean_N = 0.5 * (truth.friction.Fc_plus + truth.friction.Fc_minus);
+  EXPECT_NEAR(fit.Fc_plus_N / mean_N, 1.0, 0.03);
+  EXPECT_NEAR(fit.Fc_minus_N / mean_N, 1.0, 0.03);
+  const double half_N = 0.5 * (truth.friction.Fc_plus - truth.friction.Fc_minus);
+  EXPECT_NEAR(fit.offset_N / -(weight_N + half_N), 1.0, 0.03);
+}
+
 TEST(SlidingFitTest, OneDirectionOnlyIsRefusedWithTheReason) {
   GeneratedAxis axis{PlainAxis()};
   const Measured record = axis.Drive(

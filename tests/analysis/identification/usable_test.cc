@@ -72,6 +72,14 @@ TEST(WhyUnusable, RefusesErrorsFarAboveTheEncodersNoise) {
   EXPECT_TRUE(Says(id, "100 times the encoder's noise"));
 }
 
+TEST(WhyUnusable, RefusesAScrewThatIsHardlyKnown) {
+  Identification id = Good();
+  id.fit.parameters.push_back({"screw_stiffness_N_um", 40e6, 0.1, true});
+  EXPECT_EQ(WhyUnusable(id), "");
+  id.fit.parameters.back().sigma = 0.18;
+  EXPECT_TRUE(Says(id, "a standard deviation of 18 %"));
+}
+
 TEST(WhyUnusable, RefusesAFitThatDidNotSettle) {
   Identification id = Good();
   id.fit.unsettled = 12.0;

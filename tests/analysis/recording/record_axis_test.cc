@@ -81,6 +81,9 @@ TEST(AxisRecorder, TakesWhatADriveInCspReportsForTheCommand) {
   const diagnosis::AxisLog log = recorder.Take();
   // Row 5 is cycle 15: its command acts between the readings of cycles 16 and 17.
   EXPECT_NEAR(log.command[5], 1.5 + 2.0 * 16.5 + 0.2 * 2.0, 1e-9);
+  // What it is made of is there as well.
+  EXPECT_NEAR(log.offset[5], 1.5, 1e-9);
+  EXPECT_NEAR(log.reported[5], 2.0 * 15.0 + 1.3, 1e-9);
 }
 
 TEST(AxisRecorder, AnAxisThatTheMachineHasNotIsNotRecorded) {

@@ -9,20 +9,16 @@ No time is measured: each step ends, or the test is ended.
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from free_port import free_port  # noqa: E402
+
 PROGRAM = "{shape: circle, radius_mm: 20, feed_mm_min: 600, turns: 50}"
-
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 def full_pipe():

@@ -15,13 +15,10 @@ import threading
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from free_port import free_port  # noqa: E402
+
 FLOODED_MB = 64  # what the daemon may take more: rows, programs and lines of all clients together
-
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 class Client:

@@ -10,7 +10,6 @@
 #include <contour_lcm/cycle_entry.hpp>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,6 +21,7 @@
 #include "daemon/control_socket/control_client.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tests/daemon/control_socket/fake_desk.h"
+#include "tests/support/eventually.h"
 #include "tests/support/random_cycle_entry.h"
 #include "tests/support/same_cycle_entry.h"
 #include "tests/support/scratch_directory.h"
@@ -32,14 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-bool Eventually(const std::function<bool()>& so) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (!so()) {
-    if (std::chrono::steady_clock::now() > limit) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
-}
+using test::Eventually;
 
 class ControlServerTest : public ::testing::Test {
  protected:

@@ -7,20 +7,16 @@ From the second pass on the path is shifted by what the scales saw, after other 
 of all of it replays bit for bit.
 """
 import csv
-import socket as sockets
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
+from free_port import free_port  # noqa: E402
+
 LEARNT = "passes learnt from: "
-
-
-def free_port():
-    with sockets.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 def wait_until_up(contour, socket, daemon, messages):

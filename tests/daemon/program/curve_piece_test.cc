@@ -150,5 +150,29 @@ TEST(CurvePiece, DistanceFromAHelixIsThatOfTheNearestOfManyPoints) {
   }
 }
 
+TEST(CurvePiece, PartsOfAHelixAreTheHelix) {
+  PerAxis<double> from_m(3), to_m(3);
+  from_m[0] = 0.003;
+  from_m[1] = -0.001;
+  from_m[2] = 0.002;
+  to_m = from_m;
+  to_m[2] = -0.1;
+  const CurvePiece whole = HelixPiece(from_m, to_m, {0, 1}, {0.001, 0.001}, -1234.5);
+  for (const double from : {0.0, 0.001, 0.3 * whole.length_m, 0.99 * whole.length_m}) {
+    const double to = std::min(whole.length_m, from + 0.004);
+    const CurvePiece part = PartOfArc(whole, from, to);
+    EXPECT_DOUBLE_EQ(part.length_m, to - from);
+    for (const double share : {0.0, 0.3, 1.0}) {
+      const CurvePoint a = PointAt(part, share * part.length_m);
+      const CurvePoint b = PointAt(whole, from + share * part.length_m);
+      for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(a.position_m[i], b.position_m[i], 1e-14);
+        EXPECT_NEAR(a.tangent[i], b.tangent[i], 1e-11);
+        EXPECT_NEAR(a.curvature_1_m[i], b.curvature_1_m[i], 1e-8);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace contour

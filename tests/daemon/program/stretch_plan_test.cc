@@ -131,18 +131,19 @@ TEST(StretchPlan, LongProgramsArePlannedAsFarAsTheyAreDriven) {
 TEST(PathTree, FindsTheNearestOfManyMoves) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(-0.02, 0.02);
-  std::vector<ProgrammedMove> moves;
   PerAxis<double> at = Point(0, 0);
+  MoveStore moves(at);
   for (int k = 0; k < 1000; ++k) {
     const PerAxis<double> to = Point(anywhere(random), anywhere(random));
-    moves.push_back({LinePiece(at, to), 0.0, 0.0, 0});
+    moves.Add({LinePiece(at, to), 0.0, 0.0, 0}, to);
     at = to;
   }
   const PathTree tree(moves);
   for (int k = 0; k < 200; ++k) {
     const PerAxis<double> point = Point(anywhere(random), anywhere(random));
     double nearest = std::numeric_limits<double>::infinity();
-    for (const ProgrammedMove& m : moves) nearest = std::min(nearest, Distance_m(m.curve, point));
+    for (std::size_t i = 0; i < moves.size(); ++i)
+      nearest = std::min(nearest, Distance_m(moves.Curve(i), point));
     EXPECT_EQ(tree.Distance_m(point), nearest);
   }
 }
@@ -156,18 +157,20 @@ TEST(SmoothPath, IsTwiceContinuouslyDifferentiableAndNearEnough) {
     const double tolerance_m = std::pow(10.0, between(-7.0, -3.5));
     std::vector<ProgrammedMove> moves;
     PerAxis<double> at = Point(0, 0);
+    MoveStore store(at);
     for (int k = 0; k < 60; ++k) {
       const double length = std::pow(10.0, between(-6.0, -2.0)), heading = between(-3, 3);
       const PerAxis<double> to =
           Point(at[0] + length * std::cos(heading), at[1] + length * std::sin(heading));
       moves.push_back({LinePiece(at, to), 0.01, tolerance_m, k});
+      store.Add(moves.back(), to);
       at = to;
     }
     const ProgrammedPath path(moves);
-    const SmoothPath smooth = SmoothPathThrough(path);
+    const SmoothPath smooth = SmoothPathThrough(path).path;
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_EQ(smooth.Position(0.0)[i], 0.0);
-      EXPECT_NEAR(smooth.Position(smooth.length_m())[i], at[i], 1e-16);
+      EXPECT_NEAR(smooth.Position(smooth.to_m())[i], at[i], 1e-16);
     }
     for (std::size_t k = 1; k < smooth.pieces(); ++k) {
       const double way = smooth.break_m(k);
@@ -179,7 +182,7 @@ TEST(SmoothPath, IsTwiceContinuouslyDifferentiableAndNearEnough) {
         EXPECT_NEAR(a.second[i] * h, b.second[i] * h, 1e-8);
       }
     }
-    const PathTree tree(moves);
+    const PathTree tree(store);
     for (std::size_t k = 0; k < smooth.pieces(); ++k)
       for (int j = 0; j < 20; ++j) {
         const double way = smooth.break_m(k) + (smooth.break_m(k + 1) - smooth.break_m(k)) * j / 20;

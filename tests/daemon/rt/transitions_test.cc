@@ -237,6 +237,18 @@ TEST_F(TransitionsTest, WhatLeavesTimeStopsOnThePathThenFaults) {
   EXPECT_EQ(machine_.reason(), Reason::kDriveEmergency);
 }
 
+// Before: the drive's ramp went by its encoder, and where that was the one that lied an axis at rest ran
+// away.
+TEST_F(TransitionsTest, AfterAStopForADoubtedScaleNoRampGoesByTheEncoder) {
+  ToRunning();
+  now_.stop = {Reason::kScaleDoubted, 1};
+  EXPECT_EQ(machine_.Step(now_).voltage_off, 0xFF) << "it stops on the path first";
+  now_.path_at_rest = true;
+  machine_.Step(now_);
+  ASSERT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.Step(now_).voltage_off, 1);
+}
+
 TEST_F(TransitionsTest, WhatLeavesTimeForAStopKeepsAMachineFromBeingEnabled) {
   ToIdle();
   now_.stop = {Reason::kDriveEmergency, 0};

@@ -81,6 +81,36 @@ TEST(DriveMaster, AnAnswerInTimeAfterALostOneBelongsToTheNewestSync) {
   ExpectLatchedBy(m, m.master.sync_number() - 1);
 }
 
+// A SYNC that waits for another frame is late, and so is what answers it.
+TEST(DriveMaster, AnAnswerSaysByHowMuchLaterThanUsualItCame) {
+  test::Machine m;
+  m.BringUp();
+  ASSERT_TRUE(m.master.operational());
+  const auto usual = [&] {
+    int n = 0;
+    for (int i = 0; i < 200; ++i) {
+      m.Cycle();
+      n += std::abs(m.master.feedback()[0].late_s) < 15e-6 ? 1 : 0;
+    }
+    return n;
+  };
+  m.Cycles(1000);
+  EXPECT_GT(usual(), 100) << "stuff bits, and now and then a frame of the master's";
+  m.stamp_offset_ns = 300'000;
+  m.Cycle();
+  EXPECT_NEAR(m.master.feedback()[0].late_s, 300e-6, 120e-6);
+  EXPECT_NEAR(m.master.feedback()[1].late_s, 300e-6, 120e-6);
+  m.stamp_offset_ns = 0;
+  EXPECT_GT(usual(), 100);
+  // What goes on being later is usual in the end; stamps of another clock say nothing.
+  m.stamp_offset_ns = 300'000;
+  m.Cycles(1000);
+  EXPECT_GT(usual(), 100);
+  m.stamp_offset_ns = 1'000'000'000'000;
+  m.Cycle();
+  EXPECT_EQ(m.master.feedback()[0].late_s, 0.0);
+}
+
 TEST(DriveMaster, StampsOfAnotherClockSayNothing) {
   Machine m;
   m.stamp_offset_ns = 5'000'000'000;

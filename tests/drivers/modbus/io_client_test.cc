@@ -4,11 +4,10 @@
 
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <thread>
 
 #include "tests/drivers/modbus/modbus_server.h"
+#include "tests/support/eventually.h"
 
 namespace contour {
 namespace {
@@ -19,15 +18,7 @@ std::int64_t Now_ns() {
       .count();
 }
 
-/// Waits until something is so; the limit only ends a test that has failed already.
-bool Eventually(const std::function<bool()>& so) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (!so()) {
-    if (std::chrono::steady_clock::now() > limit) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
-}
+using test::Eventually;
 
 class IoClientTest : public ::testing::Test {
  protected:

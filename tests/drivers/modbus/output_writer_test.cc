@@ -3,24 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
-#include <thread>
 
 #include "drivers/modbus/io_client.h"
 #include "tests/drivers/modbus/modbus_server.h"
+#include "tests/support/eventually.h"
 
 namespace contour {
 namespace {
 
-/// Waits until something is so; the limit only ends a test that has failed already.
-bool Eventually(const std::function<bool()>& so) {
-  const auto limit = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (!so()) {
-    if (std::chrono::steady_clock::now() > limit) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
-}
+using test::Eventually;
 
 class OutputWriterTest : public ::testing::Test {
  protected:

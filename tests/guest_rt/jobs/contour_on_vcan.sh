@@ -76,7 +76,7 @@ wait "$logger"
 [ -s /tmp/telemetry.lcm ] || fail "no telemetry came over LCM"
 cp /tmp/contourd.log /out/
 
-columns=cycle,state,wakeup_late_us,received_us,stepped_us,sent_us,solver_iterations,late_cause,skipped_grid_points,stale_cycles
+columns=cycle,state,wakeup_late_us,received_us,stepped_us,sent_us,solver_iterations,late_cause,skipped_grid_points,stale_cycles,page_faults,involuntary_switches
 contour export /tmp/cycles.lcm --out /tmp/cycles.csv --columns "$columns" >/dev/null || fail "the log cannot be read"
 awk -F, '
   NR > 1 {printf "%.0f %.0f cycle %d %s woken %.3f received %.3f stepped %.3f sent %.3f us, %d iterations\n",
@@ -99,5 +99,10 @@ histogram 2 /tmp/times >/out/sends
 histogram 1 /tmp/window >/out/window_wakeups
 histogram 2 /tmp/window >/out/window_sends
 # The cycles to look at when a bar is missed.
-{ echo "woken last:"; worst 1; echo "sent last:"; worst 2; } >/out/worst_cycles
+{
+  echo "woken last:"; worst 1
+  echo "sent last:"; worst 2
+  echo "held up:"
+  awk -F, 'NR > 1 && $11 + $12 > 0 {print "cycle", $1, $2, "page faults", $11, "involuntary switches", $12, "sent", $6, "us"}' /tmp/cycles.csv
+} >/out/worst_cycles
 sha256sum </tmp/cycles.lcm | cut -d' ' -f1 >/out/digest

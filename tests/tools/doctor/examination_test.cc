@@ -22,6 +22,7 @@ class ExaminationTest : public ::testing::Test {
     Put("sys/devices/system/cpu/isolated", "1-2");
     Put("proc/sys/kernel/sched_rt_runtime_us", "-1");
     Put("proc/sys/kernel/sched_rt_period_us", "1000000");
+    Put("proc/sys/kernel/soft_watchdog", "0");
     Put("boot/config-6.1.0-rt", "# CONFIG_RT_GROUP_SCHED is not set");
     Put("sys/devices/system/cpu/cpu1/cpufreq/scaling_governor", "performance");
     Put("proc/self/limits",
@@ -64,7 +65,7 @@ class ExaminationTest : public ::testing::Test {
 };
 
 TEST_F(ExaminationTest, FindsNothingOnAComputerThatIsReady) {
-  EXPECT_EQ(Findings().size(), 10u);
+  EXPECT_EQ(Findings().size(), 11u);
   for (const auto& [name, finding] : Findings()) {
     EXPECT_EQ(finding.level, FindingLevel::kGood) << finding.found;
     EXPECT_EQ(finding.change, "");
@@ -74,6 +75,15 @@ TEST_F(ExaminationTest, FindsNothingOnAComputerThatIsReady) {
 TEST_F(ExaminationTest, Kernel) {
   Put("sys/kernel/realtime", "0");
   ExpectOnly("kernel", FindingLevel::kChange, "linux-image-rt");
+}
+
+TEST_F(ExaminationTest, LockupWatchdog) {
+  Put("proc/sys/kernel/soft_watchdog", "1");
+  ExpectOnly("lockup_watchdog", FindingLevel::kAdvice, "soft_watchdog=0");
+  Put("proc/sys/kernel/watchdog_cpumask", "0,2-3");
+  EXPECT_EQ(Findings().at("lockup_watchdog").level, FindingLevel::kGood);
+  Put("proc/sys/kernel/watchdog_cpumask", "0-3");
+  ExpectOnly("lockup_watchdog", FindingLevel::kAdvice, "soft_watchdog=0");
 }
 
 TEST_F(ExaminationTest, Isolation) {

@@ -18,7 +18,7 @@ PerAxis<double> At(const MachineConfig& machine, double position_m) {
 TEST(DefaultPrograms, FitWhateverTheLimitsAllow) {
   for (const char* file : {"/xy_emulated.yaml", "/single_axis.yaml"}) {
     for (const double acceleration : {50.0, 5000.0}) {
-      for (const double travel_mm : {6.0, 20.0, 300.0}) {
+      for (const double travel_mm : {0.5, 6.0, 20.0, 300.0}) {
         for (const double speed_mm_s : {20.0, 100.0, 250.0}) {
           MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + file);
           for (auto& [name, axis] : machine.axes) axis.limits.acceleration_mm_s2 = acceleration;

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 
+#include "analysis/axis_model/read_stated_axis.h"
 #include "config/load_machine.h"
 #include "config/yaml_writer.h"
 #include "daemon/program_limits.h"
@@ -59,8 +61,12 @@ class FakeMachine final : public ImproveMachine {
   }
   void LoadModel(const std::string& yaml) override {
     EXPECT_FALSE(enabled) << "nothing is loaded while there is torque";
+    if (!refuse_text.empty() && yaml.find(refuse_text) != std::string::npos)
+      throw ModelRefused("contourd does not take it: no");
     loaded.push_back(yaml);
     new_model = !yaml.empty();
+    for (const auto& [text, um] : error_with_um)
+      if (yaml.find(text) != std::string::npos) error_after_um = um;
     if (!new_model) machine_ = file_;
   }
   void Say(const std::string&) override {}
@@ -69,6 +75,8 @@ class FakeMachine final : public ImproveMachine {
   std::size_t refuse_at = 0, fail_at = 0, lose_at = 0;
   bool lose_all = false;
   double error_after_um = 0.5;
+  std::string refuse_text;                      ///< of a model
+  std::map<std::string, double> error_with_um;  ///< by a text of the model
   bool enabled = false, new_model = false;
 
  private:
@@ -95,20 +103,28 @@ class ImproveSequenceTest : public ::testing::Test {
                            [this](const auto& log, const auto& stated) {
                              lengths_.push_back(log.rows);
                              EXPECT_GT(stated.motor_inertia, 0.0);
-                             return lengths_.size() == 1 ? first_ : last_;
+                             return lengths_.size() <= opens_ ? first_ : last_;
                            })
         .Run();
   }
-  static diagnosis::Diagnosis Cogging() {
+  static diagnosis::Diagnosis Cogging(double amplitude_Nm = 0.02) {
+    static const diagnosis::StatedAxis stated =
+        diagnosis::ToStatedAxis(LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/xy_emulated.yaml"), "x");
     diagnosis::Diagnosis d;
     d.verdict = diagnosis::Verdict::kCauseFound;
     diagnosis::Cause c;
     c.kind = "cogging";
-    c.parameters["amplitude_Nm"] = {0.02, 0.019, 0.021};
+    c.parameters["amplitude_Nm"] = {amplitude_Nm, 0.95 * amplitude_Nm, 1.05 * amplitude_Nm};
     c.parameters["order_per_rev"] = {12, 12, 12};
     c.parameters["phase_rad"] = {0.7, 0.6, 0.8};
     c.heldout_gain_low = 0.2;
     d.causes.push_back(c);
+    d.in_model = d.causes;
+    d.fitted = stated;
+    return d;
+  }
+  static diagnosis::Diagnosis Open(diagnosis::Diagnosis d) {
+    d.verdict = diagnosis::Verdict::kUnexplained;
     return d;
   }
   static diagnosis::Diagnosis Nothing() {
@@ -124,6 +140,7 @@ class ImproveSequenceTest : public ::testing::Test {
   FakeMachine machine_{config_};
   ImproveRequest request_;
   diagnosis::Diagnosis first_ = Cogging(), last_ = Cogging();
+  std::size_t opens_ = 1;  ///< diagnoses that are first_
   std::vector<std::size_t> lengths_;
 };
 
@@ -136,19 +153,24 @@ TEST_F(ImproveSequenceTest, ADecidedCauseNeedsTheChirpAloneAndTheBetterModelStay
   EXPECT_NE(machine_.loaded[0].find("order_per_rev: 12"), std::string::npos);
   EXPECT_FALSE(machine_.enabled);
   EXPECT_EQ(result.before.path.size(), request_.passes + 1);
-  EXPECT_EQ(result.after.check.size(), request_.passes + 1);
+  ASSERT_NE(result.chosen(), nullptr);
+  EXPECT_EQ(result.chosen()->drawn.check.size(), request_.passes + 1);
 }
 
 TEST_F(ImproveSequenceTest, WhatThePathLeavesOpenIsDecidedByExperimentsAndTheCheckIsNeverFittedOn) {
   first_ = Nothing();
+  opens_ = 2;
   const ImproveResult result = Run();
+  EXPECT_TRUE(Ran("a chirp"));
   EXPECT_TRUE(Ran("a stroke"));
-  ASSERT_EQ(result.diagnosed.size(), 2u);
-  ASSERT_EQ(lengths_.size(), 2u);
+  EXPECT_EQ(std::count(machine_.ran.begin(), machine_.ran.end(), "a chirp"), 1);
+  ASSERT_EQ(result.diagnosed.size(), 3u);
+  ASSERT_EQ(lengths_.size(), 3u);
   std::size_t path_rows = 0;
   for (std::size_t i = 0; i < 2; ++i) path_rows += result.before.path[i].log.rows;
   EXPECT_EQ(lengths_[0], path_rows);
   EXPECT_GT(lengths_[1], lengths_[0]);
+  EXPECT_GT(lengths_[2], lengths_[1]);
   EXPECT_TRUE(result.judgement.keep);
 }
 
@@ -161,6 +183,65 @@ TEST_F(ImproveSequenceTest, AModelThatIsNoBetterGivesWayToTheOldOne) {
   EXPECT_FALSE(machine_.enabled);
 }
 
+TEST_F(ImproveSequenceTest, WhereExperimentsMisleadThePathsOwnModelIsDrawnToo) {
+  first_ = Open(Cogging(0.02));
+  opens_ = 2;
+  last_ = Open(Cogging(0.07));
+  machine_.error_with_um = {{"0.07", 1.2}, {"0.02", 0.4}};
+  const ImproveResult result = Run();
+  ASSERT_EQ(result.tried.size(), 2u);
+  EXPECT_FALSE(result.tried[0].judgement.keep);
+  EXPECT_TRUE(result.judgement.keep);
+  ASSERT_EQ(machine_.loaded.size(), 2u);
+  EXPECT_NE(machine_.loaded.back().find("0.02"), std::string::npos);
+}
+
+TEST_F(ImproveSequenceTest, AModelThatTheDaemonRefusesIsPassedOver) {
+  first_ = Open(Cogging(0.02));
+  opens_ = 2;
+  last_ = Open(Cogging(0.07));
+  machine_.refuse_text = "0.07";
+  const ImproveResult result = Run();
+  EXPECT_TRUE(result.judgement.keep);
+  EXPECT_EQ(result.tried.size(), 1u);
+  ASSERT_EQ(result.left_out.size(), 1u);
+  EXPECT_NE(result.left_out[0].find("does not take it"), std::string::npos);
+  machine_ = FakeMachine(config_);
+  machine_.refuse_text = "cogging";
+  lengths_.clear();
+  const ImproveResult none = Run();
+  EXPECT_FALSE(none.judgement.keep);
+  EXPECT_TRUE(machine_.loaded.empty());
+}
+
+TEST_F(ImproveSequenceTest, TheBestOfSeveralIsLoadedInTheEnd) {
+  first_ = Open(Cogging(0.02));
+  opens_ = 2;
+  last_ = Open(Cogging(0.07));
+  machine_.error_with_um = {{"0.07", 0.3}, {"0.02", 0.6}};
+  const ImproveResult result = Run();
+  ASSERT_EQ(machine_.loaded.size(), 3u);
+  EXPECT_EQ(machine_.loaded.back(), machine_.loaded.front());
+  EXPECT_EQ(*result.best, 0u);
+}
+
+TEST_F(ImproveSequenceTest, ModelsKeepToTheMachineTime) {
+  first_ = Open(Cogging(0.02));
+  opens_ = 2;
+  last_ = Open(Cogging(0.07));
+  machine_.error_with_um = {{"0.07", 1.2}, {"0.02", 0.4}};
+  const double all_s = Run().machine_time_s;
+  machine_ = FakeMachine(config_);
+  machine_.error_with_um = {{"0.07", 1.2}, {"0.02", 0.4}};
+  lengths_.clear();
+  request_.machine_time_s = all_s - 1.0;
+  const ImproveResult result = Run();
+  EXPECT_EQ(result.tried.size(), 1u);
+  EXPECT_FALSE(result.judgement.keep);
+  EXPECT_EQ(result.left_out.size(), 1u);
+  EXPECT_LE(result.machine_time_s, request_.machine_time_s);
+}
+
 TEST_F(ImproveSequenceTest, NothingFoundChangesNothing) {
   first_ = last_ = Nothing();
   const ImproveResult result = Run();
@@ -171,9 +252,10 @@ TEST_F(ImproveSequenceTest, NothingFoundChangesNothing) {
 
 TEST_F(ImproveSequenceTest, EveryStepCanBeRefusedAndLeavesTheOldModelWithoutTorque) {
   first_ = Nothing();
+  opens_ = 2;
   Run();
   const std::size_t questions = machine_.asked.size();
-  ASSERT_EQ(questions, 3u);
+  ASSERT_EQ(questions, 4u);
   for (std::size_t at = 1; at <= questions; ++at) {
     machine_ = FakeMachine(config_);
     machine_.refuse_at = at;
@@ -221,7 +303,7 @@ TEST_F(ImproveSequenceTest, ExperimentsKeepToTheMachineTime) {
   request_.machine_time_s = 10.0;
   const ImproveResult result = Run();
   EXPECT_FALSE(Ran("a stroke"));
-  ASSERT_EQ(result.left_out.size(), 1u);
+  ASSERT_EQ(result.left_out.size(), 2u);
 }
 
 }  // namespace

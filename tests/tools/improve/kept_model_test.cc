@@ -21,6 +21,31 @@ TEST(KeptModel, ADifferenceCountsBeyondTheScatterOfTheRepeats) {
   EXPECT_TRUE(Of({0.5, 0.6, 0.7}, {0.9, 1.0, 1.1}).worse());
 }
 
+TEST(KeptModel, QuantilesAreThoseOfTables) {
+  EXPECT_NEAR(StudentQuantile(2, 0.025), 4.303, 1e-3);
+  EXPECT_NEAR(StudentQuantile(4, 0.025), 2.776, 1e-3);
+  EXPECT_NEAR(StudentQuantile(10, 0.025), 2.228, 1e-3);
+  EXPECT_NEAR(StudentQuantile(4, 0.0125), 3.495, 1e-3);
+  EXPECT_NEAR(StudentQuantile(4, 0.005), 4.604, 1e-3);
+  EXPECT_NEAR(StudentQuantile(1, 0.1), 3.078, 2e-3);
+}
+
+TEST(KeptModel, OfSeveralModelsEachMustBeBetterByMore) {
+  const Repeats r{{0.9, 1.0, 1.1}, {0.6, 0.7, 0.8}};
+  EXPECT_TRUE(Compare(r, 0.005, 1).better());
+  EXPECT_FALSE(Compare(r, 0.005, 4).better());
+}
+
+/// Many candidates make it hard to prove that one is better, but no easier to be higher on the path.
+TEST(KeptModel, APathThatIsHigherByADeviationIsReasonEnough) {
+  const Comparison check = Compare({{1.0, 1.01, 0.99}, {0.5, 0.51, 0.49}}, 0.005, 6);
+  const Comparison higher = Compare({{1.06, 1.02, 0.99}, {1.0, 1.1, 1.34}}, 0.005, 6);
+  EXPECT_FALSE(higher.worse());
+  EXPECT_FALSE(Judge(higher, check).keep);
+  const Comparison alike = Compare({{1.06, 1.02, 0.99}, {1.0, 1.03, 1.07}}, 0.005, 6);
+  EXPECT_TRUE(Judge(alike, check).keep);
+}
+
 TEST(KeptModel, RepeatsThatAreAlikeToTheLastBitStillHaveTheResolution) {
   EXPECT_FALSE(Of({1.0, 1.0}, {0.996, 0.996}).better());
   EXPECT_TRUE(Of({1.0, 1.0}, {0.99, 0.99}).better());

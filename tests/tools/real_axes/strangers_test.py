@@ -40,6 +40,7 @@ class Case:
     """What there is to a case: the logs and the model that are given, a log that is not, and what may be named."""
     rate_Hz, options = 500.0, ()
     right = None  # what has to be named first; None: nothing is asked
+    together = set()  # a set that no log of this kind tells apart: all of it is named
     halves = True  # whether the model that comes out is to halve the free-run error
 
     def __init__(self, work):
@@ -55,18 +56,26 @@ class Case:
 
 class Asymmetry(Case):
     """Fc+ 0.037, Fc- 0.012 Nm, twelve logs of 20 s, each in one direction."""
-    right = {"asymmetric_coulomb", "constant_torque"}
+    right = together = {"asymmetric_coulomb", "constant_torque"}
+    order = 1
 
     def make(self):
         axis = Axis(Fc_plus=0.037, Fc_minus=0.012)
         for i in range(12):
             self.add(run(axis, strokes(60.0, i, sign=1 if i % 2 == 0 else -1), 20.0, self.rate_Hz, seed=i, start=0.3 * i))
+        self.logs = self.logs[::self.order]
         self.unseen = run(axis, strokes(60.0, 99), 20.0, self.rate_Hz, seed=99)
         self.model = model_text(axis, 0.0245)
 
 
+class AsymmetryBackwards(Asymmetry):
+    """The same files, the last one first."""
+    order = -1
+
+
 class WarmUp(Case):
     """Friction that falls by a third while three logs are recorded."""
+    right = {"friction_drift"}
 
     def make(self):
         axis = Axis(warm_up=(0.6, 60.0))
@@ -129,7 +138,7 @@ class Uneven(Case):
         self.model = model_text(axis, axis.Fc_plus)
 
 
-CASES = {"asymmetry": Asymmetry, "warm_up": WarmUp, "endless": Endless, "slow_rate": SlowRate, "fast_rate": FastRate, "uneven": Uneven}
+CASES = {"asymmetry": Asymmetry, "asymmetry_backwards": AsymmetryBackwards, "warm_up": WarmUp, "endless": Endless, "slow_rate": SlowRate, "fast_rate": FastRate, "uneven": Uneven}
 
 
 def main():
@@ -151,6 +160,9 @@ def main():
         errors = []
         if case.right and (not named or named[0] not in case.right):
             errors.append(f"named {named}, expected one of {sorted(case.right)} first")
+        first = found["causes"][0] if found["causes"] else {"kind": "", "indistinguishable_from": []}
+        if case.together and {first["kind"], *first["indistinguishable_from"]} != case.together:
+            errors.append(f"named {named}, expected {sorted(case.together)} as a set")
         if case.halves and after > 0.5 * before:
             errors.append("the model that came out does not halve the error")
         if errors:

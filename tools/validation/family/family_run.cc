@@ -158,6 +158,8 @@ void RunHold(VirtualMachine& machine, FamilyResult& result) {
 
 EmulatedMachineFile LoadFamilyCell(const std::string& folder, const FamilyCell& cell) {
   FamilySetting setting = cell.setting;
+  // Every machine draws the same square: its corners are 3 um inside.
+  setting.set.insert(setting.set.begin(), "machine.path_following_mm=0.002");
   setting.set.push_back("axes.*.drive.mode=" + cell.entry.mode);
   setting.set.push_back("machine.controller=" + cell.entry.controller);
   EmulatedMachineFile file =

@@ -25,6 +25,15 @@ TEST(TorqueSaturation, OfALinearAxisIsOfItsRatedForce) {
   EXPECT_NEAR(m.saturation * axis.stated.rated * axis.stated.rated, 0.1, 1e-12);
 }
 
+TEST(TorqueSaturation, WithoutARatedTorqueIsToldAtTheLargestOfTheLog) {
+  test::KnownAxis axis;
+  axis.stated.rated = 0.0;
+  const double largest = 0.5;
+  axis.log.command.assign(test::KnownAxis::kRows, -largest);
+  const AxisModel m = test::With(axis, test::OnGrid(axis, kKind, ""), {0.1});
+  EXPECT_NEAR(m.saturation * largest * largest, 0.1, 1e-12);
+}
+
 TEST(TorqueSaturation, IsAddedToWhatTheModelHas) {
   const test::KnownAxis axis;
   AxisModel m = axis.problem.nominal;

@@ -91,6 +91,14 @@ TEST_F(AcceptedTest, WhatWasRefusedOrExplainsTooLittleIsNoAlternative) {
   EXPECT_TRUE(out_.causes[0].indistinguishable_from.empty());
 }
 
+TEST_F(AcceptedTest, WhatSlidesAlikeIsToldApartByABristleThatShowsAlone) {
+  const Hypothesis first = Of("constant_torque");
+  const StatedFriction& f = axis_.problem.nominal.friction;
+  axis_.made.axis.stated.position_step = f.Fc_plus / f.s0;
+  AcceptFirst(axis_.problem, {first}, threshold_, accepted_, out_);
+  EXPECT_EQ(out_.causes[0].indistinguishable_from, (std::vector<std::string>{"asymmetric_coulomb"}));
+}
+
 TEST_F(AcceptedTest, AnElementInPreslidingIsRememberedForALawThatDoesNotHold) {
   AcceptFirst(axis_.problem, {Of("presliding_hysteresis")}, threshold_, accepted_, out_);
   EXPECT_EQ(accepted_.in_presliding, accepted_.explained);

@@ -54,6 +54,19 @@ TEST_F(ChooseTest, NothingHoldsBelowItsThreshold) {
   EXPECT_TRUE(hypotheses[0].refused);
 }
 
+TEST_F(ChooseTest, AShapeOfTheTimeHoldsWhereTheResidualDependsOnTimeWithoutIt) {
+  // The base has what is there in it: its residual is noise, whatever a score says.
+  const Hypothesis there = Of("constant_torque");
+  Hypothesis shape;
+  Point with = there.fit.point;
+  with.effects.push_back(axis_.Of("outside:force of time"));
+  with.amplitudes.emplace_back(with.effects.back()->steps.size(), 0.0);
+  shape.fit = FitPoint(axis_.problem, with, FitEffort{});
+  shape.score = 1e4;
+  std::vector<Hypothesis> hypotheses = {shape};
+  EXPECT_FALSE(ChooseFirst(axis_.problem, there.fit, threshold_, hypotheses).found);
+}
+
 TEST_F(ChooseTest, WhatWasGivenUpIsNotAsked) {
   std::vector<Hypothesis> hypotheses = {Of("constant_torque")};
   hypotheses[0].given_up = true;

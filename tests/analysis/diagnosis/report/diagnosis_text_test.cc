@@ -24,6 +24,16 @@ TEST(DiagnosisText, TextSaysWhatHowSureAndWhatNext) {
   }
 }
 
+TEST(DiagnosisText, OfALinearAxisInNewtons) {
+  Diagnosis d = Example();
+  d.fitted.emplace();
+  d.fitted->linear = true;
+  d.causes[0].parameters["stiffness_Nm_rad"] = {4e6, 3e6, 5e6};
+  const std::string text = DiagnosisText(d);
+  EXPECT_NE(text.find("0.0191 N "), std::string::npos) << text;
+  EXPECT_NE(text.find("4000000 N/m"), std::string::npos) << text;
+}
+
 TEST(DiagnosisText, EveryVerdictIsASentenceOfItsOwn) {
   std::set<std::string> sentences;
   Diagnosis d;

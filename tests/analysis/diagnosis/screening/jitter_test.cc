@@ -30,6 +30,15 @@ TEST(Jitter, IsNotFoundWhereReadingsAreInTime) {
   EXPECT_LT(jitter.rms_s, 5e-6);
 }
 
+TEST(Jitter, WhatRoundingMayDoIsNone) {
+  test::FittedAxis axis(Long({{"sample_jitter", 14.0, 0.0, 0.0, 0.0}}));
+  const double fastest = axis.problem.signals->max_speed;
+  axis.made.axis.stated.position_step = 14e-6 * fastest;
+  EXPECT_GT(TestJitter(axis.problem, axis.base).drop, 50.0);
+  axis.made.axis.stated.position_step = 6.0 * 14e-6 * fastest;
+  EXPECT_EQ(TestJitter(axis.problem, axis.base).drop, 0.0);
+}
+
 TEST(Jitter, OneSpeedAloneCannotTell) {
   const test::FittedAxis axis(Long({}));
   axis.problem.signals->velocity.assign(axis.problem.rows(), 30.0);

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "daemon/program/program.h"
 #include "daemon/program/smooth_path.h"
@@ -30,13 +32,17 @@ PerAxis<PlanLimits> Limits(char** numbers) {
   return limits;
 }
 
-void PrintSpline(const SmoothPath& path) {
-  // Knots and values with derivatives are as good as coefficients.
+void PrintSpline(const Stretch& stretch) {
+  // Breaks and values with derivatives are as good as coefficients.
+  std::vector<double> breaks = stretch.Jumps_m(0.0, stretch.length_m());
+  breaks.insert(breaks.begin(), 0.0);
+  breaks.push_back(stretch.length_m());
+  breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
   std::printf("\"breaks\":[");
-  for (std::size_t i = 0; i <= path.pieces(); ++i) std::printf("%s%.17g", i ? "," : "", path.break_m(i));
+  for (std::size_t i = 0; i < breaks.size(); ++i) std::printf("%s%.17g", i ? "," : "", breaks[i]);
   std::printf("],\"pieces\":[");
-  for (std::size_t i = 0; i < path.pieces(); ++i) {
-    const PathDerivatives q = path.At(path.break_m(i), i);
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+    const PathDerivatives q = stretch.At(breaks[i], 0.5 * (breaks[i] + breaks[i + 1]));
     std::printf("%s[", i ? "," : "");
     for (std::size_t a = 0; a < q.first.size(); ++a)
       std::printf("%s[%.17g,%.17g,%.17g,%.17g]", a ? "," : "", q.position_m[a], q.first[a], q.second[a],
@@ -46,17 +52,22 @@ void PrintSpline(const SmoothPath& path) {
   std::printf("],\n");
 }
 
-void Print(const std::shared_ptr<const Stretch>& stretch) {
+void Print(const StretchProgram& program, const StretchProgram::Part& part, Stretch stretch) {
+  while (!stretch.all_known()) stretch.Extend();
   std::printf("{");
-  PrintSpline(stretch->smooth);
+  PrintSpline(stretch);
   std::printf("\"feeds\":[");
-  const ProgrammedPath& path = stretch->programmed;
-  for (std::size_t i = 0; i < path.size(); ++i)
-    if (i == 0 || path.move(i).feed_m_s != path.move(i - 1).feed_m_s)
-      std::printf("%s[%.17g,%.17g]", i ? "," : "", path.begin_m(i), path.move(i).feed_m_s);
+  double way_m = 0.0, feed_m_s = -1.0;
+  for (std::size_t i = part.first; i < part.end; ++i) {
+    const ProgrammedMove move = program.moves().Move(i);
+    if (move.feed_m_s != feed_m_s)
+      std::printf("%s[%.17g,%.17g]", i > part.first ? "," : "", way_m, move.feed_m_s);
+    feed_m_s = move.feed_m_s;
+    way_m += move.curve.length_m;
+  }
   TimeLaw law(stretch, 0.0, 1.0);
   const double duration_s = law.duration_s();
-  std::printf("],\"duration_s\":%.12g,\"moves\":%zu,\"samples\":[", duration_s, path.size());
+  std::printf("],\"duration_s\":%.12g,\"moves\":%zu,\"samples\":[", duration_s, part.end - part.first);
   for (int k = 0; k <= kSamples; ++k) {
     const double t = duration_s * k / kSamples;
     const TimeLaw::State s = law.At(t);
@@ -70,13 +81,14 @@ int Run(char** arguments) {
   PerAxis<double> start(limits.size());
   std::fill(start.begin(), start.end(), 0.0);
   const auto plan = PlanMotion(LoadProgram(arguments[1]), start, limits);
-  const StretchProgram& program = dynamic_cast<const StretchPlan&>(*plan).program();
+  const std::shared_ptr<const StretchProgram> program = dynamic_cast<const StretchPlan&>(*plan).program();
   std::printf("{\"duration_s\":%.12g,\"stretches\":[\n", plan->duration_s());
   bool first = true;
-  for (const StretchProgram::Part& part : program.parts()) {
+  for (std::size_t i = 0; i < program->parts().size(); ++i) {
+    const StretchProgram::Part& part = program->parts()[i];
     if (part.first == part.end) continue;
     std::printf("%s", first ? "" : ",\n");
-    Print(program.MakeStretch(part));
+    Print(*program, part, Stretch(program, i));
     first = false;
   }
   std::printf("]}\n");

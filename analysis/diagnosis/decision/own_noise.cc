@@ -1,0 +1,71 @@
+#include "analysis/diagnosis/decision/own_noise.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
+
+namespace contour::diagnosis {
+namespace {
+
+struct UnderOwnNoise {
+  Fit fit;
+  double unlikely = std::numeric_limits<double>::infinity();  ///< -2 log likelihood, its noise included
+};
+
+/// Fit and noise in turn, while that gains what no chance does.
+UnderOwnNoise FitUnderOwnNoise(Problem& problem, Point point) {
+  UnderOwnNoise best;
+  for (int turn = 0; turn < FitEffort{}.most_refreshes; ++turn) {
+    problem.LearnNoise(point);
+    Fit fit = FitPoint(problem, std::move(point), kEfforts.quick);
+    const double unlikely = fit.cost + problem.LogNoise() + Penalty(*fit.point.effects.back());
+    const double gained = best.unlikely - unlikely;
+    if (!(gained > 0.0)) break;
+    best = {std::move(fit), unlikely};
+    if (gained < kAcceptance.no_chance_score) break;
+    point = best.fit.point;
+  }
+  return best;
+}
+
+/// The best, and those near it under the noise that there was. What lies outside the catalogue follows any
+/// noise.
+std::vector<std::size_t> Contenders(const std::vector<Hypothesis>& hypotheses) {
+  std::vector<std::size_t> out;
+  const double least =
+      (1.0 - kHypotheses.may_matter_share) * hypotheses[0].score - kHypotheses.new_noise_score;
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    const Hypothesis& h = hypotheses[i];
+    if (!h.given_up && !h.no_fault && !Outside(h.effect().kind) && h.score > least) out.push_back(i);
+  }
+  return out;
+}
+
+}  // namespace
+
+void LearnNoiseOfLikeliest(Problem& problem, std::vector<Hypothesis>& hypotheses) {
+  const std::vector<std::size_t> contenders = Contenders(hypotheses);
+  if (contenders.size() < 2 || contenders[0] != 0) return problem.LearnNoise(hypotheses[0].fit.point);
+  const NoiseFilter before = problem.noise;
+  std::size_t likeliest = 0;
+  UnderOwnNoise best;
+  for (const std::size_t i : contenders) {
+    UnderOwnNoise own = FitUnderOwnNoise(problem, hypotheses[i].fit.point);
+    // Less is a matter of where the noise's own fit ends.
+    if (i > 0 && !(own.unlikely < best.unlikely - kAcceptance.no_chance_score)) continue;
+    best = std::move(own);
+    likeliest = i;
+  }
+  // Where the best is the likeliest nothing is to change.
+  problem.noise = before;
+  if (likeliest > 0) hypotheses[likeliest].fit = std::move(best.fit);
+  problem.LearnNoise(hypotheses[likeliest].fit.point);
+  std::rotate(hypotheses.begin(), hypotheses.begin() + static_cast<std::ptrdiff_t>(likeliest),
+              hypotheses.begin() + static_cast<std::ptrdiff_t>(likeliest) + 1);
+}
+
+}  // namespace contour::diagnosis

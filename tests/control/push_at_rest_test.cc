@@ -1,0 +1,121 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "control/motion_monitor.h"
+#include "tests/control/motion_rig.h"
+
+namespace contour {
+namespace {
+
+/// An axis whose drive closes the loop, brought to rest; from then on its reading stands.
+class AtRest {
+ public:
+  explicit AtRest(double period_s = kPeriod_s) : period_s_(period_s), monitor_(InCascade(), {}, period_s) {}
+
+  /// A motion that ends now: `braking_N` was needed for it.
+  void Stop(double braking_N) {
+    const double speed_m_s = 0.02;
+    s_.enabled = s_.fresh = true;
+    for (double left_s = 0.2; left_s > 0.0; left_s -= period_s_) {
+      s_.reference_m += speed_m_s * period_s_ * std::min(1.0, 20.0 * left_s);
+      s_.position_m = InCascade().count_m * std::floor(s_.reference_m / InCascade().count_m);
+      ASSERT_EQ(Step(left_s < 0.05 ? Held_N() - braking_N : Held_N()), Reason::kNone)
+          << left_s << " s before rest";
+    }
+  }
+  /// What friction leaves on the drive.
+  static double Held_N() { return 0.8 * InCascade().Fc_N; }
+  Reason Step(double reported_N) {
+    s_.reported_force_N = reported_N;
+    return monitor_.Step(s_);
+  }
+  static MonitoredAxis InCascade() {
+    MonitoredAxis axis = Axis();
+    axis.in_cascade = true;
+    return axis;
+  }
+
+ private:
+  double period_s_;
+  MotionMonitor monitor_;
+  MotionSample s_;
+};
+
+/// What 0x6077 says in steps of one per mille.
+double PerMille(double force_N) {
+  const double step_N = 1e-3 * AtRest::InCascade().rated_force_N;
+  return step_N * std::round(force_N / step_N);
+}
+
+// The integral of a drive's loop pushes at once, and friction may hardly hold the axis any more.
+TEST(PushAtRest, ThatGrowsUnderAStandingReadingIsSeenRightAfterAMotion) {
+  for (const double slope_N_s : {8.0, 40.0, 200.0, 4000.0}) {
+    AtRest axis;
+    axis.Stop(0.0);
+    double pushed_N = 0.0;
+    Reason found = Reason::kNone;
+    while (found == Reason::kNone && pushed_N < 400.0) {
+      pushed_N += slope_N_s * kPeriod_s;
+      found = axis.Step(PerMille(AtRest::Held_N() + pushed_N));
+    }
+    EXPECT_EQ(found, Reason::kFeedbackFrozen);
+    // Slow ones before they add up to what breaks the axis away, fast ones before it has gone anywhere.
+    const double share = 0.2 * AtRest::InCascade().Fc_N;
+    EXPECT_LT(pushed_N, share + 0.03 * slope_N_s) << slope_N_s << " N/s";
+  }
+}
+
+// Where 20 ms are hardly more than what is under way.
+TEST(PushAtRest, AStepIsSeenInLongCyclesToo) {
+  for (const double period_s : {1e-3, 10e-3, 20e-3}) {
+    AtRest axis(period_s);
+    axis.Stop(0.0);
+    Reason found = Reason::kNone;
+    for (int k = 0; k < 200 && found == Reason::kNone; ++k)
+      found = axis.Step(PerMille(AtRest::Held_N() + (k < 100 ? 0.0 : 400.0)));
+    EXPECT_EQ(found, Reason::kFeedbackFrozen) << period_s << " s";
+  }
+}
+
+/// What a report may do while nothing pushes, by the time since the axis came to rest.
+struct Report {
+  const char* what;
+  double braking_N;
+  std::function<double(double time_s, double noise)> says_N;
+};
+
+TEST(PushAtRest, IsNotWhatAReportDoesByItself) {
+  const double rated_N = AtRest::InCascade().rated_force_N;
+  const Report reports[] = {
+      {"filtered", 150.0, [](double t, double) { return -150.0 * std::exp(-t / 10e-3); }},
+      {"filtered, and rings", 150.0,
+       [](double t, double) { return -150.0 * std::exp(-t / 10e-3) * std::cos(300.0 * t); }},
+      {"noise", 0.0, [=](double, double noise) { return 0.005 * rated_N * noise; }},
+      {"hum", 0.0,
+       [=](double t, double) { return 0.01 * rated_N * std::sin(2.0 * std::numbers::pi * 50.0 * t); }},
+      {"coarse steps", 0.0,
+       [=](double t, double noise) {
+         const double step_N = 0.005 * rated_N;
+         return step_N * std::round(0.5 + std::sin(0.3 * t) + 0.02 * noise);
+       }},
+      {"drifts", 0.0, [=](double t, double) { return PerMille(0.01 * rated_N * t / 60.0); }},
+  };
+  for (const double period_s : {0.25e-3, 1e-3, 2e-3})
+    for (const Report& report : reports) {
+      std::mt19937 draw(7);
+      std::normal_distribution<double> noise;
+      AtRest axis(period_s);
+      axis.Stop(report.braking_N);
+      for (double t = 0.0; t < 30.0; t += period_s)
+        ASSERT_EQ(axis.Step(AtRest::Held_N() + report.says_N(t, noise(draw))), Reason::kNone)
+            << report.what << " at " << t << " s, period " << period_s;
+    }
+}
+
+}  // namespace
+}  // namespace contour

@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "daemon/path_planner.h"
+#include "tests/daemon/path_way.h"
+#include "tests/daemon/program/part_programs.h"
+
+// The planner's thread beside the supply of points and those who ask for the status: for the thread sanitizer
+// above all.
+namespace contour {
+namespace {
+
+using test::kTolerance_m;
+using test::Limits;
+using test::Way;
+using test::WithTolerance;
+using Planning = PacedPath::Options::Planning;
+
+constexpr std::size_t kQueue = 512;
+constexpr double kPeriod_s = 1e-3;
+
+/// Asks for what any thread may ask for, until it is told to end.
+std::jthread Asking(PathFeeder& feeder) {
+  return std::jthread([&feeder](const std::stop_token& end) {
+    double sum = 0.0;
+    while (!end.stop_requested()) {
+      sum += feeder.duration().duration_s + feeder.time_share() + (feeder.waits_for_plan() ? 1.0 : 0.0);
+      std::this_thread::yield();
+    }
+    EXPECT_GE(sum, 0.0);
+  });
+}
+
+TEST(PlannerThreadTest, AnyFeedWithTheThreadBesideKeepsLimitsAndPath) {
+  const PerAxis<PlanLimits> limits = WithTolerance(Limits(0.25, 5.0, 200.0));
+  for (const bool text : {false, true}) {
+    const std::string program =
+        text ? testing::EngravedText(3, 4, 0.05, 3, 1500) : testing::Spiral(6, 0.8, 0.1, 3, 4000);
+    Way way(program, limits, {1.0, false, false, Planning::kAheadOrSlower}, ProgramFormat::kGcode, kQueue);
+    PathPlanner planner(way.feeder());
+    planner.Start();
+    const std::jthread asking = Asking(way.feeder());
+    constexpr std::array<double, 6> kFeeds{1.6, 0.3, 0.0, 2.0, 0.7, 1.0};
+    for (std::size_t k = 0; !way.ended(); ++k) {
+      if (k % 400 == 399) way.feeder().SetPace(k > 20000 ? 1.0 : kFeeds[k / 400 % kFeeds.size()]);
+      way.Cycle();
+      // Nothing goes by while there is nothing to go on with.
+      if (way.feeder().waits_for_plan() || way.place().time_s == 0.0) std::this_thread::yield();
+    }
+    planner.Finish();
+    way.ExpectAtItsEnd();
+    way.watch().ExpectKept();
+    EXPECT_LE(way.off_m(), kTolerance_m);
+  }
+}
+
+TEST(PlannerThreadTest, ProgramsThatAreGivenUpWhileTheyArePlanned) {
+  const PerAxis<PlanLimits> limits = WithTolerance(Limits(0.25, 5.0, 200.0));
+  const auto plan =
+      PlanMotion(ParseProgram(testing::Spiral(16, 0.8, 0.1, 3, 4000), "spiral", ProgramFormat::kGcode),
+                 test::Origin(), limits);
+  CommandMailbox mailbox(16, kQueue);
+  PathFeeder feeder(mailbox);
+  PathPlanner planner(feeder);
+  planner.Start();
+  const std::jthread asking = Asking(feeder);
+  for (std::uint32_t id = 1; id <= 40; ++id) {
+    feeder.Begin(std::make_unique<PathGenerator>(plan, limits, kPeriod_s, id),
+                 {id % 3 == 0 ? 1.5 : 1.0, false, false, Planning::kAheadOrSlower});
+    for (std::uint32_t k = 0; k < 5 * id; ++k) {
+      feeder.Feed();
+      std::this_thread::yield();
+    }
+    feeder.Abandon();
+    EXPECT_EQ(feeder.path(), nullptr);
+  }
+  planner.Finish();
+}
+
+}  // namespace
+}  // namespace contour

@@ -1,0 +1,77 @@
+// Faults on machines of the family, whose loops are as fast as their screws allow.
+#include <gtest/gtest.h>
+
+#include <iterator>
+#include <string>
+
+#include "tools/faults/fault_run.h"
+
+namespace contour::faults {
+namespace {
+
+struct OnceLost {
+  const char* machine;
+  Fault fault;
+  Phase phase;
+  const char* axis;
+  double feed_mm_s;
+  std::uint64_t seed;
+  DriveMode mode = DriveMode::kCst;
+};
+
+void Holds(const OnceLost& once) {
+  SCOPED_TRACE(std::string(once.machine) + " " + std::to_string(once.feed_mm_s));
+  const EmulatedMachineFile file =
+      LoadEmulatedMachine(std::string(CONTOUR_CONFIG_DIR) + "/family/" + once.machine + ".yaml");
+  FaultCase c;
+  c.fault = once.fault;
+  c.phase = once.phase;
+  c.mode = once.mode;
+  c.axis_name = once.axis;
+  c.axis =
+      static_cast<std::size_t>(std::distance(file.machine.axes.begin(), file.machine.axes.find(once.axis)));
+  c.feed_mm_s = once.feed_mm_s;
+  const RunResult r = RunFault(c, {&file, once.seed});
+  for (const std::string& v : r.violations) ADD_FAILURE() << v;
+}
+
+// One SYNC came late or early because a frame was lost or another was on the bus. Before, the axis was up to
+// 19 mm away (slow40), or a scale that told the truth stopped the machine.
+TEST(FamilyFaults, ASyncThatComesLateMovesNothing) {
+  Holds({"m100", Fault::kSetpointLost, Phase::kResuming, "y", 273.0, 21});
+  Holds({"slow40", Fault::kSetpointLost, Phase::kResuming, "y", 449.0, 21});
+  Holds({"t50", Fault::kEmergencyCleared, Phase::kFeedChange, "x", 75.4, 21});
+}
+
+TEST(FamilyFaults, NorWithAScaleInTheLoop) {
+  Holds({"t30s", Fault::kEmergencyCleared, Phase::kConstant, "x", 2.53, 21});
+  Holds({"m100s", Fault::kForeignSync, Phase::kFeedChange, "x", 354.0, 21});
+  Holds({"t30s", Fault::kForeignSdo, Phase::kResuming, "y", 102.0, 21});
+}
+
+// Other nodes' frames hold SYNCs up all the time. Before, the axes of these were lost of it in 7 to 13 of 600
+// runs, and are in 2 now.
+TEST(FamilyFaults, OtherNodesOnTheBusMoveNothing) {
+  Holds({"../xy_emulated", Fault::kBusTraffic, Phase::kConstant, "x", 187.0, 8});
+  Holds({"../xy_emulated", Fault::kBusTraffic, Phase::kConstant, "x", 125.0, 8});
+  Holds({"base", Fault::kBusTraffic, Phase::kReversal, "x", 214.0, 8});
+  Holds({"fine5", Fault::kBusTraffic, Phase::kReversal, "x", 79.5, 8});
+}
+
+// Before: 224 mm. The scale was doubted first, and the drive's ramp went by the encoder that lied.
+TEST(FamilyFaults, AReversedEncoderIsNoRunawayWhereTheScaleContradictsIt) {
+  Holds({"t30s", Fault::kEncoderReversed, Phase::kEnabling, "x", 0.0105, 22});
+}
+
+// Before: 4.1 mm where 0.16 was promised.
+TEST(FamilyFaults, AnEncoderThatFreezesRightAfterAStopInCspIsSeen) {
+  Holds({"t30", Fault::kEncoderFrozen, Phase::kHalted, "y", 2.26, 21, DriveMode::kCsp});
+}
+
+// Before, 0.25 mm was promised for 0.54.
+TEST(FamilyFaults, NoMoreIsPromisedOfACrawlThanADrivesReportCanShow) {
+  Holds({"soft", Fault::kEncoderFrozen, Phase::kConstant, "y", 0.012, 35, DriveMode::kCsp});
+}
+
+}  // namespace
+}  // namespace contour::faults
