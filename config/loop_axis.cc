@@ -53,4 +53,10 @@ double WindUpUnderForceStep_m(const AxisConfig& axis) {
   return a.limits.force_step * a.rated_force_N / a.axis.stiffness_N_m;
 }
 
+double WindUpUnderForceStep_m(const MachineConfig& machine) {
+  double most_m = 0.0;
+  for (const auto& [name, axis] : machine.axes) most_m = std::max(most_m, WindUpUnderForceStep_m(axis));
+  return most_m;
+}
+
 }  // namespace contour

@@ -37,5 +37,7 @@ std::optional<LoopAxis> ScaleLoopAxisOf(const AxisConfig& axis);
 
 /// By how much its screw gives under the force step of `loop_limits`.
 double WindUpUnderForceStep_m(const AxisConfig& axis);
+/// Of the axis whose screw gives most.
+double WindUpUnderForceStep_m(const MachineConfig& machine);
 
 }  // namespace contour

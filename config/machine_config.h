@@ -23,6 +23,9 @@
 
 namespace contour {
 
+/// The most that machine.path_following_mm may be.
+constexpr double kMostPathFollowing_mm = 10.0;
+
 /// `machine:` of a machine file.
 struct MachineSection {
   std::string name;
@@ -42,7 +45,7 @@ struct MachineSection {
                "how far the table may leave the path of a program that does not say so itself: corners of "
                "G-code with G0 and with G64 without P, of squares without corners");
     v.Optional(
-        "path_following_mm", path_following_mm, Range{0.0, 10.0},
+        "path_following_mm", path_following_mm, Range{0.0, kMostPathFollowing_mm},
         "how far the table may be from the path that it is to follow, in corners and while friction is "
         "still being learnt: planned paths keep so much of the tolerance free, but half of it at most; "
         "none: what is expected of the axes' loops and screws, which `contour check` prints");

@@ -1,7 +1,5 @@
 #include "daemon/program_limits.h"
 
-#include <algorithm>
-
 #include "config/loop_axis.h"
 
 namespace contour {
@@ -12,10 +10,7 @@ namespace {
 /// screws tell.
 double PathFollowing_m(const MachineConfig& machine) {
   if (machine.machine.path_following_mm) return *machine.machine.path_following_mm * 1e-3;
-  double following_m = 0.0;
-  for (const auto& [name, axis] : machine.axes)
-    following_m = std::max(following_m, WindUpUnderForceStep_m(axis));
-  return following_m;
+  return WindUpUnderForceStep_m(machine);
 }
 
 }  // namespace

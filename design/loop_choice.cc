@@ -93,6 +93,12 @@ std::string WhyNoLoop(const std::string& name, const LoopAxis& axis, double peri
   return text;
 }
 
+std::string LoopAssignment(const std::string& name, LoopTuning tuning) {
+  Writer writer;
+  tuning.Visit(writer);
+  return "axes." + name + ".loop={" + writer.text() + "}";
+}
+
 std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine) {
   std::vector<std::string> assignments, errors;
   if (machine.machine.controller != ControllerName::kFull ||
@@ -102,10 +108,8 @@ std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine) {
   for (const auto& [name, config] : machine.axes) {
     if (config.loop || ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
     const LoopAxis axis = LoopAxisOf(config);
-    if (std::optional<LoopTuning> tuning = ChooseLoop(axis, period_s)) {
-      Writer writer;
-      tuning->Visit(writer);
-      assignments.push_back("axes." + name + ".loop={" + writer.text() + "}");
+    if (const std::optional<LoopTuning> tuning = ChooseLoop(axis, period_s)) {
+      assignments.push_back(LoopAssignment(name, *tuning));
     } else {
       errors.push_back(WhyNoLoop(name, axis, period_s));
     }

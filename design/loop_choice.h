@@ -18,6 +18,9 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s);
 /// Why there is none, and what would help.
 std::string WhyNoLoop(const std::string& name, const LoopAxis& axis, double period_s);
 
+/// `axes.<name>.loop={...}`, with three digits, to put on top of a machine file.
+std::string LoopAssignment(const std::string& name, LoopTuning tuning);
+
 /// A loop for every axis that needs one and has none, as assignments `axes.<name>.loop={...}` to put on top
 /// of the machine file. Throws ConfigError, with the reason and what would help, when there is none for an
 /// axis.

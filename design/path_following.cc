@@ -12,9 +12,6 @@
 namespace contour {
 namespace {
 
-// As far as the key goes.
-constexpr double kMost_mm = 10.0;
-
 std::string Text(double following_mm) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", following_mm);
@@ -47,7 +44,7 @@ double ExpectedFollowing_mm(const MachineConfig& machine) {
   double following_mm = 0.0;
   for (const auto& [name, axis] : machine.axes)
     following_mm = std::max(following_mm, 1e3 * ExpectedFollowing_m(machine, axis));
-  return std::stod(Text(std::min(following_mm, kMost_mm)));
+  return std::stod(Text(std::min(following_mm, kMostPathFollowing_mm)));
 }
 
 std::vector<std::string> PathFollowingIfMissing(const MachineConfig& machine) {

@@ -66,5 +66,16 @@ TEST(TwoInertiaAxisOf, IsTheAxisOfTheJudgedLoop) {
   EXPECT_NEAR(TwoInertiaAxisOf(axis).dead_time_s, 60e-6, 1e-12);
 }
 
+TEST(WindUpUnderForceStep, IsForceOverStiffnessOfTheWeakestScrew) {
+  const LoopAxis stated = LoopAxisOf(Axis());
+  const double one_m = stated.limits.force_step * stated.rated_force_N / stated.axis.stiffness_N_m;
+  EXPECT_DOUBLE_EQ(WindUpUnderForceStep_m(Axis()), one_m);
+  MachineConfig machine;
+  machine.axes["x"] = Axis();
+  machine.axes["y"] = Axis();
+  machine.axes["y"].model.mechanics.screw_stiffness_N_um /= 2.0;
+  EXPECT_NEAR(WindUpUnderForceStep_m(machine), 2.0 * one_m, 1e-12);
+}
+
 }  // namespace
 }  // namespace contour

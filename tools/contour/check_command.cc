@@ -13,7 +13,6 @@
 #include "config/yaml_tree.h"
 #include "daemon/program/gcode_parser.h"
 #include "daemon/program/program.h"
-#include "design/loop_choice.h"
 #include "tools/contour/check_report.h"
 #include "tools/contour/loop_section.h"
 #include "tools/contour/path_section.h"
@@ -86,7 +85,7 @@ int RunCheck(const Options& options) {
   std::cout << CheckReport(file.machine) << loops.text << std::flush;
   if (!loops.refused.empty()) throw ConfigError(WithPlaces(options, loops.refused));
   std::vector<std::string> with_loops = options.set;
-  for (std::string& loop : LoopsThatAreMissing(file.machine)) with_loops.push_back(std::move(loop));
+  with_loops.insert(with_loops.end(), loops.chosen.begin(), loops.chosen.end());
   std::cout << PathSection(LoadMaybeEmulatedMachine(options.file, with_loops).machine) << std::flush;
   return CheckInterfaces(file.machine);
 }

@@ -21,6 +21,7 @@ void Chosen(const MachineConfig& machine, const std::string& name, const AxisCon
                     ": no loop: in the file, so this one is chosen at start; contour tune --from-model "
                     "finds a better one\n" +
                     Describe(ReportOn(axis, *tuning, period_s));
+    section.chosen.push_back(LoopAssignment(name, *tuning));
     return;
   }
   section.refused.push_back(WhyNoLoop(name, axis, period_s));

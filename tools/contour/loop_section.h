@@ -11,6 +11,7 @@ namespace contour {
 struct LoopSection {
   std::string text;
   std::vector<std::string> refused;  ///< why an axis may not be moved with its loop, one message each
+  std::vector<std::string> chosen;   ///< the loops of axes that state none, as assignments
 };
 
 /// Loops act where `full` gives torques and has friction linear (control.friction); in csp the drive closes

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 
 #include "daemon/program/gcode/arc_geometry.h"
 #include "daemon/program/gcode/canonical_move.h"
@@ -14,8 +15,8 @@ namespace contour {
 /// both ends, feeds along all axes; straight moves joined as G64 Q says.
 class MoveList {
  public:
-  MoveList(const std::string& name, const GcodeSettings& settings)
-      : name_(name), settings_(settings), start_m_(settings.start_m), at_m_(settings.start_m) {}
+  MoveList(std::string name, const GcodeSettings& settings)
+      : name_(std::move(name)), settings_(settings), start_m_(settings.start_m), at_m_(settings.start_m) {}
 
   void Add(const CanonicalMove& move);
   /// Throws ProgramError when there is no move.
@@ -33,8 +34,8 @@ class MoveList {
   void Push(GcodeMove move, int line);
   void Pack();
 
-  const std::string& name_;
-  const GcodeSettings& settings_;
+  std::string name_;
+  GcodeSettings settings_;
   NaiveCam naive_cam_;
   GcodeMoves list_;
   AxisValues start_m_;

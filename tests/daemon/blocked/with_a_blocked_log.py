@@ -4,7 +4,8 @@
     with_a_blocked_log.py CONTOURD CONTOUR MACHINE_FILE CLOCK
 
 Enable, run, stop, disable, status and SIGTERM must work as if nothing were the matter, and what could not be written is counted.
-No time is measured: each step ends, or the test is ended.
+No time is measured: each step ends, or the test is ended. By the wall clock a busy host may hold the cycle up until the machine
+stops for that, as it must: then it is begun anew, and in the end skipped (77); in lock-step nothing of the kind can happen.
 """
 import json
 import os
@@ -18,7 +19,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 from free_port import free_port  # noqa: E402
 
+TRIES = 10
+BUSY_HOST = ("grid_points_skipped", "path_underrun")
 PROGRAM = "{shape: circle, radius_mm: 20, feed_mm_min: 600, turns: 50}"
+
+
+class HeldUp(Exception):
+    """The host took the processor for too long, and the machine stopped for it."""
 
 
 def full_pipe():
@@ -36,7 +43,7 @@ def full_pipe():
 
 class Machine:
     def __init__(self, contourd, contour, machine_file, clock, scratch, stderr):
-        self.contour, self.socket = contour, str(scratch / "control.sock")
+        self.contour, self.clock, self.socket = contour, clock, str(scratch / "control.sock")
         fifo = scratch / "log.fifo"
         os.mkfifo(fifo)
         self.reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)  # is there, and never reads
@@ -49,8 +56,16 @@ class Machine:
 
     def ask(self, *words, expected=0):
         done = subprocess.run([self.contour, *words, "--socket", self.socket], capture_output=True, text=True, check=False)
+        if done.returncode != expected:
+            self.look_for_a_busy_host()
         assert done.returncode == expected, (words, done.returncode, done.stdout, done.stderr)
         return done.stdout
+
+    def look_for_a_busy_host(self):
+        """Only the cycle's own word counts, and only by the wall clock."""
+        asked = subprocess.run([self.contour, "status", "--json", "--socket", self.socket], capture_output=True, text=True, check=False)
+        if asked.returncode == 0 and self.clock == "wall" and json.loads(asked.stdout)["reason"] in BUSY_HOST:
+            raise HeldUp
 
     def status(self):
         return json.loads(self.ask("status", "--json"))
@@ -63,6 +78,8 @@ class Machine:
                 status = json.loads(done.stdout)
                 if status["state"] == state:
                     return status
+                if status["state"] == "Faulted" or status["reason"] == "path_underrun":
+                    self.look_for_a_busy_host()
                 assert status["state"] != "Faulted", status["reason_text"]
             time.sleep(0.05)
 
@@ -89,29 +106,41 @@ def operate(machine, program):
     return log
 
 
+def one_case(contourd, contour, machine_file, clock, folder, blocked_stderr):
+    program, messages = folder / "circle.yaml", folder / "messages.txt"
+    program.write_text(PROGRAM, encoding="utf-8")
+    pipe = full_pipe()
+    with open(messages, "w", encoding="utf-8") as file:
+        machine = Machine(contourd, contour, machine_file, clock, folder, pipe[1] if blocked_stderr else file)
+    try:
+        log = operate(machine, program)
+        machine.process.send_signal(signal.SIGTERM)
+        assert machine.process.wait() == 0, machine.process.returncode
+    finally:
+        machine.process.kill()
+        machine.process.wait()
+        for end in (*pipe, machine.reader):
+            os.close(end)
+    said = messages.read_text(encoding="utf-8")
+    print(f"{clock}, stderr {'blocked' if blocked_stderr else 'free'}: {log}")
+    assert blocked_stderr or "notes are not in the log" in said, said
+
+
 def main():
-    contourd, contour, machine_file, clock = sys.argv[1:]
+    *machine, clock = sys.argv[1:]
     with tempfile.TemporaryDirectory() as scratch:
         for blocked_stderr in (False, True):
-            folder = Path(scratch, str(blocked_stderr))
-            folder.mkdir()
-            program, messages = folder / "circle.yaml", folder / "messages.txt"
-            program.write_text(PROGRAM, encoding="utf-8")
-            pipe = full_pipe()
-            with open(messages, "w", encoding="utf-8") as file:
-                machine = Machine(contourd, contour, machine_file, clock, folder, pipe[1] if blocked_stderr else file)
-            try:
-                log = operate(machine, program)
-                machine.process.send_signal(signal.SIGTERM)
-                assert machine.process.wait() == 0, machine.process.returncode
-            finally:
-                machine.process.kill()
-                machine.process.wait()
-            said = messages.read_text(encoding="utf-8")
-            print(f"{clock}, stderr {'blocked' if blocked_stderr else 'free'}: {log}")
-            assert blocked_stderr or "notes are not in the log" in said, said
-            for end in (*pipe, machine.reader):
-                os.close(end)
+            for attempt in range(TRIES):
+                folder = Path(scratch, f"{blocked_stderr}{attempt}")
+                folder.mkdir()
+                try:
+                    one_case(*machine, clock, folder, blocked_stderr)
+                    break
+                except HeldUp:
+                    print(f"the host held the cycle up: begun anew ({attempt + 1} of {TRIES})", flush=True)
+            else:
+                print("skipped: this host is too busy for a machine by the wall clock")
+                sys.exit(77)
 
 
 if __name__ == "__main__":

@@ -58,6 +58,26 @@ TEST(CheckCommand, ExamplesAreSound) {
   }
 }
 
+// A path needs room for the machine to follow it; what it takes is said, and when there is not enough.
+TEST(CheckCommand, SaysWhatIsLeftOfATolerance) {
+  const std::string machine = ExampleMachine("xy_emulated.yaml");
+  const Outcome fits =
+      Check(machine + " --set machine.path_tolerance_mm=0.01 --set machine.path_following_mm=0.004");
+  EXPECT_EQ(fits.status, 0) << fits.errors;
+  EXPECT_NE(fits.out.find("0.006 mm for the smooth path, 0.004 mm for the machine"), std::string::npos)
+      << fits.out;
+  EXPECT_EQ(fits.out.find("programs may be off by"), std::string::npos) << fits.out;
+
+  const Outcome does_not =
+      Check(machine + " --set machine.path_tolerance_mm=0.01 --set machine.path_following_mm=0.012");
+  EXPECT_EQ(does_not.status, 0) << does_not.errors;
+  EXPECT_NE(does_not.out.find("0.005 mm for the smooth path, 0.005 mm for the machine"), std::string::npos);
+  EXPECT_NE(does_not.out.find("programs may be off by 0.017 mm"), std::string::npos) << does_not.out;
+
+  const Outcome unstated = Check(machine);
+  EXPECT_NE(unstated.out.find("expected of loops and screws: "), std::string::npos) << unstated.out;
+}
+
 // Ten ways to get a machine file wrong.
 
 TEST(WrongConfiguration, UnknownKey) {
