@@ -6,27 +6,19 @@
 #include <limits>
 #include <string>
 
-#include "tests/analysis/support/fitted_axis.h"
+#include "tests/analysis/diagnosis/decision/unknown_torque.h"
 
 namespace contour::diagnosis {
 namespace {
 
-class AcceptedTest : public testing::Test {
+class AcceptedTest : public test::UnknownTorque {
  protected:
   AcceptedTest() {
     accepted_.fit = axis_.base;
     for (const char* kind : {"cable_spring", "constant_torque"})
       out_.candidates.push_back({kind, 1.0, std::numeric_limits<double>::quiet_NaN(), false});
   }
-  Hypothesis Of(const std::string& kind) const {
-    Hypothesis h;
-    h.fit = axis_.With(axis_.Of(kind));
-    h.score = axis_.base.cost - h.fit.cost - Penalty(h.effect());
-    return h;
-  }
 
-  // A torque of 0.3 Fc that the model does not have.
-  test::FittedAxis axis_{{{"constant_torque", 0.3, 0.0, 0.0, 0.0}}};
   ScoreThreshold threshold_{.flips = 20.0, .calibrated = 20.0};
   Accepted accepted_;
   Diagnosis out_;

@@ -5,22 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include "tests/analysis/support/fitted_axis.h"
+#include "tests/analysis/diagnosis/decision/unknown_torque.h"
 
 namespace contour::diagnosis {
 namespace {
 
-class ChooseTest : public testing::Test {
+class ChooseTest : public test::UnknownTorque {
  protected:
-  Hypothesis Of(const std::string& kind) const {
-    Hypothesis h;
-    h.fit = axis_.With(axis_.Of(kind));
-    h.score = axis_.base.cost - h.fit.cost - Penalty(h.effect());
-    return h;
-  }
-
-  // A torque of 0.3 Fc that the model does not have.
-  test::FittedAxis axis_{{{"constant_torque", 0.3, 0.0, 0.0, 0.0}}};
   ScoreThreshold threshold_{.flips = 20.0, .calibrated = 20.0};
 };
 

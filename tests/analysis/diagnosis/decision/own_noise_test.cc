@@ -5,25 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "analysis/diagnosis/screening/score.h"
 #include "analysis/prediction_error/refit.h"
-#include "tests/analysis/support/fitted_axis.h"
+#include "tests/analysis/diagnosis/decision/unknown_torque.h"
 
 namespace contour::diagnosis {
 namespace {
 
-class OwnNoiseTest : public testing::Test {
- protected:
-  Hypothesis Of(const std::string& kind) const {
-    Hypothesis h;
-    h.fit = axis_.With(axis_.Of(kind));
-    h.score = axis_.base.cost - h.fit.cost - Penalty(h.effect());
-    return h;
-  }
-
-  // A torque of 0.3 Fc that the model does not have.
-  test::FittedAxis axis_{{{"constant_torque", 0.3, 0.0, 0.0, 0.0}}};
-};
+class OwnNoiseTest : public test::UnknownTorque {};
 
 TEST_F(OwnNoiseTest, TheLikelierOneComesToTheFrontWhateverTheNoiseOfTheBaseSays) {
   Hypothesis boasting = Of("friction_drift");
