@@ -14,10 +14,17 @@ constexpr double kBegins = 1.0, kCorrected = 0.7, kEnds = 4.0;
 constexpr double kPart = 0.7;
 // A step moves at least this share of what was stated.
 constexpr double kStiffest = 0.1;
+// Bristles that are relieved are so much stiffer (LuGre: at the level of friction). No correction is larger
+// than would turn the error round if each of its steps moved all that one may: one whose first step was
+// hidden by creep had so many that the axis swung, and swinging it crept back to where it had been.
+constexpr double kRelieved = 2.0;
 // Friction may be so much softer than stated; what an axis at rest is let off with grows to that in this
 // time.
 constexpr double kSofter = 4.0;
 constexpr double kPatience_s = 1.5;
+// An error that is left after that time stays unless it is so much larger: what friction has settled for is
+// better left alone than stepped about for long.
+constexpr double kCorrectedLate = 2.0;
 // For so long it has to be so, and so long an axis is left to come to rest after a step.
 constexpr double kSettles_s = 0.05;
 constexpr double kWatch_s = 0.07;
@@ -66,6 +73,8 @@ std::optional<double> Standstill::Step(double error_m, double sent_N, Motion mot
     mean_m_ = error_m;
     mean_N_ = sent_N;
   }
+  // One that has tried for long is let off with more: its friction may be softer than stated.
+  if (motion == Motion::kNone) waits_ = std::min(waits_ + patience_, kSofter);
   mean_m_ += share_ * (error_m - mean_m_);
   mean_N_ += share_ * (sent_N - mean_N_);
   const double size_m = std::abs(mean_m_);
@@ -78,8 +87,6 @@ std::optional<double> Standstill::Step(double error_m, double sent_N, Motion mot
     quiet_ = 0;
     return std::nullopt;
   }
-  // One that has tried for long is let off with more: its friction may be softer than stated.
-  waits_ = std::min(waits_ + patience_, kSofter);
   quiet_ = size_m < kBegins * waits_ * unit_m_ ? quiet_ + 1 : 0;
   if (quiet_ < settle_) return std::nullopt;
   standing_ = true;
@@ -123,8 +130,10 @@ void Standstill::Correct(double mean_m) noexcept {
   }
   const double size_m = std::abs(mean_m);
   // The first one is a single step: what it moves tells what more of them would.
-  const double most = steps_ > 0.0 ? std::max(1.0, std::floor(kPart * size_m / moves_m_)) : 1.0;
-  steps_ = size_m > kCorrected * unit_m_ ? most : 0.0;
+  const double wanted = std::min(kPart * size_m / moves_m_, kRelieved * size_m / unit_m_);
+  const double most = steps_ > 0.0 ? std::max(1.0, std::floor(wanted)) : 1.0;
+  const double late = 1.0 + (kCorrectedLate - 1.0) * (waits_ - 1.0) / (kSofter - 1.0);
+  steps_ = size_m > kCorrected * late * unit_m_ ? most : 0.0;
   before_m_ = mean_m;
   target_N_ -= std::copysign(steps_ * bounds_.step_N, mean_m);
   ramp_N_ = std::max(1.0, steps_) * bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);

@@ -49,7 +49,7 @@ class Standstill {
   int settle_ = 1, watch_ = 1;  ///< cycles
   double patience_ = 0.0;       ///< per cycle
 
-  double waits_ = 1.0;     ///< how much more than a small error it is let off with
+  double waits_ = 1.0;     ///< how much more than a small error it is let off with, growing at rest
   double mean_m_ = 0.0;    ///< of the error
   double mean_N_ = 0.0;    ///< of what was sent
   double sum_m_ = 0.0;     ///< of errors while it is watched

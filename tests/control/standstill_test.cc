@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace contour {
@@ -71,6 +72,40 @@ TEST(Standstill, BringsTheAxisWithinAStepAndThenSendsOneTorque) {
     for (int i = 0; i < 2000; ++i)
       axis.Send(stand.Step(axis.position_m, axis.sent_N, Motion::kNone).value_or(0.0));
     EXPECT_EQ(axis.changes, before) << factor;
+  }
+}
+
+// How far the force goes while the table is seen at one place, whatever is sent.
+double GoesBy_N(Standstill& stand, double error_m, int cycles) {
+  double sent_N = 8.0 * kStep_N, farthest_N = 0.0;
+  for (int i = 0; i < cycles; ++i) {
+    const double force_N = stand.Step(error_m, sent_N, Motion::kNone).value_or(sent_N);
+    sent_N = kStep_N * std::round(force_N / kStep_N);
+    farthest_N = std::max(farthest_N, std::abs(sent_N - 8.0 * kStep_N));
+  }
+  return farthest_N;
+}
+
+// Near the level of friction creep takes back what the first step moved: that says nothing of the bristles,
+// and a force that goes by as many steps as if they were ten times as stiff throws the axis over.
+TEST(Standstill, AStepThatCreepHidesIsNotFollowedByTooMany) {
+  const double unit_m = kStep_N / 4e6;
+  Standstill stand(Bounds());
+  GoesBy_N(stand, 0.0, 60);
+  ASSERT_TRUE(stand.standing());
+  // One step, then twice the error over what a step moves.
+  EXPECT_NEAR(GoesBy_N(stand, 2.6 * unit_m, 450), (1.0 + 5.0) * kStep_N, 1e-9);
+}
+
+// Once friction has settled, stepping about costs more than an error of a step.
+TEST(Standstill, AnErrorOfAStepIsTakenBackAtFirstAndLeftLater) {
+  const double unit_m = kStep_N / 4e6;
+  for (const bool late : {false, true}) {
+    Standstill stand(Bounds());
+    GoesBy_N(stand, 0.0, late ? 2000 : 60);
+    ASSERT_TRUE(stand.standing());
+    EXPECT_NEAR(GoesBy_N(stand, 1.2 * unit_m, 250), late ? 0.0 : kStep_N, 1e-9) << late;
+    EXPECT_GT(GoesBy_N(stand, 2.0 * unit_m, 250), 0.9 * kStep_N) << "more is taken back at any time";
   }
 }
 
