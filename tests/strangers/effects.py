@@ -141,7 +141,8 @@ def _pitch(axis, unit, sign, phase, random, strength):
 
 
 def _cross(axis, unit, sign, phase, random, strength):
-    return {"cross": 6.0 * unit / 0.05}, {"torque_per_acceleration_Nms2_m": 6.0 * unit / 0.05}
+    # What is hidden resists the other's acceleration; the catalogue names the torque on the motor.
+    return {"cross": 6.0 * unit / 0.05}, {"torque_per_acceleration_Nms2_m": -6.0 * unit / 0.05}
 
 
 def _load_friction(axis, unit, sign, phase, random, strength):
