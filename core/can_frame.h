@@ -5,6 +5,10 @@
 
 namespace contour {
 
+/// Part of the identifier of a frame that we sent ourselves and that comes back to say when it was on the
+/// wire. No identifier of 11 bits has it.
+inline constexpr std::uint16_t kOwnFrame = 0x8000;
+
 /// A classic CAN data frame with an 11-bit identifier.
 struct CanFrame {
   std::uint16_t id = 0;

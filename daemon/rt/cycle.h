@@ -110,7 +110,7 @@ class Cycle {
   // What Act is made of, in its order:
   const Feedback& Observe(const CycleInput& in) noexcept;
   [[nodiscard]] FaultSeen Contradiction(const Feedback& feedback) noexcept;
-  void TakeLateness(std::size_t index, double late_s) noexcept;
+  void TakeLateness(std::size_t index, const AxisFeedback& feedback) noexcept;
   [[nodiscard]] double TableAt_m(std::size_t index, const AxisFeedback& feedback) const noexcept;
   const Estimates& Estimate(const Feedback& feedback, const IoInput& io) noexcept;
   void WatchItself(const Feedback& feedback, const Estimates& estimate) noexcept;

@@ -13,13 +13,20 @@ constexpr double kExplains = 0.5;
 
 }  // namespace
 
-// A SYNC that another frame held up latches a later position, and the answer to it comes as much later. The
-// answer alone may be late as well: what is nearer to where the axis was foreseen tells.
-void Cycle::TakeLateness(std::size_t index, double late_s) noexcept {
+// A SYNC that another frame held up latches a later position. Where the bus tells when it was on the wire, that
+// is known, to what the time stamp is worth: what is nearer to where the axis was foreseen tells. Where it does
+// not, the answer comes as much later; but the answer alone may be late as well.
+void Cycle::TakeLateness(std::size_t index, const AxisFeedback& feedback) noexcept {
   Axis& axis = axes_[index];
   const AxisEstimate& foreseen = estimates_[index];
-  const double late_m = late_s * foreseen.predicted_velocity_m_s;
-  const double off_m = axis.position_m - foreseen.predicted_position_m;
+  double off_m = axis.position_m - foreseen.predicted_position_m;
+  const double known_m = feedback.sync_late_s * foreseen.predicted_velocity_m_s;
+  if (std::abs(off_m - known_m) < std::abs(off_m)) {
+    axis.position_m -= known_m;
+    off_m -= known_m;
+  }
+  if (feedback.late_s <= axis.late_from_s) return;
+  const double late_m = feedback.late_s * foreseen.predicted_velocity_m_s;
   if (std::abs(late_m) > axis.late_from_m && std::abs(off_m - late_m) < kExplains * std::abs(off_m))
     axis.position_m -= late_m;
 }

@@ -25,12 +25,14 @@ LoopbackBus::LoopbackBus(std::uint32_t bitrate_bit_s, std::vector<BusNode*> node
 std::size_t LoopbackBus::Receive(std::int64_t now_ns, std::span<StampedFrame> frames) noexcept {
   AdvanceTo(now_ns);
   const std::size_t count = std::min(frames.size(), receive_count_);
+  std::size_t own = 0;
   for (std::size_t i = 0; i < count; ++i) {
     frames[i] = receive_queue_[receive_head_];
+    own += (frames[i].frame.id & kOwnFrame) != 0 ? 1U : 0U;
     receive_head_ = (receive_head_ + 1) % kReceiveQueue;
   }
   receive_count_ -= count;
-  state_.frames_received += count;
+  state_.frames_received += count - own;
   return count;
 }
 
@@ -104,7 +106,13 @@ void LoopbackBus::StartFrame(std::int64_t time_ns) noexcept {
 void LoopbackBus::EndFrame() noexcept {
   busy_ = false;
   now_ns_ = frame_end_ns_;
-  if (on_wire_.sender != kMaster) Deliver(on_wire_.frame, frame_end_ns_);
+  if (on_wire_.sender != kMaster) {
+    Deliver(on_wire_.frame, frame_end_ns_);
+  } else if (on_wire_.frame.id == told_id_) {
+    CanFrame own = on_wire_.frame;
+    own.id |= kOwnFrame;
+    Deliver(own, frame_end_ns_);
+  }
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (i == on_wire_.sender) continue;
     scratch_.clear();

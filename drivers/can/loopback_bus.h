@@ -40,6 +40,10 @@ class LoopbackBus : public FrameBus {
   /// `ip link set ... down` would. The nodes' timers go on.
   void SetLink(std::int64_t now_ns, bool up) noexcept;
 
+  /// From now on the master's frames of this identifier come back to Receive as kOwnFrame | id when they have
+  /// been on the wire.
+  void TellOf(std::uint16_t id) noexcept { told_id_ = id; }
+
   /// A frame of somebody who is neither the master nor one of the nodes, ready now: all of them receive it.
   void Inject(std::int64_t now_ns, const CanFrame& frame) noexcept;
 
@@ -80,6 +84,7 @@ class LoopbackBus : public FrameBus {
   std::size_t receive_head_ = 0;
   std::size_t receive_count_ = 0;
 
+  std::uint16_t told_id_ = kOwnFrame;  ///< of no frame at first
   Waiting on_wire_;
   bool busy_ = false;
   std::int64_t frame_end_ns_ = 0;  ///< of the frame on the wire

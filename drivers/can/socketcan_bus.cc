@@ -24,6 +24,7 @@ constexpr int kReceiveBuffer_bytes = 1 << 20;     // thousands of frames: some s
 constexpr std::uint32_t kCallsBetweenBinds = 64;  // a vanished interface is looked for this rarely
 constexpr std::size_t kMaxWaitDescriptors = 8;
 constexpr int kMostReceiveCalls = 8;
+constexpr std::uint16_t kSync = 0x080;  // CiA 301
 
 std::int64_t RealtimeToMonotonic_ns() noexcept { return ClockNow_ns() - ClockNow_ns(CLOCK_REALTIME); }
 
@@ -122,13 +123,16 @@ void SocketCanBus::SetFilters(std::span<const int> nodes) {
   constexpr canid_t kFunctionBits = 0x780;
   constexpr canid_t kDataFrame = CAN_EFF_FLAG | CAN_RTR_FLAG;  // both must be clear
   std::vector<can_filter> filters{{0x000, CAN_SFF_MASK | kDataFrame},
-                                  {0x080, CAN_SFF_MASK | kDataFrame},
+                                  {kSync, CAN_SFF_MASK | kDataFrame},
                                   {0x700, kFunctionBits | kDataFrame}};
   for (const int node : nodes) filters.push_back({static_cast<canid_t>(node), kNodeBits | kDataFrame});
   if (setsockopt(fd_, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
                  static_cast<socklen_t>(filters.size() * sizeof(can_filter))) != 0)
     throw BusUnavailable("CAN interface " + interface_ + ": cannot set the receive filters (" +
                          std::strerror(errno) + ")");
+  // A kernel that does not want to leaves the time of the answers to go by.
+  const int on = 1;
+  tells_own_ = SetOption(fd_, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on);
 }
 
 bool SocketCanBus::Bind() noexcept {
@@ -201,11 +205,16 @@ std::size_t SocketCanBus::TakeBatch(std::size_t count, std::int64_t to_monotonic
       continue;
     }
     if ((raw.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG)) != 0) continue;
+    // The kernel marks what this socket sent itself.
+    const bool own = tells_own_ && (m.msg_flags & MSG_CONFIRM) != 0;
+    const auto id = static_cast<std::uint16_t>(raw.can_id & CAN_SFF_MASK);
+    if (own && id != kSync) continue;
     StampedFrame& out = frames[taken++];
     out.stamp_ns = stamp_ns;
-    out.frame.id = static_cast<std::uint16_t>(raw.can_id & CAN_SFF_MASK);
+    out.frame.id = own ? static_cast<std::uint16_t>(kOwnFrame | id) : id;
     out.frame.length = std::min<std::uint8_t>(raw.len, 8);
     std::copy_n(raw.data, 8, out.frame.data.begin());
+    if (own) continue;
     ++state_.frames_received;
     state_.up = true;
   }

@@ -33,6 +33,9 @@ class BusUnavailable : public std::runtime_error {
 /// received in a
 ///   later call; at least one call of State() sees it.
 /// - Only data frames with 11-bit identifiers are passed on.
+/// - With `nodes`, our own SYNCs come back as kOwnFrame | 0x080, with the time at which the controller had sent
+/// them
+///   (drivers without an echo of their own: at which it took them).
 class SocketCanBus : public FrameBus {
  public:
   /// Opens and binds. With `nodes`, the kernel passes on only what concerns them: every frame of theirs or to
@@ -72,6 +75,7 @@ class SocketCanBus : public FrameBus {
   std::uint32_t calls_unbound_ = 0;
   bool bound_ = false;
   bool bus_off_is_new_ = false;
+  bool tells_own_ = false;
   BusState state_;
 };
 

@@ -11,6 +11,7 @@ namespace contour {
 namespace cob {
 inline constexpr std::uint16_t kNmt = 0x000;
 inline constexpr std::uint16_t kSync = 0x080;
+inline constexpr std::uint16_t kOwnSync = kOwnFrame | kSync;  ///< ours, told when it was on the wire
 inline constexpr std::uint16_t kEmergency = 0x080;   ///< + n
 inline constexpr std::uint16_t kTpdo1 = 0x180;       ///< + n; TPDO2..4 each 0x100 higher
 inline constexpr std::uint16_t kRpdo1 = 0x200;       ///< + n; RPDO2..4 each 0x100 higher

@@ -66,6 +66,7 @@ void DriveMaster::StartBringUp() noexcept {
   for (Bus& b : buses_) {
     b.bring_up.Start();
     b.patrol.Stop();
+    b.usual_sync_ns = kNeverAnswered;
   }
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     if (!Heard(i)) CountBeganAnew(i);

@@ -200,7 +200,12 @@ class DriveMaster {
     std::uint8_t master_node_id = 127;
     std::uint64_t heartbeat_cycles = 1;
     std::uint64_t heartbeat_due = 0;
-    void Keep(StateKeeper& keep) noexcept { keep(bring_up, patrol, heartbeat_due); }
+    std::int64_t usual_sync_ns = kNeverAnswered;  ///< after its grid point, lately
+    double sync_late_s = 0.0;                     ///< beyond that, of the newest
+    std::uint64_t sync_told_cycle = 0;            ///< in which that was told
+    void Keep(StateKeeper& keep) noexcept {
+      keep(bring_up, patrol, heartbeat_due, usual_sync_ns, sync_late_s, sync_told_cycle);
+    }
   };
 
   void OnFrame(const StampedFrame& frame) noexcept;
@@ -212,7 +217,12 @@ class DriveMaster {
   [[nodiscard]] bool Heard(std::size_t axis) const noexcept;
   void OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept;
   bool AnswersNewestSync(Axis& axis, const AxisFeedback& feedback, std::int64_t stamp_ns) const noexcept;
-  [[nodiscard]] double Late_s(Axis& axis, std::int64_t stamp_ns) const noexcept;
+  void OnOwnSync(Bus& bus, std::int64_t stamp_ns) noexcept;
+  void TellLateness(std::size_t axis, std::int64_t stamp_ns) noexcept;
+  [[nodiscard]] bool AfterSync(std::int64_t stamp_ns) const noexcept {
+    return stamp_ns > sync_grid_ns_ && stamp_ns <= sync_grid_ns_ + period_ns_;
+  }
+  [[nodiscard]] double Late_s(std::int64_t& usual_ns, std::int64_t stamp_ns) const noexcept;
   void Supervise(std::size_t axis) noexcept;
   void StartPdos() noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;

@@ -38,6 +38,7 @@ void DriveMaster::Receive(const CycleInput& in) noexcept {
 void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
   if (stamped.bus >= buses_.size()) return;
   const CanFrame& frame = stamped.frame;
+  if (frame.id == cob::kOwnSync) return OnOwnSync(buses_[stamped.bus], stamped.stamp_ns);
   buses_[stamped.bus].bring_up.OnFrame(frame);
   buses_[stamped.bus].patrol.OnFrame(frame);
 
@@ -132,16 +133,34 @@ bool DriveMaster::AnswersNewestSync(Axis& axis, const AxisFeedback& feedback,
   return !axis.behind;
 }
 
-// A SYNC waits for a frame that is on the bus already; the answer to it, and what is read, are late by as
-// much. Usual is the median of late: it takes steps of one size, so a few that come late or early hardly move
-// it.
-double DriveMaster::Late_s(Axis& axis, std::int64_t stamp_ns) const noexcept {
+// Usual is the median of late: it takes steps of one size, so a few that come late or early hardly move it.
+double DriveMaster::Late_s(std::int64_t& usual_ns, std::int64_t stamp_ns) const noexcept {
   const std::int64_t after_ns = stamp_ns - sync_grid_ns_;
-  if (after_ns <= 0 || after_ns > period_ns_) return 0.0;
-  if (axis.usual_answer_ns == kNeverAnswered) axis.usual_answer_ns = after_ns;
-  const std::int64_t late_ns = after_ns - axis.usual_answer_ns;
-  axis.usual_answer_ns += std::clamp(late_ns, -kUsualStep_ns, kUsualStep_ns);
+  if (usual_ns == kNeverAnswered) usual_ns = after_ns;
+  const std::int64_t late_ns = after_ns - usual_ns;
+  usual_ns += std::clamp(late_ns, -kUsualStep_ns, kUsualStep_ns);
   return 1e-9 * static_cast<double>(late_ns);
+}
+
+void DriveMaster::OnOwnSync(Bus& bus, std::int64_t stamp_ns) noexcept {
+  if (!AfterSync(stamp_ns)) return;
+  bus.sync_late_s = Late_s(bus.usual_sync_ns, stamp_ns);
+  bus.sync_told_cycle = cycle_;
+}
+
+// A SYNC waits for a frame that is on the bus already, and a little longer or shorter for the stuff bits of
+// our own frames before it; the answer to it, and what is read, are late by as much. Where the bus does not
+// tell when the SYNC was on the wire, the answer alone is to go by, which other frames hold up as well.
+void DriveMaster::TellLateness(std::size_t axis, std::int64_t stamp_ns) noexcept {
+  Axis& a = axes_[axis];
+  AxisFeedback& f = feedback_[axis];
+  const Bus& bus = buses_[a.bus];
+  if (!f.fresh || !AfterSync(stamp_ns)) {
+    f.late_s = f.sync_late_s = 0.0;
+    return;
+  }
+  f.sync_late_s = bus.sync_told_cycle == cycle_ ? bus.sync_late_s : 0.0;
+  f.late_s = Late_s(a.usual_answer_ns, stamp_ns) - f.sync_late_s;
 }
 
 void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept {
@@ -163,7 +182,7 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   f.fresh = newest;
   f.valid = true;
   if (newest) f.age_cycles = 0;
-  if (a.mode == DriveMode::kCst) f.late_s = newest ? Late_s(a, stamped.stamp_ns) : 0.0;
+  if (a.mode == DriveMode::kCst) TellLateness(axis, stamped.stamp_ns);
   a.alive_cycle = cycle_;  // it answers every SYNC: a sign of life at least as good as its heartbeat
   feedback_sync_ = std::max(feedback_sync_, newest ? sync_number_ : sync_number_ - 1);
 }

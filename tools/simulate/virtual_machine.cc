@@ -9,6 +9,7 @@
 #include "daemon/program_limits.h"
 #include "daemon/reason_text.h"
 #include "drivers/cia301/bring_up_text.h"
+#include "drivers/cia301/messages.h"
 #include "tools/machine/placements.h"
 #include "tools/simulate/simulated_io.h"
 
@@ -68,6 +69,7 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
     if (b < surroundings.nodes.size())
       nodes.insert(nodes.end(), surroundings.nodes[b].begin(), surroundings.nodes[b].end());
     buses_.push_back(std::make_unique<LoopbackBus>(bus.bitrate_bit_s, std::move(nodes)));
+    buses_.back()->TellOf(cob::kSync);
     bus_pointers_.push_back(surroundings.wrap ? surroundings.wrap(b, *buses_.back()) : buses_.back().get());
     ++b;
   }
