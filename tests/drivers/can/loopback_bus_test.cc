@@ -214,6 +214,23 @@ TEST(LoopbackBus, ALinkThatIsDownLosesFramesAndComesBack) {
   EXPECT_EQ(got[0].frame.id, 0x181);
 }
 
+TEST(LoopbackBus, TellsWhenTheMastersOwnFrameWasOnTheWire) {
+  ScriptedNode node;
+  LoopbackBus bus(kBitrate, {&node});
+  bus.TellOf(0x080);
+  // A stranger's frame of the same identifier is his, and holds ours up.
+  const CanFrame sync = Frame(0x080, 0), setpoint = Frame(0x201, 4);
+  bus.Inject(0, sync);
+  bus.Send(0, std::array{setpoint, sync});
+  const auto got = ReceiveAll(bus, 1'000'000);
+  ASSERT_EQ(got.size(), 2u) << "no set-point";
+  EXPECT_EQ(got[0].frame.id, 0x080);
+  EXPECT_EQ(got[1].frame.id, kOwnFrame | 0x080);
+  EXPECT_EQ(got[1].stamp_ns, Duration_ns(sync) + Duration_ns(setpoint) + ToLastBit_ns(sync));
+  EXPECT_EQ(bus.State().frames_received, 1u) << "what came from others";
+  EXPECT_EQ(node.seen_count, 3u);
+}
+
 TEST(LoopbackBus, TouchesNoHeap) {
   if (!test::AllocationGuard::kAvailable) GTEST_SKIP() << "the sanitizer owns the heap";
   ScriptedNode node;

@@ -60,6 +60,27 @@ TEST_F(OnVcan, ABatchArrivesInOrderWithTimeStampsOfTheLoopsClock) {
   EXPECT_EQ(a.State().frames_sent, batch.size());
 }
 
+TEST_F(OnVcan, OfItsOwnFramesOnlySyncComesBack) {
+  constexpr std::array<int, 1> kNodes{1};
+  SocketCanBus a("vcan0", kNodes);
+  SocketCanBus b("vcan0");
+  const std::array<CanFrame, 3> batch{Frame(0x201, 0), Frame(0x080, 0), Frame(0x601, 0)};
+  const std::int64_t before = Now_ns();
+  ASSERT_EQ(a.Send(0, batch), batch.size());
+  std::array<StampedFrame, 64> got;
+  ASSERT_EQ(Take(a, got, 1), 1u);
+  EXPECT_EQ(got[0].frame.id, kOwnFrame | 0x080);
+  EXPECT_GE(got[0].stamp_ns, before - 1'000'000);
+  EXPECT_LE(got[0].stamp_ns, Now_ns() + 1'000'000);
+  EXPECT_EQ(a.Receive(0, got), 0u);
+  EXPECT_EQ(a.State().frames_received, 0u);
+  // Another's on this computer is another's.
+  ASSERT_EQ(Take(b, got, 3), 3u);
+  ASSERT_EQ(b.Send(0, std::span(&batch[1], 1)), 1u);
+  ASSERT_EQ(Take(a, got, 1), 1u);
+  EXPECT_EQ(got[0].frame.id, 0x080);
+}
+
 TEST_F(OnVcan, ALinkThatGoesDownIsSeenAndRecoveredFrom) {
   SocketCanBus a("vcan0");
   SocketCanBus b("vcan0");

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
 #include <string>
 
+#include "drivers/can/frame_timing.h"
 #include "tests/drivers/cia402/two_drives.h"
 #include "tests/support/allocation_guard.h"
 
@@ -109,6 +111,33 @@ TEST(DriveMaster, AnAnswerSaysByHowMuchLaterThanUsualItCame) {
   m.stamp_offset_ns = 1'000'000'000'000;
   m.Cycle();
   EXPECT_EQ(m.master.feedback()[0].late_s, 0.0);
+}
+
+// Two frames of others: one holds up the SYNC, the other only what answers it.
+TEST(DriveMaster, ASyncOfItsOwnOnTheWireSaysByHowMuchLaterItCame) {
+  Machine m;
+  m.TellOfSync();
+  m.BringUp();
+  ASSERT_TRUE(m.master.operational());
+  EXPECT_EQ(m.master.second_master(), DriveMaster::kNoBus) << "our own is no other master's";
+  m.Cycles(1000);
+  constexpr CanFrame kLong{0x4FE, 8, {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55}};
+  const double frame_s = 1e-9 * static_cast<double>(BitsToNs(FrameBits(kLong), 1'000'000));
+  const auto& f = m.master.feedback()[0];
+  // The master's own frames of now and then come behind the SYNC.
+  double most_s = 0.0;
+  for (int i = 0; i < 200; ++i, m.Cycle()) most_s = std::max(most_s, std::abs(f.sync_late_s));
+  EXPECT_LT(most_s, 0.25 * frame_s);
+  m.BeginFrame(kLong);
+  m.Cycles(2);
+  EXPECT_NEAR(f.sync_late_s, frame_s, 0.25 * frame_s);
+  m.Cycle();
+  EXPECT_LT(std::abs(f.sync_late_s), 0.25 * frame_s);
+  // What is on the wire is known by its own stamp, whatever the answer's says.
+  m.slave[0].behaviour.tpdo_ns = 300'000;
+  m.Cycles(2);
+  EXPECT_GT(f.late_s, 100e-6);
+  EXPECT_LT(std::abs(f.sync_late_s), 0.25 * frame_s);
 }
 
 TEST(DriveMaster, StampsOfAnotherClockSayNothing) {

@@ -89,6 +89,10 @@ class Machine {
       if (f.frame == SyncFrame()) return true;
     return false;
   }
+  /// A frame of somebody else that is on the wire at the next grid point, and has hardly begun.
+  void BeginFrame(const CanFrame& frame) { bus_.Inject(now_ns() + 999'000, frame); }
+  /// From now on the bus tells when our SYNCs were on the wire.
+  void TellOfSync() { bus_.TellOf(cob::kSync); }
   void SetLink(bool up) { bus_.SetLink(now_ns(), up); }
   void Skip(std::uint64_t cycles) { cycle_ += cycles; }
 
