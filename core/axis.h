@@ -38,7 +38,8 @@ struct AxisFeedback {
   bool scale_fresh = false;      ///< table_position_m belongs to the last SYNC; not in the log
   double late_s =
       0.0;  ///< in CST: by which the answer came later than usual, as its SYNC may have; not in the log
-  double sync_late_s = 0.0;  ///< in CST: by which its SYNC is known to have been later than usual; not in the log
+  double sync_late_s =
+      0.0;  ///< in CST: by which its SYNC is known to have been later than usual; not in the log
 };
 
 /// What the cycle sends to a drive.

@@ -13,9 +13,9 @@ constexpr double kExplains = 0.5;
 
 }  // namespace
 
-// A SYNC that another frame held up latches a later position. Where the bus tells when it was on the wire, that
-// is known, to what the time stamp is worth: what is nearer to where the axis was foreseen tells. Where it does
-// not, the answer comes as much later; but the answer alone may be late as well.
+// A SYNC that another frame held up latches a later position. Where the bus tells when it was on the wire,
+// that is known, to what the time stamp is worth: what is nearer to where the axis was foreseen tells. Where
+// it does not, the answer comes as much later; but the answer alone may be late as well.
 void Cycle::TakeLateness(std::size_t index, const AxisFeedback& feedback) noexcept {
   Axis& axis = axes_[index];
   const AxisEstimate& foreseen = estimates_[index];

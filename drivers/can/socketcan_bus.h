@@ -33,8 +33,8 @@ class BusUnavailable : public std::runtime_error {
 /// received in a
 ///   later call; at least one call of State() sees it.
 /// - Only data frames with 11-bit identifiers are passed on.
-/// - With `nodes`, our own SYNCs come back as kOwnFrame | 0x080, with the time at which the controller had sent
-/// them
+/// - With `nodes`, our own SYNCs come back as kOwnFrame | 0x080, with the time at which the controller had
+/// sent them
 ///   (drivers without an echo of their own: at which it took them).
 class SocketCanBus : public FrameBus {
  public:

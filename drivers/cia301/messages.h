@@ -12,12 +12,12 @@ namespace cob {
 inline constexpr std::uint16_t kNmt = 0x000;
 inline constexpr std::uint16_t kSync = 0x080;
 inline constexpr std::uint16_t kOwnSync = kOwnFrame | kSync;  ///< ours, told when it was on the wire
-inline constexpr std::uint16_t kEmergency = 0x080;   ///< + n
-inline constexpr std::uint16_t kTpdo1 = 0x180;       ///< + n; TPDO2..4 each 0x100 higher
-inline constexpr std::uint16_t kRpdo1 = 0x200;       ///< + n; RPDO2..4 each 0x100 higher
-inline constexpr std::uint16_t kSdoReply = 0x580;    ///< + n, server to client
-inline constexpr std::uint16_t kSdoRequest = 0x600;  ///< + n, client to server
-inline constexpr std::uint16_t kHeartbeat = 0x700;   ///< + n
+inline constexpr std::uint16_t kEmergency = 0x080;            ///< + n
+inline constexpr std::uint16_t kTpdo1 = 0x180;                ///< + n; TPDO2..4 each 0x100 higher
+inline constexpr std::uint16_t kRpdo1 = 0x200;                ///< + n; RPDO2..4 each 0x100 higher
+inline constexpr std::uint16_t kSdoReply = 0x580;             ///< + n, server to client
+inline constexpr std::uint16_t kSdoRequest = 0x600;           ///< + n, client to server
+inline constexpr std::uint16_t kHeartbeat = 0x700;            ///< + n
 }  // namespace cob
 
 /// NMT state as a heartbeat carries it.
