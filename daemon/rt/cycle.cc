@@ -176,7 +176,7 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
-    if (f.sync_late_s != 0.0 || f.late_s > axes_[i].late_from_s) TakeLateness(i, f);
+    if (std::max(std::abs(f.sync_late_s), f.late_s) > axes_[i].late_from_s) TakeLateness(i, f);
     stale = stale || (f.valid && !f.fresh);
     follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
   }
