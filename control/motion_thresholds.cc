@@ -57,6 +57,27 @@ std::uint32_t Periods(double time_s, double period_s) noexcept {
   return static_cast<std::uint32_t>(std::max(std::lround(time_s / period_s), 1L));
 }
 
+// csp: what a drive's report may do at rest before its own loop counts as pushing.
+void UseReport(const MonitoredAxis& a, const MonitorConfig& c, double period_s,
+               MotionThresholds& t) noexcept {
+  t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
+  t.pushed_force_N = t.rest_force_N + t.flickering.force_N - t.frozen.force_N;
+  t.rest_periods = Periods(kReportSettles * kReport_s, period_s);
+  t.push_fade = 1.0 - std::exp(-period_s / kPushForgotten_s);
+  // Its mean follows later still.
+  t.tail_decay = std::exp(-period_s / (kReport_s + 0.5 * kChatter_periods * period_s));
+  t.swing = std::max(kSwingNoise, kSwingTail * kReport_s / (kChatter_periods * period_s));
+  // Half of what a report's noise may be.
+  t.tail_N = 0.5 * (t.rest_force_N - t.frozen.force_N) / t.swing;
+  t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);
+  t.begin_periods = a.delay_cycles + kLaterThanStated;
+  // In long cycles a report has settled before what is under way has arrived.
+  t.rest_periods = std::max(t.rest_periods, t.begin_periods + 1);
+  // Inertia holds what is pushed that long within the band.
+  t.pushed_periods = t.begin_periods +
+                     Periods(std::sqrt(2.0 * t.heavy_kg * t.flickering.moved_m / t.pushed_force_N), period_s);
+}
+
 }  // namespace
 
 // The controller's stiffness goes by the mass it was told; a drive's own by the mass it was tuned for.
@@ -102,22 +123,7 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.frozen_force_N = t.friction_N + t.external_N + t.frozen.force_N;
   t.flickering_force_N = t.friction_N + t.external_N + t.flickering.force_N;
   UseLoop(a.loop_Hz, a, period_s, t);
-  t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
-  t.pushed_force_N = t.rest_force_N + t.flickering.force_N - t.frozen.force_N;
-  t.rest_periods = Periods(kReportSettles * kReport_s, period_s);
-  t.push_fade = 1.0 - std::exp(-period_s / kPushForgotten_s);
-  // Its mean follows later still.
-  t.tail_decay = std::exp(-period_s / (kReport_s + 0.5 * kChatter_periods * period_s));
-  t.swing = std::max(kSwingNoise, kSwingTail * kReport_s / (kChatter_periods * period_s));
-  // Half of what a report's noise may be.
-  t.tail_N = 0.5 * (t.rest_force_N - t.frozen.force_N) / t.swing;
-  t.rest_fade = 1.0 - std::exp(-period_s / kRest_s);
-  t.begin_periods = a.delay_cycles + kLaterThanStated;
-  // In long cycles a report has settled before what is under way has arrived.
-  t.rest_periods = std::max(t.rest_periods, t.begin_periods + 1);
-  // Inertia holds what is pushed that long within the band.
-  t.pushed_periods = t.begin_periods +
-                     Periods(std::sqrt(2.0 * t.heavy_kg * t.flickering.moved_m / t.pushed_force_N), period_s);
+  UseReport(a, c, period_s, t);
   t.force_periods = Periods(kSameForForce_s, period_s);
   t.report_periods = kReport_s / period_s;
   t.undelivered_periods = Periods(kUndelivered_s, period_s);

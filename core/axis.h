@@ -36,10 +36,10 @@ struct AxisFeedback {
   bool has_scale = false;
   std::uint32_t age_cycles = 0;  ///< 0 when fresh; counts up without feedback
   bool scale_fresh = false;      ///< table_position_m belongs to the last SYNC; not in the log
-  double late_s =
-      0.0;  ///< in CST: by which the answer came later than usual, as its SYNC may have; not in the log
-  double sync_late_s =
-      0.0;  ///< in CST: by which its SYNC is known to have been later than usual; not in the log
+  /// In CST: by which the answer came later than usual, as its SYNC may have; not in the log.
+  double late_s = 0.0;
+  /// In CST: by which its SYNC is known to have been later than usual; not in the log.
+  double sync_late_s = 0.0;
 };
 
 /// What the cycle sends to a drive.
@@ -67,8 +67,8 @@ struct AxisEstimate {
   double velocity_m_s = 0.0;          ///< at the sample
   double predicted_position_m = 0.0;  ///< at t(k)
   double predicted_velocity_m_s = 0.0;
-  double friction_N =
-      0.0;  ///< total at the sample: bristle + viscous + disturbance state; 0 without friction estimation
+  /// Total at the sample: bristle + viscous + disturbance state; 0 without friction estimation.
+  double friction_N = 0.0;
   double friction_std_N = 0.0;  ///< one standard deviation of friction_N
   double bristle_N = 0.0;       ///< sigma0 z at the sample
   double g_plus_N = 0.0;        ///< friction level in the positive direction
