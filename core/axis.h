@@ -74,7 +74,11 @@ struct AxisEstimate {
   double g_plus_N = 0.0;        ///< friction level in the positive direction
   double g_minus_N = 0.0;
   double disturbance_N = 0.0;  ///< leaky disturbance, positive opposes positive motion (as friction does)
+  /// One standard deviation of it as a force from outside: what friction is off by shows as one, too.
+  double disturbance_std_N = 0.0;
   double sigma0_N_m = 0.0;
+  double stiffness_N_m = 0.0;      ///< of the screw, as commissioned and learnt; 0: not estimated
+  double stiffness_std_N_m = 0.0;  ///< one standard deviation of it
   double innovation_m = 0.0;  ///< measured minus predicted position
   double innovation_std_m = 0.0;
   /// Of motor and table, where the estimator tells them apart: TwoInertiaLoop's motion at the sample.

@@ -80,6 +80,7 @@ AxisEstimate DisturbanceObserver::Update(const AxisEstimatorInput& in) noexcept 
   out.friction_N = core_.x[2] + sigma2 * core_.x[1];
   out.friction_std_N = core_.Std({0.0, sigma2, 1.0});
   out.disturbance_N = core_.x[2];
+  out.disturbance_std_N = core_.Std({0.0, 0.0, 1.0});
   out.diverged = !square_root::Sound(core_.x, core_.s, {1.0, 100.0, 1e6});
   return out;
 }

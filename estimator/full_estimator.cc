@@ -21,6 +21,7 @@ FullEstimator::FullEstimator(const FilterSetup& setup, KnownEffects known)
       mass_kg_(setup.mechanics.mass_kg),
       table_mass_kg_(setup.mechanics.table_mass_kg),
       before_screw_(setup.friction.motor_share),
+      stiffness_std_(setup.config.stiffness_std),
       known_(std::move(known)) {}
 
 void FullEstimator::Reset(double position_m) noexcept {
@@ -81,7 +82,7 @@ AxisEstimate FullEstimator::Update(const AxisEstimatorInput& in) noexcept {
   const AxisEstimatorInput followed = Followed(in);
   at_rest_ = followed.at_rest || !in.enabled;
   TellKnownForces(followed);
-  const AxisEstimate estimate = filter_.Update(followed);
+  AxisEstimate estimate = filter_.Update(followed);
   // Over the period that ends with this measurement.
   const double force_N = lag_.Step(in.force_N[1])[0];
   if (in.enabled && in.fresh && !frozen_ && !followed.at_rest && estimate.limit != Reason::kInnovationGated)
@@ -89,6 +90,9 @@ AxisEstimate FullEstimator::Update(const AxisEstimatorInput& in) noexcept {
   else
     learnt_.Pause();
   drive_N_ = force_N;
+  const ScrewStiffness stiffness = StiffnessBy(learnt_.wind_up, before_screw_, stiffness_std_);
+  estimate.stiffness_N_m = stiffness.N_m;
+  estimate.stiffness_std_N_m = stiffness.std_N_m;
   return estimate;
 }
 

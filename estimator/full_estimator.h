@@ -12,6 +12,7 @@
 #include "estimator/full_learning.h"
 #include "estimator/known_effects.h"
 #include "estimator/seven_state_filter.h"
+#include "estimator/wind_up_tuning.h"
 
 namespace contour {
 
@@ -49,7 +50,8 @@ class FullEstimator {
   DriveLag<1> lag_;
   double mass_kg_;
   double table_mass_kg_;
-  double before_screw_;  ///< share of the friction that acts there
+  double before_screw_;   ///< share of the friction that acts there
+  double stiffness_std_;  ///< of the screw, relative, as commissioned
   KnownEffects known_;
   double drive_N_ = 0.0;  ///< mean over the period before
   double temperature_degC_ = std::numeric_limits<double>::quiet_NaN();

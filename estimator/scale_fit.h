@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace contour {
@@ -39,6 +40,10 @@ class ScaleFit {
 
   [[nodiscard]] double zero_m() const noexcept { return value_[kZero]; }
   [[nodiscard]] double extra_compliance_m_N() const noexcept { return value_[kCompliance]; }
+  /// One standard deviation of the screw's compliance.
+  [[nodiscard]] double compliance_std_m_N() const noexcept {
+    return std::sqrt(covariance_[kCompliance][kCompliance]);
+  }
   /// Error of the lead there.
   [[nodiscard]] double Lead_m(double travel_m, double position_m) const noexcept;
 

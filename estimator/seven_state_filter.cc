@@ -63,6 +63,8 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
       lasting_share_(ShareOfPeriod(kLastingRate, setup.period_s)),
       asymmetry_share_(ShareOfPeriod(kShareRate, setup.period_s)),
       surprise_share_(ShareOfPeriod(kSurpriseShare, setup.period_s)),
+      band_(setup.config.initial_level_std * 0.5 * (setup.friction.Fc_plus_N + setup.friction.Fc_minus_N),
+            setup.period_s),
       forget_share_(ShareOfPeriod(kForgetShare, setup.period_s)) {
   const auto& c = setup.config;
   // A coarse encoder would slow the parameters down with the rest of the filter, more than their drift
@@ -101,6 +103,7 @@ void SevenStateFilter<Core>::Reset(double position_m) noexcept {
   core_.x[kLevelMinus] = setup_.friction.Fc_minus_N;
   core_.s = {};
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = initial_std_[i];
+  band_.Reset();
   last_position_m_ = position_m;
   periods_since_position_ = 1.0;
   Follow(position_m);
@@ -418,6 +421,9 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   out.predicted_velocity_m_s = predicted_[kVelocity];
   out.bristle_N = x[kBristle];
   out.disturbance_N = x[kDisturbance];
+  if (in.enabled && !in.at_rest) band_.Step(x[kDisturbance]);
+  const double filter_N = core_.Std({0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, kDisturbance, kDisturbance + 1);
+  out.disturbance_std_N = band_.Std_N(surprise_ * filter_N * filter_N);
   out.friction_N = friction_N;
   out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
   out.g_plus_N = x[kLevelPlus];

@@ -8,6 +8,7 @@
 #include "core/axis.h"
 #include "core/wide_vectors.h"
 #include "estimator/axis_estimator_input.h"
+#include "estimator/disturbance_band.h"
 #include "estimator/drive_lag.h"
 #include "estimator/filter_setup.h"
 #include "estimator/seven_state_model.h"
@@ -106,6 +107,7 @@ class SevenStateFilter {
   double lasting_share_ = 0.0;  // shares per period
   double asymmetry_share_ = 0.0;
   double surprise_share_ = 0.0;
+  DisturbanceBand band_;
   double forget_share_ = 0.0;
   X std_limit_{};
   X initial_std_{};

@@ -6,7 +6,6 @@
 
 #include "estimator/linear_friction_fit.h"
 #include "estimator/share_of_period.h"
-#include "estimator/wind_up_tuning.h"
 
 namespace contour {
 namespace {
@@ -136,6 +135,9 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       resting_(MakeBasis(s).scale().level_N, s.filter.config.lasting_force, s.filter.period_s),
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
       before_screw_(s.filter.friction.motor_share),
+      band_(s.filter.config.initial_level_std * 0.5 *
+                (s.filter.friction.Fc_plus_N + s.filter.friction.Fc_minus_N),
+            s.filter.period_s),
       surprise_share_(std::min(1.0, s.filter.period_s / kSurprise_s)),
       settle_(HalfSeen(FirstLoop(s).disturbance_response, (kFound - 1) / 2)) {
   const Friction& f = s.filter.friction;
@@ -146,7 +148,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
 }
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
-  keep(along_, side_, nodes_, observer_, learner_, wind_up_, lag_, scale_, by_scale_, lead_, given_N_,
+  keep(along_, side_, nodes_, observer_, learner_, wind_up_, band_, lag_, scale_, by_scale_, lead_, given_N_,
        resting_, acted_N_, found_N_, newest_, surprise_N2_, noise_N2_, variance_N2_, unexplained_N_, elapsed_,
        temperature_degC_, at_rest_, frozen_);
 }
@@ -159,6 +161,7 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
   nodes_ = {};
   learner_.Reset();
   wind_up_.Reset();
+  band_.Reset();
   lag_.Reset();
   lead_.Reset();
   resting_.Move();
@@ -280,7 +283,11 @@ AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const n
   out.by_scale = by_scale_;
   if (scale_ && in.enabled) out.scale = scale_->told();
   out.disturbance_N = unexplained_N_;
+  out.disturbance_std_N = band_.Std_N(variance_N2_);
   out.sigma0_N_m = setup_.friction.sigma0_N_m;
+  const ScrewStiffness stiffness = Stiffness();
+  out.stiffness_N_m = stiffness.N_m;
+  out.stiffness_std_N_m = stiffness.std_N_m;
   out.g_plus_N = learner_.Level_N(true);
   out.g_minus_N = learner_.Level_N(false);
   if (along_.size() > 0) {
@@ -291,6 +298,12 @@ AxisEstimate TwoInertiaEstimator::Believed(const AxisEstimatorInput& in) const n
   out.friction_std_N = std::sqrt(variance_N2_);
   out.diverged = !observer_.Sound();
   return out;
+}
+
+ScrewStiffness TwoInertiaEstimator::Stiffness() const noexcept {
+  if (!scale_) return StiffnessBy(wind_up_, before_screw_, setup_.config.stiffness_std);
+  const ScaleFit& fit = scale_->fit();
+  return ScrewStiffness::Of(1.0 / axis_.stiffness_N_m + fit.extra_compliance_m_N(), fit.compliance_std_m_N());
 }
 
 // Up to the friction level an unforeseen force is friction, and part of it the motor's; beyond, it comes from

@@ -13,6 +13,7 @@
 #include "core/two_inertia_loop.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/cascade_lead.h"
+#include "estimator/disturbance_band.h"
 #include "estimator/drive_lag.h"
 #include "estimator/filter_setup.h"
 #include "estimator/friction_along.h"
@@ -23,6 +24,7 @@
 #include "estimator/table_scale.h"
 #include "estimator/two_inertia_observer.h"
 #include "estimator/wind_up_fit.h"
+#include "estimator/wind_up_tuning.h"
 
 namespace contour {
 
@@ -97,6 +99,7 @@ class TwoInertiaEstimator {
   void LearnWindUp(const AxisEstimatorInput& in) noexcept;
   void Rest() noexcept;
   void Doubt(double acceleration_m_s2) noexcept;
+  [[nodiscard]] ScrewStiffness Stiffness() const noexcept;
   [[nodiscard]] AxisEstimate Believed(const AxisEstimatorInput& in) const noexcept;
 
   FilterSetup setup_;
@@ -114,9 +117,10 @@ class TwoInertiaEstimator {
   bool by_scale_ = false;  ///< the observer goes by it
   CascadeLead lead_;
   RestingBristles resting_;
-  double most_N_ = 0.0;          ///< that friction along the reference may be
-  double motor_share_ = 0.0;     ///< of the mass
-  double before_screw_ = 0.0;    ///< share of the friction that acts there
+  double most_N_ = 0.0;        ///< that friction along the reference may be
+  double motor_share_ = 0.0;   ///< of the mass
+  double before_screw_ = 0.0;  ///< share of the friction that acts there
+  DisturbanceBand band_;
   double surprise_share_ = 1.0;  ///< per period
   std::size_t settle_ = 1;       ///< periods in which the observer sees half of a force
 

@@ -31,6 +31,7 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
   const double used_N = 0.5 * (At(period).learnt_N + At(period + 1).learnt_N);
   unexplained_N_ =
       learner_.Learn(terms, used_N, observer_.disturbance_N(), std::abs(velocity_m_s), may && !at_rest_);
+  if (!at_rest_) band_.Step(unexplained_N_);
   Doubt(terms[kMass]);
   if (at_rest_)
     Rest();

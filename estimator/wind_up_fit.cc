@@ -76,9 +76,9 @@ WindUpFit::WindUpFit(const Tuning& tuning) noexcept
 
 void WindUpFit::Reset() noexcept {
   compliance_m_N_ = 1.0 / tuning_.stiffness_N_m;
-  const double std_m_N = tuning_.stiffness_std * compliance_m_N_;
-  stated_certainty_ = certainty_ = learns() ? 1.0 / (std_m_N * std_m_N) : 0.0;
-  found_m_N_ = found_certainty_ = same_m2_N2_ = 0.0;
+  stated_std_m_N_ = std_m_N_ = tuning_.stiffness_std * compliance_m_N_;
+  stated_certainty_ = certainty_ = learns() ? 1.0 / (std_m_N_ * std_m_N_) : 0.0;
+  found_m_N_ = found_certainty_ = same_m2_N2_ = law_m2_N2_ = 0.0;
   independence_ = kIndependent;
   judged_ = 1.0;
   used_m_N_ = 0.0;
@@ -257,7 +257,7 @@ bool WindUpFit::Follows(double independence) noexcept {
   judged_ = std::min(judged_ + 1.0, kMostJudged);
   independence_ += (independence - independence_) / judged_;
   if (independence_ > kLeastIndependence) return true;
-  found_m_N_ = found_certainty_ = same_m2_N2_ = 0.0;
+  found_m_N_ = found_certainty_ = same_m2_N2_ = law_m2_N2_ = 0.0;
   Weigh();
   return false;
 }
@@ -278,7 +278,8 @@ void WindUpFit::Conclude(double compliance_m_N, double std_m_N, double independe
       whole * whole / (std_m_N * std_m_N + bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
   found_certainty_ += certainty;
   found_m_N_ += certainty / found_certainty_ * (compliance_m_N - found_m_N_);
-  same_m2_N2_ = tuning_.same_law * (bristle_m_N * bristle_m_N + screw_m_N * screw_m_N);
+  law_m2_N2_ = bristle_m_N * bristle_m_N + screw_m_N * screw_m_N;
+  same_m2_N2_ = tuning_.same_law * law_m2_N2_;
   ++reversals_;
   Weigh();
 }
@@ -290,6 +291,7 @@ void WindUpFit::Weigh() noexcept {
   const double stated_m_N = 1.0 / tuning_.stiffness_N_m;
   compliance_m_N_ = stated_m_N;
   certainty_ = stated_certainty_;
+  std_m_N_ = stated_std_m_N_;
   if (found_certainty_ == 0.0) return;
   const double found = FoundCertainty();
   const double off_m_N = found_m_N_ - stated_m_N;
@@ -301,6 +303,9 @@ void WindUpFit::Weigh() noexcept {
     off2 = moved_m_N * moved_m_N * stated_certainty_;
   }
   compliance_m_N_ += moved_m_N;
+  // By friction that is not as stated every reversal is off alike, the more so the more they count.
+  const double of_found = found / certainty_;
+  std_m_N_ = std::min(stated_std_m_N_, std::sqrt(1.0 / certainty_ + of_found * of_found * law_m2_N2_));
 }
 
 }  // namespace contour

@@ -57,6 +57,9 @@ class WindUpFit {
   [[nodiscard]] bool learns() const noexcept { return tuning_.stiffness_std > 0.0; }
   /// By how much the screw yields more than commissioned. It changes slowly.
   [[nodiscard]] double extra_compliance_m_N() const noexcept { return used_m_N_; }
+  /// As stated and found together, m/N, and one standard deviation of it.
+  [[nodiscard]] double compliance_m_N() const noexcept { return compliance_m_N_; }
+  [[nodiscard]] double compliance_std_m_N() const noexcept { return std_m_N_; }
   /// Reversals that have taught something.
   [[nodiscard]] int reversals() const noexcept { return reversals_; }
 
@@ -97,10 +100,13 @@ class WindUpFit {
   double use_share_ = 0.0;       // per period
   double compliance_m_N_ = 0.0;  // estimate and the inverse of its variance
   double certainty_ = 0.0;
+  double std_m_N_ = 0.0;
+  double stated_std_m_N_ = 0.0;
   double stated_certainty_ = 0.0;
   double found_m_N_ = 0.0;  // by reversals alone
   double found_certainty_ = 0.0;
   double same_m2_N2_ = 0.0;    // variance that they share
+  double law_m2_N2_ = 0.0;     // variance by the law, of each
   double independence_ = 0.0;  // of the residuals, mean over so many reversals
   double judged_ = 0.0;
   double end_m_s_ = 0.0;  // speed where a window ended

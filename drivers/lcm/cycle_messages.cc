@@ -239,7 +239,10 @@ struct EstimateFields {
     copy(core.estimate.g_plus_N, wire.g_plus_N);
     copy(core.estimate.g_minus_N, wire.g_minus_N);
     copy(core.estimate.disturbance_N, wire.disturbance_N);
+    copy(core.estimate.disturbance_std_N, wire.disturbance_std_N);
     copy(core.estimate.sigma0_N_m, wire.sigma0_N_m);
+    copy(core.estimate.stiffness_N_m, wire.stiffness_N_m);
+    copy(core.estimate.stiffness_std_N_m, wire.stiffness_std_N_m);
     copy(core.estimate.position_m, wire.position_m);
     copy(core.estimate.velocity_m_s, wire.velocity_m_s);
     copy(core.estimate.predicted_position_m, wire.predicted_position_m);

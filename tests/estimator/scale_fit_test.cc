@@ -46,6 +46,8 @@ TEST(ScaleFit, FindsStiffnessLeadAndZeroApart) {
   fit.Reset(motion.jump_m);
   for (int k = 0; k < 5000; ++k) fit.Learn(motion.At(k, random));
   EXPECT_NEAR(fit.extra_compliance_m_N(), motion.extra_m_N, 0.02 / kStiffness_N_m);
+  EXPECT_LT(std::abs(fit.extra_compliance_m_N() - motion.extra_m_N), 2.0 * fit.compliance_std_m_N());
+  EXPECT_LT(fit.compliance_std_m_N(), 0.05 / kStiffness_N_m);
   EXPECT_NEAR(fit.zero_m(), motion.jump_m, 0.05e-6);
   EXPECT_NEAR(fit.Lead_m(0.0, 0.0), motion.turn_m, 0.05e-6);
   EXPECT_NEAR(fit.Lead_m(5e-3, 0.0) - fit.Lead_m(0.0, 0.0), 5e-3 * motion.slope, 0.05e-6);

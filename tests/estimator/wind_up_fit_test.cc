@@ -98,6 +98,20 @@ TEST(WindUpFit, FindsAScrewThatIsStifferThanCommissioned) {
   }
 }
 
+// Of what is stated and what reversals tell: less than stated, never less than the law of friction is off by.
+TEST(WindUpFit, SaysHowFarItMayBeOff) {
+  for (const double truth_N_m : {36e6, 44e6, 55e6}) {
+    WindUpFit fit(Tuning(0.3));
+    EXPECT_NEAR(fit.compliance_std_m_N(), 0.3 / kCommissioned_N_m, 1e-12);
+    Drive(fit, LuGre(kSigma0_N_m, kLevel_N), {.stiffness_N_m = truth_N_m});
+    EXPECT_LT(std::abs(fit.compliance_m_N() - 1.0 / truth_N_m), 2.0 * fit.compliance_std_m_N());
+    EXPECT_LT(fit.compliance_std_m_N(), 0.2 / kCommissioned_N_m);
+    EXPECT_GT(fit.compliance_std_m_N(), 0.04 / truth_N_m);
+    fit.Reset();
+    EXPECT_NEAR(fit.compliance_std_m_N(), 0.3 / kCommissioned_N_m, 1e-12);
+  }
+}
+
 double Found_N_m(const WindUpFit& fit) {
   return 1.0 / (1.0 / kCommissioned_N_m + fit.extra_compliance_m_N());
 }

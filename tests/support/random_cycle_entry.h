@@ -113,12 +113,28 @@ class RandomCycleEntry {
     a.feedback = {Double(), Double(), Double(), Int<std::uint16_t>(), static_cast<DriveState>(Below(9)),
                   Bool(),   Bool(),   Bool(),   Int<std::uint32_t>()};
     Fill(a.reference);
-    for (double* d :
-         {&a.estimate.position_m, &a.estimate.velocity_m_s, &a.estimate.predicted_position_m,
-          &a.estimate.predicted_velocity_m_s, &a.estimate.friction_N, &a.estimate.friction_std_N,
-          &a.estimate.bristle_N, &a.estimate.g_plus_N, &a.estimate.g_minus_N, &a.estimate.disturbance_N,
-          &a.estimate.sigma0_N_m, &a.estimate.innovation_m, &a.estimate.innovation_std_m, &a.position_m,
-          &a.following_error_m, &a.feedforward_Nm, &a.wanted_torque_Nm, &a.torque_Nm, &a.target_position_rad})
+    for (double* d : {&a.estimate.position_m,
+                      &a.estimate.velocity_m_s,
+                      &a.estimate.predicted_position_m,
+                      &a.estimate.predicted_velocity_m_s,
+                      &a.estimate.friction_N,
+                      &a.estimate.friction_std_N,
+                      &a.estimate.bristle_N,
+                      &a.estimate.g_plus_N,
+                      &a.estimate.g_minus_N,
+                      &a.estimate.disturbance_N,
+                      &a.estimate.disturbance_std_N,
+                      &a.estimate.stiffness_N_m,
+                      &a.estimate.stiffness_std_N_m,
+                      &a.estimate.sigma0_N_m,
+                      &a.estimate.innovation_m,
+                      &a.estimate.innovation_std_m,
+                      &a.position_m,
+                      &a.following_error_m,
+                      &a.feedforward_Nm,
+                      &a.wanted_torque_Nm,
+                      &a.torque_Nm,
+                      &a.target_position_rad})
       *d = Double();
     a.estimate.limit = static_cast<Reason>(Below(101));
     a.estimate.diverged = Bool();

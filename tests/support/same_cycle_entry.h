@@ -98,7 +98,10 @@ inline void ExpectSame(const AxisRecord& a, const AxisRecord& b) {
   EXPECT_TRUE(Same("g+", x.g_plus_N, y.g_plus_N));
   EXPECT_TRUE(Same("g-", x.g_minus_N, y.g_minus_N));
   EXPECT_TRUE(Same("disturbance", x.disturbance_N, y.disturbance_N));
+  EXPECT_TRUE(Same("disturbance std", x.disturbance_std_N, y.disturbance_std_N));
   EXPECT_TRUE(Same("sigma0", x.sigma0_N_m, y.sigma0_N_m));
+  EXPECT_TRUE(Same("stiffness", x.stiffness_N_m, y.stiffness_N_m));
+  EXPECT_TRUE(Same("stiffness std", x.stiffness_std_N_m, y.stiffness_std_N_m));
   EXPECT_TRUE(Same("innovation", x.innovation_m, y.innovation_m));
   EXPECT_TRUE(Same("innovation std", x.innovation_std_m, y.innovation_std_m));
   EXPECT_EQ(x.limit, y.limit);

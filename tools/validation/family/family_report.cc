@@ -96,7 +96,8 @@ struct Pairing {
 void WriteFamilyCsv(std::ostream& out, const std::vector<FamilyCell>& cells,
                     const std::vector<FamilyResult>& results) {
   out << "machine,plant,model,law,variation,controller,mode,program,seed,wind_up_um,peak_um,rms_um,hold_pp_"
-         "um,friction_inside_rel,friction_std_over_error,failure\n";
+         "um,friction_inside_rel,friction_std_over_error,disturbance_inside_rel,disturbance_std_over_error,"
+         "stiffness_error_stds,stiffness_error_rel,stiffness_std_rel,failure\n";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const FamilyCell& c = cells[i];
     const FamilyResult& r = results[i];
@@ -106,7 +107,10 @@ void WriteFamilyCsv(std::ostream& out, const std::vector<FamilyCell>& cells,
         << c.entry.controller << ',' << c.entry.mode << ',' << c.program << ',' << c.seed << ','
         << FourDigits(r.wind_up_um) << ',' << FourDigits(r.peak_um) << ',' << FourDigits(r.rms_um) << ','
         << FourDigits(r.hold_pp_um) << ',' << FourDigits(r.friction_inside_rel) << ','
-        << FourDigits(r.friction_std_over_error) << ',' << Quoted(r.failure) << '\n';
+        << FourDigits(r.friction_std_over_error) << ',' << FourDigits(r.disturbance_inside_rel) << ','
+        << FourDigits(r.disturbance_std_over_error) << ',' << FourDigits(r.stiffness_error_stds) << ','
+        << FourDigits(r.stiffness_error_rel) << ',' << FourDigits(r.stiffness_std_rel) << ','
+        << Quoted(r.failure) << '\n';
   }
 }
 

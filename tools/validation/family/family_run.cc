@@ -77,30 +77,62 @@ class PathScore {
   std::vector<bool> scored_;
 };
 
-/// How well the estimate of friction knows by how much it is off.
-class FrictionScore {
+/// How well an estimate knows by how much it is off.
+class BandScore {
  public:
+  void Add(double error, double std) {
+    error2_ += error * error;
+    variance_ += std * std;
+    if (std::abs(error) < 2.0 * std) ++inside_;
+    ++count_;
+  }
+  void Finish(double& inside_rel, double& std_over_error) const {
+    if (count_ == 0 || variance_ == 0.0) return;
+    inside_rel = static_cast<double>(inside_) / static_cast<double>(count_);
+    std_over_error = std::sqrt(variance_ / error2_);
+  }
+
+ private:
+  double error2_ = 0.0, variance_ = 0.0;
+  std::size_t inside_ = 0, count_ = 0;
+};
+
+class EstimateScore {
+ public:
+  explicit EstimateScore(const EmulatedMachineFile& file) {
+    for (const auto& [name, axis] : file.machine.axes)
+      stiffness_N_m_.push_back(kMicro * file.emulator.axes.at(name).screw_stiffness_N_um);
+  }
   void Add(const CycleRecord& record, const MotionPlan& plan, const TruthRow& truth) {
     const double time_s = RowOf(record, false).path_time_s;
     if (time_s < 0.0 || !plan.Scored(time_s)) return;
     for (std::size_t i = 0; i < truth.axes.size(); ++i) {
       const AxisEstimate& estimate = record.axes[i].estimate;
-      const double error_N = estimate.friction_N - truth.axes[i].friction_N;
-      error_N2_ += error_N * error_N;
-      variance_N2_ += estimate.friction_std_N * estimate.friction_std_N;
-      if (std::abs(error_N) < 2.0 * estimate.friction_std_N) ++inside_;
-      ++count_;
+      friction_.Add(estimate.friction_N - truth.axes[i].friction_N, estimate.friction_std_N);
+      disturbance_.Add(estimate.disturbance_N, estimate.disturbance_std_N);
     }
+    last_ = record;
   }
   void Finish(FamilyResult& result) const {
-    if (count_ == 0 || variance_N2_ == 0.0) return;
-    result.friction_inside_rel = static_cast<double>(inside_) / static_cast<double>(count_);
-    result.friction_std_over_error = std::sqrt(variance_N2_ / error_N2_);
+    friction_.Finish(result.friction_inside_rel, result.friction_std_over_error);
+    disturbance_.Finish(result.disturbance_inside_rel, result.disturbance_std_over_error);
+    if (!last_) return;
+    for (std::size_t i = 0; i < stiffness_N_m_.size(); ++i) {
+      const AxisEstimate& estimate = last_->axes[i].estimate;
+      if (estimate.stiffness_std_N_m == 0.0) continue;
+      const double error_N_m = estimate.stiffness_N_m - stiffness_N_m_[i];
+      const double stds = std::abs(error_N_m) / estimate.stiffness_std_N_m;
+      if (stds < result.stiffness_error_stds) continue;
+      result.stiffness_error_stds = stds;
+      result.stiffness_error_rel = error_N_m / stiffness_N_m_[i];
+      result.stiffness_std_rel = estimate.stiffness_std_N_m / stiffness_N_m_[i];
+    }
   }
 
  private:
-  double error_N2_ = 0.0, variance_N2_ = 0.0;
-  std::size_t inside_ = 0, count_ = 0;
+  std::vector<double> stiffness_N_m_;
+  BandScore friction_, disturbance_;
+  std::optional<CycleRecord> last_;
 };
 
 /// Largest excursion of the table's axes while the machine holds.
@@ -125,14 +157,15 @@ class HoldScore {
   std::vector<double> lowest_, highest_;
 };
 
-void RunProgram(VirtualMachine& machine, const Program& program, FamilyResult& result) {
+void RunProgram(VirtualMachine& machine, const EmulatedMachineFile& file, const Program& program,
+                FamilyResult& result) {
   PathScore score;
-  FrictionScore friction;
+  EstimateScore estimate(file);
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
     const CycleRecord& record = entry.output.record;
     if (record.state != MachineState::kRunning || truth == nullptr) return;
     score.Add(record, *machine.plan(), *truth);
-    friction.Add(record, *machine.plan(), *truth);
+    estimate.Add(record, *machine.plan(), *truth);
   });
   try {
     machine.Run(program);
@@ -141,7 +174,7 @@ void RunProgram(VirtualMachine& machine, const Program& program, FamilyResult& r
     throw;
   }
   score.Finish(result);
-  friction.Finish(result);
+  estimate.Finish(result);
 }
 
 void RunHold(VirtualMachine& machine, FamilyResult& result) {
@@ -193,7 +226,7 @@ FamilyResult RunFamilyCell(const std::string& folder, const FamilyCell& cell) {
     VirtualMachine machine(*file, file->machine.machine.controller);
     machine.BringUp();
     machine.Enable();
-    RunProgram(machine, program, result);
+    RunProgram(machine, *file, program, result);
     if (cell.hold) RunHold(machine, result);
   } catch (const std::exception& e) {
     result.failure = e.what();

@@ -34,6 +34,13 @@ struct FamilyResult {
   /// off by less than two of its standard deviations, and these (rms) over the error's rms. 0: no estimate.
   double friction_inside_rel = 0.0;
   double friction_std_over_error = 0.0;
+  double disturbance_inside_rel = 0.0;  ///< the same of the disturbance, as if no force came from outside
+  double disturbance_std_over_error = 0.0;
+  /// Of the screw's stiffness at the end of the program, on the axis that is farther off in standard
+  /// deviations: these, and both relative to the truth.
+  double stiffness_error_stds = 0.0;
+  double stiffness_error_rel = 0.0;
+  double stiffness_std_rel = 0.0;
   std::string failure{};  ///< why the machine stopped; empty: it did not
   bool refused = false;   ///< before motion, by its checks
 };
