@@ -79,7 +79,7 @@ struct AxisEstimate {
   double sigma0_N_m = 0.0;
   double stiffness_N_m = 0.0;      ///< of the screw, as commissioned and learnt; 0: not estimated
   double stiffness_std_N_m = 0.0;  ///< one standard deviation of it
-  double innovation_m = 0.0;  ///< measured minus predicted position
+  double innovation_m = 0.0;       ///< measured minus predicted position
   double innovation_std_m = 0.0;
   /// Of motor and table, where the estimator tells them apart: TwoInertiaLoop's motion at the sample.
   std::array<double, 5> motion{};

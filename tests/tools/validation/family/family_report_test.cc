@@ -47,7 +47,8 @@ TEST(FamilyReport, AStoppedSeedIsNoMedianAndARefusedMachineNoPeak) {
 TEST(FamilyReport, TheTableForProgramsHasARowPerRun) {
   std::ostringstream out;
   WriteFamilyCsv(out, {Cell("a", "cst", 'B', 7)}, {Result(1.0, 0.1, "said \"no\", twice")});
-  EXPECT_NE(out.str().find("\na,ideal,near,lugre,,full,cst,B,7,2,1,0.5,0.1,0,0,\"said \"\"no\"\", twice\"\n"),
+  EXPECT_NE(out.str().find(
+                "\na,ideal,near,lugre,,full,cst,B,7,2,1,0.5,0.1,0,0,0,0,0,0,0,\"said \"\"no\"\", twice\"\n"),
             std::string::npos)
       << out.str();
 }
