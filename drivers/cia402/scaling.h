@@ -42,24 +42,43 @@ struct PositionScale {
 
 /// Continues a counter over the wrap of INT32. The first value is taken as it is; a later one is the value
 /// nearest to the one before, so that it never jumps by a whole wrap, not even when a drive is brought up
-/// again.
+/// again. From half a range away both directions are as near, and no axis goes that far between two readings:
+/// a value from beyond three eighths of it (between what the two highest bits are worth) is a wrong one, or
+/// of a count that began anew. It does not wrap, and where the readings were before is remembered, so that
+/// the right one that follows is back there.
 class Unwrap {
  public:
   std::int64_t Update(std::int32_t raw) noexcept {
     if (!seeded_) {
-      counts_ = raw;
+      counts_ = before_ = raw;
       seeded_ = true;
+      return counts_;
+    }
+    const std::int32_t step = Step(counts_, raw);
+    if (Small(step)) {
+      counts_ += step;
     } else {
-      const auto step =
-          static_cast<std::uint32_t>(raw) - static_cast<std::uint32_t>(static_cast<std::uint64_t>(counts_));
-      counts_ += static_cast<std::int32_t>(step);
+      const std::int32_t back = Step(before_, raw);
+      const std::int64_t there = Small(back) ? before_ + back : counts_ - Low(counts_) + raw;
+      before_ = counts_;
+      counts_ = there;
     }
     return counts_;
   }
   [[nodiscard]] std::int64_t counts() const noexcept { return counts_; }
 
  private:
+  static constexpr std::int32_t kMost = std::int32_t{3} << 29;
+  static std::int32_t Low(std::int64_t counts) noexcept {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(counts)));
+  }
+  static std::int32_t Step(std::int64_t from, std::int32_t raw) noexcept {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(raw) - static_cast<std::uint32_t>(Low(from)));
+  }
+  static bool Small(std::int32_t step) noexcept { return step >= -kMost && step <= kMost; }
+
   std::int64_t counts_ = 0;
+  std::int64_t before_ = 0;  ///< where the readings were before they were last elsewhere
   bool seeded_ = false;
 };
 

@@ -237,6 +237,32 @@ TEST(MotionMonitor, WhatADrivesLoopMakesOfAStandingReadingDoesNotPutTheAlarmOff)
   EXPECT_LT(s.reported_force_N - begin_N, axis.Fs_N) << "it has broken away before";
 }
 
+// A set-point that was lost: the drive's torque swings from one sample to the next with a mean near nothing,
+// and the motor alone, on its screw, goes further than the mean would take motor and table.
+TEST(MotionMonitor, ADriveThatSwingsTakesTheMotorFurtherThanItsMeanTorqueDoes) {
+  MonitoredAxis axis = Axis();
+  axis.in_cascade = true;
+  const auto after = [&](double share, double force_N) {
+    MotionMonitor monitor(axis, {}, kPeriod_s);
+    const MotionThresholds& t = monitor.thresholds();
+    MotionSample s;
+    s.enabled = s.fresh = true;
+    for (int k = 0; k < 20; ++k) EXPECT_EQ(monitor.Step(s), Reason::kNone);
+    // Half of it acts, by the mean of both reports: it goes where that takes motor and table.
+    s.reported_force_N = force_N;
+    const double went_m = 0.5 * force_N / t.mass_kg * kPeriod_s * kPeriod_s;
+    s.position_m = went_m;
+    EXPECT_EQ(monitor.Step(s), Reason::kNone);
+    s.reported_force_N = -force_N;
+    s.position_m = 2.0 * went_m + share * t.Jump_m(went_m / kPeriod_s, force_N, kPeriod_s, 1.0, 1.0);
+    return monitor.Step(s);
+  };
+  EXPECT_EQ(after(0.99, axis.force_limit_N), Reason::kNone);
+  EXPECT_EQ(after(1.01, axis.force_limit_N), Reason::kFeedbackJump);
+  EXPECT_EQ(after(0.99, 0.3 * axis.force_limit_N), Reason::kNone);
+  EXPECT_EQ(after(1.01, 0.3 * axis.force_limit_N), Reason::kFeedbackJump);
+}
+
 // A sign that changes between two readings is no jump, and its momentum is forgotten before the following
 // error is exceeded. No ramp may go by that encoder then.
 TEST(MotionMonitor, AnEncoderThatTurnedRoundIsInDoubtAsLongAsTheAxisStrays) {

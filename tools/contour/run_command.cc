@@ -22,6 +22,7 @@
 #include "daemon/control_socket/base64.h"
 #include "daemon/program/placed_program.h"
 #include "daemon/program/program.h"
+#include "tools/contour/choice_flag.h"
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/result_line.h"
 #include "tools/contour/run_record.h"
@@ -354,10 +355,10 @@ void AddRunCommand(CLI::App& app, Action& action) {
                 "The program counts from where the machine stands, whatever program zero is");
   sub->add_flag("--single-block", options->part.single_block,
                 "G-code: rest at the end of every line until contour resume");
-  sub->add_flag("--optional-stop,!--no-optional-stop", options->part.optional_stop,
-                "G-code: M1 waits for contour resume, as M0 does, or not; default machine.optional_stop");
-  sub->add_flag("--block-delete,!--no-block-delete", options->part.block_delete,
-                "G-code: leave lines out that begin with a slash, or not; default machine.block_delete");
+  AddChoice(*sub, "--optional-stop,!--no-optional-stop", options->part.optional_stop,
+            "G-code: M1 waits for contour resume, as M0 does, or not; default machine.optional_stop");
+  AddChoice(*sub, "--block-delete,!--no-block-delete", options->part.block_delete,
+            "G-code: leave lines out that begin with a slash, or not; default machine.block_delete");
   CLI::Option* line = sub->add_option("--from-line", options->part.from_line,
                                       "G-code: begin at this line, with the words in force there")
                           ->check(CLI::Range(1, 100'000'000));

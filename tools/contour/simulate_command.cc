@@ -15,6 +15,7 @@
 #include "daemon/output_words.h"
 #include "daemon/program/path_walk.h"
 #include "daemon/program/program.h"
+#include "tools/contour/choice_flag.h"
 #include "tools/contour/ignored_words.h"
 #include "tools/contour/result_line.h"
 #include "tools/machine/load_emulated_machine.h"
@@ -146,8 +147,8 @@ void AddSimulateCommand(CLI::App& app, Action& action) {
                   "the beginning or so long after it; repeatable. Only G-code can be faster than programmed")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  sub->add_flag("--block-delete,!--no-block-delete", options->part.block_delete,
-                "G-code: leave lines out that begin with a slash, or not; default machine.block_delete");
+  AddChoice(*sub, "--block-delete,!--no-block-delete", options->part.block_delete,
+            "G-code: leave lines out that begin with a slash, or not; default machine.block_delete");
   sub->add_option("--out", options->out, "Directory for metrics.json and cycles.csv")->required();
   sub->add_option("--log", options->log, "Record every cycle in this log, for `contour replay`");
   sub->callback([options, &action] {

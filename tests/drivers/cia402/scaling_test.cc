@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -49,6 +51,44 @@ TEST(Unwrap, ManyTurnsBothWays) {
     const auto raw = static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(truth)));
     ASSERT_EQ(unwrap.Update(raw), truth);
   }
+}
+
+// Half a range is as near upwards as downwards: there and back may be a whole wrap.
+TEST(Unwrap, AWrongBitLeavesNothingBehind) {
+  constexpr std::int64_t kTop = std::numeric_limits<std::int32_t>::max();
+  const auto raw_of = [](std::int64_t truth, int bit) {
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(truth)) ^
+                                     (bit < 0 ? 0U : 1U << bit));
+  };
+  for (const std::int64_t at : {std::int64_t{-6}, std::int64_t{4}, kTop - 3, -kTop + 2, 3 * kTop}) {
+    for (const std::int64_t speed : {-5, 5}) {
+      for (int bit = 0; bit < 32; ++bit) {
+        for (int wrong = 1; wrong <= 3; ++wrong) {
+          Unwrap unwrap;
+          // Some wraps away from where it began.
+          std::int64_t truth = 0;
+          unwrap.Update(0);
+          while (truth != at) {
+            truth += std::clamp<std::int64_t>(at - truth, -(1 << 29), 1 << 29);
+            ASSERT_EQ(unwrap.Update(raw_of(truth, -1)), truth);
+          }
+          for (int k = 0; k < wrong; ++k) unwrap.Update(raw_of(truth += speed, bit));
+          EXPECT_EQ(unwrap.Update(raw_of(truth += speed, -1)), truth)
+              << "bit " << bit << " for " << wrong << " at " << at << ", " << speed << " a reading";
+        }
+      }
+    }
+  }
+}
+
+// A count that began anew far away goes on from there, over its wrap too.
+TEST(Unwrap, GoesOnWhereACountBeganAnew) {
+  constexpr std::int32_t kTop = std::numeric_limits<std::int32_t>::max();
+  Unwrap unwrap;
+  unwrap.Update(-3);
+  EXPECT_EQ(unwrap.Update(kTop - 10), std::int64_t{kTop} - 10);
+  EXPECT_EQ(unwrap.Update(kTop), std::int64_t{kTop});
+  EXPECT_EQ(unwrap.Update(std::numeric_limits<std::int32_t>::min()), std::int64_t{kTop} + 1);
 }
 
 }  // namespace
