@@ -333,7 +333,8 @@ Reason MotionMonitor::Scale(const MotionSample& s) noexcept {
 Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
   const double force_N = axis_.in_cascade ? 0.5 * (s.reported_force_N + report_before_N_) : Acting_N();
   // A drive's loop that swings, as after a set-point that was lost, has a mean near nothing.
-  if (axis_.in_cascade) SeePeak(std::max(std::abs(s.reported_force_N), std::abs(report_before_N_)), 0.0);
+  const double swing_N = 0.5 * std::abs(s.reported_force_N - report_before_N_);
+  if (axis_.in_cascade) SeePeak(std::max(std::abs(force_N), swing_N), 0.0);
   report_before_N_ = s.reported_force_N;
 
   Reason found = Reason::kNone;
