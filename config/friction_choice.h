@@ -4,10 +4,15 @@
 
 namespace contour {
 
-/// What `full` knows friction by where a machine file does not say: kLinear where the table of some axis, on
-/// its screw, swings too low for a filter with one rigid mass, or has a linear scale, or, in torque mode, is
-/// moved by one step of the drive's torque by more than half of its wind-up F / K; kSrukf elsewhere. In
-/// torque mode an axis without a loop gets one when it is loaded, or is refused (design/loop_choice.h).
+/// Whether kSrukf can be used at all: no axis has a linear scale, none a table that swings on its screw too
+/// low for a filter with one rigid mass, and none in torque mode one that a step of the drive's torque moves
+/// by more than half of its wind-up F / K.
+bool FilterServes(const MachineConfig& machine);
+
+/// What `full` knows friction by where a machine file does not say: kLinear where a drive is in torque mode;
+/// elsewhere kSrukf if it serves. In torque mode an axis without a loop gets one when it is loaded; where
+/// none is found at once kSrukf is used if it serves, or else the machine is refused
+/// (design/loop_choice.h).
 FrictionKind ChooseFriction(const MachineConfig& machine);
 
 }  // namespace contour

@@ -113,8 +113,8 @@ MachineConfig ReadMachine(const YamlValue& tree, std::vector<std::string>& error
   ReadYaml(without_emulator, config, "", errors);
   if (errors.size() != before) return config;
   const YamlEntry* control = without_emulator.Find("control");
-  if (control == nullptr || control->value.Find("friction") == nullptr)
-    config.control.friction = ChooseFriction(config);
+  config.control.friction_stated = control != nullptr && control->value.Find("friction") != nullptr;
+  if (!config.control.friction_stated) config.control.friction = ChooseFriction(config);
   for (const ConfigProblem& p : Check(config))
     errors.push_back(WhereIs(without_emulator, p.key) + ": " + p.key + ": " + p.message);
   return config;

@@ -84,6 +84,7 @@ struct ControlInput {
   PerAxis<AxisHorizon> planned;       ///< what Plan() made of it; empty: the reference itself is followed
   PerAxis<FrictionPreview> friction;  ///< total friction along what is followed; empty: none known
   PerAxis<double> previous_force_N;   ///< u(k-1), the command that acts now, after the guard
+  std::uint32_t skipped = 0;          ///< periods just before this one in which nothing was sent
 };
 
 /// Forces at the table, N = torque / R.

@@ -188,6 +188,7 @@ struct ControllerConfig {
   SupervisionConfig supervision;
   MonitorConfig monitor;
   FrictionKind friction = FrictionKind::kSrukf;
+  bool friction_stated = true;  ///< by the machine file; no key of it
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -204,9 +205,10 @@ struct ControllerConfig {
         "friction", friction, kAny,
         "what `full` knows friction by: srukf, states of its filter beside one rigid mass; linear, "
         "learnt along the reference, outside a loop that knows motor and table apart (torque mode: "
-        "goes by axes.<name>.loop). In a file that does not say it is linear where an axis's mode of motor "
-        "against table is below 300 Hz (times 1 ms over the cycle where that is longer), in csp where the "
-        "table on its screw, the motor held, swings below 110 Hz, and with a linear scale");
+        "goes by axes.<name>.loop). In a file that does not say it is linear in torque mode (srukf where no "
+        "loop is found at once and the filter serves: modes of motor against table above 300 Hz, times 1 ms "
+        "over the cycle where that is longer); in csp linear where the table on its screw, the motor held, "
+        "swings below 110 Hz, or with a linear scale, srukf elsewhere");
     v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
     v.Optional("supervision", supervision, "how the machine watches its own control");

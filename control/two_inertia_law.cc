@@ -12,6 +12,8 @@ namespace {
 constexpr double kSlower = 0.5;
 // In which what two loops' forces differ by fades.
 constexpr double kLeaves_s = 0.03;
+// In which it is forgotten that commands had to last.
+constexpr double kLasts_s = 0.05;
 
 FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept {
   if (friction.empty()) return {};
@@ -49,7 +51,7 @@ TwoInertiaLaw::Axis::Axis(const ControlledAxis& axis, const ControllerOptions& o
 
 TwoInertiaLaw::TwoInertiaLaw(const PerAxis<ControlledAxis>& axes, const ControllerOptions& options,
                              double period_s)
-    : period_s_(period_s) {
+    : period_s_(period_s), lasts_kept_(std::exp(-period_s / kLasts_s)) {
   std::size_t queued = 1;
   for (const ControlledAxis& axis : axes) {
     axes_.emplace_back(axis, options, period_s);
@@ -71,6 +73,7 @@ void TwoInertiaLaw::Axis::Forget() noexcept {
 
 void TwoInertiaLaw::Reset() noexcept {
   for (Axis& axis : axes_) axis.Forget();
+  lasts_periods_ = 1.0;
 }
 
 // From the sample before to this one. What is not known of the past was as sent, so that it deviates by
@@ -91,6 +94,19 @@ void TwoInertiaLaw::Advance(Axis& a, double sent_N) const noexcept {
   }
   const double acted_N = a.planned_N[a.own.whole_delay()];
   a.led_N = acted_N + a.lag_kept * (a.led_N - acted_N);
+}
+
+// The command before has lasted through the periods in which nothing was sent.
+void TwoInertiaLaw::CatchUp(const ControlInput& input) noexcept {
+  const double skipped = input.skipped;
+  lasts_periods_ = std::max(1.0 + skipped, 1.0 + lasts_kept_ * (lasts_periods_ - 1.0));
+  for (std::uint32_t s = 0; s < input.skipped; ++s)
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      Axis& a = axes_[i];
+      Advance(a, input.previous_force_N[i]);
+      std::shift_right(a.grid_N.begin(), a.grid_N.end(), 1);
+      std::shift_right(a.planned_N.begin(), a.planned_N.end(), 1);
+    }
 }
 
 // Planned for whole periods; what acts late by a share of one is of the two that it reaches into.
@@ -134,13 +150,17 @@ double TwoInertiaLaw::Feedback_N(Axis& a, const LoopMotion& wanted, const AxisEs
                                  bool begins) const noexcept {
   const TwoInertiaLoop& loop = a.Loop(estimate.by_scale, softer_);
   a.slow_N += a.slow_share * (estimate.disturbance_N - a.slow_N);
-  double force_N = loop.disturbance_to_command * (softer_ ? a.slow_N : estimate.disturbance_N);
+  double deviation_N = 0.0;
   for (std::size_t i = 0; i < kLoopMotion; ++i)
-    force_N -= loop.regulator_motion[i] * (estimate.motion[i] - wanted[i]);
+    deviation_N += loop.regulator_motion[i] * (estimate.motion[i] - wanted[i]);
   for (std::size_t i = 0; i < loop.queued; ++i) {
     const std::size_t age = loop.queued - 1 - i;
-    force_N -= loop.regulator_queue[i] * (a.sent_N[age] - a.planned_N[age]);
+    deviation_N += loop.regulator_queue[i] * (a.sent_N[age] - a.planned_N[age]);
   }
+  // A command that lasts for several periods pushes for as many.
+  const double share = 1.0 / lasts_periods_;
+  const double quick_N = softer_ ? 0.0 : share * (estimate.disturbance_N - a.slow_N);
+  const double force_N = loop.disturbance_to_command * (a.slow_N + quick_N) - share * deviation_N;
   const Biquad& b = loop.filter;
   auto& [x1, x2, y1, y2] = a.filter;
   if (begins) x1 = x2 = y1 = y2 = force_N;
@@ -167,6 +187,7 @@ bool TwoInertiaLaw::Moves(const AxisHorizon& reference) const noexcept {
 
 void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   output.iterations = 0;
+  CatchUp(input);
   bool any_moves = false;
   for (const AxisHorizon& reference : Reference(input)) any_moves = any_moves || Moves(reference);
   for (std::size_t i = 0; i < axes_.size(); ++i) {

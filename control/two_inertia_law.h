@@ -25,7 +25,7 @@ class TwoInertiaLaw final : public ControlLaw {
   void Soften(Softness softness) noexcept override { softer_ = softness != Softness::kNone; }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   [[nodiscard]] int horizon_points() const noexcept override { return horizon_points_; }
-  void Keep(StateKeeper& keep) noexcept override { keep(axes_, softer_); }
+  void Keep(StateKeeper& keep) noexcept override { keep(axes_, softer_, lasts_periods_); }
 
  private:
   using Commands = std::array<double, kLoopQueue + 1>;  ///< newest first
@@ -68,6 +68,7 @@ class TwoInertiaLaw final : public ControlLaw {
   };
 
   void Advance(Axis& axis, double sent_N) const noexcept;
+  void CatchUp(const ControlInput& input) noexcept;
   double Feedforward_N(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction,
                        double& target_m) const noexcept;
   LoopMotion Wanted(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction,
@@ -80,6 +81,8 @@ class TwoInertiaLaw final : public ControlLaw {
 
   std::vector<Axis> axes_;
   double period_s_;
+  double lasts_kept_;           ///< per cycle
+  double lasts_periods_ = 1.0;  ///< that commands lately had to last for
   int horizon_points_ = 0;
   bool softer_ = false;
 };

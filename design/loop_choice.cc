@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "config/config_error.h"
+#include "config/friction_choice.h"
 #include "design/loop_report.h"
 #include "design/loop_search.h"
 #include "drivers/cia402/mode_for.h"
@@ -99,6 +100,10 @@ std::string LoopAssignment(const std::string& name, LoopTuning tuning) {
   return "axes." + name + ".loop={" + writer.text() + "}";
 }
 
+bool MayUseFilter(const MachineConfig& machine) {
+  return !machine.control.friction_stated && FilterServes(machine);
+}
+
 std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine) {
   std::vector<std::string> assignments, errors;
   if (machine.machine.controller != ControllerName::kFull ||
@@ -114,8 +119,9 @@ std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine) {
       errors.push_back(WhyNoLoop(name, axis, period_s));
     }
   }
-  if (!errors.empty()) throw ConfigError(std::move(errors));
-  return assignments;
+  if (errors.empty()) return assignments;
+  if (MayUseFilter(machine)) return {kUseFilter};
+  throw ConfigError(std::move(errors));
 }
 
 }  // namespace contour

@@ -21,9 +21,16 @@ std::string WhyNoLoop(const std::string& name, const LoopAxis& axis, double peri
 /// `axes.<name>.loop={...}`, with three digits, to put on top of a machine file.
 std::string LoopAssignment(const std::string& name, LoopTuning tuning);
 
+/// What to put on top of a machine file for kSrukf.
+inline constexpr const char* kUseFilter = "control.friction=srukf";
+
+/// Whether that is a way out where an axis has no loop: the file does not say what friction is known by, and
+/// kSrukf serves.
+bool MayUseFilter(const MachineConfig& machine);
+
 /// A loop for every axis that needs one and has none, as assignments `axes.<name>.loop={...}` to put on top
-/// of the machine file. Throws ConfigError, with the reason and what would help, when there is none for an
-/// axis.
+/// of the machine file. When there is none for an axis, kUseFilter alone if that is a way out; or else throws
+/// ConfigError, with the reason and what would help.
 std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine);
 
 }  // namespace contour

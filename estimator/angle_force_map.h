@@ -16,6 +16,9 @@ class AngleForceMap {
     double rate =
         0.0;  ///< share of the error learnt at least per visit of a millisecond; 0: nothing is learnt
     double period_s = 1e-3;
+    double level_N = 40.0;  ///< Coulomb friction of the axis
+    double vs_m_s = 2e-3;   ///< its Stribeck velocity
+    double mass_kg = 90.0;
   };
 
   AngleForceMap() noexcept = default;
@@ -41,6 +44,10 @@ class AngleForceMap {
   void LearnAt(std::size_t bin, double weight, double error_N) noexcept;
 
   double per_turn_1_m_ = 200.0;
+  double largest_N_ = 50.0;
+  double ripple_N2_ = 15.0;
+  double slow_m_s_ = 4e-3, fast_m_s_ = 0.15;
+  double quiet_m_s2_ = 1.0;
   double first_visits_ = 1.0;
   double rate_ = 0.0;
   double visit_ = 1.0;  // of a cycle, in milliseconds
@@ -50,6 +57,7 @@ class AngleForceMap {
   double without_N2_ = 0.0;  // mean squares of what is missing without the map and with it
   double with_N2_ = 0.0;
   double use_ = 0.0;
+  std::size_t places_ = 0;  ///< that have been visited
   std::array<double, kBins> force_N_{};
   std::array<double, kBins> visits_{};
 };

@@ -1,8 +1,8 @@
 #include "estimator/full_learning.h"
 
-#include <cmath>
 #include <numbers>
 
+#include "estimator/angle_force_tuning.h"
 #include "estimator/wind_up_tuning.h"
 
 namespace contour {
@@ -12,13 +12,6 @@ double Turn_m(const FilterSetup& setup) { return 2.0 * std::numbers::pi * setup.
 
 double Rate(const FilterSetup& setup, double rate) { return setup.config.adapt ? rate : 0.0; }
 
-AngleForceMap::Tuning Map(const FilterSetup& setup) {
-  // A second difference of the position takes sqrt(1 + 4 + 1) of its noise.
-  const double difference_N =
-      std::sqrt(6.0) * setup.measurement_std_m * setup.mechanics.mass_kg / (setup.period_s * setup.period_s);
-  return {Turn_m(setup), difference_N, Rate(setup, setup.config.cogging_rate), setup.period_s};
-}
-
 }  // namespace
 
 FullLearning::FullLearning(const FilterSetup& s)
@@ -27,7 +20,7 @@ FullLearning::FullLearning(const FilterSetup& s)
       viscous(ViscousCorrection::Tuning{s.friction.sigma2_Ns_m, Rate(s, s.config.viscous_rate), s.period_s}),
       momentum(MomentumBalance::Tuning{s.mechanics.mass_kg, s.period_s, Rate(s, s.config.mass_rate),
                                        Rate(s, s.config.delay_rate)}),
-      map(Map(s)),
+      map(AngleForceTuning(s)),
       wind_up(WindUpTuning(s)) {}
 
 void FullLearning::Reset() noexcept {

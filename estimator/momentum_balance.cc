@@ -55,6 +55,7 @@ void MomentumBalance::Learn(double position_m, double force_N, double friction_N
     missing_.known = false;
     return;
   }
+  if (!(tuning_.mass_rate > 0.0 || tuning_.delay_rate > 0.0)) return;
   const Bands a = acceleration_.Step(acceleration_m_s2, shares_);
   const Bands f = balance_.Step(both_N, shares_);
   LearnMass(a.slow, a.slow_change, f.slow, mass_kg);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimator/angle_force_tuning.h"
 #include "estimator/linear_friction_fit.h"
 #include "estimator/share_of_period.h"
 
@@ -129,6 +130,8 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
                  s.filter.Sudden_m(),
                  s.scale_loop}),
       learner_(MakeLearner(s, MakeBasis(s))),
+      map_(AngleForceTuning(s.filter)),
+      balance_({.mass_kg = s.filter.mechanics.mass_kg, .period_s = s.filter.period_s}),
       wind_up_(WindUpTuning(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
       lead_(Lead(s.axis), s.filter.period_s),
@@ -148,9 +151,9 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
 }
 
 void TwoInertiaEstimator::Keep(StateKeeper& keep) noexcept {
-  keep(along_, side_, nodes_, observer_, learner_, wind_up_, band_, lag_, scale_, by_scale_, lead_, given_N_,
-       resting_, acted_N_, found_N_, newest_, surprise_N2_, noise_N2_, variance_N2_, unexplained_N_, elapsed_,
-       temperature_degC_, at_rest_, frozen_);
+  keep(along_, side_, nodes_, observer_, learner_, map_, balance_, wind_up_, band_, lag_, scale_, by_scale_,
+       lead_, given_N_, resting_, acted_N_, found_N_, newest_, surprise_N2_, noise_N2_, variance_N2_,
+       unexplained_N_, elapsed_, temperature_degC_, at_rest_, frozen_);
 }
 
 void TwoInertiaEstimator::Reset(double position_m) noexcept {
@@ -160,6 +163,8 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
   side_.Reset();
   nodes_ = {};
   learner_.Reset();
+  map_.Reset();
+  balance_.Reset();
   wind_up_.Reset();
   band_.Reset();
   lag_.Reset();
@@ -178,6 +183,7 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
 void TwoInertiaEstimator::Lay() noexcept {
   const double extra_kg = learner_.parameters()[kMass];
   const double sigma2_Ns_m = setup_.friction.sigma2_Ns_m;
+  const bool cogs = map_.in_use();
   for (std::size_t j = 0; j < along_.size(); ++j) {
     const FrictionTerms& terms = along_.terms(j);
     Node& node = nodes_[j];
@@ -185,10 +191,10 @@ void TwoInertiaEstimator::Lay() noexcept {
     const double all_N = Sum(learner_.parameters(), terms) - node.heavier_N;
     node.friction_N = std::clamp(all_N, -kOverPlaces * most_N_, kOverPlaces * most_N_);
     node.learnt_N = node.friction_N + node.heavier_N;
-    node.driving_N = 0.0;
+    node.driving_N = cogs ? map_.At_N(along_.position_m(j), along_.velocity_m_s(j)) : 0.0;
     if (!known_.neutral()) {
       node.friction_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
-      node.driving_N = known_.Force_N(along_.position_m(j));
+      node.driving_N += known_.Force_N(along_.position_m(j));
     }
     // Of sigma2 v, the motor's share has to be taken from the table.
     const double before_N = before_screw_ * (node.friction_N + sigma2_Ns_m * along_.velocity_m_s(j));
@@ -249,6 +255,7 @@ AxisEstimate TwoInertiaEstimator::Update(const AxisEstimatorInput& in) noexcept 
     learner_.Forget();
     unexplained_N_ = 0.0;
     at_rest_ = true;
+    balance_.Pause();
     wind_up_.Pause();
   } else {
     const std::size_t period = elapsed_;

@@ -11,6 +11,7 @@
 #include "core/horizon.h"
 #include "core/state_keeper.h"
 #include "core/two_inertia_loop.h"
+#include "estimator/angle_force_map.h"
 #include "estimator/axis_estimator_input.h"
 #include "estimator/cascade_lead.h"
 #include "estimator/disturbance_band.h"
@@ -19,6 +20,7 @@
 #include "estimator/friction_along.h"
 #include "estimator/friction_learner.h"
 #include "estimator/known_effects.h"
+#include "estimator/momentum_balance.h"
 #include "estimator/resting_bristles.h"
 #include "estimator/side_mode_force.h"
 #include "estimator/table_scale.h"
@@ -96,6 +98,7 @@ class TwoInertiaEstimator {
   TwoInertiaObserver::Seen Correct(const AxisEstimatorInput& in) noexcept;
   void LeaveScale(double position_m) noexcept;
   void Learn(const AxisEstimatorInput& in, bool may) noexcept;
+  void LearnMotor(double position_m) noexcept;
   void LearnWindUp(const AxisEstimatorInput& in) noexcept;
   void Rest() noexcept;
   void Doubt(double acceleration_m_s2) noexcept;
@@ -110,6 +113,8 @@ class TwoInertiaEstimator {
   std::array<Node, FrictionAlong::kMost> nodes_{};
   TwoInertiaObserver observer_;
   FrictionLearner learner_;
+  AngleForceMap map_;        ///< force on the motor over the screw's turn: cogging
+  MomentumBalance balance_;  ///< for what is missing; it learns nothing itself
   WindUpFit wind_up_;
   DriveLag<1> lag_;
   std::unique_ptr<TableScale> scale_;  ///< none: there is no linear scale

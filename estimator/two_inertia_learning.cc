@@ -37,10 +37,28 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
     Rest();
   else
     resting_.Move();
+  if (may && !at_rest_)
+    LearnMotor(in.position_m);
+  else
+    balance_.Pause();
   if (may && !at_rest_ && !scale_)
     LearnWindUp(in);
   else
     wind_up_.Pause();
+}
+
+// What the axis was driven with beyond all that is known and expected belongs to the screw's angle if it
+// comes again there.
+void TwoInertiaEstimator::LearnMotor(double position_m) noexcept {
+  const Node& here = At(elapsed_);
+  const Node& next = At(elapsed_ + 1);
+  const double against_N =
+      0.5 *
+      (here.friction_N + next.friction_N + here.heavier_N + next.heavier_N - here.driving_N - next.driving_N +
+       setup_.friction.sigma2_Ns_m * (along_.velocity_m_s(elapsed_) + along_.velocity_m_s(elapsed_ + 1)));
+  balance_.Learn(position_m, acted_N_, against_N);
+  if (const MomentumBalance::Missing& m = balance_.missing(); m.known)
+    map_.Learn(m.position_m, m.velocity_m_s, m.acceleration_m_s2, m.force_N);
 }
 
 void TwoInertiaEstimator::Rest() noexcept {

@@ -8,6 +8,11 @@ namespace {
 
 // Beyond these there is no axis: m, m/s, N.
 constexpr LoopMotion kLargest{1e2, 1e2, 1e2, 1e2, 1e7};
+constexpr std::uint32_t kMostUnseen = 1000;
+// Readings for which it is remembered that one came after several periods.
+constexpr std::uint32_t kRemembered = 20;
+// Share of what was believed that a reading leaves.
+constexpr double kMemory = 0.6;
 
 }  // namespace
 
@@ -23,6 +28,7 @@ TwoInertiaObserver::TwoInertiaObserver(const Setup& setup)
     : loop_(setup.loop),
       scale_gain_(setup.scale_loop ? setup.scale_loop->gain : Gain{}),
       stiffness_N_m_(setup.axis.stiffness_N_m),
+      mass_kg_(setup.axis.motor_mass_kg + setup.axis.table_mass_kg),
       motion_from_motor_force_(MotionFromMotorForce(setup.axis, setup.period_s)),
       period_s_(setup.period_s),
       gate_(setup.gate, setup.sudden_m) {
@@ -40,6 +46,7 @@ void TwoInertiaObserver::Reset(double position_m, double table_m) noexcept {
   beyond_m_ = position_m - table_m;
   disturbance_N_ = 0.0;
   gated_in_a_row_ = 0;
+  unseen_periods_ = seldom_readings_ = again_readings_ = 0;
   gate_.Reset();
 }
 
@@ -69,6 +76,7 @@ LoopMotion TwoInertiaObserver::Ahead(const PeriodForces& f) const noexcept {
 void TwoInertiaObserver::Predict(const PeriodForces& forces, double beyond_m) noexcept {
   motion_ = Ahead(forces);
   beyond_m_ += beyond_m;
+  if (unseen_periods_ < kMostUnseen) ++unseen_periods_;
 }
 
 TwoInertiaObserver::Seen TwoInertiaObserver::Judge(double innovation_m, double std_m) noexcept {
@@ -93,6 +101,34 @@ void TwoInertiaObserver::GoOnByGated(double position_m, double table_m) noexcept
   motion_[1] = motion_[3] = velocity_m_s;
 }
 
+// The gains are for a reading in every period. What has come up over several is taken for a motion of the
+// axis as one mass: the screw swings too fast for it to show how. A filter of fading memory, position,
+// velocity and acceleration (Morrison 1969), which is stable however long it takes. Where that happens again
+// and again, readings in between are no exception.
+bool TwoInertiaObserver::CameSeldom(double innovation_m) noexcept {
+  const std::uint32_t periods = std::max(1u, unseen_periods_);
+  unseen_periods_ = 0;
+  if (periods > 1) {
+    again_readings_ = seldom_readings_ > 0 ? kRemembered : 0;
+    seldom_readings_ = kRemembered;
+  } else {
+    if (seldom_readings_ > 0) --seldom_readings_;
+    if (again_readings_ == 0) return false;
+    --again_readings_;
+  }
+  constexpr double kPosition = 1.0 - kMemory * kMemory * kMemory;
+  constexpr double kVelocity = 1.5 * (1.0 - kMemory * kMemory) * (1.0 - kMemory);
+  constexpr double kAcceleration = (1.0 - kMemory) * (1.0 - kMemory) * (1.0 - kMemory);
+  const double span_s = periods * period_s_;
+  const double more_m = kPosition * innovation_m, more_m_s = kVelocity * innovation_m / span_s;
+  motion_[0] += more_m;
+  motion_[1] += more_m_s;
+  motion_[2] += more_m;
+  motion_[3] += more_m_s;
+  disturbance_N_ -= mass_kg_ * kAcceleration * innovation_m / (span_s * span_s);
+  return true;
+}
+
 TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m) noexcept {
   const Seen seen = Judge(position_m - motion_[0], innovation_std_m_);
   if (seen.gated) {
@@ -103,6 +139,7 @@ TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m) noexcept
     return seen;
   }
   gated_in_a_row_ = 0;
+  if (CameSeldom(seen.innovation_m)) return seen;
   for (std::size_t i = 0; i < kLoopMotion; ++i) motion_[i] += loop_.gain[i][0] * seen.innovation_m;
   disturbance_N_ += loop_.gain[kObserverDisturbance][0] * seen.innovation_m;
   return seen;
@@ -121,12 +158,13 @@ TwoInertiaObserver::Seen TwoInertiaObserver::Correct(double position_m,
   }
   gated_in_a_row_ = 0;
   const std::array<double, 2> innovation_m{seen.innovation_m, table_m ? *table_m - motion_[2] : 0.0};
-  const auto share = [&](std::size_t i) {
+  const auto part = [&](std::size_t i) {
     return scale_gain_[i][0] * innovation_m[0] + scale_gain_[i][1] * innovation_m[1];
   };
-  for (std::size_t i = 0; i < kLoopMotion; ++i) motion_[i] += share(i);
-  beyond_m_ += share(kObserverBias);
-  disturbance_N_ += share(kObserverDisturbance);
+  beyond_m_ += part(kObserverBias);
+  if (CameSeldom(table_m ? innovation_m[1] : innovation_m[0])) return seen;
+  for (std::size_t i = 0; i < kLoopMotion; ++i) motion_[i] += part(i);
+  disturbance_N_ += part(kObserverDisturbance);
   return seen;
 }
 

@@ -69,10 +69,12 @@ class TwoInertiaObserver {
   [[nodiscard]] bool Sound() const noexcept;
 
   void Keep(StateKeeper& keep) noexcept {
-    keep(motion_, disturbance_N_, beyond_m_, gate_, gated_in_a_row_, gated_m_);
+    keep(motion_, disturbance_N_, beyond_m_, gate_, unseen_periods_, seldom_readings_, again_readings_,
+         gated_in_a_row_, gated_m_);
   }
 
  private:
+  bool CameSeldom(double innovation_m) noexcept;
   using Gain = std::array<std::array<double, 2>, kObserverStates>;
   Seen Judge(double innovation_m, double std_m) noexcept;
   bool AgreesWithGated(double position_m) noexcept;
@@ -81,6 +83,7 @@ class TwoInertiaObserver {
   TwoInertiaLoop loop_;
   Gain scale_gain_{};
   double stiffness_N_m_;
+  double mass_kg_;
   LoopMotion motion_from_motor_force_{};
   double period_s_;
   double innovation_std_m_;
@@ -89,6 +92,9 @@ class TwoInertiaObserver {
   LoopMotion motion_{};
   double disturbance_N_ = 0.0;
   double beyond_m_ = 0.0;
+  std::uint32_t unseen_periods_ = 0;   ///< since the newest reading that was used
+  std::uint32_t seldom_readings_ = 0;  ///< for which one that came late is remembered
+  std::uint32_t again_readings_ = 0;   ///< and that it was not the first
   std::uint32_t gated_in_a_row_ = 0;
   std::array<double, 2> gated_m_{};  ///< the newest readings that were left out, newest first
 };

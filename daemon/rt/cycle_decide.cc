@@ -62,6 +62,7 @@ const ControlOutput& Cycle::Decide(const Orders& orders, const Estimates& estima
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
     control_in_.estimate[i] = estimate[i];
   }
+  control_in_.skipped = skipped_;
   if (orders.torque_allowed) {
     in_use.Step(control_in_, control_out_);
     Blend();

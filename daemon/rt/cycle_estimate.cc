@@ -1,5 +1,6 @@
 #include "daemon/rt/cycle.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +11,8 @@ namespace {
 
 /// Of what a reading is off by, what lateness must leave of it at most to have made it.
 constexpr double kExplains = 0.5;
+/// Of what readings are expected to be off by, what lateness must move one by: less of it fits by chance.
+constexpr double kBeyondExpected = 2.0;
 
 }  // namespace
 
@@ -20,6 +23,7 @@ constexpr double kExplains = 0.5;
 void Cycle::TakeLateness(std::size_t index, const AxisFeedback& feedback) noexcept {
   Axis& axis = axes_[index];
   const AxisEstimate& foreseen = estimates_[index];
+  const double matters_m = std::max(axis.late_from_m, kBeyondExpected * foreseen.innovation_std_m);
   double off_m = axis.position_m - foreseen.predicted_position_m;
   const double known_m = feedback.sync_late_s * foreseen.predicted_velocity_m_s;
   if (std::abs(feedback.sync_late_s) > axis.late_from_s && std::abs(off_m - known_m) < std::abs(off_m)) {
@@ -28,7 +32,7 @@ void Cycle::TakeLateness(std::size_t index, const AxisFeedback& feedback) noexce
   }
   if (feedback.late_s <= axis.late_from_s) return;
   const double late_m = feedback.late_s * foreseen.predicted_velocity_m_s;
-  if (std::abs(late_m) > axis.late_from_m && std::abs(off_m - late_m) < kExplains * std::abs(off_m))
+  if (std::abs(late_m) > matters_m && std::abs(off_m - late_m) < kExplains * std::abs(off_m))
     axis.position_m -= late_m;
 }
 

@@ -19,22 +19,30 @@ TEST(Contour, CompensationBeatsThePlainMpcOnTheSmallCircle) {
 }
 
 TEST(Contour, ReversalsCorrectTheScrewsStiffness) {
-  for (const char* seed : {"emulator.seed=1", "emulator.seed=4"}) {
-    const RunResult learnt = RunCircle(ExampleMachine({seed}), ControllerName::kFull, kSmall);
-    const RunResult as_stated =
-        RunCircle(ExampleMachine({seed, "estimator.stiffness_std=0"}), ControllerName::kFull, kSmall);
-    EXPECT_LT(learnt.table_peak_m, 0.3e-6);
-    EXPECT_GT(as_stated.table_peak_m, 0.3e-6);
-  }
+  for (const std::string law : {"srukf", "linear"})
+    for (const char* seed : {"emulator.seed=1", "emulator.seed=4"}) {
+      const std::vector<std::string> set{seed, "control.friction=" + law};
+      std::vector<std::string> as_stated = set;
+      as_stated.push_back("estimator.stiffness_std=0");
+      const double bound_m = law == "srukf" ? 0.3e-6 : 0.45e-6;
+      EXPECT_LT(RunCircle(ExampleMachine(set), ControllerName::kFull, kSmall).table_peak_m, bound_m)
+          << law << seed;
+      EXPECT_GT(RunCircle(ExampleMachine(as_stated), ControllerName::kFull, kSmall).table_peak_m, bound_m)
+          << law << seed;
+    }
 }
 
 TEST(Contour, AndOnTheLargeCircle) {
   const Program large = Circle(10.0, 3, 0.7957747155);  // 3 m/min
-  const EmulatedMachineFile file = ExampleMachine();
-  const RunResult mpc = RunCircle(file, ControllerName::kMpc, large);
-  const RunResult full = RunCircle(file, ControllerName::kFull, large);
-  EXPECT_LT(full.circular_deviation_m() * 20.0, mpc.circular_deviation_m());
-  EXPECT_LT(full.table_peak_m, 2.5e-6);
+  const RunResult mpc = RunCircle(ExampleMachine(), ControllerName::kMpc, large);
+  const auto full = [&](const char* law) {
+    return RunCircle(ExampleMachine({std::string("control.friction=") + law}), ControllerName::kFull, large);
+  };
+  const RunResult filter = full("srukf"), linear = full("linear");
+  EXPECT_LT(filter.circular_deviation_m() * 20.0, mpc.circular_deviation_m());
+  EXPECT_LT(linear.circular_deviation_m() * 12.0, mpc.circular_deviation_m());
+  EXPECT_LT(filter.table_peak_m, 2.5e-6);
+  EXPECT_LT(linear.table_peak_m, 2.5e-6);
 }
 
 TEST(Contour, TheSameRunTwiceIsTheSameRun) {
@@ -53,17 +61,24 @@ TEST(Contour, WithoutFrictionCompensationDoesNoHarm) {
     for (const char* key : {"Fs_plus_N", "Fs_minus_N", "Fc_plus_N", "Fc_minus_N"})
       none.push_back(std::string("emulator.axes.") + axis + ".friction." + key + "=0");
   const Program programs[] = {kSmall, Circle(0.1, 2, 0.125), Circle(10.0, 3, 0.7957747155)};
+  // What is fed forward until the first reversals have taught the other law that there is none: of the 0.9 um
+  // by which the friction that is stated winds the screw up.
+  constexpr double kUntilLearnt_m = 0.15e-6;
   // On the small circles only the encoder's steps and the drive's torque steps are left, and the largest of
   // thousands of samples is chance: one count of the encoder (5 mm / 2^20) is no difference.
   constexpr double kCount_m = 5e-3 / 1048576;
   for (const char* seed : {"1", "2", "3"}) {
     std::vector<std::string> with_seed = none;
     with_seed.push_back(std::string("emulator.seed=") + seed);
-    const EmulatedMachineFile file = ExampleMachine(with_seed);
+    const EmulatedMachineFile linear = ExampleMachine(with_seed);
+    with_seed.push_back("control.friction=srukf");
+    const EmulatedMachineFile filter = ExampleMachine(with_seed);
     for (const Program& program : programs) {
-      const RunResult full = RunCircle(file, ControllerName::kFull, program);
-      const RunResult mpc = RunCircle(file, ControllerName::kMpc, program);
-      EXPECT_LE(full.table_peak_m, mpc.table_peak_m + kCount_m) << "seed " << seed;
+      const double mpc_m = RunCircle(filter, ControllerName::kMpc, program).table_peak_m;
+      EXPECT_LE(RunCircle(filter, ControllerName::kFull, program).table_peak_m, mpc_m + kCount_m)
+          << "seed " << seed;
+      EXPECT_LE(RunCircle(linear, ControllerName::kFull, program).table_peak_m, mpc_m + kUntilLearnt_m)
+          << "seed " << seed;
     }
   }
 }

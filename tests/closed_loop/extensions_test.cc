@@ -20,14 +20,22 @@ double Peak_um(const std::vector<std::string>& overrides) {
 
 TEST(Extensions, CoggingOfThreePerCentOfRatedTorque) {
   const std::string cogging = "cogging={amplitude_Nm: 0.0191, order_per_rev: 12, phase_rad: 0.7}";
+  const std::string hide = "emulator.axes.x.effects." + cogging;
   const std::string off = "estimator.cogging_rate=0";
-  const double hidden = Peak_um({"emulator.axes.x.effects." + cogging, off});
-  const double known =
-      Peak_um({"emulator.axes.x.effects." + cogging, "axes.x.model.extensions." + cogging, off});
-  const double learnt = Peak_um({"emulator.axes.x.effects." + cogging});
-  EXPECT_GT(hidden, 3.0);
-  EXPECT_LT(learnt, 0.4 * hidden);
-  EXPECT_LT(known, 0.3 * hidden);
+  for (const std::string law : {"control.friction=srukf", "control.friction=linear"}) {
+    const double hidden = Peak_um({law, hide, off});
+    const double known = Peak_um({law, hide, "axes.x.model.extensions." + cogging, off});
+    const double learnt = Peak_um({law, hide});
+    EXPECT_GT(hidden, 3.0) << law;
+    EXPECT_LT(learnt, 0.4 * hidden) << law;
+    EXPECT_LT(known, 0.3 * hidden) << law;
+  }
+}
+
+// Nothing is learnt of a motor that does not cog: what friction leaves over a turn is not the angle's.
+TEST(Extensions, AMotorThatDoesNotCogIsNotMadeTo) {
+  for (const std::string law : {"control.friction=srukf", "control.friction=linear"})
+    EXPECT_NEAR(Peak_um({law}), Peak_um({law, "estimator.cogging_rate=0"}), 0.02) << law;
 }
 
 /// Friction along the stroke, hidden and as it is known.
@@ -50,10 +58,13 @@ AlongTheStroke FourPeriods() {
 
 TEST(Extensions, FrictionAlongTheStroke) {
   const AlongTheStroke along = FourPeriods();
-  const double hidden = Peak_um({along.hide});
-  const double known = Peak_um({along.hide, along.know});
-  EXPECT_GT(hidden, 1.5);
-  EXPECT_LT(known, 0.5 * hidden);
+  for (const std::string law : {"control.friction=srukf", "control.friction=linear"}) {
+    const double without = Peak_um({law});
+    const double hidden = Peak_um({law, along.hide});
+    const double known = Peak_um({law, along.hide, along.know});
+    EXPECT_GT(hidden, 1.5) << law;
+    EXPECT_LT(known - without, 0.5 * (hidden - without)) << law;
+  }
 }
 
 /// Nothing but what is hidden: models that are right, with levels alike in both directions.

@@ -72,17 +72,20 @@ Program SquareAndHold() {
 // Before: y swung by 1.6 um at 16 Hz until it was softened, on the bristle's stiffness that the corners had
 // left. One step of the drive's torque moves its bristles by 0.16 um.
 TEST(SelfWatch, AfterASquareTheAxesStandByThemselves) {
-  const Watched seen =
-      RunWatched(ExampleMachine({"emulator.seed=2"}), ControllerName::kFull, SquareAndHold());
-  EXPECT_FALSE(seen.shown.contains(Reason::kOscillationNoticed));
-  EXPECT_EQ(seen.ended, Reason::kNone);
-  EXPECT_LT(seen.swing_m, 0.16e-6);
+  for (const std::string law : {"control.friction=srukf", "control.friction=linear"}) {
+    const Watched seen =
+        RunWatched(ExampleMachine({"emulator.seed=2", law}), ControllerName::kFull, SquareAndHold());
+    EXPECT_FALSE(seen.shown.contains(Reason::kOscillationNoticed)) << law;
+    EXPECT_EQ(seen.ended, Reason::kNone) << law;
+    EXPECT_LT(seen.swing_m, 0.16e-6) << law;
+  }
 }
 
 // A bristle stated seven times too stiff.
 TEST(SelfWatch, AStandingAxisThatSwingsIsNamedAndSoftenedUntilItStands) {
-  const Watched seen = RunWatched(ExampleMachine({"emulator.seed=2", "axes.y.model.friction.sigma0_N_m=3e7"}),
-                                  ControllerName::kFull, SquareAndHold());
+  const Watched seen = RunWatched(
+      ExampleMachine({"emulator.seed=2", "axes.y.model.friction.sigma0_N_m=3e7", "control.friction=srukf"}),
+      ControllerName::kFull, SquareAndHold());
   EXPECT_TRUE(seen.shown.contains(Reason::kOscillationNoticed));
   EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
   EXPECT_EQ(seen.ended, Reason::kNone);
@@ -247,8 +250,9 @@ TEST(SelfWatch, ASolverAtItsCapAndAFilterThatContradictsItselfClimbTheSameLadder
 // left for the observer, whose innovations state nothing, and the program goes on to its end.
 TEST(SelfWatch, AFilterThatContradictsItselfIsFallenBackFromAndTheProgramGoesOn) {
   const Watched seen =
-      RunWatched(ExampleMachine({"control.supervision.innovation_sigma=1", "estimator.measurement_noise_um=5",
-                                 "estimator.position_noise_um=0", "estimator.velocity_noise_mm_s=0"}),
+      RunWatched(ExampleMachine({"control.friction=srukf", "control.supervision.innovation_sigma=1",
+                                 "estimator.measurement_noise_um=5", "estimator.position_noise_um=0",
+                                 "estimator.velocity_noise_mm_s=0"}),
                  ControllerName::kFull, Text("{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 4}"));
   EXPECT_TRUE(seen.shown.contains(Reason::kInnovationGated));
   EXPECT_TRUE(seen.shown.contains(Reason::kSoftened));
@@ -283,15 +287,15 @@ TEST(SelfWatch, TheObserverIsNotJudgedByWhatTheFilterSaid) {
 TEST(SelfWatch, AControllerSaysHowStifflyItHolds) {
   const auto controller = [](const char* bandwidth_Hz, ControllerName name) {
     const std::string set = std::string("control.full.contour_bandwidth_Hz=") + bandwidth_Hz;
-    return MakeController(MakeCycleConfig(ExampleMachine({set}).machine, name));
+    return MakeController(MakeCycleConfig(ExampleMachine({set, "control.friction=srukf"}).machine, name));
   };
   const double softer = ExampleMachine().machine.control.supervision.softer;
   const ContourController own = controller("25", ControllerName::kFull);
   EXPECT_EQ(own.loop_Hz(false), 25.0);
   EXPECT_EQ(own.loop_Hz(true), softer * 25.0);
   EXPECT_EQ(controller("20", ControllerName::kFull).loop_Hz(false), 20.0);
-  const std::unique_ptr<ContourController> fallback =
-      MakeFallback(MakeCycleConfig(ExampleMachine().machine, ControllerName::kFull));
+  const std::unique_ptr<ContourController> fallback = MakeFallback(
+      MakeCycleConfig(ExampleMachine({"control.friction=srukf"}).machine, ControllerName::kFull));
   ASSERT_NE(fallback, nullptr);
   const MpcConfig& observer = ExampleMachine().machine.control.mpc_observer;
   EXPECT_DOUBLE_EQ(fallback->loop_Hz(false),

@@ -71,11 +71,13 @@ Standstill HoldAfterMotion(std::uint64_t seed, const std::vector<std::string>& o
 const std::vector<std::string> kInCascade{"axes.x.drive.mode=csp", "axes.y.drive.mode=csp"};
 
 TEST(Standstill, NoHuntingAndNoJumpAtTenPositions) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const Standstill s = HoldAfterMotion(seed);
-    EXPECT_LE(s.motor_pp_counts, 1.0) << "seed " << seed;
-    EXPECT_LT(s.resuming_peak_m, 0.5e-6) << "seed " << seed;
-  }
+  for (const bool linear : {false, true})
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      const Standstill s =
+          HoldAfterMotion(seed, {linear ? "control.friction=linear" : "control.friction=srukf"});
+      EXPECT_LE(s.motor_pp_counts, 1.0) << "seed " << seed << linear;
+      EXPECT_LT(s.resuming_peak_m, linear ? 1.0e-6 : 0.5e-6) << "seed " << seed << linear;
+    }
 }
 
 TEST(Standstill, NeitherWhereTheDrivesCloseTheLoop) {

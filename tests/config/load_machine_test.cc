@@ -1,4 +1,5 @@
 #include "config/load_machine.h"
+#include "config/friction_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -212,31 +213,45 @@ TEST(LoadEmulatedMachine, NeedsTheSection) {
   EXPECT_FALSE(LoadMaybeEmulatedMachine(path).has_emulator);
 }
 
-TEST(LoadMachine, FrictionIsKnownByWhatTheScrewsModeAllowsUnlessTheFileSays) {
-  const std::string file = std::string(SOURCE_DIR) + "/config/xy_emulated.yaml";
-  const auto friction = [&](std::vector<std::string> set) {
-    set.insert(set.end(), {"axes.x.limits.safe_travel_mm=4", "axes.y.limits.safe_travel_mm=4"});
-    for (const char* axis : {"x", "y"})
-      set.push_back(std::string("axes.") + axis +
-                    ".loop_limits={peak_as_stated: 10, peak_far_off: 10, peak_late: 10}");
-    return LoadMachine(file, set).control.friction;
-  };
-  const std::string csp_x = "axes.x.drive.mode=csp", csp_y = "axes.y.drive.mode=csp";
-  const std::string heavy = "axes.x.model.table_mass_kg=30", soft = "axes.x.model.screw_stiffness_N_um=4";
-  EXPECT_EQ(friction({}), FrictionKind::kSrukf) << "326 Hz";
-  EXPECT_EQ(friction({heavy}), FrictionKind::kLinear) << "216 Hz";
-  EXPECT_EQ(friction({heavy, "control.friction=srukf"}), FrictionKind::kSrukf);
-  EXPECT_EQ(friction({heavy, csp_x, csp_y}), FrictionKind::kSrukf);
-  // One step of the torque, 0.8 N, moves the bristles by 0.53 um, where friction winds the screw up by 0.87.
-  const std::string bristle = "axes.x.model.friction.sigma0_N_m=1.5e6";
-  EXPECT_EQ(friction({bristle}), FrictionKind::kLinear);
-  EXPECT_EQ(friction({bristle, csp_x, csp_y}), FrictionKind::kSrukf);
-  EXPECT_EQ(friction({soft, csp_x, csp_y}), FrictionKind::kLinear) << "100 Hz";
-  // Only what knows the table has a use for its scale.
-  EXPECT_EQ(friction({csp_x, csp_y, "axes.x.drive.linear_scale={counts_per_mm: 200000}",
-                      "realtime.send_deadline_us=70"}),
-            FrictionKind::kLinear);
-  EXPECT_EQ(friction({"control.friction=linear"}), FrictionKind::kLinear);
+// An example with some things changed, and loops that anything may have.
+MachineConfig Changed(std::vector<std::string> set) {
+  set.insert(set.end(), {"axes.x.limits.safe_travel_mm=4", "axes.y.limits.safe_travel_mm=4"});
+  for (const char* axis : {"x", "y"})
+    set.push_back(std::string("axes.") + axis +
+                  ".loop_limits={peak_as_stated: 10, peak_far_off: 10, peak_late: 10}");
+  return LoadMachine(std::string(SOURCE_DIR) + "/config/xy_emulated.yaml", set);
+}
+
+const std::string kCspX = "axes.x.drive.mode=csp", kCspY = "axes.y.drive.mode=csp";
+const std::string kHeavy = "axes.x.model.table_mass_kg=30", kSoft = "axes.x.model.screw_stiffness_N_um=4";
+// One step of the torque, 0.8 N, moves the bristles by 0.53 um, where friction winds the screw up by 0.87.
+const std::string kBristle = "axes.x.model.friction.sigma0_N_m=1.5e6";
+// Only what knows the table has a use for its scale.
+const std::vector<std::string> kScale{kCspX, kCspY, "axes.x.drive.linear_scale={counts_per_mm: 200000}",
+                                      "realtime.send_deadline_us=70"};
+
+TEST(LoadMachine, FrictionIsKnownByWhatTheModeAllowsUnlessTheFileSays) {
+  const auto friction = [](std::vector<std::string> set) { return Changed(std::move(set)).control.friction; };
+  EXPECT_EQ(friction({}), FrictionKind::kLinear);
+  EXPECT_EQ(friction({"control.friction=srukf"}), FrictionKind::kSrukf);
+  EXPECT_EQ(friction({kHeavy, "control.friction=srukf"}), FrictionKind::kSrukf);
+  EXPECT_EQ(friction({kCspX, kCspY}), FrictionKind::kSrukf);
+  EXPECT_EQ(friction({kHeavy, kCspX, kCspY}), FrictionKind::kSrukf);
+  EXPECT_EQ(friction({kBristle, kCspX, kCspY}), FrictionKind::kSrukf);
+  EXPECT_EQ(friction({kSoft, kCspX, kCspY}), FrictionKind::kLinear) << "100 Hz";
+  EXPECT_EQ(friction(kScale), FrictionKind::kLinear);
+  EXPECT_EQ(friction({"control.friction=linear", kCspX, kCspY}), FrictionKind::kLinear);
+}
+
+TEST(LoadMachine, TheFilterServesWhereOneRigidMassIsEnough) {
+  const auto serves = [](std::vector<std::string> set) { return FilterServes(Changed(std::move(set))); };
+  EXPECT_TRUE(serves({})) << "326 Hz";
+  EXPECT_FALSE(serves({kHeavy})) << "216 Hz";
+  EXPECT_TRUE(serves({kHeavy, kCspX, kCspY}));
+  EXPECT_FALSE(serves({kBristle}));
+  EXPECT_TRUE(serves({kBristle, kCspX, kCspY}));
+  EXPECT_FALSE(serves({kSoft, kCspX, kCspY}));
+  EXPECT_FALSE(serves(kScale));
 }
 
 }  // namespace

@@ -76,6 +76,41 @@ TEST(AngleForceMap, ACoarseEncoderTakesMoreVisits) {
   EXPECT_GT(LargestError_N(coarse, 0.017), 1.5 * LargestError_N(fine, 0.017));
 }
 
+TEST(AngleForceMap, AQuarterOfATurnToAndFroIsNoTurn) {
+  AngleForceMap map({kLead_m, 0.5, 0.05});
+  double position_m = 0.1, velocity_m_s = 0.017;
+  for (int pass = 0; pass < 40; ++pass, velocity_m_s = -velocity_m_s)
+    position_m = Slide(map, position_m, 0.25, velocity_m_s);
+  EXPECT_FALSE(map.in_use());
+  Slide(map, position_m, 2.0, 0.017);
+  EXPECT_TRUE(map.in_use());
+}
+
+// Ten times the axis, ten times its forces, five times its lead: the same map.
+TEST(AngleForceMap, GoesByTheAxisOwnFrictionLeadAndMass) {
+  AngleForceMap::Tuning large;
+  large.lead_m = 5.0 * kLead_m;
+  large.noise_N = 5.0;
+  large.rate = 0.05;
+  large.level_N = 400.0;
+  large.vs_m_s = 10e-3;
+  large.mass_kg = 180.0;
+  AngleForceMap small({kLead_m, 0.5, 0.05}), scaled(large);
+  for (const double velocity_m_s : {0.017, 0.002, 0.1}) {
+    double position_m = 0.1;
+    for (int k = 0; k < 2000; ++k) {
+      const double acceleration_m_s2 = k % 3 == 0 ? 1.5 : 0.5;
+      const double missing_N = Cogging_N(position_m) - small.At_N(position_m, velocity_m_s);
+      small.Learn(position_m, velocity_m_s, acceleration_m_s2, missing_N);
+      scaled.Learn(5.0 * position_m, 5.0 * velocity_m_s, 5.0 * acceleration_m_s2, 10.0 * missing_N);
+      position_m += velocity_m_s * 1e-3;
+    }
+  }
+  EXPECT_TRUE(small.in_use());
+  for (double p = 0.0; p < kLead_m; p += 1e-4)
+    EXPECT_NEAR(scaled.At_N(5.0 * p, 0.05), 10.0 * small.At_N(p, 0.01), 1e-6);
+}
+
 TEST(AngleForceMap, WhatDoesNotComeBackIsNotUsed) {
   AngleForceMap map({kLead_m, 0.5, 0.05});
   unsigned random = 1;

@@ -123,5 +123,18 @@ TEST(MomentumBalance, NothingIsLearntFromNoMotionOrAcrossAGap) {
   EXPECT_EQ(balance.extra_kg(), 0.0);
 }
 
+// Who only asks what is missing.
+TEST(MomentumBalance, WithoutRatesWhatIsMissingIsStillKnown) {
+  MomentumBalance balance({.mass_kg = 90.0, .period_s = kPeriod_s});
+  Axis axis;
+  axis.noise_m = 0.0;
+  axis.constant_N = -12.0;
+  for (int k = 0; k < 20; ++k) balance.Learn(axis.Step(30.0), 30.0, 0.0);
+  ASSERT_TRUE(balance.missing().known);
+  EXPECT_NEAR(balance.missing().force_N, 12.0, 1e-6);
+  EXPECT_EQ(balance.extra_kg(), 0.0);
+  EXPECT_EQ(balance.delay_periods(), 0.0);
+}
+
 }  // namespace
 }  // namespace contour

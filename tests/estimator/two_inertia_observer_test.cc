@@ -50,6 +50,25 @@ TEST(TwoInertiaObserver, FindsAForceOnTheTableAsItsResponseSays) {
   }
 }
 
+// Before: a reading that came after four periods was taken for what one period had brought. What it found
+// swung, more each time.
+TEST(TwoInertiaObserver, ReadingsThatComeSeldomAreNotTakenForSudden) {
+  for (const test::FamilyAxis& member : test::kFamily)
+    for (const int every : {2, 4, 7}) {
+      const TwoInertiaObserver::Setup setup = test::ObserverOf(member, kPeriod_s);
+      TwoInertiaObserver observer(setup);
+      OwnAxis axis(setup.axis);
+      observer.Reset(0.0);
+      const double force_N = 0.1 * member.friction_N;
+      for (int k = 0; k < 600; ++k) {
+        if (k > 0) observer.Predict({{0.0, 0.0}, 0.0, 0.0});
+        if (k % every == 0) observer.Correct(axis.x[0]);
+        axis.Step(0.0, force_N);
+      }
+      EXPECT_NEAR(observer.disturbance_N(), force_N, 0.1 * force_N) << member.name << " " << every;
+    }
+}
+
 // Before: readings were left out for 20 ms, in which a loop that went by what was foretold took the axis as
 // far as it liked; then the observer began at rest, and left them out again.
 TEST(TwoInertiaObserver, ReadingsThatAgreeOnAnotherMotionAreSoonBelieved) {

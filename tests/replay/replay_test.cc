@@ -92,7 +92,7 @@ TEST_F(ReplayTest, AMinuteWithFaultsComesOutBitForBit) {
 
 TEST_F(ReplayTest, AChangeOfWhatIsComputedIsFoundWithItsCycleAndQuantity) {
   // The log claims a configuration that differs in the last digit of one tuning value.
-  RecordShort(Header({"estimator.bristle_noise_N=0.4000000001"}));
+  RecordShort(Header({"estimator.mass_std=0.0500000001"}));
   const ReplayReport report = ReplayFile();
   EXPECT_EQ(report.verdict, ReplayVerdict::kDiffers);
   ASSERT_FALSE(report.differences.empty());
@@ -105,10 +105,10 @@ TEST_F(ReplayTest, AChangeOfWhatIsComputedIsFoundWithItsCycleAndQuantity) {
 }
 
 TEST_F(ReplayTest, AToleranceTakesSmallDifferencesAndNoLargeOnes) {
-  RecordShort(Header({"estimator.bristle_noise_N=0.4000000001"}));
+  RecordShort(Header({"estimator.mass_std=0.0500000001"}));
   EXPECT_EQ(ReplayFile({.tolerance = 1e-3}).verdict, ReplayVerdict::kWithinTolerance);
   EXPECT_EQ(ReplayFile({.tolerance = 1e-15}).verdict, ReplayVerdict::kDiffers);
-  RecordShort(Header({"estimator.bristle_noise_N=4"}));
+  RecordShort(Header({"estimator.mass_std=0.5"}));
   EXPECT_EQ(ReplayFile({.tolerance = 1e-3}).verdict, ReplayVerdict::kDiffers);
 }
 

@@ -1,5 +1,8 @@
 #include "tools/contour/loop_section.h"
 
+#include <algorithm>
+#include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "config/loop_axis.h"
@@ -11,20 +14,31 @@ namespace contour {
 
 namespace {
 
+using Found = std::map<std::string, std::optional<LoopTuning>>;
+
+/// For the axes without a loop.
+Found FindMissing(const MachineConfig& machine) {
+  Found found;
+  for (const auto& [name, config] : machine.axes)
+    if (!config.loop && ModeFor(machine.machine.controller, config.drive) == DriveMode::kCst)
+      found[name] = ChooseLoop(LoopAxisOf(config), 1e-6 * machine.machine.cycle_us);
+  return found;
+}
+
 /// Of an axis without a loop: what it will get.
-void Chosen(const MachineConfig& machine, const std::string& name, const AxisConfig& config,
+void Chosen(const MachineConfig& machine, const std::string& name, const std::optional<LoopTuning>& tuning,
             LoopSection& section) {
-  const LoopAxis axis = LoopAxisOf(config);
+  const LoopAxis axis = LoopAxisOf(machine.axes.at(name));
   const double period_s = 1e-6 * machine.machine.cycle_us;
-  if (const std::optional<LoopTuning> tuning = ChooseLoop(axis, period_s)) {
-    section.text += "  axis " + name +
-                    ": no loop: in the file, so this one is chosen at start; contour tune --from-model "
-                    "finds a better one\n" +
-                    Describe(ReportOn(axis, *tuning, period_s));
-    section.chosen.push_back(LoopAssignment(name, *tuning));
+  if (!tuning) {
+    section.refused.push_back(WhyNoLoop(name, axis, period_s));
     return;
   }
-  section.refused.push_back(WhyNoLoop(name, axis, period_s));
+  section.text += "  axis " + name +
+                  ": no loop: in the file, so this one is chosen at start; contour tune --from-model "
+                  "finds a better one\n" +
+                  Describe(ReportOn(axis, *tuning, period_s));
+  section.chosen.push_back(LoopAssignment(name, *tuning));
 }
 
 /// A loop of an axis and the key that has its tuning.
@@ -62,11 +76,21 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
   LoopSection section;
   if (machine.machine.controller != ControllerName::kFull) return section;
   const double period_s = 1e-6 * machine.machine.cycle_us;
-  const bool used = machine.control.friction == FrictionKind::kLinear;
+  bool used = machine.control.friction == FrictionKind::kLinear;
+  const Found found = used ? FindMissing(machine) : Found{};
+  const auto none = [](const auto& axis) { return !axis.second; };
+  if (std::any_of(found.begin(), found.end(), none) && MayUseFilter(machine)) {
+    used = false;
+    section.chosen.push_back(kUseFilter);
+    section.text +=
+        "  none of the loops that are tried at once keeps its limits on every axis: friction is known by "
+        "srukf, whose margins nobody knows; with the loops that contour tune --from-model writes it is known "
+        "by linear\n";
+  }
   for (const auto& [name, config] : machine.axes) {
     if (ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
     if (!config.loop && used) {
-      Chosen(machine, name, config, section);
+      Chosen(machine, name, found.at(name), section);
       continue;
     }
     if (!config.loop) {

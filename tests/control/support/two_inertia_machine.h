@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -73,6 +74,11 @@ class Machine {
     past_N_ = {force_N, past_N_[0], past_N_[1]};
     ++cycle_;
     return axis.s.table_m - reference(t + kPeriod_s).position_m;
+  }
+
+  /// The law alone, without scale.
+  static std::unique_ptr<ContourController> ControllerFor(const FamilyAxis& member) {
+    return std::make_unique<ContourController>(Controller(member, SetupOf(member, {}, 0.0, {})));
   }
 
   ScrewAxis axis;
