@@ -42,7 +42,7 @@ class ShortContest(unittest.TestCase):
         # A controller that compensates for nothing, in the place of full: behind everywhere.
         choice = ["--programs", "circle_100um", "--machines", "nominal", "--controllers", "csp", "full"]
         spoilt = ["--set", "control.full.contour_bandwidth_Hz=3", "--set", "control.full.lag_bandwidth_Hz=3",
-                  "--set", "axes.x.drive.mode=cst", "--set", "axes.y.drive.mode=cst",
+                  "--set", "axes.x.drive.mode=cst", "--set", "axes.y.drive.mode=cst", "--set", "control.friction=srukf",
                   # So soft a loop takes long to show a frozen encoder.
                   "--set", "axes.x.limits.safe_travel_mm=90", "--set", "axes.y.limits.safe_travel_mm=90"]
         self.assertEqual(contour("contest", "--check", "--seeds", 1, *choice, *FILES, "--out", self.out / "a").returncode, 0)
