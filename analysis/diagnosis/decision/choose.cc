@@ -38,6 +38,7 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
   // What does harm in the half of the log that it was not fitted on is no cause. A factor on all forces and
   // on the torque moves nothing that it could harm.
   const CauseDefinition& definition = CauseNamed(r.effect().kind);
+  bool foreseen = false;
   if (!definition.common_factor) {
     Cause cause;
     std::vector<BlockGain> blocks;
@@ -45,14 +46,16 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     if (cause.heldout_gain_high < 0.0) return false;
     // A scale's noise is never white: there, only what others of its rows confirm, and with no more chance
     // than every kind has.
-    if (definition.judged_at_scale && !GainsBeyondChance(cause, threshold.rate)) return false;
+    foreseen = GainsBeyondChance(cause, threshold.rate);
+    if (definition.judged_at_scale && !foreseen) return false;
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
   if (Consistency(problem, current, r.fit, true) > kAcceptance.consistency) return true;
-  // Left out, the only stroke that shows a base parameter may take it far. Where chance is out of the
-  // question, it is enough that the drop does not come from one event.
-  return tested > kAcceptance.no_chance_score &&
+  // Left out, the only stroke that shows a base parameter may take it far, to first order. Where chance is
+  // out of the question, or runs gain beyond it on the halves that they were not fitted on, it is enough that
+  // the drop does not come from one event.
+  return (foreseen || tested > kAcceptance.no_chance_score) &&
          Consistency(problem, current, r.fit, false) > std::numbers::sqrt2;
 }
 
@@ -93,8 +96,11 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThresh
   Choice choice;
   for (std::size_t i = 0; i < hypotheses.size() && !choice.found; ++i) {
     if (hypotheses[i].given_up) continue;
+    // Far behind the best only a number of the base, which is off with the best in the model, too: what is
+    // refused may still be what strains the numbers.
     if (i > 0 && hypotheses[i].score < kHypotheses.may_matter_share * hypotheses[0].score &&
-        !InBase(problem, hypotheses[i].effect().kind))
+        !(InBase(problem, hypotheses[i].effect().kind) &&
+          ExplainsSomethingElse(problem, hypotheses[0].fit, hypotheses[i])))
       continue;
     const double score = TestedScore(problem, current, hypotheses[i]);
     if (i == 0) choice.tested = score;

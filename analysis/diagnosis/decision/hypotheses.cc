@@ -109,6 +109,22 @@ bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, con
 
 namespace {
 
+/// Kinds that a sliding axis does not tell from those that are to be fitted: which of them the score test likes
+/// best is a matter of where the bristle's numbers are before they are fitted, too.
+std::vector<const Scored*> SameInSliding(const Problem& problem, const std::vector<Scored>& scored,
+                                         const ScoreThreshold& threshold,
+                                         const std::vector<InitialGuess>& guesses) {
+  std::vector<const Scored*> out;
+  for (const InitialGuess& g : guesses) {
+    const std::string_view same = *CauseNamed(g.point.effects.back()->kind).same_in_sliding;
+    if (same.empty()) continue;
+    for (const Scored& s : scored)
+      if (*CauseNamed(s.effect->kind).same_in_sliding == same && Promising(problem, s, threshold))
+        out.push_back(&s);
+  }
+  return out;
+}
+
 /// Where fits of the best candidates begin that have not been tried; none where nothing beyond the threshold
 /// is promised. `most`: the drop that the best of them is promised.
 std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current,
@@ -148,6 +164,11 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
       if (!by_priors) ++fitted;
     }
     promising = promising || Promising(problem, s, threshold);
+  }
+  for (const Scored* s : SameInSliding(problem, scored, threshold, guesses)) {
+    if (Among(tried, *s)) continue;
+    tried.push_back(FamilyOf(*s->effect));
+    guesses.push_back(Near(problem, current, *s));
   }
   if (!promising) guesses.clear();
   return guesses;

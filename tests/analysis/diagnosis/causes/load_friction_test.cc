@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/diagnosis/causes/catalogue.h"
@@ -27,6 +28,31 @@ TEST(LoadFriction, DoesNotAskForTheDirectionOfTheForce) {
   test::KnownAxis axis;
   axis.problem.signals->net_force.assign(test::KnownAxis::kRows, -0.2);
   EXPECT_NEAR((*test::With(axis, test::OnGrid(axis, kKind, ""), {0.1}).level)[5], 0.1 * 0.2 / 0.05, 1e-12);
+}
+
+TEST(LoadFriction, ALoadMayArriveLaterThanTheTorque) {
+  test::KnownAxis axis;
+  Signal& net = axis.problem.signals->net_force;
+  net.assign(test::KnownAxis::kRows, 0.0);
+  std::fill(net.begin() + 500, net.end(), -0.2);
+  const AxisModel at_once = test::With(axis, test::OnGrid(axis, kKind, ""), {0.1});
+  const AxisModel later = test::With(axis, test::OnGrid(axis, kKind, "within 2 rows"), {0.1});
+  const double level = 0.1 * 0.2 / 0.05;
+  EXPECT_NEAR((*at_once.level)[500], level, 1e-12);
+  EXPECT_EQ((*later.level)[499], 0.0);
+  EXPECT_NEAR((*later.level)[500], level * (1.0 - std::exp(-0.5)), 1e-12);
+  EXPECT_NEAR((*later.level)[501], level * (1.0 - std::exp(-1.0)), 1e-12);
+  EXPECT_NEAR((*later.level)[600], level, 1e-9);
+  EXPECT_EQ((*later.level)[500], (*later.level)[test::KnownAxis::kRows + 500]) << "constant over the row";
+}
+
+TEST(LoadFriction, NoiseOfTheCommandHasNoDirectionForALoadThatArrivesLater) {
+  test::KnownAxis axis;
+  Signal& net = axis.problem.signals->net_force;
+  for (std::size_t k = 0; k < net.size(); ++k) net[k] = k % 2 == 0 ? 0.2 : -0.2;
+  const AxisModel at_once = test::With(axis, test::OnGrid(axis, kKind, ""), {0.1});
+  const AxisModel later = test::With(axis, test::OnGrid(axis, kKind, "within 4 rows"), {0.1});
+  EXPECT_LT((*later.level)[1000], 0.2 * (*at_once.level)[1000]);
 }
 
 TEST(LoadFriction, NoModelIsExtendedByItAndPulsesDecide) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "analysis/diagnosis/decision/tested_score.h"
+#include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "tests/analysis/support/fitted_axis.h"
 
 namespace contour::diagnosis {
@@ -46,6 +48,26 @@ TEST_F(HypothesesTest, TheOneThatIsThereComesFirstWithItsSize) {
       EXPECT_LE(found[i].score, found[i - 1].score);
     }
   EXPECT_TRUE(MayHold(axis_.problem, found, threshold_));
+}
+
+TEST_F(HypothesesTest, WhatSlidingDoesNotTellFromTheBestIsFittedWithIt) {
+  std::vector<Scored> scored = ScoredOf({"constant_torque", "asymmetric_coulomb", "cable_spring"});
+  ASSERT_EQ(scored[0].effect->kind, "constant_torque");
+  // So little is promised of the others that they would have no turn, and more than is asked.
+  threshold_.flips = threshold_.calibrated = 1.0;
+  for (std::size_t i = 1; i < scored.size(); ++i) {
+    scored[i].drop = 0.9 * kScreening.little_share * scored[0].drop;
+    scored[i].overdispersion = scored[i].within_blocks = 1.0;
+    ASSERT_TRUE(Promising(axis_.problem, scored[i], threshold_));
+  }
+  const std::vector<Hypothesis> found = FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_);
+  const auto fitted = [&](const char* kind) {
+    return std::any_of(found.begin(), found.end(),
+                       [&](const Hypothesis& h) { return h.effect().kind == kind; });
+  };
+  EXPECT_TRUE(fitted("constant_torque"));
+  EXPECT_TRUE(fitted("asymmetric_coulomb"));
+  EXPECT_FALSE(fitted("cable_spring"));
 }
 
 TEST_F(HypothesesTest, WhatHasBeenTriedIsNotFittedAgain) {
