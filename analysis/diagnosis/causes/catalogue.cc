@@ -56,6 +56,11 @@ const CauseDefinition& CauseInScatter() {
                         [](const CauseDefinition* c) { return *c->in_scatter_only; });
 }
 
+bool SameInSliding(std::string_view kind, std::string_view other) {
+  const std::string_view same = *CauseNamed(kind).same_in_sliding;
+  return kind != other && !same.empty() && same == *CauseNamed(other).same_in_sliding;
+}
+
 std::vector<SharedEffect> CatalogueEffects(const Problem& problem) {
   std::vector<SharedEffect> out;
   for (const CauseDefinition* c : AllCandidates())

@@ -22,6 +22,10 @@ const CauseDefinition& CauseNamed(std::string_view name);
 /// The one that shows in the scatter of the residual only.
 const CauseDefinition& CauseInScatter();
 
+/// Whether two kinds do the same to an axis that slides; none does the same as itself.
+/// Throws std::out_of_range as CauseNamed does.
+bool SameInSliding(std::string_view kind, std::string_view other);
+
 /// Every candidate's effects that need no search over orders or frequencies, on their grids.
 std::vector<SharedEffect> CatalogueEffects(const Problem& problem);
 

@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::string_view kName = "load_friction";
 
-// In how many rows a step of the load arrives at nut and balls, by an exponential: some coupling lies between
-// motor and table, of an axis that is stated as rigid, too, and a load that follows the command row by row would
-// make friction of every error of the loop, which such an axis does not. At once, then by factors of two.
+// Time constants, in rows of the log, by which the load at nut and balls may lag behind the command. There is
+// a coupling between motor and table even where the axis is stated as rigid; without a lag, what the loop
+// does to its own errors from row to row would count as load. None, then by factors of two. Measured on logs
+// of 1 kHz only; at another rate they are other times.
 constexpr std::array kArrival_rows = {0.0, 1.0, 2.0, 4.0};
 
 Signal Arriving(const Signal& force, double rows) {
@@ -38,12 +39,13 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
     const std::string label = rows > 0.0 ? "within " + RoundedText(rows) + " rows" : "";
     out.push_back(LinearEffect(
         {std::string(kName), label, static_cast<double>(kArrival_rows.size())}, Input::kLevel,
-        {Make(2 * n, [&](std::size_t k) { return std::fabs(carried[k < n ? k : k - n]) / s.coulomb; })}, 5e-3));
+        {Make(2 * n, [&](std::size_t k) { return std::fabs(carried[k < n ? k : k - n]) / s.coulomb; })},
+        5e-3));
   }
 }
 
-// How the load arrives is one of four guesses: on axes of another generator, whose load has a memory of some
-// rows, sizes lie off by a tenth (docs/laboratory/strangers.md).
+// The lag is one of four guesses. Sizes in five logs of another generator were off by -13 to 7 %, in a sixth,
+// of an effect of 1 %, by 36 % (docs/laboratory/strangers.md).
 constexpr ModelError kErrors[] = {{"friction_per_torque_rel", 0.1}};
 
 constexpr Specimen kSpecimen = {

@@ -23,11 +23,10 @@ bool BristleShows(const Problem& problem, const Fit& fit) {
 
 /// Kinds that do the same to an axis whose bristle does not show.
 void AddSameInSliding(const Problem& problem, const Fit& fit, Cause& cause) {
-  const std::string_view same = *CauseNamed(cause.kind).same_in_sliding;
-  if (same.empty() || BristleShows(problem, fit)) return;
+  if (BristleShows(problem, fit)) return;
   std::vector<std::string>& others = cause.indistinguishable_from;
   for (const CauseDefinition* c : AllCauses())
-    if (*c->same_in_sliding == same && *c->name != cause.kind &&
+    if (SameInSliding(cause.kind, *c->name) &&
         std::find(others.begin(), others.end(), *c->name) == others.end())
       others.emplace_back(*c->name);
 }

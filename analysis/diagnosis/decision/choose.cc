@@ -17,7 +17,8 @@
 namespace contour::diagnosis {
 namespace {
 
-/// At a share of the asked rate.
+/// Whether the gain on halves that the fit has not seen is above zero beyond chance, at the asked rate over
+/// the number of kinds.
 bool GainsBeyondChance(const Cause& cause, double rate) {
   const double of_kind = rate / static_cast<double>(AllCauses().size());
   const double deviations = std::sqrt(ChiSquareQuantile(1, 2.0 * of_kind));
@@ -38,7 +39,7 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
   // What does harm in the half of the log that it was not fitted on is no cause. A factor on all forces and
   // on the torque moves nothing that it could harm.
   const CauseDefinition& definition = CauseNamed(r.effect().kind);
-  bool foreseen = false;
+  bool gains_unseen = false;
   if (!definition.common_factor) {
     Cause cause;
     std::vector<BlockGain> blocks;
@@ -46,16 +47,16 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     if (cause.heldout_gain_high < 0.0) return false;
     // A scale's noise is never white: there, only what others of its rows confirm, and with no more chance
     // than every kind has.
-    foreseen = GainsBeyondChance(cause, threshold.rate);
-    if (definition.judged_at_scale && !foreseen) return false;
+    gains_unseen = GainsBeyondChance(cause, threshold.rate);
+    if (definition.judged_at_scale && !gains_unseen) return false;
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
   if (Consistency(problem, current, r.fit, true) > kAcceptance.consistency) return true;
   // Left out, the only stroke that shows a base parameter may take it far, to first order. Where chance is
-  // out of the question, or runs gain beyond it on the halves that they were not fitted on, it is enough that
+  // out of the question, by the score or by the gain on the halves that were not fitted on, it is enough that
   // the drop does not come from one event.
-  return (foreseen || tested > kAcceptance.no_chance_score) &&
+  return (gains_unseen || tested > kAcceptance.no_chance_score) &&
          Consistency(problem, current, r.fit, false) > std::numbers::sqrt2;
 }
 
@@ -96,8 +97,8 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThresh
   Choice choice;
   for (std::size_t i = 0; i < hypotheses.size() && !choice.found; ++i) {
     if (hypotheses[i].given_up) continue;
-    // Far behind the best only a number of the base, which is off with the best in the model, too: what is
-    // refused may still be what strains the numbers.
+    // Far behind the best, only a number of the base, and only if it is off with the best in the model, too:
+    // the best may be refused and still be what moves that number.
     if (i > 0 && hypotheses[i].score < kHypotheses.may_matter_share * hypotheses[0].score &&
         !(InBase(problem, hypotheses[i].effect().kind) &&
           ExplainsSomethingElse(problem, hypotheses[0].fit, hypotheses[i])))

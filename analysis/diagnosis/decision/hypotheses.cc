@@ -109,20 +109,20 @@ bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, con
 
 namespace {
 
-/// Kinds that a sliding axis does not tell from those that are to be fitted: which of them the score test likes
-/// best is a matter of where the bristle's numbers are before they are fitted, too.
-std::vector<const Scored*> SameInSliding(const Problem& problem, const std::vector<Scored>& scored,
-                                         const ScoreThreshold& threshold,
-                                         const std::vector<InitialGuess>& guesses) {
-  std::vector<const Scored*> out;
-  for (const InitialGuess& g : guesses) {
-    const std::string_view same = *CauseNamed(g.point.effects.back()->kind).same_in_sliding;
-    if (same.empty()) continue;
-    for (const Scored& s : scored)
-      if (*CauseNamed(s.effect->kind).same_in_sliding == same && Promising(problem, s, threshold))
-        out.push_back(&s);
-  }
-  return out;
+/// Next to each guess, those of kinds that do the same to an axis that slides. Which of them the score test
+/// likes best also depends on the bristle's numbers, which are not fitted yet.
+void GuessSameInSliding(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
+                        const ScoreThreshold& threshold, std::vector<std::string>& tried,
+                        std::vector<InitialGuess>& guesses) {
+  const std::size_t first = guesses.size();
+  for (std::size_t i = 0; i < first; ++i)
+    for (const Scored& s : scored) {
+      if (!SameInSliding(guesses[i].point.effects.back()->kind, s.effect->kind) || Among(tried, s) ||
+          !Promising(problem, s, threshold))
+        continue;
+      tried.push_back(FamilyOf(*s.effect));
+      guesses.push_back(Near(problem, current, s));
+    }
 }
 
 /// Where fits of the best candidates begin that have not been tried; none where nothing beyond the threshold
@@ -165,11 +165,7 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
     }
     promising = promising || Promising(problem, s, threshold);
   }
-  for (const Scored* s : SameInSliding(problem, scored, threshold, guesses)) {
-    if (Among(tried, *s)) continue;
-    tried.push_back(FamilyOf(*s->effect));
-    guesses.push_back(Near(problem, current, *s));
-  }
+  GuessSameInSliding(problem, current, scored, threshold, tried, guesses);
   if (!promising) guesses.clear();
   return guesses;
 }

@@ -144,5 +144,14 @@ TEST(Catalogue, EveryHypothesisIsOfItsCauseAndHasTheMainParameter) {
   }
 }
 
+TEST(Catalogue, SlidingTellsAllKindsApartButThoseThatSaySo) {
+  EXPECT_TRUE(SameInSliding("constant_torque", "asymmetric_coulomb"));
+  EXPECT_TRUE(SameInSliding("asymmetric_coulomb", "constant_torque"));
+  EXPECT_FALSE(SameInSliding("constant_torque", "constant_torque"));
+  EXPECT_FALSE(SameInSliding("constant_torque", "cable_spring"));
+  EXPECT_FALSE(SameInSliding("cable_spring", "stribeck")) << "neither says so";
+  EXPECT_THROW((void)SameInSliding("none", "constant_torque"), std::out_of_range);
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

@@ -37,41 +37,17 @@ TEST_F(ChooseTest, WhereTheBestDoesNotHoldTheNextGoesToTheFront) {
   EXPECT_TRUE(hypotheses[1].refused);
 }
 
-// The best is refused, and what is far behind it has a score that would hold.
-class RefusedBestTest : public testing::Test {
- protected:
-  static test::HiddenOptions Late(double factor) {
-    test::HiddenOptions o = test::FittedAxis::Short({{"constant_torque", 0.3, 0.0, 0.0, 0.0}});
-    o.delay_lag_factor = factor;
-    return o;
-  }
-
-  static Hypothesis Of(const test::FittedAxis& axis, const std::string& kind) {
-    Hypothesis h;
-    h.fit = axis.With(axis.Of(kind));
-    h.score = axis.base.cost - h.fit.cost - Penalty(h.effect());
-    return h;
-  }
-
-  static Choice ChooseOf(const test::FittedAxis& axis, const Hypothesis& number,
-                         std::vector<Hypothesis>& hypotheses) {
-    Hypothesis boasting = Of(axis, "constant_torque");
-    boasting.score = 100.0 * number.score;
-    // So much of its kind is left by what is known already that it cannot hold.
-    const ScoreThreshold threshold{
-        .flips = 20.0, .calibrated = 20.0, .accepted = 1, .leakage_of_kind = {{"constant_torque", 1e9}}};
-    hypotheses = {boasting, number};
-    return ChooseFirst(axis.problem, axis.base, threshold, hypotheses);
-  }
-};
-
-TEST_F(RefusedBestTest, ANumberThatItStrainsIsNotNamedForIt) {
-  const test::FittedAxis axis(Late(1.0));
-  Hypothesis number = Of(axis, "input_delay");
-  number.score = 60.0;  // made up: with the torque in the model nothing of it is left
-  std::vector<Hypothesis> hypotheses;
-  const Choice choice = ChooseOf(axis, number, hypotheses);
-  EXPECT_FALSE(choice.found);
+TEST_F(ChooseTest, ANumberThatTheRefusedBestMovesIsNotNamedForIt) {
+  Hypothesis best = Of("constant_torque");
+  Hypothesis number = Of("input_delay");
+  // Made up: a score that would hold, but with the torque in the model nothing of it is left.
+  number.score = 60.0;
+  best.score = 100.0 * number.score;
+  // So much of its kind is left by what is known already that the best cannot hold.
+  threshold_.accepted = 1;
+  threshold_.leakage_of_kind = {{"constant_torque", 1e9}};
+  std::vector<Hypothesis> hypotheses = {best, number};
+  EXPECT_FALSE(ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses).found);
   EXPECT_TRUE(hypotheses[0].refused);
 }
 
