@@ -6,7 +6,9 @@ noise is that of contourd or of its emulated machine.
 import numpy as np
 
 from draw_axis import TICK_S, TURN
+from fast_steps import FastSteps, compiled
 from friction_laws import LAWS
+from needed_torque import NeededTorque
 from tune_loop import loop_band
 
 SUB = 10
@@ -69,11 +71,16 @@ class Controller:
         return self.a["inertia"] * acceleration + friction + self.kv * (error + self.ki * TICK_S * self.sum)
 
 
+def numbers(axes):
+    return stacked(axes, [k for k, v in axes[0].items() if isinstance(v, (int, float, np.floating, np.integer))])
+
+
 class Batch:
-    def __init__(self, axes, effects, motions, law):
+    """`models`: the axes without what is hidden; with them the log has the torque and the position that they leave unexplained, too."""
+
+    def __init__(self, axes, effects, motions, law, models=None, fast=True):
         self.n = len(axes)
-        keys = [k for k, v in axes[0].items() if isinstance(v, (int, float, np.floating, np.integer))]
-        self.a = stacked(axes, keys)
+        self.a = numbers(axes)
         self.e = stacked(effects, HIDDEN, {"ratio": 1.0, "payload_at": 2.0})
         self.ticks = max(len(m[0]) for m in motions)
         pad = lambda x: np.concatenate([x, np.full(self.ticks - len(x), x[-1])])
@@ -85,6 +92,8 @@ class Batch:
         self.x[:, 0] = self.x[:, 2] = self.target[0]
         self.acceleration, self.temperature = np.zeros(self.n), np.full(self.n, 21.0)
         self.make_mechanics()
+        self.model = NeededTorque(numbers(models), law, STEP_S, self.x[:, 0]) if models else None
+        self.function = compiled() if fast else None
 
     def make_mechanics(self):
         a, e = self.a, self.e
@@ -146,38 +155,76 @@ class Batch:
         self.heat = friction * w
         self.x = new
 
+    def reading(self, q):
+        return q + self.e["reading"] * np.sin(self.e["reading_order"] * q + self.e["phase"])
+
+    def reading_speed(self, q, w):
+        return w * (1.0 + self.e["reading"] * self.e["reading_order"] * np.cos(self.e["reading_order"] * q + self.e["phase"]))
+
+    def late(self, delay_s):
+        """Rows back from now at which the command of each sub-step lies, and what of it is from a step before that."""
+        steps = delay_s / STEP_S
+        whole = np.floor(steps + 1e-6)
+        back = [np.floor((np.arange(SUB)[:, None] - more - whole[None, :]) / SUB).astype(int) for more in (0, 1)]
+        return back[0], back[1], np.maximum(0.0, steps - whole - 1e-6)
+
+    def arriving(self, commands, k, late):
+        """A row a sub-step."""
+        newer, older, share = late
+        now = commands[k + 8 + newer, self.everyone]
+        return now if not share.any() else now + share * (commands[k + 8 + older, self.everyone] - now)
+
+    def look(self, command):
+        q, w = self.x[:, 0], self.x[:, 1]
+        self.model.step(command, self.reading(q), self.reading_speed(q, w))
+
     def run(self):
         a, e = self.a, self.e
-        noise = coloured(self.ticks, a)
-        first = np.floor((np.arange(SUB)[:, None] - np.round((a["delay_s"] + e["more_delay_s"]) / STEP_S)[None, :]) / SUB).astype(int)
-        commands, out = np.zeros((self.ticks + 8, self.n)), {k: np.zeros((self.ticks, self.n)) for k in ("q", "table", "temperature")}
-        count, everyone = TURN / a["counts"], np.arange(self.n)
+        noise, self.everyone = coloured(self.ticks, a), np.arange(self.n)
+        late, stated_late = self.late(a["delay_s"] + e["more_delay_s"]), self.late(a["delay_s"])
+        fast = FastSteps(self, self.function, STEP_S) if self.function else None
+        shown = ("q", "table", "temperature") + (("true_q", "true_table", "unexplained_torque", "unexplained_table") if self.model else ())
+        commands, out = np.zeros((self.ticks + 8, self.n)), {k: np.zeros((self.ticks, self.n)) for k in shown}
+        count = TURN / a["counts"]
         controller, wander = Controller({**a, "damping": self.d}), np.zeros(self.n)
         self.last_acceleration, self.heat = np.zeros(self.n), np.zeros(self.n)
         keep = np.exp(-TICK_S / a["wander_s"])
         speed = np.gradient(self.target, TICK_S, axis=0)
         acceleration = np.gradient(speed, TICK_S, axis=0)
-        late = deviates(a["seed"], 2, self.ticks) * e["jitter_s"]
+        jitter = deviates(a["seed"], 2, self.ticks) * e["jitter_s"]
         wandering = deviates(a["seed"], 4, self.ticks) * np.sqrt(1.0 - keep**2) * a["wander_m"]
         for k in range(self.ticks):
             changed = (e["payload_at"] >= 0.0) & (k >= e["payload_at"] * self.lengths)
             if changed.any():
                 e["payload_at"][changed] = -1.0
                 self.make_mechanics()
+                if fast:
+                    fast.mechanics()
             self.slow_parts(k)
-            q = self.x[:, 0] + self.x[:, 1] * late[k]
-            q = np.round((q + e["reading"] * np.sin(e["reading_order"] * q + e["phase"])) / count) * count
+            q = self.x[:, 0] + self.x[:, 1] * jitter[k]
+            q = np.round(self.reading(q) / count) * count
             u = controller.command(q, self.target[k], speed[k], acceleration[k]) + self.push[k]
             u = np.round(np.clip(u, -2.0 * a["rated"], 2.0 * a["rated"]) / a["torque_step"]) * a["torque_step"]
             commands[k + 8] = u
             wander = keep * wander + wandering[k]
             x = self.x[:, 2] * a["lever_m"]
-            x = x + e["pitch"] * np.sin(TURN * e["pitch_periods"] * x / a["stroke_m"] + e["phase"]) + wander
+            x = x + e["pitch"] * np.sin(TURN * e["pitch_periods"] * x / a["stroke_m"] + e["phase"])
+            if self.model:
+                out["true_q"][k], out["true_table"][k] = self.reading(self.x[:, 0]), x
+                out["unexplained_table"][k] = x - self.model.q2 * a["lever_m"]
+            x = x + wander
             out["q"][k], out["table"][k] = q, np.round(x / a["scale_step_m"]) * a["scale_step_m"]
             out["temperature"][k] = self.temperature
             before = self.x[:, 3].copy()
-            for j in range(SUB):
-                self.step((k + j / SUB) * TICK_S, commands[k + 8 + first[j], everyone], noise[k])
+            arriving, stated = self.arriving(commands, k, late), self.arriving(commands, k, stated_late) if self.model else None
+            if fast:
+                fast.tick(k * TICK_S, arriving, noise[k], stated)
+            for j in range(0 if fast else SUB):
+                self.step((k + j / SUB) * TICK_S, arriving[j], noise[k])
+                if self.model:
+                    self.look(stated[j])
+            if self.model:
+                out["unexplained_torque"][k] = self.model.taken(SUB) + noise[k]
             self.acceleration = 0.5 * self.acceleration + 0.5 * (self.x[:, 3] - before) / TICK_S
             warm = 25.0 * self.heat / (a["Fc"] * a["fast_rad_s"]) - (self.temperature - 21.0)
             self.temperature = self.temperature + warm * TICK_S / 12.0

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Axes that share nothing with contourd: made here, diagnosed by `contour diagnose`, counted.
 
-    strangers.py --make FOLDER [--seed 1] [--clean 20] [--each 2] [--strength clear] [--kinds a,b] [--law lugre]
+    strangers.py --make FOLDER [--seed 1] [--clean 20] [--each 2] [--strength clear] [--kinds a,b] [--law lugre] [--nominal]
     strangers.py --judge FOLDER --contour build/release/bin/contour [--out results.csv] [--rate 0.05] [--answered]
 
 --make writes a folder a case: log.csv, model.yaml, truth.json. --judge diagnoses what stands there and prints a table: right, wrong
-name, unexplained, false alarms, intervals that hold the truth. The same seed makes the same cases.
+name, unexplained, false alarms, intervals that hold the truth. The same seed makes the same cases; several, by commas, each with the
+strength at its place, are made side by side. Effects are sized by the share of the residual that they leave (share.py); --nominal sizes
+them by a formula, as was done until 2026-11-24.
 """
 import argparse
 import csv
@@ -14,12 +16,8 @@ import resource
 import subprocess
 from pathlib import Path
 
-import numpy as np
-
-from draw_axis import draw_axis, stated_of
-from effects import HIDE, NEEDS, STRENGTHS, hidden
-from motion import both_directions
-from simulate import Batch
+from effects import HIDE
+from sizing import Case, sized
 from write_case import write_case
 
 BATCH = 128
@@ -29,34 +27,34 @@ MEANT_TOGETHER = {"friction_ripple": {"ball_ripple"}, "ball_ripple": {"friction_
 
 
 def cases_of(options):
+    """Of every seed, with the strength of the same place."""
     kinds = options.kinds.split(",") if options.kinds else list(HIDE)
-    out = [("clean", options.seed * 100000 + i) for i in range(options.clean)]
-    for number, kind in enumerate(HIDE):
-        if kind in kinds:
-            out += [(kind, options.seed * 100000 + 1000 * (number + 1) + i) for i in range(options.each)]
+    seeds, strengths = options.seed.split(","), options.strength.split(",")
+    out = []
+    for seed, strength in zip((int(s) for s in seeds), strengths * len(seeds) if len(strengths) == 1 else strengths):
+        out += [Case("clean", seed * 100000 + i, strength, options.law) for i in range(options.clean)]
+        for number, kind in enumerate(HIDE):
+            if kind in kinds:
+                out += [Case(kind, seed * 100000 + 1000 * (number + 1) + i, strength, options.law) for i in range(options.each)]
     return out
+
+
+def write(folder, case, log):
+    said = {"kind": case.kind, "seed": case.seed, "law": case.law, "strength": case.strength, "size": case.size, "share": case.share,
+            "parameters": case.truth, "axis": dict(case.axis)}
+    write_case(Path(folder) / case.name, case.axis, case.stated, log, said, case.kind == "stribeck")
 
 
 def make(options):
     cases = cases_of(options)
     for at in range(0, len(cases), BATCH):
-        batch, prepared = cases[at:at + BATCH], []
-        for kind, seed in batch:
-            axis = draw_axis(seed, NEEDS.get(kind, ()))
-            stated, effect, truth = stated_of(axis), {}, {}
-            if kind != "clean":
-                effect, truth = hidden(kind, axis, STRENGTHS[options.strength], np.random.default_rng([seed, 4]))
-            prepared.append((axis, stated, effect, truth, both_directions(axis)))
-        simulated = Batch([p[0] for p in prepared], [p[2] for p in prepared], [p[4] for p in prepared], options.law)
-        columns = simulated.run()
-        for i, ((kind, seed), (axis, stated, _, truth, motion)) in enumerate(zip(batch, prepared)):
-            own = {name: values[:len(motion[0]), i] for name, values in columns.items()}
-            own["other"] = motion[2]
-            name = f"{'clean' if kind == 'clean' else options.strength + '_' + kind}_{options.law}_{seed}"
-            said = {"kind": kind, "seed": seed, "law": options.law, "strength": options.strength, "parameters": truth,
-                    "axis": {k: v for k, v in axis.items()}}
-            write_case(Path(options.make) / name, axis, stated, own, said, kind == "stribeck")
-        print(f"{at + len(batch)} of {len(cases)}", flush=True)
+        for case, log in sized(cases[at:at + BATCH], not options.nominal):
+            if log is not None:
+                write(options.make, case, log)
+            said = "share" if log is not None else f"left out, {case.why_not}; share"
+            print(f"{case.name}: {said} {case.share:.4f}, size {case.size:.4g}, {case.truth}", flush=True)
+    for why in sorted({c.why_not for c in cases if c.why_not}):
+        print(f"left out, {why}: {sum(c.why_not == why for c in cases)} of {len(cases)}")
 
 
 def diagnose(folder, options):
@@ -149,11 +147,12 @@ def print_table(rows):
 def main():
     p = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, otherwise in (("make", None), ("judge", None), ("contour", "build/release/bin/contour"), ("out", None), ("kinds", ""),
-                            ("law", "lugre"), ("strength", "clear"), ("only", "")):
+                            ("law", "lugre"), ("strength", "clear"), ("seed", "1"), ("only", "")):
         p.add_argument("--" + name, default=otherwise)
-    for name, otherwise in (("seed", 1), ("clean", 20), ("each", 2)):
+    for name, otherwise in (("clean", 20), ("each", 2)):
         p.add_argument("--" + name, type=int, default=otherwise)
     p.add_argument("--rate", type=float, default=0.05)
+    p.add_argument("--nominal", action="store_true", help="sizes of a formula; their shares are measured only")
     p.add_argument("--answered", action="store_true", help="judge the answer.json that stand there")
     options = p.parse_args()
     if not options.make and not options.judge:
