@@ -96,17 +96,20 @@ static void look(int law, int n, int i, const double *p, double *m, const double
   const double pull = 0.5 * k * (twist + q1 - M(q2) - 0.5 * h * M(w2)) + 0.5 * d * (spin + w1);
   const double w2 = M(share) * (M(load_inertia) / h * M(w2) - behind + pull), q2 = M(q2) + 0.5 * h * (M(w2) + w2);
   const double coupling = 0.5 * (k * (twist + q1 - q2) + d * (spin + w1 - w2));
-  M(too_many) += arriving - M(motor_inertia) * (w1 - M(w1)) / h - coupling - (f - behind);
+  M(too_many) += arriving - M(motor_inertia) * (w1 - M(w1)) / h - coupling - (on_load ? 0.0 : f);
   M(acceleration) = (on_load ? w2 - M(w2) : w1 - M(w1)) / h;
   M(q1) = q1, M(w1) = w1, M(q2) = q2, M(w2) = w2;
 }
 
 /* A tick: `commands`, `stated` are sub-steps by axes; m is null where no model looks. x: axes by four. */
 void steps(int law, int n, int sub, double h, double t, const double *p, double *s, double *x, const double *stiffness, double *z,
-           const double *commands, const double *noise, double *m, const double *model_stiffness, double *model_z, const double *stated) {
+           const double *commands, const double *noise, double *m, const double *model_stiffness, double *model_z, double *twin, const double *twin_stiffness, double *twin_z,
+           const double *stated) {
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < sub; ++j) {
       step(law, n, i, p, s, x + 4 * i, stiffness, z, commands[j * n + i], noise[i], t + j * h, h);
-      if (m) look(law, n, i, p, m, x + 4 * i, model_stiffness, model_z, stated[j * n + i], h);
+      if (!m) continue;
+      look(law, n, i, p, m, x + 4 * i, model_stiffness, model_z, stated[j * n + i], h);
+      look(law, n, i, p, twin, x + 4 * i, twin_stiffness, twin_z, stated[j * n + i], h);
     }
 }

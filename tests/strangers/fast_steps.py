@@ -38,6 +38,11 @@ def pointer(array):
     return None if array is None else array.ctypes.data_as(ctypes.c_void_p)
 
 
+def law_of(owner, table):
+    law = owner.law if owner else None
+    return pointer(table), pointer(getattr(law, "stiffness", None)), pointer(law.z if law else None)
+
+
 class FastSteps:
     """Of a Batch: its numbers and state in tables; `tick` moves it on and hands back what others look at."""
 
@@ -50,11 +55,14 @@ class FastSteps:
         self.p = np.zeros((len(NUMBERS) + 24, self.n))
         for name in NUMBERS:
             self.p[NUMBERS.index(name)] = rows.get(name, 0.0)
-        self.s, self.m = np.zeros((len(STATE), self.n)), None
-        if batch.model:
-            of = {**vars(batch.model), **batch.model.a}
-            self.m = np.stack([np.broadcast_to(of[name], self.n) for name in OF_MODEL + IN_MODEL]).astype(float)
+        self.s, self.m = np.zeros((len(STATE), self.n)), [self.of_model(m) for m in (batch.model, batch.twin)]
         self.mechanics()
+
+    def of_model(self, model):
+        if model is None:
+            return None
+        of = {**vars(model), **model.a}
+        return np.stack([np.broadcast_to(of[name], self.n) for name in OF_MODEL + IN_MODEL]).astype(float)
 
     def mechanics(self):
         b = self.batch
@@ -66,11 +74,10 @@ class FastSteps:
         for name in OF_TICK:
             self.p[NUMBERS.index(name)] = getattr(b, name)
         b.x = np.ascontiguousarray(b.x)
-        model = b.model.law if b.model else None
+        looking = [x for model, table in zip((b.model, b.twin), self.m) for x in law_of(model, table)]
         self.function(self.law, self.n, len(commands), ctypes.c_double(self.h), ctypes.c_double(t), pointer(self.p), pointer(self.s),
-                      pointer(b.x), pointer(getattr(b.law, "stiffness", None)), pointer(b.law.z), pointer(commands), pointer(noise),
-                      pointer(self.m), pointer(getattr(model, "stiffness", None)), pointer(model.z if model else None), pointer(stated))
+                      pointer(b.x), *law_of(b, None)[1:], pointer(commands), pointer(noise), *looking, pointer(stated))
         b.heat = self.s[STATE.index("heat")]
-        if b.model:
-            at = len(OF_MODEL)
-            b.model.q2, b.model.too_many = self.m[at + IN_MODEL.index("q2")], self.m[at + IN_MODEL.index("too_many")]
+        for model, table in zip((b.model, b.twin), self.m):
+            if model:
+                model.q2, model.too_many = (table[len(OF_MODEL) + IN_MODEL.index(name)] for name in ("q2", "too_many"))

@@ -7,9 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from draw_axis import TICK_S, draw_axis, stated_of
-from effects import HIDE, NEEDS, hidden
+from effects import HIDE, NEEDS, Limits, hidden
 from motion import Motion, stroke
+from share import foreseen, left_after_refit, of_scale
 from simulate import STEP_S, Batch
+from sizing import SHARES, Case, shares, simulate
 from write_case import model_text, write_case
 
 
@@ -120,6 +122,68 @@ class Strangers(unittest.TestCase):
             header = (Path(folder) / "log.csv").read_text(encoding="utf-8").splitlines()[0]
         self.assertEqual(header, "time_s,torque_Nm,motor_angle_rad,table_position_m,temperature_degC")
         self.assertIn("uncertainty:", model_text(stated_of(axis), False))
+
+    def test_compiled_steps_are_those_of_numpy(self):
+        for law in ("lugre", "dahl", "maxwell_slip"):
+            cases = [Case(kind, 8200000 + 1000 * number, "clear", law) for number, kind in enumerate(HIDE)]
+            motions = [tuple(column[:150] for column in c.motion) for c in cases]
+            of = [[c.axis for c in cases], [{**c.effect, "payload_at": 0.5} for c in cases], motions, law, [c.model for c in cases]]
+            batch = Batch(*of)
+            if batch.function is None:
+                self.skipTest("no compiler")
+            quick, plain = batch.run(), Batch(*of, fast=False).run()
+            for name, column in plain.items():
+                self.assertLess(np.max(np.abs(quick[name] - column)), 1e-9 * (1.0 + np.max(np.abs(column))), f"{law} {name}")
+
+    def test_an_axis_with_nothing_hidden_leaves_its_noise(self):
+        for law in ("lugre", "dahl", "maxwell_slip"):
+            for seed, needs in ((21, ("two_inertia",)), (22, ("rigid",))):
+                axis = {**draw_axis(seed, needs), "friction_on_load": seed == 21}
+                columns = Batch([axis], [{}], [strokes(axis)], law, [axis]).run()
+                log = {name: values[:, 0] for name, values in columns.items()}
+                left = np.where(foreseen(axis, log), log["unexplained_torque"], 0.0)
+                self.assertLess(np.max(np.abs(left)), 1e-6 * axis["white"], law)
+
+    def test_a_hidden_torque_is_all_that_is_left(self):
+        axis = draw_axis(21, ("two_inertia",))
+        push = 0.1 * axis["Fc"]
+        left = Batch([axis], [{"offset": push}], [strokes(axis)], "lugre", [axis]).run()["unexplained_torque"][:, 0]
+        # It pulls forward: the motor arrives with too little.
+        self.assertAlmostEqual(left[-200:].mean() / -push, 1.0, delta=0.02)
+
+    def test_a_refit_takes_what_is_stated_and_no_more(self):
+        column = np.random.default_rng(1).normal(size=4000)
+        within = left_after_refit(1.5 * column, column[:, None], 1e-6)
+        beyond = left_after_refit(3.0 * column, column[:, None], 1e-6)
+        self.assertLess(within, 1e-6)
+        self.assertAlmostEqual(beyond, np.mean(column**2), delta=1e-3)
+
+    def test_a_stated_coupling_takes_wind_up(self):
+        turn = np.random.default_rng(2).normal(size=1000)
+        log = {"true_q": np.zeros(1000), "unexplained_table": 0.1 * turn, "true_table": 1.1 * turn, "table": 1.1 * turn}
+        self.assertLess(of_scale({"lever_m": 1.0, "stated_rigid": False}, log)[0], 1e-20)
+        self.assertAlmostEqual(of_scale({"lever_m": 1.0, "stated_rigid": True}, log)[0], np.var(0.1 * turn))
+
+    def test_an_effect_of_the_size_found_has_the_share_asked(self):
+        case = Case("cogging", 8209000, "moderate", "lugre")
+        case.size *= 3.0
+        for _ in range(4):
+            case.prepare()
+            case.motion = tuple(column[8000:20000] for column in case.motion)
+            logs, q = simulate([case])
+            if case.measured(shares([case], logs, q)[0]):
+                break
+        self.assertAlmostEqual(case.share, SHARES["moderate"], delta=0.03)
+        again = shares([case], logs, q)[0]
+        self.assertEqual(case.share, again)
+
+    def test_a_size_beyond_what_a_machine_can_have_is_none(self):
+        case, limits = Case("asymmetric_coulomb", 8201000, "moderate", "lugre"), Limits()
+        hidden("asymmetric_coulomb", dict(case.axis), 1e4, np.random.default_rng(1), limits)
+        self.assertTrue(limits.beyond)
+        case.size = 1e4
+        self.assertFalse(case.measured(1e-8))
+        self.assertEqual(case.why_not, "beyond what a machine can have")
 
 
 if __name__ == "__main__":

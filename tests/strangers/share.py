@@ -7,6 +7,7 @@ import numpy as np
 
 from draw_axis import STATED, TICK_S, TURN
 from friction_laws import LAWS
+from needed_torque import NUDGE
 
 BAND_HZ = 100.0
 # Standard deviations that a refit may move a number: 95 % of what is stated.
@@ -15,12 +16,22 @@ AT_SCALE = ("backlash", "compliance")
 FRICTION = ("Fc", "Fs", "vs", "sigma0", "sigma1", "sigma2")
 
 
-def spectrum(x, band_Hz=BAND_HZ):
-    """Of one signal a column, scaled so that the squares add up to the mean square."""
-    n = len(x)
-    amplitudes = np.fft.rfft(x, axis=0)[: int(band_Hz * n * TICK_S) + 1] * (np.sqrt(2.0) / n)
-    amplitudes[0] /= np.sqrt(2.0)
-    return amplitudes
+def spectrum(x):
+    """Up to the band, one signal a column."""
+    return np.fft.rfft(x, axis=0)[: int(BAND_HZ * len(x) * TICK_S) + 1]
+
+
+def in_band(amplitudes, rows, kept):
+    """Back to time at the rate that the band needs, without what is not to count; a row of it is one of noise that is white in the band."""
+    n = 2 * (len(amplitudes) - 1)
+    out = np.fft.irfft(amplitudes, n, axis=0) * (n / rows)
+    return out[kept[(np.arange(n) * rows) // n]]
+
+
+def foreseen(axis, log):
+    """Rows where the twins of the model agree to ten nudges, with half a second about the others left out."""
+    parted = np.abs(log["parted"]) > 10.0 * NUDGE * axis["Fc"]
+    return np.convolve(parted, np.ones(1001), "same") < 0.5
 
 
 def dynamic_stiffness(axis, f):
@@ -62,26 +73,25 @@ def sensitivities(axis, log, friction):
     return np.column_stack(out + [moved * (passed if axis["friction_on_load"] else np.ones_like(passed))[:, None]])
 
 
-def left_after_refit(effect, columns, noise_square, rows):
+def left_after_refit(effect, columns, noise_square):
     """Mean square that is left of it once every number has moved as the fit wants, by no more than is stated."""
-    gram, on = (columns.conj().T @ columns).real, (columns.conj().T @ effect).real
-    # A row of the log in the band is worth so much against a deviation.
-    prior = noise_square / (2.0 * BAND_HZ * TICK_S * rows)
+    gram, on = columns.T @ columns, columns.T @ effect
     moved = np.zeros(len(on))
     for _ in range(300):
         for i in range(len(on)):
-            step = (on[i] - gram[i] @ moved - prior * moved[i]) / (gram[i, i] + prior)
+            step = (on[i] - gram[i] @ moved - noise_square * moved[i]) / (gram[i, i] + noise_square)
             moved[i] = np.clip(moved[i] + step, -WITHIN, WITHIN)
-    return float(np.sum(np.abs(effect - columns @ moved) ** 2))
+    return float(np.mean((effect - columns @ moved) ** 2))
 
 
 def of_torque(axis, log, noise, friction):
     """Mean squares of what the effect leaves, and of the noise: of the torque, and what the encoder's steps look like."""
-    effect = spectrum(log["unexplained_torque"])
-    f = np.arange(len(effect)) / (len(noise) * TICK_S)
+    rows, kept = len(noise), foreseen(axis, log)
+    f = np.arange(int(BAND_HZ * rows * TICK_S) + 1) / (rows * TICK_S)
     steps = dynamic_stiffness(axis, f)[0] * spectrum(log["q"] - log["true_q"])
-    noise_square = float(np.sum(np.abs(spectrum(noise)) ** 2 + np.abs(steps) ** 2))
-    return left_after_refit(effect, sensitivities(axis, log, friction), noise_square, len(noise)), noise_square
+    noise_square = float(np.mean(in_band(spectrum(noise) - steps, rows, kept) ** 2))
+    columns = in_band(sensitivities(axis, log, friction), rows, kept)
+    return left_after_refit(in_band(spectrum(log["unexplained_torque"] * kept), rows, kept), columns, noise_square), noise_square
 
 
 def of_scale(axis, log):

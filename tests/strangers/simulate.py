@@ -8,7 +8,7 @@ import numpy as np
 from draw_axis import TICK_S, TURN
 from fast_steps import FastSteps, compiled
 from friction_laws import LAWS
-from needed_torque import NeededTorque
+from needed_torque import NeededTorque, nudged
 from tune_loop import loop_band
 
 SUB = 10
@@ -92,7 +92,8 @@ class Batch:
         self.x[:, 0] = self.x[:, 2] = self.target[0]
         self.acceleration, self.temperature = np.zeros(self.n), np.full(self.n, 21.0)
         self.make_mechanics()
-        self.model = NeededTorque(numbers(models), law, STEP_S, self.x[:, 0]) if models else None
+        model = numbers(models) if models else None
+        self.model, self.twin = (NeededTorque(m, law, STEP_S, self.x[:, 0]) if models else None for m in (model, models and nudged(model)))
         self.function = compiled() if fast else None
 
     def make_mechanics(self):
@@ -176,14 +177,15 @@ class Batch:
 
     def look(self, command):
         q, w = self.x[:, 0], self.x[:, 1]
-        self.model.step(command, self.reading(q), self.reading_speed(q, w))
+        for model in (self.model, self.twin):
+            model.step(command, self.reading(q), self.reading_speed(q, w))
 
     def run(self):
         a, e = self.a, self.e
         noise, self.everyone = coloured(self.ticks, a), np.arange(self.n)
         late, stated_late = self.late(a["delay_s"] + e["more_delay_s"]), self.late(a["delay_s"])
         fast = FastSteps(self, self.function, STEP_S) if self.function else None
-        shown = ("q", "table", "temperature") + (("true_q", "true_table", "unexplained_torque", "unexplained_table") if self.model else ())
+        shown = ("q", "table", "temperature") + (("true_q", "true_table", "unexplained_torque", "unexplained_table", "parted") if self.model else ())
         commands, out = np.zeros((self.ticks + 8, self.n)), {k: np.zeros((self.ticks, self.n)) for k in shown}
         count = TURN / a["counts"]
         controller, wander = Controller({**a, "damping": self.d}), np.zeros(self.n)
@@ -224,7 +226,8 @@ class Batch:
                 if self.model:
                     self.look(stated[j])
             if self.model:
-                out["unexplained_torque"][k] = self.model.taken(SUB) + noise[k]
+                left = self.model.taken(SUB)
+                out["unexplained_torque"][k], out["parted"][k] = left + noise[k], left - self.twin.taken(SUB)
             self.acceleration = 0.5 * self.acceleration + 0.5 * (self.x[:, 3] - before) / TICK_S
             warm = 25.0 * self.heat / (a["Fc"] * a["fast_rad_s"]) - (self.temperature - 21.0)
             self.temperature = self.temperature + warm * TICK_S / 12.0

@@ -11,7 +11,7 @@ from simulate import Batch, coloured, numbers
 SHARES = {"clear": 0.55, "moderate": 0.13, "barely": 0.02}
 # Before they were measured: what makes such shares of a torque that nothing in the model stands for. Where a search begins.
 NOMINAL = {"clear": 1.0, "moderate": 0.35, "barely": 0.13}
-OF_TORQUE_CONSTANT = {"clear": 1.0, "moderate": 0.6, "barely": 0.36}
+OTHERWISE = {"torque_constant": {"clear": 1.0, "moderate": 0.6, "barely": 0.36}, "input_delay": {"moderate": 1.0 / 3.0, "barely": 1.0 / 3.0}}
 # Of effect to noise, as a factor.
 NEAR_ENOUGH = 1.3
 TURNS = 4
@@ -23,7 +23,7 @@ class Case:
     def __init__(self, kind, seed, strength, law):
         self.kind, self.seed, self.strength, self.law = kind, seed, strength, law
         self.tried, self.share, self.why_not = [], None, None
-        self.size = (OF_TORQUE_CONSTANT if kind == "torque_constant" else NOMINAL)[strength]
+        self.size = {**NOMINAL, **OTHERWISE.get(kind, {})}[strength]
         self.prepare()
 
     def prepare(self):
