@@ -11,7 +11,7 @@ from effects import HIDE, NEEDS, Limits, hidden
 from motion import Motion, stroke
 from share import foreseen, left_after_refit, of_scale
 from simulate import STEP_S, Batch
-from sizing import SHARES, Case, shares, simulate
+from sizing import SHARES, TURNS, Case, shares, simulate
 from write_case import model_text, write_case
 
 
@@ -160,9 +160,9 @@ class Strangers(unittest.TestCase):
 
     def test_a_stated_coupling_takes_wind_up(self):
         turn = np.random.default_rng(2).normal(size=1000)
-        log = {"true_q": np.zeros(1000), "unexplained_table": 0.1 * turn, "true_table": 1.1 * turn, "table": 1.1 * turn}
-        self.assertLess(of_scale({"lever_m": 1.0, "stated_rigid": False}, log)[0], 1e-20)
-        self.assertAlmostEqual(of_scale({"lever_m": 1.0, "stated_rigid": True}, log)[0], np.var(0.1 * turn))
+        log = {"true_q": np.zeros(1000), "unexplained_table": 0.1 * turn, "true_table": 1.1 * turn, "table": 1.1 * turn, "parted": np.zeros(1000)}
+        self.assertLess(of_scale({"lever_m": 1.0, "Fc": 1.0, "stated_rigid": False}, log)[0], 1e-20)
+        self.assertAlmostEqual(of_scale({"lever_m": 1.0, "Fc": 1.0, "stated_rigid": True}, log)[0], np.var(0.1 * turn))
 
     def test_an_effect_of_the_size_found_has_the_share_asked(self):
         case = Case("cogging", 8209000, "moderate", "lugre")
@@ -176,6 +176,15 @@ class Strangers(unittest.TestCase):
         self.assertAlmostEqual(case.share, SHARES["moderate"], delta=0.03)
         again = shares([case], logs, q)[0]
         self.assertEqual(case.share, again)
+
+    def test_between_a_size_too_small_and_one_too_large_it_is_found(self):
+        # What a refit takes up to a size leaves nothing, and all of a sudden much.
+        case, share = Case("stribeck", 8204000, "moderate", "lugre"), 0.9
+        for _ in range(TURNS):
+            if case.measured(share):
+                break
+            share = max(1e-9, 1.0 - 0.25 / case.size)
+        self.assertAlmostEqual(case.share, SHARES["moderate"], delta=0.03)
 
     def test_a_size_beyond_what_a_machine_can_have_is_none(self):
         case, limits = Case("asymmetric_coulomb", 8201000, "moderate", "lugre"), Limits()

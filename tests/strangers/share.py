@@ -1,4 +1,4 @@
-"""The strength of what is hidden: the share of the residual's variance that it leaves after the model was refitted within what is stated of it.
+"""The strength of what is hidden: the share of the residual's variance that it leaves after a refit within what is stated of the model.
 
 Of the torque residual from 0 to 100 Hz; of the scale's residual where the scale is what tells (pitch error; with a scale, backlash and
 compliance); of the variance of the second difference of the angle for jitter.
@@ -96,11 +96,12 @@ def of_torque(axis, log, noise, friction):
 
 def of_scale(axis, log):
     """A model's zero is its own; a coupling that is stated may be as much stiffer or softer as that is stated."""
-    effect = log["unexplained_table"] - log["unexplained_table"].mean()
-    wound_up = log["true_table"] - log["unexplained_table"] - axis["lever_m"] * log["true_q"]
+    kept = foreseen(axis, log)
+    effect = log["unexplained_table"][kept] - log["unexplained_table"][kept].mean()
+    wound_up = (log["true_table"] - log["unexplained_table"] - axis["lever_m"] * log["true_q"])[kept]
     column = (0.0 if axis["stated_rigid"] else STATED["stiffness"]) * (wound_up - wound_up.mean())
     moved = np.clip(column @ effect / max(column @ column, 1e-300), -WITHIN, WITHIN)
-    return float(np.mean((effect - moved * column) ** 2)), float(np.var(log["table"] - log["true_table"]))
+    return float(np.mean((effect - moved * column) ** 2)), float(np.var((log["table"] - log["true_table"])[kept]))
 
 
 def of_second_difference(axis, log, noise, jitter_s):

@@ -185,7 +185,8 @@ class Batch:
         noise, self.everyone = coloured(self.ticks, a), np.arange(self.n)
         late, stated_late = self.late(a["delay_s"] + e["more_delay_s"]), self.late(a["delay_s"])
         fast = FastSteps(self, self.function, STEP_S) if self.function else None
-        shown = ("q", "table", "temperature") + (("true_q", "true_table", "unexplained_torque", "unexplained_table", "parted") if self.model else ())
+        of_model = ("true_q", "true_table", "unexplained_torque", "unexplained_table", "parted") if self.model else ()
+        shown = ("q", "table", "temperature") + of_model
         commands, out = np.zeros((self.ticks + 8, self.n)), {k: np.zeros((self.ticks, self.n)) for k in shown}
         count = TURN / a["counts"]
         controller, wander = Controller({**a, "damping": self.d}), np.zeros(self.n)

@@ -11,12 +11,15 @@ from simulate import Batch, coloured, numbers
 SHARES = {"clear": 0.55, "moderate": 0.13, "barely": 0.02}
 # Before they were measured: what makes such shares of a torque that nothing in the model stands for. Where a search begins.
 NOMINAL = {"clear": 1.0, "moderate": 0.35, "barely": 0.13}
-OTHERWISE = {"torque_constant": {"clear": 1.0, "moderate": 0.6, "barely": 0.36}, "input_delay": {"moderate": 1.0 / 3.0, "barely": 1.0 / 3.0}}
+OTHERWISE = {"torque_constant": {"clear": 1.0, "moderate": 0.6, "barely": 0.36},
+             "input_delay": {"moderate": 1.0 / 3.0, "barely": 1.0 / 3.0}}
 # Of effect to noise, as a factor.
 NEAR_ENOUGH = 1.3
-TURNS = 4
+TURNS = 7
 # Nobody can tell: shared/DIAGNOSIS.md, "Undecidable".
 LEAST_PITCH_UM = 0.1
+# An axis stated as rigid has a mode of its own; a softer one is to be a third below it.
+SOFTER = (2.0 / 3.0) ** 2
 
 
 class Case:
@@ -41,23 +44,33 @@ class Case:
     def name(self):
         return f"{'clean' if self.kind == 'clean' else self.strength + '_' + self.kind}_{self.law}_{self.seed}"
 
+    def next_size(self):
+        """The logarithm of it: between one that is too small and one that is too large, else along the last two."""
+        low = max((t for t in self.tried if t[1] < 0.0), default=None)
+        high = min((t for t in self.tried if t[1] > 0.0), default=None)
+        if low and high and low[0] < high[0]:
+            return low[0] + (high[0] - low[0]) * np.clip(low[1] / (low[1] - high[1]), 0.25, 0.75)
+        (b, y), rise = self.tried[-1], 2.0
+        if len(self.tried) > 1 and self.tried[-2][0] != b:
+            a, x = self.tried[-2]
+            rise = np.clip((y - x) / (b - a), 0.7, 5.0)
+        return b + np.clip(-y / rise, -4.0, 2.5)
+
     def measured(self, share):
         """Whether it is as strong as it is to be; else its size is another one, or `why_not` says why there is none."""
         self.share = share
         asked, ratio = (np.log(s / (1.0 - s)) for s in (SHARES[self.strength], max(share, 1e-9)))
         if self.kind == "torque_constant" or abs(ratio - asked) < np.log(NEAR_ENOUGH):
             return True
-        self.tried.append((np.log(self.size), ratio))
-        rise = 2.0
-        if len(self.tried) > 1:
-            (a, x), (b, y) = self.tried[-2:]
-            rise = np.clip((y - x) / (b - a) if b != a else 2.0, 0.7, 5.0)
-        self.size *= float(np.exp(np.clip((asked - ratio) / rise, -4.0, 2.5)))
+        self.tried.append((float(np.log(self.size)), float(ratio - asked)))
+        self.size = float(np.exp(self.next_size()))
         within = self.prepare()
         if not within:
             self.why_not = "beyond what a machine can have"
         elif self.kind == "pitch_error" and self.effect["pitch"] * 1e6 < LEAST_PITCH_UM:
             self.why_not = "nobody can tell"
+        elif self.kind == "compliance" and self.axis["stiffness"] > SOFTER * self.model["stiffness"]:
+            self.why_not = "no softer than the axis is anyway"
         return False
 
 
