@@ -160,7 +160,8 @@ class Strangers(unittest.TestCase):
 
     def test_a_stated_coupling_takes_wind_up(self):
         turn = np.random.default_rng(2).normal(size=1000)
-        log = {"true_q": np.zeros(1000), "unexplained_table": 0.1 * turn, "true_table": 1.1 * turn, "table": 1.1 * turn, "parted": np.zeros(1000)}
+        log = {"true_q": np.zeros(1000), "unexplained_table": 0.1 * turn, "true_table": 1.1 * turn, "table": 1.1 * turn,
+               "parted": np.zeros(1000)}
         self.assertLess(of_scale({"lever_m": 1.0, "Fc": 1.0, "stated_rigid": False}, log)[0], 1e-20)
         self.assertAlmostEqual(of_scale({"lever_m": 1.0, "Fc": 1.0, "stated_rigid": True}, log)[0], np.var(0.1 * turn))
 
