@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/program/spool.h"
+
 namespace contour {
 namespace {
 
@@ -122,10 +124,16 @@ bool PathFeeder::PlanStep() {
 bool PathFeeder::Feed() {
   const std::scoped_lock lock(planning_);
   if (!path_) return false;
-  const bool more = FeedNow();
-  const PathWalk::Estimate duration = path_->ProgramDuration();
-  duration_s_ = duration.duration_s;
-  duration_exact_ = duration.exact;
+  bool more = true;
+  try {
+    more = FeedNow();
+    const PathWalk::Estimate duration = path_->ProgramDuration();
+    duration_s_ = duration.duration_s;
+    duration_exact_ = duration.exact;
+  } catch (const SpoolError&) {
+    // The disk has lost what comes next. The cycle stops on the path when it has no more points.
+    return true;
+  }
   waits_for_plan_ = path_->waits_for_plan();
   if (more) time_share_ = path_->TimeShare();
   return more;

@@ -305,10 +305,13 @@ LearningReport Supervisor::Learn(const ProgramUpload& upload, const Placement& p
                                  PathGenerator& generator) {
   if (upload.forget) parts_.learning.Forget();
   // A program that has to go to its zero first is another one than the same program that stands there.
-  std::string text = upload.text;
-  // In whole hundredths of a millimetre: two passes do not end at the same bit.
-  for (std::size_t i = 0; i < place.zero_m.size(); ++i)
-    text += '\n' + std::to_string(std::lround(1e5 * (place.start_m[i] - place.zero_m[i])));
+  const auto text = [&] {
+    std::string said = upload.text;
+    // In whole hundredths of a millimetre: two passes do not end at the same bit.
+    for (std::size_t i = 0; i < place.zero_m.size(); ++i)
+      said += '\n' + std::to_string(std::lround(1e5 * (place.start_m[i] - place.zero_m[i])));
+    return said;
+  };
   const LearningReport report =
       parts_.learning.Prepare(text, place.zero_m, program_id_, generator).value_or(LearningReport());
   if (!report.refused.empty()) spdlog::warn("the last pass taught nothing: {}", report.refused);

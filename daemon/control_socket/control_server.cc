@@ -308,8 +308,7 @@ void ControlServer::OnPiece(Client& client, std::string_view line) {
   const std::optional<UploadPiece> piece = PieceIn(line);
   if (!piece) return Send(client, Refuse(line, "a piece of a program has \"text\", a string"));
   if (piece->first || client.program == nullptr) client.program = std::make_shared<UploadedText>(uploads_);
-  if (client.program->Append(piece->text))
-    return Send(client, AcceptPiece(line, client.program->text().size()));
+  if (client.program->Append(piece->text)) return Send(client, AcceptPiece(line, client.program->bytes()));
   client.program.reset();
   Send(client, Refuse(line, "there is no room: all programs that are being sent have " +
                                 std::to_string(uploads_->max_bytes()) + " bytes at most together"));

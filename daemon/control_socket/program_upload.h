@@ -30,7 +30,7 @@ class UploadBudget {
 class UploadedText {
  public:
   explicit UploadedText(std::shared_ptr<UploadBudget> budget) : budget_(std::move(budget)) {}
-  ~UploadedText() { budget_->GiveBack(text_.size()); }
+  ~UploadedText() { budget_->GiveBack(bytes_); }
   UploadedText(const UploadedText&) = delete;
   UploadedText& operator=(const UploadedText&) = delete;
 
@@ -38,13 +38,17 @@ class UploadedText {
   bool Append(std::string_view piece) {
     if (!budget_->Take(piece.size())) return false;
     text_ += piece;
+    bytes_ += piece.size();
     return true;
   }
-  [[nodiscard]] const std::string& text() const noexcept { return text_; }
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+  /// The text itself, which stays in the budget for as long as this lives.
+  [[nodiscard]] std::string Take() noexcept { return std::move(text_); }
 
  private:
   std::shared_ptr<UploadBudget> budget_;
   std::string text_;
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace contour

@@ -51,14 +51,13 @@ json Reply(const Answer& answer) {
   return reply;
 }
 
-json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwanted,
-         const std::string* uploaded) {
+json Run(const json& request, OperatorDesk& desk, const std::stop_token& unwanted, std::string* uploaded) {
   ProgramUpload upload;
   upload.name = Text(request, "name");
   upload.format = Text(request, "format");
   if (request.contains("uploaded") && Flag(request, "uploaded")) {
     if (uploaded == nullptr) throw BadRequest("\"uploaded\" is true and nothing has been uploaded");
-    upload.text = *uploaded;
+    upload.text = std::move(*uploaded);
   } else {
     upload.text = Text(request, "text");
   }
@@ -117,7 +116,7 @@ json Watch(const json& request, Subscriptions& subscriptions) {
 }
 
 json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions,
-              const std::stop_token& unwanted, const std::string* uploaded) {
+              const std::stop_token& unwanted, std::string* uploaded) {
   const std::string kind = Text(request, "request");
   if (kind == "status") return {{"ok", true}, {"status", ToJson(desk.Status())}};
   if (kind == "machine_file") return {{"ok", true}, {"yaml", desk.MachineFile()}};
@@ -181,7 +180,7 @@ json WithId(json reply, const json& request) {
 }
 
 json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions,
-                   const std::stop_token& unwanted, const std::string* uploaded) {
+                   const std::stop_token& unwanted, std::string* uploaded) {
   if (TooDeep(line)) return Refusal("a request has " + std::to_string(kDeepest) + " levels at most");
   const json request = json::parse(line, nullptr, false);
   if (request.is_discarded()) return Refusal("this line is not JSON");
@@ -239,7 +238,7 @@ std::optional<UploadPiece> PieceIn(std::string_view line) noexcept {
 }
 
 nlohmann::json Handle(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions,
-                      const std::stop_token& unwanted, const std::string* uploaded) noexcept {
+                      const std::stop_token& unwanted, std::string* uploaded) noexcept {
   try {
     return HandleOrThrow(line, desk, subscriptions, unwanted, uploaded);
   } catch (const std::exception& e) {

@@ -40,9 +40,9 @@ std::optional<UploadPiece> PieceIn(std::string_view line) noexcept;
 
 /// One line from a client in, the answer out. Whatever the line holds, the answer is a JSON object with "ok",
 /// and with "error" when that is false; nothing is thrown. docs/operating.md describes the requests.
-/// `uploaded`: the program that came in pieces, for a run that says so.
+/// `uploaded`: the program that came in pieces, for a run that says so, which takes it.
 nlohmann::json Handle(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions,
-                      const std::stop_token& unwanted = {}, const std::string* uploaded = nullptr) noexcept;
+                      const std::stop_token& unwanted = {}, std::string* uploaded = nullptr) noexcept;
 
 /// The answer that refuses a line, and one that accepts it with a key more.
 nlohmann::json Refuse(std::string_view line, const std::string& why) noexcept;

@@ -70,8 +70,9 @@ void RequestWorker::Work() {
       unwanted_ = std::stop_source();
       unwanted = unwanted_.get_token();
     }
-    const std::string* program = request.program ? &request.program->text() : nullptr;
-    const nlohmann::json reply = Handle(request.line, desk_, none, unwanted, program);
+    std::string program = request.program ? request.program->Take() : std::string();
+    const nlohmann::json reply =
+        Handle(request.line, desk_, none, unwanted, request.program ? &program : nullptr);
     request.program.reset();
     done_(request.client, reply);
   }

@@ -23,8 +23,8 @@ class RequestWorker {
   struct Request {
     std::uint64_t client = 0;
     std::string line;
-    bool leads_to_motion = false;                   ///< a stop makes it void
-    std::shared_ptr<const UploadedText> program{};  ///< of a run whose program came in pieces
+    bool leads_to_motion = false;             ///< a stop makes it void
+    std::shared_ptr<UploadedText> program{};  ///< of a run whose program came in pieces
   };
   /// Called with the number that the request came with, in the worker's thread or that of StopCame().
   using Done = std::function<void(std::uint64_t client, const nlohmann::json& reply)>;

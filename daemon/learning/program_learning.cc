@@ -29,7 +29,7 @@ ProgramLearning::ProgramLearning(const MachineConfig& machine)
   }
 }
 
-std::optional<LearningReport> ProgramLearning::Prepare(const std::string& text,
+std::optional<LearningReport> ProgramLearning::Prepare(const std::function<std::string()>& text,
                                                        const PerAxis<double>& start_m,
                                                        std::uint32_t program_id, PathGenerator& generator) {
   if (!config_.enabled) return std::nullopt;
@@ -47,7 +47,7 @@ std::optional<LearningReport> ProgramLearning::Prepare(const std::string& text,
   const std::string refused = last && last->over ? LearnFrom(last->measured) : std::string();
   // Of a long program no more is planned than tells that it is long.
   if (generator.plan()->GoesOnAfter(config_.longest_s)) return std::nullopt;
-  Entry& entry = Find(text, start_m, generator);
+  Entry& entry = Find(text(), start_m, generator);
   generator.Shift(entry.learnt.next());
   const auto points = static_cast<std::size_t>(generator.points());
   Pass next{program_id, MeasuredPass(mechanics_, points, period_s_), false};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -34,11 +35,12 @@ class ProgramLearning {
  public:
   explicit ProgramLearning(const MachineConfig& machine);
 
-  /// A program is about to be handed out: shifted by what its last pass taught. `text` tells programs apart.
-  /// The arithmetic of a pass is done here. One thread at a time, and not the cycle's; gives what there is to
-  /// say of the passes so far.
-  std::optional<LearningReport> Prepare(const std::string& text, const PerAxis<double>& start_m,
-                                        std::uint32_t program_id, PathGenerator& generator);
+  /// A program is about to be handed out: shifted by what its last pass taught. `text` tells programs apart;
+  /// it is asked for where something may be learnt. The arithmetic of a pass is done here. One thread at a
+  /// time, and not the cycle's; gives what there is to say of the passes so far.
+  std::optional<LearningReport> Prepare(const std::function<std::string()>& text,
+                                        const PerAxis<double>& start_m, std::uint32_t program_id,
+                                        PathGenerator& generator);
   /// Every cycle, in order; any thread but the cycle's.
   void Consume(const CycleRecord& record);
   /// Any thread.

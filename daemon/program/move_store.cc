@@ -8,23 +8,15 @@ namespace {
 // So many of the newest modes are looked through; a program changes between few.
 constexpr std::size_t kModesAgo = 8;
 
-template <class T>
-std::size_t BytesOf(const std::vector<T>& v) {
-  return v.capacity() * sizeof(T);
-}
-
 }  // namespace
-
-void MoveStore::Reserve(std::size_t moves) {
-  ends_m_.reserve(moves * start_m_.size());
-  records_.reserve(moves);
-}
 
 std::uint32_t MoveStore::ModeOf(const Mode& mode) {
   const std::size_t oldest = modes_.size() - std::min(modes_.size(), kModesAgo);
-  for (std::size_t i = modes_.size(); i-- > oldest;)
-    if (modes_[i].feed_m_s == mode.feed_m_s && modes_[i].tolerance_m == mode.tolerance_m)
+  for (std::size_t i = modes_.size(); i-- > oldest;) {
+    const Mode before = modes_[i];
+    if (before.feed_m_s == mode.feed_m_s && before.tolerance_m == mode.tolerance_m)
       return static_cast<std::uint32_t>(i);
+  }
   modes_.push_back(mode);
   return static_cast<std::uint32_t>(modes_.size() - 1);
 }
@@ -39,31 +31,34 @@ void MoveStore::Add(const ProgrammedMove& move, const PerAxis<double>& end_m) {
     record.arc = static_cast<std::uint32_t>(arcs_.size());
   }
   records_.push_back(record);
-  ends_m_.insert(ends_m_.end(), end_m.begin(), end_m.end());
+  ends_m_.Append(end_m.data(), end_m.size() * sizeof(double));
 }
 
 PerAxis<double> MoveStore::Begin(std::size_t i) const {
   if (i == 0) return start_m_;
   PerAxis<double> at_m(start_m_.size());
-  const auto from = ends_m_.begin() + static_cast<std::ptrdiff_t>((i - 1) * start_m_.size());
-  std::copy_n(from, start_m_.size(), at_m.begin());
+  const std::size_t bytes = at_m.size() * sizeof(double);
+  ends_m_.Read((i - 1) * bytes, at_m.data(), bytes);
   return at_m;
 }
 
-CurvePiece MoveStore::Curve(std::size_t i) const {
-  const std::uint32_t arc = records_[i].arc;
-  if (arc == 0) return LinePiece(Begin(i), Begin(i + 1));
-  const Arc& a = arcs_[arc - 1];
+CurvePiece MoveStore::Curve(std::size_t i) const { return CurveOf(i, records_[i]); }
+
+CurvePiece MoveStore::CurveOf(std::size_t i, const Record& record) const {
+  if (record.arc == 0) return LinePiece(Begin(i), Begin(i + 1));
+  const Arc a = arcs_[record.arc - 1];
   return HelixPiece(Begin(i), Begin(i + 1), {a.plane[0], a.plane[1]}, a.centre_m, a.sweep_rad);
 }
 
 ProgrammedMove MoveStore::Move(std::size_t i) const {
-  const Mode& mode = modes_[records_[i].mode];
-  return {Curve(i), mode.feed_m_s, mode.tolerance_m, records_[i].line};
+  const Record record = records_[i];
+  const Mode mode = modes_[record.mode];
+  return {CurveOf(i, record), mode.feed_m_s, mode.tolerance_m, record.line};
 }
 
-std::size_t MoveStore::bytes() const {
-  return BytesOf(ends_m_) + BytesOf(records_) + BytesOf(modes_) + BytesOf(arcs_);
+std::size_t MoveStore::bytes_in_memory() const {
+  return ends_m_.bytes_in_memory() + records_.bytes_in_memory() + modes_.bytes_in_memory() +
+         arcs_.bytes_in_memory();
 }
 
 }  // namespace contour

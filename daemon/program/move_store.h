@@ -3,19 +3,19 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "daemon/program/programmed_path.h"
+#include "daemon/program/spooled_list.h"
 
 namespace contour {
 
-/// All moves of a program, one after the other, in few bytes: 8 for each axis and 12, and 40 more for an arc.
+/// All moves of a program, one after the other, in few bytes: 8 for each axis and 12, and 40 more for an arc;
+/// of a long program a window of them is in memory (Spool).
 /// They become curves again when they are asked for, the same ones every time.
 class MoveStore {
  public:
   explicit MoveStore(const PerAxis<double>& start_m) : start_m_(start_m) {}
 
-  void Reserve(std::size_t moves);
   /// `move` begins where the last one ended, and ends at `end_m` but for rounding.
   void Add(const ProgrammedMove& move, const PerAxis<double>& end_m);
 
@@ -27,7 +27,7 @@ class MoveStore {
   [[nodiscard]] CurvePiece Curve(std::size_t i) const;
   [[nodiscard]] ProgrammedMove Move(std::size_t i) const;
 
-  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] std::size_t bytes_in_memory() const;
 
  private:
   /// What moves next to each other often have in common.
@@ -46,12 +46,13 @@ class MoveStore {
     std::uint32_t arc = 0;  ///< counted from 1; 0: it is straight
   };
   [[nodiscard]] std::uint32_t ModeOf(const Mode& mode);
+  [[nodiscard]] CurvePiece CurveOf(std::size_t i, const Record& record) const;
 
   PerAxis<double> start_m_;
-  std::vector<double> ends_m_;  ///< of every move on every axis
-  std::vector<Record> records_;
-  std::vector<Mode> modes_;
-  std::vector<Arc> arcs_;
+  Spool ends_m_;  ///< of every move on every axis
+  SpooledList<Record> records_;
+  SpooledList<Mode> modes_;
+  SpooledList<Arc> arcs_;
 };
 
 }  // namespace contour

@@ -275,7 +275,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     const std::string where = place.program.name + ":" + std::to_string(program.letter_lines[k]);
     axis.push_back(Find(place, std::string(1, static_cast<char>(program.letters[k] - 'A' + 'a')), where));
   }
-  StretchProgram stretches(place.start_m, place.limits, program.moves.size());
+  StretchProgram stretches(place.start_m, place.limits);
   double longest_s = 0.0;
   PerAxis<double> zero_m = place.start_m;
   for (std::size_t k = 0; k < axis.size(); ++k) zero_m[axis[k]] -= program.start_m[k];
@@ -286,8 +286,8 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     while (passed < halts.size() && halts[passed].before_move <= move) ++passed;
     return passed;
   };
-  for (std::size_t i = 0; i < program.moves.size(); ++i) {
-    const GcodeMove& move = program.moves[i];
+  for (auto next = program.moves.begin(); next != program.moves.end(); ++next) {
+    const GcodeMove& move = *next;
     PerAxis<double> target = at;
     for (std::size_t k = 0; k < axis.size(); ++k) target[axis[k]] = zero_m[axis[k]] + move.target_m[k];
     PieceRequest request;
@@ -295,7 +295,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     request.speed_m_s = move.kind == GcodeMove::Kind::kRapid ? 0.0 : move.feed_m_s;
     request.dwell_s = move.dwell_s;
     request.line = move.line;
-    request.halts = halts_before(i);
+    request.halts = halts_before(next.index());
     request.corner = move.corner;
     request.tolerance_m =
         move.corner == GcodeMove::Corner::kBlended ? move.tolerance_m : PathTolerance_m(place.limits);

@@ -1,8 +1,10 @@
 #include "daemon/program/program.h"
 
 #include <algorithm>
+#include <array>
+#include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <system_error>
 
 #include "config/yaml_reader.h"
 #include "daemon/program/gcode_parser.h"
@@ -242,11 +244,17 @@ ProgramFormat FormatOf(const std::filesystem::path& file) {
 
 std::string ReadProgramText(const std::filesystem::path& file) {
   std::ifstream in(file);
-  std::stringstream text;
-  if (std::filesystem::is_directory(file) || !in || !(text << in.rdbuf())) {
-    throw ProgramError(file.string() + ": cannot be read");
-  }
-  return text.str();
+  if (std::filesystem::is_directory(file) || !in) throw ProgramError(file.string() + ": cannot be read");
+  std::string text;
+  std::error_code no_size;  // of a pipe
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file, no_size); !no_size) text.reserve(bytes);
+  std::array<char, 65536> block{};
+  do {
+    in.read(block.data(), block.size());
+    text.append(block.data(), static_cast<std::size_t>(in.gcount()));
+  } while (in);
+  if (in.bad()) throw ProgramError(file.string() + ": cannot be read");
+  return text;
 }
 
 Program LoadProgram(const std::filesystem::path& file) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/visit.h"
+#include "daemon/program/gcode/move_tape.h"
 
 // The shapes a program can have. The names in the Visit methods are the YAML keys; docs/programs.md describes
 // them for users.
@@ -273,30 +274,6 @@ struct TogetherShape {
   std::vector<Program> parts;
 };
 
-/// One move of a G-code program, in metres from program zero. It carries all that it needs: whoever begins in
-/// the middle of a program needs the end of the move before and nothing else.
-struct GcodeMove {
-  enum class Kind { kRapid, kLine, kArc, kDwell };
-  enum class Corner {
-    kContinuous,  ///< G64: full feed
-    kExactPath,   ///< G61: stops where the direction changes
-    kExactStop,   ///< G61.1: stops at the end of the move
-    kBlended,     ///< G64 P: the next move begins before this one has ended, within a tolerance
-  };
-  Kind kind = Kind::kLine;
-  Corner corner = Corner::kContinuous;         ///< what happens at the end of the move
-  bool in_sub = false;                         ///< its line is in a sub, and may be run more than once
-  std::array<std::uint8_t, 2> plane = {0, 1};  ///< arc: indices into GcodeMoves::letters
-  int line = 0;                                ///< of the source text
-  std::array<double, 6> target_m{};            ///< per letter of GcodeMoves::letters
-  std::array<double, 2> centre_m = {0, 0};     ///< arc: in its plane; other axes move along evenly
-  double sweep_rad =
-      0.0;  ///< arc: positive from the first axis of the plane to the second; a full circle is 2 pi
-  double feed_m_s = 0.0;  ///< line, arc: speed along the path, of all axes
-  double dwell_s = 0.0;
-  double tolerance_m = 0.0;  ///< kBlended: largest distance from the programmed path
-};
-
 /// What a program asks for besides motion: M0 and M1 (hold), M3 to M9, S and T.
 struct GcodeEvent {
   std::size_t before_move = 0;  ///< index of the move that it precedes
@@ -314,7 +291,7 @@ struct GcodeMoves {
   std::vector<int> letter_lines;  ///< where each of them is used first
   std::array<double, 6>
       start_m{};  ///< per letter: where the machine stands when it starts, from program zero
-  std::vector<GcodeMove> moves;
+  MoveTape moves;
   std::vector<GcodeEvent> events;  ///< in their order; the move before a hold ends in a stop
 };
 

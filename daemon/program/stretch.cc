@@ -52,12 +52,12 @@ std::size_t LastSettledKnot(const ProgrammedPath& path, const SmoothFit& fit, st
 }  // namespace
 
 Stretch::Stretch(std::shared_ptr<const StretchProgram> program, std::size_t part)
-    : program_(std::move(program)), part_(part) {
-  front_ = std::make_shared<const Front>(Front{{}, 0.0, this->part().first, 0.0, {}});
+    : program_(std::move(program)), part_(program_->parts()[part]) {
+  front_ = std::make_shared<const Front>(Front{{}, 0.0, part_.first, 0.0, {}});
 }
 
 void Stretch::TakeMoves(Front& front, std::size_t count) const {
-  for (std::size_t i = 0; i < count && front.next < part().end; ++i) {
+  for (std::size_t i = 0; i < count && front.next < part_.end; ++i) {
     ProgrammedMove move = program_->moves().Move(front.next);
     const double length_m = move.curve.length_m, from_m = front.next_from_m;
     const double part_m = length_m * kAtOnce_rad / std::abs(move.curve.sweep_rad);
@@ -78,7 +78,7 @@ void Stretch::Extend() {
     const SmoothFit fit = SmoothPathThrough(path, front.fixed);
     const std::size_t first = front.fixed.settled;
     const std::vector<double>& knots = fit.path.knots_m();
-    if (front.next == part().end) {
+    if (front.next == part_.end) {
       AddSection(path, fit.path, first, knots.size() - 4);
       front_ = nullptr;
       return;
@@ -154,11 +154,11 @@ std::vector<double> Stretch::Jumps_m(double from_m, double to_m) const {
 }
 
 PerAxis<double> Stretch::EndTangent() const {
-  const CurvePiece last = program_->moves().Curve(part().end - 1);
+  const CurvePiece last = program_->moves().Curve(part_.end - 1);
   return PointAt(last, last.length_m).tangent;
 }
 
-double Stretch::EndFeed_m_s() const { return program_->moves().Move(part().end - 1).feed_m_s; }
+double Stretch::EndFeed_m_s() const { return program_->moves().Move(part_.end - 1).feed_m_s; }
 
 std::size_t Stretch::moves_kept() const {
   std::size_t moves = front_ ? front_->moves.size() : 0;

@@ -21,7 +21,7 @@ class Stretch {
 
   [[nodiscard]] const PerAxis<PlanLimits>& limits() const { return program_->limits(); }
   /// Of all of it.
-  [[nodiscard]] double length_m() const { return part().length_m; }
+  [[nodiscard]] double length_m() const { return part_.length_m; }
   /// The path is known from here, up to here.
   [[nodiscard]] double known_from_m() const { return sections_.empty() ? 0.0 : sections_.front()->from_m; }
   [[nodiscard]] double known_to_m() const { return sections_.empty() ? 0.0 : sections_.back()->to_m; }
@@ -66,14 +66,13 @@ class Stretch {
     double next_from_m = 0.0;           ///< from here on, where a part of that arc has come already
     FixedKnots fixed;
   };
-  [[nodiscard]] const StretchProgram::Part& part() const { return program_->parts()[part_]; }
   void TakeMoves(Front& front, std::size_t count) const;
   [[nodiscard]] const Section& SectionAt(double way_m) const;
   [[nodiscard]] const Words& WordsAt(double way_m) const;
   void AddSection(const ProgrammedPath& path, const SmoothPath& smooth, std::size_t first, std::size_t last);
 
   std::shared_ptr<const StretchProgram> program_;
-  std::size_t part_;
+  StretchProgram::Part part_;
   std::deque<std::shared_ptr<const Section>> sections_;
   std::shared_ptr<const Front> front_;  ///< null: all is fitted
 };

@@ -36,12 +36,8 @@ double Deviation_m(const PieceRequest& request, const PerAxis<PlanLimits>& limit
 
 }  // namespace
 
-StretchProgram::StretchProgram(const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits,
-                               std::size_t moves)
-    : limits_(WithJerk(limits)), stated_(limits), moves_(start_m), box_{start_m, start_m} {
-  moves_.Reserve(moves);
-  marks_.reserve(moves / kMark + 1);
-}
+StretchProgram::StretchProgram(const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits)
+    : limits_(WithJerk(limits)), stated_(limits), moves_(start_m), box_{start_m, start_m} {}
 
 bool StretchProgram::StopsBefore(const PieceRequest& request) const {
   if (last_.curve.length_m == 0.0 || last_.dwell_s > 0.0 || last_.halts != request.halts ||
@@ -93,10 +89,15 @@ double StretchProgram::nominal_s() const {
 double StretchProgram::Nominal_s(const Part& part, double way_m) const {
   if (way_m >= part.length_m) return part.begin_s + part.moves_s;
   const std::size_t first = (part.first + kMark - 1) / kMark, end = (part.end + kMark - 1) / kMark;
-  const auto at = [&](std::size_t mark) { return marks_.begin() + static_cast<std::ptrdiff_t>(mark); };
-  const auto after = std::upper_bound(at(first), at(std::max(first, end)), way_m,
-                                      [](double m, const Mark& mark) { return m < mark.since_m; });
-  const auto mark = static_cast<std::size_t>(after - marks_.begin());
+  // The first mark behind that way.
+  std::size_t mark = first;
+  for (std::size_t not_yet = std::max(first, end); mark < not_yet;) {
+    const std::size_t middle = mark + (not_yet - mark) / 2;
+    if (way_m < marks_[middle].since_m)
+      not_yet = middle;
+    else
+      mark = middle + 1;
+  }
   Mark now = mark > first ? marks_[mark - 1] : Mark{};
   for (std::size_t i = mark > first ? (mark - 1) * kMark : part.first; i < part.end; ++i) {
     const ProgrammedMove move = moves_.Move(i);
@@ -109,8 +110,8 @@ double StretchProgram::Nominal_s(const Part& part, double way_m) const {
   return part.begin_s + part.moves_s;
 }
 
-std::size_t StretchProgram::bytes() const {
-  return moves_.bytes() + parts_.capacity() * sizeof(Part) + marks_.capacity() * sizeof(Mark);
+std::size_t StretchProgram::bytes_in_memory() const {
+  return moves_.bytes_in_memory() + parts_.bytes_in_memory() + marks_.bytes_in_memory();
 }
 
 }  // namespace contour

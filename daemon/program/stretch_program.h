@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "daemon/program/move_store.h"
 #include "daemon/program/piecewise_plan.h"
@@ -9,7 +8,8 @@
 namespace contour {
 
 /// A program of straight moves and arcs, divided into parts that are driven without a stop. All that is kept
-/// of it: what moves take in a MoveStore, a quarter of a byte each for times, 64 bytes a stop.
+/// of it: what moves take in a MoveStore, a quarter of a byte each for times, 56 bytes a stop; of a long
+/// program a window of that in memory.
 class StretchProgram {
  public:
   struct Part {
@@ -22,14 +22,14 @@ class StretchProgram {
     double moves_s = 0.0;
   };
 
-  /// Feeds are as fast as the axes follow. `moves`: about so many are to come.
-  StretchProgram(const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits, std::size_t moves = 0);
+  /// Feeds are as fast as the axes follow.
+  StretchProgram(const PerAxis<double>& start_m, const PerAxis<PlanLimits>& limits);
 
   /// Checks the way of the move against the axes' ranges. Throws ProgramError. It begins where the last one
   /// ended; `end_m` is where it ends.
   void Add(const PieceRequest& request, const PerAxis<double>& end_m);
 
-  [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
+  [[nodiscard]] const SpooledList<Part>& parts() const { return parts_; }
   [[nodiscard]] const MoveStore& moves() const { return moves_; }
   [[nodiscard]] const PerAxis<double>& start_m() const { return moves_.start_m(); }
   /// With a jerk above 0.
@@ -42,7 +42,7 @@ class StretchProgram {
   [[nodiscard]] double nominal_s() const;
   [[nodiscard]] double Nominal_s(const Part& part, double way_m) const;
 
-  [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] std::size_t bytes_in_memory() const;
 
  private:
   void AddDwell(const PieceRequest& request);
@@ -52,7 +52,7 @@ class StretchProgram {
   PerAxis<PlanLimits> limits_;  ///< with jerk
   PerAxis<PlanLimits> stated_;
   MoveStore moves_;
-  std::vector<Part> parts_;
+  SpooledList<Part> parts_;
   Extent box_;
   PieceRequest last_;  ///< of the newest move; without length: there is none to go on from
   /// Before every so many moves, since the begin of their part.
@@ -60,7 +60,7 @@ class StretchProgram {
     double since_s = 0.0;
     double since_m = 0.0;
   };
-  std::vector<Mark> marks_;
+  SpooledList<Mark> marks_;
 };
 
 }  // namespace contour

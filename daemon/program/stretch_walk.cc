@@ -34,19 +34,18 @@ StretchWalk::StretchWalk(const StretchWalk& other)
       rests_from_s_(other.rests_from_s_),
       changed_from_s_(other.changed_from_s_) {
   for (const Leg& l : other.legs_)
-    legs_.push_back({l.part, l.from_m, l.scale, l.begin_s, l.changed,
+    legs_.push_back({l.part, l.of, l.from_m, l.scale, l.begin_s, l.changed,
                      l.law ? std::make_unique<TimeLaw>(*l.law) : nullptr});
   if (other.own_) own_ = std::make_unique<StretchWalk>(*other.own_);
 }
 
 void StretchWalk::Append(std::size_t part, double from_m, double begin_s) {
-  legs_.push_back({part, from_m, scale_, begin_s, false, nullptr});
+  legs_.push_back({part, program_->parts()[part], from_m, scale_, begin_s, false, nullptr});
 }
 
 TimeLaw* StretchWalk::LawOf(std::size_t leg) {
   Leg& l = legs_[leg];
-  const StretchProgram::Part& part = program_->parts()[l.part];
-  if (part.first == part.end) return nullptr;
+  if (l.of.first == l.of.end) return nullptr;
   if (!l.law) {
     l.law = std::make_unique<TimeLaw>(StretchOf(l), l.from_m, l.scale);
     held_.push_back(leg);
@@ -105,11 +104,10 @@ PathWalk::Estimate StretchWalk::ProgramDuration() {
   if (own_) return own_->ProgramDuration();
   if (complete_) return {end_s_, true};
   const Leg& last = legs_.back();
-  const StretchProgram::Part& part = program_->parts()[last.part];
   const double planned = planned_s();
   // As far as it is planned, it has taken so much longer than feeds and lengths alone say.
   const double way_m = last.law ? last.law->planned_way_m() : 0.0;
-  const double nominal_s = program_->Nominal_s(part, way_m);
+  const double nominal_s = program_->Nominal_s(last.of, way_m);
   const double longer = planned > 0.0 && nominal_s > 0.0 ? planned / nominal_s : 1.0;
   return {planned + longer * (program_->nominal_s() - nominal_s), false};
 }
@@ -133,7 +131,7 @@ void StretchWalk::Extend(double time_s) {
     const double moved_s = leg.begin_s + (law != nullptr ? law->duration_s() : 0.0);
     const bool on_the_way = law != nullptr && law->stops_on_the_way();
     const bool ends = !on_the_way && leg.part + 1 == program_->parts().size();
-    const double dwelt_s = moved_s + (on_the_way ? 0.0 : program_->parts()[leg.part].dwell_s);
+    const double dwelt_s = moved_s + (on_the_way ? 0.0 : leg.of.dwell_s);
     if (ends) {
       complete_ = true;
       end_s_ = dwelt_s;
@@ -165,7 +163,7 @@ void StretchWalk::At(double time_s, PerAxis<ReferencePoint>& axes) {
   axes.resize(program_->start_m().size());
   std::fill(axes.begin(), axes.end(), ReferencePoint{});
   if (law == nullptr) {
-    const PerAxis<double> at_m = StartOf(program_->parts()[legs_[leg].part]);
+    const PerAxis<double> at_m = StartOf(legs_[leg].of);
     for (std::size_t i = 0; i < axes.size(); ++i) axes[i].position_m = at_m[i];
     return;
   }
@@ -212,7 +210,7 @@ double StretchWalk::ChangeFeed(double time_s, double scale) {
 
 std::uint32_t StretchWalk::Halts(double time_s) {
   Extend(time_s);
-  return program_->parts()[legs_[LegAt(time_s)].part].halts;
+  return legs_[LegAt(time_s)].of.halts;
 }
 
 int StretchWalk::Line(double time_s) {
@@ -249,7 +247,7 @@ double StretchWalk::ProgramTime_s(double time_s) {
   const double moved_s = law != nullptr ? law->planned_s() : 0.0;
   // A dwell takes the time that it takes.
   const double dwelt_s = law != nullptr && law->stops_on_the_way() ? 0.0 : std::max(0.0, since_s - moved_s);
-  return moves_s + std::min(dwelt_s, program_->parts()[part].dwell_s);
+  return moves_s + std::min(dwelt_s, legs_[leg].of.dwell_s);
 }
 
 StretchWalk::Kept StretchWalk::kept() const {

@@ -46,6 +46,7 @@ class StretchWalk : public PathWalk {
  private:
   struct Leg {
     std::size_t part = 0;
+    StretchProgram::Part of{};
     double from_m = 0.0;
     double scale = 1.0;
     double begin_s = 0.0;

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The memory of a running contourd (emulated machine, lock-step) does not grow with the length of its program.
+"""The memory of a running contourd (emulated machine, lock-step) grows neither with the length of its program nor with its lines.
 
     memory_through_daemon.py CONTOURD CONTOUR MACHINE_FILE
 
 A subroutine of 400 chords, run a thousand times, and an arc of hundreds of turns. Resident memory is read when the flight record and
-everything else that has a window is full, and at the end.
+everything else that has a window is full, and at the end. Then spirals of few and of many lines, each at the same time of its motion.
 """
 import json
 import math
@@ -21,6 +21,8 @@ FULL_S = 300        # of the program: all windows are full
 ROUNDS = 1000       # 1257 s
 TURNS = 900         # 1131 s
 MAY_GROW_KB = 2048  # what a heap that is cut up by many threads still moves
+FEW, MANY = 100_000, 800_000  # lines
+AT_S = 20           # of the program: it is read, its text is given up
 
 
 def programs():
@@ -36,7 +38,17 @@ def resident_kb(pid):
     raise AssertionError("no VmRSS")
 
 
-def grown_kb(contourd, contour, machine_file, scratch, text):
+def spiral(lines):
+    text, angle = ["G21 G90 F3000\n"], 0.0
+    for _ in range(lines):
+        radius = 1 + 0.2 * angle / (2 * math.pi)
+        angle += 0.025 / radius
+        text.append(f"G1 X{radius * math.cos(angle) - 1:.4f} Y{radius * math.sin(angle):.4f}\n")
+    return "".join(text) + "M2\n"
+
+
+def grown_kb(contourd, contour, machine_file, scratch, text, at_s=None):
+    """Since FULL_S, at most; or, with `at_s`, the resident memory then."""
     socket = str(scratch / "control.sock")
     with open(scratch / "daemon.txt", "w", encoding="utf-8") as messages:
         daemon = subprocess.Popen([contourd, "--config", machine_file, "--clock", "lockstep", "--socket", socket, "--set", "io={}",
@@ -61,6 +73,12 @@ def grown_kb(contourd, contour, machine_file, scratch, text):
         subprocess.run([contour, "enable", "--socket", socket], check=True, capture_output=True)
         (scratch / "program.ngc").write_text(text, encoding="ascii")
         run = subprocess.Popen([contour, "run", str(scratch / "program.ngc"), "--socket", socket], stdout=subprocess.DEVNULL)
+        if at_s is not None:
+            wait(lambda s: s["state"] == "Running" and s["program"]["time_s"] > at_s)
+            resident = resident_kb(daemon.pid)
+            subprocess.run([contour, "stop", "--socket", socket], check=True, capture_output=True)
+            run.wait()
+            return resident
         full = wait(lambda s: s["state"] == "Running" and s["program"]["time_s"] > FULL_S)
         assert full["program"]["left_s"] > FULL_S, "it is longer than what fills the windows"
         before, largest = resident_kb(daemon.pid), 0
@@ -82,6 +100,12 @@ def main():
             grown = grown_kb(contourd, contour, machine_file, Path(folder), text)
         print(f"{name}: {grown} kB more than after {FULL_S} s of the program")
         worst = max(worst, grown)
+    resident = {}
+    for lines in (FEW, MANY):
+        with tempfile.TemporaryDirectory() as folder:
+            resident[lines] = grown_kb(contourd, contour, machine_file, Path(folder), spiral(lines), AT_S)
+        print(f"{lines} lines: {resident[lines]} kB {AT_S} s after the begin")
+    worst = max(worst, resident[MANY] - resident[FEW])
     return 0 if worst <= MAY_GROW_KB else 1
 
 

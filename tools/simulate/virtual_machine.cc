@@ -155,7 +155,7 @@ std::uint32_t VirtualMachine::Start(const Program& program, double feed) {
   plan_ = PlanPlaced(program, place, limits);
   auto generator =
       std::make_unique<PathGenerator>(plan_, limits, static_cast<double>(period_ns_) * 1e-9, ++program_id_);
-  learning_.Prepare(program.name, place.start_m, program_id_, *generator);
+  learning_.Prepare([&] { return program.name; }, place.start_m, program_id_, *generator);
   feeder_.Begin(std::move(generator), {feed, false, false});
   return mailbox_.Post(RequestKind::kRun, program_id_);
 }

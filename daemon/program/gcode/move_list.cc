@@ -7,7 +7,7 @@
 namespace contour {
 namespace {
 
-// Memory stays bounded: a move takes a little over 120 bytes.
+// A loop that does not end is refused before it has filled a disk.
 constexpr std::size_t kMostMoves = 4'000'000;
 // Radii differ by no more than rounding.
 constexpr double kSameRadius_m = 1e-10;
@@ -192,7 +192,7 @@ void MoveList::AddPart(const CanonicalMove& canonical, const PlanePoint& centre_
 
 /// Coordinates of the letters in use side by side.
 void MoveList::Pack() {
-  std::array<std::uint8_t, kGcodeAxisCount> place{};
+  MoveTape::Places place{};
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k) {
     if (used_[k] == 0) continue;
     place[k] = static_cast<std::uint8_t>(list_.letters.size());
@@ -201,14 +201,8 @@ void MoveList::Pack() {
   }
   list_.start_m = {};
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
-    if (used_[k] != 0) list_.start_m[place[k]] = start_m_[k];
-  for (GcodeMove& move : list_.moves) {
-    const AxisValues all = move.target_m;
-    move.target_m = {};
-    for (std::size_t k = 0; k < kGcodeAxisCount; ++k)
-      if (used_[k] != 0) move.target_m[place[k]] = all[k];
-    if (move.kind == GcodeMove::Kind::kArc) move.plane = {place[move.plane[0]], place[move.plane[1]]};
-  }
+    if (place[k]) list_.start_m[*place[k]] = start_m_[k];
+  list_.moves.Arrange(place);
 }
 
 GcodeMoves MoveList::Finish() {

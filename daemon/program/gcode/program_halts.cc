@@ -20,8 +20,7 @@ void UseEvents(GcodeMoves& program, const std::string& name, const EventUse& use
       if (event.code == 6) event.value = tool;
     }
     event.acts = event.waits || switches;
-    if (event.acts && event.before_move > 0)
-      program.moves[event.before_move - 1].corner = GcodeMove::Corner::kExactStop;
+    if (event.acts && event.before_move > 0) program.moves.StopAfter(event.before_move - 1);
   }
 }
 

@@ -13,6 +13,8 @@ constexpr std::size_t kDeepestCalls = 10;
 // A program that runs through so many lines more than it has does not end.
 constexpr std::int64_t kMostLines = 5'000'000;
 constexpr double kMostRepeats = 1e9;
+/// Lines from one whose place is kept to the next.
+constexpr std::size_t kMark = 256;
 
 bool IsFrame(std::string_view line) {
   const std::size_t at = line.find_first_not_of(" \t\r");
@@ -36,9 +38,19 @@ ProgramRun::ProgramRun(std::string_view text, const std::string& name, const Gco
   FindOWords();
 }
 
-std::string_view ProgramRun::Line(std::size_t index) const {
-  const std::string_view line = source_.substr(begins_[index], begins_[index + 1] - begins_[index]);
-  return line.ends_with('\n') ? line.substr(0, line.size() - 1) : line;
+std::size_t ProgramRun::BeginOf(std::size_t index) {
+  const std::size_t mark = index - index % kMark;
+  if (index < found_line_ || mark > found_line_) {
+    found_line_ = mark;
+    found_at_ = marks_[mark / kMark];
+  }
+  for (; found_line_ < index; ++found_line_) found_at_ = source_.find('\n', found_at_) + 1;
+  return found_at_;
+}
+
+std::string_view ProgramRun::Line(std::size_t index) {
+  const std::size_t begin = BeginOf(index);
+  return source_.substr(begin, std::min(source_.find('\n', begin), end_) - begin);
 }
 
 /// Where lines begin, up to the end of the text or of its frame of percent signs.
@@ -53,20 +65,21 @@ void ProgramRun::FindLines() {
       closed_ = true;
       break;
     }
-    begins_.push_back(at);
+    if (lines_ % kMark == 0) marks_.push_back(at);
+    ++lines_;
     if (!begun && !IsEmpty(text)) {
       begun = true;
       framed_ = IsFrame(text);
-      first_ = framed_ ? begins_.size() : 0;
+      first_ = framed_ ? lines_ : 0;
     }
     at = end;
   }
-  begins_.push_back(at);
+  end_ = at;
 }
 
 void ProgramRun::FindOWords() {
   std::vector<OWord> words;
-  for (std::size_t i = first_; i + 1 < begins_.size(); ++i) {
+  for (std::size_t i = first_; i < lines_; ++i) {
     if (!BeginsWithO(Line(i))) continue;
     try {
       text_.Assign(Line(i), static_cast<int>(i) + 1);
@@ -84,11 +97,10 @@ void ProgramRun::FindOWords() {
 }
 
 void ProgramRun::Run() {
-  const std::size_t lines = begins_.size() - 1;
   std::int64_t done = 0;
-  for (std::size_t at = first_; at < lines && !interpreter_.ended();) {
+  for (std::size_t at = first_; at < lines_ && !interpreter_.ended();) {
     text_.Assign(Line(at), static_cast<int>(at) + 1);
-    if (++done > kMostLines + static_cast<std::int64_t>(lines))
+    if (++done > kMostLines + static_cast<std::int64_t>(lines_))
       text_.Fail("the program runs through more lines than it may: does it end?");
     if (TakeBlockDelete(text_) && settings_.block_delete) {
       ++at;
@@ -112,7 +124,7 @@ void ProgramRun::Run() {
   }
   if (framed_ && !closed_ && !interpreter_.ended()) {
     Refuse(
-        {&name_, static_cast<int>(lines), 1},
+        {&name_, static_cast<int>(lines_), 1},
         "the file begins with a percent sign and has neither another nor M2 or M30 at its end: is it whole?");
   }
 }

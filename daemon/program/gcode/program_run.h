@@ -30,7 +30,9 @@ class ProgramRun {
 
   void FindLines();
   void FindOWords();
-  [[nodiscard]] std::string_view Line(std::size_t index) const;
+  /// Looked for from the nearest mark, or from the line that was asked for last.
+  [[nodiscard]] std::size_t BeginOf(std::size_t index);
+  [[nodiscard]] std::string_view Line(std::size_t index);
   [[nodiscard]] std::size_t Flow(std::size_t at);
   [[nodiscard]] std::size_t Call(const OWord& word, std::size_t at);
   [[nodiscard]] std::size_t LeaveSub();
@@ -44,8 +46,11 @@ class ProgramRun {
   std::string_view source_;
   const std::string& name_;
   const GcodeSettings& settings_;
-  std::vector<std::size_t> begins_;  ///< of lines, and the end of the text
-  bool framed_ = false;              ///< by lines of a percent sign
+  std::vector<std::size_t> marks_;  ///< where every so many lines begin
+  std::size_t lines_ = 0;
+  std::size_t end_ = 0;                        ///< of the text that is read
+  std::size_t found_line_ = 0, found_at_ = 0;  ///< the line that was asked for last, and where it begins
+  bool framed_ = false;                        ///< by lines of a percent sign
   bool closed_ = false;
   std::size_t first_ = 0;
   OWords o_words_;

@@ -32,7 +32,7 @@ class OnALine {
                                 PerAxis<double> start_m = Point(0.0, 0.0)) {
     PathGenerator generator(testing::Yaml("{shape: line, dx_mm: 20, dy_mm: 0, feed_mm_min: 3000}"), start_m,
                             testing::TableLimits(), kPeriod_s, ++id_);
-    report = learning.Prepare(text, start_m, id_, generator);
+    report = learning.Prepare([&] { return text; }, start_m, id_, generator);
     return test::PointsOf(generator);
   }
   void Run(const std::vector<PathPoint>& told, std::size_t rows, MachineState ends, Reason reason) {

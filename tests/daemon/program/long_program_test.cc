@@ -4,7 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "daemon/program/gcode_parser.h"
 #include "daemon/program/paced_path.h"
+#include "daemon/program/part_of_program.h"
 #include "daemon/program/stretch_plan.h"
 #include "tests/daemon/program/motion_seen.h"
 #include "tests/daemon/program/on_a_table.h"
@@ -102,17 +104,59 @@ TEST(LongProgram, HowFarAheadIsPlannedIsATimeWhateverTheCycle) {
     EXPECT_NEAR(PlannedFirst_s(period_s), usual_s, 0.3 * usual_s) << period_s;
 }
 
+std::string HalfCircles(int lines) {
+  std::string arcs = "F3000\n";
+  for (int k = 0; k < lines; ++k) arcs += k % 2 == 0 ? "G3 X0.1 I0.05\n" : "G2 X0 I-0.05\n";
+  return arcs;
+}
+
+std::size_t BytesKept(const std::string& text) {
+  const auto plan = testing::PlanOf(Gcode(text));
+  return dynamic_cast<const StretchPlan&>(*plan).program()->bytes_in_memory();
+}
+
 TEST(LongProgram, AFewBytesAreKeptForEachLine) {
   constexpr int kLines = 20000;
-  const auto plan = testing::PlanOf(Gcode(Turns(kLines)));
-  const auto& program = *dynamic_cast<const StretchPlan&>(*plan).program();
-  EXPECT_LT(static_cast<double>(program.bytes()) / kLines, 8.0 * 2 + 12 + 1);
-  std::string arcs = "F3000\n";
-  for (int k = 0; k < kLines; ++k) arcs += k % 2 == 0 ? "G3 X0.1 I0.05\n" : "G2 X0 I-0.05\n";
-  const auto arc_plan = testing::PlanOf(Gcode(arcs));
-  const auto& arc_program = *dynamic_cast<const StretchPlan&>(*arc_plan).program();
+  // Pages that are begun.
+  const double pages = 6.0 * Spool::kPageBytes;
+  EXPECT_LT(static_cast<double>(BytesKept(Turns(kLines))), kLines * (8.0 * 2 + 12 + 1) + pages);
   // They turn back each time, so that each of them is a stop.
-  EXPECT_LT(static_cast<double>(arc_program.bytes()) / kLines, 8.0 * 2 + 12 + 2 * 40 + 2 * 64 + 1);
+  EXPECT_LT(static_cast<double>(BytesKept(HalfCircles(kLines))), kLines * (8.0 * 2 + 12 + 40 + 64) + pages);
+}
+
+// While it is read and afterwards: what is more than a window is on disk.
+TEST(LongProgram, FiveTimesTheLinesNeedNoMoreMemory) {
+  const auto while_read = [](const std::string& text) {
+    return ParseGcode(text, "part.ngc").moves.bytes_in_memory();
+  };
+  constexpr std::size_t kFew = 80000, kMany = 400000;
+  // Times of every 64th line are still in memory: 16 bytes of each.
+  constexpr std::size_t kMore = (kMany - kFew) / 2;
+  for (const auto& program : {Turns, HalfCircles}) {
+    const std::string few = program(kFew), many = program(kMany);
+    EXPECT_LT(while_read(many), while_read(few) + kMore);
+    EXPECT_LT(BytesKept(many), BytesKept(few) + kMore);
+    EXPECT_LT(BytesKept(many), 6u << 20);
+  }
+}
+
+// The same motion whether a program is in memory or on disk, and beginning at a line of it.
+TEST(LongProgram, WhatIsOnDiskIsDrivenAsWhatIsInMemory) {
+  const std::string turns = Turns(100000);
+  const auto plan = testing::PlanOf(Gcode(turns));
+  const auto& moves = dynamic_cast<const StretchPlan&>(*plan).program()->moves();
+  const GcodeMoves read = ParseGcode(turns, "part.ngc");
+  const GcodeMoves later = FromLine(read, "part.ngc", {.from_line = 90000, .go_there = true});
+  ASSERT_EQ(moves.size(), read.moves.size());
+  std::size_t i = 0;
+  for (const GcodeMove& m : read.moves) {
+    const PerAxis<double> end_m = moves.Begin(++i);
+    for (std::size_t k = 0; k < 2; ++k) ASSERT_NEAR(end_m[k] - moves.start_m()[k], m.target_m[k], 1e-15);
+  }
+  const GcodeMove first = later.moves[1], last = later.moves[later.moves.size() - 1];
+  EXPECT_EQ(first.line, 90000);
+  EXPECT_EQ(later.moves.size(), read.moves.size() - 90000 + 3);
+  EXPECT_EQ(last.target_m, read.moves[read.moves.size() - 1].target_m);
 }
 
 // A program is the same curve again when it is asked for: moves come out of what is kept as they went in.

@@ -108,5 +108,13 @@ TEST(ProgramText, EveryExampleFitsTheTable) {
   EXPECT_GE(examples, 10);
 }
 
+TEST(ProgramText, AnEmptyFileIsReadAndDoesNotMove) {
+  const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "empty.ngc";
+  std::ofstream(file).close();
+  EXPECT_EQ(ReadProgramText(file), "");
+  EXPECT_EQ(ErrorOf([&] { static_cast<void>(LoadProgram(file)); }),
+            file.string() + ": the program does not move");
+}
+
 }  // namespace
 }  // namespace contour

@@ -85,7 +85,7 @@ int Run(char** arguments) {
   std::printf("{\"duration_s\":%.12g,\"stretches\":[\n", plan->duration_s());
   bool first = true;
   for (std::size_t i = 0; i < program->parts().size(); ++i) {
-    const StretchProgram::Part& part = program->parts()[i];
+    const StretchProgram::Part part = program->parts()[i];
     if (part.first == part.end) continue;
     std::printf("%s", first ? "" : ",\n");
     Print(*program, part, Stretch(program, i));
