@@ -242,18 +242,12 @@ void LookAgain(Identification& id, const std::vector<Measured>& records) {
   const FollowGain gain = FollowGainFor(axis, records.front());
   double offset_s = 0.0;
   for (const Measured& r : records) {
-    std::vector<double> friction(r.size(), 0.0), place(r.size(), 0.0);
-    Simulation simulation(axis, r, gain);
-    for (std::size_t k = 0; k + 1 < r.size(); ++k) {
-      simulation.Next();
-      friction[k + 1] = simulation.friction_N();
-      place[k + 1] = simulation.table_m();
-    }
+    const Simulated simulated = Simulate(axis, r, gain);
     const std::vector<Instant> instants = InstantsOf(r, axis, 1);
     for (const Instant& i : instants) {
       double mean = 0.0;
       for (std::size_t j = i.row - kHalfWidth; j <= i.row + kHalfWidth; ++j)
-        mean += friction[j] / (2 * kHalfWidth + 1);
+        mean += simulated.friction_N[j] / (2 * kHalfWidth + 1);
       if (i.row % 2 == 0)
         id.overlay.push_back({offset_s + i.time_s, i.position_m, i.velocity_m_s,
                               i.force_N + axis.offset - axis.mass_kg() * i.acceleration_m_s2, mean});
@@ -261,7 +255,7 @@ void LookAgain(Identification& id, const std::vector<Measured>& records) {
     const std::vector<LoopPoint> loops = PreslidingLoops(instants, axis, kLargestLoop_m);
     for (LoopPoint p : loops) {
       const auto row = static_cast<std::size_t>(std::lround(p.time_s / r.period_s));
-      id.loops_simulated.push_back({offset_s + p.time_s, place[row], friction[row]});
+      id.loops_simulated.push_back({offset_s + p.time_s, simulated.table_m[row], simulated.friction_N[row]});
       p.time_s += offset_s;
       id.loops.push_back(p);
     }

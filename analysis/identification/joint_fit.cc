@@ -6,6 +6,7 @@
 
 #include "analysis/identification/free_parameters.h"
 #include "analysis/identification/spread_groups.h"
+#include "analysis/parallel/parallel_for.h"
 #include "analysis/prediction_error/block_whitening.h"
 #include "analysis/prediction_error/marquardt_fit.h"
 
@@ -70,16 +71,15 @@ class Fit {
     axis.friction.Fs_minus = std::max(axis.friction.Fs_minus, axis.friction.Fc_minus);
     return axis;
   }
-  [[nodiscard]] VectorXd Raw(const VectorXd& x) const {
-    const TableAxis axis = At(x);
-    VectorXd all(static_cast<Eigen::Index>(size_));
-    Eigen::Index at = 0;
-    for (const Measured& r : records_) {
-      const std::vector<double> e = PredictionErrors_m(axis, r, gain_);
-      for (const double value : e) all(at++) = std::isfinite(value) ? value : 1.0;
-    }
-    return all;
+  /// The errors at each column of x. One that is no number is as good as a metre.
+  [[nodiscard]] MatrixXd Raws(const MatrixXd& x) const {
+    std::vector<Followed> axes;
+    for (Eigen::Index i = 0; i < x.cols(); ++i) axes.push_back({At(x.col(i)), gain_});
+    MatrixXd errors = PredictionErrors_m(axes, records_, options_.threads);
+    if (!errors.allFinite()) errors = errors.unaryExpr([](double e) { return std::isfinite(e) ? e : 1.0; });
+    return errors;
   }
+  [[nodiscard]] VectorXd Raw(const VectorXd& x) const { return Raws(x); }
   [[nodiscard]] diagnosis::LeastSquares WhiteErrors() const;
   VectorXd StepFrom(const VectorXd& x);
   [[nodiscard]] VectorXd Scatter(const MatrixXd& jacobian, const VectorXd& r, const MatrixXd& inverse) const;
@@ -103,6 +103,14 @@ diagnosis::LeastSquares Fit::WhiteErrors() const {
   diagnosis::LeastSquares p;
   const auto n = static_cast<Eigen::Index>(free_.size());
   p.residual = [this](const VectorXd& x) { return whitening_.Apply(Raw(x)); };
+  p.residuals = [this](const MatrixXd& x) {
+    MatrixXd errors = Raws(x);
+    ParallelFor(static_cast<std::size_t>(x.cols()), options_.threads, [&](std::size_t column) {
+      const auto i = static_cast<Eigen::Index>(column);
+      errors.col(i) = whitening_.Apply(errors.col(i));
+    });
+    return errors;
+  };
   p.threads = options_.threads;
   p.sigma.resize(n);
   p.step.resize(n);

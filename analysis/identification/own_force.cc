@@ -120,6 +120,11 @@ OwnForce OwnForceOf(const TableAxis& axis, const Measured& data) {
   return own;
 }
 
+bool SameOwnForce(const TableAxis& a, const TableAxis& b) {
+  return a.delay_s == b.delay_s && a.lag_s == b.lag_s && a.answer.gain == b.answer.gain &&
+         a.answer.delay_s == b.answer.delay_s && a.answer.step == b.answer.step;
+}
+
 double PartOfPeriod_N(double from_N, double to_N, double mean_N, double begin, double end) {
   // A parabola.
   const double bow_N = mean_N - 0.5 * (from_N + to_N);

@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "analysis/identification/simulation.h"
+#include "analysis/identification/measured.h"
+#include "analysis/identification/table_axis.h"
 
 namespace contour::identify {
 
@@ -18,6 +19,9 @@ struct OwnForce {
 /// `data` has reports (Measured::reported_N). The mean is that of a band-limited force through the reports,
 /// and what the drive answers to the offset's steps within a period (TableAxis::answer).
 OwnForce OwnForceOf(const TableAxis& axis, const Measured& data);
+
+/// Whether the drive's own force is the same for both axes, of the same record.
+bool SameOwnForce(const TableAxis& a, const TableAxis& b);
 
 /// Mean of a force over a share of the period, from its values at both ends of the period and its mean.
 double PartOfPeriod_N(double from_N, double to_N, double mean_N, double begin, double end);

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/parallel/parallel_for.h"
 #include "analysis/prediction_error/block_whitening.h"
 
 namespace contour::identify {
@@ -76,19 +77,25 @@ Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
   return s;
 }
 
-/// Log of the prediction error that is left when each error is foreseen from those before it.
+/// Log of the prediction error that is left when each error is foreseen from those before it, of each axis.
+std::vector<double> LogErrors(const std::vector<TableAxis>& axes, const std::vector<Measured>& segments,
+                              int threads) {
+  std::vector<Followed> followed;
+  followed.reserve(axes.size());
+  for (const TableAxis& axis : axes) followed.push_back({axis, FollowGainFor(axis, segments.front())});
+  const Eigen::MatrixXd errors = PredictionErrors_m(followed, segments, threads);
+  std::vector<double> logs(axes.size(), 1e300);
+  ParallelFor(axes.size(), threads, [&](std::size_t i) {
+    const auto column = errors.col(static_cast<Eigen::Index>(i));
+    if (!column.allFinite()) return;
+    diagnosis::BlockWhitening whitening;
+    whitening.Learn(column, static_cast<std::size_t>(column.size()), 12, 1e-12);
+    logs[i] = whitening.log_error();
+  });
+  return logs;
+}
 double LogError(const TableAxis& axis, const std::vector<Measured>& segments) {
-  const FollowGain gain = FollowGainFor(axis, segments.front());
-  std::vector<double> all;
-  for (const Measured& s : segments) {
-    const std::vector<double> e = PredictionErrors_m(axis, s, gain);
-    all.insert(all.end(), e.begin(), e.end());
-  }
-  const Eigen::Map<const Eigen::VectorXd> errors(all.data(), static_cast<Eigen::Index>(all.size()));
-  if (!errors.allFinite()) return 1e300;
-  diagnosis::BlockWhitening whitening;
-  whitening.Learn(errors, all.size(), 12, 1e-12);
-  return whitening.log_error();
+  return LogErrors({axis}, segments, 1).front();
 }
 
 FitOptions Options(bool screw, bool spread, int threads) {
@@ -184,12 +191,11 @@ Band GoodBand(const std::vector<ResponsePoint>& response) {
 }
 
 /// The best of each antiresonance, the best first.
-std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured>& segments,
-                              const Band& band) {
+std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured>& segments, const Band& band,
+                              int threads) {
   const double mass = start.mass_kg();
-  std::vector<std::pair<double, TableAxis>> starts;
+  std::vector<TableAxis> tried;
   for (double f = band.low_Hz; f < 1.5 * band.high_Hz; f *= kNextStart) {
-    std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
     for (const double share : kShares) {
       TableAxis a = start;
       a.load_inertia = share * mass;
@@ -197,10 +203,16 @@ std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured
       a.stiffness = a.load_inertia * std::pow(2.0 * std::numbers::pi * f, 2);
       // Damping ratio of the resonance: 0.03.
       a.damping = 0.06 * std::sqrt(a.stiffness * a.load_inertia * a.motor_inertia / mass);
-      const double e = LogError(a, segments);
-      if (e < best.first) best = {e, a};
+      tried.push_back(a);
     }
-    starts.push_back(best);
+  }
+  const std::vector<double> errors = LogErrors(tried, segments, threads);
+  std::vector<std::pair<double, TableAxis>> starts;
+  for (std::size_t i = 0; i < tried.size(); i += std::size(kShares)) {
+    std::size_t best = i;
+    for (std::size_t j = i; j < i + std::size(kShares); ++j)
+      if (errors[j] < errors[best]) best = j;
+    starts.emplace_back(errors[best], tried[best]);
   }
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<TableAxis> chosen;
@@ -218,7 +230,7 @@ std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured
 /// The two masses with a part of the table on a spring of its own, where that foresees better.
 void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& segments, const Band& band,
               int threads) {
-  std::vector<std::pair<double, TableAxis>> starts;
+  std::vector<TableAxis> tried;
   for (double f = band.low_Hz; f < band.high_Hz; f *= kNextSide) {
     for (const double share : kSideShares) {
       // Two masses alone have taken what swings off the table, and put it to the motor: the antiresonance
@@ -227,9 +239,12 @@ void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& s
       a.load_inertia /= 1.0 - share;
       a.motor_inertia = best.second.mass_kg() - a.load_inertia;
       a.side = {share, f, 0.02};
-      if (a.motor_inertia > 0.0) starts.emplace_back(LogError(a, segments), a);
+      if (a.motor_inertia > 0.0) tried.push_back(a);
     }
   }
+  const std::vector<double> errors = LogErrors(tried, segments, threads);
+  std::vector<std::pair<double, TableAxis>> starts;
+  for (std::size_t i = 0; i < tried.size(); ++i) starts.emplace_back(errors[i], tried[i]);
   std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   // The best of each neighbourhood.
   std::vector<TableAxis> chosen;
@@ -323,7 +338,7 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
   const TableAxis rigid = FitJointly(Rigid(start), segments, Options(false, false, threads)).axis;
   const double rigid_error = LogError(rigid, segments);
   std::pair<double, TableAxis> best{std::numeric_limits<double>::max(), start};
-  for (const TableAxis& from : Starts(start, segments, band)) {
+  for (const TableAxis& from : Starts(start, segments, band, threads)) {
     const auto found = FollowBasin(from, segments, threads);
     const bool same = std::fabs(found.first - best.first) < kFoundAgain;
     if (found.first < best.first) best = found;

@@ -37,16 +37,28 @@ void BlockWhitening::Learn(const Eigen::VectorXd& errors, std::size_t block, int
 
 Eigen::VectorXd BlockWhitening::Apply(const Eigen::VectorXd& errors) const {
   Eigen::VectorXd level(errors.size());
-  for (Eigen::Index i = 0; i < errors.size(); ++i)
-    level(i) = errors(i) * weight_[static_cast<std::size_t>(i) / block_];
+  const auto length = static_cast<Eigen::Index>(block_);
+  for (std::size_t b = 0; b < weight_.size(); ++b) {
+    const Eigen::Index from = static_cast<Eigen::Index>(b) * length;
+    const Eigen::Index rows = std::min(length, errors.size() - from);
+    level.segment(from, rows) = errors.segment(from, rows) * weight_[b];
+  }
   if (taps_.empty()) return level;
+  // Many rows at a time, which the vectors of the machine then take side by side.
+  constexpr Eigen::Index kRows = 1024;
   Eigen::VectorXd out(errors.size());
   const auto order = static_cast<Eigen::Index>(taps_.size()) - 1;
-  for (Eigen::Index i = 0; i < errors.size(); ++i) {
-    double left = level(i);
-    for (Eigen::Index j = 1; j <= std::min(order, i); ++j)
-      left += taps_[static_cast<std::size_t>(j)] * level(i - j);
-    out(i) = scale_ * left;
+  for (Eigen::Index from = 0; from < errors.size(); from += kRows) {
+    const Eigen::Index rows = std::min(kRows, errors.size() - from);
+    auto left = out.segment(from, rows);
+    left = level.segment(from, rows);
+    for (Eigen::Index j = 1; j <= order; ++j) {
+      const Eigen::Index first = std::max(from, j);
+      if (first < from + rows)
+        out.segment(first, from + rows - first) +=
+            taps_[static_cast<std::size_t>(j)] * level.segment(first - j, from + rows - first);
+    }
+    left *= scale_;
   }
   return out;
 }

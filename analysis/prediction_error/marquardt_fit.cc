@@ -27,6 +27,13 @@ Eigen::VectorXd DampedStep(const LeastSquares& problem, const Eigen::MatrixXd& n
 double LeastSquares::PriorAt(const Eigen::VectorXd& x) const { return x.cwiseQuotient(sigma).squaredNorm(); }
 
 Eigen::MatrixXd LeastSquares::Jacobian(const Eigen::VectorXd& x, const Eigen::VectorXd& at_x) const {
+  if (residuals) {
+    Eigen::MatrixXd moved = x.replicate(1, x.size());
+    moved.diagonal() += step;
+    Eigen::MatrixXd jacobian = residuals(moved);
+    for (Eigen::Index i = 0; i < x.size(); ++i) jacobian.col(i) = (jacobian.col(i) - at_x) / step(i);
+    return jacobian;
+  }
   Eigen::MatrixXd jacobian(at_x.size(), x.size());
   ParallelFor(static_cast<std::size_t>(x.size()), threads, [&](std::size_t column) {
     const auto i = static_cast<Eigen::Index>(column);

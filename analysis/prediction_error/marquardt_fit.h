@@ -10,6 +10,8 @@ namespace contour::diagnosis {
 struct LeastSquares {
   /// Of x; called from several threads at once.
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> residual;
+  /// The same of each column, where that is cheaper together. May be empty.
+  std::function<Eigen::MatrixXd(const Eigen::MatrixXd&)> residuals;
   Eigen::VectorXd sigma;    ///< of the priors, which are about 0
   Eigen::VectorXd step;     ///< of each parameter, for differences
   Eigen::VectorXd longest;  ///< move of each parameter in one step of the fit

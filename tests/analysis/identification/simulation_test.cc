@@ -114,6 +114,69 @@ TEST(SimulationTest, AFreeMassMovesAsByHand) {
   for (std::size_t k = 0; k < errors.size(); ++k) EXPECT_NEAR(errors[k], 0.0, 2e-8) << k;
 }
 
+/// The first seconds of Everything(), with a hole, and axes that differ in all that an axis may have.
+Measured ShortRecord() {
+  Measured d = Everything();
+  d.force_N.resize(4000);
+  d.position_m.resize(4000);
+  d.present.resize(4000);
+  for (std::size_t k = 1500; k < 1520; ++k) d.present[k] = 0;
+  return d;
+}
+std::vector<identify::Followed> ManyAxes(const Measured& record) {
+  const std::vector<std::function<void(TableAxis&)>> changes = {
+      [](TableAxis&) {},
+      [](TableAxis& a) { a.stiffness *= 1.1; },
+      [](TableAxis& a) { a.delay_s += 0.13e-3; },
+      [](TableAxis& a) { a.motor_friction_share = 0.3; },
+      [](TableAxis& a) {
+        a.side = {0.2, 180.0, 0.02};
+      },
+      [](TableAxis& a) {
+        a.cogging[0] = {12.0, 1.0, -2.0};
+      },
+      [](TableAxis& a) { a.friction_on_load = false; },
+      [](TableAxis& a) { a.friction.exponent = 2.0; },
+      [](TableAxis& a) {
+        a.variation.turn_plus = {0.1, 0.02, 0.03, 0.0};
+      },
+      [](TableAxis& a) { a.friction.s1 = 0.0; },
+      [](TableAxis& a) { a.friction.vs *= 1.3; },
+      [](TableAxis& a) { a.offset = 2.0; },
+  };
+  std::vector<identify::Followed> axes;
+  for (const auto& change : changes) {
+    TableAxis axis = Exactly(PlainAxis());
+    change(axis);
+    axes.push_back({axis, identify::FollowGainFor(axis, record)});
+  }
+  return axes;
+}
+
+TEST(SimulationTest, AnAxisIsTheSameWhateverRunsBesideIt) {
+  const Measured record = ShortRecord();
+  const auto axes = ManyAxes(record);
+  const Eigen::MatrixXd together = identify::PredictionErrors_m(axes, {record, record}, 2);
+  ASSERT_EQ(together.rows(), 8000);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const std::vector<double> alone = identify::PredictionErrors_m(axes[i].axis, record, axes[i].gain);
+    const auto column = together.col(static_cast<Eigen::Index>(i));
+    for (Eigen::Index k = 0; k < 4000; ++k) {
+      ASSERT_EQ(column(k), alone[static_cast<std::size_t>(k)]) << "axis " << i << " row " << k;
+      ASSERT_EQ(column(4000 + k), column(k)) << "axis " << i << " row " << k;
+    }
+  }
+}
+
+TEST(SimulationTest, WhatDivergesIsNoPerfectPrediction) {
+  const Measured record = ShortRecord();
+  TableAxis axis = Exactly(PlainAxis());
+  axis.damping = -1e6;
+  const std::vector<double> errors =
+      identify::PredictionErrors_m(axis, record, identify::FollowGainFor(Exactly(PlainAxis()), record));
+  EXPECT_FALSE(std::isfinite(errors.back()));
+}
+
 TEST(SimulationTest, LevelsVaryWithPlaceAndTurnAsStated) {
   TableAxis axis;
   axis.turn_m = 5e-3;
