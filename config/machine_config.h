@@ -23,6 +23,8 @@
 
 namespace contour {
 
+/// What machine.path_tolerance_mm is at least where the file states none.
+constexpr double kUsualPathTolerance_mm = 0.01;
 /// The most that machine.path_following_mm may be.
 constexpr double kMostPathFollowing_mm = 10.0;
 
@@ -31,8 +33,9 @@ struct MachineSection {
   std::string name;
   std::int32_t cycle_us = 1000;
   ControllerName controller = ControllerName::kFull;
-  double path_tolerance_mm = 0.01;
+  std::optional<double> path_tolerance_mm;
   std::optional<double> path_following_mm;
+  bool slow_for_tolerance = true;
   bool optional_stop = false;
   bool block_delete = true;
 
@@ -43,12 +46,16 @@ struct MachineSection {
     v.Optional("controller", controller, "controller used unless another is asked for");
     v.Optional("path_tolerance_mm", path_tolerance_mm, kPositive,
                "how far the table may leave the path of a program that does not say so itself: corners of "
-               "G-code with G0 and with G64 without P, of squares without corners");
+               "G-code with G0 and with G64 without P, of squares without corners; none: 0.01, or twice "
+               "path_following_mm where that is more");
     v.Optional(
         "path_following_mm", path_following_mm, Range{0.0, kMostPathFollowing_mm},
         "how far the table may be from the path that it is to follow, in corners and while friction is "
         "still being learnt: planned paths keep so much of the tolerance free, but half of it at most; "
         "none: what is expected of the axes' loops and screws, which `contour check` prints");
+    v.Optional("slow_for_tolerance", slow_for_tolerance,
+               "G-code whose tolerance leaves less for the machine than its screws are expected to be off by "
+               "under the axes' full acceleration has so much less of acceleration and jerk");
     v.Optional("optional_stop", optional_stop, "M1 of a program waits for the operator, as M0 does");
     v.Optional("block_delete", block_delete, "lines of G-code that begin with a slash are left out");
   }

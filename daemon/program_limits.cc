@@ -1,5 +1,8 @@
 #include "daemon/program_limits.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "config/loop_axis.h"
 
 namespace contour {
@@ -13,20 +16,47 @@ double PathFollowing_m(const MachineConfig& machine) {
   return WindUpUnderForceStep_m(machine);
 }
 
+/// By what is not known of the table's mass, the screw's stiffness and Coulomb friction, one standard
+/// deviation: what the screw gives under the rest.
+struct ScrewDoubt {
+  double inertia_s2 = 0.0;
+  double friction_m = 0.0;
+};
+
+ScrewDoubt DoubtOf(const AxisConfig& axis) {
+  const LoopAxis a = LoopAxisOf(axis);
+  const auto stated = axis.model.uncertainty.find("Fc_plus_N");
+  const double friction_std =
+      stated == axis.model.uncertainty.end() ? axis.loop_limits.uncertainty : stated->second;
+  const double coulomb_N = std::max(a.friction.Fc_plus_N, a.friction.Fc_minus_N);
+  return {a.axis.table_mass_kg / a.axis.stiffness_N_m * std::hypot(a.table_mass_std, a.stiffness_std),
+          coulomb_N / a.axis.stiffness_N_m * friction_std};
+}
+
+double PathTolerance_m(const MachineConfig& machine, double following_m) {
+  if (machine.machine.path_tolerance_mm) return *machine.machine.path_tolerance_mm * 1e-3;
+  return std::max(kUsualPathTolerance_mm * 1e-3, 2.0 * following_m);
+}
+
 }  // namespace
 
 PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
   PerAxis<PlanLimits> limits;
   // What is learnt may shift a program by so much.
   const double margin_m = machine.learning.enabled ? 1e-6 * machine.learning.largest_um : 0.0;
-  const double following_m = PathFollowing_m(machine);
+  const double following_m = PathFollowing_m(machine), tolerance_m = PathTolerance_m(machine, following_m);
   for (const auto& [name, axis] : machine.axes) {
     const AxisLimits& l = axis.limits;
     const Mechanics mechanics = ToSi(axis.model.mechanics);
     limits.push_back({name, l.position_mm[0] * 1e-3 + margin_m, l.position_mm[1] * 1e-3 - margin_m,
                       l.velocity_mm_s * 1e-3, l.acceleration_mm_s2 * 1e-3, l.jerk_mm_s3 * 1e-3, l.torque_Nm,
-                      l.following_error_mm * 1e-3, mechanics.radius_m_rad, mechanics.mass_kg,
-                      machine.machine.path_tolerance_mm * 1e-3, following_m});
+                      l.following_error_mm * 1e-3, mechanics.radius_m_rad, mechanics.mass_kg, tolerance_m,
+                      following_m});
+    // A loop on the scale sees the table itself.
+    if (!machine.machine.slow_for_tolerance || (axis.scale_loop && axis.drive.linear_scale)) continue;
+    const ScrewDoubt doubt = DoubtOf(axis);
+    limits.back().inertia_doubt_s2 = doubt.inertia_s2;
+    limits.back().friction_doubt_m = doubt.friction_m;
   }
   return limits;
 }

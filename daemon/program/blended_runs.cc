@@ -60,6 +60,17 @@ double BlendDeviation_m(double tolerance_m, const PerAxis<PlanLimits>& limits) {
   return std::max(tolerance_m - following_m, 0.5 * tolerance_m);
 }
 
+double FollowedShare(double tolerance_m, const PerAxis<PlanLimits>& limits) {
+  const double left_m = tolerance_m - BlendDeviation_m(tolerance_m, limits);
+  double share = 1.0;
+  for (const PlanLimits& l : limits) {
+    const double off_m = l.inertia_doubt_s2 * l.acceleration_m_s2;
+    const double may_be_m = std::max(left_m, l.friction_doubt_m);
+    if (off_m > may_be_m && may_be_m > 0.0) share = std::min(share, may_be_m / off_m);
+  }
+  return share;
+}
+
 PerAxis<PlanLimits> WithJerk(PerAxis<PlanLimits> limits) {
   for (PlanLimits& l : limits)
     if (!(l.jerk_m_s3 > 0.0)) l.jerk_m_s3 = l.acceleration_m_s2 / kJerkRise_s;

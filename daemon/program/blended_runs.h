@@ -20,6 +20,11 @@ struct BlendedJunction {
 /// that being generous costs little.
 double BlendDeviation_m(double tolerance_m, const PerAxis<PlanLimits>& limits);
 
+/// Which share of the axes' acceleration and jerk keeps the table within what is then left for following, as
+/// far as inertia goes that the screw is not known well enough for; no less than is as good as friction lets
+/// it be.
+double FollowedShare(double tolerance_m, const PerAxis<PlanLimits>& limits);
+
 /// Blends need a limit of jerk; for axes without one it is what brings them to full acceleration within four
 /// milliseconds.
 PerAxis<PlanLimits> WithJerk(PerAxis<PlanLimits> limits);

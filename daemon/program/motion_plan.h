@@ -28,6 +28,11 @@ struct PlanLimits {
   double path_tolerance_m = 1e-5;
   /// How far the table may be from the path planned for it; the largest of the axes' counts.
   double path_following_m = 2e-6;
+  /// How far the table is expected to be off for each m/s^2, by what is not known of mass and stiffness; 0:
+  /// nothing is expected.
+  double inertia_doubt_s2 = 0.0;
+  /// And by what is not known of friction, whatever the acceleration.
+  double friction_doubt_m = 0.0;
 };
 
 /// The commanded circle of a circle program.

@@ -52,7 +52,9 @@ std::size_t LastSettledKnot(const ProgrammedPath& path, const SmoothFit& fit, st
 }  // namespace
 
 Stretch::Stretch(std::shared_ptr<const StretchProgram> program, std::size_t part)
-    : program_(std::move(program)), part_(program_->parts()[part]) {
+    : program_(std::move(program)),
+      part_(program_->parts()[part]),
+      limits_(std::make_shared<const PerAxis<PlanLimits>>(program_->LimitsOf(part_))) {
   front_ = std::make_shared<const Front>(Front{{}, 0.0, part_.first, 0.0, {}});
 }
 

@@ -19,7 +19,7 @@ class Stretch {
  public:
   Stretch(std::shared_ptr<const StretchProgram> program, std::size_t part);
 
-  [[nodiscard]] const PerAxis<PlanLimits>& limits() const { return program_->limits(); }
+  [[nodiscard]] const PerAxis<PlanLimits>& limits() const { return *limits_; }
   /// Of all of it.
   [[nodiscard]] double length_m() const { return part_.length_m; }
   /// The path is known from here, up to here.
@@ -73,6 +73,7 @@ class Stretch {
 
   std::shared_ptr<const StretchProgram> program_;
   StretchProgram::Part part_;
+  std::shared_ptr<const PerAxis<PlanLimits>> limits_;
   std::deque<std::shared_ptr<const Section>> sections_;
   std::shared_ptr<const Front> front_;  ///< null: all is fitted
 };

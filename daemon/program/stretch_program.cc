@@ -78,7 +78,17 @@ void StretchProgram::Add(const PieceRequest& r, const PerAxis<double>& end_m) {
   part.moves_s += Time_s(move);
   part.length_m += move.curve.length_m;
   part.dwell_s = r.dwell_s;
+  part.share = std::min(part.share, FollowedShare(r.tolerance_m, stated_));
   last_ = r;
+}
+
+PerAxis<PlanLimits> StretchProgram::LimitsOf(const Part& part) const {
+  PerAxis<PlanLimits> limits = limits_;
+  for (PlanLimits& l : limits) {
+    l.acceleration_m_s2 *= part.share;
+    l.jerk_m_s3 *= part.share;
+  }
+  return limits;
 }
 
 double StretchProgram::nominal_s() const {

@@ -8,7 +8,7 @@
 namespace contour {
 
 /// A program of straight moves and arcs, divided into parts that are driven without a stop. All that is kept
-/// of it: what moves take in a MoveStore, a quarter of a byte each for times, 56 bytes a stop; of a long
+/// of it: what moves take in a MoveStore, a quarter of a byte each for times, 64 bytes a stop; of a long
 /// program a window of that in memory.
 class StretchProgram {
  public:
@@ -20,6 +20,7 @@ class StretchProgram {
     double length_m = 0.0;
     double begin_s = 0.0;  ///< by feeds, lengths and dwells alone
     double moves_s = 0.0;
+    double share = 1.0;  ///< of the axes' acceleration and jerk that its tolerances leave (FollowedShare)
   };
 
   /// Feeds are as fast as the axes follow.
@@ -34,6 +35,8 @@ class StretchProgram {
   [[nodiscard]] const PerAxis<double>& start_m() const { return moves_.start_m(); }
   /// With a jerk above 0.
   [[nodiscard]] const PerAxis<PlanLimits>& limits() const { return limits_; }
+  /// What a part has of them.
+  [[nodiscard]] PerAxis<PlanLimits> LimitsOf(const Part& part) const;
   /// Around everything.
   [[nodiscard]] const Extent& box() const { return box_; }
 

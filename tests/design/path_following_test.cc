@@ -4,6 +4,7 @@
 
 #include "config/load_machine.h"
 #include "config/loop_axis.h"
+#include "daemon/program_limits.h"
 #include "design/loop_choice.h"
 
 namespace contour {
@@ -48,6 +49,32 @@ TEST(PathFollowing, WhatTheFileStatesStays) {
   ASSERT_EQ(missing.size(), 1U);
   const MachineConfig with = LoadMachine(kFamily + "/base.yaml", missing);
   EXPECT_GT(with.machine.path_following_mm.value_or(0.0), 0.0);
+}
+
+PerAxis<PlanLimits> LimitsOf(const std::string& name, std::vector<std::string> set = {}) {
+  const std::string file = kFamily + "/" + name + ".yaml";
+  for (const std::string& loop : LoopsThatAreMissing(LoadMachine(file, set))) set.push_back(loop);
+  for (const std::string& following : PathFollowingIfMissing(LoadMachine(file, set)))
+    set.push_back(following);
+  return ProgramLimits(LoadMachine(file, set));
+}
+
+// What a program that says nothing may be off by is no less than what the machine follows, path included.
+TEST(PathTolerance, WithoutOneItIsWhatTheMachineCanFollow) {
+  EXPECT_EQ(LimitsOf("base")[0].path_tolerance_m, 1e-5);
+  const PlanLimits slow = LimitsOf("slow40")[0];
+  EXPECT_GT(slow.path_tolerance_m, 3e-5);
+  EXPECT_EQ(slow.path_tolerance_m, 2.0 * slow.path_following_m);
+  EXPECT_EQ(LimitsOf("slow40", {"machine.path_tolerance_mm=0.01"})[0].path_tolerance_m, 1e-5);
+}
+
+TEST(ScrewDoubt, IsThatOfMassStiffnessAndFriction) {
+  const PlanLimits slow = LimitsOf("slow40")[0], base = LimitsOf("base")[0];
+  // 498 kg on 17.9 N/um, known to 5.8 and 12 %: 17.6 um at 4.74 m/s^2; 319 N known to 29 %: 5.2 um.
+  EXPECT_NEAR(slow.inertia_doubt_s2 * slow.acceleration_m_s2, 17.6e-6, 0.1e-6);
+  EXPECT_NEAR(slow.friction_doubt_m, 5.2e-6, 0.1e-6);
+  EXPECT_LT(base.inertia_doubt_s2 * base.acceleration_m_s2, 0.2e-6);
+  EXPECT_EQ(LimitsOf("slow40", {"machine.slow_for_tolerance=false"})[0].inertia_doubt_s2, 0.0);
 }
 
 }  // namespace

@@ -1,11 +1,23 @@
 #include "daemon/program/gcode/block_reader.h"
 
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "daemon/program/gcode/value_reader.h"
 
 namespace contour {
 namespace {
+
+/// Other alphabets, marks of byte order and control characters as the bytes they are.
+std::string Shown(char c) {
+  if (c > ' ' && c <= '~') return std::string("'") + c + "'";
+  std::array<char, 16> text{};
+  std::snprintf(text.data(), text.size(), "byte 0x%02X",
+                static_cast<unsigned>(static_cast<unsigned char>(c)));
+  return text.data();
+}
 
 // How far ten times a code may be from a whole number.
 constexpr double kNearlyTenth = 1e-3;
@@ -88,7 +100,7 @@ class BlockReader {
     if (letter == 'e') Refuse(place, "E words are not supported; a number has no exponent");
     if (letter == '$') Refuse(place, "a choice of spindles is not supported");
     if (kLetters.find(letter) == std::string_view::npos)
-      Refuse(place, std::string("found '") + letter + "', expected a word such as X10");
+      Refuse(place, "found " + Shown(letter) + ", expected a word such as X10");
     Put(block_.words[static_cast<std::size_t>(letter - 'a')], name, letter, place);
   }
 

@@ -325,6 +325,16 @@ TEST(GcodeParser, AProgramHaltsWhereSomethingIsDoneAboutItsEvents) {
   EXPECT_EQ(moves.moves[0].corner, GcodeMove::Corner::kExactStop);
 }
 
+TEST(GcodeParser, BytesThatAreNoTextAreNamed) {
+  const auto error = [](const std::string& text) {
+    return testing::ErrorOf([&] { static_cast<void>(Parse(text)); });
+  };
+  EXPECT_EQ(error("\xEF\xBB\xBFG0 X1\n"), "part.ngc:1:1: found byte 0xEF, expected a word such as X10");
+  EXPECT_EQ(error("G0 X1\f\n"), "part.ngc:1:6: found byte 0x0C, expected a word such as X10");
+  EXPECT_EQ(error(std::string("G0 X1\0\n", 7)), "part.ngc:1:6: found byte 0x00, expected a word such as X10");
+  EXPECT_EQ(error("G0 X1 !\n"), "part.ngc:1:7: found '!', expected a word such as X10");
+}
+
 // Whatever comes over the socket is read or refused.
 TEST(GcodeParser, NonsenseIsRefusedAndNothingWorse) {
   const std::string sound =

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "daemon/program/blended_runs.h"
 #include "tests/daemon/program/motion_seen.h"
 #include "tests/daemon/program/on_a_table.h"
 #include "tests/daemon/program/part_programs.h"
@@ -13,6 +14,7 @@ using testing::MotionSeen;
 using testing::PartProgram;
 using testing::Point;
 using testing::SeeMotion;
+using testing::TableLimits;
 
 struct Machine {
   std::string name;
@@ -75,6 +77,42 @@ TEST_P(PartPrograms, KeepEveryLimitAndThePath) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, PartPrograms, ::testing::Range(0, 6));
+
+/// A screw that gives 20 um for what is not known of its table at full acceleration, 2 um for friction.
+PerAxis<PlanLimits> OnASoftScrew() {
+  PerAxis<PlanLimits> limits = TableLimits();
+  for (std::size_t i = 0; i < 2; ++i) {
+    limits[i].path_following_m = 3e-5;
+    limits[i].inertia_doubt_s2 = 2e-5 / limits[i].acceleration_m_s2;
+    limits[i].friction_doubt_m = 2e-6;
+  }
+  return limits;
+}
+
+TEST(FollowedShare, IsWhatAToleranceLeavesForInertia) {
+  const PerAxis<PlanLimits> limits = OnASoftScrew();
+  EXPECT_EQ(FollowedShare(5e-5, limits), 1.0);
+  EXPECT_NEAR(FollowedShare(1e-5, limits), 5e-6 / 2e-5, 1e-12);
+  EXPECT_NEAR(FollowedShare(1e-6, limits), 2e-6 / 2e-5, 1e-12) << "no better than friction lets it be";
+  EXPECT_EQ(FollowedShare(1e-9, TableLimits()), 1.0) << "nothing is expected";
+}
+
+// Stretch by stretch: what is to be accurate has less of acceleration and jerk, and what need not be has all.
+TEST(PartProgramLimits, ATightToleranceOnASoftScrewIsDrivenGently) {
+  const PerAxis<PlanLimits> limits = OnASoftScrew();
+  const std::string zigzag = "G0 X10\nY1\nX0\nY2\nX10\nY0\nX0\n";
+  const auto seen = [&](const std::string& words) {
+    return SeeMotion(*PlanMotion(Gcode(words), Point(0, 0), limits), limits);
+  };
+  const MotionSeen rough = seen("G64 P0.05\n" + zigzag), fine = seen("G64 P0.01\n" + zigzag);
+  EXPECT_GT(rough.acceleration, 0.9);
+  EXPECT_GT(rough.jerk, 0.9);
+  EXPECT_LT(fine.acceleration, 0.255);
+  EXPECT_GT(fine.acceleration, 0.23);
+  EXPECT_LT(fine.jerk, 0.255);
+  const MotionSeen both = seen("G64 P0.01\n" + zigzag + "G4 P0\nG64 P0.05\n" + zigzag);
+  EXPECT_NEAR(both.duration_s, rough.duration_s + fine.duration_s, 0.05);
+}
 
 }  // namespace
 }  // namespace contour

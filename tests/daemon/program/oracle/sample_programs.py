@@ -5,6 +5,7 @@ import random
 
 MACHINES = {
     "table": {"velocity": 0.25, "acceleration": 5.0, "jerk": 200.0, "tolerance": 1e-5},
+    "fine5": {"velocity": 0.1, "acceleration": 4.85, "jerk": 194.0, "tolerance": 1e-5},
     "gantry500": {"velocity": 0.625, "acceleration": 1.87, "jerk": 69.4, "tolerance": 1e-5},
 }
 
