@@ -200,7 +200,11 @@ struct ControllerConfig {
     v.Optional("mpc_srukf4", mpc_srukf4, "MPC with the 4-state friction filter");
     v.Optional("mpc_ekf7", mpc_ekf7, "MPC with the 7-state EKF");
     v.Optional("mpc_srukf7", mpc_srukf7, "MPC with the 7-state SRUKF");
-    v.Optional("full", full, "MPC with friction preview and wind-up compensation");
+    v.Optional(
+        "full", full,
+        "MPC with friction preview and wind-up compensation: in torque mode with friction: srukf. With "
+        "friction: linear it has no effect (axes.<name>.loop is that loop's tuning); in csp only the "
+        "slowest swing that is watched goes by it");
     v.Optional(
         "friction", friction, kAny,
         "what `full` knows friction by: srukf, states of its filter beside one rigid mass; linear, "

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/config_error.h"
+#include "config/idle_keys.h"
 #include "config/interfaces.h"
 #include "config/key_table.h"
 #include "config/load_machine.h"
@@ -67,6 +68,13 @@ std::vector<std::string> WithPlaces(const Options& options, const std::vector<st
   return placed;
 }
 
+std::string IdleSection(const Options& options, const MachineConfig& machine) {
+  std::string text;
+  for (const std::string& idle : IdleKeys(OpenMachineFile(options.file, options.set), machine))
+    text += "  " + idle + "\n";
+  return text.empty() ? text : "\nStated, but without effect\n" + text;
+}
+
 int PrintCanonicalMoves(const Options& options) {
   GcodeSettings settings;
   settings.block_delete = options.block_delete;
@@ -86,7 +94,8 @@ int RunCheck(const Options& options) {
   if (!loops.refused.empty()) throw ConfigError(WithPlaces(options, loops.refused));
   std::vector<std::string> with_loops = options.set;
   with_loops.insert(with_loops.end(), loops.chosen.begin(), loops.chosen.end());
-  std::cout << PathSection(LoadMaybeEmulatedMachine(options.file, with_loops).machine) << std::flush;
+  const MachineConfig whole = LoadMaybeEmulatedMachine(options.file, with_loops).machine;
+  std::cout << PathSection(whole) << IdleSection(options, whole) << std::flush;
   return CheckInterfaces(file.machine);
 }
 
