@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "analysis/identification/bristle_start.h"
 #include "analysis/identification/cogging_fit.h"
 #include "analysis/text/format_text.h"
 
@@ -162,6 +163,8 @@ void TakeSteps(Identification& id, const std::vector<Measured>& records, int thr
   }
   if (!id.presliding.found && !shaken)
     id.notes.push_back("few slow reversals: the bristle's stiffness begins from the stated value");
+  f.s0 =
+      BristleToBeginWith_N_m(axis, records, id.presliding.found ? id.presliding.sigma0_N_m : f.s0, threads);
   id.break_aways = BreakAways(fine, axis);
 }
 

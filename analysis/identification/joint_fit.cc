@@ -74,7 +74,7 @@ class Fit {
   /// The errors at each column of x. One that is no number is as good as a metre.
   [[nodiscard]] MatrixXd Raws(const MatrixXd& x) const {
     std::vector<Followed> axes;
-    for (Eigen::Index i = 0; i < x.cols(); ++i) axes.push_back({At(x.col(i)), gain_});
+    for (Eigen::Index i = 0; i < x.cols(); ++i) axes.push_back({At(x.col(i)), gain_, substeps_});
     MatrixXd errors = PredictionErrors_m(axes, records_, options_.threads);
     if (!errors.allFinite()) errors = errors.unaryExpr([](double e) { return std::isfinite(e) ? e : 1.0; });
     return errors;
@@ -85,6 +85,8 @@ class Fit {
   [[nodiscard]] VectorXd Scatter(const MatrixXd& jacobian, const VectorXd& r, const MatrixXd& inverse) const;
   [[nodiscard]] double Rounding(const std::string& key, const VectorXd& x) const;
   [[nodiscard]] bool Polish(const VectorXd& step, const VectorXd& r, VectorXd& x) const;
+  [[nodiscard]] VectorXd ByFinerSteps(const VectorXd& x, const MatrixXd& jacobian, const VectorXd& r,
+                                      const MatrixXd& inverse);
   void FindSpread(VectorXd x, const VectorXd& raw, JointFit& result);
 
   TableAxis start_;
@@ -92,6 +94,7 @@ class Fit {
   FitOptions options_;
   std::vector<FreeParameter> free_;
   FollowGain gain_ = FollowGain::Zero();
+  int substeps_ = kSubSteps;
   diagnosis::BlockWhitening whitening_;
   std::size_t size_ = 0;
   std::size_t block_ = 1000;
@@ -182,6 +185,16 @@ bool Fit::Polish(const VectorXd& step, const VectorXd& r, VectorXd& x) const {
   return true;
 }
 
+/// How far the answer would move if a period were stepped ever finer: what it costs to take bristle and screw
+/// one after the other goes with the square of the step, so half of it shows three quarters.
+VectorXd Fit::ByFinerSteps(const VectorXd& x, const MatrixXd& jacobian, const VectorXd& r,
+                           const MatrixXd& inverse) {
+  substeps_ *= 2;
+  const VectorXd finer = whitening_.Apply(Raw(x));
+  substeps_ /= 2;
+  return -4.0 / 3.0 * (inverse * (jacobian.transpose() * (finer - r)));
+}
+
 /// Standard deviations: the sandwich of curvature and the scatter of the gradient.
 void Fit::FindSpread(VectorXd x, const VectorXd& raw, JointFit& result) {
   whitening_.Learn(raw, block_, 12, records_.front().position_step_m);
@@ -202,6 +215,7 @@ void Fit::FindSpread(VectorXd x, const VectorXd& raw, JointFit& result) {
     result.axis = At(x);
   }
   result.unsettled = left.cwiseAbs().cwiseQuotient(variance.cwiseSqrt()).maxCoeff();
+  const VectorXd stepping = ByFinerSteps(x, jacobian, r, inverse);
   // How far the answer would move if the simulation followed the measurement more loosely or more closely:
   // not at all if the model were the axis. One step of Gauss and Newton says it.
   VectorXd method = left.cwiseAbs();
@@ -213,8 +227,8 @@ void Fit::FindSpread(VectorXd x, const VectorXd& raw, JointFit& result) {
   const VectorXd apart = Disagreement(jacobian, r, problem.sigma, noise, windows, windows.quickness);
   for (std::size_t i = 0; i < free_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    const double all =
-        variance(k) + method(k) * method(k) + std::pow(Stepping(free_[i].key), 2) + Rounding(free_[i].key, x);
+    const double all = variance(k) + method(k) * method(k) + stepping(k) * stepping(k) +
+                       std::pow(Stepping(free_[i].key), 2) + Rounding(free_[i].key, x);
     result.parameters.push_back(
         {free_[i].key, *free_[i].at(result.axis), std::sqrt(all), free_[i].logarithmic, apart(k)});
   }

@@ -6,8 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/parallel/parallel_for.h"
-#include "analysis/prediction_error/block_whitening.h"
+#include "analysis/identification/log_errors.h"
 
 namespace contour::identify {
 namespace {
@@ -77,22 +76,10 @@ Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
   return s;
 }
 
-/// Log of the prediction error that is left when each error is foreseen from those before it, of each axis.
+/// Of a whole segment: what shakes is the same in all of it.
 std::vector<double> LogErrors(const std::vector<TableAxis>& axes, const std::vector<Measured>& segments,
                               int threads) {
-  std::vector<Followed> followed;
-  followed.reserve(axes.size());
-  for (const TableAxis& axis : axes) followed.push_back({axis, FollowGainFor(axis, segments.front())});
-  const Eigen::MatrixXd errors = PredictionErrors_m(followed, segments, threads);
-  std::vector<double> logs(axes.size(), 1e300);
-  ParallelFor(axes.size(), threads, [&](std::size_t i) {
-    const auto column = errors.col(static_cast<Eigen::Index>(i));
-    if (!column.allFinite()) return;
-    diagnosis::BlockWhitening whitening;
-    whitening.Learn(column, static_cast<std::size_t>(column.size()), 12, 1e-12);
-    logs[i] = whitening.log_error();
-  });
-  return logs;
+  return LogErrors(axes, segments, std::numeric_limits<double>::infinity(), threads);
 }
 double LogError(const TableAxis& axis, const std::vector<Measured>& segments) {
   return LogErrors({axis}, segments, 1).front();

@@ -70,6 +70,9 @@ TEST(WhyUnusable, RefusesErrorsFarAboveTheEncodersNoise) {
   Identification id = Good();
   id.fit.error_typical_m = 200e-9;
   EXPECT_TRUE(Says(id, "100 times the encoder's noise"));
+  // A fit that ended beside a bristle twice too stiff.
+  id.fit.error_typical_m = 56e-9;
+  EXPECT_TRUE(Says(id, "28 times the encoder's noise"));
 }
 
 TEST(WhyUnusable, RefusesAScrewThatIsHardlyKnown) {
