@@ -22,6 +22,8 @@ constexpr double kSeen = 0.6;  ///< coherence
 /// Standard deviation of the stiffness; a catalogue has 0.4. What feeds the wind-up forward by a stiffness
 /// that is less sure is no better with it.
 constexpr double kLeastKnownStiffness = 0.15;
+/// Of a mass: what is known to a factor of two has as much, and needs no commissioning.
+constexpr double kLeastKnownMass = 0.4;
 
 std::string Numbers(const Identification& id) {
   for (const FittedParameter& p : id.fit.parameters) {
@@ -57,6 +59,18 @@ std::string UnknownScrew(const Identification& id) {
       "all "
       "that acts",
       100.0 * sigma);
+}
+
+/// A motion that does not tell the axis's masses says nothing that was not known before it.
+std::string UnknownMasses(const Identification& id) {
+  for (const FittedParameter& p : id.fit.parameters)
+    if ((p.key == "motor_inertia_kgm2" || p.key == "table_mass_kg") && p.relative &&
+        p.sigma > kLeastKnownMass)
+      return FormatText(
+          "%s came out with a standard deviation of %.0f %%, worse than a catalogue knows it: the axis was "
+          "hardly accelerated or shaken; raise the limits, or commission in torque mode",
+          p.key.c_str(), 100.0 * p.sigma);
+  return {};
 }
 
 std::string Misfit(const Identification& id) {
@@ -101,7 +115,8 @@ std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoin
 }
 
 std::string WhyUnusable(const Identification& id) {
-  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), Misfit(id)})
+  for (const auto& why :
+       {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), UnknownMasses(id), Misfit(id)})
     if (!why.empty()) return why;
   if (id.fit.unsettled > kMostUnsettled)
     return FormatText(

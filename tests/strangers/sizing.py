@@ -16,7 +16,7 @@ OTHERWISE = {"torque_constant": {"clear": 1.0, "moderate": 0.6, "barely": 0.36},
 # Of effect to noise, as a factor.
 NEAR_ENOUGH = 1.3
 TURNS = 7
-# Nobody can tell: shared/DIAGNOSIS.md, "Undecidable".
+# Nobody can tell.
 LEAST_PITCH_UM = 0.1
 # An axis stated as rigid has a mode of its own; a softer one is to be a third below it.
 SOFTER = (2.0 / 3.0) ** 2

@@ -83,6 +83,14 @@ TEST(WhyUnusable, RefusesAScrewThatIsHardlyKnown) {
   EXPECT_TRUE(Says(id, "a standard deviation of 18 %"));
 }
 
+TEST(WhyUnusable, RefusesMassesThatACatalogueKnowsBetter) {
+  Identification id = Good();
+  id.fit.parameters[0].sigma = 0.27;
+  EXPECT_EQ(WhyUnusable(id), "");
+  id.fit.parameters[0].sigma = 0.47;
+  EXPECT_TRUE(Says(id, "motor_inertia_kgm2 came out with a standard deviation of 47 %"));
+}
+
 TEST(WhyUnusable, RefusesAFitThatDidNotSettle) {
   Identification id = Good();
   id.fit.unsettled = 12.0;
