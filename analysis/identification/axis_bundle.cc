@@ -23,7 +23,7 @@ LaneAxis::LaneAxis(const Followed& followed, double period_s)
   steps_ = StepsOf(stiff_, period_s, substeps_);
 }
 
-bool LaneAxis::RunsBeside(const LaneAxis& other) const {
+bool LaneAxis::RunsWith(const LaneAxis& other) const {
   return axis_.two_inertia == other.axis_.two_inertia &&
          axis_.friction_on_load == other.axis_.friction_on_load &&
          axis_.friction.exponent == other.axis_.friction.exponent && substeps_ == other.substeps_ &&

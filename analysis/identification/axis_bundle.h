@@ -17,7 +17,7 @@ class LaneAxis {
 
   [[nodiscard]] const TableAxis& axis() const { return axis_; }
   /// Whether one instruction stream serves both.
-  [[nodiscard]] bool RunsBeside(const LaneAxis& other) const;
+  [[nodiscard]] bool RunsWith(const LaneAxis& other) const;
 
  private:
   friend class AxisBundle;
@@ -35,7 +35,7 @@ class LaneAxis {
   double on_motor_ = 0.0;  ///< share of the friction
 };
 
-/// Up to kAxisLanes axes that run beside one another. Lanes without one repeat the first.
+/// Up to kAxisLanes axes that run together. Lanes without one repeat the first.
 class AxisBundle {
  public:
   explicit AxisBundle(const std::vector<const LaneAxis*>& axes);
@@ -50,6 +50,8 @@ class AxisBundle {
   };
   void SetLane(std::size_t lane, const OwnForce* own, const Results& results);
   void Run(const Measured& data);
+  /// As Run() has set them.
+  [[nodiscard]] const AxisLanes& lanes() const { return lanes_; }
 
  private:
   void TakePieces();

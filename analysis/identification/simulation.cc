@@ -29,7 +29,7 @@ std::vector<std::vector<std::size_t>> Bundles(const std::vector<LaneAxis>& axes)
   std::vector<std::vector<std::size_t>> bundles;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto open = std::find_if(bundles.begin(), bundles.end(), [&](const std::vector<std::size_t>& b) {
-      return b.size() < kAxisLanes && axes[b.front()].RunsBeside(axes[i]);
+      return b.size() < kAxisLanes && axes[b.front()].RunsWith(axes[i]);
     });
     if (open == bundles.end())
       bundles.push_back({i});

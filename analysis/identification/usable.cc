@@ -13,7 +13,7 @@ constexpr double kMostMissing = 0.01;
 /// Standard deviations from the least of the cost.
 constexpr double kMostUnsettled = 3.0;
 /// Prediction errors over what encoder and torque steps explain. Axes that are as the model has them have 1
-/// to 6; a fit that ended beside a bristle twice too stiff, 28; cogging of 0.5 % of rated torque that nothing
+/// to 6; a fit that ended at a bristle twice too stiff, 28; cogging of 0.5 % of rated torque that nothing
 /// knows of, 100 (docs/laboratory/commissioning.md).
 constexpr double kFarAboveNoise = 15.0;
 /// Largest over smallest accelerance of a shaken axis that counts as rigid.

@@ -14,6 +14,8 @@ from pathlib import Path
 # Translations of one set of loops for several instruction sets have one test.
 SHARED = {f"analysis/prediction_error/simd/lane_run_{name}.cc": "tests/analysis/prediction_error/simd/lane_loops_test.cc"
           for name in ("avx2", "avx512", "baseline")}
+SHARED |= {f"analysis/identification/simd/axis_lanes_{name}.cc": "tests/analysis/identification/simd/axis_loops_test.cc"
+           for name in ("avx2", "baseline")}
 WITHOUT = set()
 
 

@@ -31,11 +31,11 @@ struct LaneRubbing {
 };
 
 struct LaneWave {
-  PerLane per_m;  ///< turns of it over the motor's way
+  PerLane per_m;  ///< turns of it over the motor's travel
   PerLane cosine_N, sine_N;
 };
 
-/// Of the levels: turns of the motor over its way, polynomials of the place, harmonics.
+/// Of the levels: turns of the motor over its travel, polynomials of the place, harmonics.
 struct LaneVariation {
   PerLane turns_per_m, middle_m, per_m;
   PerLane place[3], turn_plus[4], turn_minus[4];
