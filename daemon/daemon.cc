@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "config/config_error.h"
+#include "config/idle_keys.h"
 #include "config/load_machine.h"
 #include "config/mode_advice.h"
 #include "core/exit_status.h"
@@ -194,6 +195,10 @@ class Daemon {
     for (const std::string& advice : ModeAdvice(machine_)) {
       spdlog::warn(advice);
       warnings.push_back(advice);
+    }
+    if (const std::optional<std::string> wider = WiderToleranceText(machine_)) {
+      spdlog::warn(*wider);
+      warnings.push_back(*wider);
     }
     Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, warnings,
                           {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_},
@@ -388,6 +393,8 @@ int RunOnce(const DaemonOptions& options, std::optional<std::string>& again) {
   for (const std::string& loop : loops)
     spdlog::info("chosen, as the machine file has none: {}; contour tune --from-model finds a better one",
                  loop);
+  for (const std::string& idle : IdleKeys(OpenMachineFile(options.config, Overrides(options)), file.machine))
+    spdlog::info("stated, but without effect: {}", idle);
   for (const std::string& text : memory.used()) spdlog::info("{}", text);
   for (const std::string& text : memory.refused()) spdlog::warn("{}", text);
   // What is thrown from here on is for main to print: the signals end the process again, should that be

@@ -41,6 +41,8 @@ void PathFeeder::Begin(std::unique_ptr<PathGenerator> generator, const PacedPath
     const std::scoped_lock lock(planning_);
     path_ = std::move(path);
     ++program_;
+    const std::scoped_lock failing(failing_);
+    failure_.clear();
   }
   wanted_ = options.feed;
   resume_ = resuming_ = Held::kNot;
@@ -115,7 +117,13 @@ bool PathFeeder::PlanStep() {
     program = program_;
   }
   if (!plan.walk) return false;
-  plan.walk->PlanStep();
+  try {
+    plan.walk->PlanStep();
+  } catch (const SpoolError& e) {
+    const std::scoped_lock lock(planning_);
+    if (program == program_) GiveUp(e.what());  // or another one has followed it
+    return false;
+  }
   const std::scoped_lock lock(planning_);
   if (path_ && program == program_) path_->GivePlan(std::move(plan));
   return true;
@@ -130,13 +138,24 @@ bool PathFeeder::Feed() {
     const PathWalk::Estimate duration = path_->ProgramDuration();
     duration_s_ = duration.duration_s;
     duration_exact_ = duration.exact;
-  } catch (const SpoolError&) {
-    // The disk has lost what comes next. The cycle stops on the path when it has no more points.
+  } catch (const SpoolError& e) {
+    // The cycle stops on the path when it has no more points, if nobody stops it before.
+    GiveUp(e.what());
     return true;
   }
   waits_for_plan_ = path_->waits_for_plan();
   if (more) time_share_ = path_->TimeShare();
   return more;
+}
+
+std::string PathFeeder::failure() const {
+  const std::scoped_lock lock(failing_);
+  return failure_;
+}
+
+void PathFeeder::GiveUp(const std::string& why) {
+  const std::scoped_lock lock(failing_);
+  failure_ = why;
 }
 
 bool PathFeeder::FeedNow() {

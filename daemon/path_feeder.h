@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "daemon/program/paced_path.h"
@@ -12,8 +13,8 @@
 namespace contour {
 
 /// Keeps the mailbox's path queue filled with a program's points, and makes the cycle change their feed. But
-/// for Announce(), PlanStep(), duration(), time_share() and waits_for_plan() one thread: the mailbox's path
-/// writer.
+/// for Announce(), PlanStep(), duration(), time_share(), waits_for_plan() and failure() one thread: the
+/// mailbox's path writer.
 class PathFeeder {
  public:
   explicit PathFeeder(CommandMailbox& mailbox) : mailbox_(mailbox) {}
@@ -41,6 +42,9 @@ class PathFeeder {
   [[nodiscard]] double time_share() const { return time_share_; }
   /// The program is slow or at rest because planning does not keep up. Any thread.
   [[nodiscard]] bool waits_for_plan() const { return waits_for_plan_; }
+  /// Why no more points of the program can come, although it is not at its end: the disk does not give back
+  /// what is kept of it there. Empty: they can. Any thread.
+  [[nodiscard]] std::string failure() const;
   /// Hands over what the queue has room for. Returns whether more is to come.
   bool Feed();
   /// The program is over or was given up: no more points.
@@ -62,9 +66,12 @@ class PathFeeder {
   void Hear();
   void GiveAnew();
   void ForgetHeld();
+  void GiveUp(const std::string& why);
 
   CommandMailbox& mailbox_;
-  std::mutex planning_;  ///< guards the path while it is used, and while a plan is taken and given
+  std::mutex planning_;         ///< guards the path while it is used, and while a plan is taken and given
+  mutable std::mutex failing_;  ///< guards the failure
+  std::string failure_;
   std::unique_ptr<PacedPath> path_;
   std::uint64_t program_ = 0;  ///< counts them
   std::atomic<double> duration_s_{0.0};

@@ -2,8 +2,6 @@
 
 #include <chrono>
 
-#include "daemon/program/spool.h"
-
 namespace contour {
 namespace {
 
@@ -23,13 +21,7 @@ void PathPlanner::Finish() {
 
 void PathPlanner::Work(const std::stop_token& end) {
   while (!end.stop_requested()) {
-    bool planned = false;
-    try {
-      planned = feeder_.PlanStep();
-    } catch (const SpoolError&) {
-      // As if planning were slow: the motion comes to rest on its path before what is planned ends.
-    }
-    if (!planned) std::this_thread::sleep_for(kLookAgain);
+    if (!feeder_.PlanStep()) std::this_thread::sleep_for(kLookAgain);
   }
 }
 

@@ -218,7 +218,17 @@ void Pump::Feed() {
     mailbox_.PostStop();
   }
   feeder_.Feed();
+  StopWhatFailed();
   ReportPlanning();
+}
+
+void Pump::StopWhatFailed() {
+  const std::string failure = feeder_.failure();
+  if (!failure.empty() && !failed_) {
+    spdlog::error("{}; the program is stopped on its path", failure);
+    mailbox_.PostStop();
+  }
+  failed_ = !failure.empty();
 }
 
 void Pump::ReportPlanning() {

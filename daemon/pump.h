@@ -62,6 +62,8 @@ class Pump {
   /// Of the program that is supplied, or was last, at its own feed. Any thread.
   [[nodiscard]] PathWalk::Estimate program_duration() const { return feeder_.duration(); }
   [[nodiscard]] double program_time_share() const { return feeder_.time_share(); }
+  /// Why the program that is supplied, or was last, could not go on to its end. Empty: it could. Any thread.
+  [[nodiscard]] std::string program_failure() const { return feeder_.failure(); }
   /// What has come so far of the program that runs, or ran last. Any thread.
   [[nodiscard]] TallyOfProgram tally() const { return tally_.tally(); }
 
@@ -73,6 +75,7 @@ class Pump {
   void Report(const CycleRecord& record);
   void ReportReferences(const CycleRecord& record);
   void ReportPlanning();
+  void StopWhatFailed();
   void ReportFlight();
   void ReportLog();
   void MeasureMotion(const CycleRecord& record);
@@ -85,6 +88,7 @@ class Pump {
   PathFeeder feeder_;  ///< pump thread only, but for what it says is for any
   PathPlanner planner_{feeder_};
   bool waited_for_plan_ = false;  ///< as last told
+  bool failed_ = false;           ///< the program, and it has been told
   HaltKeeper halts_;              ///< pump thread only, but for status()
   ProgramTally tally_;
   std::mutex mutex_;  ///< guards the next five

@@ -351,6 +351,10 @@ MachineStatus Supervisor::Status() {
   out.reason_text = out.record.reason == Reason::kBringUpFailed
                         ? out.bring_up
                         : ReasonText(out.record, axis_names_, bus_names_);
+  if (const std::string failure = parts_.pump.program_failure();
+      !failure.empty() &&
+      (out.record.reason == Reason::kOperatorStop || out.record.reason == Reason::kPathUnderrun))
+    out.reason_text = failure + "; the program was stopped on its path";
   {
     const std::lock_guard lock(program_);
     out.program_name = program_name_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,10 @@ double ExpectedFollowing_mm(const MachineConfig& machine);
 /// `machine.path_following_mm` as an assignment to put on top of a machine file that does not state it;
 /// loops that are missing have to be in it (LoopsThatAreMissing).
 std::vector<std::string> PathFollowingIfMissing(const MachineConfig& machine);
+
+/// Where the path tolerance is wider than usual because the machine is expected to follow that badly and its
+/// file states none: a sentence on it, for whoever runs programs. `machine` has its following stated or
+/// chosen.
+std::optional<std::string> WiderToleranceText(const MachineConfig& machine);
 
 }  // namespace contour

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -79,6 +81,46 @@ TEST(PlannerThreadTest, ProgramsThatAreGivenUpWhileTheyArePlanned) {
     EXPECT_EQ(feeder.path(), nullptr);
   }
   planner.Finish();
+}
+
+/// Empties the files without a name in this folder that this process holds open: a disk that has lost them.
+void LoseFilesIn(const std::filesystem::path& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    const std::string to = std::filesystem::read_symlink(entry.path(), gone).string();
+    if (gone || to.rfind(folder.string(), 0) != 0) continue;
+    std::filesystem::resize_file(entry.path(), 0, gone);
+    EXPECT_FALSE(gone) << gone.message();
+  }
+}
+
+TEST(PlannerThreadTest, ADiskThatLosesTheProgramIsNamed) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "lost_program";
+  std::filesystem::create_directories(folder);
+  const char* const before = std::getenv("TMPDIR");
+  const std::string was = before != nullptr ? before : "";
+  setenv("TMPDIR", folder.c_str(), 1);
+  const PerAxis<PlanLimits> limits = WithTolerance(Limits(0.25, 5.0, 200.0));
+  const auto plan =
+      PlanMotion(ParseProgram(testing::Spiral(16, 0.8, 0.1, 3, 60000), "spiral", ProgramFormat::kGcode),
+                 test::Origin(), limits);
+  before != nullptr ? setenv("TMPDIR", was.c_str(), 1) : unsetenv("TMPDIR");
+  CommandMailbox mailbox(16, kQueue);
+  PathFeeder feeder(mailbox);
+  feeder.Begin(std::make_unique<PathGenerator>(plan, limits, kPeriod_s, 1),
+               {1.0, false, false, Planning::kAheadOrSlower});
+  feeder.Feed();
+  EXPECT_EQ(feeder.failure(), "");
+  LoseFilesIn(folder);
+  for (int k = 0; k < 100000 && feeder.PlanStep(); ++k) {
+  }
+  EXPECT_NE(feeder.failure().find("cannot be read again"), std::string::npos) << feeder.failure();
+  feeder.Begin(std::make_unique<PathGenerator>(
+                   PlanMotion(ParseProgram("G1 X10 F1000\nM2\n", "line", ProgramFormat::kGcode),
+                              test::Origin(), limits),
+                   limits, kPeriod_s, 2),
+               {1.0, false, false, Planning::kAheadOrSlower});
+  EXPECT_EQ(feeder.failure(), "") << "another program has its own";
 }
 
 }  // namespace

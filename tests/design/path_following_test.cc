@@ -68,6 +68,17 @@ TEST(PathTolerance, WithoutOneItIsWhatTheMachineCanFollow) {
   EXPECT_EQ(LimitsOf("slow40", {"machine.path_tolerance_mm=0.01"})[0].path_tolerance_m, 1e-5);
 }
 
+TEST(PathTolerance, AWiderOneIsSaid) {
+  const auto text = [](const std::string& name, const std::vector<std::string>& set) {
+    return WiderToleranceText(LoadMachine(kFamily + "/" + name + ".yaml", set));
+  };
+  EXPECT_FALSE(text("base", {"machine.path_following_mm=0.004"}));
+  const std::optional<std::string> wider = text("base", {"machine.path_following_mm=0.02"});
+  ASSERT_TRUE(wider);
+  EXPECT_NE(wider->find("within 0.04 mm, not 0.01"), std::string::npos) << *wider;
+  EXPECT_FALSE(text("base", {"machine.path_following_mm=0.02", "machine.path_tolerance_mm=0.03"}));
+}
+
 TEST(ScrewDoubt, IsThatOfMassStiffnessAndFriction) {
   const PlanLimits slow = LimitsOf("slow40")[0], base = LimitsOf("base")[0];
   // 498 kg on 17.9 N/um, known to 5.8 and 12 %: 17.6 um at 4.74 m/s^2; 319 N known to 29 %: 5.2 um.

@@ -15,6 +15,7 @@
 #include "daemon/output_words.h"
 #include "daemon/program/path_walk.h"
 #include "daemon/program/program.h"
+#include "design/path_following.h"
 #include "tools/contour/choice_flag.h"
 #include "tools/contour/ignored_words.h"
 #include "tools/contour/result_line.h"
@@ -110,6 +111,8 @@ int RunSimulate(const Options& options) {
   WarnOfIgnoredWords(options.program,
                      UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)),
                      true);
+  if (const std::optional<std::string> wider = WiderToleranceText(said); wider && !request.gcode.empty())
+    std::cerr << "contour: " << *wider << "\n";
   request.out = options.out;
   if (!options.log.empty()) {
     if (options.seed) set.push_back("emulator.seed=" + std::to_string(*options.seed));
