@@ -393,8 +393,10 @@ int RunOnce(const DaemonOptions& options, std::optional<std::string>& again) {
   for (const std::string& loop : loops)
     spdlog::info("chosen, as the machine file has none: {}; contour tune --from-model finds a better one",
                  loop);
-  for (const std::string& idle : IdleKeys(OpenMachineFile(options.config, Overrides(options)), file.machine))
-    spdlog::info("stated, but without effect: {}", idle);
+  if (const std::size_t idle =
+          IdleKeys(OpenMachineFile(options.config, Overrides(options)), file.machine).size();
+      idle > 0)
+    spdlog::info("keys of the machine file that nothing goes by: {}; contour check lists them", idle);
   for (const std::string& text : memory.used()) spdlog::info("{}", text);
   for (const std::string& text : memory.refused()) spdlog::warn("{}", text);
   // What is thrown from here on is for main to print: the signals end the process again, should that be
