@@ -60,9 +60,13 @@ json Zero(const MachineStatus& s) {
 }
 
 json Facts(const AxisFacts& f) {
-  return {{"position_min_m", f.limits.position_min_m}, {"position_max_m", f.limits.position_max_m},
-          {"velocity_m_s", f.limits.velocity_m_s},     {"acceleration_m_s2", f.limits.acceleration_m_s2},
-          {"jerk_m_s3", f.limits.jerk_m_s3},           {"encoder_count_m", f.encoder_count_m}};
+  return {{"position_min_m", f.limits.position_min_m},
+          {"position_max_m", f.limits.position_max_m},
+          {"velocity_m_s", f.limits.velocity_m_s},
+          {"acceleration_m_s2", f.limits.acceleration_m_s2},
+          {"jerk_m_s3", f.limits.jerk_m_s3},
+          {"encoder_count_m", f.encoder_count_m},
+          {"path_following_m", f.limits.path_following_m}};
 }
 
 json Buses(const MachineStatus& s) {

@@ -1,5 +1,5 @@
 #include "tools/contour/run_command.h"
-#include "tools/contour/ignored_words.h"
+#include "tools/contour/program_warnings.h"
 
 #include <unistd.h>
 
@@ -313,7 +313,10 @@ int RunRun(const Options& options) {
     std::cerr << e.what() << "\n";
     return kExitBadUsage;
   }
-  WarnOfIgnoredWords(options.program, EventsFor(options, before), false);
+  double following_m = 0.0;
+  for (const json& axis : before.at("axes"))
+    following_m = std::max(following_m, axis.at("facts").at("path_following_m").get<double>());
+  WarnOfProgram(options.program, EventsFor(options, before), false, following_m);
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
   std::optional<RowCollector> rows;

@@ -17,7 +17,7 @@
 #include "daemon/program/program.h"
 #include "design/path_following.h"
 #include "tools/contour/choice_flag.h"
-#include "tools/contour/ignored_words.h"
+#include "tools/contour/program_warnings.h"
 #include "tools/contour/result_line.h"
 #include "tools/machine/load_emulated_machine.h"
 #include "tools/simulate/simulation_run.h"
@@ -108,9 +108,9 @@ int RunSimulate(const Options& options) {
   request.passes = options.passes;
   request.part = options.part;
   const MachineConfig& said = request.file.machine;
-  WarnOfIgnoredWords(options.program,
-                     UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)),
-                     true);
+  WarnOfProgram(options.program,
+                UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)), true,
+                1e-3 * said.machine.path_following_mm.value_or(0.0));
   if (const std::optional<std::string> wider = WiderToleranceText(said); wider && !request.gcode.empty())
     std::cerr << "contour: " << *wider << "\n";
   request.out = options.out;

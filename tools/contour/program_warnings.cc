@@ -1,0 +1,27 @@
+#include "tools/contour/program_warnings.h"
+
+#include <iostream>
+#include <string>
+
+#include "daemon/program/gcode/ignored_events.h"
+#include "daemon/program/gcode/tight_tolerance.h"
+#include "daemon/program/gcode_parser.h"
+#include "daemon/program/program.h"
+
+namespace contour {
+
+void WarnOfProgram(const std::filesystem::path& program, const EventUse& use, bool simulated,
+                   double following_m) {
+  if (FormatOf(program) != ProgramFormat::kGcode) return;
+  try {
+    GcodeMoves moves = ParseGcode(ReadProgramText(program), program.string());
+    UseEvents(moves, program.string(), use);
+    for (const std::string& warning : {IgnoredEvents(moves, program.string(), simulated),
+                                       TightTolerance(moves, program.string(), following_m)})
+      if (!warning.empty()) std::cerr << "warning: " << warning << "\n";
+  } catch (const ProgramError&) {
+    // Whoever runs the program says what is wrong with it.
+  }
+}
+
+}  // namespace contour
