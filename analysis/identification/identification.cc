@@ -7,6 +7,7 @@
 
 #include "analysis/identification/bristle_start.h"
 #include "analysis/identification/cogging_fit.h"
+#include "analysis/identification/quiet_reports.h"
 #include "analysis/text/format_text.h"
 
 namespace contour::identify {
@@ -307,6 +308,8 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
     }
     id.seconds += static_cast<double>(log.size()) * log.period_s;
   }
+  for (Measured& r : records) r.report_step_N = ReportStep_N(r);
+  for (Measured& r : records) QuietReports(id.stated.delay_s, r);
   id.missing_share = MissingShare(records);
   id.encoder = LookAtEncoder(records);
   id.period_s = records.front().period_s;

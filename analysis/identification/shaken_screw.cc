@@ -49,11 +49,13 @@ double Hz(double stiffness, double mass) { return std::sqrt(stiffness / mass) / 
 
 /// The quick part of the force, mean square: second differences of `width` rows, whose gain is
 /// 4 sin^2(pi f width T). Next rows show what is quick, rows further apart what is slower; a ramp shows in
-/// neither.
+/// neither. Where a drive leads, that of its offset: what its own loop makes of the encoder's noise is as
+/// quick, and there in every stroke.
 double Quick_N2(const Measured& d, std::size_t begin, std::size_t end, std::size_t width) {
+  const std::vector<double>& sent_N = d.led_by_drive() ? d.offset_N : d.force_N;
   double sum = 0.0;
   for (std::size_t k = std::max(begin, 2 * width); k < end; ++k)
-    sum += std::pow(d.force_N[k] - 2.0 * d.force_N[k - width] + d.force_N[k - 2 * width], 2);
+    sum += std::pow(sent_N[k] - 2.0 * sent_N[k - width] + sent_N[k - 2 * width], 2);
   return sum / static_cast<double>(end - begin);
 }
 constexpr std::size_t kFurther = 4;
@@ -64,6 +66,7 @@ Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
   Measured s;
   s.period_s = d.period_s;
   s.position_step_m = d.position_step_m;
+  s.report_step_N = d.report_step_N;
   const auto from = static_cast<std::ptrdiff_t>(begin);
   const auto to = static_cast<std::ptrdiff_t>(end);
   s.force_N.assign(d.force_N.begin() + from, d.force_N.begin() + to);

@@ -166,7 +166,7 @@ int main(int argc, char** argv) {
   contour::Options options;
   app.add_option("--machines", options.machines, "base, or machines of config/family");
   app.add_option("--effects", options.effects,
-                 "none, cogging3, cogging6, ripple, wobble, motor_friction, side_mode");
+                 "none, cogging3, cogging6, ripple, wobble, motor_friction, side_mode, counterbalance");
   app.add_option("--mode", options.mode, "Of the drives: cst or csp")->capture_default_str();
   app.add_option("--seeds", options.seeds, "How many");
   app.add_option("--first", options.first, "The first of them");
