@@ -332,6 +332,7 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
         "coarse "
         "to show them");
   report("report", 0.97);
+  id.unexplained = FindUnexplainedForce(id.fit.axis, records, options.threads);
   LookAgain(id, records);
   if (!id.fit.axis.two_inertia && id.stated.two_inertia) StateRigid(id);
   report("done", 1.0);
