@@ -25,9 +25,9 @@ constexpr int kOrders = 60;
 /// Speeds from bin to bin, the slowest as a share of the Stribeck velocity.
 constexpr double kNextSpeed = 2.0, kSlowest = 1.0 / 16.0;
 constexpr std::size_t kSpeeds = 11;
-/// Ways since the last reversal, from a share of what the bristle bends.
-constexpr double kNextWay = 2.0, kShortest = 1.0 / 8.0;
-constexpr std::size_t kWays = 8;
+/// Travels since the last reversal, from a share of what the bristle bends.
+constexpr double kNextTravel = 2.0, kShortest = 1.0 / 8.0;
+constexpr std::size_t kTravels = 8;
 constexpr std::size_t kPlaces = 8;
 /// Long against any wave that sliding sees, short against a stroke.
 constexpr double kBlock_s = 1.0;
@@ -37,8 +37,8 @@ constexpr double kLeastError_m = 1e-12;
 /// Of the mean curvature: what hardly anything shows, or shows together with others only, stays small.
 constexpr double kRidge = 1e-4;
 
-/// Columns of the forces: waves, then for each direction speeds, ways and places.
-constexpr Index kColumns = 2 * kOrders + 2 * static_cast<Index>(kSpeeds + kWays + kPlaces);
+/// Columns of the forces: waves, then for each direction speeds, travels and places.
+constexpr Index kColumns = 2 * kOrders + 2 * static_cast<Index>(kSpeeds + kTravels + kPlaces);
 
 std::size_t Bin(double x, double first, double next, std::size_t bins) {
   if (!(x > first)) return 0;
@@ -55,7 +55,7 @@ class Forces {
         bends_m_(0.5 * (axis.friction.Fc_plus + axis.friction.Fc_minus) / axis.friction.s0),
         still_m_(std::max(2.0 * d.position_step_m, kShortest * bends_m_)) {}
 
-  /// What goes with angle, direction, place, speed and way at row k; nothing where a sample lacks.
+  /// What goes with angle, direction, place, speed and travel at row k; nothing where a sample lacks.
   void Fill(std::size_t k, Eigen::Ref<Eigen::RowVectorXd> force);
 
  private:
@@ -106,10 +106,11 @@ void Forces::Fill(std::size_t k, Eigen::Ref<Eigen::RowVectorXd> force) {
   const double span_s = 2.0 * static_cast<double>(reach_) * d_.period_s;
   const double speed = std::fabs(d_.position_m[k + reach_] - d_.position_m[k - reach_]) / span_s;
   at(0, Bin(speed, kSlowest * axis_.friction.vs, kNextSpeed, kSpeeds));
-  at(kSpeeds, Bin(std::fabs(x - turned_m_), kShortest * bends_m_, kNextWay, kWays));
+  at(kSpeeds, Bin(std::fabs(x - turned_m_), kShortest * bends_m_, kNextTravel, kTravels));
   const LevelVariation& v = axis_.variation;
   const double part = v.high_m > v.low_m ? (x - v.low_m) / (v.high_m - v.low_m) : 0.0;
-  at(kSpeeds + kWays, std::min(kPlaces - 1, static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * kPlaces)));
+  at(kSpeeds + kTravels,
+     std::min(kPlaces - 1, static_cast<std::size_t>(std::clamp(part, 0.0, 1.0) * kPlaces)));
 }
 
 /// Sums of squares and products over half of the blocks.
