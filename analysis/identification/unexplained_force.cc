@@ -215,6 +215,15 @@ double WhiteShare::Of(const LinearStep& step, const FollowGain& gain) const {
   return all > 0.0 ? std::clamp((noise * found).sum() / all, 0.0, 1.0) : 1.0;
 }
 
+/// Mean square of the quick force that is sent in rows: a wave of a chirp has half of its amplitude's square.
+double Quick_N2(const Measured& d, Index begin, Index rows) {
+  const std::vector<double>& sent_N = d.led_by_drive() ? d.offset_N : d.force_N;
+  double sum = 0.0;
+  for (Index k = std::max<Index>(1, begin); k < begin + rows; ++k)
+    sum += 0.5 * std::pow(sent_N[static_cast<std::size_t>(k)] - sent_N[static_cast<std::size_t>(k - 1)], 2);
+  return sum / static_cast<double>(rows);
+}
+
 }  // namespace
 
 UnexplainedForce FindUnexplainedForce(const TableAxis& axis, const std::vector<Measured>& records,
@@ -252,11 +261,15 @@ UnexplainedForce FindUnexplainedForce(const TableAxis& axis, const std::vector<M
       const VectorXd e = errors.segment(first + b, rows);
       half[squares.size() % 2].Add(seen, e);
       white.Add(e);
-      squares.push_back(e.squaredNorm() / static_cast<double>(rows));
+      // What shakes the axis is, with friction, what the errors are a share of.
+      const double friction_N2 = u.friction_N * u.friction_N;
+      const double of_friction = friction_N2 / (friction_N2 + Quick_N2(d, b, rows));
+      squares.push_back(of_friction * e.squaredNorm() / static_cast<double>(rows));
     }
     first += static_cast<Index>(d.size());
   }
-  const double all = errors.squaredNorm() / static_cast<double>(errors.size());
+  double all = 0.0;
+  for (const double square : squares) all += square / static_cast<double>(squares.size());
   const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
   std::nth_element(squares.begin(), middle, squares.end());
   const double typical = std::min(all, *middle), white_share = white.Of(step, gain);
