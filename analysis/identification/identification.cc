@@ -202,7 +202,7 @@ void StateRigid(Identification& id) {
   axis.stiffness = std::max(stated.stiffness, kRigidBeyondLeast * least_N_m);
   axis.two_inertia = true;
   axis.friction_on_load = stated.friction_on_load;
-  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness, kRigidSigma, true, 0.0});
+  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness, kRigidSigma, true, 0.0, 0.0});
   id.notes.push_back(
       FormatText("the axis is rigid: shaken up to %.0f Hz, it shows no screw with a resonance below %.0f Hz. "
                  "The masses are "

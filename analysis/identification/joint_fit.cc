@@ -225,13 +225,13 @@ void Fit::FindSpread(VectorXd x, const VectorXd& raw, JointFit& result) {
     method = method.cwiseMax(StepFrom(x).cwiseAbs());
   }
   const SpreadWindows windows = WindowsOf(records_);
-  const VectorXd apart = Disagreement(jacobian, r, problem.sigma, noise, windows, windows.quickness);
+  const HalvesApart apart = Disagreement(jacobian, r, problem.sigma, noise, windows, windows.quickness);
   for (std::size_t i = 0; i < free_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double all = variance(k) + method(k) * method(k) + stepping(k) * stepping(k) +
                        std::pow(Stepping(free_[i].key), 2) + Rounding(free_[i].key, x);
-    result.parameters.push_back(
-        {free_[i].key, *free_[i].at(result.axis), std::sqrt(all), free_[i].logarithmic, apart(k)});
+    result.parameters.push_back({free_[i].key, *free_[i].at(result.axis), std::sqrt(all),
+                                 free_[i].logarithmic, apart.deviations(k), apart.distance(k)});
   }
 }
 
@@ -254,7 +254,7 @@ JointFit Fit::Run() {
   result.evaluations = evaluations_;
   if (!options_.spread) {
     for (FreeParameter& f : free_)
-      result.parameters.push_back({f.key, *f.at(result.axis), 0.0, f.logarithmic, 0.0});
+      result.parameters.push_back({f.key, *f.at(result.axis), 0.0, f.logarithmic, 0.0, 0.0});
     return result;
   }
   FindSpread(x, raw, result);
