@@ -43,6 +43,7 @@ constexpr double kSidesApart = 0.15;
 constexpr double kLeastSideGain_log = 1e-2;
 /// It stays when its share is known so well, in standard deviations, or when it foresees that much better.
 constexpr double kSureOfSide = 3.0;
+constexpr double kMostOfTable = 0.5;
 constexpr double kSurelyBetter_log = 0.1;
 
 double Hz(double stiffness, double mass) { return std::sqrt(stiffness / mass) / (2.0 * std::numbers::pi); }
@@ -251,7 +252,10 @@ void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& s
     // What lies beyond the shaking is no finding.
     const double side_Hz = found.second.side.frequency_Hz;
     const bool seen = side_Hz > band.low_Hz && side_Hz < band.high_Hz;
-    if (seen && alone - found.first > kLeastSideGain_log && found.first < best.first) best = found;
+    // Nor is what would be more than all the rest of the table: that is no part of it, but what else the
+    // model lacks, as between the reports of a drive.
+    const bool part = found.second.side.share < kMostOfTable;
+    if (seen && part && alone - found.first > kLeastSideGain_log && found.first < best.first) best = found;
   }
 }
 
