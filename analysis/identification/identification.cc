@@ -164,8 +164,9 @@ void TakeSteps(Identification& id, const std::vector<Measured>& records, int thr
   }
   if (!id.presliding.found && !shaken)
     id.notes.push_back("few slow reversals: the bristle's stiffness begins from the stated value");
-  f.s0 =
-      BristleToBeginWith_N_m(axis, records, id.presliding.found ? id.presliding.sigma0_N_m : f.s0, threads);
+  std::vector<double> others_N_m{id.stated.friction.s0};
+  if (id.presliding.found) others_N_m.push_back(id.presliding.sigma0_N_m);
+  f.s0 = BristleToBeginWith_N_m(axis, records, others_N_m, threads);
   id.break_aways = BreakAways(fine, axis);
 }
 
