@@ -16,6 +16,8 @@ namespace {
 constexpr double kChirpOfRated = 0.075;
 constexpr double kLineOfRated = 0.0025;
 constexpr int kLines = 12;
+/// Where a drive leads: its reports have noise of its own loop, above which the chirp must stand.
+constexpr double kMoreWhereDriveLeads = 2.0;
 /// Where the chirp begins: in the stated mode of motor against table, which a catalogue knows to a factor of
 /// 1.5, and at the highest.
 constexpr double kBelowMode = 0.3;
@@ -36,6 +38,8 @@ std::string TorqueSteps(double level_Nm, double most_Nm) {
 double RatedForce_N(const AxisConfig& axis) {
   return axis.drive.rated_torque_Nm / ToSi(axis.model.mechanics).radius_m_rad;
 }
+
+bool LedByDrive(const AxisConfig& axis) { return axis.drive.mode == DriveMode::kCsp; }
 
 /// What the motions are made of, and where they have room.
 class Motions {
@@ -91,14 +95,14 @@ class Motions {
     // Fast enough that a controller which swings, its mass being wrong, does not turn the axis back.
     const double travel = limits_.travel_mm;
     std::vector<double> slides;
-    for (const double speed : {std::max(3.0, travel / 4.0), 0.75 * travel, travel})
-      slides.push_back(std::min(speed, 0.8 * top_mm_s_));
+    for (const double speed : ShakenSpeeds_mm_s(travel)) slides.push_back(std::min(speed, 0.8 * top_mm_s_));
     const double begin_Hz = ChirpBegin_Hz(1e-3 * *std::min_element(slides.begin(), slides.end()));
-    BothWays(FormatText("chirp while sliding, %.0f to %.0f Hz", begin_Hz, top_Hz), slides,
-             FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: %.1f, "
-                        "frequency_max_hz: %.0f, "
-                        "period_s: 0.5}\n",
-                        name_.c_str(), CommissionChirp_N(axis_) * mechanics_.radius_m_rad, begin_Hz, top_Hz));
+    BothWays(
+        FormatText("chirp while sliding, %.0f to %.0f Hz", begin_Hz, top_Hz), slides,
+        FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: %.1f, "
+                   "frequency_max_hz: %.0f, "
+                   "period_s: 0.5}\n",
+                   name_.c_str(), CommissionShaking_N(axis_) * mechanics_.radius_m_rad, begin_Hz, top_Hz));
   }
 
   std::vector<CommissionMotion> Take() { return std::move(motions_); }
@@ -110,11 +114,16 @@ class Motions {
 
   void Add(std::string what, std::string yaml) { motions_.push_back({std::move(what), std::move(yaml)}); }
 
+  /// Quicker where the chirp is larger, or it would turn the axis back, and as often as takes as long.
+  [[nodiscard]] std::vector<double> ShakenSpeeds_mm_s(double travel) const {
+    if (!LedByDrive(axis_)) return {std::max(3.0, travel / 4.0), 0.75 * travel, travel};
+    return {0.5 * travel, 0.5 * travel, 0.75 * travel, travel};
+  }
   [[nodiscard]] double ChirpBegin_Hz(double slowest_m_s) const {
     const Mechanics& m = mechanics_;
     const double mode_Hz = ModeFrequency_Hz(TwoInertiaAxisOf(axis_));
-    const double least_Hz = CommissionChirp_N(axis_) / (kLightestOfCatalogue * m.mass_kg * 2.0 *
-                                                        std::numbers::pi * kShareOfSlide * slowest_m_s);
+    const double least_Hz = CommissionShaking_N(axis_) / (kLightestOfCatalogue * m.mass_kg * 2.0 *
+                                                          std::numbers::pi * kShareOfSlide * slowest_m_s);
     return std::min(kHighestBegin_Hz, std::max(kBelowMode * mode_Hz, least_Hz));
   }
 
@@ -143,6 +152,10 @@ std::string CreepProgram(const std::string& axis, double stroke_mm, const std::v
 }
 
 double CommissionChirp_N(const AxisConfig& axis) { return kChirpOfRated * RatedForce_N(axis); }
+
+double CommissionShaking_N(const AxisConfig& axis) {
+  return (LedByDrive(axis) ? kMoreWhereDriveLeads : 1.0) * CommissionChirp_N(axis);
+}
 
 std::vector<CommissionMotion> CommissionMotions(const CommissionPlan& plan, const AxisConfig& axis,
                                                 double position_mm, double cycle_us) {

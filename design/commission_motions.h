@@ -19,6 +19,8 @@ std::string CreepProgram(const std::string& axis, double stroke_mm, const std::v
 
 /// Force of the chirp at the table: a share of the rated one, which a catalogue states exactly.
 double CommissionChirp_N(const AxisConfig& axis);
+/// Of the chirp that shakes the sliding axis: more where a drive closes the loop.
+double CommissionShaking_N(const AxisConfig& axis);
 /// Less room than this on one side is none.
 inline constexpr double kLeastCommissionStroke_mm = 1.0;
 

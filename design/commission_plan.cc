@@ -56,7 +56,7 @@ double LargestTorque_Nm(const AxisConfig& axis, const CommissionLimits& limits) 
   const double moving_N = std::max(
       friction_N, std::max(f.Fc_plus_N, f.Fc_minus_N) + f.sigma2_Ns_m * limits.max_speed_mm_s * 1e-3);
   const double ramp_N = m.mass_kg * axis.limits.acceleration_mm_s2 * 1e-3;
-  return m.radius_m_rad * kDoubt * std::max(ramp_N + moving_N, CommissionChirp_N(axis) + friction_N);
+  return m.radius_m_rad * kDoubt * std::max(ramp_N + moving_N, CommissionShaking_N(axis) + friction_N);
 }
 
 }  // namespace

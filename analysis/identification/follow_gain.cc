@@ -38,8 +38,8 @@ FollowGain MakeFollowGain(const TableAxis& axis, double period_s, double bandwid
 }
 
 double ReportStep_N(const Measured& data) {
-  double step_N = 0.0;
-  if (!data.led_by_drive()) return step_N;
+  double step_N = data.report_step_N;
+  if (!data.led_by_drive() || step_N > 0.0) return step_N;
   for (std::size_t k = 1; k < data.size(); ++k) {
     const double change_N = std::fabs(data.reported_N[k] - data.reported_N[k - 1]);
     if (change_N > 1e-9 && (step_N == 0.0 || change_N < step_N)) step_N = change_N;

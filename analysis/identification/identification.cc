@@ -7,6 +7,7 @@
 
 #include "analysis/identification/bristle_start.h"
 #include "analysis/identification/cogging_fit.h"
+#include "analysis/identification/quiet_reports.h"
 #include "analysis/text/format_text.h"
 
 namespace contour::identify {
@@ -163,8 +164,9 @@ void TakeSteps(Identification& id, const std::vector<Measured>& records, int thr
   }
   if (!id.presliding.found && !shaken)
     id.notes.push_back("few slow reversals: the bristle's stiffness begins from the stated value");
-  f.s0 =
-      BristleToBeginWith_N_m(axis, records, id.presliding.found ? id.presliding.sigma0_N_m : f.s0, threads);
+  std::vector<double> others_N_m{id.stated.friction.s0};
+  if (id.presliding.found) others_N_m.push_back(id.presliding.sigma0_N_m);
+  f.s0 = BristleToBeginWith_N_m(axis, records, others_N_m, threads);
   id.break_aways = BreakAways(fine, axis);
 }
 
@@ -201,7 +203,7 @@ void StateRigid(Identification& id) {
   axis.stiffness = std::max(stated.stiffness, kRigidBeyondLeast * least_N_m);
   axis.two_inertia = true;
   axis.friction_on_load = stated.friction_on_load;
-  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness, kRigidSigma, true, 0.0});
+  id.fit.parameters.push_back({"screw_stiffness_N_um", axis.stiffness, kRigidSigma, true, 0.0, 0.0});
   id.notes.push_back(
       FormatText("the axis is rigid: shaken up to %.0f Hz, it shows no screw with a resonance below %.0f Hz. "
                  "The masses are "
@@ -307,6 +309,8 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
     }
     id.seconds += static_cast<double>(log.size()) * log.period_s;
   }
+  for (Measured& r : records) r.report_step_N = ReportStep_N(r);
+  for (Measured& r : records) QuietReports(id.stated.delay_s, r);
   id.missing_share = MissingShare(records);
   id.encoder = LookAtEncoder(records);
   id.period_s = records.front().period_s;
@@ -329,6 +333,7 @@ Identification Identify(const diagnosis::StatedAxis& stated, const std::vector<d
         "coarse "
         "to show them");
   report("report", 0.97);
+  id.unexplained = FindUnexplainedForce(id.fit.axis, records, options.threads);
   LookAgain(id, records);
   if (!id.fit.axis.two_inertia && id.stated.two_inertia) StateRigid(id);
   report("done", 1.0);

@@ -10,6 +10,7 @@
 #include "analysis/identification/scale_wind_up.h"
 #include "analysis/identification/shaken_screw.h"
 #include "analysis/identification/sliding_fit.h"
+#include "analysis/identification/unexplained_force.h"
 #include "analysis/recording/axis_log.h"
 
 namespace contour::identify {
@@ -44,6 +45,7 @@ struct Identification {
   ScrewWindUp wind_up;
   EncoderFindings encoder;
   std::vector<OverlayPoint> overlay;
+  UnexplainedForce unexplained;
   double seconds = 0.0;        ///< of record
   double missing_share = 0.0;  ///< of its cycles
   double period_s = 0.0;       ///< of its samples

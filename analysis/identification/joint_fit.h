@@ -41,6 +41,7 @@ struct FittedParameter {
   bool relative = true;
   /// How far slow and quick forces disagree about it, in standard deviations of that (Disagreement).
   double halves_apart = 0.0;
+  double halves_distance = 0.0;  ///< the same, in the unit of `sigma`
 };
 
 /// Standard deviation of a parameter; 0: it was not moved.

@@ -13,6 +13,7 @@ struct Measured {
   /// Where the drive closes its own loop: the offset that it was sent, in the place of the command, and what
   /// it said that it gave at the instant of the position. Empty elsewhere.
   std::vector<double> offset_N, reported_N;
+  double report_step_N = 0.0;         ///< to which it said it
   std::vector<double> position_m;     ///< R theta
   std::vector<double> table_m;        ///< linear scale; empty without one
   std::vector<std::uint8_t> present;  ///< 0: no sample at this grid point

@@ -43,17 +43,20 @@ constexpr double kSidesApart = 0.15;
 constexpr double kLeastSideGain_log = 1e-2;
 /// It stays when its share is known so well, in standard deviations, or when it foresees that much better.
 constexpr double kSureOfSide = 3.0;
+constexpr double kMostOfTable = 0.5;
 constexpr double kSurelyBetter_log = 0.1;
 
 double Hz(double stiffness, double mass) { return std::sqrt(stiffness / mass) / (2.0 * std::numbers::pi); }
 
 /// The quick part of the force, mean square: second differences of `width` rows, whose gain is
 /// 4 sin^2(pi f width T). Next rows show what is quick, rows further apart what is slower; a ramp shows in
-/// neither.
+/// neither. Where a drive leads, that of its offset: what its own loop makes of the encoder's noise is as
+/// quick, and there in every stroke.
 double Quick_N2(const Measured& d, std::size_t begin, std::size_t end, std::size_t width) {
+  const std::vector<double>& sent_N = d.led_by_drive() ? d.offset_N : d.force_N;
   double sum = 0.0;
   for (std::size_t k = std::max(begin, 2 * width); k < end; ++k)
-    sum += std::pow(d.force_N[k] - 2.0 * d.force_N[k - width] + d.force_N[k - 2 * width], 2);
+    sum += std::pow(sent_N[k] - 2.0 * sent_N[k - width] + sent_N[k - 2 * width], 2);
   return sum / static_cast<double>(end - begin);
 }
 constexpr std::size_t kFurther = 4;
@@ -64,6 +67,7 @@ Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
   Measured s;
   s.period_s = d.period_s;
   s.position_step_m = d.position_step_m;
+  s.report_step_N = d.report_step_N;
   const auto from = static_cast<std::ptrdiff_t>(begin);
   const auto to = static_cast<std::ptrdiff_t>(end);
   s.force_N.assign(d.force_N.begin() + from, d.force_N.begin() + to);
@@ -248,15 +252,20 @@ void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& s
     // What lies beyond the shaking is no finding.
     const double side_Hz = found.second.side.frequency_Hz;
     const bool seen = side_Hz > band.low_Hz && side_Hz < band.high_Hz;
-    if (seen && alone - found.first > kLeastSideGain_log && found.first < best.first) best = found;
+    // Nor is what would be more than all the rest of the table: that is no part of it, but what else the
+    // model lacks, as between the reports of a drive.
+    const bool part = found.second.side.share < kMostOfTable;
+    if (seen && part && alone - found.first > kLeastSideGain_log && found.first < best.first) best = found;
   }
 }
 
 /// Where slow and quick forces tell of two axes, the one that was fitted is neither: a part that swings, say.
-/// The whole fit then is as unsure as they are apart, as physicists have it of measurements that disagree.
+/// The whole fit then is as unsure as they are apart, as physicists have it of measurements that disagree: so
+/// many times, but never by more than the distance itself.
 void WidenByHalves(std::vector<FittedParameter>& parameters) {
   for (FittedParameter& p : parameters)
-    if (p.halves_apart > kHalvesAgree) p.sigma *= p.halves_apart;
+    if (p.halves_apart > kHalvesAgree)
+      p.sigma = std::min(p.sigma * p.halves_apart, std::hypot(p.sigma, p.halves_distance));
 }
 
 /// The last fit, from the best of two masses alone or with a part that swings. A share that could as well be

@@ -73,9 +73,9 @@ Eigen::VectorXd ScatterOverGroups(const Eigen::MatrixXd& contributions, const st
   return widest;
 }
 
-Eigen::VectorXd Disagreement(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
-                             const Eigen::VectorXd& prior_sigma, double noise, const SpreadWindows& windows,
-                             const std::vector<double>& key) {
+HalvesApart Disagreement(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
+                         const Eigen::VectorXd& prior_sigma, double noise, const SpreadWindows& windows,
+                         const std::vector<double>& key) {
   const Eigen::Index n = jacobian.cols();
   std::vector<double> sorted = key;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
@@ -98,7 +98,7 @@ Eigen::VectorXd Disagreement(const Eigen::MatrixXd& jacobian, const Eigen::Vecto
     apart += (half == 0 ? 1.0 : -1.0) * solver.solve(gradient[half]);
     variance += noise * solver.solve(Eigen::MatrixXd::Identity(n, n)).diagonal();
   }
-  return apart.cwiseAbs().cwiseQuotient(variance.cwiseMax(1e-300).cwiseSqrt());
+  return {apart.cwiseAbs(), apart.cwiseAbs().cwiseQuotient(variance.cwiseMax(1e-300).cwiseSqrt())};
 }
 
 }  // namespace contour::identify

@@ -22,11 +22,16 @@ SpreadWindows WindowsOf(const std::vector<Measured>& records);
 Eigen::VectorXd ScatterOverGroups(const Eigen::MatrixXd& contributions, const std::vector<double>& key);
 
 /// How far two halves of a record disagree about each parameter, those windows whose `key` is below the
-/// middle one's and the others: the difference of the steps that each half alone would take, in its standard
-/// deviations (`noise` is the variance of a residual). About one where the model is the axis.
-Eigen::VectorXd Disagreement(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
-                             const Eigen::VectorXd& prior_sigma, double noise, const SpreadWindows& windows,
-                             const std::vector<double>& key);
+/// middle one's and the others: the difference of the steps that each half alone would take.
+struct HalvesApart {
+  Eigen::VectorXd distance;
+  /// In its standard deviations (`noise` is the variance of a residual): about one where the model is the
+  /// axis.
+  Eigen::VectorXd deviations;
+};
+HalvesApart Disagreement(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& residual,
+                         const Eigen::VectorXd& prior_sigma, double noise, const SpreadWindows& windows,
+                         const std::vector<double>& key);
 
 /// So few groups say little of how far they scatter: Student's 95 % interval over that of a normal
 /// distribution, to first order, squared.

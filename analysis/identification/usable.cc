@@ -12,10 +12,9 @@ namespace {
 constexpr double kMostMissing = 0.01;
 /// Standard deviations from the least of the cost.
 constexpr double kMostUnsettled = 3.0;
-/// Prediction errors over what encoder and torque steps explain. Axes that are as the model has them have 1
-/// to 6; a fit that ended at a bristle twice too stiff, 28; cogging of 0.5 % of rated torque that nothing
-/// knows of, 100 (docs/laboratory/commissioning.md).
-constexpr double kFarAboveNoise = 15.0;
+/// Of friction, what goes with the motion and the model has not. Fed forward, a model leaves as much of the
+/// wind-up that friction makes, F / K, and the best loops come down to less than a tenth of that.
+constexpr double kMostUnexplained = 0.05;
 /// Largest over smallest accelerance of a shaken axis that counts as rigid.
 constexpr double kLeastDip = 2.5;
 constexpr double kSeen = 0.6;  ///< coherence
@@ -73,13 +72,15 @@ std::string UnknownMasses(const Identification& id) {
   return {};
 }
 
+/// Size alone is none: noise of the torque may be larger than anything that the encoder has.
 std::string Misfit(const Identification& id) {
-  const double noise_m = std::max(id.encoder.noise_m, 0.3 * id.encoder.step_m);
-  if (!(noise_m > 0.0) || id.fit.error_typical_m <= kFarAboveNoise * noise_m) return {};
+  const UnexplainedForce& u = id.unexplained;
+  if (u.structure_N <= kMostUnexplained * u.friction_N || u.structure_N <= u.noise_N) return {};
   return FormatText(
-      "the model foresees the motion to %.3g um only, %.0f times the encoder's noise: the axis has "
-      "what the model has not; contour diagnose names it",
-      1e6 * id.fit.error_typical_m, id.fit.error_typical_m / noise_m);
+      "the model leaves a force of %.3g N unexplained that goes with the motion, %.0f %% of friction "
+      "(noise: %.3g N): the axis has what the model has not, or the fit went astray; contour diagnose names "
+      "it",
+      u.structure_N, 100.0 * u.structure_N / u.friction_N, u.noise_N);
 }
 
 std::string Antiresonance(const Identification& id) {

@@ -49,6 +49,26 @@ TEST(CommissionPlanTest, DefaultLimitsAreEnoughForEverySteepness) {
   }
 }
 
+// Reports of a drive that closes the loop have noise of that loop.
+TEST(CommissionPlanTest, ShakesMoreWhereTheDriveLeads) {
+  MachineConfig machine = Example();
+  AxisConfig& axis = machine.axes.at("x");
+  const auto chirp_Nm = [&] {
+    const CommissionPlan plan = PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis));
+    for (const CommissionMotion& motion : plan.motions) {
+      if (motion.yaml.find("kind: chirp") == std::string::npos) continue;
+      const std::string key = "amplitude_Nm: ";
+      return std::stod(motion.yaml.substr(motion.yaml.find(key) + key.size()));
+    }
+    return 0.0;
+  };
+  axis.drive.mode = DriveMode::kCst;
+  const double torque_mode_Nm = chirp_Nm();
+  EXPECT_GT(torque_mode_Nm, 0.0);
+  axis.drive.mode = DriveMode::kCsp;
+  EXPECT_NEAR(chirp_Nm(), 2.0 * torque_mode_Nm, 1e-6);
+}
+
 TEST(CommissionPlanTest, RefusesWhatDoesNotFitAndSaysWhatDoes) {
   EXPECT_NE(Refusal(0.0, {500.0, 100.0, 0.9}).find("--travel_mm: found 500"), std::string::npos);
   EXPECT_NE(Refusal(0.0, {3.0, 100.0, 0.9}).find("whole turn"), std::string::npos);

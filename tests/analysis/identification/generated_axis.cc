@@ -116,7 +116,8 @@ identify::Measured GeneratedAxis::Drive(double seconds, const Path& position_m, 
     data.present.push_back(1);
     if (scale) data.table_m.push_back(1e-8 * std::round(plant.table_position_m() / 1e-8));
     // Row k's command acts one period later: now that of the row before.
-    current.SetCommand(command_N * truth.radius_m_rad);
+    const double noise_N = torque_noise_N > 0.0 ? torque_noise_N * normal(random) : 0.0;
+    current.SetCommand((command_N + noise_N) * truth.radius_m_rad);
     for (int i = 0; i < kSteps; ++i) plant.Step(kPeriod_s / kSteps, current.StepMean_Nm(kPeriod_s / kSteps));
     command_N = data.force_N.back();
   }

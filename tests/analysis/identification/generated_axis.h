@@ -14,6 +14,7 @@ struct GeneratedAxis {
   plant::AxisParameters truth;
   bool scale = false;
   double noise_lsb = 0.3;
+  double torque_noise_N = 0.0;  ///< of the mean over a period, not in what was commanded
 
   /// Seconds into the run to the wanted position, m, and an extra force, N.
   using Path = std::function<double(double time_s)>;

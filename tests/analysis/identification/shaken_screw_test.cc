@@ -82,6 +82,26 @@ TEST(ShakenScrewTest, AStiffScrewIsRigidAndNotInvented) {
   EXPECT_NEAR(found.axis.mass_kg() / Exactly(stiff).mass_kg(), 1.0, 0.05);
 }
 
+// What its loop makes of the encoder's noise is quick, too, and there in every stroke.
+TEST(ShakenScrewTest, WhereADriveLeadsItsOwnNoiseShakesNothing) {
+  Measured data;
+  data.period_s = 1e-3;
+  for (int k = 0; k < 4000; ++k) {
+    const double t = 1e-3 * k;
+    const double offset_N = k >= 2000 ? Chirp_N(t) : 0.0;
+    const double noise_N = k % 2 == 0 ? 30.0 : -30.0;
+    data.offset_N.push_back(offset_N);
+    data.reported_N.push_back(40.0 + offset_N + noise_N);
+    data.force_N.push_back(40.0 + offset_N + noise_N);
+    data.position_m.push_back(5e-3 * t);
+    data.present.push_back(1);
+  }
+  const auto segments = identify::ShakenStretches({data}, Exactly(PlainAxis()));
+  ASSERT_EQ(segments.size(), 1U);
+  EXPECT_NEAR(static_cast<double>(segments.front().size()), 2000.0, 200.0);
+  EXPECT_GT(segments.front().position_m.front(), 9e-3);
+}
+
 TEST(ShakenScrewTest, WithoutAChirpThereIsNothingToSee) {
   const auto found = identify::FitShakenScrew(Exactly(PlainAxis()), {SlidingRecord()});
   EXPECT_EQ(found.verdict, identify::ShakenScrew::Verdict::kNotSeen);

@@ -72,10 +72,13 @@ TEST(SpreadGroupsTest, HalvesOfTheFrequenciesDisagreeAboutWhatTheModelHasNot) {
                     "sigma0_N_m"};
     return identify::FitJointly(start, {data}, options);
   };
-  const auto apart = [](const identify::JointFit& fit, const char* key) {
+  const auto find = [](const identify::JointFit& fit, const char* key) {
     for (const identify::FittedParameter& p : fit.parameters)
-      if (p.key == key) return p.halves_apart;
-    return 0.0;
+      if (p.key == key) return p;
+    return identify::FittedParameter{};
+  };
+  const auto apart = [&](const identify::JointFit& fit, const char* key) {
+    return find(fit, key).halves_apart;
   };
   plant::AxisParameters plain = PlainAxis();
   plain.table_mass_kg = 30.0;
@@ -89,8 +92,10 @@ TEST(SpreadGroupsTest, HalvesOfTheFrequenciesDisagreeAboutWhatTheModelHasNot) {
   }
   const double error = std::log(with.axis.load_inertia / Exactly(swings).load_inertia);
   EXPECT_GT(std::fabs(error), 3.0 * identify::Sigma(with.parameters, "table_mass_kg"));
-  EXPECT_LT(std::fabs(error),
-            3.0 * identify::Sigma(with.parameters, "table_mass_kg") * apart(with, "table_mass_kg"));
+  const identify::FittedParameter table = find(with, "table_mass_kg");
+  EXPECT_LT(std::fabs(error), 3.0 * table.sigma * table.halves_apart);
+  EXPECT_LT(std::fabs(error), 1.96 * std::hypot(table.sigma, table.halves_distance));
+  EXPECT_LT(find(without, "table_mass_kg").halves_distance, 0.2 * table.halves_distance);
 }
 
 }  // namespace

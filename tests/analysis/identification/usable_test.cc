@@ -16,9 +16,8 @@ using identify::WhyUnusable;
 Identification Good() {
   Identification id;
   id.fit.parameters = {{"motor_inertia_kgm2", 80.0, 0.01, true}, {"offset_N", 0.0, 0.1, false}};
-  id.fit.error_typical_m = 5e-9;
   id.fit.unsettled = 0.5;
-  id.encoder = {4.8e-9, 2e-9};
+  id.unexplained = {0.1, 0.2, 32.0};
   id.shaken.verdict = ShakenScrew::Verdict::kFound;
   return id;
 }
@@ -66,13 +65,16 @@ TEST(WhyUnusable, RefusesARecordWithHoles) {
   EXPECT_EQ(WhyUnusable(id), "");
 }
 
-TEST(WhyUnusable, RefusesErrorsFarAboveTheEncodersNoise) {
+TEST(WhyUnusable, RefusesAForceThatGoesWithTheMotionAndNotNoise) {
   Identification id = Good();
-  id.fit.error_typical_m = 200e-9;
-  EXPECT_TRUE(Says(id, "100 times the encoder's noise"));
-  // A fit that ended beside a bristle twice too stiff.
-  id.fit.error_typical_m = 56e-9;
-  EXPECT_TRUE(Says(id, "28 times the encoder's noise"));
+  id.unexplained = {1.5, 2.2, 32.0};
+  EXPECT_TRUE(Says(id, "a force of 2.2 N unexplained that goes with the motion, 7 % of friction"));
+  // A torque that is as noisy explains errors of that size.
+  id.unexplained.noise_N = 2.4;
+  EXPECT_EQ(WhyUnusable(id), "");
+  // Little of friction, however quiet all the rest is.
+  id.unexplained = {0.01, 0.5, 32.0};
+  EXPECT_EQ(WhyUnusable(id), "");
 }
 
 TEST(WhyUnusable, RefusesAScrewThatIsHardlyKnown) {

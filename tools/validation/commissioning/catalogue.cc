@@ -15,6 +15,11 @@ constexpr double kFactor = 2.0;
 constexpr double kBreakAway = 1.25;
 constexpr double kDamping = 0.67;
 
+/// With what a vertical axis moves along.
+double Moved_kg(const EmulatedAxisConfig& is) {
+  return is.table_mass_kg + (is.counterbalance ? is.counterbalance->moving_mass_kg : 0.0);
+}
+
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) {
@@ -35,7 +40,7 @@ ModelConfig CatalogueModel(const EmulatedAxisConfig& is, ModelConfig model, std:
   Draw draw(seed);
   MechanicsConfig& m = model.mechanics;
   m.motor_inertia_kgm2 = is.motor_inertia_kgm2 * draw.Within(kMasses_rel);
-  m.table_mass_kg = is.table_mass_kg * draw.Within(kMasses_rel);
+  m.table_mass_kg = Moved_kg(is) * draw.Within(kMasses_rel);
   m.screw_stiffness_N_um = is.screw_stiffness_N_um * draw.Factor(kFactor);
   m.screw_damping_Ns_m = kDamping * is.screw_damping_Ns_m;
   FrictionConfig& f = model.friction;
@@ -63,7 +68,8 @@ void StateCatalogue(EmulatedMachineFile& file, std::uint64_t seed, KnownLoops& k
     axis.model = CatalogueModel(file.emulator.axes.at(name), axis.model, seed);
     // In csp the drive closes the loop.
     if (axis.drive.mode == DriveMode::kCsp) continue;
-    const std::string key = machine.machine.name + " " + std::to_string(seed);
+    const std::string key = machine.machine.name + " " + std::to_string(seed) + " " +
+                            std::to_string(Moved_kg(file.emulator.axes.at(name)));
     if (!known.contains(key)) {
       const StartLoop start = FindStartLoop(LoopAxisOf(axis), 1e-6 * machine.machine.cycle_us, 1);
       if (!start.wrong.empty())

@@ -15,7 +15,11 @@ constexpr double kSideModeOfMode = 0.55;
 constexpr double kSideModeMassShare = 0.12;
 constexpr double kWobble_um = 0.3;
 constexpr double kRipple = 0.02;
+constexpr double kTorqueNoise = 0.005;
 constexpr double kRatedOfCogging_Nm = 0.637;
+/// What carries a vertical axis: a mass that moves along, of the table's, and a force that the weight leaves,
+/// of friction.
+constexpr double kMovedAlong = 0.9, kCarried = 1.0, kRate_N_mm = 0.2;
 
 double Mode_Hz(const EmulatedAxisConfig& axis, double lead_mm) {
   const double radius_m = 1e-3 * lead_mm / (2.0 * std::numbers::pi);
@@ -45,6 +49,12 @@ std::vector<std::string> Assignments(const EmulatedMachineFile& file, const Comm
     if (c.effect == "wobble")
       set.push_back(key + FormatText("effects.pitch_error={amplitude_um: %g, periods_per_stroke: %.6g}",
                                      kWobble_um, axis.stroke_mm / lead_mm));
+    if (c.effect == "torque_noise")
+      set.push_back(key + FormatText("torque_noise_Nm=%.6g", kTorqueNoise * config.drive.rated_torque_Nm));
+    if (c.effect == "counterbalance")
+      set.push_back(key + FormatText("counterbalance={moving_mass_kg: %.6g, force_N: %.6g, rate_N_mm: %g}",
+                                     kMovedAlong * axis.table_mass_kg, kCarried * axis.friction.Fc_plus_N,
+                                     kRate_N_mm));
     if (c.effect == "motor_friction")
       set.push_back(key + FormatText("friction.motor_share_rel=%g", kMotorFrictionShare));
     if (c.effect == "side_mode")
@@ -57,8 +67,9 @@ std::vector<std::string> Assignments(const EmulatedMachineFile& file, const Comm
 }  // namespace
 
 const std::vector<std::string>& CommissioningEffects() {
-  static const std::vector<std::string> all{"none",   "cogging3",       "cogging6", "ripple",
-                                            "wobble", "motor_friction", "side_mode"};
+  static const std::vector<std::string> all{"none",      "cogging3",       "cogging6",
+                                            "ripple",    "wobble",         "motor_friction",
+                                            "side_mode", "counterbalance", "torque_noise"};
   return all;
 }
 

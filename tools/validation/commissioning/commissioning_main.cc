@@ -86,10 +86,12 @@ void RunAxis(const EmulatedMachineFile& file, const std::string& axis, const Opt
     std::printf(
         "  axis %s: %.1f s, following error up to %.0f um, %.3f Nm; error of prediction %.3g nm, typical "
         "%.3g "
-        "(encoder %.3g), unsettled %.2f; on the motor %.3f, swinging %.3f at %.1f Hz\n",
+        "(encoder %.3g), unsettled %.2f; unexplained %.3g N beside noise of %.3g N; on the motor %.3f, "
+        "swinging %.3f at %.1f Hz\n",
         axis.c_str(), run.machine_time_s, 1e6 * run.largest_following_error_m, run.largest_torque_Nm,
         1e9 * id.fit.error_rms_m, 1e9 * id.fit.error_typical_m, 1e9 * id.encoder.noise_m, id.fit.unsettled,
-        id.fit.axis.motor_friction_share, id.fit.axis.side.share, id.fit.axis.side.frequency_Hz);
+        id.unexplained.structure_N, id.unexplained.noise_N, id.fit.axis.motor_friction_share,
+        id.fit.axis.side.share, id.fit.axis.side.frequency_Hz);
   for (const std::string& n : id.notes) std::printf("  note: %s\n", n.c_str());
   const std::string why = identify::WhyUnusable(id);
   Tallies shown;  // what is refused is shown, but not counted
@@ -165,8 +167,9 @@ int main(int argc, char** argv) {
   CLI::App app{"Commissions emulated machines from catalogue data in virtual time."};
   contour::Options options;
   app.add_option("--machines", options.machines, "base, or machines of config/family");
-  app.add_option("--effects", options.effects,
-                 "none, cogging3, cogging6, ripple, wobble, motor_friction, side_mode");
+  app.add_option(
+      "--effects", options.effects,
+      "none, cogging3, cogging6, ripple, wobble, motor_friction, side_mode, counterbalance, torque_noise");
   app.add_option("--mode", options.mode, "Of the drives: cst or csp")->capture_default_str();
   app.add_option("--seeds", options.seeds, "How many");
   app.add_option("--first", options.first, "The first of them");

@@ -64,7 +64,7 @@ std::map<std::string, double> Truth(const EmulatedMachineFile& file, const std::
   }
   const plant::FrictionParameters& f = p.friction.base;
   return {{"motor_inertia_kgm2", p.motor_inertia_kgm2 / (p.radius_m_rad * p.radius_m_rad)},
-          {"table_mass_kg", p.table_mass_kg},
+          {"table_mass_kg", p.table_mass_kg + p.counterbalance_mass_kg},
           {"screw_stiffness_N_um", p.stiffness_N_m},
           {"screw_damping_Ns_m", p.damping_Ns_m},
           {"Fs_plus_N", f.plus.Fs_N * mean},
