@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -97,6 +98,26 @@ TEST_F(ConsistencyTest, WhatOnePieceAloneTellsIsNotConfirmedByTheOthers) {
     with_.residual[k] = without_.residual[k] - product / square;
   EXPECT_LT(Consistency(axis_.problem, without_, with_, true),
             Consistency(axis_.problem, without_, with_, false));
+}
+
+TEST_F(ConsistencyTest, WhatOnePieceAloneTellsOfTheBaseTakesNothingFromAnEffectThatAllPiecesShow) {
+  // A number of the base and the effect do the same, but for one piece.
+  Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(Size(), 2);
+  const auto from = static_cast<Eigen::Index>(Begin(10)), to = static_cast<Eigen::Index>(Begin(11));
+  columns.col(0).segment(from, to - from).setConstant(50.0);
+  Eigen::Map<Eigen::VectorXd> without(without_.residual.data(), Size());
+  Eigen::Map<Eigen::VectorXd> with(with_.residual.data(), Size());
+  without.array() += 0.3;
+  with = without;
+  without -= columns.leftCols(1) * columns.leftCols(1).colPivHouseholderQr().solve(without);
+  with -= columns * columns.colPivHouseholderQr().solve(with);
+  without_.point.base = with_.point.base = {0.0};
+  without_.jacobian = columns.leftCols(1);
+  with_.jacobian = columns;
+  // The other pieces alone would take the base far off in that one.
+  EXPECT_GT(Consistency(axis_.problem, without_, with_, true), 3.0);
+  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, true),
+              Consistency(axis_.problem, without_, with_, false), 0.5);
 }
 
 class HeldOutTest : public testing::Test {
