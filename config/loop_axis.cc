@@ -59,4 +59,8 @@ double WindUpUnderForceStep_m(const MachineConfig& machine) {
   return most_m;
 }
 
+double PathTolerance_mm(const MachineConfig& machine, double following_mm) {
+  return machine.machine.path_tolerance_mm.value_or(std::max(kUsualPathTolerance_mm, 2.0 * following_mm));
+}
+
 }  // namespace contour

@@ -40,4 +40,7 @@ double WindUpUnderForceStep_m(const AxisConfig& axis);
 /// Of the axis whose screw gives most.
 double WindUpUnderForceStep_m(const MachineConfig& machine);
 
+/// Of a program that states none, on a machine that is expected to be `following_mm` off its path.
+double PathTolerance_mm(const MachineConfig& machine, double following_mm);
+
 }  // namespace contour

@@ -33,18 +33,14 @@ ScrewDoubt DoubtOf(const AxisConfig& axis) {
           coulomb_N / a.axis.stiffness_N_m * friction_std};
 }
 
-double PathTolerance_m(const MachineConfig& machine, double following_m) {
-  if (machine.machine.path_tolerance_mm) return *machine.machine.path_tolerance_mm * 1e-3;
-  return std::max(kUsualPathTolerance_mm * 1e-3, 2.0 * following_m);
-}
-
 }  // namespace
 
 PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
   PerAxis<PlanLimits> limits;
   // What is learnt may shift a program by so much.
   const double margin_m = machine.learning.enabled ? 1e-6 * machine.learning.largest_um : 0.0;
-  const double following_m = PathFollowing_m(machine), tolerance_m = PathTolerance_m(machine, following_m);
+  const double following_m = PathFollowing_m(machine),
+               tolerance_m = 1e-3 * PathTolerance_mm(machine, 1e3 * following_m);
   for (const auto& [name, axis] : machine.axes) {
     const AxisLimits& l = axis.limits;
     const Mechanics mechanics = ToSi(axis.model.mechanics);

@@ -201,6 +201,7 @@ void Pump::Feed() {
     if (next_) {
       halts_.Begin(next_->program_id(), std::move(next_halts_));
       feeder_.Begin(std::move(next_), next_options_);
+      failed_ = false;
     }
     if (pace_) {
       // Where the program waits for the operator, that is what goes on, and the path with it when all is

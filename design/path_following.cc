@@ -55,7 +55,7 @@ std::vector<std::string> PathFollowingIfMissing(const MachineConfig& machine) {
 std::optional<std::string> WiderToleranceText(const MachineConfig& machine) {
   if (machine.machine.path_tolerance_mm) return std::nullopt;
   const double following_mm = machine.machine.path_following_mm.value_or(ExpectedFollowing_mm(machine));
-  const double tolerance_mm = 2.0 * following_mm;
+  const double tolerance_mm = PathTolerance_mm(machine, following_mm);
   if (tolerance_mm <= kUsualPathTolerance_mm) return std::nullopt;
   return "programs that state no tolerance are followed within " + Text(tolerance_mm) + " mm, not " +
          Text(kUsualPathTolerance_mm) + ": the table is expected to be off its path by " +

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "config/loop_axis.h"
 #include "config/number_text.h"
 #include "design/path_following.h"
 
@@ -10,8 +11,7 @@ namespace contour {
 std::string PathSection(const MachineConfig& machine) {
   const bool stated = machine.machine.path_following_mm.has_value();
   const double following_mm = stated ? *machine.machine.path_following_mm : ExpectedFollowing_mm(machine);
-  const double tolerance_mm =
-      machine.machine.path_tolerance_mm.value_or(std::max(kUsualPathTolerance_mm, 2.0 * following_mm));
+  const double tolerance_mm = PathTolerance_mm(machine, following_mm);
   const double left_mm = std::min(following_mm, 0.5 * tolerance_mm);
   std::string text = "\nPaths of G-code\n  tolerance " + RoundedText(tolerance_mm) +
                      " mm where a program states none: " + RoundedText(tolerance_mm - left_mm) +

@@ -101,8 +101,9 @@ void VirtualMachine::Tick() {
 
 void VirtualMachine::Fail(const std::string& doing) const {
   const CycleRecord& r = record();
-  const std::string why = r.reason == Reason::kBringUpFailed ? BringUpText(r.bring_up, axis_names_)
-                                                             : ReasonText(r, axis_names_, bus_names_);
+  std::string why = r.reason == Reason::kBringUpFailed ? BringUpText(r.bring_up, axis_names_)
+                                                       : ReasonText(r, axis_names_, bus_names_);
+  if (r.reason == Reason::kPathUnderrun && !feeder_.failure().empty()) why = feeder_.failure();
   throw std::runtime_error(doing + ": the machine is " + std::string(Name(r.state)) + " in cycle " +
                            std::to_string(r.cycle) + (why.empty() ? std::string() : ": " + why));
 }

@@ -21,7 +21,7 @@ std::string TightTolerance(const GcodeMoves& program, const std::string& name, d
   std::snprintf(
       text.data(), text.size(),
       ":%d: a tolerance of %.3g mm leaves the machine %.3g mm; it is expected to be off its path by "
-      "up to %.3g mm, at any speed (machine.path_following_mm)",
+      "%.3g mm, at any speed (machine.path_following_mm)",
       first, 1e3 * least_m, 0.5e3 * least_m, 1e3 * following_m);
   return name + text.data();
 }

@@ -6,8 +6,8 @@
 
 namespace contour {
 
-/// One sentence where moves ask for a smaller tolerance than leaves a machine that may be `following_m` from
-/// the path that it is to follow half of it; the first such line. Empty: there are none.
+/// A machine is expected to be `following_m` off the path that it is to follow. A sentence, with the line of
+/// the first, on moves whose tolerance is less than twice that; empty where there are none.
 std::string TightTolerance(const GcodeMoves& program, const std::string& name, double following_m);
 
 }  // namespace contour

@@ -16,7 +16,7 @@ TEST(TightTolerance, IsNamedWithItsFirstLineAndTheLeastOfThem) {
   EXPECT_EQ(Warning(text, 0.001), "");
   EXPECT_EQ(Warning(text, 0.006),
             "part.ngc:4: a tolerance of 0.004 mm leaves the machine 0.002 mm; it is expected to be off its "
-            "path by up to 0.006 mm, at any speed (machine.path_following_mm)");
+            "path by 0.006 mm, at any speed (machine.path_following_mm)");
 }
 
 TEST(TightTolerance, OfAProgramThatStatesNoneIsTheMachines) {
