@@ -34,6 +34,19 @@ struct Axis {
   double friction_drop_N = 0.0;
 };
 
+// As stiff as the cycle tells its monitors that the loops in use are.
+double Loop_Hz(const MachineConfig& config, bool in_cascade) {
+  double least_Hz = std::numeric_limits<double>::infinity();
+  const bool two_inertias = config.machine.controller == ControllerName::kFull &&
+                            config.control.friction == FrictionKind::kLinear && !in_cascade;
+  if (two_inertias)
+    for (const auto& [name, axis] : config.axes)
+      if (axis.loop) least_Hz = std::min(least_Hz, axis.loop->regulator_Hz);
+  return std::isfinite(least_Hz)
+             ? least_Hz
+             : StiffnessBandwidth_Hz(config.control, config.machine.controller, in_cascade);
+}
+
 Axis Known(const MachineConfig& config, const AxisConfig& axis) {
   const ExtendedModel model = Extended(axis.model);
   const Mechanics m = ToSi(model.mechanics);
@@ -48,8 +61,7 @@ Axis Known(const MachineConfig& config, const AxisConfig& axis) {
                              static_cast<std::uint32_t>(axis.drive.delay_cycles), bitrate_bit_s, in_cascade};
   Axis a;
   a.limits = ToSi(axis.limits, m.radius_m_rad);
-  a.monitored = ToMonitored(m, ToMonitored(f), drive, a.limits,
-                            StiffnessBandwidth_Hz(config.control, config.machine.controller, in_cascade));
+  a.monitored = ToMonitored(m, ToMonitored(f), drive, a.limits, Loop_Hz(config, in_cascade));
   a.period_s = 1e-6 * config.machine.cycle_us;
   a.t = ThresholdsOf(a.monitored, config.control.monitor, a.period_s);
   a.lag_s = 1e-3 * axis.drive.lag_ms;
@@ -62,11 +74,9 @@ double Off_s(const Axis& a) {
   return (1.0 + a.monitored.delay_cycles) * a.period_s + kLagsToNothing * a.lag_s;
 }
 
-// The path ends where the fault is seen; an axis in motion goes on until the torque is off, and one behind a
-// drive's interpolation is a period behind before.
-double GoesOn_m(const Axis& a, double feed_m_s) {
-  return feed_m_s * (Off_s(a) + (a.monitored.in_cascade ? a.period_s : 0.0));
-}
+// The path ends with the cycle before the one that sees the fault; an axis in motion goes on until the torque
+// is off.
+double GoesOn_m(const Axis& a, double feed_m_s) { return feed_m_s * (a.period_s + Off_s(a)); }
 
 // What the torque limit can do while a force that is on its way has not been judged yet.
 double Slam_m(const Axis& a, double speed_m_s) {

@@ -50,7 +50,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   held_ = true;
   forces_N_.fill(0.0);
   report_before_N_ = s.reported_force_N;
-  peak_N_ = force_N_ = jitter_N_ = unexplained_N_ = on_its_way_N_ = sent_N_ = reported_N_ = 0.0;
+  peak_N_ = force_N_ = jitter_N_ = unexplained_N_ = on_its_way_N_ = ringing_N_ = sent_N_ = reported_N_ = 0.0;
   slow_force_N_ = axis_.in_cascade ? s.reported_force_N : 0.0;
   least_N_ = most_N_ = slower_force_N_ = slow_force_N_;
   settling_N_ = 0.0;
@@ -146,6 +146,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   // its torque be on its way back: what a loop makes of a reading that stands is none.
   settling_N_ *= t_.settling_decay;
   if (!near_ || std::abs(s.position_m - near_position_m_) > t_.flicker_m) {
+    SeeLead(s.position_m - s.reference_m);
     near_ = true;
     near_position_m_ = s.position_m;
     near_reference_m_ = s.reference_m;
@@ -174,7 +175,8 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   const auto gone = [&](std::uint32_t& periods, double from_m, double path_m) {
     const double gone_m = s.reference_m - from_m;
     // An axis that had slipped far ahead rightly stands until the reference has come up with it.
-    const double ahead_m = std::copysign(1.0, gone_m) * (s.position_m - from_m);
+    const double lead_m = s.position_m - from_m;
+    const double ahead_m = gone_m > 0.0 ? lead_m - least_lead_m_ : most_lead_m_ - lead_m;
     const bool beyond = std::abs(gone_m) > path_m + (ahead_m > kSlipped * path_m ? ahead_m : 0.0);
     periods = beyond ? periods + waited_periods_ : 0;
     return periods > t_.begin_periods;
@@ -198,6 +200,15 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   }
   if (!by_force && !by_path && !by_flicker && !by_push && !at_rest) return Reason::kNone;
   return Reason::kFeedbackFrozen;
+}
+
+// A motor leads its table by the screw's wind-up for as long as it moves; what it slips by, it leads by more
+// than when the motion began.
+void MotionMonitor::SeeLead(double lead_m) noexcept {
+  if (!near_) least_lead_m_ = most_lead_m_ = lead_m;
+  const double forgotten = std::min((near_periods_ + 1) * t_.settling_filter, 1.0);
+  least_lead_m_ = std::min(least_lead_m_ + forgotten * (lead_m - least_lead_m_), lead_m);
+  most_lead_m_ = std::max(most_lead_m_ + forgotten * (lead_m - most_lead_m_), lead_m);
 }
 
 // Our own loops at rest answer more than readings, and outside forces that grow slowly: only what goes fast
@@ -236,7 +247,7 @@ Reason MotionMonitor::Momentum(double velocity_m_s, double explained_N, bool sta
       won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0 && std::abs(velocity_m_s) > axis_.slide_m_s;
   const double allowed_N =
       (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N : explained_N) +
-      jitter_N_ + std::abs(on_its_way_N_);
+      jitter_N_ + std::abs(on_its_way_N_) + ringing_N_;
   jitter_N_ *= 1.0 - t_.filter;
   beyond_ = std::abs(unexplained_N_) > allowed_N ? beyond_ + 1 : 0;
   if (beyond_ < kBeyondAtLeast) return Reason::kNone;
@@ -334,7 +345,11 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
   const double force_N = axis_.in_cascade ? 0.5 * (s.reported_force_N + report_before_N_) : Acting_N();
   // A drive's loop that swings, as after a set-point that was lost, has a mean near nothing.
   const double swing_N = 0.5 * std::abs(s.reported_force_N - report_before_N_);
-  if (axis_.in_cascade) SeePeak(std::max(std::abs(force_N), swing_N), 0.0);
+  if (axis_.in_cascade) {
+    SeePeak(std::max(std::abs(force_N), swing_N), 0.0);
+    // The screw rings by what the torque changed at once.
+    ringing_N_ = std::max(ringing_N_ * t_.peak_decay, t_.ringing * 2.0 * swing_N);
+  }
   report_before_N_ = s.reported_force_N;
 
   Reason found = Reason::kNone;

@@ -56,11 +56,11 @@ class MotionMonitor {
     keep(watch_, until_learning_, readings_, position_m_, velocity_m_s_, waited_periods_, last_gap_periods_,
          believed_, late_readings_, held_, forces_N_, report_before_N_, peak_N_, slow_force_N_,
          slower_force_N_, rest_least_N_, rest_most_N_, drive_push_, settling_N_, least_N_, most_N_, same_,
-         same_reference_m_, near_, near_position_m_, near_reference_m_, near_periods_, near_least_N_,
-         near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_, pushed_periods_,
-         on_its_way_N_, force_N_, unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_, report_seen_,
-         undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_,
-         scale_offset_m_, scale_begin_m_);
+         same_reference_m_, near_, near_position_m_, near_reference_m_, near_periods_, least_lead_m_,
+         most_lead_m_, near_least_N_, near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_,
+         pushed_periods_, on_its_way_N_, ringing_N_, force_N_, unexplained_N_, jitter_N_, beyond_, sent_N_,
+         reported_N_, report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_,
+         scale_apart_, scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -84,6 +84,7 @@ class MotionMonitor {
   inline Reason Judge(const MotionSample& s) noexcept;
   inline Reason Jump(const MotionSample& s, double force_N) noexcept;
   inline Reason Frozen(const MotionSample& s) noexcept;
+  inline void SeeLead(double lead_m) noexcept;
   inline bool AtRest(const MotionSample& s) noexcept;
   inline bool Pushed(const MotionSample& s, double settling_N) noexcept;
   inline Reason Named(Reason found, const MotionSample& s, double force_N) noexcept;
@@ -128,11 +129,13 @@ class MotionMonitor {
   double near_position_m_ = 0.0;
   double near_reference_m_ = 0.0;  ///< the reference when that began
   std::uint32_t near_periods_ = 0;
-  double near_least_N_ = 0.0, near_most_N_ = 0.0;      ///< of the force, since then
+  double least_lead_m_ = 0.0, most_lead_m_ = 0.0;  ///< reading less reference, where it moves; soon forgotten
+  double near_least_N_ = 0.0, near_most_N_ = 0.0;  ///< of the force, since then
   double pushed_least_N_ = 0.0, pushed_most_N_ = 0.0;  ///< the same, fading, once it has stood for a while
   std::uint32_t pushed_periods_ = 0;             ///< that it has changed by more than a standing axis bears
   std::uint32_t same_gone_ = 0, near_gone_ = 0;  ///< periods that the reference has been too far for that
   double on_its_way_N_ = 0.0;                    ///< low-passed: a period's change of the torque
+  double ringing_N_ = 0.0;                       ///< csp: that changes of torque leave in the filtered force
   double force_N_ = 0.0;                         ///< low-passed torque
   double unexplained_N_ = 0.0;                   ///< low-passed u - m a
   double jitter_N_ = 0.0;                        ///< of it, what a SYNC that came late may have made

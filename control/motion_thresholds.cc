@@ -138,6 +138,9 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.filter = std::min(1.0 - std::exp(-period_s / filter_s),
                       kNoiseShare * (t.external_N + t.friction_N) / std::max(count_N, 1e-12));
   const double sure_N = kSureOfLimit * a.force_limit_N;
+  // A step rings by the motor's acceleration beyond that of a rigid axis; the filter passes so much of it.
+  const double filtered_s = -period_s / std::log1p(-t.filter);
+  t.ringing = t.mass_kg * t.screw_share_1_kg / std::hypot(1.0, mode_rad_s * filtered_s);
   t.unexplained_rel =
       std::clamp(1.0 - (t.friction_N + t.external_N) / std::max(sure_N, 1e-9), 0.0, kMostUnexplained);
   t.delivery_N = c.reported_torque_error_rel * a.rated_force_N;
