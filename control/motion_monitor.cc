@@ -168,9 +168,12 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
                          std::min(std::sqrt(t_.mass_kg / s.spring_N_m) / period_s_, kLongest_periods)) +
                      1;
   }
+  // Inertia may hold a reading within its band for a while, against less the longer that lasts.
+  const double inertial_N = t_.Inertial_N(t_.flickering, near_periods_ * period_s_);
+  const double flickering_N = t_.flickering_force_N + (near_periods_ >= t_.force_periods ? 0.0 : inertial_N);
   const bool by_force =
       (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N) ||
-      (near_periods_ >= t_.force_periods && near_most_N_ - near_least_N_ > t_.flickering_force_N);
+      (near_periods_ >= kSameAtLeast_periods && near_most_N_ - near_least_N_ > flickering_N);
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
   const auto gone = [&](std::uint32_t& periods, double from_m, double path_m) {
     const double gone_m = s.reference_m - from_m;
@@ -191,7 +194,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   if (std::abs(s.reference_m - near_reference_m_) > t_.flickering.Path_m(loop_N_m, settling_N)) {
     // At a turning point inertia alone may hold a reading within the band for a while. And what our own loop
     // answered is known: one that brakes at the same time may have answered nothing.
-    const double force_N = settling_N + t_.Inertial_N(t_.flickering, near_periods_ * period_s_);
+    const double force_N = settling_N + inertial_N;
     const bool answered = axis_.in_cascade || near_most_N_ - near_least_N_ > t_.flickering.force_N + force_N;
     const double flicker_path_m = answered ? t_.flickering.Path_m(loop_N_m, force_N) : HUGE_VAL;
     by_flicker = gone(near_gone_, near_reference_m_, flicker_path_m) && near_periods_ >= answer_periods;

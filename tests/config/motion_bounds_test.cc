@@ -1,0 +1,61 @@
+#include "config/motion_bounds.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "config/load_machine.h"
+#include "control/motion_thresholds.h"
+
+namespace contour {
+namespace {
+
+MachineConfig Machine(DriveMode mode) {
+  MachineConfig machine = LoadMachine(SOURCE_DIR "/config/family/slow40.yaml");
+  for (auto& [name, axis] : machine.axes) axis.drive.mode = mode;
+  return machine;
+}
+
+double Departure_mm(const MachineConfig& machine, MotionFault fault, double feed_mm_s) {
+  return BoundOf(machine, machine.axes.begin()->second, fault, feed_mm_s).departure_mm;
+}
+
+double Seen_s(const MachineConfig& machine, double feed_mm_s) {
+  return BoundOf(machine, machine.axes.begin()->second, MotionFault::kFrozen, feed_mm_s).time_s;
+}
+
+// The monitors go by the slowest of the loops that act, not by the stiffness of a controller that does not.
+TEST(MotionBounds, AStandingReadingIsPromisedByTheLoopInUse) {
+  constexpr double kCreep_mm_s = 0.02;
+  MachineConfig machine = Machine(DriveMode::kCst);
+  const double as_tuned_s = Seen_s(machine, kCreep_mm_s);
+  machine.control.full.contour_bandwidth_Hz *= 2.0;
+  machine.control.full.lag_bandwidth_Hz *= 2.0;
+  EXPECT_DOUBLE_EQ(Seen_s(machine, kCreep_mm_s), as_tuned_s);
+  // One soft loop is enough.
+  machine.axes.rbegin()->second.loop->regulator_Hz *= 0.5;
+  EXPECT_GT(Seen_s(machine, kCreep_mm_s), 2.0 * as_tuned_s);
+  // In csp the drives' loops act.
+  machine = Machine(DriveMode::kCsp);
+  const double in_csp_s = Seen_s(machine, kCreep_mm_s);
+  machine.axes.rbegin()->second.loop->regulator_Hz *= 0.5;
+  EXPECT_DOUBLE_EQ(Seen_s(machine, kCreep_mm_s), in_csp_s);
+  machine.control.monitor.drive_loop_Hz *= 0.5;
+  EXPECT_GT(Seen_s(machine, kCreep_mm_s), in_csp_s);
+}
+
+// From the last point that was commanded, a period before the reading that jumps is seen, to no torque: one
+// period to the frame, one for the drive's delay, the time in which its current fades.
+TEST(MotionBounds, AJumpInMotionCountsFromTheLastCommandedPoint) {
+  for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
+    const MachineConfig machine = Machine(mode);
+    const AxisConfig& axis = machine.axes.begin()->second;
+    const double period_s = 1e-6 * machine.machine.cycle_us;
+    const double until_off_s = (2.0 + axis.drive.delay_cycles) * period_s + 3e-3 * axis.drive.lag_ms;
+    const double at_rest_mm = Departure_mm(machine, MotionFault::kJump, 0.0);
+    EXPECT_NEAR(Departure_mm(machine, MotionFault::kJump, 500.0) - at_rest_mm, 500.0 * until_off_s, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace contour
