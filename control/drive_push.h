@@ -16,6 +16,7 @@ struct DriveReading {
   std::uint32_t waited_periods = 1;  ///< since the reading before
   double force_N = 0.0;              ///< the drive's report (0x6077), low-passed
   double swing_N = 0.0;              ///< the report, less that
+  double noise_N = 0.0;              ///< by which it changes without a push, see ReportTurns
 };
 
 /// Whether a drive's own loop pushes against a reading that stands. At rest nothing but readings changes its
@@ -35,6 +36,7 @@ class DrivePush {
       reference_m_ = r.reference_m;
       periods_ = 0;
       tail_N_ = std::abs(r.swing_N);
+      pushed_ = 0;
       return false;
     }
     periods_ = std::min(periods_ + r.waited_periods, t.rest_periods);
@@ -42,10 +44,13 @@ class DrivePush {
   }
 
   void Keep(StateKeeper& keep) noexcept {
-    keep(reference_m_, periods_, tail_N_, least_N_, most_N_, swing_N_, small_least_N_, small_most_N_);
+    keep(reference_m_, periods_, tail_N_, least_N_, most_N_, pushed_, swing_N_, small_least_N_,
+         small_most_N_);
   }
 
  private:
+  // A kick that is over at once has come back by then.
+  static constexpr std::uint32_t kPushedAtLeast = 3;
   // After which a report that lags behind is off its own mean.
   static constexpr std::uint32_t kShowsTail_periods = static_cast<std::uint32_t>(kChatter_periods);
 
@@ -56,8 +61,10 @@ class DrivePush {
     if (periods_ <= t.begin_periods || tail_N_ > t.tail_N) least_N_ = most_N_ = r.force_N;
     least_N_ = std::min(least_N_, r.force_N);
     most_N_ = std::max(most_N_, r.force_N);
-    const double pushed_N = most_N_ - least_N_ - t.rest_force_N;
-    return pushed_N > 0.0 && pushed_N > t.Inertial_N(t.frozen, periods_ * period_s);
+    const double pushed_N = most_N_ - least_N_ - t.rest_force_N - r.noise_N;
+    const bool large = pushed_N > 0.0 && pushed_N > t.Inertial_N(t.frozen, periods_ * period_s);
+    pushed_ = large ? pushed_ + 1 : 0;
+    return pushed_ >= kPushedAtLeast;
   }
 
   /// Lately, by more than presliding takes up and the report swings by.
@@ -79,6 +86,7 @@ class DrivePush {
   std::uint32_t periods_ = 0;  ///< that reference and reading have stood still
   double tail_N_ = 0.0;        ///< that the report lagged behind by when the reading last changed, fading
   double least_N_ = 0.0, most_N_ = 0.0;              ///< of the force, since then
+  std::uint32_t pushed_ = 0;                         ///< readings in a row
   double swing_N_ = 0.0;                             ///< largest lately, fading
   double small_least_N_ = 0.0, small_most_N_ = 0.0;  ///< of the force lately, fading
 };

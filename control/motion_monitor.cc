@@ -50,12 +50,15 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   held_ = true;
   forces_N_.fill(0.0);
   report_before_N_ = s.reported_force_N;
-  peak_N_ = force_N_ = jitter_N_ = unexplained_N_ = on_its_way_N_ = ringing_N_ = sent_N_ = reported_N_ = 0.0;
+  peak_N_ = force_N_ = jitter_N_ = unexplained_N_ = on_its_way_N_ = ringing_N_ = turns_N_ = sent_N_ =
+      reported_N_ = 0.0;
   slow_force_N_ = axis_.in_cascade ? s.reported_force_N : 0.0;
   least_N_ = most_N_ = slower_force_N_ = slow_force_N_;
   settling_N_ = 0.0;
   rest_least_N_ = rest_most_N_ = slow_force_N_;
   drive_push_.Restart(s.reference_m);
+  same_turns_.Restart(s.reported_force_N);
+  near_turns_.Restart(s.reported_force_N);
   pushed_least_N_ = pushed_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
   near_ = false;
@@ -126,6 +129,15 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   // A force counts once it has acted for a whole period before this sample.
   const double settled_N = axis_.in_cascade ? s.reported_force_N : forces_N_[axis_.delay_cycles + 1];
   const double swing_N = settled_N - slow_force_N_;
+  if (axis_.in_cascade) {
+    same_turns_.See(settled_N);
+    near_turns_.See(settled_N);
+    turns_N_ = std::max(turns_N_ * (1.0 - t_.push_fade), same_turns_.most_N());
+  }
+  // Kicks come from either side: some of one sign in a row are no push, even where this reading has seen none
+  // come back yet.
+  const double same_noise_N = std::max(t_.swing * same_turns_.most_N(), turns_N_);
+  const double near_noise_N = std::max(t_.swing * near_turns_.most_N(), turns_N_);
   slow_force_N_ += t_.frozen_filter * swing_N;
   slower_force_N_ += t_.settling_filter * (slow_force_N_ - slower_force_N_);
   // A reading that is exactly the same, under another force or along a path that goes on.
@@ -133,6 +145,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     least_N_ = most_N_ = slow_force_N_;
     same_reference_m_ = s.reference_m;
     same_ = 0;
+    same_turns_.Restart(settled_N);
   } else {
     same_ += waited_periods_;
     least_N_ = std::min(least_N_, slow_force_N_);
@@ -140,7 +153,8 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   }
   const bool at_rest =
       axis_.in_cascade
-          ? drive_push_.Seen({s.reference_m, same_, waited_periods_, slow_force_N_, swing_N}, t_, period_s_)
+          ? drive_push_.Seen({s.reference_m, same_, waited_periods_, slow_force_N_, swing_N, same_noise_N},
+                             t_, period_s_)
           : AtRest(s);
   // A reading that only flickers, along a path that goes on. A disturbance moves the axis, and only then may
   // its torque be on its way back: what a loop makes of a reading that stands is none.
@@ -152,6 +166,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     near_reference_m_ = s.reference_m;
     near_periods_ = 0;
     near_least_N_ = near_most_N_ = slow_force_N_;
+    near_turns_.Restart(settled_N);
     settling_N_ = std::max(settling_N_, std::abs(slow_force_N_ - slower_force_N_));
   } else {
     near_periods_ += waited_periods_;
@@ -170,9 +185,10 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   }
   // Inertia may hold a reading within its band for a while, against less the longer that lasts.
   const double inertial_N = t_.Inertial_N(t_.flickering, near_periods_ * period_s_);
-  const double flickering_N = t_.flickering_force_N + (near_periods_ >= t_.force_periods ? 0.0 : inertial_N);
+  const double flickering_N =
+      t_.flickering_force_N + near_noise_N + (near_periods_ >= t_.force_periods ? 0.0 : inertial_N);
   const bool by_force =
-      (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N) ||
+      (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N + same_noise_N) ||
       (near_periods_ >= kSameAtLeast_periods && near_most_N_ - near_least_N_ > flickering_N);
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
   const auto gone = [&](std::uint32_t& periods, double from_m, double path_m) {

@@ -5,6 +5,7 @@
 
 #include "control/drive_push.h"
 #include "control/motion_thresholds.h"
+#include "control/report_turns.h"
 #include "control/torque_constant_watch.h"
 #include "core/reason.h"
 #include "core/state_keeper.h"
@@ -55,12 +56,12 @@ class MotionMonitor {
   void Keep(StateKeeper& keep) noexcept {
     keep(watch_, until_learning_, readings_, position_m_, velocity_m_s_, waited_periods_, last_gap_periods_,
          believed_, late_readings_, held_, forces_N_, report_before_N_, peak_N_, slow_force_N_,
-         slower_force_N_, rest_least_N_, rest_most_N_, drive_push_, settling_N_, least_N_, most_N_, same_,
-         same_reference_m_, near_, near_position_m_, near_reference_m_, near_periods_, least_lead_m_,
-         most_lead_m_, near_least_N_, near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_,
-         pushed_periods_, on_its_way_N_, ringing_N_, force_N_, unexplained_N_, jitter_N_, beyond_, sent_N_,
-         reported_N_, report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_,
-         scale_apart_, scale_offset_m_, scale_begin_m_);
+         slower_force_N_, rest_least_N_, rest_most_N_, drive_push_, same_turns_, near_turns_, turns_N_,
+         settling_N_, least_N_, most_N_, same_, same_reference_m_, near_, near_position_m_, near_reference_m_,
+         near_periods_, least_lead_m_, most_lead_m_, near_least_N_, near_most_N_, same_gone_, near_gone_,
+         pushed_least_N_, pushed_most_N_, pushed_periods_, on_its_way_N_, ringing_N_, force_N_,
+         unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_,
+         doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -121,6 +122,8 @@ class MotionMonitor {
   double slower_force_N_ = 0.0;
   double rest_least_N_ = 0.0, rest_most_N_ = 0.0;  ///< of the force, at rest, since the reading last changed
   DrivePush drive_push_;                           ///< csp
+  ReportTurns same_turns_, near_turns_;            ///< csp: since the reading last changed, left its band
+  double turns_N_ = 0.0;                           ///< of either, lately, fading
   double settling_N_ = 0.0;                        ///< largest recent change of the force, fading
   double least_N_ = 0.0, most_N_ = 0.0;            ///< of the force, since the reading last changed
   std::uint32_t same_ = 0;                         ///< periods since then

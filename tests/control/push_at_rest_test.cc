@@ -34,6 +34,12 @@ class AtRest {
     s_.reported_force_N = reported_N;
     return monitor_.Step(s_);
   }
+  /// So many counts from where it stopped.
+  void Read(int counts) {
+    const double moved = counts - counts_;
+    s_.position_m += moved * InCascade().count_m;
+    counts_ = counts;
+  }
   static MonitoredAxis InCascade() {
     MonitoredAxis axis = Axis();
     axis.in_cascade = true;
@@ -44,6 +50,7 @@ class AtRest {
   double period_s_;
   MotionMonitor monitor_;
   MotionSample s_;
+  int counts_ = 0;
 };
 
 /// What 0x6077 says in steps of one per mille.
@@ -114,6 +121,25 @@ TEST(PushAtRest, IsNotWhatAReportDoesByItself) {
       for (double t = 0.0; t < 30.0; t += period_s)
         ASSERT_EQ(axis.Step(AtRest::Held_N() + report.says_N(t, noise(draw))), Reason::kNone)
             << report.what << " at " << t << " s, period " << period_s;
+    }
+}
+
+// An axis that rests beside the edge of a count. Its drive reads more often than we do and answers every
+// count that comes or goes by a kick of one of its ticks, of which 0x6077 shows those that fall on a SYNC.
+TEST(PushAtRest, IsNotWhatCountsThatFlickerBetweenReadingsMakeOfTheReport) {
+  const double kick_N = 0.3 * AtRest::InCascade().rated_force_N;
+  for (const double share : {0.02, 0.05, 0.1, 0.2, 0.5})
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+      std::mt19937 draw(seed);
+      std::bernoulli_distribution beyond(share);
+      AtRest axis;
+      axis.Stop(0.0);
+      for (int k = 0; k < 5000; ++k) {
+        const int before = beyond(draw) ? 1 : 0, now = beyond(draw) ? 1 : 0;
+        axis.Read(now);
+        ASSERT_EQ(axis.Step(AtRest::Held_N() + kick_N * (now - before)), Reason::kNone)
+            << "share " << share << ", seed " << seed << ", period " << k;
+      }
     }
 }
 

@@ -86,6 +86,15 @@ TEST_P(TestPathOfXy, TurnsWithinAShortTravel) {
   EXPECT_NEAR(w.turned_s, reversal_s_, 2e-3);
 }
 
+// Before: an axis of 1 m at 622 mm/s went beyond its limit.
+TEST_P(TestPathOfXy, GoesStraightWithinAShortTravel) {
+  machine_.axes.at("x").limits.position_mm = {-60.0, 60.0};
+  const Walked w = Walk(false, 1.0);
+  EXPECT_EQ(w.turns, 0);
+  EXPECT_LT(w.farthest_m, 0.06);
+  EXPECT_TRUE(w.last.last);
+}
+
 INSTANTIATE_TEST_SUITE_P(Feeds, TestPathOfXy, ::testing::Values(0.01, 1.0, 30.0, 250.0));
 
 }  // namespace

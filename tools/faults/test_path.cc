@@ -35,8 +35,8 @@ TestPath::TestPath(const Shape& shape, const MachineConfig& machine, const PerAx
     ++i;
   }
   ramp_s_ = Ramp_s(machine);
-  // An axis whose travel is too short for its feed turns at a lower one.
-  while (shape_.reverses && shape_.feed_m_s * (ramp_s_ + shape_.constant_s) > travel_m_) {
+  // An axis whose travel is too short for its feed moves at a lower one.
+  while (shape_.feed_m_s * (ramp_s_ + shape_.constant_s) > travel_m_) {
     shape_.feed_m_s *= kSlower;
     ramp_s_ = Ramp_s(machine);
   }
