@@ -243,6 +243,9 @@ RunBound BoundOfOthers(const MachineConfig& machine, const FaultCase& c, std::si
   // Others are told to stop when the broken one is; what comes of a silent bus they share.
   RunBound bound = Bound(machine, promise == Promise::kMotion ? Promise::kQuickStop : promise, axis);
   bound.time_s += RunBoundOf(machine, c).time_s;
+  // Until it is seen, the stop on the path that had begun goes on.
+  if (c.phase == Phase::kStopping)
+    bound.time_s = std::max(bound.time_s, Way(machine, "operator stop", axis).time_s);
   return bound;
 }
 
