@@ -1,13 +1,19 @@
 #include "config/mode_advice.h"
 
+#include <cmath>
+
+#include "config/circle_errors.h"
+#include "config/number_text.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
 namespace {
 
-// A drive's velocity loop takes differences of whole counts. Measured (docs/control.md): with 10000 counts
-// per turn `full` is worse in csp on circles, with 131072 it is better.
-constexpr double kCoarse_counts_per_rev = 65536.0;
+// One digit or two: it is a rule of thumb.
+std::string Micrometres(double error_m) {
+  const double step_um = std::pow(10.0, std::floor(std::log10(1e6 * error_m)) - 1.0);
+  return RoundedText(step_um * std::round(1e6 * error_m / step_um)) + " um";
+}
 
 }  // namespace
 
@@ -15,15 +21,24 @@ std::vector<std::string> ModeAdvice(const MachineConfig& machine) {
   std::vector<std::string> advice;
   if (machine.machine.controller != ControllerName::kFull) return advice;
   for (const auto& [name, axis] : machine.axes) {
-    const double counts = axis.drive.encoder_counts_per_rev;
-    if (ModeFor(machine.machine.controller, axis.drive) != DriveMode::kCsp ||
-        counts >= kCoarse_counts_per_rev)
-      continue;
+    if (ModeFor(machine.machine.controller, axis.drive) != DriveMode::kCsp) continue;
+    const double here_m = CircleErrorByDrive_m(axis), there_m = UsualCircleErrorByTorque_m(axis);
+    if (here_m <= kModesDiffer * there_m) continue;
     advice.push_back("axes." + name + ".drive.mode: csp with an encoder of " +
-                     std::to_string(static_cast<long long>(counts)) +
-                     " counts per turn; below 65536, cst draws better circles");
+                     std::to_string(static_cast<long long>(axis.drive.encoder_counts_per_rev)) +
+                     " counts per turn, whose steps the drive answers: circles off by some " +
+                     Micrometres(here_m) + " are expected, in cst by " + Micrometres(there_m));
   }
   return advice;
+}
+
+std::optional<std::string> AdviceForDrive(const std::string& axis_name, const AxisConfig& axis,
+                                          double compliance_m_N) {
+  const double here_m = CircleErrorByTorque_m(axis, compliance_m_N), there_m = CircleErrorByDrive_m(axis);
+  if (here_m <= kModesDiffer * there_m) return std::nullopt;
+  return "axes." + axis_name + ".drive.mode: csp is expected to draw better circles, off by some " +
+         Micrometres(there_m) + " instead of " + Micrometres(here_m) +
+         ": the drive's own loop is stiffer than one over the bus";
 }
 
 }  // namespace contour

@@ -66,6 +66,10 @@ std::string Describe(const LoopReport& r) {
          " % of rated torque\n";
 }
 
+double Compliance_m_N(const LoopAxis& axis, const LoopReport& report) {
+  return report.verdict.step.peak_m / (axis.limits.force_step * axis.rated_force_N);
+}
+
 std::string WhatIsWrong(const LoopVerdict& v) {
   if (Acceptable(v, kRounding)) return "";
   const WorstMember& w = Binding(v);

@@ -18,6 +18,9 @@ LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double perio
 /// Lines, each behind two spaces, without the axis's name.
 std::string Describe(const LoopReport& report);
 
+/// Of the table, at most, under the force step of the axis's `loop_limits`.
+double Compliance_m_N(const LoopAxis& axis, const LoopReport& report);
+
 /// What of it breaks a limit, in one sentence; empty when nothing does.
 std::string WhatIsWrong(const LoopVerdict& verdict);
 

@@ -4,8 +4,10 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "config/loop_axis.h"
+#include "config/mode_advice.h"
 #include "design/loop_choice.h"
 #include "design/loop_report.h"
 #include "drivers/cia402/mode_for.h"
@@ -25,6 +27,12 @@ Found FindMissing(const MachineConfig& machine) {
   return found;
 }
 
+/// A line where the drive is expected to draw better circles.
+std::string DriveAdvice(const std::string& name, const AxisConfig& config, const LoopReport& report) {
+  const auto advice = AdviceForDrive(name, config, Compliance_m_N(LoopAxisOf(config), report));
+  return advice ? "  advice: " + *advice + "\n" : "";
+}
+
 /// Of an axis without a loop: what it will get.
 void Chosen(const MachineConfig& machine, const std::string& name, const std::optional<LoopTuning>& tuning,
             LoopSection& section) {
@@ -34,10 +42,11 @@ void Chosen(const MachineConfig& machine, const std::string& name, const std::op
     section.refused.push_back(WhyNoLoop(name, axis, period_s));
     return;
   }
+  const LoopReport report = ReportOn(axis, *tuning, period_s);
   section.text += "  axis " + name +
                   ": no loop: in the file, so this one is chosen at start; contour tune --from-model "
                   "finds a better one\n" +
-                  Describe(ReportOn(axis, *tuning, period_s));
+                  Describe(report) + DriveAdvice(name, machine.axes.at(name), report);
   section.chosen.push_back(LoopAssignment(name, *tuning));
 }
 
@@ -49,12 +58,17 @@ struct Judged {
   LoopTuning tuning;
 };
 
-void Judge(const Judged& loop, double period_s, bool used, LoopSection& section) {
+/// `advised`: the axis that may be better off in the other mode.
+void Judge(const Judged& loop, double period_s, bool used, LoopSection& section,
+           const std::pair<const std::string, AxisConfig>* advised = nullptr) {
   try {
     const LoopReport report = ReportOn(loop.axis, loop.tuning, period_s);
     section.text += loop.title + "\n" + Describe(report);
     const std::string wrong = WhatIsWrong(report.verdict);
-    if (wrong.empty()) return;
+    if (wrong.empty()) {
+      if (advised != nullptr) section.text += DriveAdvice(advised->first, advised->second, report);
+      return;
+    }
     // A loop that nothing uses is no danger.
     if (!used) {
       section.text += "  NOT within its limits (" + wrong + "); control.friction: linear would be refused\n";
@@ -87,7 +101,8 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
         "srukf, whose margins nobody knows; with the loops that contour tune --from-model writes it is known "
         "by linear\n";
   }
-  for (const auto& [name, config] : machine.axes) {
+  for (const auto& axis : machine.axes) {
+    const auto& [name, config] = axis;
     if (ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
     if (!config.loop && used) {
       Chosen(machine, name, found.at(name), section);
@@ -97,9 +112,9 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
       section.text += "  axis " + name + ": no loop: tuning; contour tune --from-model finds it\n";
       continue;
     }
-    Judge({"axes." + name + ".loop: ", "  axis " + name, LoopAxisOf(config), *config.loop}, period_s, used,
-          section);
     const std::optional<LoopAxis> with = ScaleLoopAxisOf(config);
+    Judge({"axes." + name + ".loop: ", "  axis " + name, LoopAxisOf(config), *config.loop}, period_s, used,
+          section, with ? nullptr : &axis);
     if (!with) continue;
     if (!config.scale_loop) {
       section.text += "  axis " + name +

@@ -10,6 +10,7 @@
 #include "config/axis_block.h"
 #include "config/config_error.h"
 #include "config/loop_axis.h"
+#include "config/mode_advice.h"
 #include "config/yaml_tree.h"
 #include "config/yaml_writer.h"
 #include "core/exit_status.h"
@@ -85,6 +86,9 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
       std::cout << "  what would help: " << help << "\n";
     return false;
   }
+  if (const auto advice = AdviceForDrive(name, machine.axes.at(name), Compliance_m_N(axis, report));
+      advice && !ScaleLoopAxisOf(machine.axes.at(name)) && !asked.catalogue)
+    std::cout << "  advice: " << *advice << "\n";
   const std::string block = WriteYaml(found.tuning);
   std::cout << "  axes." << name << "." << key << ":\n";
   std::string line;

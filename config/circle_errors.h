@@ -1,0 +1,23 @@
+#pragma once
+
+#include "config/machine_config.h"
+
+// What `full` draws circles with, in either mode, from the axis's own numbers. Rules of thumb: on 18 machines
+// of 5 to 500 kg (docs/laboratory/family.md, "Which mode") they are within a factor of three.
+namespace contour {
+
+/// Of the friction that turns round at a reversal, what is not foreseen gives the table this far way. Where a
+/// drive closes the loop it is the screw that gives way, and its velocity loop answers counts of its encoder.
+double CircleErrorByDrive_m(const AxisConfig& axis);
+
+/// The same where torques come from here; `compliance_m_N`: of the table, at most, under a force that steps
+/// through a lag of 4 ms.
+double CircleErrorByTorque_m(const AxisConfig& axis, double compliance_m_N);
+
+/// The same of a loop as most axes have it, where none has been designed.
+double UsualCircleErrorByTorque_m(const AxisConfig& axis);
+
+/// Errors that differ by less are the same.
+inline constexpr double kModesDiffer = 1.25;
+
+}  // namespace contour
