@@ -25,9 +25,21 @@ DaemonOptions WithModel(DaemonOptions options, const std::string& model) {
   const std::string axis = model.substr(0, model.find('=') + 1);
   std::erase_if(options.models, [&](const std::string& m) { return m.starts_with(axis); });
   if (model.size() > axis.size()) options.models.push_back(model);
+  return options;
+}
+
+DaemonOptions WithNewStart(DaemonOptions options, const NewStart& start) {
+  if (start.model) options = WithModel(std::move(options), *start.model);
+  if (start.torque_loops) options.torque_loops = *start.torque_loops;
   options.log = NextFile(options.log);
   options.truth = NextFile(options.truth);
   return options;
+}
+
+std::string Describe(const NewStart& start) {
+  if (start.model) return "with another model of axis " + start.model->substr(0, start.model->find('='));
+  return start.torque_loops && !start.torque_loops->empty() ? "in torque mode for commissioning"
+                                                            : "in the machine file's own mode";
 }
 
 std::string NextFile(const std::string& file) {
@@ -59,6 +71,7 @@ std::vector<std::string> ArgumentsOf(const DaemonOptions& o) {
     if (!value.empty()) out.push_back(name + value);
   for (const std::string& set : o.set) out.push_back("--set=" + set);
   for (const std::string& model : o.models) out.push_back("--model=" + model);
+  for (const std::string& loop : o.torque_loops) out.push_back("--torque-loop=" + loop);
   return out;
 }
 

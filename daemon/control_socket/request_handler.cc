@@ -115,6 +115,17 @@ json Watch(const json& request, Subscriptions& subscriptions) {
   return {{"ok", true}};
 }
 
+json TorqueMode(const json& request, OperatorDesk& desk) {
+  const auto at = request.find("loops");
+  if (at == request.end() || !at->is_object()) throw BadRequest("\"loops\" must be there and be an object");
+  std::map<std::string, std::string> loops;
+  for (const auto& [axis, loop] : at->items()) {
+    if (!loop.is_string()) throw BadRequest("\"loops\" must have a text for each axis");
+    loops[axis] = loop.get<std::string>();
+  }
+  return Reply(desk.TorqueMode(loops));
+}
+
 json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions,
               const std::stop_token& unwanted, std::string* uploaded) {
   const std::string kind = Text(request, "request");
@@ -136,6 +147,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     return reply;
   }
   if (kind == "load_model") return Reply(desk.LoadModel(Text(request, "axis"), Text(request, "model")));
+  if (kind == "torque_mode") return TorqueMode(request, desk);
   if (kind == "run") return Run(request, desk, unwanted, uploaded);
   if (kind == "watch") return Watch(request, subscriptions);
   if (kind == "rows") {
@@ -144,7 +156,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   }
   throw BadRequest("unknown request \"" + kind +
                    "\"; there are status, machine_file, enable, disable, stop, pause, resume, feed, "
-                   "zero, reset, reference, reload, load_model, upload, run, watch, rows");
+                   "zero, reset, reference, reload, load_model, torque_mode, upload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

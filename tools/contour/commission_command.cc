@@ -8,26 +8,32 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/parallel/parallel_for.h"
 #include "analysis/recording/record_axis.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
+#include "config/yaml_writer.h"
 #include "daemon/control_socket/base64.h"
 #include "design/commission_plan.h"
 #include "design/drive_motions.h"
 #include "design/start_loop.h"
+#include "design/torque_loops.h"
 #include "drivers/cia402/mode_for.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/contour/commission_drive.h"
 #include "tools/contour/commission_loop.h"
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/identification_report.h"
+#include "tools/contour/new_daemon.h"
 
 namespace contour {
 namespace {
@@ -41,6 +47,7 @@ struct Options {
   std::string out;
   std::string report;
   std::string loop;
+  std::string mode = "auto";
   bool drive = false;
   bool yes = false;
 };
@@ -48,6 +55,7 @@ struct Options {
 constexpr std::chrono::milliseconds kLookEvery{100};
 constexpr std::chrono::seconds kEnableLimit{60};
 constexpr std::chrono::seconds kLastRows{5};
+constexpr std::chrono::seconds kBeginAnew{120};
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
@@ -176,6 +184,10 @@ std::size_t NumberOf(const json& status, const std::string& axis) {
   return number;
 }
 
+bool DriveLeads(const MachineConfig& machine, const std::string& axis) {
+  return ModeFor(machine.machine.controller, machine.axes.at(axis).drive) == DriveMode::kCsp;
+}
+
 /// What must hold before anything moves; throws with what does not.
 void CheckBeforehand(MachineConfig& machine, const json& status, const Options& options) {
   if (!machine.axes.contains(options.axis))
@@ -188,8 +200,11 @@ void CheckBeforehand(MachineConfig& machine, const json& status, const Options& 
   if (!FromName(controller, machine.machine.controller))
     throw std::runtime_error("the daemon runs a controller that this program does not know: " + controller);
   if (const std::string wrong = WhyLoopsMayNotStart(machine); !wrong.empty()) throw ConfigError({wrong});
-  const bool drive_holds =
-      ModeFor(machine.machine.controller, machine.axes.at(options.axis).drive) == DriveMode::kCsp;
+  const bool drive_holds = DriveLeads(machine, options.axis);
+  if (options.mode == "csp" && !drive_holds)
+    throw ConfigError({"--mode: found csp, but axis " + options.axis +
+                       " is held from here, not by its drive: run contourd with --set axes." + options.axis +
+                       ".drive.mode=csp"});
   if (options.drive && !drive_holds)
     throw ConfigError({"--drive: axis " + options.axis +
                        " is held from here, not by its drive: run contourd with --set axes." + options.axis +
@@ -220,6 +235,76 @@ void Advise(const MachineConfig& machine) {
               << " may swing where the model is far off; full with control.friction: linear and the loop of "
                  "contour tune --from-model FILE --catalogue does not\n";
 }
+
+/// An axis that was told where it is would have to be told again.
+std::string WhyNotBeginAnew(const json& status) {
+  for (const json& axis : status.at("axes")) {
+    const std::string reference = axis.at("reference");
+    if (reference != "absolute" && reference != "never_told")
+      return "axis " + axis.at("name").get<std::string>() +
+             " was told where it is, which contourd forgets when it begins anew";
+  }
+  return {};
+}
+
+/// Whether to record in torque mode what runs in csp, and with which loops. There every force is known that
+/// acts; but a loop from here has to hold the axes.
+TorqueLoops LoopsToRecordWith(const MachineConfig& machine, const json& status, const Options& options) {
+  if (options.drive || options.mode == "csp" || !DriveLeads(machine, options.axis)) return {};
+  TorqueLoops found{{}, WhyNotBeginAnew(status)};
+  if (found.why_not.empty()) {
+    std::cout << "looking for loops that hold all axes in torque mode, whatever the models leave open\n"
+              << std::flush;
+    found = FindTorqueLoops(machine, ThreadsOf(0));
+  }
+  if (!found.loops.empty()) return found;
+  if (options.mode == "cst") throw ConfigError({"--mode: found cst, but " + found.why_not});
+  std::cout << "note: recorded in csp, where the drive's reports are what is known of its torque: "
+            << found.why_not << "\n";
+  return found;
+}
+
+/// The daemon in torque mode, for as long as an axis is recorded.
+class TorqueModeStay {
+ public:
+  TorqueModeStay(std::unique_ptr<ControlClient>& client, std::string socket)
+      : client_(client), socket_(std::move(socket)) {}
+
+  /// False where the drives did not come up in torque mode; contourd then runs as it did before.
+  [[nodiscard]] bool Enter(const std::map<std::string, LoopTuning>& loops) {
+    if (Status(*client_).at("state") == "Ready") {
+      AskOrThrow(*client_, {{"request", "disable"}});
+      WaitForStatus(
+          *client_, [](const json& s) { return s.at("state") == "Idle"; }, kEnableLimit);
+    }
+    json yaml = json::object();
+    for (const auto& [axis, loop] : loops) yaml[axis] = WriteYaml(loop);
+    entered_ = true;
+    Begin(yaml);
+    const MachineConfig now = AskForMachine(*client_);
+    entered_ = now.axes.begin()->second.drive.mode == DriveMode::kCst;
+    return entered_;
+  }
+  /// Also after a failure, once the machine is Idle.
+  void Leave() {
+    if (!entered_) return;
+    WaitForStatus(
+        *client_, [](const json& s) { return s.at("state") == "Idle"; }, kEnableLimit);
+    Begin(json::object());
+    entered_ = false;
+  }
+
+ private:
+  void Begin(const json& loops) {
+    BeginAnew(
+        client_, {{"request", "torque_mode"}, {"loops", loops}}, [this] { return ConnectToDaemon(socket_); },
+        std::chrono::steady_clock::now() + kBeginAnew);
+  }
+
+  std::unique_ptr<ControlClient>& client_;
+  std::string socket_;
+  bool entered_ = false;
+};
 
 /// Enables, moves, takes the torque off; the record is the watchman's.
 void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& plan) {
@@ -258,10 +343,11 @@ void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& p
 void IdentifyAxis(const MachineConfig& machine, Watchman& watchman, const Options& options) {
   IdentificationJob job;
   // Of what the drive's own loop does to a chirp its reports show but two values a period.
-  if (ModeFor(machine.machine.controller, machine.axes.at(options.axis).drive) == DriveMode::kCsp)
+  if (DriveLeads(machine, options.axis))
     job.to_try =
         "in csp the torque is what the drive reports, which does not show all of it: where the drive can, "
-        "commission in torque mode (drive.mode: cst)";
+        "commission in torque mode (--mode cst); a model that states what is known (uncertainty:) makes a "
+        "loop for it more likely";
   job.stated = diagnosis::ToStatedAxis(machine, options.axis);
   job.model = machine.axes.at(options.axis).model;
   job.logs.push_back(watchman.recorder().Take());
@@ -274,12 +360,42 @@ void IdentifyAxis(const MachineConfig& machine, Watchman& watchman, const Option
                    options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
 }
 
+/// What failed is told first, so this tells rather than throws.
+void LeaveAfterFailure(TorqueModeStay& stay) {
+  try {
+    stay.Leave();
+  } catch (const std::exception& e) {
+    std::cerr << "contourd is still in torque mode, for commissioning alone (" << e.what()
+              << "): restart it for the machine file's own\n";
+  }
+}
+
+/// Moves the axis; what was recorded is the watchman's.
+std::unique_ptr<Watchman> Record(ControlClient& client, const MachineConfig& machine,
+                                 const CommissionPlan& plan, const Options& options) {
+  const AxisConfig& axis = machine.axes.at(options.axis);
+  const RecordedTorque torque{DriveLeads(machine, options.axis),
+                              static_cast<std::size_t>(axis.drive.delay_cycles), 1e-3 * axis.drive.lag_ms};
+  auto watchman = std::make_unique<Watchman>(client, NumberOf(Status(client), options.axis),
+                                             machine.machine.cycle_us * 1e-6, torque, plan,
+                                             ToSi(axis.model.mechanics).radius_m_rad);
+  MoveAxis(client, *watchman, plan);
+  return watchman;
+}
+
 int RunCommission(const Options& options) {
-  ControlClient client = ConnectToDaemon(options.socket);
-  MachineConfig machine = AskForMachine(client);
-  const json status = Status(client);
-  CheckBeforehand(machine, status, options);
-  const CommissionPlan plan = PlanFor(machine, status, options);
+  auto client = std::make_unique<ControlClient>(ConnectToDaemon(options.socket));
+  const MachineConfig own = [&] {
+    MachineConfig machine = AskForMachine(*client);
+    CheckBeforehand(machine, Status(*client), options);
+    return machine;
+  }();
+  const TorqueLoops torque = LoopsToRecordWith(own, Status(*client), options);
+  MachineConfig machine = InTorqueMode(own, torque.loops);
+  CommissionPlan plan = PlanFor(machine, Status(*client), options);
+  if (!torque.loops.empty())
+    std::cout << "the drives go into torque mode, held by those loops, and back to csp at the end: contourd "
+                 "begins anew each time\n";
   std::cout << Describe(plan);
   if (!options.drive) Advise(machine);
   if (!Confirmed(options)) {
@@ -288,16 +404,25 @@ int RunCommission(const Options& options) {
   }
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
-  const AxisConfig& axis = machine.axes.at(options.axis);
-  const RecordedTorque torque{ModeFor(machine.machine.controller, axis.drive) == DriveMode::kCsp,
-                              static_cast<std::size_t>(axis.drive.delay_cycles), 1e-3 * axis.drive.lag_ms};
-  Watchman watchman(client, NumberOf(status, options.axis), machine.machine.cycle_us * 1e-6, torque, plan,
-                    ToSi(axis.model.mechanics).radius_m_rad);
-  MoveAxis(client, watchman, plan);
+  TorqueModeStay stay(client, options.socket);
+  if (!torque.loops.empty() && !stay.Enter(torque.loops)) {
+    if (options.mode == "cst") throw std::runtime_error("the drives do not come up in torque mode (0x6502)");
+    std::cout << "note: the drives do not come up in torque mode (0x6502): recorded in csp\n";
+    machine = own;
+  }
+  plan = PlanFor(machine, Status(*client), options);
+  std::unique_ptr<Watchman> watchman;
+  try {
+    watchman = Record(*client, machine, plan, options);
+  } catch (const std::exception& e) {
+    LeaveAfterFailure(stay);
+    throw;
+  }
+  stay.Leave();
   if (options.drive)
-    return ReportOnDrive(machine, options.axis, watchman.drive_samples(),
+    return ReportOnDrive(machine, options.axis, watchman->drive_samples(),
                          options.out.empty() ? options.axis + "_drive.json" : options.out);
-  IdentifyAxis(machine, watchman, options);
+  IdentifyAxis(machine, *watchman, options);
   return kExitDone;
 }
 
@@ -319,6 +444,11 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
   sub->add_option("--out", options->out, "Model file to write (default: NAME_model.yaml)");
   sub->add_option("--loop", options->loop, "Loop file to write (default: NAME_loop.yaml)");
   sub->add_option("--report", options->report, "Directory of the report (default: NAME_commissioning)");
+  sub->add_option(
+         "--mode", options->mode,
+         "What the drives are in while the axis is recorded, where they run in csp: cst, csp, or auto: "
+         "cst where a loop is stable for all that the models leave open")
+      ->check(CLI::IsMember({"auto", "cst", "csp"}));
   sub->add_flag(
       "--drive", options->drive,
       "Measure the loop that the drive closes (csp), and what it can do, instead of the axis; --out "

@@ -84,4 +84,16 @@ EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known) {
   return file;
 }
 
+EmulatedMachineFile AsRecorded(EmulatedMachineFile file, const CommissioningCase& c,
+                               KnownTorqueLoops& known) {
+  if (c.stay || c.mode != "csp") return file;
+  const EmulatedAxisConfig& axis = file.emulator.axes.at(c.axis);
+  const double moving_kg = axis.counterbalance ? axis.counterbalance->moving_mass_kg : 0.0;
+  const std::string key = FormatText("%s %llu %g", file.machine.machine.name.c_str(),
+                                     static_cast<unsigned long long>(c.seed), moving_kg);
+  if (!known.contains(key)) known[key] = FindTorqueLoops(file.machine, 1);
+  file.machine = InTorqueMode(file.machine, known.at(key).loops);
+  return file;
+}
+
 }  // namespace contour

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "design/torque_loops.h"
 #include "tools/validation/commissioning/catalogue.h"
 #include "tools/validation/commissioning/virtual_commissioning.h"
 
@@ -16,11 +18,17 @@ struct CommissioningCase {
   std::uint64_t seed = 1;
   std::string axis = "x";
   std::string mode = "cst";  ///< of the drives: cst or csp
+  bool stay = false;         ///< in csp, though there may be loops for torque mode
 };
 
 /// What the axes have besides screw and friction: none, cogging3, cogging6 (thousandths of a Nm for a motor
 /// of 0.637 Nm, the same share of rated torque for others), ripple, wobble, motor_friction, side_mode.
 const std::vector<std::string>& CommissioningEffects();
+
+/// Loops found before, by machine, seed and mass.
+using KnownTorqueLoops = std::map<std::string, TorqueLoops>;
+/// The machine as it is while an axis is recorded: where drives lead, in torque mode if it has loops for it.
+EmulatedMachineFile AsRecorded(EmulatedMachineFile file, const CommissioningCase& c, KnownTorqueLoops& known);
 
 /// The machine with its effect, its model from a catalogue, its loops to begin with.
 EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known);
