@@ -75,7 +75,8 @@ std::vector<std::string> Overrides(const DaemonOptions& options) {
       set.push_back("buses." + names[i] + ".interface=" + options.buses[i]);
   }
   for (const std::string& model : options.models) set.push_back(ModelOverride(model));
-  for (const std::string& assignment : TorqueModeOverrides(options.torque_loops)) set.push_back(assignment);
+  for (const std::string& assignment : TorqueModeOverrides({options.torque_loops, options.torque_models}))
+    set.push_back(assignment);
   return set;
 }
 
@@ -423,7 +424,7 @@ int RunDaemon(const DaemonOptions& options) {
   if (again && status == kExitDone) StartAgain(WithNewStart(options, *again));
   // Drives that have no torque mode, say: the machine file's own mode did come up.
   if (status == kExitFailed && !options.torque_loops.empty())
-    StartAgain(WithNewStart(options, {{}, std::vector<std::string>{}}));
+    StartAgain(WithNewStart(options, {{}, TorqueMode{}}));
   return status;
 }
 

@@ -16,10 +16,11 @@ struct DaemonOptions {
   std::vector<std::string> set;
   std::vector<std::string> models;  ///< AXIS=YAML, in place of the machine file's; the last of an axis counts
   std::vector<std::string>
-      torque_loops;    ///< AXIS=YAML of all axes: torque mode with these; empty: as the file
-  std::string log;     ///< empty: none
-  std::string truth;   ///< empty: none; loopback only
-  std::string socket;  ///< empty: the default place
+      torque_loops;  ///< AXIS=YAML of all axes: torque mode with these; empty: as the file
+  std::vector<std::string> torque_models;  ///< AXIS=YAML, in torque mode in place of the axis's own
+  std::string log;                         ///< empty: none
+  std::string truth;                       ///< empty: none; loopback only
+  std::string socket;                      ///< empty: the default place
 };
 
 enum class ParseResult { kRun, kDone, kBadUsage };

@@ -227,11 +227,13 @@ Answer Supervisor::LoadModel(const std::string& axis, const std::string& yaml) {
   return BeginAnew(overrides, {model, {}});
 }
 
-Answer Supervisor::TorqueMode(const std::map<std::string, std::string>& loops) {
+Answer Supervisor::ChangeMode(const std::map<std::string, std::string>& loops,
+                              const std::map<std::string, std::string>& models) {
   const std::lock_guard lock(reload_);
-  for (const auto& [axis, yaml] : loops)
-    if (std::find(axis_names_.begin(), axis_names_.end(), axis) == axis_names_.end())
-      return {false, "there is no axis " + axis + " on this machine"};
+  for (const auto* named : {&loops, &models})
+    for (const auto& [axis, yaml] : *named)
+      if (std::find(axis_names_.begin(), axis_names_.end(), axis) == axis_names_.end())
+        return {false, "there is no axis " + axis + " on this machine"};
   // One mode for all.
   if (!loops.empty() && loops.size() != axis_names_.size())
     return {false, "torque mode needs a loop for every axis"};
@@ -239,10 +241,11 @@ Answer Supervisor::TorqueMode(const std::map<std::string, std::string>& loops) {
     return {false, "in torque mode only the controller full goes by loops, and this is " +
                        std::string(Name(controller_))};
   try {
-    NewStart start{{}, std::vector<std::string>{}};
-    for (const auto& [axis, yaml] : loops) start.torque_loops->push_back(axis + "=" + yaml);
+    NewStart start{{}, TorqueMode{}};
+    for (const auto& [axis, yaml] : loops) start.torque_mode->loops.push_back(axis + "=" + yaml);
+    for (const auto& [axis, yaml] : models) start.torque_mode->models.push_back(axis + "=" + yaml);
     std::vector<std::string> overrides = WithoutTorqueMode(axis_names_, source_.overrides);
-    for (const std::string& assignment : TorqueModeOverrides(*start.torque_loops))
+    for (const std::string& assignment : TorqueModeOverrides(*start.torque_mode))
       overrides.push_back(assignment);
     return BeginAnew(overrides, std::move(start));
   } catch (const std::exception& e) {

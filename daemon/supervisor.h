@@ -56,7 +56,8 @@ class Supervisor final : public OperatorDesk {
                    const std::stop_token& unwanted) override;
   Answer Reload() override;
   Answer LoadModel(const std::string& axis, const std::string& yaml) override;
-  Answer TorqueMode(const std::map<std::string, std::string>& loops) override;
+  Answer ChangeMode(const std::map<std::string, std::string>& loops,
+                    const std::map<std::string, std::string>& models) override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   Answer Zero() override;
   Answer Pace(const PaceRequest& request) override { return pace_.Change(request, answers_.record()); }
@@ -65,7 +66,7 @@ class Supervisor final : public OperatorDesk {
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
-  /// Asked by LoadModel() or TorqueMode() and not yet carried out.
+  /// Asked by LoadModel() or ChangeMode() and not yet carried out.
   [[nodiscard]] std::optional<NewStart> wanted();
 
   /// The newest record.

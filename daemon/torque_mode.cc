@@ -1,6 +1,7 @@
 #include "daemon/torque_mode.h"
 
 #include "config/config_error.h"
+#include "daemon/loaded_model.h"
 
 namespace contour {
 namespace {
@@ -13,9 +14,10 @@ std::string Loop(const std::string& axis) { return "axes." + axis + ".loop="; }
 
 }  // namespace
 
-std::vector<std::string> TorqueModeOverrides(const std::vector<std::string>& loops) {
+std::vector<std::string> TorqueModeOverrides(const TorqueMode& mode) {
   std::vector<std::string> set;
-  for (const std::string& loop : loops) {
+  if (mode.loops.empty()) return set;
+  for (const std::string& loop : mode.loops) {
     const std::size_t equals = loop.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == loop.size())
       throw ConfigError({"--torque-loop " + loop +
@@ -24,7 +26,8 @@ std::vector<std::string> TorqueModeOverrides(const std::vector<std::string>& loo
     set.push_back(Mode(axis));
     set.push_back(Loop(axis) + loop.substr(equals + 1));
   }
-  if (!set.empty()) set.emplace_back(kFriction);
+  for (const std::string& model : mode.models) set.push_back(ModelOverride(model));
+  set.emplace_back(kFriction);
   return set;
 }
 

@@ -7,19 +7,31 @@
 
 namespace contour {
 
-TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads) {
-  if (machine.machine.controller != ControllerName::kFull)
-    return {{}, "the controller " + std::string(Name(machine.machine.controller)) + " has no loop for it"};
-  TorqueLoops found;
+TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads,
+                            std::map<std::string, LoopTuning> known) {
+  TorqueLoops found{std::move(known), {}, {}};
+  if (machine.machine.controller != ControllerName::kFull) {
+    found.why_not = "the controller " + std::string(Name(machine.machine.controller)) + " has no loop for it";
+    return found;
+  }
+  // Its loop with the scale would be used, which nobody has judged for what the model leaves open.
+  for (const auto& [name, axis] : machine.axes)
+    if (axis.scale_loop) {
+      found.why_not = "axis " + name + " has a loop that takes its scale";
+      return found;
+    }
   const double period_s = 1e-6 * machine.machine.cycle_us;
   for (const auto& [name, axis] : machine.axes) {
-    // Its loop with the scale would be used, which nobody has judged for what the model leaves open.
-    if (axis.scale_loop) return {{}, "axis " + name + " has a loop that takes its scale"};
+    if (found.loops.contains(name)) continue;
     const StartLoop start = FindStartLoop(LoopAxisOf(axis), period_s, threads, DoubtOf(axis.model));
-    if (!start.wrong.empty())
-      return {{},
-              "no loop of axis " + name + " is stable for all that its model leaves open: " + start.wrong};
-    found.loops[name] = start.found.tuning;
+    if (start.wrong.empty()) {
+      found.loops[name] = start.found.tuning;
+      continue;
+    }
+    found.lacking.push_back(name);
+    if (found.why_not.empty())
+      found.why_not =
+          "no loop of axis " + name + " is stable for all that its model leaves open: " + start.wrong;
   }
   return found;
 }

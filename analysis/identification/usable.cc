@@ -83,6 +83,14 @@ std::string Misfit(const Identification& id) {
       u.structure_N, 100.0 * u.structure_N / u.friction_N, u.noise_N);
 }
 
+std::string Unsettled(const Identification& id) {
+  if (id.fit.unsettled <= kMostUnsettled) return {};
+  return FormatText(
+      "the fit did not settle: it is still %.0f standard deviations from its best; begin with "
+      "a model that is nearer, or commission again",
+      id.fit.unsettled);
+}
+
 std::string Antiresonance(const Identification& id) {
   if (id.shaken.verdict != ShakenScrew::Verdict::kRigid) return {};
   const std::optional<ResponsePoint> dip = VisibleAntiresonance(id.shaken.response);
@@ -116,14 +124,16 @@ std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoin
 }
 
 std::string WhyUnusable(const Identification& id) {
-  for (const auto& why :
-       {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), UnknownMasses(id), Misfit(id)})
+  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), UnknownMasses(id),
+                          Misfit(id), Unsettled(id)})
     if (!why.empty()) return why;
-  if (id.fit.unsettled > kMostUnsettled)
-    return FormatText(
-        "the fit did not settle: it is still %.0f standard deviations from its best; begin with "
-        "a model that is nearer, or commission again",
-        id.fit.unsettled);
+  return {};
+}
+
+std::string WhyNoBeginning(const Identification& id) {
+  if (id.shaken.verdict != ShakenScrew::Verdict::kFound) return "shaken, it showed no screw";
+  for (const auto& why : {Numbers(id), Holes(id), Unsettled(id)})
+    if (!why.empty()) return why;
   return {};
 }
 

@@ -115,15 +115,22 @@ json Watch(const json& request, Subscriptions& subscriptions) {
   return {{"ok", true}};
 }
 
-json TorqueMode(const json& request, OperatorDesk& desk) {
-  const auto at = request.find("loops");
-  if (at == request.end() || !at->is_object()) throw BadRequest("\"loops\" must be there and be an object");
-  std::map<std::string, std::string> loops;
-  for (const auto& [axis, loop] : at->items()) {
-    if (!loop.is_string()) throw BadRequest("\"loops\" must have a text for each axis");
-    loops[axis] = loop.get<std::string>();
+std::map<std::string, std::string> TextsOfAxes(const json& request, const char* key) {
+  const auto at = request.find(key);
+  const std::string name = std::string("\"") + key + "\"";
+  if (at == request.end() || !at->is_object()) throw BadRequest(name + " must be there and be an object");
+  std::map<std::string, std::string> texts;
+  for (const auto& [axis, text] : at->items()) {
+    if (!text.is_string()) throw BadRequest(name + " must have a text for each axis");
+    texts[axis] = text.get<std::string>();
   }
-  return Reply(desk.TorqueMode(loops));
+  return texts;
+}
+
+json ChangeMode(const json& request, OperatorDesk& desk) {
+  std::map<std::string, std::string> models;
+  if (request.contains("models")) models = TextsOfAxes(request, "models");
+  return Reply(desk.ChangeMode(TextsOfAxes(request, "loops"), models));
 }
 
 json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions,
@@ -147,7 +154,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     return reply;
   }
   if (kind == "load_model") return Reply(desk.LoadModel(Text(request, "axis"), Text(request, "model")));
-  if (kind == "torque_mode") return TorqueMode(request, desk);
+  if (kind == "torque_mode") return ChangeMode(request, desk);
   if (kind == "run") return Run(request, desk, unwanted, uploaded);
   if (kind == "watch") return Watch(request, subscriptions);
   if (kind == "rows") {

@@ -26,8 +26,8 @@ TEST(TorqueLoops, AreStableForAllThatTheModelLeavesOpen) {
   AxisConfig& axis = machine.axes.at("x");
   axis.model.uncertainty.clear();
   const TorqueLoops found = FindTorqueLoops(machine, kThreads);
-  ASSERT_EQ(found.loops.size(), 1u) << found.why_not;
-  EXPECT_EQ(found.why_not, "");
+  ASSERT_TRUE(found.complete()) << found.why_not;
+  EXPECT_TRUE(found.lacking.empty());
   EXPECT_EQ(WhyNotToStartWith(LoopAxisOf(axis), found.loops.at("x"), 1e-3, DoubtOf(axis.model)), "");
   const MachineConfig in_torque_mode = InTorqueMode(machine, found.loops);
   EXPECT_EQ(in_torque_mode.axes.at("x").drive.mode, DriveMode::kCst);
@@ -40,11 +40,19 @@ TEST(TorqueLoops, AnAxisThatNoLoopHoldsStaysWithItsDrive) {
   MachineConfig machine = OneAxisOf("belt");
   machine.axes.at("x").model.uncertainty.clear();
   const TorqueLoops found = FindTorqueLoops(machine, kThreads);
-  EXPECT_TRUE(found.loops.empty());
+  EXPECT_FALSE(found.complete());
+  EXPECT_EQ(found.lacking, (std::vector<std::string>{"x"}));
   EXPECT_NE(found.why_not.find("no loop of axis x is stable"), std::string::npos) << found.why_not;
   const MachineConfig as_it_is = InTorqueMode(machine, found.loops);
   EXPECT_EQ(as_it_is.axes.at("x").drive.mode, DriveMode::kCsp);
   EXPECT_EQ(as_it_is.control.friction, FrictionKind::kSrukf);
+}
+
+TEST(TorqueLoops, WhatIsKnownIsNotSearchedAgain) {
+  const MachineConfig machine = OneAxisOf("belt");
+  const TorqueLoops found = FindTorqueLoops(machine, kThreads, {{"x", LoopTuning{}}});
+  EXPECT_TRUE(found.complete());
+  EXPECT_EQ(found.loops.at("x").regulator_Hz, LoopTuning{}.regulator_Hz);
 }
 
 TEST(TorqueLoops, NoneForOtherControllersNorBesideALoopWithTheScale) {

@@ -15,7 +15,7 @@ namespace contour::test {
 class FakeDesk final : public OperatorDesk {
  public:
   std::map<std::string, double> referenced_mm;
-  std::map<std::string, std::string> loaded, torque_loops;
+  std::map<std::string, std::string> loaded, torque_loops, torque_models;
 
   Answer Enable(const std::stop_token& unwanted) override {
     Answer answer = Do("enable");
@@ -37,8 +37,10 @@ class FakeDesk final : public OperatorDesk {
     loaded[axis] = yaml;
     return Do("load_model");
   }
-  Answer TorqueMode(const std::map<std::string, std::string>& loops) override {
+  Answer ChangeMode(const std::map<std::string, std::string>& loops,
+                    const std::map<std::string, std::string>& models) override {
     torque_loops = loops;
+    torque_models = models;
     return Do("torque_mode");
   }
   Answer Run(const ProgramUpload& program, const std::stop_token& /*unwanted*/) override {

@@ -100,6 +100,7 @@ TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesT
                            R"({"request": "torque_mode"})",
                            R"({"request": "torque_mode", "loops": []})",
                            R"({"request": "torque_mode", "loops": {"x": 5}})",
+                           R"({"request": "torque_mode", "loops": {}, "models": 1})",
                            R"({"request": "rows"})",
                            R"({"request": "rows", "on": "yes"})",
                            R"({"request": "watch", "period_ms": 1})",
@@ -112,6 +113,17 @@ TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesT
   EXPECT_TRUE(desk_.asked().empty());
   EXPECT_FALSE(subscriptions_.rows);
   EXPECT_FALSE(subscriptions_.watch_period_ms);
+}
+
+TEST_F(RequestHandlerTest, TorqueModeHasALoopForEachAxisAndModelsWhereTheyAreOthers) {
+  EXPECT_EQ(Ask(R"({"request": "torque_mode", "loops": {"x": "a: 1", "y": "a: 2"}, "models": {"y": "b: 3"}})")
+                ["ok"],
+            true);
+  EXPECT_EQ(desk_.torque_loops, (std::map<std::string, std::string>{{"x", "a: 1"}, {"y", "a: 2"}}));
+  EXPECT_EQ(desk_.torque_models, (std::map<std::string, std::string>{{"y", "b: 3"}}));
+  EXPECT_EQ(Ask(R"({"request": "torque_mode", "loops": {}})")["ok"], true);
+  EXPECT_TRUE(desk_.torque_loops.empty());
+  EXPECT_TRUE(desk_.torque_models.empty());
 }
 
 TEST_F(RequestHandlerTest, SurvivesNoise) {

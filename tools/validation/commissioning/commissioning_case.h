@@ -25,10 +25,15 @@ struct CommissioningCase {
 /// of 0.637 Nm, the same share of rated torque for others), ripple, wobble, motor_friction, side_mode.
 const std::vector<std::string>& CommissioningEffects();
 
-/// Loops found before, by machine, seed and mass.
+/// Loops found from catalogue data before, by machine, seed and mass.
 using KnownTorqueLoops = std::map<std::string, TorqueLoops>;
-/// The machine as it is while an axis is recorded: where drives lead, in torque mode if it has loops for it.
-EmulatedMachineFile AsRecorded(EmulatedMachineFile file, const CommissioningCase& c, KnownTorqueLoops& known);
+/// The machine as it is while an axis is recorded for good, as `contour commission` has it: where drives
+/// lead, in torque mode where there are loops for it, from the catalogue or from what records in csp tell.
+struct Recorded {
+  EmulatedMachineFile file;
+  std::string how;  ///< for people
+};
+Recorded AsRecorded(const EmulatedMachineFile& file, const CommissioningCase& c, KnownTorqueLoops& known);
 
 /// The machine with its effect, its model from a catalogue, its loops to begin with.
 EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known);

@@ -77,9 +77,9 @@ std::string Row(const std::string& name, const Tally& t) {
 /// Commissions one axis; its model goes into `after`.
 void RunAxis(const EmulatedMachineFile& file, const CommissioningCase& c, const std::string& axis,
              const Options& options, KnownTorqueLoops& known, EmulatedMachineFile& after, Tallies& tallies) {
-  const EmulatedMachineFile recorded = AsRecorded(file, c, known);
-  if (c.mode == "csp")
-    std::printf("  recorded in %s\n", std::string(Name(recorded.machine.axes.at(axis).drive.mode)).c_str());
+  const Recorded as = AsRecorded(file, c, known);
+  const EmulatedMachineFile& recorded = as.file;
+  if (c.mode == "csp") std::printf("  recorded in %s\n", as.how.c_str());
   const VirtualCommissioning run = Commission(recorded, axis, "full");
   identify::IdentifyOptions how;
   how.threads = options.threads;
