@@ -1,8 +1,6 @@
 #pragma once
 
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "analysis/identification/identification.h"
 
@@ -16,8 +14,5 @@ std::string WhyUnusable(const Identification& id);
 /// Why not even to begin again from a result, with its intervals as what is left open; empty: it is nearer
 /// than a catalogue. It may be too unsure to be used, or lack something that the axis has.
 std::string WhyNoBeginning(const Identification& id);
-
-/// The deepest point of a response that no rigid axis has; none where it is flat.
-std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoint>& response);
 
 }  // namespace contour::identify
