@@ -67,10 +67,10 @@ void OnSignal(int /*signal*/) { stop_requested.store(true); }
 class Watchman {
  public:
   Watchman(ControlClient& client, std::size_t axis, double period_s, const RecordedTorque& torque,
-           const CommissionPlan& plan, double radius_m_rad)
+           CommissionPlan plan, double radius_m_rad)
       : axis_(axis),
         reported_(torque.reported),
-        plan_(plan),
+        plan_(std::move(plan)),
         recorder_(axis, period_s, torque),
         drive_recorder_(axis, radius_m_rad) {
     client.OnMessage([this](const json& message) { OnMessage(message); });
@@ -116,7 +116,7 @@ class Watchman {
 
   std::size_t axis_;
   bool reported_;  ///< the drive makes the torque
-  const CommissionPlan& plan_;
+  const CommissionPlan plan_;
   AxisRecorder recorder_;
   DriveRecorder drive_recorder_;
   CycleEntry entry_;
