@@ -37,6 +37,7 @@
 #include "daemon/start_again.h"
 #include "daemon/supervisor.h"
 #include "daemon/telemetry/telemetry_hub.h"
+#include "daemon/torque_mode.h"
 #include "design/loop_choice.h"
 #include "design/path_following.h"
 #include "drivers/cia301/messages.h"
@@ -74,6 +75,8 @@ std::vector<std::string> Overrides(const DaemonOptions& options) {
       set.push_back("buses." + names[i] + ".interface=" + options.buses[i]);
   }
   for (const std::string& model : options.models) set.push_back(ModelOverride(model));
+  for (const std::string& assignment : TorqueModeOverrides({options.torque_loops, options.torque_models}))
+    set.push_back(assignment);
   return set;
 }
 
@@ -173,8 +176,8 @@ class Daemon {
     loop_ = std::make_unique<Loop>(loop, cycle_, buses_.all(), mailbox_, *io_, queue_);
   }
 
-  /// The model that an operator has handed over, with which to begin anew: AXIS=YAML.
-  [[nodiscard]] const std::optional<std::string>& wanted_model() const { return wanted_model_; }
+  /// What an operator has asked to begin anew with.
+  [[nodiscard]] const std::optional<NewStart>& wanted() const { return wanted_; }
 
   int Run(const sigset_t& signals) {
     const bool lockstep = options_.clock == "lockstep";
@@ -301,15 +304,14 @@ class Daemon {
       } else if (signal > 0) {
         mailbox_.PostTerminate();  // before anything that writes
         ending = true;
-        wanted_model_.reset();  // whoever ends the daemon does not want it back
+        wanted_.reset();  // whoever ends the daemon does not want it back
         spdlog::info("asked to end by a signal");
         notifier.Stopping();
       }
-      if (!ending && !wanted_model_ && (wanted_model_ = supervisor.wanted_model())) {
+      if (!ending && !wanted_ && (wanted_ = supervisor.wanted())) {
         mailbox_.PostTerminate();
         ending = true;
-        spdlog::info("ends and begins anew with another model of axis {}",
-                     wanted_model_->substr(0, wanted_model_->find('=')));
+        spdlog::info("ends and begins anew {}", Describe(*wanted_));
       }
       const auto now = std::chrono::steady_clock::now();
       if (const std::uint64_t n = loop_->counters().cycles.load(); n != cycles || !ending) {
@@ -353,7 +355,7 @@ class Daemon {
   std::unique_ptr<IoSource> io_;
   std::unique_ptr<StateSnapshots> snapshots_;
   std::unique_ptr<Loop> loop_;
-  std::optional<std::string> wanted_model_;
+  std::optional<NewStart> wanted_;
   SlowLane reloading_{"contour-reload", {1, {}}};
 };
 
@@ -371,8 +373,8 @@ spdlog::level::level_enum ToSpdlog(LogLevel level) {
   return spdlog::level::info;
 }
 
-/// Until it ends; `again` is the model with which to begin anew.
-int RunOnce(const DaemonOptions& options, std::optional<std::string>& again) {
+/// Until it ends; `again` is what to begin anew with.
+int RunOnce(const DaemonOptions& options, std::optional<NewStart>& again) {
   std::vector<std::string> overrides = Overrides(options);
   const MachineConfig stated = LoadMachine(options.config, overrides);
   FrictionMemory memory(stated, MemoryDirectory(stated.memory));
@@ -410,16 +412,19 @@ int RunOnce(const DaemonOptions& options, std::optional<std::string>& again) {
   } give_back{signals};
   Daemon daemon(options, file, source, memory);
   const int status = daemon.Run(signals);
-  again = daemon.wanted_model();
+  again = daemon.wanted();
   return status;
 }
 
 }  // namespace
 
 int RunDaemon(const DaemonOptions& options) {
-  std::optional<std::string> again;
+  std::optional<NewStart> again;
   const int status = RunOnce(options, again);
-  if (again && status == kExitDone) StartAgain(WithModel(options, *again));
+  if (again && status == kExitDone) StartAgain(WithNewStart(options, *again));
+  // Drives that have no torque mode, say: the machine file's own mode did come up.
+  if (status == kExitFailed && !options.torque_loops.empty())
+    StartAgain(WithNewStart(options, {{}, TorqueMode{}}));
   return status;
 }
 

@@ -27,6 +27,15 @@ ParseResult ParseOptions(int argc, char** argv, DaemonOptions& o) {
                  "when it is handed a model on the control socket; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--torque-loop", o.torque_loops,
+                 "AXIS=KEYS: torque mode with this loop, as YAML, whatever the machine file says; contourd "
+                 "gives it to itself when commissioning asks for it on the control socket; one for each axis")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--torque-model", o.torque_models,
+                 "AXIS=KEYS: the model that such a loop was found for, in place of the axis's own")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--log", o.log, "Record every cycle, inputs and outputs, in this LCM log");
   app.add_option("--truth", o.truth,
                  "Write what the emulated machine really did to this CSV (loopback only)");

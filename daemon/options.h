@@ -15,9 +15,12 @@ struct DaemonOptions {
   std::string controller;          ///< empty: the machine file's
   std::vector<std::string> set;
   std::vector<std::string> models;  ///< AXIS=YAML, in place of the machine file's; the last of an axis counts
-  std::string log;                  ///< empty: none
-  std::string truth;                ///< empty: none; loopback only
-  std::string socket;               ///< empty: the default place
+  std::vector<std::string>
+      torque_loops;  ///< AXIS=YAML of all axes: torque mode with these; empty: as the file
+  std::vector<std::string> torque_models;  ///< AXIS=YAML, in torque mode in place of the axis's own
+  std::string log;                         ///< empty: none
+  std::string truth;                       ///< empty: none; loopback only
+  std::string socket;                      ///< empty: the default place
 };
 
 enum class ParseResult { kRun, kDone, kBadUsage };

@@ -25,9 +25,24 @@ DaemonOptions WithModel(DaemonOptions options, const std::string& model) {
   const std::string axis = model.substr(0, model.find('=') + 1);
   std::erase_if(options.models, [&](const std::string& m) { return m.starts_with(axis); });
   if (model.size() > axis.size()) options.models.push_back(model);
+  return options;
+}
+
+DaemonOptions WithNewStart(DaemonOptions options, const NewStart& start) {
+  if (start.model) options = WithModel(std::move(options), *start.model);
+  if (start.torque_mode) {
+    options.torque_loops = start.torque_mode->loops;
+    options.torque_models = start.torque_mode->models;
+  }
   options.log = NextFile(options.log);
   options.truth = NextFile(options.truth);
   return options;
+}
+
+std::string Describe(const NewStart& start) {
+  if (start.model) return "with another model of axis " + start.model->substr(0, start.model->find('='));
+  return start.torque_mode && !start.torque_mode->loops.empty() ? "in torque mode for commissioning"
+                                                                : "in the machine file's own mode";
 }
 
 std::string NextFile(const std::string& file) {
@@ -59,6 +74,8 @@ std::vector<std::string> ArgumentsOf(const DaemonOptions& o) {
     if (!value.empty()) out.push_back(name + value);
   for (const std::string& set : o.set) out.push_back("--set=" + set);
   for (const std::string& model : o.models) out.push_back("--model=" + model);
+  for (const std::string& loop : o.torque_loops) out.push_back("--torque-loop=" + loop);
+  for (const std::string& model : o.torque_models) out.push_back("--torque-model=" + model);
   return out;
 }
 

@@ -3,13 +3,19 @@
 #include <string>
 #include <vector>
 
+#include "daemon/new_start.h"
 #include "daemon/options.h"
 
 namespace contour {
 
-/// The options with another model of an axis, AXIS=YAML; `AXIS=` takes away what was loaded before. Log and
-/// truth go on in files of their own.
+/// Log and truth go on in files of their own.
+DaemonOptions WithNewStart(DaemonOptions options, const NewStart& start);
+
+/// The options with another model of an axis, AXIS=YAML; `AXIS=` takes away what was loaded before.
 DaemonOptions WithModel(DaemonOptions options, const std::string& model);
+
+/// "with another model of axis x"
+std::string Describe(const NewStart& start);
 
 /// The command line that these options come from.
 std::vector<std::string> ArgumentsOf(const DaemonOptions& options);

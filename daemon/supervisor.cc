@@ -24,6 +24,7 @@
 #include "daemon/reason_text.h"
 #include "daemon/rt/cycle_parts.h"
 #include "daemon/telemetry/tuning_note.h"
+#include "daemon/torque_mode.h"
 #include "drivers/cia301/bring_up_text.h"
 
 namespace contour {
@@ -220,24 +221,56 @@ Answer Supervisor::LoadModel(const std::string& axis, const std::string& yaml) {
   const std::lock_guard lock(reload_);
   if (std::find(axis_names_.begin(), axis_names_.end(), axis) == axis_names_.end())
     return {false, "there is no axis " + axis + " on this machine"};
-  if (wanted_model_) return {false, "contourd is about to begin anew with another model"};
-  if (const CycleRecord now = answers_.record(); now.state != MachineState::kIdle)
-    return {false, "a model is loaded while the machine is Idle, and it is " + std::string(Name(now.state))};
+  const std::string model = axis + "=" + yaml;
+  std::vector<std::string> overrides = WithoutModelOf(axis, source_.overrides);
+  if (!yaml.empty()) overrides.push_back(ModelOverride(model));
+  return BeginAnew(overrides, {model, {}});
+}
+
+Answer Supervisor::ChangeMode(const std::map<std::string, std::string>& loops,
+                              const std::map<std::string, std::string>& models) {
+  const std::lock_guard lock(reload_);
+  for (const auto* named : {&loops, &models})
+    for (const auto& [axis, yaml] : *named)
+      if (std::find(axis_names_.begin(), axis_names_.end(), axis) == axis_names_.end())
+        return {false, "there is no axis " + axis + " on this machine"};
+  // One mode for all.
+  if (!loops.empty() && loops.size() != axis_names_.size())
+    return {false, "torque mode needs a loop for every axis"};
+  if (!loops.empty() && controller_ != ControllerName::kFull)
+    return {false, "in torque mode only the controller full goes by loops, and this is " +
+                       std::string(Name(controller_))};
   try {
-    const std::string model = axis + "=" + yaml;
-    std::vector<std::string> overrides = WithoutModelOf(axis, source_.overrides);
-    if (!yaml.empty()) overrides.push_back(ModelOverride(model));
+    NewStart start{{}, TorqueMode{}};
+    for (const auto& [axis, yaml] : loops) start.torque_mode->loops.push_back(axis + "=" + yaml);
+    for (const auto& [axis, yaml] : models) start.torque_mode->models.push_back(axis + "=" + yaml);
+    std::vector<std::string> overrides = WithoutTorqueMode(axis_names_, source_.overrides);
+    for (const std::string& assignment : TorqueModeOverrides(*start.torque_mode))
+      overrides.push_back(assignment);
+    return BeginAnew(overrides, std::move(start));
+  } catch (const std::exception& e) {
+    return {false, e.what()};
+  }
+}
+
+/// Holding reload_.
+Answer Supervisor::BeginAnew(const std::vector<std::string>& overrides, NewStart start) {
+  if (wanted_) return {false, "contourd is about to begin anew"};
+  if (const CycleRecord now = answers_.record(); now.state != MachineState::kIdle)
+    return {false,
+            "contourd begins anew while the machine is Idle, and it is " + std::string(Name(now.state))};
+  try {
     MakeCycleConfig(LoadMachine(ReadSource(source_.name, overrides)), controller_);
-    wanted_model_ = model;
+    wanted_ = std::move(start);
     return {true, ""};
   } catch (const std::exception& e) {
     return {false, e.what()};
   }
 }
 
-std::optional<std::string> Supervisor::wanted_model() {
+std::optional<NewStart> Supervisor::wanted() {
   const std::lock_guard lock(reload_);
-  return wanted_model_;
+  return wanted_;
 }
 
 Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwanted) {

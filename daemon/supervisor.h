@@ -14,6 +14,7 @@
 #include "control/contour_controller.h"
 #include "daemon/control_socket/operator_desk.h"
 #include "daemon/learning/program_learning.h"
+#include "daemon/new_start.h"
 #include "daemon/pace_control.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program_zero.h"
@@ -55,6 +56,8 @@ class Supervisor final : public OperatorDesk {
                    const std::stop_token& unwanted) override;
   Answer Reload() override;
   Answer LoadModel(const std::string& axis, const std::string& yaml) override;
+  Answer ChangeMode(const std::map<std::string, std::string>& loops,
+                    const std::map<std::string, std::string>& models) override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   Answer Zero() override;
   Answer Pace(const PaceRequest& request) override { return pace_.Change(request, answers_.record()); }
@@ -63,8 +66,8 @@ class Supervisor final : public OperatorDesk {
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
-  /// Asked by LoadModel() and not yet carried out: AXIS=YAML to begin anew with.
-  [[nodiscard]] std::optional<std::string> wanted_model();
+  /// Asked by LoadModel() or ChangeMode() and not yet carried out.
+  [[nodiscard]] std::optional<NewStart> wanted();
 
   /// The newest record.
   [[nodiscard]] CycleRecord record() { return answers_.record(); }
@@ -77,6 +80,7 @@ class Supervisor final : public OperatorDesk {
   [[nodiscard]] std::optional<Answer> Look(RequestKind kind, std::uint32_t sequence);
   std::uint32_t Post(RequestKind kind, std::uint32_t program_id = 0);
   void TakeBack(RequestKind kind);
+  [[nodiscard]] Answer BeginAnew(const std::vector<std::string>& overrides, NewStart start);
   [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const Placement& place,
                                      PathGenerator& generator);
 
@@ -85,7 +89,7 @@ class Supervisor final : public OperatorDesk {
   std::uint32_t changes_ = 0;
   std::vector<std::unique_ptr<ContourController>> controllers_;  ///< that the cycle may still hold
   std::mutex reload_;                                            ///< SIGHUP and the socket may both ask
-  std::optional<std::string> wanted_model_;                      ///< guarded by it
+  std::optional<NewStart> wanted_;                               ///< guarded by it
   std::string machine_name_;
   ControllerName controller_;
   std::string clock_;

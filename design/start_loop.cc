@@ -54,8 +54,8 @@ std::string WhyLoopsMayNotStart(const MachineConfig& machine) {
       return "axes." + name + ".loop: found one that is not stable for all that the model leaves open (" +
              wrong +
              "), expected one to commission with: contour tune --from-model FILE --catalogue --out FILE, "
-             "then "
-             "contourd with that file";
+             "then contourd with that file; where there is none, contourd with drive.mode: csp on all axes, "
+             "which is commissioned with no loop to begin with";
   }
   return {};
 }

@@ -16,6 +16,9 @@ constexpr std::size_t kSegment = 512;
 constexpr double kLowest_share = 0.04;
 constexpr double kHighest_share = 0.48;
 constexpr int kFewestSegments = 4;
+/// Largest over smallest accelerance of a shaken axis that counts as rigid.
+constexpr double kLeastDip = 2.5;
+constexpr double kSeen = 0.6;  ///< coherence
 
 struct Spectra {
   std::vector<double> xx, ff;
@@ -76,6 +79,25 @@ std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records) {
     response.push_back({frequency, std::abs(s.xf[b]) / s.ff[b], coherence});
   }
   return response;
+}
+
+std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoint>& response) {
+  std::optional<ResponsePoint> low;
+  double high = 0.0;
+  for (std::size_t i = 1; i + 1 < response.size(); ++i) {
+    ResponsePoint p = response[i];
+    double coherence = 1.0;
+    p.accelerance_1_kg = 0.0;
+    for (std::size_t j = i - 1; j <= i + 1; ++j) {
+      p.accelerance_1_kg += response[j].accelerance_1_kg / 3.0;
+      coherence = std::min(coherence, response[j].coherence);
+    }
+    if (coherence < kSeen) continue;
+    if (!low || p.accelerance_1_kg < low->accelerance_1_kg) low = p;
+    high = std::max(high, p.accelerance_1_kg);
+  }
+  if (!low || high < kLeastDip * low->accelerance_1_kg) return std::nullopt;
+  return low;
 }
 
 }  // namespace contour::identify

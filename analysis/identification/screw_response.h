@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "analysis/identification/simulation.h"
@@ -19,5 +20,8 @@ inline constexpr double kGoodCoherence = 0.7;
 /// From a twenty-fifth to nearly half of the sampling rate, of records that are shaken there throughout;
 /// empty when they are shorter than some windows of half a second.
 std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records);
+
+/// The deepest point of a response that no rigid axis has; none where it is flat.
+std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoint>& response);
 
 }  // namespace contour::identify

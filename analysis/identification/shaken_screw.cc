@@ -27,8 +27,8 @@ constexpr double kFarApart = 0.08;
 constexpr double kFoundAgain = 0.01;
 constexpr double kSamePlace = 1e-3;
 constexpr int kLongestDescent = 5;
-/// A screw is one when its resonance is below this, its stiffness known this well, and its two masses foresee
-/// the motion so much better than one does.
+/// A screw is one when its resonance is below this, its stiffness known this well or its antiresonance seen,
+/// and its two masses foresee the motion so much better than one does.
 constexpr double kKnownStiffness = 0.2;
 constexpr double kLeastGain_log = 5e-3;
 /// Standard deviations that the halves of a record of such an axis are apart at the most, one in a hundred.
@@ -345,8 +345,10 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
   s.antiresonance_Hz = Hz(s.axis.stiffness, s.axis.load_inertia);
   s.resonance_Hz = s.antiresonance_Hz * std::sqrt(s.axis.mass_kg() / s.axis.motor_inertia);
   s.parameters = std::move(fit.parameters);
-  const bool screw = rigid_error - best.first > kLeastGain_log && s.resonance_Hz < kRigidFrom_Hz &&
-                     Sigma(s.parameters, "screw_stiffness_N_um") < kKnownStiffness;
+  // One that shows is one, however unsure its stiffness is: what is done with that is for others to say.
+  const bool known = Sigma(s.parameters, "screw_stiffness_N_um") < kKnownStiffness ||
+                     VisibleAntiresonance(s.response).has_value();
+  const bool screw = rigid_error - best.first > kLeastGain_log && s.resonance_Hz < kRigidFrom_Hz && known;
   s.verdict = screw ? ShakenScrew::Verdict::kFound : ShakenScrew::Verdict::kRigid;
   if (!screw) s.axis = rigid;
   WidenByHalves(s.parameters);

@@ -7,6 +7,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <unsupported/Eigen/FFT>
 
 #include "analysis/identification/follow_gain.h"
@@ -36,6 +37,14 @@ constexpr double kSpeedOver_s = 0.008;
 constexpr double kLeastError_m = 1e-12;
 /// Of the mean curvature: what hardly anything shows, or shows together with others only, stays small.
 constexpr double kRidge = 1e-4;
+/// Of noise, to see what it makes of each motion: a block has a thousand rows, so a few are as good as many.
+constexpr int kDraws = 4;
+/// How large it is shows in the quieter quarter of blocks; friction answers a small noise by less, so what
+/// was drawn too large is drawn again.
+constexpr double kQuieter = 0.25;
+constexpr int kRounds = 2;
+/// Of the bandwidth with which the simulation follows a record.
+constexpr double kLoosely = 0.1;
 
 /// Columns of the forces: waves, then for each direction speeds, travels and places.
 constexpr Index kColumns = 2 * kOrders + 2 * static_cast<Index>(kSpeeds + kTravels + kPlaces);
@@ -159,6 +168,24 @@ double ErrorPerForce_m_N(const LinearStep& step, const FollowGain& gain) {
   return left.completeOrthogonalDecomposition().solve(step.table)(0);
 }
 
+/// What white noise makes of prediction errors, as shares of their mean square.
+struct White {
+  double force = 0.0, reading = 0.0;
+  double per_force_m2_N2 = 0.0, per_reading = 0.0;  ///< mean square of the errors per that of the noise
+  [[nodiscard]] double share() const { return std::min(1.0, force + reading); }
+};
+
+/// Standard deviations.
+struct Noise {
+  double force_N, reading_m;
+};
+
+/// Noise that makes errors of this mean square.
+Noise NoiseOf(const White& white, double square_m2) {
+  return {std::sqrt(white.force * square_m2 / std::max(1e-300, white.per_force_m2_N2)),
+          std::sqrt(white.reading * square_m2 / std::max(1e-300, white.per_reading))};
+}
+
 /// Mean spectrum of the errors, every block alike, and what of it noise that is white explains, of the force
 /// and of the readings: as much as their quick half has, where motion leaves the least.
 class WhiteShare {
@@ -178,7 +205,7 @@ class WhiteShare {
         power_(static_cast<Index>(f)) += std::norm(spectrum[f]) / mean;
     }
   }
-  [[nodiscard]] double Of(const LinearStep& step, const FollowGain& gain) const;
+  [[nodiscard]] White Of(const LinearStep& step, const FollowGain& gain) const;
 
  private:
   static constexpr std::size_t kSpectrum = 128;
@@ -186,7 +213,7 @@ class WhiteShare {
   VectorXd power_ = VectorXd::Zero(kSpectrum / 2 + 1);
 };
 
-double WhiteShare::Of(const LinearStep& step, const FollowGain& gain) const {
+White WhiteShare::Of(const LinearStep& step, const FollowGain& gain) const {
   const Eigen::Matrix4cd corrected = Corrected(step, gain).cast<std::complex<double>>();
   const Eigen::Vector4cd by_force = step.motor.cast<std::complex<double>>();
   const Eigen::Vector4cd by_reading = (step.a * gain).cast<std::complex<double>>();
@@ -198,7 +225,16 @@ double WhiteShare::Of(const LinearStep& step, const FollowGain& gain) const {
     noise(f, 0) = std::norm(solver.solve(by_force)(0));
     noise(f, 1) = std::norm(1.0 - solver.solve(by_reading)(0));
   }
-  noise.col(0) /= noise.col(0).maxCoeff();
+  White white;
+  // Of both halves of the circle: lines but the first and the last count twice.
+  const auto mean = [](const auto& line) {
+    const Index n = line.size();
+    return (2.0 * line.sum() - line(0) - line(n - 1)) / static_cast<double>(2 * (n - 1));
+  };
+  white.per_force_m2_N2 = mean(noise.col(0));
+  white.per_reading = mean(noise.col(1));
+  const double largest = noise.col(0).maxCoeff();
+  noise.col(0) /= largest;
   // In shares of the spectrum, which spans decades; both or, where one would be negative, the better one
   // alone.
   const Index quick = noise.rows() / 2;
@@ -212,7 +248,84 @@ double WhiteShare::Of(const LinearStep& step, const FollowGain& gain) const {
     found = force ? Eigen::Vector2d(alone(0), 0.0) : Eigen::Vector2d(0.0, alone(1));
   }
   const double all = power_.sum();
-  return all > 0.0 ? std::clamp((noise * found).sum() / all, 0.0, 1.0) : 1.0;
+  if (!(all > 0.0)) return {0.0, 1.0, white.per_force_m2_N2, white.per_reading};
+  white.force = std::clamp(found(0) * noise.col(0).sum() / all, 0.0, 1.0);
+  white.reading = std::clamp(found(1) * noise.col(1).sum() / all, 0.0, 1.0 - white.force);
+  return white;
+}
+
+/// The records as they would be if the axis were the model, led by the same force and white noise; held to
+/// where it was, but loosely, or it would wander off.
+std::vector<Measured> AsTheModelWouldBe(const TableAxis& axis, const std::vector<Measured>& records,
+                                        double force_N, double reading_m, std::mt19937& random, int threads) {
+  std::normal_distribution<double> normal;
+  std::vector<Measured> noisy = records;
+  for (Measured& d : noisy)
+    for (double& f : d.led_by_drive() ? d.reported_N : d.force_N) f += force_N * normal(random);
+  const VectorXd away =
+      PredictionErrors_m({{axis, FollowGainFor(axis, records.front(), kLoosely)}}, noisy, threads).col(0);
+  std::vector<Measured> lived = records;
+  Index row = 0;
+  for (Measured& d : lived)
+    for (double& x : d.position_m) x += reading_m * normal(random) - away(row++);
+  return lived;
+}
+
+/// A block of time: how many rows, and of what its errors are a share.
+struct Block {
+  Index first, rows;
+  double of_friction;
+};
+
+double Quantile(std::vector<double> x, double share) {
+  const auto at = x.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(x.size()));
+  std::nth_element(x.begin(), at, x.end());
+  return *at;
+}
+double Mean(const std::vector<double>& x) {
+  double sum = 0.0;
+  for (const double v : x) sum += v / static_cast<double>(x.size());
+  return sum;
+}
+
+std::vector<double> Squares(const std::vector<Block>& blocks, const VectorXd& errors) {
+  std::vector<double> squares;
+  for (const Block& b : blocks)
+    squares.push_back(b.of_friction * errors.segment(b.first, b.rows).squaredNorm() /
+                      static_cast<double>(b.rows));
+  return squares;
+}
+
+/// Mean square of the errors in each block that noise makes, of a size that the quieter blocks allow: it is
+/// in all of them. About to break away, an axis answers a force by much more than while it slides, and noise
+/// is as uneven then as what goes with the motion; how much, the model says, living through the record with
+/// it.
+std::vector<double> SquaresByNoise(const Followed& followed, const std::vector<Measured>& records,
+                                   const std::vector<Block>& blocks, const std::vector<double>& seen,
+                                   Noise noise, int threads) {
+  std::mt19937 random(1);
+  const auto errors = [&](double force, double reading) -> VectorXd {
+    const auto lived = AsTheModelWouldBe(followed.axis, records, force, reading, random, threads);
+    return PredictionErrors_m({followed}, lived, threads).col(0);
+  };
+  const VectorXd without = errors(0.0, 0.0);
+  std::vector<double> squares;
+  for (int round = 0; round < kRounds; ++round) {
+    squares.assign(blocks.size(), 0.0);
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const std::vector<double> one = Squares(blocks, errors(noise.force_N, noise.reading_m) - without);
+      for (std::size_t i = 0; i < one.size(); ++i) squares[i] += one[i] / kDraws;
+    }
+    std::vector<double> of_seen;
+    for (std::size_t i = 0; i < squares.size(); ++i)
+      if (squares[i] > 0.0) of_seen.push_back(seen[i] / squares[i]);
+    if (of_seen.empty()) return squares;
+    const double quiet = Quantile(std::move(of_seen), kQuieter);
+    for (double& square : squares) square *= quiet;
+    noise.force_N *= std::sqrt(quiet);
+    noise.reading_m *= std::sqrt(quiet);
+  }
+  return squares;
 }
 
 /// Mean square of the quick force that is sent in rows: a wave of a chirp has half of its amplitude's square.
@@ -240,8 +353,8 @@ UnexplainedForce FindUnexplainedForce(const TableAxis& axis, const std::vector<M
   const LinearStep step = Over(axis, axis.friction.s2, records.front().period_s);
   const auto block = static_cast<Index>(std::max(1.0, kBlock_s / records.front().period_s));
   std::array<Half, 2> half;
-  WhiteShare white;
-  std::vector<double> squares;
+  WhiteShare spectrum;
+  std::vector<Block> blocks;
   Index first = 0;
   for (const Measured& d : records) {
     Forces forces(axis, d);
@@ -259,24 +372,24 @@ UnexplainedForce FindUnexplainedForce(const TableAxis& axis, const std::vector<M
         apart += step.table * force;
       }
       const VectorXd e = errors.segment(first + b, rows);
-      half[squares.size() % 2].Add(seen, e);
-      white.Add(e);
+      half[blocks.size() % 2].Add(seen, e);
+      spectrum.Add(e);
       // What shakes the axis is, with friction, what the errors are a share of.
       const double friction_N2 = u.friction_N * u.friction_N;
-      const double of_friction = friction_N2 / (friction_N2 + Quick_N2(d, b, rows));
-      squares.push_back(of_friction * e.squaredNorm() / static_cast<double>(rows));
+      blocks.push_back({first + b, rows, friction_N2 / (friction_N2 + Quick_N2(d, b, rows))});
     }
     first += static_cast<Index>(d.size());
   }
-  double all = 0.0;
-  for (const double square : squares) all += square / static_cast<double>(squares.size());
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  const double typical = std::min(all, *middle), white_share = white.Of(step, gain);
-  const double share = std::max(RepeatingShare(half), 1.0 - white_share);
+  const std::vector<double> squares = Squares(blocks, errors);
+  const double all = Mean(squares), typical = std::min(all, Quantile(squares, 0.5));
+  const White white = spectrum.Of(step, gain);
+  const double share = std::max(RepeatingShare(half), 1.0 - white.share());
+  const double by_noise =
+      Mean(SquaresByNoise({axis, gain}, records, blocks, squares, NoiseOf(white, typical), threads));
+  const double noise = std::isfinite(by_noise) ? std::min(all, (1.0 - share) * by_noise) : 0.0;
   const double per_N = ErrorPerForce_m_N(step, gain);
-  u.structure_N = std::sqrt(share * typical + all - typical) / per_N;
-  u.noise_N = std::sqrt((1.0 - share) * typical) / per_N;
+  u.structure_N = std::sqrt(std::max(share * typical, all - noise)) / per_N;
+  u.noise_N = std::sqrt(noise) / per_N;
   return u;
 }
 

@@ -21,9 +21,9 @@ struct UnexplainedForce {
 /// angle and direction, the place, the speed or the travel since the last reversal, and that the axis has
 /// not, is fitted through what the simulation makes of a force to half of the blocks of time, and judged on
 /// the other half, in turn: noise, however large, is not foreseen so. White noise of torque and encoder gives
-/// errors of a known spectrum, whose quick half says how much there is of it. And it is as large in every
-/// motion: what the errors of all blocks have beyond those of the middle one comes of some motions, as where
-/// a bristle is wrong.
+/// errors of a known spectrum, whose quick half says how much there is of it. And it is there in every
+/// motion: what the errors have beyond what noise makes of them, as large as the quieter blocks allow and as
+/// uneven as the model says, comes of some motions, as where a bristle is wrong.
 UnexplainedForce FindUnexplainedForce(const TableAxis& axis, const std::vector<Measured>& records,
                                       int threads);
 

@@ -15,9 +15,6 @@ constexpr double kMostUnsettled = 3.0;
 /// Of friction, what goes with the motion and the model has not. Fed forward, a model leaves as much of the
 /// wind-up that friction makes, F / K, and the best loops come down to less than a tenth of that.
 constexpr double kMostUnexplained = 0.05;
-/// Largest over smallest accelerance of a shaken axis that counts as rigid.
-constexpr double kLeastDip = 2.5;
-constexpr double kSeen = 0.6;  ///< coherence
 /// Standard deviation of the stiffness; a catalogue has 0.4. What feeds the wind-up forward by a stiffness
 /// that is less sure is no better with it.
 constexpr double kLeastKnownStiffness = 0.15;
@@ -83,6 +80,14 @@ std::string Misfit(const Identification& id) {
       u.structure_N, 100.0 * u.structure_N / u.friction_N, u.noise_N);
 }
 
+std::string Unsettled(const Identification& id) {
+  if (id.fit.unsettled <= kMostUnsettled) return {};
+  return FormatText(
+      "the fit did not settle: it is still %.0f standard deviations from its best; begin with "
+      "a model that is nearer, or commission again",
+      id.fit.unsettled);
+}
+
 std::string Antiresonance(const Identification& id) {
   if (id.shaken.verdict != ShakenScrew::Verdict::kRigid) return {};
   const std::optional<ResponsePoint> dip = VisibleAntiresonance(id.shaken.response);
@@ -96,34 +101,17 @@ std::string Antiresonance(const Identification& id) {
 
 }  // namespace
 
-std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoint>& response) {
-  std::optional<ResponsePoint> low;
-  double high = 0.0;
-  for (std::size_t i = 1; i + 1 < response.size(); ++i) {
-    ResponsePoint p = response[i];
-    double coherence = 1.0;
-    p.accelerance_1_kg = 0.0;
-    for (std::size_t j = i - 1; j <= i + 1; ++j) {
-      p.accelerance_1_kg += response[j].accelerance_1_kg / 3.0;
-      coherence = std::min(coherence, response[j].coherence);
-    }
-    if (coherence < kSeen) continue;
-    if (!low || p.accelerance_1_kg < low->accelerance_1_kg) low = p;
-    high = std::max(high, p.accelerance_1_kg);
-  }
-  if (!low || high < kLeastDip * low->accelerance_1_kg) return std::nullopt;
-  return low;
+std::string WhyUnusable(const Identification& id) {
+  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), UnknownMasses(id),
+                          Misfit(id), Unsettled(id)})
+    if (!why.empty()) return why;
+  return {};
 }
 
-std::string WhyUnusable(const Identification& id) {
-  for (const auto& why :
-       {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), UnknownMasses(id), Misfit(id)})
+std::string WhyNoBeginning(const Identification& id) {
+  if (id.shaken.verdict != ShakenScrew::Verdict::kFound) return "shaken, it showed no screw";
+  for (const auto& why : {Numbers(id), Holes(id), Unsettled(id)})
     if (!why.empty()) return why;
-  if (id.fit.unsettled > kMostUnsettled)
-    return FormatText(
-        "the fit did not settle: it is still %.0f standard deviations from its best; begin with "
-        "a model that is nearer, or commission again",
-        id.fit.unsettled);
   return {};
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "analysis/identification/identification.h"
 
@@ -13,7 +11,8 @@ namespace contour::identify {
 /// above the encoder's noise, an axis called rigid whose shaking shows an antiresonance.
 std::string WhyUnusable(const Identification& id);
 
-/// The deepest point of a response that no rigid axis has; none where it is flat.
-std::optional<ResponsePoint> VisibleAntiresonance(const std::vector<ResponsePoint>& response);
+/// Why not even to begin again from a result, with its intervals as what is left open; empty: it is nearer
+/// than a catalogue. It may be too unsure to be used, or lack something that the axis has.
+std::string WhyNoBeginning(const Identification& id);
 
 }  // namespace contour::identify

@@ -72,6 +72,11 @@ class OperatorDesk {
   /// daemon ends as it ends on a signal and begins anew with it, in the same process. The machine must be
   /// Idle, and is Idle again when that is done. Refused before anything ends where it could not begin.
   virtual Answer LoadModel(const std::string& axis, const std::string& yaml) = 0;
+  /// Torque mode with these loops, one for each axis (the keys of `axes.<axis>.loop`, as YAML), and models of
+  /// axes that they were found for, whatever the machine file says; with none, its own mode again. Begins
+  /// anew as with a model. Where the drives do not come up so, in the machine file's own mode.
+  virtual Answer ChangeMode(const std::map<std::string, std::string>& loops,
+                            const std::map<std::string, std::string>& models) = 0;
   virtual Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) = 0;
   /// Programs count from where the machine stands from now on. As the next.
   virtual Answer Zero() = 0;

@@ -115,6 +115,24 @@ json Watch(const json& request, Subscriptions& subscriptions) {
   return {{"ok", true}};
 }
 
+std::map<std::string, std::string> TextsOfAxes(const json& request, const char* key) {
+  const auto at = request.find(key);
+  const std::string name = std::string("\"") + key + "\"";
+  if (at == request.end() || !at->is_object()) throw BadRequest(name + " must be there and be an object");
+  std::map<std::string, std::string> texts;
+  for (const auto& [axis, text] : at->items()) {
+    if (!text.is_string()) throw BadRequest(name + " must have a text for each axis");
+    texts[axis] = text.get<std::string>();
+  }
+  return texts;
+}
+
+json ChangeMode(const json& request, OperatorDesk& desk) {
+  std::map<std::string, std::string> models;
+  if (request.contains("models")) models = TextsOfAxes(request, "models");
+  return Reply(desk.ChangeMode(TextsOfAxes(request, "loops"), models));
+}
+
 json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions,
               const std::stop_token& unwanted, std::string* uploaded) {
   const std::string kind = Text(request, "request");
@@ -136,6 +154,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     return reply;
   }
   if (kind == "load_model") return Reply(desk.LoadModel(Text(request, "axis"), Text(request, "model")));
+  if (kind == "torque_mode") return ChangeMode(request, desk);
   if (kind == "run") return Run(request, desk, unwanted, uploaded);
   if (kind == "watch") return Watch(request, subscriptions);
   if (kind == "rows") {
@@ -144,7 +163,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   }
   throw BadRequest("unknown request \"" + kind +
                    "\"; there are status, machine_file, enable, disable, stop, pause, resume, feed, "
-                   "zero, reset, reference, reload, load_model, upload, run, watch, rows");
+                   "zero, reset, reference, reload, load_model, torque_mode, upload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

@@ -30,6 +30,30 @@ TEST(WithModel, OneModelForEachAxisAndNoneWhereItIsTakenAway) {
   EXPECT_EQ(WithModel(options, "x=").models, (std::vector<std::string>{"y=b"}));
 }
 
+TEST(WithNewStart, LogAndTruthGoOnInFilesOfTheirOwn) {
+  const test::ScratchDirectory scratch;
+  DaemonOptions options;
+  options.log = (scratch.path() / "run.log").string();
+  options.models = {"x=a"};
+  options.torque_loops = {"x=old"};
+  options.torque_models = {"x=older"};
+  const DaemonOptions modelled = WithNewStart(options, {"x={lead_mm: 5}", {}});
+  EXPECT_EQ(modelled.log, options.log + ".1");
+  EXPECT_EQ(modelled.truth, "");
+  EXPECT_EQ(modelled.models, (std::vector<std::string>{"x={lead_mm: 5}"}));
+  EXPECT_EQ(modelled.torque_loops, options.torque_loops) << "a model is loaded in the mode that runs";
+  const DaemonOptions back = WithNewStart(modelled, {{}, TorqueMode{}});
+  EXPECT_TRUE(back.torque_loops.empty());
+  EXPECT_TRUE(back.torque_models.empty());
+  EXPECT_EQ(back.models, modelled.models);
+}
+
+TEST(Describe, SaysWhatBeginsAnew) {
+  EXPECT_EQ(Describe({"x={lead_mm: 5}", {}}), "with another model of axis x");
+  EXPECT_EQ(Describe({{}, TorqueMode{{"x=a"}, {}}}), "in torque mode for commissioning");
+  EXPECT_EQ(Describe({{}, TorqueMode{}}), "in the machine file's own mode");
+}
+
 TEST(ArgumentsOf, AreReadAsTheSameOptions) {
   DaemonOptions options;
   options.config = "a machine.yaml";
@@ -38,6 +62,8 @@ TEST(ArgumentsOf, AreReadAsTheSameOptions) {
   options.controller = "full";
   options.set = {"machine.name=-x", "axes.x.limits.position_mm=[-1, 1]"};
   options.models = {"x=lead_mm: 5\nfriction: {a: 1}\n"};
+  options.torque_loops = {"x=regulator_Hz: 20\n", "y={regulator_Hz: 10}"};
+  options.torque_models = {"x={lead_mm: 5}"};
   options.log = "l";
   options.truth = "t";
   options.socket = "/s";
@@ -48,6 +74,8 @@ TEST(ArgumentsOf, AreReadAsTheSameOptions) {
   ASSERT_EQ(ParseOptions(static_cast<int>(words.size()), words.data(), read), ParseResult::kRun);
   EXPECT_EQ(ArgumentsOf(read), ArgumentsOf(options));
   EXPECT_EQ(read.models, options.models);
+  EXPECT_EQ(read.torque_loops, options.torque_loops);
+  EXPECT_EQ(read.torque_models, options.torque_models);
   EXPECT_EQ(read.set, options.set);
   EXPECT_EQ(read.buses, options.buses);
 }

@@ -104,6 +104,16 @@ TEST_F(SupervisorTest, WhatTheCycleHasTakenIsAnsweredByItWhoeverIsGone) {
   EXPECT_TRUE(enabling.get().accepted);
 }
 
+TEST_F(SupervisorTest, TorqueModeIsRefusedBeforeAnythingEnds) {
+  const Answer unknown = supervisor_.ChangeMode({{"q", "regulator_Hz: 20"}}, {});
+  EXPECT_FALSE(unknown.accepted);
+  EXPECT_NE(unknown.reason.find("no axis q"), std::string::npos) << unknown.reason;
+  const Answer pid = supervisor_.ChangeMode({{"x", "regulator_Hz: 20"}}, {});
+  EXPECT_FALSE(pid.accepted) << "pid goes by no loop";
+  EXPECT_NE(pid.reason.find("full"), std::string::npos) << pid.reason;
+  EXPECT_FALSE(supervisor_.wanted().has_value());
+}
+
 TEST_F(SupervisorTest, AStopMakesVoidWhatTheCycleHasNotTaken) {
   auto enabling = Enable();
   while (!mailbox_.request_waiting()) std::this_thread::yield();

@@ -66,6 +66,7 @@ TEST(StartLoop, AMachineIsNotCommissionedWithALoopThatIsNotCertain) {
   }
   EXPECT_NE(WhyLoopsMayNotStart(machine).find("axes.x.loop: "), std::string::npos);
   EXPECT_NE(WhyLoopsMayNotStart(machine).find("--catalogue"), std::string::npos);
+  EXPECT_NE(WhyLoopsMayNotStart(machine).find("drive.mode: csp"), std::string::npos) << "where none is found";
   // What does not use it, it does not endanger.
   for (auto& [name, axis] : machine.axes) axis.drive.mode = DriveMode::kCsp;
   EXPECT_EQ(WhyLoopsMayNotStart(machine), "");

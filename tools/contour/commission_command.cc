@@ -8,13 +8,18 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/identification/result_files.h"
+#include "analysis/identification/usable.h"
+#include "analysis/parallel/parallel_for.h"
 #include "analysis/recording/record_axis.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
@@ -22,12 +27,14 @@
 #include "design/commission_plan.h"
 #include "design/drive_motions.h"
 #include "design/start_loop.h"
+#include "design/torque_loops.h"
 #include "drivers/cia402/mode_for.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/contour/commission_drive.h"
 #include "tools/contour/commission_loop.h"
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/identification_report.h"
+#include "tools/contour/torque_mode_stay.h"
 
 namespace contour {
 namespace {
@@ -41,6 +48,7 @@ struct Options {
   std::string out;
   std::string report;
   std::string loop;
+  std::string mode = "auto";
   bool drive = false;
   bool yes = false;
 };
@@ -48,28 +56,21 @@ struct Options {
 constexpr std::chrono::milliseconds kLookEvery{100};
 constexpr std::chrono::seconds kEnableLimit{60};
 constexpr std::chrono::seconds kLastRows{5};
+constexpr const char* kStays =
+    "note: recorded in csp, where the drive's reports are what is known of its torque: ";
 
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 void OnSignal(int /*signal*/) { stop_requested.store(true); }
 
-MachineConfig AskForMachine(ControlClient& client) {
-  const json reply = AskOrThrow(client, {{"request", "machine_file"}});
-  std::vector<std::string> errors;
-  MachineConfig machine =
-      ReadMachine(ParseYamlText(reply.at("yaml").get<std::string>(), "the daemon's machine file"), errors);
-  if (!errors.empty()) throw ConfigError(errors);
-  return machine;
-}
-
 /// Takes every cycle from the daemon and watches that the axis keeps to what the operator allowed.
 class Watchman {
  public:
   Watchman(ControlClient& client, std::size_t axis, double period_s, const RecordedTorque& torque,
-           const CommissionPlan& plan, double radius_m_rad)
+           CommissionPlan plan, double radius_m_rad)
       : axis_(axis),
         reported_(torque.reported),
-        plan_(plan),
+        plan_(std::move(plan)),
         recorder_(axis, period_s, torque),
         drive_recorder_(axis, radius_m_rad) {
     client.OnMessage([this](const json& message) { OnMessage(message); });
@@ -115,7 +116,7 @@ class Watchman {
 
   std::size_t axis_;
   bool reported_;  ///< the drive makes the torque
-  const CommissionPlan& plan_;
+  const CommissionPlan plan_;
   AxisRecorder recorder_;
   DriveRecorder drive_recorder_;
   CycleEntry entry_;
@@ -176,6 +177,10 @@ std::size_t NumberOf(const json& status, const std::string& axis) {
   return number;
 }
 
+bool DriveLeads(const MachineConfig& machine, const std::string& axis) {
+  return ModeFor(machine.machine.controller, machine.axes.at(axis).drive) == DriveMode::kCsp;
+}
+
 /// What must hold before anything moves; throws with what does not.
 void CheckBeforehand(MachineConfig& machine, const json& status, const Options& options) {
   if (!machine.axes.contains(options.axis))
@@ -188,24 +193,31 @@ void CheckBeforehand(MachineConfig& machine, const json& status, const Options& 
   if (!FromName(controller, machine.machine.controller))
     throw std::runtime_error("the daemon runs a controller that this program does not know: " + controller);
   if (const std::string wrong = WhyLoopsMayNotStart(machine); !wrong.empty()) throw ConfigError({wrong});
-  const bool drive_holds =
-      ModeFor(machine.machine.controller, machine.axes.at(options.axis).drive) == DriveMode::kCsp;
+  const bool drive_holds = DriveLeads(machine, options.axis);
+  if (options.mode == "csp" && !drive_holds)
+    throw ConfigError({"--mode: found csp, but axis " + options.axis +
+                       " is held from here, not by its drive: run contourd with --set axes." + options.axis +
+                       ".drive.mode=csp"});
   if (options.drive && !drive_holds)
     throw ConfigError({"--drive: axis " + options.axis +
                        " is held from here, not by its drive: run contourd with --set axes." + options.axis +
                        ".drive.mode=csp"});
 }
 
-CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const Options& options) {
-  CommissionLimits limits = DefaultCommissionLimits(machine.axes.at(options.axis));
-  if (options.travel_mm) limits.travel_mm = *options.travel_mm;
-  if (options.max_speed_mm_s) limits.max_speed_mm_s = *options.max_speed_mm_s;
-  if (options.max_torque_Nm) limits.max_torque_Nm = *options.max_torque_Nm;
-  const json& axis = status.at("axes").at(NumberOf(status, options.axis));
+/// What the operator allowed goes for the axis that was asked for.
+CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const std::string& name,
+                       const Options& options) {
+  CommissionLimits limits = DefaultCommissionLimits(machine.axes.at(name));
+  if (name == options.axis) {
+    if (options.travel_mm) limits.travel_mm = *options.travel_mm;
+    if (options.max_speed_mm_s) limits.max_speed_mm_s = *options.max_speed_mm_s;
+    if (options.max_torque_Nm) limits.max_torque_Nm = *options.max_torque_Nm;
+  }
+  const json& axis = status.at("axes").at(NumberOf(status, name));
   const double position_mm = 1e3 * axis.at("position_m").get<double>();
-  CommissionPlan plan = PlanCommissioning(machine, options.axis, position_mm, limits);
+  CommissionPlan plan = PlanCommissioning(machine, name, position_mm, limits);
   if (options.drive)
-    plan.motions = DriveMotions(plan, machine.axes.at(options.axis), position_mm, machine.machine.cycle_us);
+    plan.motions = DriveMotions(plan, machine.axes.at(name), position_mm, machine.machine.cycle_us);
   return plan;
 }
 
@@ -219,6 +231,34 @@ void Advise(const MachineConfig& machine) {
     std::cout << "note: the controller " << Name(controller)
               << " may swing where the model is far off; full with control.friction: linear and the loop of "
                  "contour tune --from-model FILE --catalogue does not\n";
+}
+
+/// An axis that was told where it is would have to be told again.
+std::string WhyNotBeginAnew(const json& status) {
+  for (const json& axis : status.at("axes")) {
+    const std::string reference = axis.at("reference");
+    if (reference != "absolute" && reference != "never_told")
+      return "axis " + axis.at("name").get<std::string>() +
+             " was told where it is, which contourd forgets when it begins anew";
+  }
+  return {};
+}
+
+/// Whether to record in torque mode what runs in csp, and with which loops. There every force is known that
+/// acts; but a loop from here has to hold the axes.
+TorqueLoops LoopsToRecordWith(const MachineConfig& machine, const json& status, const Options& options) {
+  if (options.drive || options.mode == "csp" || !DriveLeads(machine, options.axis)) return {};
+  TorqueLoops found{{}, {}, WhyNotBeginAnew(status)};
+  if (found.why_not.empty()) {
+    std::cout << "looking for loops that hold all axes in torque mode, whatever the models leave open\n"
+              << std::flush;
+    found = FindTorqueLoops(machine, ThreadsOf(0));
+  }
+  if (!found.complete() && found.lacking.empty()) {
+    if (options.mode == "cst") throw ConfigError({"--mode: found cst, but " + found.why_not});
+    std::cout << kStays << found.why_not << "\n";
+  }
+  return found;
 }
 
 /// Enables, moves, takes the torque off; the record is the watchman's.
@@ -254,33 +294,92 @@ void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& p
   std::fflush(stdout);
 }
 
-/// The model of what was recorded, and the axis's loop for it.
-void IdentifyAxis(const MachineConfig& machine, Watchman& watchman, const Options& options) {
+/// Moves an axis; what was recorded is the watchman's.
+std::unique_ptr<Watchman> Record(ControlClient& client, const MachineConfig& machine,
+                                 const CommissionPlan& plan) {
+  const AxisConfig& axis = machine.axes.at(plan.axis);
+  const RecordedTorque torque{DriveLeads(machine, plan.axis),
+                              static_cast<std::size_t>(axis.drive.delay_cycles), 1e-3 * axis.drive.lag_ms};
+  auto watchman =
+      std::make_unique<Watchman>(client, NumberOf(Status(client), plan.axis), machine.machine.cycle_us * 1e-6,
+                                 torque, plan, ToSi(axis.model.mechanics).radius_m_rad);
+  // The connection may outlive it.
+  const auto leave_alone = [&client] { client.OnMessage([](const json&) {}); };
+  try {
+    MoveAxis(client, *watchman, plan);
+  } catch (const std::exception&) {
+    leave_alone();
+    throw;
+  }
+  leave_alone();
+  return watchman;
+}
+
+/// What is to be identified of an axis from its record.
+IdentificationJob JobOf(const MachineConfig& machine, const std::string& name, Watchman& watchman,
+                        const Options& options) {
   IdentificationJob job;
   // Of what the drive's own loop does to a chirp its reports show but two values a period.
-  if (ModeFor(machine.machine.controller, machine.axes.at(options.axis).drive) == DriveMode::kCsp)
+  if (DriveLeads(machine, name))
     job.to_try =
         "in csp the torque is what the drive reports, which does not show all of it: where the drive can, "
-        "commission in torque mode (drive.mode: cst)";
-  job.stated = diagnosis::ToStatedAxis(machine, options.axis);
-  job.model = machine.axes.at(options.axis).model;
+        "commission in torque mode (--mode cst); a model that states what is known (uncertainty:) makes a "
+        "loop for it more likely";
+  job.stated = diagnosis::ToStatedAxis(machine, name);
+  job.model = machine.axes.at(name).model;
   job.logs.push_back(watchman.recorder().Take());
   job.lost_cycles = watchman.lost();
-  job.sources = {"commissioning of axis " + options.axis + " of " + machine.machine.name};
-  job.out = options.out.empty() ? options.axis + "_model.yaml" : options.out;
-  job.report = options.report.empty() ? options.axis + "_commissioning" : options.report;
-  const ModelConfig model = IdentifyAndReport(job);
-  FindAndWriteLoop(machine, options.axis, model,
-                   options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
+  job.sources = {"commissioning of axis " + name + " of " + machine.machine.name};
+  job.out = options.out.empty() ? name + "_model.yaml" : options.out;
+  job.report = options.report.empty() ? name + "_commissioning" : options.report;
+  return job;
+}
+
+/// An axis as its record has it.
+struct Found {
+  IdentificationJob job;
+  identify::Identification id;
+};
+
+/// Axes that have no loop for torque mode are recorded in csp: what that tells of them, however unsure, is
+/// nearer than a catalogue, and may leave so little open that there is one. `machine` gets their models.
+std::map<std::string, Found> KnowBetter(ControlClient& client, const std::vector<std::string>& axes,
+                                        const Options& options, MachineConfig& machine) {
+  std::map<std::string, Found> found;
+  for (const std::string& name : axes) {
+    std::cout << "axis " << name << ", in csp first\n" << std::flush;
+    const auto watchman = Record(client, machine, PlanFor(machine, Status(client), name, options));
+    Found& f = found[name];
+    f.job = JobOf(machine, name, *watchman, options);
+    f.id = IdentifyWithProgress(f.job);
+    if (const std::string why = identify::WhyNoBeginning(f.id); why.empty())
+      machine.axes.at(name).model = identify::ToModel(f.id, f.job.model);
+    else
+      std::cout << "note: that says too little of axis " << name << ": " << why << "\n";
+  }
+  return found;
+}
+
+std::string DescribeAll(const MachineConfig& own, const MachineConfig& recorded, const json& status,
+                        const TorqueLoops& torque, const Options& options) {
+  std::string text;
+  for (const std::string& name : torque.lacking)
+    text += "in csp, to know it well enough for a loop in torque mode, " +
+            Describe(PlanFor(own, status, name, options));
+  if (torque.complete() || !torque.lacking.empty())
+    text +=
+        "in torque mode, held by loops from here, and back to csp at the end (contourd begins anew each "
+        "time), ";
+  return text + Describe(PlanFor(recorded, status, options.axis, options));
 }
 
 int RunCommission(const Options& options) {
-  ControlClient client = ConnectToDaemon(options.socket);
-  MachineConfig machine = AskForMachine(client);
-  const json status = Status(client);
-  CheckBeforehand(machine, status, options);
-  const CommissionPlan plan = PlanFor(machine, status, options);
-  std::cout << Describe(plan);
+  auto client = std::make_unique<ControlClient>(ConnectToDaemon(options.socket));
+  MachineConfig own = AskForMachine(*client);
+  CheckBeforehand(own, Status(*client), options);
+  TorqueLoops torque = LoopsToRecordWith(own, Status(*client), options);
+  MachineConfig machine = torque.complete() ? InTorqueMode(own, torque.loops) : own;
+  std::cout << DescribeAll(own, machine, Status(*client), torque, options);
   if (!options.drive) Advise(machine);
   if (!Confirmed(options)) {
     std::cout << "nothing was moved\n";
@@ -288,16 +387,45 @@ int RunCommission(const Options& options) {
   }
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
-  const AxisConfig& axis = machine.axes.at(options.axis);
-  const RecordedTorque torque{ModeFor(machine.machine.controller, axis.drive) == DriveMode::kCsp,
-                              static_cast<std::size_t>(axis.drive.delay_cycles), 1e-3 * axis.drive.lag_ms};
-  Watchman watchman(client, NumberOf(status, options.axis), machine.machine.cycle_us * 1e-6, torque, plan,
-                    ToSi(axis.model.mechanics).radius_m_rad);
-  MoveAxis(client, watchman, plan);
-  if (options.drive)
-    return ReportOnDrive(machine, options.axis, watchman.drive_samples(),
-                         options.out.empty() ? options.axis + "_drive.json" : options.out);
-  IdentifyAxis(machine, watchman, options);
+  std::map<std::string, ModelConfig> models;
+  std::map<std::string, Found> in_csp;
+  if (!torque.lacking.empty()) {
+    MachineConfig known = own;
+    in_csp = KnowBetter(*client, torque.lacking, options, known);
+    for (const auto& [name, found] : in_csp) models[name] = known.axes.at(name).model;
+    torque = FindTorqueLoops(known, ThreadsOf(0), torque.loops);
+    if (torque.complete()) machine = InTorqueMode(known, torque.loops);
+  }
+  TorqueModeStay stay(client, options.socket);
+  if (torque.complete() && !stay.Enter(torque.loops, models))
+    torque.why_not = "the drives do not come up in torque mode (0x6502)";
+  if (!torque.complete() && !(torque.loops.empty() && torque.lacking.empty())) {
+    if (options.mode == "cst") throw std::runtime_error("no record in torque mode: " + torque.why_not);
+    std::cout << kStays << torque.why_not << "\n";
+    machine = own;
+  }
+  std::optional<Found> found;
+  if (!torque.complete() && in_csp.contains(options.axis)) {
+    found = std::move(in_csp.at(options.axis));
+  } else {
+    std::unique_ptr<Watchman> watchman;
+    try {
+      watchman = Record(*client, machine, PlanFor(machine, Status(*client), options.axis, options));
+    } catch (const std::exception&) {
+      stay.LeaveOrSay();
+      throw;
+    }
+    stay.Leave();
+    if (options.drive)
+      return ReportOnDrive(machine, options.axis, watchman->drive_samples(),
+                           options.out.empty() ? options.axis + "_drive.json" : options.out);
+    found.emplace();
+    found->job = JobOf(machine, options.axis, *watchman, options);
+    found->id = IdentifyWithProgress(found->job);
+  }
+  const ModelConfig model = Report(found->job, found->id);
+  FindAndWriteLoop(machine, options.axis, model,
+                   options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
   return kExitDone;
 }
 
@@ -319,6 +447,11 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
   sub->add_option("--out", options->out, "Model file to write (default: NAME_model.yaml)");
   sub->add_option("--loop", options->loop, "Loop file to write (default: NAME_loop.yaml)");
   sub->add_option("--report", options->report, "Directory of the report (default: NAME_commissioning)");
+  sub->add_option(
+         "--mode", options->mode,
+         "What the drives are in while the axis is recorded, where they run in csp: cst, csp, or auto: "
+         "cst where a loop is stable for all that the models leave open")
+      ->check(CLI::IsMember({"auto", "cst", "csp"}));
   sub->add_flag(
       "--drive", options->drive,
       "Measure the loop that the drive closes (csp), and what it can do, instead of the axis; --out "

@@ -242,18 +242,13 @@ improve::Drawing DaemonMachine::Run(const improve::ProgramText& program) {
 
 void DaemonMachine::LoadModel(const std::string& yaml) {
   const auto deadline = std::chrono::steady_clock::now() + kBeginAnew;
-  // Its end of the connection closes when it ends, at times before its answer has come.
   try {
-    const json reply = client_->Ask({{"request", "load_model"}, {"axis", setup_.axis}, {"model", yaml}});
-    if (!reply.value("ok", false)) throw improve::ModelRefused(WhyRefused(reply.value("error", ""), yaml));
-    while (std::chrono::steady_clock::now() < deadline) client_->Listen(kLookEvery);
-    throw std::runtime_error("contourd did not begin anew");
-  } catch (const ConnectionLost&) {
-    client_.reset();
+    BeginAnew(
+        client_, {{"request", "load_model"}, {"axis", setup_.axis}, {"model", yaml}},
+        [this] { return ConnectToDaemon(setup_.socket); }, deadline);
+  } catch (const BeginRefused& e) {
+    throw improve::ModelRefused(WhyRefused(e.what(), yaml));
   }
-  client_ = ConnectToNewDaemon([this] { return ConnectToDaemon(setup_.socket); }, deadline);
-  WaitForStatus(
-      *client_, [](const json& s) { return s.at("state") == "Idle"; }, kStateLimit);
   if (!yaml.empty() && WriteYaml(Machine().axes.at(setup_.axis).model) != WriteYaml(ModelOf(yaml)))
     throw std::runtime_error("contourd began anew, but not with the model that it was given");
 }

@@ -8,14 +8,13 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "analysis/identification/identification.h"
 #include "analysis/identification/result_files.h"
 #include "analysis/identification/usable.h"
 #include "analysis/parallel/parallel_for.h"
 #include "tools/contour/draw_pictures.h"
 
 namespace contour {
-ModelConfig IdentifyAndReport(const IdentificationJob& job) {
+identify::Identification IdentifyWithProgress(const IdentificationJob& job) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   identify::IdentifyOptions options;
   options.threads = ThreadsOf(job.threads);
@@ -26,6 +25,10 @@ ModelConfig IdentifyAndReport(const IdentificationJob& job) {
   if (terminal) std::fputs("\r\x1b[K", stderr);
   const double cycles = id.seconds / id.period_s;
   id.missing_share = std::max(id.missing_share, static_cast<double>(job.lost_cycles) / std::max(1.0, cycles));
+  return id;
+}
+
+ModelConfig Report(const IdentificationJob& job, const identify::Identification& id) {
   if (const std::string why = identify::WhyUnusable(id); !why.empty())
     throw std::runtime_error("no model was written: " + why + (job.to_try.empty() ? "" : "; " + job.to_try));
   const ModelConfig model = identify::ToModel(id, job.model);
@@ -39,5 +42,7 @@ ModelConfig IdentifyAndReport(const IdentificationJob& job) {
   DrawPictures("plot_identification.py", job.report);
   return model;
 }
+
+ModelConfig IdentifyAndReport(const IdentificationJob& job) { return Report(job, IdentifyWithProgress(job)); }
 
 }  // namespace contour

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/axis_model/stated_axis.h"
+#include "analysis/identification/identification.h"
 #include "analysis/recording/axis_log.h"
 #include "config/model_config.h"
 
@@ -23,6 +24,12 @@ struct IdentificationJob {
   std::uint64_t lost_cycles = 0;     ///< that a record should have and has not
   std::string to_try;                ///< told with a refusal: what else may help
 };
+
+/// Identifies, with progress on a terminal.
+identify::Identification IdentifyWithProgress(const IdentificationJob& job);
+
+/// Of what was identified: writes the model and its report as IdentifyAndReport() does.
+ModelConfig Report(const IdentificationJob& job, const identify::Identification& id);
 
 /// Identifies, with progress on a terminal; writes the model, and with a report directory identification.json
 /// and its pictures; prints the table of results. Throws std::runtime_error, with nothing written, where the

@@ -30,4 +30,33 @@ std::unique_ptr<ControlClient> ConnectToNewDaemon(const std::function<ControlCli
   }
 }
 
+void BeginAnew(std::unique_ptr<ControlClient>& client, const nlohmann::json& request,
+               const std::function<ControlClient()>& connect,
+               std::chrono::steady_clock::time_point deadline) {
+  // Its end of the connection closes when it ends, at times before its answer has come.
+  try {
+    const nlohmann::json reply = client->Ask(request);
+    if (!reply.value("ok", false)) throw BeginRefused(reply.value("error", ""));
+    while (std::chrono::steady_clock::now() < deadline) client->Listen(kLookEvery);
+    throw std::runtime_error("contourd did not begin anew");
+  } catch (const ConnectionLost&) {
+    // As was asked.
+  }
+  for (;;) {
+    try {
+      client = ConnectToNewDaemon(connect, deadline);
+      for (;;) {
+        const nlohmann::json reply = client->Ask({{"request", "status"}});
+        const std::string state = reply.at("status").at("state");
+        if (state == "Idle") return;
+        if (std::chrono::steady_clock::now() > deadline)
+          throw std::runtime_error("contourd began anew, but is " + state);
+        std::this_thread::sleep_for(kLookEvery);
+      }
+    } catch (const ConnectionLost&) {
+      // What was asked for did not come up, and it begins once more without.
+    }
+  }
+}
+
 }  // namespace contour

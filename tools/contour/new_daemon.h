@@ -3,6 +3,8 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "daemon/control_socket/control_client.h"
 
@@ -13,5 +15,17 @@ namespace contour {
 /// nobody listens; throws std::runtime_error at the deadline.
 std::unique_ptr<ControlClient> ConnectToNewDaemon(const std::function<ControlClient()>& connect,
                                                   std::chrono::steady_clock::time_point deadline);
+
+/// The daemon refuses to begin anew, and why; it goes on as it is.
+class BeginRefused : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Has the daemon begin anew (`request` is a load_model or torque_mode) and waits until it is Idle. It may
+/// begin anew twice, where what was asked for does not come up. Throws BeginRefused, or std::runtime_error at
+/// the deadline; `client` is the last connection.
+void BeginAnew(std::unique_ptr<ControlClient>& client, const nlohmann::json& request,
+               const std::function<ControlClient()>& connect, std::chrono::steady_clock::time_point deadline);
 
 }  // namespace contour

@@ -139,6 +139,7 @@ AxisParameters MakeAxisParameters(const EmulatedAxisConfig& config, const Emulat
   p.scale_counts_per_m = 1e3 * config.scale_counts_per_mm.value_or(placement.scale_counts_per_mm);
   p.encoder_noise_lsb = config.encoder_noise_lsb;
   p.incremental_encoder = config.incremental_encoder;
+  p.torque_mode = config.torque_mode;
   p.torque_noise_Nm = config.torque_noise_Nm;
   p.torque_noise_change = config.torque_noise_change;
   p.torque_noise_change_s = config.torque_noise_change_s;

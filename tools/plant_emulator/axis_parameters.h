@@ -58,6 +58,7 @@ struct AxisParameters {
   double encoder_counts_per_rev = 0.0;
   double encoder_noise_lsb = 0.0;
   bool incremental_encoder = false;
+  bool torque_mode = true;
   double torque_noise_Nm = 0.0;  ///< of the mean over one cycle
   double torque_noise_change = 1.0;
   double torque_noise_change_s = 0.0;

@@ -114,7 +114,7 @@ void EmulatedAxis::AddObjects(const EmulatedAxisPlacement& placement) {
     o.Add(0x60E4, 1, kI32, kReadOnly, 0, kTpdo);
   }
   o.Add(0x60F4, 0, kI32, kReadOnly, 0, kTpdo);
-  o.Add(0x6502, 0, kU32, kReadOnly, 1 << (kModeCsp - 1) | 1 << (kModeCst - 1));
+  o.Add(0x6502, 0, kU32, kReadOnly, 1 << (kModeCsp - 1) | (p_.torque_mode ? 1 << (kModeCst - 1) : 0));
   o.Seal();
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <random>
 
 namespace contour::identify {
@@ -42,6 +43,25 @@ TEST(ScrewResponse, OfAFreeMassIsOneOverItsMass) {
 TEST(ScrewResponse, ReadingsThatAreNoiseAreNotCoherent) {
   for (const ResponsePoint& p : MotorResponse({FreeMass(20000, 1e-3)}))
     EXPECT_LT(p.coherence, kGoodCoherence);
+}
+
+/// 1 / 90 kg but for a dip and a rise of this depth.
+std::vector<ResponsePoint> WithDip(double depth, double coherence) {
+  std::vector<ResponsePoint> response;
+  for (double f = 100.0; f < 480.0; f += 2.0) {
+    const double at = (f - 320.0) / 12.0;
+    response.push_back({f, (1.0 - depth * std::exp(-at * at)) / 90.0, coherence});
+  }
+  return response;
+}
+
+TEST(VisibleAntiresonance, IsTheDeepestPointOfWhatIsNotFlatAndWasShaken) {
+  const std::optional<ResponsePoint> dip = VisibleAntiresonance(WithDip(0.8, 0.95));
+  ASSERT_TRUE(dip.has_value());
+  EXPECT_NEAR(dip->frequency_Hz, 320.0, 2.0);
+  EXPECT_FALSE(VisibleAntiresonance(WithDip(0.3, 0.95)).has_value());
+  EXPECT_FALSE(VisibleAntiresonance(WithDip(0.8, 0.3)).has_value());
+  EXPECT_FALSE(VisibleAntiresonance({}).has_value());
 }
 
 TEST(ScrewResponse, AShortRecordOrOneWithHolesSaysNothing) {

@@ -50,6 +50,21 @@ TEST(UnexplainedForceTest, NoiseOfTheTorqueIsNoStructureHoweverQuietTheEncoder) 
   EXPECT_LT(noisy.structure_N, noisy.noise_N);
 }
 
+// About to break away, an axis answers a little force by much: blocks with creeping in them then have far
+// larger errors than those of sliding.
+TEST(UnexplainedForceTest, NoiseThatAnAxisAnswersUnevenlyIsNoStructureEither) {
+  plant::AxisParameters truth = PlainAxis();
+  const double friction_N = truth.friction.base.plus.Fc_N;
+  for (const double of_friction : {0.1, 0.2}) {
+    const UnexplainedForce left = Unexplained(truth, of_friction * friction_N, Exactly(truth));
+    EXPECT_EQ(Refused(left), "") << left.structure_N << " N beside " << left.noise_N;
+    EXPECT_LT(left.structure_N, 0.6 * left.noise_N) << of_friction;
+  }
+  TableAxis stiff = Exactly(truth);
+  stiff.friction.s0 *= 6.0;
+  EXPECT_NE(Refused(Unexplained(truth, 0.1 * friction_N, stiff)), "") << "beside such noise, too";
+}
+
 TEST(UnexplainedForceTest, CoggingThatTheModelHasNotIsStructure) {
   plant::AxisParameters truth = PlainAxis();
   truth.effects.cogging = CoggingEffect{};

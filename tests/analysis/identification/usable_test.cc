@@ -11,6 +11,7 @@ namespace {
 using identify::Identification;
 using identify::ResponsePoint;
 using identify::ShakenScrew;
+using identify::WhyNoBeginning;
 using identify::WhyUnusable;
 
 Identification Good() {
@@ -49,6 +50,25 @@ TEST(WhyUnusable, RefusesWhatIsNoNumber) {
     id.fit.parameters[1].value = value;
     EXPECT_TRUE(Says(id, "no number"));
   }
+}
+
+TEST(WhyNoBeginning, TakesWhatIsUnsureButNotWhatIsNoModel) {
+  Identification id = Good();
+  EXPECT_EQ(WhyNoBeginning(id), "");
+  id.fit.parameters.push_back({"screw_stiffness_N_um", 100.0, 0.3, true});
+  id.unexplained.structure_N = 0.2 * id.unexplained.friction_N;
+  EXPECT_NE(WhyUnusable(id), "");
+  EXPECT_EQ(WhyNoBeginning(id), "") << "unsure, and not all that the axis has";
+  id.fit.unsettled = 10.0;
+  EXPECT_NE(WhyNoBeginning(id), "");
+  for (const auto verdict : {ShakenScrew::Verdict::kRigid, ShakenScrew::Verdict::kNotSeen}) {
+    id = Good();
+    id.shaken.verdict = verdict;
+    EXPECT_NE(WhyNoBeginning(id), "");
+  }
+  id = Good();
+  id.fit.parameters[0].sigma = std::nan("");
+  EXPECT_NE(WhyNoBeginning(id), "");
 }
 
 TEST(WhyUnusable, RefusesIntervalsOfNoWidth) {

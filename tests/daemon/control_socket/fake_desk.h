@@ -15,7 +15,7 @@ namespace contour::test {
 class FakeDesk final : public OperatorDesk {
  public:
   std::map<std::string, double> referenced_mm;
-  std::map<std::string, std::string> loaded;
+  std::map<std::string, std::string> loaded, torque_loops, torque_models;
 
   Answer Enable(const std::stop_token& unwanted) override {
     Answer answer = Do("enable");
@@ -36,6 +36,12 @@ class FakeDesk final : public OperatorDesk {
   Answer LoadModel(const std::string& axis, const std::string& yaml) override {
     loaded[axis] = yaml;
     return Do("load_model");
+  }
+  Answer ChangeMode(const std::map<std::string, std::string>& loops,
+                    const std::map<std::string, std::string>& models) override {
+    torque_loops = loops;
+    torque_models = models;
+    return Do("torque_mode");
   }
   Answer Run(const ProgramUpload& program, const std::stop_token& /*unwanted*/) override {
     Answer answer = Do("run");

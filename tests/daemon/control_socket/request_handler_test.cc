@@ -83,15 +83,29 @@ TEST_F(RequestHandlerTest, RunUploadsTheProgram) {
 }
 
 TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesTheDesk) {
-  for (const char* line :
-       {"", "{", "enable", "[]", "42", "null", "\"status\"", "{}", R"({"request": 5})",
-        R"({"request": "fly"})", R"({"request": "run"})",
-        R"({"request": "run", "name": "a", "format": "pdf", "text": ""})",
-        R"({"request": "run", "name": 1, "format": "yaml", "text": ""})",
-        R"({"request": "run", "name": "a", "format": "yaml", "text": "", "forget": 1})",
-        R"({"request": "rows"})", R"({"request": "rows", "on": "yes"})",
-        R"({"request": "watch", "period_ms": 1})", R"({"request": "watch", "period_ms": 1e300})",
-        R"({"request": "watch", "period_ms": null})"}) {
+  for (const char* line : {"",
+                           "{",
+                           "enable",
+                           "[]",
+                           "42",
+                           "null",
+                           "\"status\"",
+                           "{}",
+                           R"({"request": 5})",
+                           R"({"request": "fly"})",
+                           R"({"request": "run"})",
+                           R"({"request": "run", "name": "a", "format": "pdf", "text": ""})",
+                           R"({"request": "run", "name": 1, "format": "yaml", "text": ""})",
+                           R"({"request": "run", "name": "a", "format": "yaml", "text": "", "forget": 1})",
+                           R"({"request": "torque_mode"})",
+                           R"({"request": "torque_mode", "loops": []})",
+                           R"({"request": "torque_mode", "loops": {"x": 5}})",
+                           R"({"request": "torque_mode", "loops": {}, "models": 1})",
+                           R"({"request": "rows"})",
+                           R"({"request": "rows", "on": "yes"})",
+                           R"({"request": "watch", "period_ms": 1})",
+                           R"({"request": "watch", "period_ms": 1e300})",
+                           R"({"request": "watch", "period_ms": null})"}) {
     const json reply = Ask(line);
     EXPECT_EQ(reply["ok"], false) << line;
     EXPECT_TRUE(reply["error"].is_string()) << line;
@@ -99,6 +113,17 @@ TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesT
   EXPECT_TRUE(desk_.asked().empty());
   EXPECT_FALSE(subscriptions_.rows);
   EXPECT_FALSE(subscriptions_.watch_period_ms);
+}
+
+TEST_F(RequestHandlerTest, TorqueModeHasALoopForEachAxisAndModelsWhereTheyAreOthers) {
+  EXPECT_EQ(Ask(R"({"request": "torque_mode", "loops": {"x": "a: 1", "y": "a: 2"}, "models": {"y": "b: 3"}})")
+                ["ok"],
+            true);
+  EXPECT_EQ(desk_.torque_loops, (std::map<std::string, std::string>{{"x", "a: 1"}, {"y", "a: 2"}}));
+  EXPECT_EQ(desk_.torque_models, (std::map<std::string, std::string>{{"y", "b: 3"}}));
+  EXPECT_EQ(Ask(R"({"request": "torque_mode", "loops": {}})")["ok"], true);
+  EXPECT_TRUE(desk_.torque_loops.empty());
+  EXPECT_TRUE(desk_.torque_models.empty());
 }
 
 TEST_F(RequestHandlerTest, SurvivesNoise) {
@@ -132,7 +157,7 @@ TEST_F(RequestHandlerTest, ALineSaysWhoAnswersIt) {
   for (const char* at_once : {"pause", "resume", "feed", "zero"})
     EXPECT_EQ(HeadOf(std::string(R"({"request": ")") + at_once + "\"}").kind, RequestClass::kAtOnce)
         << at_once;
-  for (const char* waits : {"enable", "reset", "reload", "run", "machine_file", "load_model"})
+  for (const char* waits : {"enable", "reset", "reload", "run", "machine_file", "load_model", "torque_mode"})
     EXPECT_EQ(kind(waits), RequestClass::kWaits) << waits;
   EXPECT_EQ(kind("stop"), RequestClass::kStop);
   EXPECT_EQ(kind("disable"), RequestClass::kDisable);

@@ -28,6 +28,10 @@ class ScriptedMachine final : public OperatorDesk {
   std::map<std::string, double> referenced_mm;
   Answer Reload() override { return {true, "nothing has changed"}; }
   Answer LoadModel(const std::string& /*axis*/, const std::string& /*yaml*/) override { return {true, ""}; }
+  Answer ChangeMode(const std::map<std::string, std::string>& /*loops*/,
+                    const std::map<std::string, std::string>& /*models*/) override {
+    return {true, ""};
+  }
   Answer Reset(const std::stop_token&) override { return Go(MachineState::kIdle, Reason::kNone); }
   Answer Run(const ProgramUpload& upload, const std::stop_token&) override;
   Answer Zero() override { return Go(MachineState::kReady, Reason::kNone); }

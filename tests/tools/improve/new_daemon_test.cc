@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 
@@ -23,10 +24,9 @@ class NewDaemonTest : public ::testing::Test {
     EXPECT_GE(served_.get(), 0);
     return client;
   }
-  void Answer() const {
-    constexpr std::string_view kAnswer = "{\"id\":1,\"ok\":true}\n";
-    ASSERT_EQ(::send(served_.get(), kAnswer.data(), kAnswer.size(), MSG_NOSIGNAL),
-              static_cast<ssize_t>(kAnswer.size()));
+  void Answer(std::string_view answer = "{\"id\":1,\"ok\":true}\n") const {
+    ASSERT_EQ(::send(served_.get(), answer.data(), answer.size(), MSG_NOSIGNAL),
+              static_cast<ssize_t>(answer.size()));
   }
 
   test::ScratchDirectory scratch_;
@@ -51,6 +51,38 @@ TEST_F(NewDaemonTest, AConnectionThatTheOldOneStillTookIsMadeAgain) {
 TEST_F(NewDaemonTest, NobodyComesBack) {
   const auto connect = []() -> ControlClient { throw EnvironmentError("nobody listens"); };
   EXPECT_THROW(ConnectToNewDaemon(connect, Clock::now()), std::runtime_error);
+}
+
+TEST_F(NewDaemonTest, WhatItRefusesItGoesOnWithout) {
+  auto client = std::make_unique<ControlClient>(Connect());
+  Answer("{\"id\":1,\"ok\":false,\"error\":\"it is Ready\"}\n");
+  try {
+    BeginAnew(
+        client, {{"request", "torque_mode"}}, [this] { return Connect(); },
+        Clock::now() + std::chrono::minutes(5));
+    FAIL() << "it was refused";
+  } catch (const BeginRefused& e) {
+    EXPECT_STREQ(e.what(), "it is Ready");
+  }
+}
+
+TEST_F(NewDaemonTest, ItMayBeginTwiceWhereWhatWasAskedForDoesNotComeUp) {
+  auto client = std::make_unique<ControlClient>(Connect());
+  served_ = Descriptor();  // it ends
+  int calls = 0;
+  const auto connect = [&] {
+    ControlClient anew = Connect();
+    Answer();
+    if (++calls == 1) {
+      Answer("{\"id\":2,\"ok\":true,\"status\":{\"state\":\"BringUp\"}}\n");
+      served_ = Descriptor();
+    } else {
+      Answer("{\"id\":2,\"ok\":true,\"status\":{\"state\":\"Idle\"}}\n");
+    }
+    return anew;
+  };
+  BeginAnew(client, {{"request", "torque_mode"}}, connect, Clock::now() + std::chrono::minutes(5));
+  EXPECT_EQ(calls, 2);
 }
 
 }  // namespace

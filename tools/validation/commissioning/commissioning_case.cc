@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/axis_model/read_stated_axis.h"
+#include "analysis/identification/result_files.h"
+#include "analysis/identification/usable.h"
 #include "analysis/text/format_text.h"
 #include "config/config_error.h"
 
@@ -82,6 +85,35 @@ EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known) {
   EmulatedMachineFile file = LoadEmulatedMachine(path, Assignments(LoadEmulatedMachine(path), c));
   StateCatalogue(file, c.seed, known);
   return file;
+}
+
+Recorded AsRecorded(const EmulatedMachineFile& file, const CommissioningCase& c, KnownTorqueLoops& known) {
+  Recorded recorded{file, c.mode};
+  if (c.stay || c.mode != "csp") return recorded;
+  const EmulatedAxisConfig& axis = file.emulator.axes.at(c.axis);
+  const double moving_kg = axis.counterbalance ? axis.counterbalance->moving_mass_kg : 0.0;
+  const std::string key = FormatText("%s %llu %g", file.machine.machine.name.c_str(),
+                                     static_cast<unsigned long long>(c.seed), moving_kg);
+  if (!known.contains(key)) known[key] = FindTorqueLoops(file.machine, 1);
+  TorqueLoops torque = known.at(key);
+  MachineConfig better = file.machine;
+  for (const std::string& name : torque.lacking) {
+    recorded.how += ", " + name + " first";
+    const VirtualCommissioning run = Commission(file, name, "full");
+    const identify::Identification id =
+        identify::Identify(diagnosis::ToStatedAxis(file.machine, name), {run.log}, {});
+    const std::string why = identify::WhyNoBeginning(id);
+    if (why.empty()) better.axes.at(name).model = identify::ToModel(id, better.axes.at(name).model);
+    if (!why.empty()) recorded.how += " (in vain: " + why + ")";
+  }
+  if (!torque.lacking.empty()) torque = FindTorqueLoops(better, 1, torque.loops);
+  if (torque.complete()) {
+    recorded.file.machine = InTorqueMode(better, torque.loops);
+    recorded.how += ", then cst";
+  } else {
+    recorded.how += ": " + torque.why_not;
+  }
+  return recorded;
 }
 
 }  // namespace contour

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "design/torque_loops.h"
 #include "tools/validation/commissioning/catalogue.h"
 #include "tools/validation/commissioning/virtual_commissioning.h"
 
@@ -16,11 +18,22 @@ struct CommissioningCase {
   std::uint64_t seed = 1;
   std::string axis = "x";
   std::string mode = "cst";  ///< of the drives: cst or csp
+  bool stay = false;         ///< in csp, though there may be loops for torque mode
 };
 
 /// What the axes have besides screw and friction: none, cogging3, cogging6 (thousandths of a Nm for a motor
 /// of 0.637 Nm, the same share of rated torque for others), ripple, wobble, motor_friction, side_mode.
 const std::vector<std::string>& CommissioningEffects();
+
+/// Loops found from catalogue data before, by machine, seed and mass.
+using KnownTorqueLoops = std::map<std::string, TorqueLoops>;
+/// The machine as it is while an axis is recorded for good, as `contour commission` has it: where drives
+/// lead, in torque mode where there are loops for it, from the catalogue or from what records in csp tell.
+struct Recorded {
+  EmulatedMachineFile file;
+  std::string how;  ///< for people
+};
+Recorded AsRecorded(const EmulatedMachineFile& file, const CommissioningCase& c, KnownTorqueLoops& known);
 
 /// The machine with its effect, its model from a catalogue, its loops to begin with.
 EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known);

@@ -37,7 +37,7 @@ struct Options {
   unsigned first = 1, seeds = 2;
   int threads = 1;
   bool quiet = false;
-  bool circles = false;
+  bool circles = false, stay = false;
   std::string scratch = "out/commissionings";
 };
 
@@ -75,13 +75,16 @@ std::string Row(const std::string& name, const Tally& t) {
 }
 
 /// Commissions one axis; its model goes into `after`.
-void RunAxis(const EmulatedMachineFile& file, const std::string& axis, const Options& options,
-             EmulatedMachineFile& after, Tallies& tallies) {
-  const VirtualCommissioning run = Commission(file, axis, "full");
+void RunAxis(const EmulatedMachineFile& file, const CommissioningCase& c, const std::string& axis,
+             const Options& options, KnownTorqueLoops& known, EmulatedMachineFile& after, Tallies& tallies) {
+  const Recorded as = AsRecorded(file, c, known);
+  const EmulatedMachineFile& recorded = as.file;
+  if (c.mode == "csp") std::printf("  recorded in %s\n", as.how.c_str());
+  const VirtualCommissioning run = Commission(recorded, axis, "full");
   identify::IdentifyOptions how;
   how.threads = options.threads;
   const identify::Identification id =
-      identify::Identify(diagnosis::ToStatedAxis(file.machine, axis), {run.log}, how);
+      identify::Identify(diagnosis::ToStatedAxis(recorded.machine, axis), {run.log}, how);
   if (!options.quiet)
     std::printf(
         "  axis %s: %.1f s, following error up to %.0f um, %.3f Nm; error of prediction %.3g nm, typical "
@@ -101,12 +104,13 @@ void RunAxis(const EmulatedMachineFile& file, const std::string& axis, const Opt
 }
 
 /// Empty when the models would have been written.
-std::string RunCase(const CommissioningCase& c, const Options& options, KnownLoops& known, Tallies& tallies) {
+std::string RunCase(const CommissioningCase& c, const Options& options, KnownLoops& known,
+                    KnownTorqueLoops& for_record, Tallies& tallies) {
   try {
     const EmulatedMachineFile file = MachineOf(c, known);
     EmulatedMachineFile after = file;
     for (const auto& [name, axis] : file.machine.axes)
-      if (options.circles || name == c.axis) RunAxis(file, name, options, after, tallies);
+      if (options.circles || name == c.axis) RunAxis(file, c, name, options, for_record, after, tallies);
     if (!options.circles) return {};
     after = WithFoundLoops(after);
     for (const char* program : {"circle_100um", "circle_10mm"}) {
@@ -127,15 +131,17 @@ int Run(const Options& options) {
   std::map<std::string, Tally> of_effect;
   Tallies tallies;
   KnownLoops known;
+  KnownTorqueLoops for_record;
   Tally all;
   for (const std::string& machine : options.machines)
     for (unsigned seed = options.first; seed < options.first + options.seeds; ++seed)
       for (const std::string& effect : options.effects) {
         CommissioningCase c{machine, effect, seed};
         c.mode = options.mode;
+        c.stay = options.stay;
         tallies.of_case = {};
         std::printf("%s %s seed %u\n", machine.c_str(), effect.c_str(), seed);
-        const std::string refused = RunCase(c, options, known, tallies);
+        const std::string refused = RunCase(c, options, known, for_record, tallies);
         Tally& t = tallies.of_case;
         t.cases = 1;
         t.written = refused.empty() ? 1 : 0;
@@ -170,7 +176,10 @@ int main(int argc, char** argv) {
   app.add_option(
       "--effects", options.effects,
       "none, cogging3, cogging6, ripple, wobble, motor_friction, side_mode, counterbalance, torque_noise");
-  app.add_option("--mode", options.mode, "Of the drives: cst or csp")->capture_default_str();
+  app.add_option("--mode", options.mode,
+                 "Of the drives: cst, or csp (recorded in torque mode where there are loops for it)")
+      ->capture_default_str();
+  app.add_flag("--stay", options.stay, "In csp while an axis is recorded, too");
   app.add_option("--seeds", options.seeds, "How many");
   app.add_option("--first", options.first, "The first of them");
   app.add_option("--threads", options.threads, "Of identification");

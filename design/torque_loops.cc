@@ -1,0 +1,49 @@
+#include "design/torque_loops.h"
+
+#include <utility>
+
+#include "config/loop_axis.h"
+#include "design/start_loop.h"
+
+namespace contour {
+
+TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads,
+                            std::map<std::string, LoopTuning> known) {
+  TorqueLoops found{std::move(known), {}, {}};
+  if (machine.machine.controller != ControllerName::kFull) {
+    found.why_not = "the controller " + std::string(Name(machine.machine.controller)) + " has no loop for it";
+    return found;
+  }
+  // Its loop with the scale would be used, which nobody has judged for what the model leaves open.
+  for (const auto& [name, axis] : machine.axes)
+    if (axis.scale_loop) {
+      found.why_not = "axis " + name + " has a loop that takes its scale";
+      return found;
+    }
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  for (const auto& [name, axis] : machine.axes) {
+    if (found.loops.contains(name)) continue;
+    const StartLoop start = FindStartLoop(LoopAxisOf(axis), period_s, threads, DoubtOf(axis.model));
+    if (start.wrong.empty()) {
+      found.loops[name] = start.found.tuning;
+      continue;
+    }
+    found.lacking.push_back(name);
+    if (found.why_not.empty())
+      found.why_not =
+          "no loop of axis " + name + " is stable for all that its model leaves open: " + start.wrong;
+  }
+  return found;
+}
+
+MachineConfig InTorqueMode(MachineConfig machine, const std::map<std::string, LoopTuning>& loops) {
+  if (!loops.empty()) machine.control.friction = FrictionKind::kLinear;
+  for (const auto& [name, loop] : loops) {
+    AxisConfig& axis = machine.axes.at(name);
+    axis.drive.mode = DriveMode::kCst;
+    axis.loop = loop;
+  }
+  return machine;
+}
+
+}  // namespace contour

@@ -1,0 +1,68 @@
+#include "design/torque_loops.h"
+
+#include <gtest/gtest.h>
+
+#include "config/load_machine.h"
+#include "config/loop_axis.h"
+#include "design/catalogue_doubt.h"
+#include "design/start_loop.h"
+
+namespace contour {
+namespace {
+
+constexpr int kThreads = 2;
+
+/// One axis, led by its drive.
+MachineConfig OneAxisOf(const std::string& machine) {
+  MachineConfig out = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/family/" + machine + ".yaml");
+  out.axes.erase("y");
+  out.axes.at("x").drive.mode = DriveMode::kCsp;
+  out.control.friction = FrictionKind::kSrukf;
+  return out;
+}
+
+TEST(TorqueLoops, AreStableForAllThatTheModelLeavesOpen) {
+  MachineConfig machine = OneAxisOf("m300");
+  AxisConfig& axis = machine.axes.at("x");
+  axis.model.uncertainty.clear();
+  const TorqueLoops found = FindTorqueLoops(machine, kThreads);
+  ASSERT_TRUE(found.complete()) << found.why_not;
+  EXPECT_TRUE(found.lacking.empty());
+  EXPECT_EQ(WhyNotToStartWith(LoopAxisOf(axis), found.loops.at("x"), 1e-3, DoubtOf(axis.model)), "");
+  const MachineConfig in_torque_mode = InTorqueMode(machine, found.loops);
+  EXPECT_EQ(in_torque_mode.axes.at("x").drive.mode, DriveMode::kCst);
+  EXPECT_EQ(in_torque_mode.axes.at("x").loop->regulator_Hz, found.loops.at("x").regulator_Hz);
+  EXPECT_EQ(in_torque_mode.control.friction, FrictionKind::kLinear);
+  EXPECT_EQ(WhyLoopsMayNotStart(in_torque_mode), "");
+}
+
+TEST(TorqueLoops, AnAxisThatNoLoopHoldsStaysWithItsDrive) {
+  MachineConfig machine = OneAxisOf("belt");
+  machine.axes.at("x").model.uncertainty.clear();
+  const TorqueLoops found = FindTorqueLoops(machine, kThreads);
+  EXPECT_FALSE(found.complete());
+  EXPECT_EQ(found.lacking, (std::vector<std::string>{"x"}));
+  EXPECT_NE(found.why_not.find("no loop of axis x is stable"), std::string::npos) << found.why_not;
+  const MachineConfig as_it_is = InTorqueMode(machine, found.loops);
+  EXPECT_EQ(as_it_is.axes.at("x").drive.mode, DriveMode::kCsp);
+  EXPECT_EQ(as_it_is.control.friction, FrictionKind::kSrukf);
+}
+
+TEST(TorqueLoops, WhatIsKnownIsNotSearchedAgain) {
+  const MachineConfig machine = OneAxisOf("belt");
+  const TorqueLoops found = FindTorqueLoops(machine, kThreads, {{"x", LoopTuning{}}});
+  EXPECT_TRUE(found.complete());
+  EXPECT_EQ(found.loops.at("x").regulator_Hz, LoopTuning{}.regulator_Hz);
+}
+
+TEST(TorqueLoops, NoneForOtherControllersNorBesideALoopWithTheScale) {
+  MachineConfig machine = OneAxisOf("t30");
+  machine.machine.controller = ControllerName::kCsp;
+  EXPECT_NE(FindTorqueLoops(machine, kThreads).why_not.find("controller csp"), std::string::npos);
+  machine.machine.controller = ControllerName::kFull;
+  machine.axes.at("x").scale_loop = LoopTuning{};
+  EXPECT_NE(FindTorqueLoops(machine, kThreads).why_not.find("scale"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace contour
