@@ -24,7 +24,8 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
              const ScoreThreshold& threshold);
 
 /// Under noise learnt since: the base, and the hypotheses, those that may still win fitted anew. Whether the
-/// base was found to lie elsewhere, which is most of what the best hypothesis was to explain.
+/// base was found to lie elsewhere, which is most of what the best hypothesis was to explain, be it the best
+/// before or after.
 bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses);
 
 }  // namespace contour::diagnosis

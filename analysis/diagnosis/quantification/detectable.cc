@@ -117,8 +117,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
     if (s.effect == linear.effect) enough = std::pow(Needed(problem, threshold, s), 2) * ByChance(s);
     if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
     points.push_back(WithEffect(base, s.effect, s.effect->steps[0]));
-    promising.push_back(kScreening.most_overdispersion *
-                        std::pow(Needed(problem, threshold, s) - kNormal90, 2));
+    promising.push_back(std::pow(Needed(problem, threshold, s) - kNormal90, 2));
   }
   const Eigen::MatrixXd left = LeftOf(problem, base, points);
   const auto n = static_cast<Eigen::Index>(sizes.size());
