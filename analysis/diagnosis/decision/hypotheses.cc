@@ -286,6 +286,14 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
   });
 }
 
+void GiveAnotherTurn(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
+                     const ScoreThreshold& threshold, std::vector<std::string>& tried) {
+  const double least = Threshold(problem, threshold);
+  for (std::size_t i = 1; i < hypotheses.size(); ++i)
+    if (!hypotheses[i].refused && hypotheses[i].score > least)
+      std::erase(tried, FamilyOf(hypotheses[i].effect()));
+}
+
 namespace {
 
 /// The base may lie in another basin since: from there anew, where the score test promises far more than a
