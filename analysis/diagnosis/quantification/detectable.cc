@@ -207,11 +207,9 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
   if (screened.jitter.tested) {
     const CauseDefinition& cause = CauseInScatter();
     out[std::string(*cause.name)][std::string(*cause.main_parameter)] =
-        1e6 *
-        std::max(screened.jitter.rounding_s,
-                 std::sqrt(kQuantification.beyond_threshold *
-                           Needed(Threshold(problem, screened.threshold) + kScreening.penalty_per_amplitude) *
-                           screened.jitter.sigma_s2));
+        1e6 * std::sqrt(kQuantification.beyond_threshold *
+                        Needed(Threshold(problem, screened.threshold) + kScreening.penalty_per_amplitude) *
+                        screened.jitter.sigma_s2);
   }
   return out;
 }
