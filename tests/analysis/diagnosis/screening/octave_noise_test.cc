@@ -38,6 +38,18 @@ TEST(OctaveNoise, AWaveInTheNoiseThatIsThereKeepsWhatItHasOverIt) {
   EXPECT_NEAR(scores[700], 100.0, 15.0);
 }
 
+TEST(OctaveNoise, TheFirstOrdersAreNotTheirOwnNoise) {
+  // Order 1 alone, and orders 1 and 2, where an octave has hardly more than these.
+  std::vector<double> scores(144, 1.0);
+  scores[0] = 200.0;
+  OverTheOctave(scores);
+  EXPECT_EQ(scores[0], 200.0);
+  scores[1] = 300.0;
+  OverTheOctave(scores);
+  EXPECT_EQ(scores[0], 200.0);
+  EXPECT_EQ(scores[1], 300.0);
+}
+
 TEST(OctaveNoise, NoScoreIsRaised) {
   const std::vector<double> before = Noise(500, 0, 0.1);
   std::vector<double> after = before;
