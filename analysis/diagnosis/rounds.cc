@@ -208,7 +208,9 @@ Next OneRound(int round, Rounds& r) {
       return choice.found ? Next::kNextRound : Next::kEnd;
     }
   }
-  return choice.found ? Take(hypotheses, seen.threshold, r) : TryOthers(seen, r);
+  if (choice.found) return Take(hypotheses, seen.threshold, r);
+  GiveAnotherTurn(r.problem, hypotheses, seen.threshold, r.tried);
+  return TryOthers(seen, r);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numbers>
+#include <vector>
 
 #include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/causes/effect_parts.h"
@@ -24,13 +25,30 @@ void AddPlay(double gap, AxisModel& m) {
   m.gap = gap;
 }
 
+/// The widest play that a fit begins at, and the next narrower one over it; it begins at a quarter of each,
+/// too.
+constexpr double kWidest_m = 40e-6, kNext = 0.25;
+/// Of a count: rounding averages out over the rows of a stroke.
+constexpr double kCountShare = 0.1;
+
+/// Down to what the encoder still shows at the table: of a derivative that was taken at a much wider play,
+/// a narrow one is nothing.
+std::vector<double> Plays_m(const Problem& p) {
+  constexpr double kNanometre = 1e-9;
+  const double finest = std::max(kNanometre, kCountShare * p.stated.position_step * p.stated.table_per_q);
+  std::vector<double> out = {kWidest_m};
+  while (kNext * out.back() > finest) out.push_back(kNext * out.back());
+  return out;
+}
+
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const double R = p.stated.table_per_q;
   const bool screw = p.nominal.two_inertia;
-  for (const double gap_um : {2.0, 10.0, 40.0})
+  const std::vector<double> plays = Plays_m(p);
+  for (const double play : plays)
     out.push_back(
-        Custom({std::string(kName), std::to_string(gap_um) + " um", 3},
-               {.steps = {gap_um * 1e-6 / R}, .start = {gap_um * 1e-6 / R}, .low = {0.0}, .high = {1e-3 / R}},
+        Custom({std::string(kName), std::to_string(play * 1e6) + " um", static_cast<double>(plays.size())},
+               {.steps = {play / R}, .start = {play / R}, .low = {0.0}, .high = {1e-3 / R}},
                [screw](const auto& a, AxisModel& m) {
                  if (screw)
                    m.gap = std::max(0.0, a[0]);

@@ -49,6 +49,8 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     // than every kind has.
     gains_unseen = GainsBeyondChance(cause, threshold.rate);
     if (definition.judged_at_scale && !gains_unseen) return false;
+    // Nor is a shape that nobody knows beyond doubt where it foresees nothing.
+    if (Outside(r.effect().kind) && !gains_unseen) return false;
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;

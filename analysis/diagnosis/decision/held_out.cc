@@ -3,14 +3,18 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <span>
+#include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/causes/waves.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/diagnosis/tuning/statistics.h"
+#include "analysis/prediction_error/products.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -40,10 +44,31 @@ void HoldShapes(const Fit& fit, Eigen::MatrixXd& normal) {
 // coupling moves a resonance about, which a torque below 100 Hz does not have.
 enum class Seen { kTorque, kScale, kWhite };
 
-Seen SeenIn(const Fit& with, bool scale) {
+// A wave that is mostly faster than what the torque's smoothing leaves shows in the rows only.
+bool FasterThanTheTorque(const Problem& problem, const Effect& effect) {
+  const CauseDefinition& cause = CauseNamed(effect.kind);
+  if (!effect.wave || *cause.wave == nullptr) return false;
+  double radians_per_s = effect.order;
+  if ((*cause.wave)->wave == Wave::kForceOfTime) {
+    radians_per_s *= 2.0 * std::numbers::pi;
+  } else {
+    const Signals& s = *problem.signals;
+    double squares = 0.0, rows = 0.0;
+    for (std::size_t k = 0; k < problem.rows(); ++k) {
+      if (problem.counted[k] == 0) continue;
+      squares += std::pow(s.angle_per_q * s.velocity[k], 2);
+      rows += 1.0;
+    }
+    radians_per_s *= std::sqrt(squares / std::max(1.0, rows));
+  }
+  return radians_per_s * ResidualSmoothing(problem.log.period_s) * problem.log.period_s > 1.0;
+}
+
+Seen SeenIn(const Problem& problem, const Fit& with, bool scale) {
   if (scale) return Seen::kScale;
-  const bool coupling = !with.point.effects.empty() && CauseNamed(with.point.effects.back()->kind).coupling;
-  return coupling ? Seen::kWhite : Seen::kTorque;
+  if (with.point.effects.empty()) return Seen::kTorque;
+  const Effect& last = *with.point.effects.back();
+  return CauseNamed(last.kind).coupling || FasterThanTheTorque(problem, last) ? Seen::kWhite : Seen::kTorque;
 }
 
 // Blocks that stay together. A scale wanders for longer than a block: what its neighbours were fitted to has
@@ -54,8 +79,10 @@ std::size_t Together(Seen seen) {
 
 std::size_t FoldOf(std::size_t block, Seen seen) { return block / Together(seen) % 2; }
 
-// Where the parameters go to first order when the blocks of one fold are left out, for either fold.
-std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit, Seen seen) {
+// Where the parameters go to first order when the blocks of one fold are left out, for either fold; terms of
+// the base that are `believed` go to where they are stated.
+std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit, Seen seen,
+                                          const std::vector<std::size_t>& believed) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
   const Eigen::Index p = fit.jacobian.cols();
   std::vector<Eigen::VectorXd> steps;
@@ -63,8 +90,10 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
     for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
-      const double w = std::pow(problem.terms[i].sigma, -2);
+      const bool stated = std::find(believed.begin(), believed.end(), i) != believed.end();
       const auto j = static_cast<Eigen::Index>(i);
+      const double w = stated ? kHeld * std::max(fit.normal(j, j), std::pow(problem.terms[i].sigma, -2))
+                              : std::pow(problem.terms[i].sigma, -2);
       normal(j, j) += w;
       gradient(j) += w * fit.point.base[i];
     }
@@ -94,10 +123,11 @@ double InertiaAt(const Problem& problem, const Point& point) {
 // Sum of squares of the residual in every block, each with the parameters of the fold that did not see it. As
 // a torque it is what was not foreseen of the motion times an inertia: of all models the same one, or noise
 // of the reading alone would make the heavier of two models the worse one.
-std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, Seen seen, double inertia) {
+std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, Seen seen, double inertia,
+                                   const std::vector<std::size_t>& believed) {
   const std::size_t n = problem.rows();
   std::vector<Point> points;
-  for (const Eigen::VectorXd& step : StepsWithout(problem, fit, seen))
+  for (const Eigen::VectorXd& step : StepsWithout(problem, fit, seen, believed))
     points.push_back(Moved(fit.point, step));
   const auto raw = problem.Raw(points);
   std::vector<double> squares(kHeldOutBlocks, 0.0);
@@ -137,14 +167,14 @@ std::vector<BlockProducts> ProductsOfBlocks(const Problem& problem, const Fit& f
   return blocks;
 }
 
-// Sum of squares of the white residual in every block.
-std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
+// Sum of squares of a white residual in every block.
+std::vector<double> WhiteSquares(const Problem& problem, const std::vector<double>& residual) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
   std::vector<double> squares(kUnseenBlocks, 0.0);
   for (std::size_t b = 0; b < kUnseenBlocks; ++b)
     for (std::size_t part = 0; part < parts; ++part)
       for (std::size_t k = n * b / kUnseenBlocks; k < n * (b + 1) / kUnseenBlocks; ++k)
-        squares[b] += std::pow(fit.residual[part * n + k], 2);
+        squares[b] += std::pow(residual[part * n + k], 2);
   return squares;
 }
 
@@ -152,7 +182,7 @@ std::vector<double> WhiteSquares(const Problem& problem, const Fit& fit) {
 // the whole log and is not asked for anew: what one block alone says about the base takes either model as far
 // when that block is left out, and says nothing about the effect.
 std::vector<double> UnseenSquares(const Problem& problem, const Fit& fit) {
-  std::vector<double> squares = WhiteSquares(problem, fit);
+  std::vector<double> squares = WhiteSquares(problem, fit.residual);
   const Eigen::Index p = fit.jacobian.cols();
   const auto own = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
   const Eigen::Index others = p - own;
@@ -187,11 +217,32 @@ std::vector<double> UnseenSquares(const Problem& problem, const Fit& fit) {
   return squares;
 }
 
+// The white residual with numbers of the base where they are stated, and the rest as the log has it then.
+std::vector<double> ResidualWithStated(const Problem& problem, const Fit& fit,
+                                       const std::vector<std::size_t>& believed) {
+  if (believed.empty()) return fit.residual;
+  Eigen::MatrixXd normal = fit.normal;
+  Eigen::VectorXd gradient = GradientOf(fit.jacobian, fit.residual);
+  for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
+    const bool stated = std::find(believed.begin(), believed.end(), i) != believed.end();
+    const auto j = static_cast<Eigen::Index>(i);
+    const double prior = std::pow(problem.terms[i].sigma, -2);
+    const double w = stated ? kHeld * std::max(fit.normal(j, j), prior) : prior;
+    normal(j, j) += w;
+    gradient(j) += w * fit.point.base[i];
+  }
+  normal.diagonal() *= kRidge;
+  HoldShapes(fit, normal);
+  const Point point = Moved(fit.point, -normal.ldlt().solve(gradient));
+  return problem.Residuals(std::span(&point, 1))[0];
+}
+
 }  // namespace
 
 double Consistency(const Problem& problem, const Fit& without, const Fit& with, bool unseen) {
-  const std::vector<double> before = WhiteSquares(problem, without);
-  const std::vector<double> after = unseen ? UnseenSquares(problem, with) : WhiteSquares(problem, with);
+  const std::vector<double> before = WhiteSquares(problem, without.residual);
+  const std::vector<double> after =
+      unseen ? UnseenSquares(problem, with) : WhiteSquares(problem, with.residual);
   double sum = 0.0, squares = 0.0;
   for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
     sum += before[b] - after[b];
@@ -202,13 +253,18 @@ double Consistency(const Problem& problem, const Fit& without, const Fit& with, 
 
 void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks) {
-  const Seen seen = SeenIn(with, scale);
+  const Seen seen = SeenIn(problem, with, scale);
   const double inertia = InertiaAt(problem, without.point);
   const bool white = seen == Seen::kWhite;
-  const std::vector<double> before =
-      white ? WhiteSquares(problem, without) : HeldOutSquares(problem, without, seen, inertia);
+  // The base has taken a number of its own to where the log wants it: what it gains is over what is stated.
+  const std::vector<std::size_t> stated = with.point.effects.empty()
+                                              ? std::vector<std::size_t>{}
+                                              : FreedTerms(problem, with.point.effects.back()->kind);
+  const std::vector<double> before = white
+                                         ? WhiteSquares(problem, ResidualWithStated(problem, without, stated))
+                                         : HeldOutSquares(problem, without, seen, inertia, stated);
   const std::vector<double> after =
-      white ? UnseenSquares(problem, with) : HeldOutSquares(problem, with, seen, inertia);
+      white ? UnseenSquares(problem, with) : HeldOutSquares(problem, with, seen, inertia, {});
   const double n = static_cast<double>(problem.rows()) / kHeldOutBlocks;
   double sum_before = 0.0, sum_after = 0.0;
   blocks.clear();

@@ -14,7 +14,7 @@ double Consistency(const Problem& problem, const Fit& without, const Fit& with, 
 
 /// Gain of `with` over `without` on blocks that the fit did not see (two interleaved folds; parameters of
 /// each fold by one Gauss-Newton step from the whole fit, then run anew), 95 % interval by a bootstrap of the
-/// blocks.
+/// blocks. Numbers of the base that the last effect of `with` frees are where they are stated without it.
 void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks);
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/decision/base_there.h"
 #include "analysis/diagnosis/decision/tested_score.h"
 #include "analysis/diagnosis/screening/full_size.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
@@ -285,6 +286,14 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
   });
 }
 
+void GiveAnotherTurn(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
+                     const ScoreThreshold& threshold, std::vector<std::string>& tried) {
+  const double least = Threshold(problem, threshold);
+  for (std::size_t i = 1; i < hypotheses.size(); ++i)
+    if (!hypotheses[i].refused && hypotheses[i].score > least)
+      std::erase(tried, FamilyOf(hypotheses[i].effect()));
+}
+
 namespace {
 
 /// The base may lie in another basin since: from there anew, where the score test promises far more than a
@@ -330,12 +339,6 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
   }
 }
 
-Point WithoutLast(Point point) {
-  point.effects.pop_back();
-  point.amplitudes.pop_back();
-  return point;
-}
-
 FitEffort EffortAgain(const Fit& current, bool best) {
   const double enough = kScreening.negligible_share;
   return best ? WorthFrom(current, FitEffort{}, kHypotheses.given_up_share * enough)
@@ -362,7 +365,7 @@ bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   FitEffort base = FitEffort{};
   base.close_enough = std::max(base.close_enough, kScreening.negligible_share * best);
   std::vector<InitialGuess> guesses = {{current.point, base, nullptr, &current},
-                                       {WithoutLast(hypotheses[0].fit.point), base}};
+                                       {WithoutLast(problem, hypotheses[0].fit.point), base}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const Hypothesis& r = hypotheses[i];
@@ -372,6 +375,7 @@ bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
     guesses.push_back({r.fit.point, EffortAgain(current, i == 0), nullptr, &hypotheses[i].fit});
   }
   const double before = hypotheses[0].fit.cost;
+  const Effect* const first_before = &hypotheses[0].effect();
   std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
   const bool lower = fits[1].cost < fits[0].cost;
   // Most of what the best hypothesis was to explain.
@@ -386,7 +390,8 @@ bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   OneOfEach(hypotheses);
   if (&hypotheses[0].effect() != first)
     hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), QuickToTheEnd());
-  return lower && elsewhere;
+  if (lower && elsewhere) return true;
+  return &hypotheses[0].effect() != first_before && BaseLiesThere(problem, hypotheses[0], base, current);
 }
 
 }  // namespace contour::diagnosis

@@ -23,8 +23,14 @@ bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, con
 bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
              const ScoreThreshold& threshold);
 
+/// Another turn for what was given up, or passed over, behind a best one that came to nothing since, where
+/// its score says that it might hold: it is taken out of what was tried. What was refused is not.
+void GiveAnotherTurn(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
+                     const ScoreThreshold& threshold, std::vector<std::string>& tried);
+
 /// Under noise learnt since: the base, and the hypotheses, those that may still win fitted anew. Whether the
-/// base was found to lie elsewhere, which is most of what the best hypothesis was to explain.
+/// base was found to lie elsewhere, which is most of what the best hypothesis was to explain, be it the best
+/// before or after.
 bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hypotheses);
 
 }  // namespace contour::diagnosis

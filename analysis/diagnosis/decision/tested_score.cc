@@ -7,6 +7,7 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
+#include "analysis/diagnosis/screening/stated_deviation.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
@@ -46,10 +47,11 @@ void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
 bool Promising(const Problem& problem, const Scored& s, ScoreThreshold threshold) {
   threshold.leakage *= kScreening.little_share;
   for (auto& [kind, left] : threshold.leakage_of_kind) left *= kScreening.little_share;
+  // What is there makes its own score scatter from block to block, and what it leaves passed for noise when
+  // the noise was learnt: neither says that it will not hold once it is in the model.
   ScoreScale score_scale = ScoreScaleOf(problem, s);
-  score_scale.overdispersion = std::min(s.overdispersion, kScreening.most_overdispersion);
-  return s.drop / score_scale.overdispersion - Penalty(*s.effect) >
-         Threshold(problem, threshold, *s.effect, score_scale);
+  score_scale.overdispersion = 1.0;
+  return s.drop - Penalty(*s.effect) > Threshold(problem, threshold, *s.effect, score_scale);
 }
 
 double TestedScore(const Problem& problem, const Fit& current, const Hypothesis& hypothesis) {
@@ -64,6 +66,10 @@ double TestedScore(const Problem& problem, const Fit& current, const Hypothesis&
     // An effect that is there makes its score scatter from block to block, but not as a single event does.
     most = kScreening.most_overdispersion * again.drop / again.within_blocks;
   }
+  // A number of the base is off as far as it is from what is stated; a base that lies elsewhere without it
+  // is no evidence of that.
+  if (InBase(problem, effect->kind) && !effect->common_factor)
+    most = StatedDeviation(problem, hypothesis.fit);
   return std::min(drop / OverdispersionOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
 }
 

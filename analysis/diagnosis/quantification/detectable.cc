@@ -117,8 +117,7 @@ std::optional<Detectable> ByRuns(const Problem& problem, const Fit& base, const 
     if (s.effect == linear.effect) enough = std::pow(Needed(problem, threshold, s), 2) * ByChance(s);
     if (s.effect->kind != linear.effect->kind || promising.size() >= kLanes) continue;
     points.push_back(WithEffect(base, s.effect, s.effect->steps[0]));
-    promising.push_back(kScreening.most_overdispersion *
-                        std::pow(Needed(problem, threshold, s) - kNormal90, 2));
+    promising.push_back(std::pow(Needed(problem, threshold, s) - kNormal90, 2));
   }
   const Eigen::MatrixXd left = LeftOf(problem, base, points);
   const auto n = static_cast<Eigen::Index>(sizes.size());
@@ -208,11 +207,9 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
   if (screened.jitter.tested) {
     const CauseDefinition& cause = CauseInScatter();
     out[std::string(*cause.name)][std::string(*cause.main_parameter)] =
-        1e6 *
-        std::max(screened.jitter.rounding_s,
-                 std::sqrt(kQuantification.beyond_threshold *
-                           Needed(Threshold(problem, screened.threshold) + kScreening.penalty_per_amplitude) *
-                           screened.jitter.sigma_s2));
+        1e6 * std::sqrt(kQuantification.beyond_threshold *
+                        Needed(Threshold(problem, screened.threshold) + kScreening.penalty_per_amplitude) *
+                        screened.jitter.sigma_s2);
   }
   return out;
 }

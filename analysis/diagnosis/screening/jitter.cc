@@ -27,7 +27,7 @@ struct Variances {
 
 Variances BlockVariances(const Problem& problem, const Fit& fit) {
   const Signals& s = *problem.signals;
-  // Slower than this, quantisation is no noise of constant variance.
+  // Slower than this, quantisation is no noise of constant variance; faster, it does not grow with the speed.
   const double slowest = kJitter.slowest_counts_per_row * problem.stated.position_step / problem.log.period_s;
   Variances out;
   for (std::size_t from = 2; from + kBlock <= problem.rows(); from += kBlock) {
@@ -122,10 +122,6 @@ Jitter TestJitter(const Problem& problem, const Fit& fit) {
   const double per = GainOfReading(problem) * top(kSpeed);
   out.sigma_s2 = sigma / per;
   out.rms_s = std::sqrt(std::max(c(kSpeed), 0.0) / per);
-  // Rounding errors grow with the speed, too, until they are white: what is no more than all of them may be
-  // that.
-  out.rounding_s = problem.stated.position_step * std::sqrt(kUniformVariance / top(kSpeed));
-  if (out.rms_s < out.rounding_s) out.drop = 0.0;
   out.sigma_s = 0.5 * sigma / per / std::max(out.rms_s, std::sqrt(sigma / per));
   return out;
 }

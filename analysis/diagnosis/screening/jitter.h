@@ -8,8 +8,7 @@ struct Jitter {
   bool tested = false;  ///< several speeds were there
   double drop = 0.0;    ///< square of the slope's t
   double rms_s = 0.0, sigma_s = 0.0;
-  double sigma_s2 = 0.0;    ///< of the variance of the instants
-  double rounding_s = 0.0;  ///< of the encoder's rounding, at the highest speed
+  double sigma_s2 = 0.0;  ///< of the variance of the instants
 };
 
 /// Readings at uncertain instants: no mean effect, but a variance of the fast part of the white innovation

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "analysis/diagnosis/causes/waves.h"
+#include "analysis/diagnosis/screening/octave_noise.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/prediction_error/fourier_transform.h"
 
@@ -23,11 +24,12 @@ constexpr std::size_t kTransfer = 2 * kResponse;
 struct Matched {
   std::vector<double> lambda;    // gradient of |r|^2 / 2 by a pulse at each row
   std::vector<double> transfer;  // |response|^2 by frequency, kTransfer / 2 bins up to half the rate
+  /// Beyond half the rate, of the slower wave that it looks like from row to row.
   double At(double cycles_per_row) const {
-    const double f = std::fabs(cycles_per_row) * kTransfer;
+    const double f = std::fabs(cycles_per_row - std::round(cycles_per_row)) * kTransfer;
     const auto i = static_cast<std::size_t>(f);
     const double part = f - static_cast<double>(i);
-    return i + 1 < transfer.size() ? (1.0 - part) * transfer[i] + part * transfer[i + 1] : 0.0;
+    return i + 1 < transfer.size() ? (1.0 - part) * transfer[i] + part * transfer[i + 1] : transfer.back();
   }
 };
 
@@ -99,7 +101,7 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
     histogram.weight[b] += weight[k] * weight[k] * problem.root_weight[k] * problem.root_weight[k];
   }
   const HalfSpectrum spectrum = FourierTransform(gradient);
-  std::vector<Peak> out;
+  std::vector<double> orders, scores;
   const double step = per_rev / static_cast<double>(length);
   double info = 0.0, info_at = -1.0;
   for (std::size_t i = 1; i < length / 2; ++i) {
@@ -109,8 +111,13 @@ std::vector<Peak> AngleScores(const Problem& problem, const Matched& matched,
       info = histogram.InformationAt(matched, order);
       info_at = order;
     }
-    if (info > 0.0) out.push_back({order, std::norm(spectrum[i]) / info});
+    if (!(info > 0.0)) continue;
+    orders.push_back(order);
+    scores.push_back(std::norm(spectrum[i]) / info);
   }
+  OverTheOctave(scores);
+  std::vector<Peak> out;
+  for (std::size_t i = 0; i < orders.size(); ++i) out.push_back({orders[i], scores[i]});
   return out;
 }
 

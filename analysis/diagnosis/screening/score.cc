@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/screening/overdispersion.h"
 #include "analysis/prediction_error/common_factor.h"
 #include "analysis/prediction_error/products.h"
 #include "analysis/prediction_error/simd/lanes.h"
@@ -22,28 +23,6 @@ ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<cons
                           std::span<const double* const> b) {
   return MakeProductsInBlocks(a, b, fit.residual.data(), problem.rows(), problem.data_size(),
                               static_cast<std::size_t>(kBlocks));
-}
-
-// Of drops when blocks get random signs.
-double WithinBlocks(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
-  const double by_chance = (covariance * (per_block * per_block.transpose())).trace();
-  return std::max(1.0, by_chance / static_cast<double>(per_block.rows()));
-}
-
-// Of drops where blocks next to each other may go together: variance of a sum by Bartlett's window (Newey and
-// West, Econometrica 55, 1987), as many neighbours as the root of all.
-double Overdispersion(const Eigen::MatrixXd& per_block, const Eigen::MatrixXd& covariance) {
-  const Eigen::Index blocks = per_block.cols();
-  const auto reach = static_cast<Eigen::Index>(std::sqrt(static_cast<double>(blocks)));
-  Eigen::MatrixXd variance = per_block * per_block.transpose();
-  for (Eigen::Index lag = 1; lag <= reach && lag < blocks; ++lag) {
-    const double share = 1.0 - static_cast<double>(lag) / static_cast<double>(reach + 1);
-    const Eigen::MatrixXd shifted =
-        per_block.leftCols(blocks - lag) * per_block.rightCols(blocks - lag).transpose();
-    variance += share * (shifted + shifted.transpose());
-  }
-  return std::max(WithinBlocks(per_block, covariance),
-                  (covariance * variance).trace() / static_cast<double>(per_block.rows()));
 }
 
 }  // namespace

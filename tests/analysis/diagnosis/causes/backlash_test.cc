@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -35,12 +36,29 @@ TEST(Backlash, OfARigidAxisPutsAPartOfItBehindAStiffScrew) {
 TEST(Backlash, BeginsAtSeveralGapsAndIsNeverNegative) {
   const test::KnownAxis axis({.two_inertia = true});
   for (const SharedEffect& e : test::GridOf(axis, kKind)) {
-    EXPECT_NEAR(test::Told(axis, e, e->start).at("gap_um"), std::stod(e->label), 1e-9) << e->label;
+    EXPECT_NEAR(test::Told(axis, e, e->start).at("gap_um"), std::stod(e->label), 1e-6)
+        << "the label's last digit";
     EXPECT_EQ(e->low[0], 0.0);
     EXPECT_GE(e->high[0] * kRad_um, 500.0) << "half a millimetre is a worn machine, and found";
     EXPECT_EQ(test::With(axis, e, {-0.01}).gap, 0.0);
   }
-  EXPECT_EQ(test::GridOf(axis, kKind).size(), 3u);
+}
+
+TEST(Backlash, IsLookedForDownToWhatTheEncoderShows) {
+  test::KnownAxis axis({.two_inertia = true});
+  const auto narrowest_um = [&] {
+    double out = 1e9;
+    for (const SharedEffect& e : test::GridOf(axis, kKind)) out = std::min(out, e->start[0] * kRad_um);
+    return out;
+  };
+  const double count_um = axis.stated.position_step * kRad_um;
+  EXPECT_LT(narrowest_um(), count_um);
+  EXPECT_GT(narrowest_um(), 0.05 * count_um);
+  const std::size_t fine = test::GridOf(axis, kKind).size();
+  axis.stated.position_step *= 64.0;
+  EXPECT_EQ(test::GridOf(axis, kKind).size(), fine - 3);
+  axis.stated.position_step = 0.0;
+  EXPECT_LT(test::GridOf(axis, kKind).size(), 12u) << "ends where no count is known, too";
 }
 
 TEST(Backlash, IsMendedAndNoModelIsExtendedByIt) {

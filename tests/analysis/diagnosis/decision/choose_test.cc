@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
 
+#include "analysis/diagnosis/decision/held_out.h"
 #include "tests/analysis/diagnosis/decision/unknown_torque.h"
 
 namespace contour::diagnosis {
@@ -70,6 +72,25 @@ TEST_F(ChooseTest, AShapeOfTheTimeHoldsWhereTheResidualDependsOnTimeWithoutIt) {
   shape.score = 1e4;
   std::vector<Hypothesis> hypotheses = {shape};
   EXPECT_FALSE(ChooseFirst(axis_.problem, there.fit, threshold_, hypotheses).found);
+}
+
+TEST_F(ChooseTest, AShapeThatForeseesNothingIsNotBeyondDoubt) {
+  // Made up: every block of the residual is smaller with it, but the shape moves nothing.
+  const Hypothesis there = Of("constant_torque");
+  Hypothesis shape;
+  Point with = there.fit.point;
+  auto effect = std::make_shared<Effect>(*axis_.Of("cable_spring")->shorter);
+  effect->kind = "outside:friction of time";
+  effect->force.clear();
+  with.effects.push_back(effect);
+  with.amplitudes.push_back({0.0});
+  shape.fit = FitPoint(axis_.problem, with, FitEffort{});
+  shape.score = 1e4;
+  Fit current = there.fit;
+  for (double& r : current.residual) r *= 1.1;
+  ASSERT_GT(Consistency(axis_.problem, current, shape.fit, true), 1.5);
+  std::vector<Hypothesis> hypotheses = {shape};
+  EXPECT_FALSE(ChooseFirst(axis_.problem, current, threshold_, hypotheses).found);
 }
 
 TEST_F(ChooseTest, WhatWasGivenUpIsNotAsked) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "analysis/diagnosis/causes/waves.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "tests/analysis/support/fitted_axis.h"
@@ -155,6 +156,35 @@ TEST_F(HeldOutTest, TheSameModelGainsNothing) {
   EXPECT_EQ(cause.heldout_gain, 0.0);
   EXPECT_EQ(cause.heldout_gain_low, 0.0);
   for (const BlockGain& b : blocks) EXPECT_EQ(b.gain, 0.0);
+}
+
+TEST(HeldOut, ANumberOfTheBaseGainsOverWhatIsStated) {
+  // The base has taken the lag to where the log wants it: freed, it leaves next to nothing better.
+  const test::FittedAxis axis({{"current_lag", 300.0, 0.0, 0.0, 0.0}});
+  const Fit with = axis.With(axis.Of("current_lag"));
+  Cause cause;
+  std::vector<BlockGain> blocks;
+  HeldOutGain(axis.problem, axis.base, with, false, cause, blocks);
+  EXPECT_GT(cause.heldout_gain_low, 0.0);
+  const Signal residual = TorqueResidual(axis.problem, axis.base.point);
+  const double squares = std::inner_product(residual.begin(), residual.end(), residual.begin(), 0.0);
+  EXPECT_GT(cause.heldout_rms_before, 1.02 * std::sqrt(squares / static_cast<double>(residual.size())))
+      << "more than the base that was fitted leaves";
+}
+
+TEST(HeldOut, AWaveTooFastForTheTorqueIsJudgedByTheRows) {
+  const test::FittedAxis axis({{"encoder_subdivision", 1.0, 128.0, 0.0, 0.0}});
+  Cause cause;
+  std::vector<BlockGain> blocks;
+  const auto unit_of = [&](Wave wave, double order) {
+    const Fit with = axis.With(WaveEffect(axis.problem, wave, order, 1.0));
+    HeldOutGain(axis.problem, axis.base, with, false, cause, blocks);
+    return cause.unit;
+  };
+  EXPECT_EQ(unit_of(Wave::kReadingOfAngle, 128.0), "times the noise");
+  EXPECT_EQ(unit_of(Wave::kFrictionOfAngle, 1.0), "Nm");
+  EXPECT_EQ(unit_of(Wave::kForceOfTime, 5.0), "Nm");
+  EXPECT_EQ(unit_of(Wave::kForceOfTime, 200.0), "times the noise");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "analysis/diagnosis/decision/tested_score.h"
@@ -95,6 +96,24 @@ TEST_F(HypothesesTest, WhatIsFarBelowItsThresholdWillNotHold) {
   threshold_.flips = threshold_.calibrated = 20.0;
   found[0].given_up = true;
   EXPECT_FALSE(MayHold(axis_.problem, found, threshold_));
+}
+
+TEST_F(HypothesesTest, WhatWasPassedOverBehindOneThatWasRefusedHasAnotherTurn) {
+  const std::vector<std::string> kinds = {"constant_torque", "friction_drift", "cable_spring", "cogging"};
+  std::vector<Hypothesis> hypotheses;
+  for (const std::string& kind : kinds) {
+    Hypothesis& h = hypotheses.emplace_back(Hypothesis{.fit = axis_.base, .score = 50.0});
+    auto effect = std::make_shared<Effect>();
+    effect->kind = kind;
+    h.fit.point.effects = {effect};
+    tried_.push_back(kind);
+  }
+  hypotheses[0].refused = hypotheses[1].refused = true;
+  hypotheses[2].given_up = true;
+  hypotheses[3].score = 10.0;
+  GiveAnotherTurn(axis_.problem, hypotheses, threshold_, tried_);
+  EXPECT_EQ(tried_, (std::vector<std::string>{"constant_torque", "friction_drift", "cogging"}))
+      << "refused, or below what is asked";
 }
 
 TEST_F(HypothesesTest, UnderNewNoiseTheyAreFittedAnewAndEachKindIsThereOnce) {

@@ -98,6 +98,31 @@ TEST_F(TestedScoreTest, ACouplingThatEveryScrewHasIsNoFault) {
   EXPECT_LT(h.score, -1e100);
 }
 
+TEST_F(TestedScoreTest, ANumberOfTheBaseIsOffAsFarAsItIsFromWhatIsStated) {
+  const std::vector<SharedEffect> all = CatalogueEffects(problem_);
+  const auto lag =
+      *std::find_if(all.begin(), all.end(), [](const auto& e) { return e->kind == "current_lag"; });
+  Point with = base_.point;
+  with.effects.push_back(lag);
+  with.amplitudes.emplace_back(lag->steps.size(), 0.0);
+  // The axis is as stated; a base in another place would make the drop large.
+  Hypothesis h{.fit = FitPoint(problem_, with)};
+  h.score = kDrop - Penalty(*lag);
+  EXPECT_LT(TestedScore(problem_, base_, h), 10.0);
+  // Ten stated deviations are no chance.
+  h.fit.point.amplitudes.back()[0] += 10.0 * problem_.terms[FreedTerms(problem_, "current_lag")[0]].sigma;
+  EXPECT_GT(TestedScore(problem_, base_, h), 20.0);
+}
+
+TEST_F(TestedScoreTest, ScatterOfItsOwnKeepsNothingFromBeingFitted) {
+  Scored s = ScoreEffects(problem_, base_, {effect_})[0];
+  ScoreThreshold threshold;
+  threshold.flips = threshold.calibrated = 20.0;
+  s.drop = 60.0;
+  s.overdispersion = s.within_blocks = 50.0;
+  EXPECT_TRUE(Promising(problem_, s, threshold));
+}
+
 TEST_F(TestedScoreTest, OfWhatChanceExplainsNothingIsPromised) {
   const Scored s = ScoreEffects(problem_, base_, {effect_})[0];
   ScoreThreshold threshold;

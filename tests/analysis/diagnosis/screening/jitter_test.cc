@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "analysis/diagnosis/tuning/statistics.h"
 #include "tests/analysis/support/fitted_axis.h"
 
 namespace contour::diagnosis {
@@ -30,13 +33,28 @@ TEST(Jitter, IsNotFoundWhereReadingsAreInTime) {
   EXPECT_LT(jitter.rms_s, 5e-6);
 }
 
-TEST(Jitter, WhatRoundingMayDoIsNone) {
-  test::FittedAxis axis(Long({{"sample_jitter", 14.0, 0.0, 0.0, 0.0}}));
-  const double fastest = axis.problem.signals->max_speed;
-  axis.made.axis.stated.position_step = 14e-6 * fastest;
-  EXPECT_GT(TestJitter(axis.problem, axis.base).drop, 50.0);
-  axis.made.axis.stated.position_step = 6.0 * 14e-6 * fastest;
-  EXPECT_EQ(TestJitter(axis.problem, axis.base).drop, 0.0);
+TEST(Jitter, RoundingIsNone) {
+  // From five counts per row at the highest speed to fifty.
+  for (const double step_rad : {0.05, 0.02, 0.005}) {
+    test::HiddenOptions coarse = Long({});
+    coarse.encoder_step_rad = step_rad;
+    const test::FittedAxis axis(coarse);
+    const Jitter jitter = TestJitter(axis.problem, axis.base);
+    EXPECT_TRUE(jitter.tested) << step_rad;
+    EXPECT_LT(jitter.drop, 9.0) << step_rad;
+  }
+}
+
+TEST(Jitter, BelowTheRoundingOfTheEncoderIsFound) {
+  const double jitter_s = 14e-6;
+  test::HiddenOptions o = Long({{"sample_jitter", jitter_s * 1e6, 0.0, 0.0, 0.0}});
+  o.encoder_step_rad = 5.0 * jitter_s * test::FittedAxis(o).problem.signals->max_speed;
+  const test::FittedAxis axis(o);
+  ASSERT_GT(o.encoder_step_rad * std::sqrt(kUniformVariance),
+            1.4 * jitter_s * axis.problem.signals->max_speed);
+  const Jitter jitter = TestJitter(axis.problem, axis.base);
+  EXPECT_GT(jitter.drop, 9.0);
+  EXPECT_NEAR(jitter.rms_s, jitter_s, 0.3 * jitter_s);
 }
 
 TEST(Jitter, OneSpeedAloneCannotTell) {

@@ -1,0 +1,32 @@
+#include "analysis/diagnosis/decision/base_there.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
+
+namespace contour::diagnosis {
+
+Point WithoutLast(const Problem& problem, Point point) {
+  const std::vector<std::size_t> freed = FreedTerms(problem, point.effects.back()->kind);
+  const std::vector<double>& amplitudes = point.amplitudes.back();
+  for (std::size_t i = 0; i < std::min(freed.size(), amplitudes.size()); ++i)
+    point.base[freed[i]] += amplitudes[i];
+  point.effects.pop_back();
+  point.amplitudes.pop_back();
+  return point;
+}
+
+bool BaseLiesThere(const Problem& problem, const Hypothesis& r, const FitEffort& effort, Fit& current) {
+  const double drop = current.cost - r.fit.cost;
+  if (!(drop > 0.0)) return false;
+  Fit there = FitPoint(problem, WithoutLast(problem, r.fit.point), effort);
+  if (!(current.cost - there.cost > kHypotheses.half_share * drop)) return false;
+  current = std::move(there);
+  return true;
+}
+
+}  // namespace contour::diagnosis
