@@ -116,9 +116,10 @@ TEST(TorqueExperiments, AStopAndAFollowingErrorStillWork) {
   EXPECT_LT(std::abs(machine.record().axes[0].following_error_m), 2e-6);
 
   // A cutting force that nobody stated pushes the sprung axis away: the guard sees it.
-  VirtualMachine pushed(ExampleMachine({"emulator.axes.x.effects.cutting_force={force_N: 400, start_s: 2}",
-                                        "axes.x.limits.external_force_N=500"}),
-                        ControllerName::kFull);
+  VirtualMachine pushed(
+      ExampleMachine({"emulator.axes.x.effects.cutting_force={force_N: 400, start_s: 2}",
+                      "axes.x.limits.external_force_N=500", "axes.x.limits.safe_travel_mm=3"}),
+      ControllerName::kFull);
   EXPECT_THROW(
       {
         pushed.BringUp();
