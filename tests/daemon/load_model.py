@@ -6,65 +6,32 @@
 In lock-step on the in-process bus. The process stays the same, its log goes on in a file of its own, what cannot be loaded is
 refused before anything ends, and nothing is loaded while there is torque.
 """
-import json
-import socket
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from control_socket import ControlSocket  # noqa: E402
 from free_port import free_port  # noqa: E402
 
 
-class Client:
-    def __init__(self, path):
-        self.path = path
-
-    def ask(self, **request):
-        with socket.socket(socket.AF_UNIX) as s:
-            s.connect(str(self.path))
-            with s.makefile("rw", encoding="utf-8") as lines:
-                lines.write(json.dumps(request) + "\n")
-                lines.flush()
-                return json.loads(lines.readline())
-
-    def wait_for(self, state):
-        for _ in range(1200):
-            try:
-                if self.ask(request="status")["status"]["state"] == state:
-                    return
-            except (OSError, ValueError):
-                pass  # between its end and its new beginning nobody answers
-            time.sleep(0.05)
-        raise RuntimeError(f"never {state}")
-
-    def stiffness(self):
-        return self.model()["screw_stiffness_N_um"]
-
+class Client(ControlSocket):
     def model(self):
-        return yaml.safe_load(self.ask(request="machine_file")["yaml"])["axes"]["x"]["model"]
+        return self.axis()["model"]
 
     def load(self, model):
         return self.ask(request="load_model", axis="x", model=model)
 
     def await_stiffness(self, value):
-        for _ in range(1200):
-            try:
-                if self.stiffness() == value:
-                    return
-            except (OSError, ValueError):
-                pass
-            time.sleep(0.05)
-        raise RuntimeError(f"stiffness never became {value}")
+        self.await_axis(lambda axis: axis["model"]["screw_stiffness_N_um"] == value)
 
 
 def check(client, process, log):
     client.wait_for("Idle")
-    own = client.stiffness()
+    own = client.model()["screw_stiffness_N_um"]
     model = client.model()
     refused = client.load("lead_mm: 5\n")
     assert not refused["ok"] and "motor_inertia_kgm2: missing" in refused["error"], refused
@@ -79,10 +46,8 @@ def check(client, process, log):
     client.wait_for("Idle")
     assert client.load(yaml.safe_dump(model))["ok"]
     client.await_stiffness(33)
-    client.wait_for("Idle")
     assert client.load("")["ok"]
     client.await_stiffness(own)
-    client.wait_for("Idle")
     assert process.poll() is None
     for number in ("", ".1", ".2"):
         assert Path(f"{log}{number}").stat().st_size > 1000, number

@@ -7,65 +7,31 @@ The emulated machine in lock-step. A drive without torque mode stays in csp and 
 before anything ends. With --soft a heavy table on a soft screw that is stated half as stiff and else as a catalogue has it:
 no loop is stable for all of that, so it is recorded in csp first.
 """
-import json
-import socket
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from control_socket import ControlSocket  # noqa: E402
 from free_port import free_port  # noqa: E402
 
 
-class Daemon:
+class Daemon(ControlSocket):
     def __init__(self, contourd, machine_file, scratch, overrides):
-        self.socket = f"{scratch}/control.sock"
+        super().__init__(f"{scratch}/control.sock")
         self.messages = f"{scratch}/daemon.txt"
-        command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", self.socket]
+        command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", self.path]
         for override in ("telemetry.publish=false", f"emulator.io.port={free_port()}", "axes.x.drive.mode=csp", *overrides):
             command += ["--set", override]
         with open(self.messages, "w", encoding="utf-8") as messages:
             self.process = subprocess.Popen(command, stdout=messages, stderr=messages)
         self.wait_for("Idle")
 
-    def ask(self, **request):
-        with socket.socket(socket.AF_UNIX) as s:
-            s.connect(self.socket)
-            with s.makefile("rw", encoding="utf-8") as lines:
-                lines.write(json.dumps(request) + "\n")
-                lines.flush()
-                return json.loads(lines.readline())
-
-    def wait_for(self, state):
-        for _ in range(1200):
-            try:
-                if self.ask(request="status")["status"]["state"] == state:
-                    return
-            except (OSError, ValueError):
-                pass
-            time.sleep(0.05)
-        raise RuntimeError(f"never {state}")
-
-    def axis(self):
-        return yaml.safe_load(self.ask(request="machine_file")["yaml"])["axes"]["x"]
-
     def mode(self):
         return self.axis()["drive"]["mode"]
-
-    def await_axis(self, is_so):
-        for _ in range(1200):
-            try:
-                if is_so(self.axis()):
-                    self.wait_for("Idle")
-                    return
-            except (OSError, ValueError):
-                pass  # between its end and its new beginning nobody answers
-            time.sleep(0.05)
-        raise RuntimeError("the axis never became so")
 
     def end(self):
         self.process.terminate()
@@ -96,7 +62,7 @@ def takes_models(daemon):
 
 
 def commission_once(daemon, scratch, contour):
-    command = [contour, "commission", "--axis", "x", "--socket", daemon.socket, "--yes", "--out", f"{scratch}/model.yaml",
+    command = [contour, "commission", "--axis", "x", "--socket", daemon.path, "--yes", "--out", f"{scratch}/model.yaml",
                "--report", f"{scratch}/report", "--loop", f"{scratch}/loop.yaml"]
     # In lock-step the machine goes as fast as it can: a busy host may lose rows, which is refused.
     for _ in range(5):
