@@ -79,6 +79,20 @@ std::size_t Together(Seen seen) {
 
 std::size_t FoldOf(std::size_t block, Seen seen) { return block / Together(seen) % 2; }
 
+// The priors of the base, added to what rows say; terms that are `believed` are held to where they are
+// stated.
+void AddPriors(const Problem& problem, const Fit& fit, const std::vector<std::size_t>& believed,
+               Eigen::MatrixXd& normal, Eigen::VectorXd& gradient) {
+  for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
+    const bool stated = std::find(believed.begin(), believed.end(), i) != believed.end();
+    const auto j = static_cast<Eigen::Index>(i);
+    const double prior = std::pow(problem.terms[i].sigma, -2);
+    const double w = stated ? kHeld * std::max(fit.normal(j, j), prior) : prior;
+    normal(j, j) += w;
+    gradient(j) += w * fit.point.base[i];
+  }
+}
+
 // Where the parameters go to first order when the blocks of one fold are left out, for either fold; terms of
 // the base that are `believed` go to where they are stated.
 std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit, Seen seen,
@@ -89,14 +103,7 @@ std::vector<Eigen::VectorXd> StepsWithout(const Problem& problem, const Fit& fit
   for (std::size_t fold = 0; fold < 2; ++fold) {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(p, p);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(p);
-    for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
-      const bool stated = std::find(believed.begin(), believed.end(), i) != believed.end();
-      const auto j = static_cast<Eigen::Index>(i);
-      const double w = stated ? kHeld * std::max(fit.normal(j, j), std::pow(problem.terms[i].sigma, -2))
-                              : std::pow(problem.terms[i].sigma, -2);
-      normal(j, j) += w;
-      gradient(j) += w * fit.point.base[i];
-    }
+    AddPriors(problem, fit, believed, normal, gradient);
     for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
       if (FoldOf(b, seen) == fold) continue;
       for (std::size_t part = 0; part < parts; ++part) {
@@ -223,14 +230,7 @@ std::vector<double> ResidualWithStated(const Problem& problem, const Fit& fit,
   if (believed.empty()) return fit.residual;
   Eigen::MatrixXd normal = fit.normal;
   Eigen::VectorXd gradient = GradientOf(fit.jacobian, fit.residual);
-  for (std::size_t i = 0; i < fit.point.base.size(); ++i) {
-    const bool stated = std::find(believed.begin(), believed.end(), i) != believed.end();
-    const auto j = static_cast<Eigen::Index>(i);
-    const double prior = std::pow(problem.terms[i].sigma, -2);
-    const double w = stated ? kHeld * std::max(fit.normal(j, j), prior) : prior;
-    normal(j, j) += w;
-    gradient(j) += w * fit.point.base[i];
-  }
+  AddPriors(problem, fit, believed, normal, gradient);
   normal.diagonal() *= kRidge;
   HoldShapes(fit, normal);
   const Point point = Moved(fit.point, -normal.ldlt().solve(gradient));

@@ -7,12 +7,6 @@
 #include "analysis/diagnosis/tuning/screening_tuning.h"
 
 namespace contour::diagnosis {
-namespace {
-
-// At the lowest order, of which an octave has hardly more than itself.
-constexpr std::size_t kFewest = 2 * 2;
-
-}  // namespace
 
 void OverTheOctave(std::vector<double>& scores) {
   const std::vector<double> raw = scores;
@@ -21,7 +15,9 @@ void OverTheOctave(std::vector<double>& scores) {
   for (std::size_t i = 0, renewed = 0; i < raw.size(); ++i) {
     if (i >= renewed) {
       octave.clear();
-      for (std::size_t j = i / 2; j < std::min(raw.size(), 2 * i + kFewest); ++j) octave.push_back(raw[j]);
+      // An octave to either side, counted from beyond the next: of the lowest order it is hardly more than
+      // it.
+      for (std::size_t j = i / 2; j < std::min(raw.size(), 2 * (i + 2)); ++j) octave.push_back(raw[j]);
       // Of few, the lower middle one: half of them may be waves.
       const auto middle = octave.begin() + static_cast<std::ptrdiff_t>((octave.size() - 1) / 2);
       std::nth_element(octave.begin(), middle, octave.end());
