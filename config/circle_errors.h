@@ -2,8 +2,9 @@
 
 #include "config/machine_config.h"
 
-// What `full` draws circles with, in either mode, from the axis's own numbers. Rules of thumb: on 18 machines
-// of 5 to 500 kg (docs/laboratory/family.md, "Which mode") they are within a factor of three.
+// By how much the table is off the 10 mm circle under `full`, in either mode, from the axis's own numbers.
+// Rules of thumb: of the errors of 18 machines of 5 to 500 kg (docs/laboratory/family.md, "Which mode") they
+// are 0.3 to 2.1 times as much.
 namespace contour {
 
 /// Of the friction that turns round at a reversal, what is not foreseen gives the table this far way. Where a

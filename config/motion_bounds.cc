@@ -42,9 +42,7 @@ double Loop_Hz(const MachineConfig& config, bool in_cascade) {
   if (two_inertias)
     for (const auto& [name, axis] : config.axes)
       if (axis.loop) least_Hz = std::min(least_Hz, axis.loop->regulator_Hz);
-  return std::isfinite(least_Hz)
-             ? least_Hz
-             : StiffnessBandwidth_Hz(config.control, config.machine.controller, in_cascade);
+  return StiffnessInUse_Hz(config.control, config.machine.controller, in_cascade, least_Hz);
 }
 
 Axis Known(const MachineConfig& config, const AxisConfig& axis) {

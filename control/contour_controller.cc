@@ -44,7 +44,7 @@ double Loop_Hz(ControllerName name, const ControllerConfig& config, const PerAxi
   double least_Hz = std::numeric_limits<double>::infinity();
   for (const ControlledAxis& axis : axes)
     if (axis.loop) least_Hz = std::min(least_Hz, axis.regulator_Hz);
-  return std::isfinite(least_Hz) ? least_Hz : StiffnessBandwidth_Hz(config, name, cascade);
+  return StiffnessInUse_Hz(config, name, cascade, least_Hz);
 }
 
 }  // namespace

@@ -29,4 +29,10 @@ double StiffnessBandwidth_Hz(const ControllerConfig& config, ControllerName cont
   return LoopBandwidth_Hz(config, controller);
 }
 
+double StiffnessInUse_Hz(const ControllerConfig& config, ControllerName controller, bool in_cascade,
+                         double least_regulator_Hz) noexcept {
+  return std::isfinite(least_regulator_Hz) ? least_regulator_Hz
+                                           : StiffnessBandwidth_Hz(config, controller, in_cascade);
+}
+
 }  // namespace contour

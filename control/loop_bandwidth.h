@@ -14,4 +14,10 @@ namespace contour {
 [[nodiscard]] double StiffnessBandwidth_Hz(const ControllerConfig& config, ControllerName controller,
                                            bool in_cascade) noexcept;
 
+/// The same where axes may have loops of their own: as stiff as the softest of them, `least_regulator_Hz`,
+/// which is infinite where none is in use. The cycle tells its monitors of it, and `contour check` goes by
+/// it.
+[[nodiscard]] double StiffnessInUse_Hz(const ControllerConfig& config, ControllerName controller,
+                                       bool in_cascade, double least_regulator_Hz) noexcept;
+
 }  // namespace contour
