@@ -323,7 +323,11 @@ std::size_t ParameterCount(const Point& p) {
 
 std::vector<Fit> FitPoints(const Problem& problem, std::vector<InitialGuess> guesses, Extent extent) {
   std::vector<Descent> descents;
-  for (InitialGuess& b : guesses) descents.emplace_back(problem, std::move(b), extent);
+  std::vector<const Problem*> seen;
+  for (InitialGuess& b : guesses) {
+    seen.push_back(b.seen != nullptr ? b.seen : &problem);
+    descents.emplace_back(*seen.back(), std::move(b), extent);
+  }
   std::vector<bool> going(descents.size(), true);
   for (;;) {
     const auto left = static_cast<std::size_t>(std::count(going.begin(), going.end(), true));
@@ -343,10 +347,15 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<InitialGuess> gue
       std::vector<AxisModel> models;
       for (std::size_t i = first; i < first + count; ++i) models.push_back(problem.Build(points[i]));
       std::vector<std::vector<double>> raw = problem.Raw(models, extent);
-      std::vector<std::vector<double>> white = problem.White(raw, extent);
-      for (std::size_t i = 0; i < count; ++i) {
-        const auto [owner, place] = owners[first + i];
-        descents[owner].Take(place, std::move(raw[i]), std::move(white[i]));
+      const auto seen_by = [&](std::size_t i) { return seen[owners[first + i].first]; };
+      for (std::size_t from = 0, to = 0; from < count; from = to) {
+        while (to < count && seen_by(to) == seen_by(from)) ++to;
+        std::vector<std::vector<double>> white =
+            seen_by(from)->White(std::span(raw).subspan(from, to - from), extent);
+        for (std::size_t i = from; i < to; ++i) {
+          const auto [owner, place] = owners[first + i];
+          descents[owner].Take(place, std::move(raw[i]), std::move(white[i - from]));
+        }
       }
     }
     for (std::size_t d = 0; d < descents.size(); ++d)

@@ -30,6 +30,8 @@ struct InitialGuess {
   const Fit* known = nullptr;
   /// The same, of all its parameters, and given up for this fit: two of them at a time would take memory.
   Fit* continued = nullptr;
+  /// Whose weights count, where not all fits see the same rows: the same log, model and noise otherwise.
+  const Problem* seen = nullptr;
 };
 
 /// Gauss-Newton with the sensitivities kept while they serve. Noise is the problem's, held. All fits go step

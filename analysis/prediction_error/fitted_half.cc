@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
+
+#include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -14,19 +18,23 @@ constexpr FitEffort kHalfEffort = {.most_steps = 6, .most_refreshes = 2, .covari
 std::size_t PartBegin(const Problem& problem, std::size_t part) { return problem.rows() * part / kHalfParts; }
 
 std::array<Point, 2> FitHalves(const Problem& problem, const Fit& fit) {
-  std::array<Point, 2> out;
   const std::size_t n = problem.rows();
+  std::array<Problem, 2> seen = {problem, problem};
+  std::array<Fit, 2> whole = {fit, fit};
+  std::vector<InitialGuess> guesses;
   for (std::size_t half = 0; half < 2; ++half) {
-    Problem seen = problem;
     for (std::size_t part = 1 - half; part < kHalfParts; part += 2)
       for (std::size_t k = PartBegin(problem, part); k < PartBegin(problem, part + 1); ++k) {
-        seen.counted[k] = 0;
-        for (std::size_t channel = k; channel < seen.root_weight.size(); channel += n)
-          seen.root_weight[channel] = 0.0;
+        seen[half].counted[k] = 0;
+        for (std::size_t channel = k; channel < seen[half].root_weight.size(); channel += n)
+          seen[half].root_weight[channel] = 0.0;
       }
-    out[half] = FitPoint(seen, fit.point, kHalfEffort).point;
+    // The runs of the whole serve either half.
+    Rewhiten(seen[half], whole[half]);
+    guesses.push_back({fit.point, kHalfEffort, nullptr, &whole[half], &seen[half]});
   }
-  return out;
+  std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
+  return {std::move(fits[0].point), std::move(fits[1].point)};
 }
 
 StatedAxis FittedAxis(const Problem& problem, const Fit& fit, const std::array<Point, 2>& halves) {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/extras.h"
@@ -308,6 +309,13 @@ void Problem::LearnNoise(const Point& point) {
   for (std::size_t k = 0; k < data_size(); ++k)
     if (counted[k % n] == 0) root_weight[k] = 0.0;
   WeighExcerpt();
+}
+
+void Problem::Take(LearntNoise learnt) {
+  noise = std::move(learnt.filter);
+  scale_noise = std::move(learnt.scale);
+  root_weight = std::move(learnt.root_weight);
+  excerpt_weight_ = std::move(learnt.excerpt_weight);
 }
 
 double Problem::LogNoise() const {

@@ -50,6 +50,14 @@ struct Point {
   std::vector<double> base;  ///< x of every base term
   std::vector<SharedEffect> effects;
   std::vector<std::vector<double>> amplitudes;
+  bool operator==(const Point&) const = default;
+};
+
+/// All that is learnt of the noise at a point.
+struct LearntNoise {
+  NoiseFilter filter;
+  Whitener scale;
+  std::vector<double> root_weight, excerpt_weight;
 };
 
 /// The log, the stated model and the noise: from parameters to a white residual.
@@ -79,6 +87,9 @@ class Problem {
                                                                  std::span<const SharedEffect> effects) const;
   /// Ratio of the noises of torque and reading, the colour that is left, then the level from place to place.
   void LearnNoise(const Point& point);
+  /// What was learnt last, to have it again without learning.
+  [[nodiscard]] LearntNoise Learnt() const { return {noise, scale_noise, root_weight, excerpt_weight_}; }
+  void Take(LearntNoise learnt);
   /// What the noise learnt adds to |r|^2 in -2 log likelihood, up to a constant: points whose noise was
   /// learnt at each of them compare by the sum of both.
   [[nodiscard]] double LogNoise() const;

@@ -37,7 +37,9 @@ bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, do
     if (there.cost > here.cost - kFits.lower || fit.cost + there.cost - here.cost > worth) return false;
     back = std::move(there.point);
   }
-  Fit other = FitPoint(problem, std::move(back), effort);
+  FitEffort below = effort;
+  below.hopeless_above = fit.cost;
+  Fit other = FitPoint(problem, std::move(back), below);
   if (!(other.cost < fit.cost)) return false;
   fit = std::move(other);
   return true;
@@ -70,6 +72,11 @@ void RewhitenSensitivities(const Problem& problem, Fit& fit) {
 void Rewhiten(const Problem& problem, Fit& fit) {
   RewhitenResidual(problem, fit);
   RewhitenSensitivities(problem, fit);
+}
+
+Fit FitFrom(const Problem& problem, Fit fit, const FitEffort& effort) {
+  Rewhiten(problem, fit);
+  return FitOn(problem, std::move(fit), effort);
 }
 
 }  // namespace contour::diagnosis

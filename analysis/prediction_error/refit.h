@@ -20,4 +20,8 @@ void Rewhiten(const Problem& problem, Fit& fit);
 void RewhitenResidual(const Problem& problem, Fit& fit);
 void RewhitenSensitivities(const Problem& problem, Fit& fit);
 
+/// From where a fit stands that was made under another noise or of other rows: its runs serve until they lead
+/// astray.
+Fit FitFrom(const Problem& problem, Fit fit, const FitEffort& effort);
+
 }  // namespace contour::diagnosis

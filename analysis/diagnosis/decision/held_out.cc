@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
@@ -127,16 +128,21 @@ double InertiaAt(const Problem& problem, const Point& point) {
   return m.motor_inertia + (m.two_inertia ? m.load_inertia : 0.0);
 }
 
-// Sum of squares of the residual in every block, each with the parameters of the fold that did not see it. As
-// a torque it is what was not foreseen of the motion times an inertia: of all models the same one, or noise
-// of the reading alone would make the heavier of two models the worse one.
-std::vector<double> HeldOutSquares(const Problem& problem, const Fit& fit, Seen seen, double inertia,
-                                   const std::vector<std::size_t>& believed) {
-  const std::size_t n = problem.rows();
+// Where a fit goes when the blocks of either fold are left out.
+std::vector<Point> PointsWithout(const Problem& problem, const Fit& fit, Seen seen,
+                                 const std::vector<std::size_t>& believed) {
   std::vector<Point> points;
   for (const Eigen::VectorXd& step : StepsWithout(problem, fit, seen, believed))
     points.push_back(Moved(fit.point, step));
-  const auto raw = problem.Raw(points);
+  return points;
+}
+
+// Sum of squares of the residual in every block, each with the parameters of the fold that did not see it. As
+// a torque it is what was not foreseen of the motion times an inertia: of all models the same one, or noise
+// of the reading alone would make the heavier of two models the worse one.
+std::vector<double> HeldOutSquares(const Problem& problem, std::span<const Point> points,
+                                   std::span<const std::vector<double>> raw, Seen seen, double inertia) {
+  const std::size_t n = problem.rows();
   std::vector<double> squares(kHeldOutBlocks, 0.0);
   for (std::size_t fold = 0; fold < 2; ++fold) {
     const Signal r = seen == Seen::kScale
@@ -260,11 +266,19 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
   const std::vector<std::size_t> stated = with.point.effects.empty()
                                               ? std::vector<std::size_t>{}
                                               : FreedTerms(problem, with.point.effects.back()->kind);
-  const std::vector<double> before = white
-                                         ? WhiteSquares(problem, ResidualWithStated(problem, without, stated))
-                                         : HeldOutSquares(problem, without, seen, inertia, stated);
-  const std::vector<double> after =
-      white ? UnseenSquares(problem, with) : HeldOutSquares(problem, with, seen, inertia, {});
+  std::vector<double> before, after;
+  if (white) {
+    before = WhiteSquares(problem, ResidualWithStated(problem, without, stated));
+    after = UnseenSquares(problem, with);
+  } else {
+    std::vector<Point> points = PointsWithout(problem, without, seen, stated);
+    for (Point& p : PointsWithout(problem, with, seen, {})) points.push_back(std::move(p));
+    const auto raw = problem.Raw(points);
+    const std::span<const Point> both(points);
+    const std::span<const std::vector<double>> runs(raw);
+    before = HeldOutSquares(problem, both.first(2), runs.first(2), seen, inertia);
+    after = HeldOutSquares(problem, both.last(2), runs.last(2), seen, inertia);
+  }
   const double n = static_cast<double>(problem.rows()) / kHeldOutBlocks;
   double sum_before = 0.0, sum_after = 0.0;
   blocks.clear();

@@ -7,6 +7,7 @@
 
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
+#include "analysis/prediction_error/refit.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -16,18 +17,21 @@ struct UnderOwnNoise {
   double unlikely = std::numeric_limits<double>::infinity();  ///< -2 log likelihood, its noise included
 };
 
-/// Fit and noise in turn, while that gains what no chance does.
-UnderOwnNoise FitUnderOwnNoise(Problem& problem, Point point) {
+/// Fit and noise in turn, while that gains what no chance does. `first`: what is learnt where it begins.
+UnderOwnNoise FitUnderOwnNoise(Problem& problem, const Fit& begin, LearntNoise* first) {
   UnderOwnNoise best;
   for (int turn = 0; turn < FitEffort{}.most_refreshes; ++turn) {
-    problem.LearnNoise(point);
-    Fit fit = FitPoint(problem, std::move(point), kEfforts.quick);
+    const Fit& from = turn == 0 ? begin : best.fit;
+    problem.LearnNoise(from.point);
+    if (turn == 0 && first != nullptr) *first = problem.Learnt();
+    Fit fit = FitFrom(problem, from, kEfforts.quick);
     const double unlikely = fit.cost + problem.LogNoise() + Penalty(*fit.point.effects.back());
     const double gained = best.unlikely - unlikely;
     if (!(gained > 0.0)) break;
+    const bool moved = !(fit.point == from.point);
     best = {std::move(fit), unlikely};
-    if (gained < kAcceptance.no_chance_score) break;
-    point = best.fit.point;
+    // Where it stays its noise is learnt.
+    if (!moved || gained < kAcceptance.no_chance_score) break;
   }
   return best;
 }
@@ -51,18 +55,20 @@ void LearnNoiseOfLikeliest(Problem& problem, std::vector<Hypothesis>& hypotheses
   const std::vector<std::size_t> contenders = Contenders(hypotheses);
   if (contenders.size() < 2 || contenders[0] != 0) return problem.LearnNoise(hypotheses[0].fit.point);
   const NoiseFilter before = problem.noise;
+  LearntNoise of_best;
   std::size_t likeliest = 0;
   UnderOwnNoise best;
   for (const std::size_t i : contenders) {
-    UnderOwnNoise own = FitUnderOwnNoise(problem, hypotheses[i].fit.point);
+    UnderOwnNoise own = FitUnderOwnNoise(problem, hypotheses[i].fit, i == 0 ? &of_best : nullptr);
     // Less is a matter of where the noise's own fit ends.
     if (i > 0 && !(own.unlikely < best.unlikely - kAcceptance.no_chance_score)) continue;
     best = std::move(own);
     likeliest = i;
   }
   // Where the best is the likeliest nothing is to change.
+  if (likeliest == 0) return problem.Take(std::move(of_best));
   problem.noise = before;
-  if (likeliest > 0) hypotheses[likeliest].fit = std::move(best.fit);
+  hypotheses[likeliest].fit = std::move(best.fit);
   problem.LearnNoise(hypotheses[likeliest].fit.point);
   std::rotate(hypotheses.begin(), hypotheses.begin() + static_cast<std::ptrdiff_t>(likeliest),
               hypotheses.begin() + static_cast<std::ptrdiff_t>(likeliest) + 1);

@@ -1,6 +1,7 @@
 #include "analysis/diagnosis/quantification/model_errors.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <string>
@@ -22,6 +23,10 @@ struct Sum {
   [[nodiscard]] double Rms() const { return rows > 0.0 ? std::sqrt(squares / rows) : std::nan(""); }
 };
 
+struct Errors {
+  Sum one_used, one_unseen, free_used, free_unseen;
+};
+
 /// "12.3 um" or, of what turns, "12.3 mrad".
 std::string LengthText(const Problem& p, double q) {
   return p.log.linear ? RoundedText(1e6 * q) + " um" : RoundedText(1e3 * q) + " mrad";
@@ -37,31 +42,50 @@ std::string ErrorText(const Problem& p, const Diagnosis& d) {
 
 }  // namespace
 
-ForecastError ErrorsOf(const Problem& p, const char* name, const Point& all,
-                       const std::array<Point, 2>& halves) {
-  ForecastError out;
-  out.model = name;
-  const Point points[] = {all, halves[0], halves[1]};
+std::vector<ForecastError> ErrorsOf(const Problem& p, std::span<const Forecast> forecasts) {
+  // All models side by side, so that their runs share the lanes; [forecast][fitted to all, either half].
+  std::vector<Point> points;
+  std::vector<std::array<std::size_t, 3>> at;
+  for (const Forecast& f : forecasts) {
+    const std::size_t first = points.size();
+    points.push_back(f.all);
+    at.push_back({first, first, first});
+    if (!f.halves) continue;
+    points.insert(points.end(), f.halves->begin(), f.halves->end());
+    at.back() = {first, first + 1, first + 2};
+  }
+  std::vector<Errors> sums(forecasts.size());
   const auto raw = p.Raw(points);
-  Sum one_used, one_unseen, free_used, free_unseen;
   for (std::size_t part = 0; part < kHalfParts; ++part) {
     const std::size_t blind = part % 2 == 0 ? 2 : 1;
     for (std::size_t k = PartBegin(p, part); k < PartBegin(p, part + 1); ++k) {
       if (p.counted[k] == 0) continue;
-      one_used.Add(raw[0][k]);
-      one_unseen.Add(raw[blind][k]);
+      for (std::size_t f = 0; f < forecasts.size(); ++f) {
+        sums[f].one_used.Add(raw[at[f][0]][k]);
+        sums[f].one_unseen.Add(raw[at[f][blind]][k]);
+      }
     }
   }
   for (const Parts parts : {Parts::kEven, Parts::kOdd}) {
-    const AxisModel models[] = {p.Build(all), p.Build(halves[parts == Parts::kEven ? 1 : 0])};
+    const std::size_t blind = parts == Parts::kEven ? 2 : 1;
+    std::vector<AxisModel> models;
+    for (const std::array<std::size_t, 3>& of : at)
+      for (const std::size_t i : {of[0], of[blind]}) models.push_back(p.Build(points[i]));
     const auto errors = FreeRuns(p, models, FreeRunWindows(p, parts));
-    for (const double e : errors[0]) free_used.Add(e);
-    for (const double e : errors[1]) free_unseen.Add(e);
+    for (std::size_t f = 0; f < forecasts.size(); ++f) {
+      for (const double e : errors[2 * f]) sums[f].free_used.Add(e);
+      for (const double e : errors[2 * f + 1]) sums[f].free_unseen.Add(e);
+    }
   }
-  out.one_step_used = one_used.Rms();
-  out.one_step_unseen = one_unseen.Rms();
-  out.free_run_used = free_used.Rms();
-  out.free_run_unseen = free_unseen.Rms();
+  std::vector<ForecastError> out;
+  for (std::size_t f = 0; f < forecasts.size(); ++f) {
+    out.emplace_back();
+    out.back().model = forecasts[f].model;
+    out.back().one_step_used = sums[f].one_used.Rms();
+    out.back().one_step_unseen = sums[f].one_unseen.Rms();
+    out.back().free_run_used = sums[f].free_used.Rms();
+    out.back().free_run_unseen = sums[f].free_unseen.Rms();
+  }
   return out;
 }
 
@@ -73,11 +97,11 @@ void DescribeModelErrors(const Problem& problem, const Fit& without, const Fit& 
   stated.effects.clear();
   stated.amplitudes.clear();
   out.free_run_s = kFreeRun_s;
-  out.model_errors = {ErrorsOf(problem, "stated", stated, {stated, stated})};
   const bool extended = !with.point.effects.empty();
-  const std::array<Point, 2> base = extended ? FitHalves(problem, without) : halves;
-  out.model_errors.push_back(ErrorsOf(problem, "refitted", without.point, base));
-  if (extended) out.model_errors.push_back(ErrorsOf(problem, "extended", with.point, halves));
+  std::vector<Forecast> forecasts = {{"stated", stated, {}}};
+  forecasts.push_back({"refitted", without.point, extended ? FitHalves(problem, without) : halves});
+  if (extended) forecasts.push_back({"extended", with.point, halves});
+  out.model_errors = ErrorsOf(problem, forecasts);
   // Too short for a window.
   if (!std::isfinite(out.model_errors.front().free_run_used)) out.model_errors.clear();
 }

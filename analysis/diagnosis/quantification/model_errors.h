@@ -1,6 +1,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "analysis/diagnosis/result/finding.h"
 #include "analysis/prediction_error/fit.h"
@@ -17,8 +20,14 @@ void DescribeModelErrors(const Problem& problem, const Fit& without, const Fit& 
 /// Says them in a note.
 void TellModelErrors(const Problem& problem, Diagnosis& out);
 
-/// Of a model named so, fitted to all parts, and of those fitted to either half on what they have not seen.
-ForecastError ErrorsOf(const Problem& p, const char* name, const Point& all,
-                       const std::array<Point, 2>& halves);
+/// A model named so: fitted to all parts, and to either half of them; none where it was not fitted.
+struct Forecast {
+  const char* model = "";
+  Point all;
+  std::optional<std::array<Point, 2>> halves;
+};
+
+/// Of every model, and of those fitted to a half on what they have not seen.
+std::vector<ForecastError> ErrorsOf(const Problem& p, std::span<const Forecast> forecasts);
 
 }  // namespace contour::diagnosis

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -79,7 +80,8 @@ Eigen::VectorXd FreedomOf(const Problem& problem, const Fit& fit, const Accepted
 
 /// Free runs by either half, of what it has not seen.
 ForecastError Extended(const Problem& problem, const Fit& fit, const std::array<Point, 2>& halves) {
-  return ErrorsOf(problem, fit.point.effects.empty() ? "refitted" : "extended", fit.point, halves);
+  const Forecast forecast{fit.point.effects.empty() ? "refitted" : "extended", fit.point, halves};
+  return ErrorsOf(problem, std::span(&forecast, 1))[0];
 }
 
 /// The same model by its free runs, where they foresee clearly better.

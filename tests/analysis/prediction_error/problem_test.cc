@@ -47,6 +47,21 @@ TEST(Problem, TermsAreFactorsOfStatedNumbersWithTheirStatedSigma) {
   EXPECT_EQ(m.motor_inertia, axis.stated.motor_inertia);
 }
 
+TEST(Problem, WhatWasLearntOfTheNoiseIsThereAgainWithoutLearning) {
+  const test::LearntProblem made(test::MakeHiddenAxis(Short()));
+  Problem problem = made.problem;
+  const LearntNoise kept = problem.Learnt();
+  const double log_noise = problem.LogNoise();
+  const std::vector<double> white = problem.Residuals(std::span(&made.point, 1))[0];
+  Point off = made.point;
+  off.base[IndexOf(problem, "Fc")] += 0.3;
+  problem.LearnNoise(off);
+  EXPECT_NE(problem.LogNoise(), log_noise);
+  problem.Take(kept);
+  EXPECT_EQ(problem.LogNoise(), log_noise);
+  EXPECT_EQ(problem.Residuals(std::span(&made.point, 1))[0], white);
+}
+
 TEST(Problem, WithoutAStribeckDropBothLevelsGoTogether) {
   test::HiddenAxis axis = test::MakeHiddenAxis(Short());
   axis.stated.friction.Fs_plus = axis.stated.friction.Fc_plus;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/analysis/support/learnt_problem.h"
 
 namespace contour::diagnosis {
@@ -29,6 +31,23 @@ TEST(Refit, RewhitenedUnderTheSameNoiseItIsTheSame) {
   Rewhiten(Made().problem, fit);
   EXPECT_NEAR(fit.cost, cost, 1e-9 * cost);
   EXPECT_LT((fit.normal - normal).norm(), 0.01 * normal.norm());
+}
+
+TEST(Refit, OnOtherRowsAFitThatGoesOnEndsWhereOneThatBeginsThereDoes) {
+  Problem first_half = Made().problem;
+  for (std::size_t k = first_half.rows() / 2; k < first_half.rows(); ++k) {
+    first_half.counted[k] = 0;
+    first_half.root_weight[k] = 0.0;
+  }
+  const Fit whole = FitPoint(Made().problem, Made().point);
+  const Fit anew = FitPoint(first_half, whole.point), on = FitFrom(first_half, whole, {});
+  EXPECT_LT(on.cost, 0.6 * whole.cost);
+  EXPECT_NEAR(on.cost, anew.cost, 1.0);
+  for (std::size_t i = 0; i < on.point.base.size(); ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    EXPECT_NEAR(on.point.base[i], anew.point.base[i], 0.5 * std::sqrt(anew.covariance(at, at)))
+        << first_half.terms[i].name;
+  }
 }
 
 TEST(Refit, AFitNearItsStatedNumbersIsNotBegunAgain) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "tests/analysis/support/learnt_problem.h"
 
@@ -17,11 +18,19 @@ TEST(ModelErrors, AreOfTheHalfThatHasNotSeenThem) {
   Point bad = made.point;
   for (std::size_t i = 0; i < made.problem.terms.size(); ++i)
     if (made.problem.terms[i].name == "Fc") bad.base[i] += std::log(1.2);
-  const ForecastError errors = ErrorsOf(made.problem, "refitted", made.point, {bad, bad});
+  const Forecast forecasts[] = {{"stated", made.point, {}}, {"refitted", made.point, {{bad, bad}}}};
+  const std::vector<ForecastError> both = ErrorsOf(made.problem, forecasts);
+  ASSERT_EQ(both.size(), 2U);
+  const ForecastError& errors = both[1];
   EXPECT_EQ(errors.model, "refitted");
   EXPECT_GT(errors.free_run_used, 0.0);
   EXPECT_GT(errors.free_run_unseen, 2.0 * errors.free_run_used);
   EXPECT_GT(errors.one_step_unseen, errors.one_step_used);
+  // What was not fitted is the same model everywhere.
+  EXPECT_EQ(both[0].model, "stated");
+  EXPECT_EQ(both[0].one_step_unseen, both[0].one_step_used);
+  EXPECT_EQ(both[0].free_run_unseen, both[0].free_run_used);
+  EXPECT_EQ(both[0].one_step_used, errors.one_step_used);
 }
 
 }  // namespace
