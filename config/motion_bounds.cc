@@ -129,7 +129,7 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
     const double force_N = begins > 1.0 ? a.t.pushed_force_N : a.t.rest_force_N;
     // What a motion left may be all that friction bears; a drive's own loop then moves the axis at once, and
     // small changes of its torque count only under a reading that has stood for a while.
-    const double free_s = a.monitored.in_cascade ? a.t.rest_periods * a.period_s : 0.0;
+    const double free_s = a.monitored.in_cascade ? a.t.PushSeen_periods() * a.period_s : 0.0;
     const double acceleration = (force_N + a.friction_drop_N) / a.t.light_kg;
     const double away_m = force_N / soft_N_m + 0.5 * acceleration * free_s * free_s;
     return {1e3 * (away_m + Slam_m(a, acceleration * free_s)), Off_s(a)};

@@ -49,8 +49,6 @@ class DrivePush {
   }
 
  private:
-  // A kick that is over at once has come back by then.
-  static constexpr std::uint32_t kPushedAtLeast = 3;
   // After which a report that lags behind is off its own mean.
   static constexpr std::uint32_t kShowsTail_periods = static_cast<std::uint32_t>(kChatter_periods);
 
@@ -64,7 +62,7 @@ class DrivePush {
     const double pushed_N = most_N_ - least_N_ - t.rest_force_N - r.noise_N;
     const bool large = pushed_N > 0.0 && pushed_N > t.Inertial_N(t.frozen, periods_ * period_s);
     pushed_ = large ? pushed_ + 1 : 0;
-    return pushed_ >= kPushedAtLeast;
+    return pushed_ >= MotionThresholds::kPushReports;
   }
 
   /// Lately, by more than presliding takes up and the report swings by.

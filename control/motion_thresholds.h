@@ -87,6 +87,18 @@ struct MotionThresholds {
   double delivery_N = 0.0;
   double windup_m = 0.0;  ///< largest difference of scale and motor, lead errors apart
 
+  /// csp: readings in a row in which a push of a drive's loop shows: a kick that is over at once has come
+  /// back by then.
+  static constexpr std::uint32_t kPushReports = 3;
+  /// csp: from a push under a reading that stands until it has been told, if it is as large as may ever be:
+  /// small changes count by then, or what was under way has arrived, the report is off its own mean, and the
+  /// push has shown.
+  [[nodiscard]] std::uint32_t PushSeen_periods() const noexcept {
+    const auto settled = static_cast<std::uint32_t>(kChatter_periods);
+    const std::uint32_t shown = (begin_periods > settled ? begin_periods : settled) + kPushReports;
+    return rest_periods > shown ? rest_periods : shown;
+  }
+
   /// Largest displacement in one reading that forces leave unexplained, `n` periods after the one before,
   /// which came `before` periods after its own: e = a T^2 n (n + before) / 2.
   [[nodiscard]] double Forced_m(double velocity_m_s, double peak_force_N, double period_s, double n,
