@@ -31,8 +31,7 @@ std::vector<ConfigProblem> CheckLoops(const MachineConfig& c) {
       problems.push_back({"axes." + name + ".scale_loop",
                           "found a tuning with a linear scale in the loop, but the drive has none; expected "
                           "drive.linear_scale, or no scale_loop"});
-  if (c.machine.controller != ControllerName::kFull || c.control.friction != FrictionKind::kLinear)
-    return problems;
+  if (!KnowsTwoInertias(c.machine.controller, c.control.friction)) return problems;
   for (const auto& [name, axis] : c.axes) {
     if (ModeFor(c.machine.controller, axis.drive) == DriveMode::kCsp) continue;
     const std::string key = "axes." + name + ".";

@@ -37,9 +37,7 @@ struct Axis {
 // As stiff as the cycle tells its monitors that the loops in use are.
 double Loop_Hz(const MachineConfig& config, bool in_cascade) {
   double least_Hz = std::numeric_limits<double>::infinity();
-  const bool two_inertias = config.machine.controller == ControllerName::kFull &&
-                            config.control.friction == FrictionKind::kLinear && !in_cascade;
-  if (two_inertias)
+  if (KnowsTwoInertias(config.machine.controller, config.control.friction) && !in_cascade)
     for (const auto& [name, axis] : config.axes)
       if (axis.loop) least_Hz = std::min(least_Hz, axis.loop->regulator_Hz);
   return StiffnessInUse_Hz(config.control, config.machine.controller, in_cascade, least_Hz);

@@ -34,7 +34,7 @@ std::unique_ptr<ControlLaw> MakeLaw(ControllerName name, const ControllerConfig&
       break;
   }
   if (name == ControllerName::kFull && cascade) return std::make_unique<CascadeLaw>(axes, period_s);
-  if (name == ControllerName::kFull && config.friction == FrictionKind::kLinear)
+  if (KnowsTwoInertias(name, config.friction))
     return std::make_unique<TwoInertiaLaw>(axes, options, period_s);
   return std::make_unique<MpcLaw>(MpcConfigFor(config, name), options, axes, period_s);
 }

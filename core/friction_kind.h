@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/controller_name.h"
+
 namespace contour {
 
 /// What `full` knows friction by.
@@ -19,6 +21,11 @@ constexpr bool FromName(std::string_view name, FrictionKind& out) noexcept {
   if (name != "srukf" && name != "linear") return false;
   out = name == "srukf" ? FrictionKind::kSrukf : FrictionKind::kLinear;
   return true;
+}
+
+/// Whether `full`, and so, estimates and lets loops of its own act on two inertias; in csp it only estimates.
+constexpr bool KnowsTwoInertias(ControllerName controller, FrictionKind friction) noexcept {
+  return controller == ControllerName::kFull && friction == FrictionKind::kLinear;
 }
 
 }  // namespace contour

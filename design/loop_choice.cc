@@ -106,9 +106,7 @@ bool MayUseFilter(const MachineConfig& machine) {
 
 std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine) {
   std::vector<std::string> assignments, errors;
-  if (machine.machine.controller != ControllerName::kFull ||
-      machine.control.friction != FrictionKind::kLinear)
-    return assignments;
+  if (!KnowsTwoInertias(machine.machine.controller, machine.control.friction)) return assignments;
   const double period_s = 1e-6 * machine.machine.cycle_us;
   for (const auto& [name, config] : machine.axes) {
     if (config.loop || ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;

@@ -19,8 +19,7 @@ std::string Text(double following_mm) {
 }
 
 bool RunsLoop(const MachineConfig& machine, const AxisConfig& axis) {
-  return machine.machine.controller == ControllerName::kFull &&
-         machine.control.friction == FrictionKind::kLinear && axis.loop &&
+  return KnowsTwoInertias(machine.machine.controller, machine.control.friction) && axis.loop &&
          ModeFor(machine.machine.controller, axis.drive) == DriveMode::kCst;
 }
 

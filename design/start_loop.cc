@@ -43,9 +43,7 @@ std::string WhyNotToStartWith(const LoopAxis& axis, const LoopTuning& tuning, do
 }
 
 std::string WhyLoopsMayNotStart(const MachineConfig& machine) {
-  if (machine.machine.controller != ControllerName::kFull ||
-      machine.control.friction != FrictionKind::kLinear)
-    return {};
+  if (!KnowsTwoInertias(machine.machine.controller, machine.control.friction)) return {};
   const double period_s = 1e-6 * machine.machine.cycle_us;
   for (const auto& [name, axis] : machine.axes) {
     if (ModeFor(machine.machine.controller, axis.drive) != DriveMode::kCst || !axis.loop) continue;

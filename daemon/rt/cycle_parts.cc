@@ -123,7 +123,7 @@ bool InCascade(const CycleConfig& config) noexcept {
 }
 
 bool KnowsTwoInertias(const CycleConfig& config) noexcept {
-  return config.controller == ControllerName::kFull && config.control.friction == FrictionKind::kLinear;
+  return KnowsTwoInertias(config.controller, config.control.friction);
 }
 
 double DesignedLoop_Hz(const CycleConfig& config) noexcept {

@@ -225,8 +225,7 @@ CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const s
 void Advise(const MachineConfig& machine) {
   const ControllerName controller = machine.machine.controller;
   const bool certain =
-      controller == ControllerName::kMpcObserver ||
-      (controller == ControllerName::kFull && machine.control.friction == FrictionKind::kLinear);
+      controller == ControllerName::kMpcObserver || KnowsTwoInertias(controller, machine.control.friction);
   if (!certain)
     std::cout << "note: the controller " << Name(controller)
               << " may swing where the model is far off; full with control.friction: linear and the loop of "
