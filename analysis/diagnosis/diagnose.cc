@@ -12,6 +12,7 @@
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/verdict.h"
+#include "analysis/diagnosis/quantification/follow_play.h"
 #include "analysis/diagnosis/quantification/quantify.h"
 #include "analysis/diagnosis/quantification/written_model.h"
 #include "analysis/diagnosis/rounds.h"
@@ -87,6 +88,7 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   // 2. Screening and 3. decision, in turn: what would explain more than chance, and whether it holds.
   RoundsResult rounds = AcceptInRounds(problem, nominal, options, out);
   // 4. Quantification: how large it is, by one fit of all of it.
+  FollowPlay(problem, rounds.accepted);
   const Fit fit = Quantify(problem, nominal.fit, rounds.accepted, options, out);
   // 5. Adequacy: whether something is left that none of it explains.
   const std::vector<RemainingStructure> left = FindStructure(problem, fit, options.false_alarm_rate);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
@@ -192,6 +193,12 @@ double NoiseFilter::LogVariances(const std::vector<std::uint8_t>& counted) const
   for (std::size_t k = 1; k < counted.size(); ++k)
     if (counted[k] != 0) sum -= 2.0 * std::log(static_cast<double>(gain_[k * columns - 1]) * taps_[0]);
   return sum;
+}
+
+double NoiseFilter::ObserverBandwidth_Hz(double period_s) const {
+  // The ratio is of what a row's torque moves the axis by, over the reading's noise: the index of
+  // SteadyObserverGain, squared.
+  return std::pow(10.0, 0.25 * ratio_) / (2.0 * std::numbers::pi * period_s);
 }
 
 void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* const> out,

@@ -48,6 +48,8 @@ class NoiseFilter {
   bool learnt() const { return linear_ != nullptr; }
   const LinearModel& linear() const { return *linear_; }
   double torque_noise() const { return torque_noise_; }
+  /// Of an observer that believes reading and model as far as the two noises let it.
+  double ObserverBandwidth_Hz(double period_s) const;
 
  private:
   std::shared_ptr<const LinearModel> linear_;

@@ -34,14 +34,24 @@ Problem::Problem(const AxisLog& axis_log, const StatedAxis& stated_axis, int mos
   setup.full = has_scale();
   setup.valid = ValidRows(log, *signals, stated, quality);
   Begin();
-  setup.gain_two = SteadyObserverGain(nominal, log.period_s, kNoise.observer_bandwidth_Hz);
-  AxisModel rigid = nominal;
-  rigid.two_inertia = false;
-  setup.gain = SteadyObserverGain(rigid, log.period_s, kNoise.observer_bandwidth_Hz);
-  if (!nominal.two_inertia) setup.gain_two = {setup.gain[0], setup.gain[1], setup.gain[0], setup.gain[1]};
+  Observe(kNoise.observer_bandwidth_Hz);
   ChooseSubsteps();
   terms = MakeBaseTerms(stated, nominal);
   CountRows();
+}
+
+void Problem::Observe(double bandwidth_Hz) {
+  setup.gain_two = SteadyObserverGain(nominal, log.period_s, bandwidth_Hz);
+  AxisModel rigid = nominal;
+  rigid.two_inertia = false;
+  setup.gain = SteadyObserverGain(rigid, log.period_s, bandwidth_Hz);
+  if (!nominal.two_inertia) setup.gain_two = {setup.gain[0], setup.gain[1], setup.gain[0], setup.gain[1]};
+}
+
+void Problem::FollowReading(const Point& point) {
+  LearnNoise(point);
+  Observe(std::max(kNoise.observer_bandwidth_Hz, noise.ObserverBandwidth_Hz(log.period_s)));
+  LearnNoise(point);
 }
 
 void Problem::Begin() {

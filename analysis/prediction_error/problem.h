@@ -93,6 +93,10 @@ class Problem {
   /// What the noise learnt adds to |r|^2 in -2 log likelihood, up to a constant: points whose noise was
   /// learnt at each of them compare by the sum of both.
   [[nodiscard]] double LogNoise() const;
+  /// Corrects the model as quickly as the noise lets it, which it learns again. A slow observer leaves the
+  /// model's motor off the axis's by what the noise moves it; with a play of that size the model is in
+  /// contact at other times than the axis, and a narrower play fits it best.
+  void FollowReading(const Point& point);
   /// Traces the point and renews what regressors are made of.
   void LearnSignals(const Point& point);
   void LearnOutliers(const Point& point);
@@ -129,6 +133,7 @@ class Problem {
                 std::vector<double>& raw, Extent extent = Extent::kWhole) const;
   /// The weights of the excerpt from those of the log.
   void WeighExcerpt();
+  void Observe(double bandwidth_Hz);
   /// Where the runs begin, at first and after every gap.
   void Begin();
   void ChooseSubsteps();

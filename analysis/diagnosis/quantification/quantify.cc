@@ -9,6 +9,7 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
+#include "analysis/diagnosis/quantification/follow_play.h"
 #include "analysis/diagnosis/quantification/widen.h"
 #include "analysis/diagnosis/tuning/fit_effort.h"
 #include "analysis/prediction_error/bootstrap.h"
@@ -28,7 +29,8 @@ void Bootstrap(const Problem& problem, const Accepted& accepted, Fit fit, const 
   std::size_t index = 0;
   for (Cause& cause : out.causes) {
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
-    DescribeEffect(problem, fit, accepted.places[index++], draws, cause);
+    DescribeEffect(problem, fit, accepted.places[index], draws, cause);
+    WidenByObserver(problem, accepted, accepted.places[index++], cause);
     WidenIntervals(problem, fit.point, cause);
   }
   out.bootstrap_runs = options.bootstrap_runs;
@@ -49,7 +51,8 @@ void Describe(const Problem& problem, const Accepted& accepted, const Fit& fit, 
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
     Fit scattered = fit;
     scattered.covariance *= accepted.scatter[index];
-    DescribeEffect(problem, scattered, accepted.places[index++], cause);
+    DescribeEffect(problem, scattered, accepted.places[index], cause);
+    WidenByObserver(problem, accepted, accepted.places[index++], cause);
     WidenIntervals(problem, fit.point, cause);
   }
 }

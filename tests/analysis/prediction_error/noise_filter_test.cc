@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/analysis/support/learnt_problem.h"
 
@@ -46,6 +47,16 @@ TEST(NoiseFilter, TheTrueModelLeavesWhiteNoiseOfUnitVariance) {
 // The noise that nobody commanded: 0.5 % of the rated torque, white per row.
 TEST(NoiseFilter, FindsTheNoiseOfTheTorque) {
   EXPECT_NEAR(Made().problem.noise.torque_noise() / (0.005 * Made().axis.stated.rated), 1.0, 0.3);
+}
+
+// Of a double integrator: sqrt(s T^2 / (J r)) / (2 pi T), s and r the deviations of torque and reading.
+TEST(NoiseFilter, TheObserversBandwidthIsThatOfTheTwoNoises) {
+  const Problem& problem = Made().problem;
+  const double T = problem.log.period_s, unit = problem.stated.motor_inertia / (T * T);
+  const double reading = problem.stated.position_step / std::sqrt(12.0);
+  const double expected =
+      std::sqrt(0.005 * problem.stated.rated / unit / reading) / (2.0 * std::numbers::pi * T);
+  EXPECT_NEAR(problem.noise.ObserverBandwidth_Hz(T) / expected, 1.0, 0.3);
 }
 
 TEST(NoiseFilter, WhitensInProportion) {
