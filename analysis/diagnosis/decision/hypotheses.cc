@@ -288,6 +288,10 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
 
 void GiveAnotherTurn(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                      const ScoreThreshold& threshold, std::vector<std::string>& tried) {
+  // What lies outside the catalogue is no one's kind: with nothing tried it would be the first again, and
+  // refused again, for ever.
+  for (const Hypothesis& r : hypotheses)
+    if (r.refused && Outside(r.effect().kind)) tried.push_back(FamilyOf(r.effect()));
   const double least = Threshold(problem, threshold);
   for (std::size_t i = 1; i < hypotheses.size(); ++i)
     if (!hypotheses[i].refused && hypotheses[i].score > least)

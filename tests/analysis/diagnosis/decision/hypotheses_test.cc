@@ -116,6 +116,23 @@ TEST_F(HypothesesTest, WhatWasPassedOverBehindOneThatWasRefusedHasAnotherTurn) {
       << "refused, or below what is asked";
 }
 
+// It once came first, was refused, and came first again, for ever.
+TEST_F(HypothesesTest, WhatLiesOutsideTheCatalogueAndWasRefusedDoesNotComeAgain) {
+  std::vector<Scored> scored = ScoredOf({"outside:force of time", "constant_torque"});
+  for (Scored& s : scored) s.drop = s.effect->kind == "constant_torque" ? 100.0 : 1000.0;
+  std::stable_sort(scored.begin(), scored.end(),
+                   [](const Scored& a, const Scored& b) { return a.drop > b.drop; });
+  std::vector<Hypothesis> found = FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_);
+  const auto outside = [](const Hypothesis& h) { return Outside(h.effect().kind); };
+  ASSERT_TRUE(std::any_of(found.begin(), found.end(), outside));
+  std::stable_partition(found.begin(), found.end(), outside);
+  found[0].refused = true;
+  GiveAnotherTurn(axis_.problem, found, threshold_, tried_);
+  const std::vector<Hypothesis> next = FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_);
+  ASSERT_FALSE(next.empty()) << "the other one has its turn";
+  EXPECT_TRUE(std::none_of(next.begin(), next.end(), outside));
+}
+
 TEST_F(HypothesesTest, UnderNewNoiseTheyAreFittedAnewAndEachKindIsThereOnce) {
   const std::vector<Scored> scored = ScoredOf({"constant_torque", "cable_spring"});
   std::vector<Hypothesis> found = FitHypotheses(axis_.problem, axis_.base, scored, threshold_, tried_);
