@@ -15,8 +15,15 @@ constexpr double kSeenBeyond = 1.5;
 /// A share that is less than this, or than three standard deviations, is none: friction differs on ramps.
 constexpr double kLeastShare = 0.3;
 constexpr double kCertain = 3.0;
+/// Of a push's rms, beyond which hardly any is.
+constexpr double kPeaks = 3.0;
 /// Peaks of sensitivity between which a loop is well set.
 constexpr double kCalm = 1.7, kSharp = 2.0;
+
+/// How often the peaks of what flickering counts push by go into friction: above 1, friction holds nothing.
+double KickOverFriction(const DriveReport& r) {
+  return r.friction_N > 0.0 ? kPeaks * r.kick_N / r.friction_N : 0.0;
+}
 
 }  // namespace
 
@@ -61,6 +68,11 @@ std::string Describe(const DriveReport& r) {
   if (r.torque_mode_peak_m)
     text += FormatText("; with torques from here (cst, axes.%s.loop): %.2f um", r.axis.c_str(),
                        1e6 * *r.torque_mode_peak_m);
+  if (r.kick_N > 0.0)
+    text += FormatText(
+        "\n  counts of its encoder (%.3g nm) that flicker make it push by %.3g N rms, %.2f of Coulomb "
+        "friction",
+        1e9 * r.count_m, r.kick_N, r.friction_N > 0.0 ? r.kick_N / r.friction_N : 0.0);
   text += FormatText("\n  of the torque of acceleration %.2f +- %.2f is missing\n", r.acceleration.missing,
                      r.acceleration.std);
   return text;
@@ -80,6 +92,13 @@ std::string Advice(const DriveReport& r) {
         "advice: axes.%s.drive.csp_acceleration_share: %g; the drive does not feed all of the acceleration "
         "forward itself\n",
         r.axis.c_str(), share);
+  if (const double over = KickOverFriction(r); over > 1.0)
+    text += FormatText(
+        "advice: %.3g times the counts per turn, or a velocity gain (or a filter of velocity, in the drive) "
+        "that "
+        "leaves %.2f of what it pushes by: now peaks of it are %.1f times friction, which gives way under an "
+        "axis at rest, and is learnt from noise\n",
+        std::exp2(std::ceil(std::log2(over))), 1.0 / over, over);
   if (r.figures.peak > kSharp)
     text += FormatText(
         "advice: lower the drive's gains to %.2f times theirs: a peak of sensitivity of %.2f leaves no room "

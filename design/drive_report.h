@@ -16,6 +16,9 @@ struct DriveReport {
   AccelerationShare acceleration;
   double given_share = 0.0;  ///< csp_acceleration_share while it was measured
   double step_N = 0.0;       ///< a tenth of the rated force
+  double count_m = 0.0;      ///< of the drive's encoder, as travel of the table
+  double kick_N = 0.0;       ///< rms of what counts that flicker make its loop push by
+  double friction_N = 0.0;   ///< Coulomb level, as the model states it
   /// The table under the same force with torques from here (cst), where the axis has a loop for it.
   std::optional<double> torque_mode_peak_m;
 };

@@ -20,6 +20,7 @@ void DriveRecorder::Add(const CycleRecord& record) {
   s.extra_N = a.reference.extra_torque_Nm / radius_m_rad_;
   s.velocity_m_s = a.reference.velocity_m_s;
   s.acceleration_m_s2 = a.reference.acceleration_m_s2;
+  s.reported_N = a.feedback.torque_Nm / radius_m_rad_;
   s.good = held && a.feedback.fresh;
 }
 

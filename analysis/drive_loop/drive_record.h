@@ -17,6 +17,7 @@ struct DriveSample {
   double extra_N = 0.0;   ///< what the experiment put on of it
   double velocity_m_s = 0.0;
   double acceleration_m_s2 = 0.0;  ///< of the reference
+  double reported_N = 0.0;         ///< by the drive (0x6077), of the same instant as the position
   bool good = false;               ///< the drive held the axis, and its reading is of this cycle
 };
 

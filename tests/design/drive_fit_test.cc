@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/drive_loop/report_noise.h"
 #include "design/drive_motions.h"
 #include "design/drive_report.h"
 #include "tools/simulate/virtual_machine.h"
@@ -149,6 +150,38 @@ TEST(DriveReport, AdvisesWhatTheFiguresSay) {
   r.fit.error_rel = 0.03;
   r.fit.highest_Hz = 60.0;
   EXPECT_NE(WhyUnusable(r.fit), "");
+}
+
+TEST(DriveReport, SaysWhatACountMakesTheDrivePushBy) {
+  DriveReport r;
+  r.axis = "x";
+  r.fit = {{89.0 * 1300.0, 390.0, 100.0, 3e-4, 1.2e-3}, Axis(), 0.03, 400.0, 300};
+  r.figures = FiguresOf(Axis(), r.fit.loop, 80.0);
+  EXPECT_EQ(Describe(r).find("flicker"), std::string::npos) << "it was not measured";
+  r.count_m = 76.3e-9;
+  r.kick_N = 302.0;
+  r.friction_N = 300.0;
+  EXPECT_NE(Describe(r).find("(76.3 nm) that flicker make it push by 302 N rms, 1.01 of"), std::string::npos)
+      << Describe(r);
+  EXPECT_NE(Advice(r).find("advice: 4 times the counts per turn"), std::string::npos) << Advice(r);
+  EXPECT_NE(Advice(r).find("leaves 0.33 of what"), std::string::npos) << Advice(r);
+  EXPECT_NE(Advice(r).find("3.0 times friction"), std::string::npos) << Advice(r);
+  r.kick_N = 39.0;
+  EXPECT_EQ(Advice(r).find("counts per turn"), std::string::npos) << Advice(r);
+}
+
+// With a quarter of the counts the drive answers four times as much.
+TEST(DriveFit, SeesWhatACountMakesTheDrivePushBy) {
+  const auto kick_N = [](const char* counts) {
+    std::vector<std::string> set;
+    for (const std::string axis : {"x", "y"}) {
+      set.push_back("axes." + axis + ".drive.encoder_counts_per_rev=" + counts);
+      set.push_back("emulator.axes." + axis + ".cascade.rest_window_counts=0");
+    }
+    return ReportNoise_N(Measured(set));
+  };
+  const double fine_N = kick_N("262144");
+  EXPECT_NEAR(kick_N("65536") / fine_N, 4.0, 0.8);
 }
 
 TEST(DriveFit, SeesADriveThatDoesNotFeedAccelerationForward) {

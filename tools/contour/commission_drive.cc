@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/drive_loop/drive_response.h"
+#include "analysis/drive_loop/report_noise.h"
 #include "config/loop_axis.h"
 #include "core/exit_status.h"
 #include "core/two_inertia_axis.h"
@@ -49,6 +50,9 @@ nlohmann::json ToJson(const DriveReport& r, const DriveResponse& response, doubl
           {"step_N", r.step_N},
           {"step_peak_um", 1e6 * r.figures.step_peak_m},
           {"gain_room", r.figures.gain_room},
+          {"count_m", r.count_m},
+          {"count_kick_N", r.kick_N},
+          {"friction_N", r.friction_N},
           {"missing_acceleration_share", r.acceleration.missing},
           {"missing_acceleration_std", r.acceleration.std},
           {"csp_acceleration_share", AdvisedShare(r)},
@@ -78,6 +82,10 @@ int ReportOnDrive(const MachineConfig& machine, const std::string& name,
     return kExitFailed;
   }
   report.step_N = kStepOfRated * axis.drive.rated_torque_Nm / ToSi(axis.model.mechanics).radius_m_rad;
+  report.count_m = 1e-3 * axis.model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
+  report.kick_N = ReportNoise_N(samples);
+  const Friction friction = ToSi(axis.model.friction, ToSi(axis.model.mechanics).radius_m_rad);
+  report.friction_N = 0.5 * (friction.Fc_plus_N + friction.Fc_minus_N);
   report.figures = FiguresOf(report.fit.axis, report.fit.loop, report.step_N);
   report.acceleration = MissingAcceleration(samples, report.fit.axis, report.fit.loop, period_s);
   report.given_share = axis.drive.csp_acceleration_share;

@@ -15,6 +15,7 @@ CycleRecord Cycle(std::uint64_t number, DriveState state, bool fresh) {
   a.position_m = 1e-3 * static_cast<double>(number);
   a.target_position_rad = 2.0;
   a.torque_Nm = 0.5;
+  a.feedback.torque_Nm = 0.4;
   a.reference.extra_torque_Nm = 0.1;
   a.reference.velocity_m_s = 0.02;
   a.reference.acceleration_m_s2 = 3.0;
@@ -30,6 +31,7 @@ TEST(DriveRecorder, KeepsForcesAndPositionsAtTheTable) {
   EXPECT_DOUBLE_EQ(s.target_m, 2e-3);
   EXPECT_DOUBLE_EQ(s.offset_N, 500.0);
   EXPECT_DOUBLE_EQ(s.extra_N, 100.0);
+  EXPECT_DOUBLE_EQ(s.reported_N, 400.0);
   EXPECT_DOUBLE_EQ(s.velocity_m_s, 0.02);
   EXPECT_DOUBLE_EQ(s.acceleration_m_s2, 3.0);
   EXPECT_TRUE(s.good);
