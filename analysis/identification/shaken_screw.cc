@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "analysis/identification/basins.h"
 #include "analysis/identification/log_errors.h"
 
 namespace contour::identify {
@@ -39,7 +40,6 @@ constexpr double kHalvesAgree = 2.6;
 constexpr double kSideShares[] = {0.05, 0.12, 0.25};
 constexpr double kNextSide = 1.08;
 constexpr std::size_t kSidesRefined = 3;
-constexpr double kSidesApart = 0.15;
 constexpr double kLeastSideGain_log = 1e-2;
 /// It stays when its share is known so well, in standard deviations, or when it foresees that much better.
 constexpr double kSureOfSide = 3.0;
@@ -234,18 +234,19 @@ void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& s
     }
   }
   const std::vector<double> errors = LogErrors(tried, segments, threads);
-  std::vector<std::pair<double, TableAxis>> starts;
-  for (std::size_t i = 0; i < tried.size(); ++i) starts.emplace_back(errors[i], tried[i]);
-  std::sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  // The best of each neighbourhood.
-  std::vector<TableAxis> chosen;
-  for (const auto& [error, start] : starts) {
-    const bool near = std::any_of(chosen.begin(), chosen.end(), [&start = start](const TableAxis& c) {
-      return std::fabs(std::log(c.side.frequency_Hz / start.side.frequency_Hz)) < kSidesApart;
-    });
-    if (!near) chosen.push_back(start);
-    if (chosen.size() == kSidesRefined) break;
+  // The best share of each frequency, in their order.
+  std::vector<TableAxis> places;
+  std::vector<double> of_places;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    const bool same = !places.empty() && places.back().side.frequency_Hz == tried[i].side.frequency_Hz;
+    if (same && errors[i] >= of_places.back()) continue;
+    if (!same) places.emplace_back(), of_places.emplace_back();
+    places.back() = tried[i];
+    of_places.back() = errors[i];
   }
+  std::vector<TableAxis> chosen;
+  for (const std::size_t i : Basins(of_places))
+    if (chosen.size() < kSidesRefined) chosen.push_back(places[i]);
   const double alone = best.first;
   for (const TableAxis& start : chosen) {
     const auto found = FollowBasin(start, segments, threads);
