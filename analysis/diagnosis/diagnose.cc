@@ -84,11 +84,11 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   Problem problem(log, stated, options.threads);
   // 1. The stated model, its numbers fitted to the log.
   Say(options, "base model", 0.0);
-  const Nominal nominal = FitNominal(problem);
+  Nominal nominal = FitNominal(problem);
   // 2. Screening and 3. decision, in turn: what would explain more than chance, and whether it holds.
   RoundsResult rounds = AcceptInRounds(problem, nominal, options, out);
   // 4. Quantification: how large it is, by one fit of all of it.
-  FollowPlay(problem, rounds.accepted);
+  FollowPlay(problem, rounds.accepted, nominal.fit);
   const Fit fit = Quantify(problem, nominal.fit, rounds.accepted, options, out);
   // 5. Adequacy: whether something is left that none of it explains.
   const std::vector<RemainingStructure> left = FindStructure(problem, fit, options.false_alarm_rate);

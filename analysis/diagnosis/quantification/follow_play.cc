@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
@@ -10,7 +11,7 @@
 
 namespace contour::diagnosis {
 
-void FollowPlay(Problem& problem, Accepted& accepted) {
+void FollowPlay(Problem& problem, Accepted& accepted, Fit& nominal) {
   if (accepted.places.empty() || !(problem.Build(accepted.fit.point).gap > 0.0)) return;
   // Where friction is not the model's, what it does passes for noise of the torque, and the reading would be
   // all that is believed.
@@ -32,7 +33,10 @@ void FollowPlay(Problem& problem, Accepted& accepted) {
     fit = std::move(other);
     problem.LearnNoise(accepted.fit.point = fit.point);
   }
-  accepted.fit = FitPoint(problem, std::move(fit.point), kEfforts.quick);
+  std::vector<Fit> fits =
+      FitPoints(problem, {{std::move(fit.point), kEfforts.quick}, {nominal.point, kEfforts.quick}});
+  accepted.fit = std::move(fits[0]);
+  nominal = std::move(fits[1]);
 }
 
 void WidenByObserver(const Problem& problem, const Accepted& accepted, std::size_t place, Cause& cause) {

@@ -30,7 +30,9 @@ TEST(FollowPlay, WithoutAPlayNothingChanges) {
   Accepted accepted = Of(axis.With(axis.Of("constant_torque")));
   const ObserverGain before = axis.made.problem.setup.gain;
   const Fit fit = accepted.fit;
-  FollowPlay(axis.made.problem, accepted);
+  Fit nominal = axis.base;
+  FollowPlay(axis.made.problem, accepted, nominal);
+  EXPECT_EQ(nominal.cost, axis.base.cost);
   EXPECT_TRUE(accepted.by_slow_observer.effects.empty());
   EXPECT_EQ(axis.made.problem.setup.gain, before);
   EXPECT_EQ(accepted.fit.point.amplitudes, fit.point.amplitudes);
@@ -43,12 +45,15 @@ TEST(FollowPlay, AQuickerObserverFitsThePlayAnew) {
   ASSERT_GT(problem.Build(accepted.fit.point).gap, 0.0);
   const Point slow = accepted.fit.point;
   const ObserverGain before = problem.setup.gain_two;
-  FollowPlay(problem, accepted);
+  Fit nominal = axis.base;
+  FollowPlay(problem, accepted, nominal);
   EXPECT_EQ(accepted.by_slow_observer.amplitudes, slow.amplitudes);
   EXPECT_GT(problem.setup.gain_two[0], before[0]);
   // The fit is of that observer and its noise, and none that ends above where it began.
   EXPECT_NEAR(accepted.fit.cost, CostAt(problem, accepted.fit.point), 1e-6 * accepted.fit.cost);
   EXPECT_LE(accepted.fit.cost, CostAt(problem, slow));
+  EXPECT_NEAR(nominal.cost, CostAt(problem, nominal.point), 1e-6 * nominal.cost)
+      << "and so is the base alone";
   EXPECT_GT(problem.Build(accepted.fit.point).gap, 0.0);
 }
 
