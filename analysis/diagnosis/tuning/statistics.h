@@ -13,6 +13,8 @@ inline constexpr double kNormal90 = 1.2816;
 inline constexpr double kNormalMad = 1.4826;
 /// Variance of a rounding error, over the square of the step.
 inline constexpr double kUniformVariance = 1.0 / 12.0;
+/// From a number to the nearest whole one, on the average.
+inline constexpr double kMeanDistanceToWhole = 0.25;
 /// Of the second difference of white noise, over the noise's own: 1 + 2^2 + 1.
 inline constexpr double kVarianceOfSecondDifference = 6.0;
 

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iterator>
+#include <utility>
 
+#include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/statistics.h"
 #include "tests/analysis/support/fitted_axis.h"
 
@@ -43,6 +46,30 @@ TEST(Jitter, RoundingIsNone) {
     EXPECT_TRUE(jitter.tested) << step_rad;
     EXPECT_LT(jitter.drop, 9.0) << step_rad;
   }
+}
+
+// At a whole number of counts per row the rounding error stays as it is, half-way between two it is largest.
+TEST(Jitter, RoundingThatIsAlikeAtOneSpeedIsNone) {
+  test::FittedAxis axis(Long({}));
+  const Problem& problem = axis.problem;
+  double gain = 0.0, last = 0.0, before = 0.0;
+  for (const double h : PulseResponse(problem, true)) {
+    gain += std::pow(h - 2.0 * last + before, 2) / kVarianceOfSecondDifference;
+    before = std::exchange(last, h);
+  }
+  const double counts_per_row[] = {3.05, 4.3, 7.4, 9.5}, step = problem.stated.position_step;
+  Fit fit = axis.base;
+  double counts = 0.0;
+  for (std::size_t k = 0; k < problem.rows(); ++k) {
+    const double speed = counts_per_row[k / 250 % std::size(counts_per_row)];
+    counts += speed;
+    problem.signals->velocity[k] = speed * step / problem.log.period_s;
+    problem.signals->acceleration[k] = 0.0;
+    fit.residual[k] = (std::round(counts) - counts) * step * std::sqrt(gain) * problem.root_weight[k];
+  }
+  const Jitter jitter = TestJitter(problem, fit);
+  ASSERT_TRUE(jitter.tested);
+  EXPECT_LT(jitter.drop, 9.0);
 }
 
 TEST(Jitter, BelowTheRoundingOfTheEncoderIsFound) {
