@@ -31,6 +31,12 @@ void AddSameInSliding(const Problem& problem, const Fit& fit, Cause& cause) {
       others.emplace_back(*c->name);
 }
 
+/// Refused for how its drop scatters, and no more: it does the same to an axis that slides as what was taken
+/// in its place, and explains more.
+bool RefusedButTheSame(const Hypothesis& best, const Hypothesis& r) {
+  return r.refused && r.score > best.score && SameInSliding(best.effect().kind, r.effect().kind);
+}
+
 /// What the hypotheses scored, and which of them cannot be told from the first.
 void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                     const ScoreThreshold& threshold, const Accepted& accepted, Cause& cause, Diagnosis& out) {
@@ -45,7 +51,7 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
         c.accepted = &r == &best;
       }
     // What would not have been accepted alone explains too little to be the cause.
-    if (&r != &best && !r.refused && !r.given_up && !Outside(kind) &&
+    if (&r != &best && (!r.refused || RefusedButTheSame(best, r)) && !r.given_up && !Outside(kind) &&
         r.score > Asked(problem, r, threshold) &&
         r.score > best.score - std::max(AlikeScore(), alike * best.score) &&
         !ExplainsSomethingElse(problem, best.fit, r) && !ExplainsSomethingElse(problem, r.fit, best))

@@ -83,6 +83,22 @@ TEST_F(AcceptedTest, WhatWasRefusedOrExplainsTooLittleIsNoAlternative) {
   EXPECT_TRUE(out_.causes[0].indistinguishable_from.empty());
 }
 
+TEST_F(AcceptedTest, WhatSlidesAlikeAndExplainsMoreIsAnAlternativeThoughRefused) {
+  const Hypothesis first = Of("constant_torque");
+  Hypothesis refused = first;
+  auto twin = std::make_shared<Effect>(*first.fit.point.effects.back());
+  twin->kind = "asymmetric_coulomb";
+  refused.fit.point.effects.back() = twin;
+  refused.refused = true;
+  refused.score = first.score + 1.0;
+  AcceptFirst(axis_.problem, {first, refused}, threshold_, accepted_, out_);
+  EXPECT_EQ(out_.causes[0].indistinguishable_from, (std::vector<std::string>{"asymmetric_coulomb"}));
+  refused.score = first.score - 1.0;
+  out_.causes.clear();
+  AcceptFirst(axis_.problem, {first, refused}, threshold_, accepted_, out_);
+  EXPECT_TRUE(out_.causes[0].indistinguishable_from.empty());
+}
+
 TEST_F(AcceptedTest, WhatSlidesAlikeIsToldApartByABristleThatShowsAlone) {
   const Hypothesis first = Of("constant_torque");
   const StatedFriction& f = axis_.problem.nominal.friction;
