@@ -288,8 +288,7 @@ bool MayHold(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
 
 void GiveAnotherTurn(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                      const ScoreThreshold& threshold, std::vector<std::string>& tried) {
-  // What lies outside the catalogue is no one's kind: with nothing tried it would be the first again, and
-  // refused again, for ever.
+  // With nothing tried, what lies outside the catalogue would come first again, and be refused, for ever.
   for (const Hypothesis& r : hypotheses)
     if (r.refused && Outside(r.effect().kind)) tried.push_back(FamilyOf(r.effect()));
   const double least = Threshold(problem, threshold);
