@@ -68,6 +68,11 @@ std::string EightAxes(const std::string& file) {
   return to;
 }
 
+/// The filter of 7 states, whatever machine files without a word about it have.
+std::vector<std::string> Filter(const std::string& mode) {
+  return {"control.friction=srukf", "axes.x.drive.mode=" + mode, "axes.y.drive.mode=" + mode};
+}
+
 /// Friction along the reference, and in torque mode the loop of two inertias.
 std::vector<std::string> Linear(const std::string& mode) {
   std::vector<std::string> set{"control.friction=linear"};
@@ -162,8 +167,8 @@ int Probe(const std::string& what, int count, const std::string& file) {
     Estimate(EstimatorKind::kSrukf7, count);
   else if (what == "mpc20")
     SolveQps(count);
-  else if (what == "cycle")
-    StepCycles(file, {}, count, true);
+  else if (what == "cycle" || what == "cycle_csp")
+    StepCycles(file, Filter(what == "cycle" ? "cst" : "csp"), count, true);
   else if (what == "cycle_linear" || what == "cycle_linear_csp")
     StepCycles(file, Linear(what == "cycle_linear" ? "cst" : "csp"), count, true);
   else if (what == "hold_two")

@@ -14,8 +14,9 @@ PROBE, MACHINE_FILE = sys.argv.pop(1), sys.argv.pop(1)
 
 # What g++ 12.2 -O3 for x86-64-v2 needs where loops with CONTOUR_WIDE_VECTORS find AVX2, with a quarter on top. Raise one only
 # with a reason: in the drives' own loop 3 us were asked, 23 400; cogging learnt over the screw's turn takes 300 more.
-BOUNDS = {"srukf4": 3500, "srukf7": 7050, "mpc20": 16800, "cycle": 43900, "cycle_linear": 39000, "cycle_linear_csp": 23000}
-COUNTS = {"srukf4": (1000, 2000), "srukf7": (1000, 2000), "mpc20": (500, 1000), "cycle": (100, 300),
+# With the filter of 7 states it is 24 900 there (cycle_csp), of which 6 800 are drives, guard and records; it was not counted while they grew.
+BOUNDS = {"srukf4": 3500, "srukf7": 7050, "mpc20": 16800, "cycle": 43900, "cycle_csp": 25500, "cycle_linear": 39000, "cycle_linear_csp": 23000}
+COUNTS = {"srukf4": (1000, 2000), "srukf7": (1000, 2000), "mpc20": (500, 1000), "cycle": (100, 300), "cycle_csp": (100, 300),
           "cycle_linear": (100, 300), "cycle_linear_csp": (100, 300), "hold_two": (100, 300), "hold_eight": (100, 300)}
 # Of eight axes on four buses to two on one: four times the axes and some for what they share.
 MOST_OF_EIGHT_TO_TWO = 4.4
@@ -55,6 +56,9 @@ class Instructions(unittest.TestCase):
 
     def test_whole_cycle_of_two_axes(self):
         self.per_call("cycle")
+
+    def test_the_same_with_the_filter_where_the_drives_close_the_loop(self):
+        self.per_call("cycle_csp")
 
     def test_whole_cycle_that_knows_two_inertias(self):
         self.per_call("cycle_linear")
