@@ -20,20 +20,10 @@ Point WithoutLast(const Problem& problem, Point point) {
   return point;
 }
 
-Fit BaseWithoutLast(const Problem& problem, const Fit& with) {
-  Fit base;
-  base.point = WithoutLast(problem, with.point);
-  const auto left = static_cast<Eigen::Index>(ParameterCount(base.point));
-  base.jacobian = with.jacobian.leftCols(left);
-  base.raw_jacobian = with.raw_jacobian.leftCols(left);
-  base.normal = with.normal.topLeftCorner(left, left);
-  return base;
-}
-
 bool BaseLiesThere(const Problem& problem, const Hypothesis& r, const FitEffort& effort, Fit& current) {
   const double drop = current.cost - r.fit.cost;
   if (!(drop > 0.0)) return false;
-  Fit there = FitOn(problem, BaseWithoutLast(problem, r.fit), effort);
+  Fit there = FitPoint(problem, WithoutLast(problem, r.fit.point), effort);
   if (!(current.cost - there.cost > kHypotheses.half_share * drop)) return false;
   current = std::move(there);
   return true;

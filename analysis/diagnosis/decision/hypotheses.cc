@@ -367,9 +367,8 @@ bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   // A base is as well known as the scores need it.
   FitEffort base = FitEffort{};
   base.close_enough = std::max(base.close_enough, kScreening.negligible_share * best);
-  Fit there = BaseWithoutLast(problem, hypotheses[0].fit);
   std::vector<InitialGuess> guesses = {{current.point, base, nullptr, &current},
-                                       {there.point, base, nullptr, &there}};
+                                       {WithoutLast(problem, hypotheses[0].fit.point), base}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const Hypothesis& r = hypotheses[i];

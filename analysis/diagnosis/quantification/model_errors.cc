@@ -27,6 +27,12 @@ struct Errors {
   Sum one_used, one_unseen, free_used, free_unseen;
 };
 
+/// Where the points of a forecast are among those of all.
+struct PlacesOfOne {
+  std::size_t all = 0;
+  std::array<std::size_t, 2> half = {};
+};
+
 /// "12.3 um" or, of what turns, "12.3 mrad".
 std::string LengthText(const Problem& p, double q) {
   return p.log.linear ? RoundedText(1e6 * q) + " um" : RoundedText(1e3 * q) + " mrad";
@@ -43,34 +49,34 @@ std::string ErrorText(const Problem& p, const Diagnosis& d) {
 }  // namespace
 
 std::vector<ForecastError> ErrorsOf(const Problem& p, std::span<const Forecast> forecasts) {
-  // All models side by side, so that their runs share the lanes; [forecast][fitted to all, either half].
+  // All models side by side, so that their runs share the lanes.
   std::vector<Point> points;
-  std::vector<std::array<std::size_t, 3>> at;
+  std::vector<PlacesOfOne> at;
   for (const Forecast& f : forecasts) {
     const std::size_t first = points.size();
     points.push_back(f.all);
-    at.push_back({first, first, first});
+    at.push_back({first, {first, first}});
     if (!f.halves) continue;
+    at.back().half = {first + 1, first + 2};
     points.insert(points.end(), f.halves->begin(), f.halves->end());
-    at.back() = {first, first + 1, first + 2};
   }
   std::vector<Errors> sums(forecasts.size());
   const auto raw = p.Raw(points);
   for (std::size_t part = 0; part < kHalfParts; ++part) {
-    const std::size_t blind = part % 2 == 0 ? 2 : 1;
+    const std::size_t blind = 1 - part % 2;
     for (std::size_t k = PartBegin(p, part); k < PartBegin(p, part + 1); ++k) {
       if (p.counted[k] == 0) continue;
       for (std::size_t f = 0; f < forecasts.size(); ++f) {
-        sums[f].one_used.Add(raw[at[f][0]][k]);
-        sums[f].one_unseen.Add(raw[at[f][blind]][k]);
+        sums[f].one_used.Add(raw[at[f].all][k]);
+        sums[f].one_unseen.Add(raw[at[f].half[blind]][k]);
       }
     }
   }
   for (const Parts parts : {Parts::kEven, Parts::kOdd}) {
-    const std::size_t blind = parts == Parts::kEven ? 2 : 1;
+    const std::size_t blind = parts == Parts::kEven ? 1 : 0;
     std::vector<AxisModel> models;
-    for (const std::array<std::size_t, 3>& of : at)
-      for (const std::size_t i : {of[0], of[blind]}) models.push_back(p.Build(points[i]));
+    for (const PlacesOfOne& of : at)
+      for (const std::size_t i : {of.all, of.half[blind]}) models.push_back(p.Build(points[i]));
     const auto errors = FreeRuns(p, models, FreeRunWindows(p, parts));
     for (std::size_t f = 0; f < forecasts.size(); ++f) {
       for (const double e : errors[2 * f]) sums[f].free_used.Add(e);

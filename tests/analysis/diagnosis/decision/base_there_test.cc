@@ -28,17 +28,6 @@ TEST_F(BaseThereTest, ABaseThatLiesWhereTheHypothesisDoesExplainsIt) {
   EXPECT_TRUE(current.point.effects.empty());
 }
 
-TEST_F(BaseThereTest, TheBaseGoesOnWithTheSensitivitiesThatItHas) {
-  const Fit with = axis_.With(axis_.Of("constant_torque"));
-  const Fit base = BaseWithoutLast(axis_.problem, with);
-  const auto columns = static_cast<Eigen::Index>(axis_.problem.terms.size());
-  ASSERT_EQ(base.jacobian.cols(), columns);
-  EXPECT_EQ(base.raw_jacobian, with.raw_jacobian.leftCols(columns));
-  EXPECT_EQ(base.normal, with.normal.topLeftCorner(columns, columns));
-  const Fit on = FitOn(axis_.problem, base, FitEffort{});
-  EXPECT_NEAR(on.cost, FitPoint(axis_.problem, base.point).cost, 1.0);
-}
-
 TEST_F(BaseThereTest, NumbersThatAHypothesisFreesAreWhereTheBaseBegins) {
   // 8 stated deviations off in the hypothesis: without steps the base has them, and its prior.
   Hypothesis lag{.fit = axis_.With(axis_.Of("current_lag"))};
