@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/causes/effect_parts.h"
@@ -16,6 +17,12 @@ double ToldAt(const Problem& p) {
   double largest = 0.0;
   for (const double u : p.log.command) largest = std::max(largest, std::fabs(u));
   return largest;
+}
+
+/// No motor gives more than in proportion to its current, and the more so the more it has.
+bool GrowsWithCurrent(const Problem& p, const Effect& /*effect*/, const std::vector<double>& a) {
+  const double rated = ToldAt(p);
+  return p.nominal.saturation * rated * rated + a[0] < 0.0;
 }
 
 constexpr ModelError kErrors[] = {{"loss_at_rated_rel", 0.01}};
@@ -55,7 +62,7 @@ constexpr CauseDefinition torque_saturation = {
         },
     .wave = nullptr,
     .family = nullptr,
-    .implausible = nullptr,
+    .implausible = GrowsWithCurrent,
     .parameters =
         [](const FittedEffect& fitted) {
           return NamedValues{{"loss_at_rated_rel", fitted.amplitudes()[0]}};

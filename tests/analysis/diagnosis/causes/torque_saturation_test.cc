@@ -42,6 +42,14 @@ TEST(TorqueSaturation, IsAddedToWhatTheModelHas) {
   EXPECT_NEAR(m.saturation * 0.64 * 0.64, 0.15, 1e-12);
 }
 
+TEST(TorqueSaturation, ATorqueThatGrowsWithCurrentIsImplausible) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "");
+  const auto implausible = *CauseNamed(kKind).implausible;
+  EXPECT_TRUE(implausible(axis.problem, *e, {-0.018}));
+  EXPECT_FALSE(implausible(axis.problem, *e, {0.018}));
+}
+
 TEST(TorqueSaturation, NoModelIsExtendedByItAndPulsesDecide) {
   EXPECT_EQ(*CauseNamed(kKind).extension, nullptr);
   const test::KnownAxis axis;
