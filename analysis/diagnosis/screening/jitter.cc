@@ -34,9 +34,12 @@ struct Variances {
   std::vector<bool> goes_on;  ///< the slide of the block before
 };
 
-/// Square of the second difference of a rounding error at so many counts per row, over that of one that is
-/// new in every row: at a whole number of counts it is the same in all of them.
-double RoundingAt(double counts_per_row) {
+/// Square of the second difference of a rounding error, over that of one that is new in every row, where a
+/// row goes so far: at a whole number of counts the error is the same in all of them. 1 where the encoder's
+/// count is not stated.
+double RoundingAt(double distance, double count) {
+  if (!(count > 0.0)) return 1.0;
+  const double counts_per_row = distance / count;
   const double part = counts_per_row - std::floor(counts_per_row);
   return std::min(part, 1.0 - part) / kMeanDistanceToWhole;
 }
@@ -58,7 +61,7 @@ Variances BlockVariances(const Problem& problem, const Fit& fit) {
       const auto at = [&](std::size_t i) { return fit.residual[i] / problem.root_weight[i]; };
       const double d = at(k) - 2.0 * at(k - 1) + at(k - 2);
       sum += d * d / kVarianceOfSecondDifference;
-      rounding += RoundingAt(std::fabs(s.velocity[k]) * problem.log.period_s / problem.stated.position_step);
+      rounding += RoundingAt(std::fabs(s.velocity[k]) * problem.log.period_s, problem.stated.position_step);
       w2 += s.velocity[k] * s.velocity[k];
       a2 += s.acceleration[k] * s.acceleration[k];
     }
@@ -167,7 +170,8 @@ WeightedFit FitVariances(const Variances& blocks, double count) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
       // Jitter itself makes the rounding new in every row: of two rows' fundamentals exp(-(2 pi s)^2) is
       // left.
-      const double jitter = pass == 0 ? 0.0 : std::max(0.0, c(kSpeed) * rows[i](kSpeed)) / count;
+      const double jitter =
+          pass == 0 || !(count > 0.0) ? 0.0 : std::max(0.0, c(kSpeed) * rows[i](kSpeed)) / count;
       rows[i](kRounding) =
           blocks.rows[i](kRounding) * std::exp(-std::pow(2.0 * std::numbers::pi, 2) * jitter);
       const double expected =

@@ -28,6 +28,15 @@ TEST(Jitter, OfTheInstantsIsFoundWithItsSize) {
   EXPECT_LT(jitter.sigma_s, 0.2 * jitter.rms_s);
 }
 
+TEST(Jitter, IsFoundWhereTheEncodersCountsAreNotStated) {
+  test::FittedAxis axis(Long({{"sample_jitter", 14.0, 0.0, 0.0, 0.0}}));
+  axis.made.axis.stated.position_step = 0.0;
+  const Jitter jitter = TestJitter(axis.problem, axis.base);
+  ASSERT_TRUE(jitter.tested);
+  EXPECT_GT(jitter.drop, 50.0);
+  EXPECT_NEAR(jitter.rms_s, 14e-6, 2e-6);
+}
+
 TEST(Jitter, IsNotFoundWhereReadingsAreInTime) {
   const test::FittedAxis axis(Long({}));
   const Jitter jitter = TestJitter(axis.problem, axis.base);
