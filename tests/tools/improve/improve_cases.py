@@ -258,14 +258,20 @@ def mean(values):
     return sum(values) / len(values)
 
 
+def true_peaks_um(passes):
+    """Of the passes that count. On a busy host a pass may end before the emulator has written all of its rows: it has no true peak."""
+    return [peak for peak in passes["truth"]["peak_um"][1:] if peak is not None]
+
+
 def judge(case, found, state, truth):
     """A line of the table, and what is wrong."""
     wrong, cells = [], []
     for name in ("path", "check"):
-        before = mean(found["before"][name]["truth"]["peak_um"][1:])
-        after = mean((found["after"] if found["kept"] else found["before"])[name]["truth"]["peak_um"][1:])
+        peaks_before = true_peaks_um(found["before"][name])
+        before = mean(peaks_before)
+        after = mean(true_peaks_um((found["after"] if found["kept"] else found["before"])[name]))
         best = mean(truth[name])
-        spread = max(found["before"][name]["truth"]["peak_um"][1:]) - min(found["before"][name]["truth"]["peak_um"][1:])
+        spread = max(peaks_before) - min(peaks_before)
         cells.append((before, after, best))
         if after > before + max(spread, 0.01):
             wrong.append(f"{name} is higher than before")
