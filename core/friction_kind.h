@@ -23,7 +23,7 @@ constexpr bool FromName(std::string_view name, FrictionKind& out) noexcept {
   return true;
 }
 
-/// Whether `full`, and so, estimates and lets loops of its own act on two inertias; in csp it only estimates.
+/// Whether motor and table are two inertias to estimators and, in torque mode, to the loops.
 constexpr bool KnowsTwoInertias(ControllerName controller, FrictionKind friction) noexcept {
   return controller == ControllerName::kFull && friction == FrictionKind::kLinear;
 }

@@ -69,10 +69,10 @@ std::string Describe(const DriveReport& r) {
     text += FormatText("; with torques from here (cst, axes.%s.loop): %.2f um", r.axis.c_str(),
                        1e6 * *r.torque_mode_peak_m);
   if (r.kick_N > 0.0)
-    text += FormatText(
-        "\n  counts of its encoder (%.3g nm) that flicker make it push by %.3g N rms, %.2f of Coulomb "
-        "friction",
-        1e9 * r.count_m, r.kick_N, r.friction_N > 0.0 ? r.kick_N / r.friction_N : 0.0);
+    text += FormatText("\n  counts of its encoder (%.3g nm) that flicker make it push by %.3g N rms",
+                       1e9 * r.count_m, r.kick_N);
+  if (r.kick_N > 0.0 && r.friction_N > 0.0)
+    text += FormatText(", %.2f of Coulomb friction", r.kick_N / r.friction_N);
   text += FormatText("\n  of the torque of acceleration %.2f +- %.2f is missing\n", r.acceleration.missing,
                      r.acceleration.std);
   return text;
@@ -95,9 +95,8 @@ std::string Advice(const DriveReport& r) {
   if (const double over = KickOverFriction(r); over > 1.0)
     text += FormatText(
         "advice: %.3g times the counts per turn, or a velocity gain (or a filter of velocity, in the drive) "
-        "that "
-        "leaves %.2f of what it pushes by: now peaks of it are %.1f times friction, which gives way under an "
-        "axis at rest, and is learnt from noise\n",
+        "that leaves %.2f of what it pushes by: now peaks of it are %.1f times friction, which gives way "
+        "under an axis at rest, and is learnt from noise\n",
         std::exp2(std::ceil(std::log2(over))), 1.0 / over, over);
   if (r.figures.peak > kSharp)
     text += FormatText(

@@ -19,7 +19,7 @@ double ToldAt(const Problem& p) {
   return largest;
 }
 
-/// No motor gives more than in proportion to its current, and the more so the more it has.
+/// A torque that grows faster than the current, as no motor's does.
 bool GrowsWithCurrent(const Problem& p, const Effect& /*effect*/, const std::vector<double>& a) {
   const double rated = ToldAt(p);
   return p.nominal.saturation * rated * rated + a[0] < 0.0;

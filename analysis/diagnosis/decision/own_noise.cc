@@ -55,18 +55,18 @@ void LearnNoiseOfLikeliest(Problem& problem, std::vector<Hypothesis>& hypotheses
   const std::vector<std::size_t> contenders = Contenders(hypotheses);
   if (contenders.size() < 2 || contenders[0] != 0) return problem.LearnNoise(hypotheses[0].fit.point);
   const NoiseFilter before = problem.noise;
-  LearntNoise of_best;
+  LearntNoise at_first;
   std::size_t likeliest = 0;
   UnderOwnNoise best;
   for (const std::size_t i : contenders) {
-    UnderOwnNoise own = FitUnderOwnNoise(problem, hypotheses[i].fit, i == 0 ? &of_best : nullptr);
+    UnderOwnNoise own = FitUnderOwnNoise(problem, hypotheses[i].fit, i == 0 ? &at_first : nullptr);
     // Less is a matter of where the noise's own fit ends.
     if (i > 0 && !(own.unlikely < best.unlikely - kAcceptance.no_chance_score)) continue;
     best = std::move(own);
     likeliest = i;
   }
-  // Where the best is the likeliest nothing is to change.
-  if (likeliest == 0) return problem.Take(std::move(of_best));
+  // Where the best is the likeliest nothing is to change, and its noise is learnt.
+  if (likeliest == 0) return problem.Take(std::move(at_first));
   problem.noise = before;
   hypotheses[likeliest].fit = std::move(best.fit);
   problem.LearnNoise(hypotheses[likeliest].fit.point);

@@ -31,7 +31,7 @@ void FollowPlay(Problem& problem, Accepted& accepted, Fit& nominal) {
     if (!(now < unlikely - kAcceptance.no_chance_score)) break;
     unlikely = now;
     fit = std::move(other);
-    problem.LearnNoise(accepted.fit.point = fit.point);
+    problem.LearnNoise(fit.point);
   }
   std::vector<Fit> fits =
       FitPoints(problem, {{std::move(fit.point), kEfforts.quick}, {nominal.point, kEfforts.quick}});

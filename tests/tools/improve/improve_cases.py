@@ -265,11 +265,12 @@ def true_peaks_um(passes):
 
 def judge(case, found, state, truth):
     """A line of the table, and what is wrong."""
-    wrong, cells = [], []
+    wrong, cells, lost = [], [], 0
     for name in ("path", "check"):
         peaks_before = true_peaks_um(found["before"][name])
-        before = mean(peaks_before)
-        after = mean(true_peaks_um((found["after"] if found["kept"] else found["before"])[name]))
+        peaks_after = true_peaks_um((found["after"] if found["kept"] else found["before"])[name])
+        lost += 2 * PASSES - len(peaks_before) - len(peaks_after)
+        before, after = mean(peaks_before), mean(peaks_after)
         best = mean(truth[name])
         spread = max(peaks_before) - min(peaks_before)
         cells.append((before, after, best))
@@ -286,6 +287,8 @@ def judge(case, found, state, truth):
     kinds = [c["kind"] for c in diagnosed["causes"]] or [diagnosed["verdict"]]
     line = f"| {case.name} | {', '.join(kinds)} | " + " | ".join(" - ".join(f"{v:.2f}" for v in c) for c in cells)
     line += f" | {'kept' if found['kept'] else 'not kept'}, {len(found['tried'])} tried | {found['machine_time_s']:.0f} | {'; '.join(wrong)} |"
+    if lost:
+        line += f" {lost} of {4 * PASSES} passes without a true path"
     return line, wrong
 
 
