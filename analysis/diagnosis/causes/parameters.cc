@@ -56,6 +56,8 @@ void AddShape(const Problem& problem, const Fit& fit, std::size_t index, std::si
 void DescribeEffect(const Problem& problem, const Fit& fit, std::size_t index, const Eigen::MatrixXd& draws,
                     Cause& cause) {
   const auto parameters = *CauseNamed(fit.point.effects[index]->kind).parameters;
+  cause.parameters.clear();
+  cause.shapes.clear();
   std::size_t first = fit.point.base.size();
   for (std::size_t e = 0; e < index; ++e) first += fit.point.amplitudes[e].size();
   std::map<std::string, std::vector<double>> drawn;

@@ -11,6 +11,7 @@
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/quantification/follow_play.h"
 #include "analysis/diagnosis/quantification/widen.h"
+#include "analysis/diagnosis/quantification/withdraw.h"
 #include "analysis/diagnosis/tuning/fit_effort.h"
 #include "analysis/prediction_error/bootstrap.h"
 #include "analysis/prediction_error/refit.h"
@@ -77,10 +78,12 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
   Fit fit = std::move(accepted.fit);
   if (!fit.point.effects.empty()) {
     fit = Together(problem, std::move(fit));
-    if (options.bootstrap_runs > 0)
-      Bootstrap(problem, accepted, fit, options, out);
-    else
-      Describe(problem, accepted, fit, out);
+    do {
+      if (options.bootstrap_runs > 0)
+        Bootstrap(problem, accepted, fit, options, out);
+      else
+        Describe(problem, accepted, fit, out);
+    } while (WithdrawIdle(problem, fit, accepted, out));
   }
   out.data_quality = problem.quality;
   DescribeBase(problem, fit, out);
