@@ -21,6 +21,7 @@ struct Accepted {
   double in_presliding = 0.0;       ///< by an element in presliding
   double leakage = 0.0;             ///< what of their scores may look like other causes
   std::map<std::string, double> leakage_of_kind;
+  bool play_is_bound = false;   ///< a quicker observer does not see the play that a slow one makes smaller
   Point by_slow_observer = {};  ///< where a quicker one was taken for a play: the fit before; else empty
 };
 

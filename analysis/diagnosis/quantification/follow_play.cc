@@ -17,7 +17,8 @@ void FollowPlay(Problem& problem, Accepted& accepted, Fit& nominal) {
   // all that is believed.
   for (const SharedEffect& e : accepted.fit.point.effects)
     if (CauseNamed(e->kind).takes_up_mismatch) return;
-  accepted.by_slow_observer = accepted.fit.point;
+  const FilterSetup slow = problem.setup;
+  LearntNoise slow_noise = problem.Learnt();
   problem.FollowReading(accepted.fit.point);
   Fit fit = FitPoint(problem, accepted.fit.point, kEfforts.quick);
   double unlikely = fit.cost + problem.LogNoise();
@@ -33,6 +34,14 @@ void FollowPlay(Problem& problem, Accepted& accepted, Fit& nominal) {
     fit = std::move(other);
     problem.LearnNoise(fit.point);
   }
+  if (!(problem.Build(fit.point).gap > 0.0)) {
+    // Nothing of it shows behind the quicker observer, which is no size either: the slow one's stands.
+    problem.setup = slow;
+    problem.Take(std::move(slow_noise));
+    accepted.play_is_bound = true;
+    return;
+  }
+  accepted.by_slow_observer = accepted.fit.point;
   std::vector<Fit> fits =
       FitPoints(problem, {{std::move(fit.point), kEfforts.quick}, {nominal.point, kEfforts.quick}});
   accepted.fit = std::move(fits[0]);

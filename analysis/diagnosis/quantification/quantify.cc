@@ -84,6 +84,10 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
       else
         Describe(problem, accepted, fit, out);
     } while (WithdrawIdle(problem, fit, accepted, out));
+    if (accepted.play_is_bound && problem.Build(fit.point).gap > 0.0)
+      out.notes.emplace_back(
+          "The play is at least as wide as stated: it shows in what noise leaves of a slow observer, which "
+          "makes a play narrower than it is.");
   }
   out.data_quality = problem.quality;
   DescribeBase(problem, fit, out);

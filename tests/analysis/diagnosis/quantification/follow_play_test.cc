@@ -57,6 +57,26 @@ TEST(FollowPlay, AQuickerObserverFitsThePlayAnew) {
   EXPECT_GT(problem.Build(accepted.fit.point).gap, 0.0);
 }
 
+TEST(FollowPlay, WhatDoesNotShowBehindTheQuickerObserverStaysAsItWasAndIsABound) {
+  test::FittedAxis axis(SoftScrew({}));
+  Problem& problem = axis.made.problem;
+  Accepted accepted = Of(axis.With(axis.Of("backlash")));
+  // A play that is not there, as a slow observer might leave one.
+  accepted.fit.point.amplitudes[0][0] = 1e-3 * axis.Of("backlash")->start[0];
+  ASSERT_GT(problem.Build(accepted.fit.point).gap, 0.0);
+  const Point point = accepted.fit.point;
+  const ObserverGain before = problem.setup.gain_two;
+  const double log_noise = problem.LogNoise();
+  Fit nominal = axis.base;
+  FollowPlay(problem, accepted, nominal);
+  EXPECT_TRUE(accepted.play_is_bound);
+  EXPECT_EQ(accepted.fit.point, point);
+  EXPECT_TRUE(accepted.by_slow_observer.effects.empty());
+  EXPECT_EQ(problem.setup.gain_two, before);
+  EXPECT_EQ(problem.LogNoise(), log_noise);
+  EXPECT_EQ(nominal.cost, axis.base.cost);
+}
+
 TEST(FollowPlay, WhatTheObserverChangedIsNotKnownBetter) {
   test::FittedAxis axis({{"constant_torque", 0.3, 0.0, 0.0, 0.0}});
   Accepted accepted = Of(axis.With(axis.Of("constant_torque")));
