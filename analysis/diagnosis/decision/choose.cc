@@ -44,7 +44,7 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     Cause cause;
     std::vector<BlockGain> blocks;
     HeldOutGain(problem, current, r.fit, definition.judged_at_scale, cause, blocks);
-    if (cause.heldout_gain_high < 0.0) return false;
+      if (cause.heldout_gain_high < 0.0) return false;
     // A scale's noise is never white: there, only what others of its rows confirm, and with no more chance
     // than every kind has.
     gains_unseen = GainsBeyondChance(cause, threshold.rate);
@@ -99,11 +99,10 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThresh
   Choice choice;
   for (std::size_t i = 0; i < hypotheses.size() && !choice.found; ++i) {
     if (hypotheses[i].given_up) continue;
-    // Far behind the best, only a number of the base, and only if it is off with the best in the model, too:
-    // the best may be refused and still be what moves that number.
+    // Far behind the best, only what explains something with the best in the model, too: the best may be
+    // refused and still be what moves the others.
     if (i > 0 && hypotheses[i].score < kHypotheses.may_matter_share * hypotheses[0].score &&
-        !(InBase(problem, hypotheses[i].effect().kind) &&
-          ExplainsSomethingElse(problem, hypotheses[0].fit, hypotheses[i])))
+        !ExplainsSomethingElse(problem, hypotheses[0].fit, hypotheses[i]))
       continue;
     const double score = TestedScore(problem, current, hypotheses[i]);
     if (i == 0) choice.tested = score;

@@ -53,6 +53,35 @@ TEST_F(ChooseTest, ANumberThatTheRefusedBestMovesIsNotNamedForIt) {
   EXPECT_TRUE(hypotheses[0].refused);
 }
 
+TEST_F(ChooseTest, FarBehindARefusedBestHoldsWhatIsStillThereWithItInTheModel) {
+  const test::FittedAxis axis({{"cable_spring", 0.5, 0.0, 0.0, 0.0}});
+  const auto hypothesis = [&](const SharedEffect& effect) {
+    Hypothesis h{axis.With(effect)};
+    h.score = axis.base.cost - h.fit.cost - Penalty(h.effect());
+    return h;
+  };
+  const Hypothesis there = hypothesis(axis.Of("cable_spring"));
+  Hypothesis best = hypothesis(axis.Of("friction_drift"));
+  // Made up: a score that hides the other one, of a kind that cannot hold.
+  best.score = 100.0 * there.score;
+  threshold_.accepted = 1;
+  threshold_.leakage_of_kind = {{"friction_drift", 1e9}};
+  std::vector<Hypothesis> hypotheses = {best, there};
+  ASSERT_TRUE(ChooseFirst(axis.problem, axis.base, threshold_, hypotheses).found);
+  EXPECT_EQ(hypotheses[0].effect().kind, "cable_spring");
+  EXPECT_TRUE(hypotheses[1].refused);
+}
+
+TEST_F(ChooseTest, FarBehindARefusedBestNothingHoldsThatIsTheSame) {
+  Hypothesis best = Of("constant_torque");
+  const Hypothesis same = Of("asymmetric_coulomb");
+  best.score = 100.0 * same.score;
+  threshold_.accepted = 1;
+  threshold_.leakage_of_kind = {{"constant_torque", 1e9}};
+  std::vector<Hypothesis> hypotheses = {best, same};
+  EXPECT_FALSE(ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses).found);
+}
+
 TEST_F(ChooseTest, NothingHoldsBelowItsThreshold) {
   threshold_.flips = threshold_.calibrated = 1e9;
   std::vector<Hypothesis> hypotheses = {Of("constant_torque")};
