@@ -35,6 +35,15 @@ std::string Wrapped(const std::string& text, std::size_t indent) {
 
 std::string Percent(double share) { return RoundedText(100.0 * share) + " %"; }
 
+/// A residual that grows is so much more, not less than less.
+std::string Change(double gain) { return Percent(std::abs(gain)) + (gain < 0.0 ? " more" : " less"); }
+
+/// The word once where both ends go the same way.
+std::string ChangeBetween(double low, double high) {
+  const bool cross = low < 0.0 && high >= 0.0;
+  return (cross ? Change(low) : Percent(std::abs(low))) + " to " + Change(high);
+}
+
 std::string Listed(const std::vector<std::string>& items, const char* last) {
   std::string out;
   for (std::size_t i = 0; i < items.size(); ++i)
@@ -60,12 +69,11 @@ std::string CauseText(const Cause& cause, std::size_t number, ExtensionUnits uni
       "How sure: log evidence " + RoundedText(cause.log_evidence_gain) + " nats over the model without it.",
       3);
   if (cause.heldout_rms_before > 0.0)
-    out +=
-        Wrapped("Gain on data that the fit has not seen: residual " + RoundedText(cause.heldout_rms_before) +
-                    " to " + RoundedText(cause.heldout_rms_after) + " " + cause.unit + ", " +
-                    Percent(cause.heldout_gain) + " less (95 %: " + Percent(cause.heldout_gain_low) + " to " +
-                    Percent(cause.heldout_gain_high) + ").",
-                3);
+    out += Wrapped("Gain on data that the fit has not seen: residual " +
+                       RoundedText(cause.heldout_rms_before) + " to " + RoundedText(cause.heldout_rms_after) +
+                       " " + cause.unit + ", " + Change(cause.heldout_gain) +
+                       " (95 %: " + ChangeBetween(cause.heldout_gain_low, cause.heldout_gain_high) + ").",
+                   3);
   if (!cause.indistinguishable_from.empty())
     out += Wrapped("This log cannot tell it from: " + Listed(cause.indistinguishable_from, "or") + ".", 3);
   if (!cause.deciding_experiment.empty())

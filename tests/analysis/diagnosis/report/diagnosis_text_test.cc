@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "tests/analysis/diagnosis/report/example_diagnosis.h"
@@ -22,6 +23,31 @@ TEST(DiagnosisText, TextSaysWhatHowSureAndWhatNext) {
     end = text.find('\n', at);
     EXPECT_LE((end == std::string::npos ? text.size() : end) - at, 100u);
   }
+}
+
+/// What the text of a cause with this gain says about it, lines joined.
+std::string GainSaid(double gain, double low, double high) {
+  Diagnosis d = Example();
+  d.causes[0].heldout_gain = gain;
+  d.causes[0].heldout_gain_low = low;
+  d.causes[0].heldout_gain_high = high;
+  std::istringstream words(DiagnosisText(d));
+  std::string out;
+  for (std::string word; words >> word;) out += word + " ";
+  const std::size_t at = out.find("Gain on data");
+  return out.substr(at, out.find(").", at) - at);
+}
+
+TEST(DiagnosisText, AResidualThatGrowsIsSoMuchMore) {
+  const auto says = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  const std::string less = GainSaid(0.25, 0.125, 0.5);
+  EXPECT_TRUE(says(less, "25 % less (95 %: 12.5 % to 50 % less")) << less;
+  const std::string either = GainSaid(-0.04379, -0.125, 0.0625);
+  EXPECT_TRUE(says(either, "4.379 % more (95 %: 12.5 % more to 6.25 % less")) << either;
+  const std::string more = GainSaid(-0.25, -0.5, -0.125);
+  EXPECT_TRUE(says(more, "25 % more (95 %: 50 % to 12.5 % more")) << more;
 }
 
 TEST(DiagnosisText, OfALinearAxisInNewtons) {
