@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
-#include "analysis/diagnosis/tuning/statistics.h"
+#include "analysis/prediction_error/stands_out.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -190,6 +190,7 @@ std::vector<std::uint8_t> ValidRows(const AxisLog& log, const Signals& signals, 
   std::vector<std::uint8_t> valid(n, 1);
   quality.rows = log.rows;
   quality.missing = log.missing;
+  quality.outliers = log.wrong_readings;
   const double moved = kRows.stale_counts_per_row * stated.position_step / log.period_s;
   for (std::size_t k = 0; k < n; ++k) {
     if (!std::isfinite(log.position[k]) || (k < log.present.size() && log.present[k] == 0)) {
@@ -207,27 +208,10 @@ std::vector<std::uint8_t> ValidRows(const AxisLog& log, const Signals& signals, 
 
 void MarkOutliers(const std::vector<double>& innovation, double position_step,
                   std::vector<std::uint8_t>& valid, DataQuality& quality) {
-  const std::size_t n = innovation.size(), half = kRows.outlier_reach_rows;
-  std::vector<double> scratch;
-  const auto scale_at = [&](std::size_t k) {
-    scratch.clear();
-    for (std::size_t i = k > half ? k - half : 0; i < std::min(n, k + half); i += 2)
-      scratch.push_back(std::fabs(innovation[i]));
-    const auto middle = scratch.begin() + static_cast<std::ptrdiff_t>(scratch.size() / 2);
-    std::nth_element(scratch.begin(), middle, scratch.end());
-    return kNormalMad * *middle;
-  };
-  // The neighbourhood is looked at only where the row stands out from the whole log.
-  scratch.assign(innovation.begin(), innovation.end());
-  for (double& v : scratch) v = std::fabs(v);
-  std::nth_element(scratch.begin(), scratch.begin() + static_cast<std::ptrdiff_t>(n / 2), scratch.end());
-  const double global = kNormalMad * scratch[n / 2];
-  for (std::size_t k = 2; k + 3 < n; ++k) {
+  StandsOut stands_out(innovation, position_step);
+  for (std::size_t k = 2; k + 3 < innovation.size(); ++k) {
+    if (valid[k] == 0 || !stands_out(k)) continue;
     const double e = std::fabs(innovation[k]);
-    if (valid[k] == 0 || e < kRows.outlier_deviations * global + kRows.outlier_counts * position_step)
-      continue;
-    const double local = scale_at(k);
-    if (e < kRows.outlier_near_deviations * local + kRows.outlier_counts * position_step) continue;
     // A shock goes on; a wrong reading is over after the rows that it pulled along.
     if (std::fabs(innovation[k - 1]) > kRows.shock_share * e ||
         std::fabs(innovation[k + 3]) > kRows.shock_share * e)

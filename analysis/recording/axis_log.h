@@ -35,8 +35,9 @@ struct AxisLog {
   std::vector<double> axis2_position_m;    ///< empty without one
   std::vector<double> reference_position;  ///< q, what was asked for; empty when not recorded
 
-  std::size_t rows = 0;     ///< rows of the file
-  std::size_t missing = 0;  ///< grid points without a row
+  std::size_t rows = 0;            ///< rows of the file
+  std::size_t missing = 0;         ///< grid points without a row
+  std::size_t wrong_readings = 0;  ///< rows whose position was taken out as a single wrong reading
 
   std::size_t size() const { return command.size(); }
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/prediction_error/wrong_readings.h"
 #include "analysis/rough_fit/rough_fit.h"
 #include "config/config_error.h"
 #include "config/number_text.h"
@@ -84,6 +85,7 @@ void Friction(const RoughFit& fit, const AxisLog& log, StatedAxis& stated) {
 std::vector<std::string> CompleteFromLog(AxisLog& log, StatedAxis& stated) {
   std::vector<std::string> notes;
   if (!log.note.empty()) notes.push_back(log.note);
+  TakeOutWrongReadings(log, stated.position_step);
   if (log.in_ampere) AmpereToUnit(log, stated, notes);
   const bool frictionless = !(stated.friction.Fc_plus + stated.friction.Fc_minus > 0.0);
   const bool unknown = stated.open.contains("Fc") || stated.open.contains("s2");

@@ -29,6 +29,19 @@ TEST(CompleteFromLog, WhatIsOpenComesFromTheLogAndIsUncertain) {
   EXPECT_GE(axis.stated.sigma.at("Fc"), 0.3);
 }
 
+/// Before: one frame that reads 30 m made a stroke and a largest speed of its own, and friction of nothing.
+TEST(CompleteFromLog, AWrongReadingChangesNothing) {
+  test::HiddenAxis axis = Made();
+  axis.stated.open = {"Fc", "s2", "vs", "s0"};
+  test::HiddenAxis garbled = axis;
+  for (const std::size_t k : {3000U, 11111U, 20020U}) garbled.log.position[k] += 3e4;
+  CompleteFromLog(axis.log, axis.stated);
+  CompleteFromLog(garbled.log, garbled.stated);
+  EXPECT_EQ(garbled.log.wrong_readings, 3U);
+  EXPECT_NEAR(garbled.stated.friction.Fc_plus / axis.stated.friction.Fc_plus, 1.0, 0.01);
+  EXPECT_NEAR(garbled.stated.friction.s2 / axis.stated.friction.s2, 1.0, 0.03);
+}
+
 TEST(CompleteFromLog, WhatIsStatedStays) {
   test::HiddenAxis axis = Made();
   const StatedFriction truth = axis.stated.friction;
