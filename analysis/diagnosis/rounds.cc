@@ -12,6 +12,7 @@
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/decision/hypotheses.h"
 #include "analysis/diagnosis/decision/own_noise.h"
+#include "analysis/diagnosis/decision/superseded.h"
 #include "analysis/diagnosis/quantification/detectable.h"
 #include "analysis/diagnosis/quantification/jitter_cause.h"
 #include "analysis/diagnosis/screening/screen.h"
@@ -158,6 +159,8 @@ Next Take(const std::vector<Hypothesis>& hypotheses, const ScoreThreshold& thres
   std::erase_if(r.out.causes.back().indistinguishable_from,
                 [&](const std::string& other) { return Among(r.options.exclude, other); });
   if (Outside(kind)) return Next::kEnd;
+  if (DropSuperseded(r.problem, threshold, r.accepted, r.out))
+    r.stated_with = std::numeric_limits<std::size_t>::max();
   return further ? Next::kSameRound : Next::kNextRound;
 }
 

@@ -10,14 +10,20 @@
 
 namespace contour::diagnosis {
 
-Point WithoutLast(const Problem& problem, Point point) {
-  const std::vector<std::size_t> freed = FreedTerms(problem, point.effects.back()->kind);
-  const std::vector<double>& amplitudes = point.amplitudes.back();
+Point Without(const Problem& problem, Point point, std::size_t place) {
+  const std::vector<std::size_t> freed = FreedTerms(problem, point.effects[place]->kind);
+  const std::vector<double>& amplitudes = point.amplitudes[place];
   for (std::size_t i = 0; i < std::min(freed.size(), amplitudes.size()); ++i)
     point.base[freed[i]] += amplitudes[i];
-  point.effects.pop_back();
-  point.amplitudes.pop_back();
+  const auto at = static_cast<std::ptrdiff_t>(place);
+  point.effects.erase(point.effects.begin() + at);
+  point.amplitudes.erase(point.amplitudes.begin() + at);
   return point;
+}
+
+Point WithoutLast(const Problem& problem, Point point) {
+  const std::size_t last = point.effects.size() - 1;
+  return Without(problem, std::move(point), last);
 }
 
 bool BaseLiesThere(const Problem& problem, const Hypothesis& r, const FitEffort& effort, Fit& current) {

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
+
 #include "analysis/diagnosis/decision/hypothesis.h"
 
 namespace contour::diagnosis {
 
 /// Where a base lies that does without the last effect. What that has freed of the base stays where it is.
 Point WithoutLast(const Problem& problem, Point point);
+/// The same of the effect at a place.
+Point Without(const Problem& problem, Point point, std::size_t place);
 
 /// Whether a base that begins where the hypothesis lies ends so much lower than the one at hand that it
 /// explains most of what the hypothesis was to explain; then it is the base.
