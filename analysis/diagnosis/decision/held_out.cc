@@ -14,6 +14,7 @@
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
+#include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "analysis/diagnosis/tuning/statistics.h"
 #include "analysis/prediction_error/products.h"
 
@@ -135,6 +136,44 @@ std::vector<Point> PointsWithout(const Problem& problem, const Fit& fit, Seen se
   for (const Eigen::VectorXd& step : StepsWithout(problem, fit, seen, believed))
     points.push_back(Moved(fit.point, step));
   return points;
+}
+
+// What the parameters of a fold were asked for by: the squares of the blocks that it has seen, and the
+// priors.
+double CostOfSeen(const Problem& problem, const std::vector<double>& white, const Point& point,
+                  std::size_t fold, Seen seen) {
+  const std::size_t n = problem.rows(), parts = problem.data_size() / n;
+  double cost = PriorOf(problem, point);
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
+    if (FoldOf(b, seen) == fold) continue;
+    for (std::size_t part = 0; part < parts; ++part)
+      for (std::size_t k = n * b / kHeldOutBlocks; k < n * (b + 1) / kHeldOutBlocks; ++k)
+        cost += std::pow(white[part * n + k], 2);
+  }
+  return cost;
+}
+
+Point Halfway(const Point& from, Point to) {
+  for (std::size_t i = 0; i < to.base.size(); ++i) to.base[i] += (from.base[i] - to.base[i]) / 2.0;
+  for (std::size_t e = 0; e < to.amplitudes.size(); ++e)
+    for (std::size_t i = 0; i < to.amplitudes[e].size(); ++i)
+      to.amplitudes[e][i] += (from.amplitudes[e][i] - to.amplitudes[e][i]) / 2.0;
+  return to;
+}
+
+// Where numbers do nearly the same (a power of the speed near 1, and viscous friction), a linear step may end
+// worse on the very rows that it was made of: it goes back half the way until it does not.
+void GoBackWhereWorse(const Problem& problem, const Fit& fit, Seen seen, std::span<Point> points,
+                      std::span<std::vector<double>> raw) {
+  for (std::size_t fold = 0; fold < points.size(); ++fold) {
+    const double least = CostOfSeen(problem, fit.residual, fit.point, fold, seen);
+    for (double share = 1.0; share > kScreening.negligible_share; share /= 2.0) {
+      const std::vector<double> white = problem.White(raw.subspan(fold, 1))[0];
+      if (CostOfSeen(problem, white, points[fold], fold, seen) <= least) break;
+      points[fold] = Halfway(fit.point, std::move(points[fold]));
+      raw[fold] = std::move(problem.Raw(std::span<const Point>(points.subspan(fold, 1)))[0]);
+    }
+  }
 }
 
 // Sum of squares of the residual in every block, each with the parameters of the fold that did not see it. As
@@ -273,7 +312,10 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
   } else {
     std::vector<Point> points = PointsWithout(problem, without, seen, stated);
     for (Point& p : PointsWithout(problem, with, seen, {})) points.push_back(std::move(p));
-    const auto raw = problem.Raw(points);
+    auto raw = problem.Raw(points);
+    if (stated.empty())
+      GoBackWhereWorse(problem, without, seen, std::span(points).first(2), std::span(raw).first(2));
+    GoBackWhereWorse(problem, with, seen, std::span(points).last(2), std::span(raw).last(2));
     const std::span<const Point> both(points);
     const std::span<const std::vector<double>> runs(raw);
     before = HeldOutSquares(problem, both.first(2), runs.first(2), seen, inertia);

@@ -187,5 +187,18 @@ TEST(HeldOut, AWaveTooFastForTheTorqueIsJudgedByTheRows) {
   EXPECT_EQ(unit_of(Wave::kForceOfTime, 200.0), "times the noise");
 }
 
+// Before: a step that a bent model does not follow made the right cause the worse one.
+TEST(HeldOutGain, AStepThatEndsWorseOnItsOwnRowsGoesBack) {
+  const test::FittedAxis axis({{"constant_torque", 0.3, 0.0, 0.0, 0.0}});
+  Fit with = axis.With(axis.Of("constant_torque"));
+  Cause right, far;
+  std::vector<BlockGain> blocks;
+  HeldOutGain(axis.problem, axis.base, with, false, right, blocks);
+  ASSERT_GT(right.heldout_gain, 0.1);
+  with.jacobian *= 0.002;  // steps of hundreds of times the length
+  HeldOutGain(axis.problem, axis.base, with, false, far, blocks);
+  EXPECT_NEAR(far.heldout_gain, right.heldout_gain, 0.05);
+}
+
 }  // namespace
 }  // namespace contour::diagnosis
