@@ -32,6 +32,17 @@ std::string NearestText(const std::vector<Cause>& causes) {
 /// Whether the unseen part of the log says plainly that the model is worse with it.
 bool DoesHarm(const Cause& c) { return c.heldout_gain_high < 0.0; }
 
+/// Of those that do; empty where none does. A factor on all forces moves nothing that it could harm.
+std::string HarmfulText(const std::vector<Cause>& causes) {
+  std::string kinds;
+  for (const Cause& c : causes)
+    if (!Outside(c.kind) && DoesHarm(c) && !CauseNamed(c.kind).common_factor)
+      kinds += (kinds.empty() ? "" : ", ") + c.kind;
+  return kinds.empty() ? kinds
+                       : "Part of what is missing looks like " + kinds +
+                             ", but parts of the log that its fit has not seen are worse with it.";
+}
+
 }  // namespace
 
 void Conclude(const Problem& problem, const std::vector<RemainingStructure>& left, Diagnosis& out) {
@@ -49,13 +60,17 @@ void Conclude(const Problem& problem, const std::vector<RemainingStructure>& lef
     if (Outside(c.kind))
       out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
                           c.kind.substr(kOutside.size()) + ".");
+  const std::string harmful = HarmfulText(out.causes);
   std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind) || DoesHarm(c); });
+  // What explained far more than chance was something, if not that.
+  const bool refused = out.causes.empty() && !harmful.empty();
+  if (refused) out.notes.push_back(harmful);
   // What is told as found was excited.
   std::erase_if(out.not_excited, [&](const std::string& kind) {
     return std::any_of(out.causes.begin(), out.causes.end(), [&](const Cause& c) { return c.kind == kind; });
   });
   if (something) out.notes.push_back(StructureText(problem, left[0]));
-  if (unexplained) {
+  if (unexplained || refused) {
     if (!out.causes.empty()) out.notes.push_back(NearestText(out.causes));
     out.verdict = Verdict::kUnexplained;
     for (Cause& c : out.causes) c.part_of_it = true;

@@ -59,6 +59,22 @@ TEST_F(VerdictTest, NothingIsFoundWhereNothingIsLeft) {
   EXPECT_TRUE(d.notes.empty());
 }
 
+/// Before: nothing was found, though a cause explained far more than chance.
+TEST_F(VerdictTest, WhatDoesHarmUnseenIsNoCauseAndNotNothing) {
+  Diagnosis found = Named({{"viscous_nonlinear", 600.0}});
+  found.causes[0].heldout_gain_high = -0.2;
+  const Diagnosis d = Concluded(found, {Of("time", 5.0)});
+  EXPECT_EQ(d.verdict, Verdict::kUnexplained);
+  EXPECT_TRUE(d.causes.empty());
+  ASSERT_EQ(d.notes.size(), 1u);
+  EXPECT_NE(d.notes[0].find("viscous_nonlinear"), std::string::npos);
+  Diagnosis beside = Named({{"cogging", 900.0}, {"viscous_nonlinear", 600.0}});
+  beside.causes[1].heldout_gain_high = -0.2;
+  const Diagnosis named = Concluded(beside, {Of("time", 5.0)});
+  EXPECT_EQ(named.verdict, Verdict::kCauseFound);
+  EXPECT_TRUE(named.notes.empty());
+}
+
 TEST_F(VerdictTest, WhatIsLeftWithoutACauseIsUnexplained) {
   const Diagnosis d = Concluded({}, {Of("the position and the direction", 40.0)});
   EXPECT_EQ(d.verdict, Verdict::kUnexplained);
@@ -100,7 +116,7 @@ TEST_F(VerdictTest, WhatDoesHarmOnUnseenDataIsNotTold) {
   found.causes[0].heldout_gain_high = -7.0;
   const Diagnosis d = Concluded(found, {Of("time", 5.0)});
   EXPECT_TRUE(d.causes.empty());
-  EXPECT_EQ(d.verdict, Verdict::kNothingFound);
+  EXPECT_EQ(d.verdict, Verdict::kUnexplained);
   found.causes[0].heldout_gain_high = 0.01;
   EXPECT_EQ(Concluded(found, {Of("time", 5.0)}).causes.size(), 1u) << "not beyond its interval";
 }
