@@ -44,11 +44,13 @@ std::size_t RowsThere(const AxisLog& log) {
   return static_cast<std::size_t>(std::count(log.present.begin(), log.present.end(), std::uint8_t{1}));
 }
 
-/// What goes with a stroke is no cause where there is none.
-DiagnoseOptions WithoutStroke(const StatedAxis& stated, DiagnoseOptions options) {
-  if (!stated.endless) return options;
+/// What goes with a stroke is no cause where there is none. Nor is a torque constant off that nobody stated:
+/// it was taken from this log, by the stated inertia.
+DiagnoseOptions WithoutWhatCannotBe(const StatedAxis& stated, DiagnoseOptions options) {
+  const bool any_constant = stated.open.contains("torque_constant");
   for (const CauseDefinition* c : AllCauses())
-    if (c->shape != nullptr) options.exclude.emplace_back(*c->name);
+    if ((stated.endless && c->shape != nullptr) || (any_constant && c->common_factor))
+      options.exclude.emplace_back(*c->name);
   return options;
 }
 
@@ -77,7 +79,7 @@ void KeepStatedWhereBetter(const StatedAxis& stated, Diagnosis& out) {
 
 Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& asked) {
   CheckInput(log, stated);
-  const DiagnoseOptions options = WithoutStroke(stated, asked);
+  const DiagnoseOptions options = WithoutWhatCannotBe(stated, asked);
   if (RowsThere(log) < FewestRowsThere()) return TooShort(log, options);
   Diagnosis out;
   out.false_alarm_rate = options.false_alarm_rate;

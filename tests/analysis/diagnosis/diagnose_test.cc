@@ -65,6 +65,15 @@ TEST(Diagnose, FindsNothingOnACleanAxis) {
   EXPECT_FALSE(d.smallest_detectable.empty());
 }
 
+TEST(Diagnose, ATorqueConstantThatNobodyStatedIsNotOff) {
+  test::HiddenOptions o = Hidden(7, {});
+  o.duration_s = 10.0;
+  test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  EXPECT_TRUE(Diagnose(axis.log, axis.stated).smallest_detectable.contains("torque_constant"));
+  axis.stated.open.insert("torque_constant");
+  EXPECT_FALSE(Diagnose(axis.log, axis.stated).smallest_detectable.contains("torque_constant"));
+}
+
 // What one diagnosis found and the model then states is part of the base of the next.
 TEST(Diagnose, DoesNotFindAgainWhatTheModelStates) {
   test::HiddenOptions o = Hidden(7, {{"cogging", 0.05, 12.0, 0.7, 0.0}});
