@@ -1,6 +1,7 @@
 #include "tools/contour/diagnose_command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -100,7 +101,8 @@ std::optional<ContourGain> Predict(const Options& options, const Diagnosis& foun
 std::string PredictionText(const ContourGain& gain) {
   return "On the path, by simulation of " + gain.program + ": largest contour error " +
          RoundedText(gain.before_um) + " um with the model as stated, " + RoundedText(gain.after_um) +
-         " um with the extended one, " + RoundedText(100.0 * gain.gain()) + " % less.\n";
+         " um with the extended one, " + RoundedText(100.0 * std::abs(gain.gain())) +
+         (gain.gain() < 0.0 ? " % more.\n" : " % less.\n");
 }
 
 std::vector<std::string> KindsOf(const std::string& list) {
