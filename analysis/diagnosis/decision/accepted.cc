@@ -120,4 +120,24 @@ void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypothes
   accepted.fit = best.fit;
 }
 
+Cause TakeBack(std::size_t in_fit, Accepted& accepted, Diagnosis& out) {
+  const auto at = static_cast<std::ptrdiff_t>(in_fit);
+  const std::size_t place = accepted.places[in_fit];
+  accepted.places.erase(accepted.places.begin() + at);
+  accepted.scatter.erase(accepted.scatter.begin() + at);
+  for (std::size_t& p : accepted.places)
+    if (p > place) --p;
+  auto cause = out.causes.begin();
+  for (std::size_t before = in_fit;; ++cause) {
+    if (CauseNamed(cause->kind).in_scatter_only) continue;  // not in the fit
+    if (before-- == 0) break;
+  }
+  if (cause == out.causes.begin()) out.blocks.clear();  // were of the first
+  Cause taken = std::move(*cause);
+  out.causes.erase(cause);
+  for (Candidate& c : out.candidates)
+    if (c.kind == taken.kind) c.accepted = false;
+  return taken;
+}
+
 }  // namespace contour::diagnosis

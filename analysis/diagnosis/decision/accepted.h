@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <span>
 #include <string>
@@ -34,6 +35,10 @@ ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted
 /// it, the experiment that would decide.
 void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses,
                  const ScoreThreshold& threshold, Accepted& accepted, Diagnosis& out);
+
+/// Takes a cause back, the one at `in_fit` among those that are in the fit: out of all lists of `accepted`
+/// and `out`, not out of a fit. The cause comes back.
+Cause TakeBack(std::size_t in_fit, Accepted& accepted, Diagnosis& out);
 
 /// Of hypotheses whose first is from outside the catalogue: the best known one that holds in its place,
 /// described by its own fit.

@@ -32,28 +32,9 @@ bool Superseded(const Problem& problem, const Fit& fit, std::size_t place, const
   return DropOf(problem, without, fit) < asked;
 }
 
-/// Of the causes that are in the fit, the one at a place among them.
-std::size_t IndexOf(const std::vector<Cause>& causes, std::size_t in_fit) {
-  for (std::size_t i = 0; i < causes.size(); ++i) {
-    if (CauseNamed(causes[i].kind).in_scatter_only) continue;
-    if (in_fit == 0) return i;
-    --in_fit;
-  }
-  return causes.size();
-}
-
 void TakeOut(const Problem& problem, std::size_t in_fit, Accepted& accepted, Diagnosis& out) {
-  const std::size_t place = accepted.places[in_fit];
-  const auto at = static_cast<std::ptrdiff_t>(in_fit);
-  accepted.fit = FitPoint(problem, Without(problem, accepted.fit.point, place));
-  accepted.places.erase(accepted.places.begin() + at);
-  for (std::size_t& p : accepted.places)
-    if (p > place) --p;
-  accepted.scatter.erase(accepted.scatter.begin() + at);
-  const std::size_t index = IndexOf(out.causes, in_fit);
-  for (Candidate& c : out.candidates)
-    if (c.kind == out.causes[index].kind) c.accepted = false;
-  out.causes.erase(out.causes.begin() + static_cast<std::ptrdiff_t>(index));
+  accepted.fit = FitPoint(problem, Without(problem, accepted.fit.point, accepted.places[in_fit]));
+  TakeBack(in_fit, accepted, out);
 }
 
 /// The last one's evidence and gain, over the same model without it.
