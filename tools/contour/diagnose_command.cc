@@ -24,6 +24,7 @@
 #include "analysis/prediction_error/keep_memory.h"
 #include "analysis/recording/read_log.h"
 #include "analysis/rough_fit/complete_from_log.h"
+#include "analysis/rough_fit/wrong_units.h"
 #include "config/config_error.h"
 #include "config/key_hints.h"
 #include "config/load_machine.h"
@@ -139,6 +140,8 @@ int RunDiagnose(const Options& options) {
   DiagnoseOptions how = HowOf(options);
   AxisLog log = ReadLogs(options, stated);
   const std::vector<std::string> assumed = CompleteFromLog(log, stated);
+  if (const std::string why = WrongUnits(log, stated); !why.empty())
+    throw ConfigError({log.source + ": " + why});
   Diagnosis found;
   std::optional<ContourGain> contour;
   {
