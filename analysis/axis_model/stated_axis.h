@@ -94,7 +94,7 @@ struct StatedAxis {
   std::map<std::string, double> sigma;
 
   /// What the file leaves open, by the same names (Fc, s2, vs, s0): a placeholder stands there until
-  /// CompleteFromLog. "stroke" where its ends are not stated.
+  /// CompleteFromLog. "stroke" where its ends are not stated; "ampere" where the log has said what one gives.
   std::set<std::string> open;
 };
 

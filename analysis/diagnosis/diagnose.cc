@@ -47,7 +47,7 @@ std::size_t RowsThere(const AxisLog& log) {
 /// What goes with a stroke is no cause where there is none. Nor is a torque constant off that nobody stated:
 /// it was taken from this log, by the stated inertia.
 DiagnoseOptions WithoutWhatCannotBe(const StatedAxis& stated, DiagnoseOptions options) {
-  const bool any_constant = stated.open.contains("torque_constant");
+  const bool any_constant = stated.open.contains("ampere");
   for (const CauseDefinition* c : AllCauses())
     if ((stated.endless && c->shape != nullptr) || (any_constant && c->common_factor))
       options.exclude.emplace_back(*c->name);

@@ -47,7 +47,7 @@ void AmpereToUnit(AxisLog& log, StatedAxis& stated, std::vector<std::string>& no
            "little for that; state drive." +
            key + ", or record quick reversals"});
     constant = (stated.motor_inertia + stated.load_inertia) / fit.inertia;
-    stated.open.insert("torque_constant");
+    stated.open.insert("ampere");
     double& sigma = stated.sigma["inertia"];
     sigma = std::hypot(sigma > 0.0 ? sigma : kLevelSigma * 0.1, fit.inertia_sigma_rel);
     notes.push_back("The log holds a current: " + RoundedText(constant) + " " + unit +

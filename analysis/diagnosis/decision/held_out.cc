@@ -162,7 +162,7 @@ Point Halfway(const Point& from, Point to) {
 }
 
 // Where numbers do nearly the same (a power of the speed near 1, and viscous friction), a linear step may end
-// worse on the very rows that it was made of: it goes back half the way until it does not.
+// worse on the very rows that it was made of: it goes back by half until it does not.
 void GoBackWhereWorse(const Problem& problem, const Fit& fit, Seen seen, std::span<Point> points,
                       std::span<std::vector<double>> raw) {
   for (std::size_t fold = 0; fold < points.size(); ++fold) {

@@ -38,7 +38,7 @@ std::string Percent(double share) { return RoundedText(100.0 * share) + " %"; }
 /// A residual that grows is so much more, not less than less.
 std::string Change(double gain) { return Percent(std::abs(gain)) + (gain < 0.0 ? " more" : " less"); }
 
-/// The word once where both ends go the same way.
+/// The word once where both ends have the same sign.
 std::string ChangeBetween(double low, double high) {
   const bool cross = low < 0.0 && high >= 0.0;
   return (cross ? Change(low) : Percent(std::abs(low))) + " to " + Change(high);

@@ -70,7 +70,7 @@ TEST(Diagnose, ATorqueConstantThatNobodyStatedIsNotOff) {
   o.duration_s = 10.0;
   test::HiddenAxis axis = test::MakeHiddenAxis(o);
   EXPECT_TRUE(Diagnose(axis.log, axis.stated).smallest_detectable.contains("torque_constant"));
-  axis.stated.open.insert("torque_constant");
+  axis.stated.open.insert("ampere");
   EXPECT_FALSE(Diagnose(axis.log, axis.stated).smallest_detectable.contains("torque_constant"));
 }
 

@@ -58,11 +58,11 @@ TEST(CompleteFromLog, ACurrentIsATorqueByTheStatedInertia) {
   stated.stated.torque_constant = 0.37;
   EXPECT_TRUE(CompleteFromLog(stated.log, stated.stated).empty());
   EXPECT_NEAR(stated.log.command[777], torque[777], 1e-12);
-  EXPECT_FALSE(stated.stated.open.contains("torque_constant"));
+  EXPECT_FALSE(stated.stated.open.contains("ampere"));
   EXPECT_EQ(CompleteFromLog(axis.log, axis.stated).size(), 1U);
   EXPECT_NEAR(axis.stated.torque_constant / 0.37, 1.0, 0.1);
   EXPECT_FALSE(axis.log.in_ampere);
-  EXPECT_TRUE(axis.stated.open.contains("torque_constant"));
+  EXPECT_TRUE(axis.stated.open.contains("ampere"));
 }
 
 TEST(CompleteFromLog, WithoutAccelerationACurrentSaysNothing) {
