@@ -43,6 +43,11 @@ inline constexpr double kSlideOverStribeck = 5.0;
 // Of rated force, where the machine file does not state what may push besides friction.
 inline constexpr double kExternalShare = 0.25;
 
+/// Largest force on the table besides friction.
+constexpr double ExternalForce_N(const AxisLimitsSi& limits, double rated_force_N) noexcept {
+  return limits.external_force_N > 0.0 ? limits.external_force_N : kExternalShare * rated_force_N;
+}
+
 constexpr MonitoredAxis ToMonitored(const Mechanics& m, const MonitoredFriction& friction,
                                     const MonitoredDrive& drive, const AxisLimitsSi& limits,
                                     double loop_Hz) noexcept {
@@ -57,8 +62,7 @@ constexpr MonitoredAxis ToMonitored(const Mechanics& m, const MonitoredFriction&
   a.slide_m_s = kSlideOverStribeck * friction.vs_m_s;
   a.force_limit_N = limits.force_N;
   a.rated_force_N = drive.rated_torque_Nm / m.radius_m_rad;
-  a.external_force_N =
-      limits.external_force_N > 0.0 ? limits.external_force_N : kExternalShare * a.rated_force_N;
+  a.external_force_N = ExternalForce_N(limits, a.rated_force_N);
   a.count_m = 2.0 * std::numbers::pi * m.radius_m_rad / drive.counts_per_rev;
   a.loop_Hz = loop_Hz;
   a.delay_cycles = drive.delay_cycles;

@@ -60,7 +60,11 @@ FrictionLearner::FrictionLearner(const Setup& setup) noexcept
     }
     initial_[i][i] += setup.std[i] * setup.std[i];
     drift_[i] = kDrift_1_ms * 1e3 * setup.period_s * setup.std[i] * setup.std[i];
-    const double bound = kBound * std::sqrt(initial_[i][i]);
+    double bound = kBound * std::sqrt(initial_[i][i]);
+    if (i == friction_term::kConstant) {
+      directions_N_ = std::abs(setup.parameters[i]) + bound;
+      bound += setup.weight_N;
+    }
     least_[i] = setup.parameters[i] - bound;
     most_[i] = setup.parameters[i] + bound;
   }
@@ -84,7 +88,13 @@ void FrictionLearner::Forget() noexcept {
 double FrictionLearner::Level_N(bool forward) const noexcept {
   double sum = 0.0;
   for (std::size_t i = friction_term::kDahl; i < friction_term::kConstant; ++i) sum += parameters_[i];
-  return forward ? sum + parameters_[friction_term::kConstant] : sum - parameters_[friction_term::kConstant];
+  const double differs_N = parameters_[friction_term::kConstant] - Weight_N();
+  return forward ? sum + differs_N : sum - differs_N;
+}
+
+double FrictionLearner::Weight_N() const noexcept {
+  const double constant_N = parameters_[friction_term::kConstant];
+  return constant_N - std::clamp(constant_N, -directions_N_, directions_N_);
 }
 
 double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noexcept {

@@ -28,6 +28,7 @@ class FrictionLearner {
     double vs_m_s = 1.0;
     double inertial_kg = 0.0;  ///< what acceleration may be off by beyond the parameter of the mass
     double level_range = 2.0;  ///< factor of the level that may be learnt
+    double weight_N = 0.0;     ///< that a constant force beside friction may have: of a vertical axis
     double period_s = 1e-3;
     bool learns = true;
   };
@@ -49,7 +50,9 @@ class FrictionLearner {
   void Rest() noexcept;
 
   [[nodiscard]] const FrictionTerms& parameters() const noexcept { return parameters_; }
-  /// Sliding friction without Stribeck and viscous parts, positive in both directions.
+  /// Of the constant force, what is beyond any difference of friction's directions; against positive motion.
+  [[nodiscard]] double Weight_N() const noexcept;
+  /// Sliding friction without Stribeck and viscous parts and without weight, positive in both directions.
   [[nodiscard]] double Level_N(bool forward) const noexcept;
   /// Sliding friction at a steady speed, without viscous parts.
   [[nodiscard]] double SlidingLevel_N(bool forward, double speed_m_s) const noexcept;
@@ -79,6 +82,7 @@ class FrictionLearner {
   FrictionMatrix initial_{};
   FrictionTerms drift_{};           // variance per period
   FrictionTerms least_{}, most_{};  // that parameters may be
+  double directions_N_ = 0.0;       // by which friction of a direction may differ from the mean
   double noise_N2_ = 1.0;
   double outside_N_ = 1.0;
   double judge_share_ = 1.0;

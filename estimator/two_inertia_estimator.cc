@@ -86,6 +86,7 @@ FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFri
   learner.level_N = level_N;
   learner.vs_m_s = friction.vs_m_s;
   learner.level_range = c.level_range;
+  learner.weight_N = s.external_force_N;
   learner.period_s = s.filter.period_s;
   learner.learns = c.adapt;
   return FrictionLearner(learner);
@@ -183,21 +184,23 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
 void TwoInertiaEstimator::Lay() noexcept {
   const double extra_kg = learner_.parameters()[kMass];
   const double sigma2_Ns_m = setup_.friction.sigma2_Ns_m;
+  const double weight_N = learner_.Weight_N();
   const bool cogs = map_.in_use();
   for (std::size_t j = 0; j < along_.size(); ++j) {
     const FrictionTerms& terms = along_.terms(j);
     Node& node = nodes_[j];
     node.heavier_N = extra_kg * terms[kMass];
     const double all_N = Sum(learner_.parameters(), terms) - node.heavier_N;
-    node.friction_N = std::clamp(all_N, -kOverPlaces * most_N_, kOverPlaces * most_N_);
+    node.friction_N = weight_N + std::clamp(all_N - weight_N, -kOverPlaces * most_N_, kOverPlaces * most_N_);
     node.learnt_N = node.friction_N + node.heavier_N;
     node.driving_N = cogs ? map_.At_N(along_.position_m(j), along_.velocity_m_s(j)) : 0.0;
     if (!known_.neutral()) {
       node.friction_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
       node.driving_N += known_.Force_N(along_.position_m(j));
     }
-    // Of sigma2 v, the motor's share has to be taken from the table.
-    const double before_N = before_screw_ * (node.friction_N + sigma2_Ns_m * along_.velocity_m_s(j));
+    // Of sigma2 v, the motor's share has to be taken from the table, which alone has a weight.
+    const double before_N =
+        before_screw_ * (node.friction_N - weight_N + sigma2_Ns_m * along_.velocity_m_s(j));
     node.table_N = node.friction_N + (1.0 - motor_share_) * node.heavier_N - before_N + side_.At_N(j);
     node.motor_N = node.driving_N - motor_share_ * node.heavier_N - before_N;
     if (by_scale_)

@@ -93,7 +93,7 @@ void TwoInertiaEstimator::LearnWindUp(const AxisEstimatorInput& in) noexcept {
   const double velocity_m_s = along_.velocity_m_s(elapsed_ + 1);
   sample.alone = in.alone;
   sample.position_m = in.position_m;
-  sample.force_N = acted_N_ + At(elapsed_).driving_N;
+  sample.force_N = acted_N_ + At(elapsed_).driving_N - learner_.Weight_N();
   sample.mass_kg = setup_.mechanics.mass_kg + learner_.parameters()[kMass];
   sample.direction = velocity_m_s > 0.0 ? 1 : velocity_m_s < 0.0 ? -1 : 0;
   if (wind_up_.NeedsLevels(sample.direction)) {

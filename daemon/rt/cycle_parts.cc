@@ -161,6 +161,9 @@ AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis) {
   setup.sample_jitter_s =
       kLongestFrame_bits / config.master.buses[config.master.axes[axis].bus].bitrate_bit_s;
   setup.has_scale = a.has_scale;
+  setup.external_force_N =
+      ExternalForce_N(ToSi(a.limits, a.mechanics.radius_m_rad),
+                      config.master.axes[axis].drive.rated_torque_Nm / a.mechanics.radius_m_rad);
   if (LoopTakesScale(config, axis)) setup.scale_loop = ScaleLoopOf(config, axis, 1.0);
   return AxisEstimator(setup);
 }

@@ -125,6 +125,49 @@ TEST(FrictionLearner, WhatLastsIsLearntAfterAll) {
   EXPECT_LT(last, 0.1 * first);
 }
 
+/// So short a travel does not tell a weight from a force over the turn.
+FrictionLearner::Setup SetupWithWeight(double weight_N) {
+  FrictionLearner::Setup s = SetupFor(kLevel_N);
+  s.weight_N = weight_N;
+  for (std::size_t i = friction_term::kTurn; i <= friction_term::kStroke; ++i) s.std[i] = 0.0;
+  return s;
+}
+
+// A vertical axis whose weight nobody has stated: more than the directions of friction differ by.
+TEST(FrictionLearner, AWeightIsLearntAndIsNoFriction) {
+  for (const double weight : {1.0, -1.0, 2.0}) {
+    const auto learner = std::make_unique<FrictionLearner>(SetupWithWeight(3.0 * kLevel_N));
+    Bench bench(kLevel_N);
+    FrictionTerms truth = learner->parameters();
+    truth[friction_term::kConstant] = weight * kLevel_N;
+    double first = 0.0, last = 0.0;
+    for (int k = 0; k < 8000; ++k) {
+      const double left = bench.Step(*learner, truth, 0.0);
+      if (k < 1200) first += left * left;
+      if (k >= 6800) last += left * left;
+    }
+    EXPECT_LT(last, 0.02 * first) << weight;
+    EXPECT_FALSE(learner->bounded()) << weight;
+    EXPECT_NEAR(learner->parameters()[friction_term::kConstant], weight * kLevel_N,
+                0.1 * std::abs(weight) * kLevel_N);
+    const FrictionTerms learnt = learner->parameters();
+    learner->Rest();
+    EXPECT_EQ(learner->parameters(), learnt) << "no level has left its range";
+    for (const bool forward : {true, false}) EXPECT_GT(learner->Level_N(forward), 0.2 * kLevel_N) << weight;
+  }
+}
+
+TEST(FrictionLearner, NoWeightIsBeyondWhatMayPush) {
+  const auto learner = std::make_unique<FrictionLearner>(SetupWithWeight(0.5 * kLevel_N));
+  Bench bench(kLevel_N);
+  FrictionTerms truth = learner->parameters();
+  truth[friction_term::kConstant] = 5.0 * kLevel_N;
+  for (int k = 0; k < 8000; ++k) bench.Step(*learner, truth, 0.0);
+  EXPECT_TRUE(learner->bounded());
+  EXPECT_GT(learner->Weight_N(), 0.2 * kLevel_N);
+  EXPECT_LE(learner->Weight_N(), 0.5 * kLevel_N);
+}
+
 TEST(FrictionLearner, StandsStillWhereItMayNotLearn) {
   const auto learner = std::make_unique<FrictionLearner>(SetupFor(kLevel_N));
   Bench bench(kLevel_N);
