@@ -132,7 +132,9 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
                  s.scale_loop}),
       learner_(MakeLearner(s, MakeBasis(s))),
       map_(AngleForceTuning(s.filter)),
-      balance_({.mass_kg = s.filter.mechanics.mass_kg, .period_s = s.filter.period_s}),
+      balance_({.mass_kg = s.filter.mechanics.mass_kg,
+                .period_s = s.filter.period_s,
+                .mass_rate = s.scale_loop && s.filter.config.adapt ? s.filter.config.mass_rate : 0.0}),
       wind_up_(WindUpTuning(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
       lead_(Lead(s.axis), s.filter.period_s),
@@ -185,6 +187,9 @@ void TwoInertiaEstimator::Lay() noexcept {
   const double extra_kg = learner_.parameters()[kMass];
   const double sigma2_Ns_m = setup_.friction.sigma2_Ns_m;
   const double weight_N = learner_.Weight_N();
+  // By a scale the observer finds what the table lacks, and nothing of the motor's: each has a mass to learn.
+  const double motors_share = by_scale_ ? 0.0 : motor_share_;
+  const double motor_extra_kg = balance_.extra_kg();
   const bool cogs = map_.in_use();
   for (std::size_t j = 0; j < along_.size(); ++j) {
     const FrictionTerms& terms = along_.terms(j);
@@ -201,8 +206,9 @@ void TwoInertiaEstimator::Lay() noexcept {
     // Of sigma2 v, the motor's share has to be taken from the table, which alone has a weight.
     const double before_N =
         before_screw_ * (node.friction_N - weight_N + sigma2_Ns_m * along_.velocity_m_s(j));
-    node.table_N = node.friction_N + (1.0 - motor_share_) * node.heavier_N - before_N + side_.At_N(j);
-    node.motor_N = node.driving_N - motor_share_ * node.heavier_N - before_N;
+    node.table_N = node.friction_N + (1.0 - motors_share) * node.heavier_N - before_N + side_.At_N(j);
+    node.inertia_N = motors_share * node.heavier_N + motor_extra_kg * terms[kMass];
+    node.motor_N = node.driving_N - node.inertia_N - before_N;
     if (by_scale_)
       node.beyond_m =
           known_.Lead_m(along_.position_m(j)) + scale_->Beyond_m(along_.position_m(j), Wound_N(j));

@@ -81,6 +81,7 @@ class TwoInertiaEstimator {
     double learnt_N = 0.0;    ///< all that follows from what is learnt
     double driving_N = 0.0;   ///< known on the motor, beside the drive's
     double table_N = 0.0;     ///< of all of it on the table, against positive motion, but for sigma2 v
+    double inertia_N = 0.0;   ///< for what the motor is heavier than commissioned
     double motor_N = 0.0;     ///< on the motor, towards positive position
     double beyond_m = 0.0;    ///< of the motor before the table beyond the commissioned wind-up
   };
@@ -115,7 +116,7 @@ class TwoInertiaEstimator {
   TwoInertiaObserver observer_;
   FrictionLearner learner_;
   AngleForceMap map_;        ///< force on the motor over the screw's turn: cogging
-  MomentumBalance balance_;  ///< for what is missing; it learns nothing itself
+  MomentumBalance balance_;  ///< for what is missing; by a scale it learns the motor's mass
   WindUpFit wind_up_;
   DriveLag<1> lag_;
   std::unique_ptr<TableScale> scale_;  ///< none: there is no linear scale

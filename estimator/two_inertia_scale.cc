@@ -49,7 +49,7 @@ void TwoInertiaEstimator::ReadScale(const AxisEstimatorInput& in) noexcept {
   s.position_m = in.position_m;
   s.scale_m = in.scale_m;
   s.lead_m = known_.Lead_m(in.position_m);
-  if (in.enabled) s.force_N = acted_N_ + At(elapsed_).motor_N + motor_share_ * At(elapsed_).heavier_N;
+  if (in.enabled) s.force_N = acted_N_ + At(elapsed_).motor_N + At(elapsed_).inertia_N;
   scale_->Step(s);
 }
 
