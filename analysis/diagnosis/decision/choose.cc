@@ -44,7 +44,7 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     Cause cause;
     std::vector<BlockGain> blocks;
     HeldOutGain(problem, current, r.fit, definition.judged_at_scale, cause, blocks);
-      if (cause.heldout_gain_high < 0.0) return false;
+    if (cause.heldout_gain_high < 0.0) return false;
     // A scale's noise is never white: there, only what others of its rows confirm, and with no more chance
     // than every kind has.
     gains_unseen = GainsBeyondChance(cause, threshold.rate);

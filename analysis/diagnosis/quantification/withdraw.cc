@@ -24,9 +24,10 @@ bool WithdrawIdle(const Problem& problem, Fit& fit, Accepted& accepted, Diagnosi
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
     if (HoldsZero(cause) && !InBase(problem, cause.kind)) {
       fit = FitPoint(problem, Without(problem, fit.point, accepted.places[in_fit]));
-      out.notes.push_back(TakeBack(in_fit, accepted, out).kind +
-                          " was accepted on the way and withdrawn: with all that was found in the model, its "
-                          "size is zero within its interval.");
+      out.notes.push_back(
+          TakeBack(in_fit, accepted, out).kind +
+          " was accepted in an earlier round and is withdrawn: with all that was found in the model, "
+          "its size is zero within its interval.");
       return true;
     }
     ++in_fit;
