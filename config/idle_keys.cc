@@ -71,8 +71,15 @@ std::vector<std::string> IdleKeys(const YamlValue& tree, const MachineConfig& ma
                "in csp the drive closes the loop; only the slowest swing that is watched goes by it");
   else if (linear)
     finder.All("control.full", no_effect + "linear in torque mode; the loop is tuned by axes.<name>.loop");
-  if (linear)
-    finder.Of("estimator", kOfFilter, no_effect + "linear; it is of the filter with one rigid mass");
+  if (linear) {
+    // By a scale in torque mode the motor's mass is learnt, by that rate.
+    const bool by_scale =
+        !cascade && std::any_of(machine.axes.begin(), machine.axes.end(),
+                                [](const auto& axis) { return axis.second.scale_loop.has_value(); });
+    for (const std::string_view key : kOfFilter)
+      if (!(by_scale && key == "mass_rate"))
+        finder.One("estimator", key, no_effect + "linear; it is of the filter with one rigid mass");
+  }
   for (const auto& [name, axis] : machine.axes) {
     const std::string section = "axes." + name;
     for (const std::string_view loop : {"loop", "scale_loop"}) {

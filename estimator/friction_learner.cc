@@ -249,7 +249,9 @@ void FrictionLearner::Rest() noexcept {
     double commissioned_N = 0.0;
     for (std::size_t i = friction_term::kDahl; i < friction_term::kConstant; ++i)
       commissioned_N += setup_.parameters[i];
-    const double ratio = Level_N(forward) / commissioned_N;
+    // Beside a weight nothing says what of the constant is a difference between the directions.
+    const double level_N = Weight_N() != 0.0 ? 0.5 * (Level_N(true) + Level_N(false)) : Level_N(forward);
+    const double ratio = level_N / commissioned_N;
     const double range = kBeyondRange * setup_.level_range;
     beyond = beyond || !(ratio < range) || !(ratio > 1.0 / range);
   }

@@ -34,6 +34,8 @@ double StandsOut::LevelNear(std::size_t row) {
 }
 
 bool StandsOut::operator()(std::size_t row) {
+  // Of a log that rests most of the time, with counts that nobody stated: there is nothing to stand out from.
+  if (!(level_ > 0.0) && !(counts_ > 0.0)) return false;
   const double e = std::fabs(values_[row]);
   // The neighbourhood is looked at only where the row stands out from the whole log.
   return e >= kRows.outlier_deviations * level_ + counts_ &&

@@ -60,16 +60,21 @@ Motion MotionOf(const AxisLog& log, const Signals& s, const StatedAxis& stated, 
   return m;
 }
 
-/// Columns: acceleration, Coulomb friction up and down, viscous friction. A direction that the log has not
-/// gets none.
-void Solve(const Motion& m, double independent_rows, RoughFit& out) {
-  Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+/// Columns: acceleration, Coulomb friction up and down, viscous friction, and the position where asked for. A
+/// direction that the log has not gets none.
+template <int kColumns>
+void Solve(const Motion& m, const Signal& position, double independent_rows, RoughFit& out) {
+  using Matrix = Eigen::Matrix<double, kColumns, kColumns>;
+  using Vector = Eigen::Vector<double, kColumns>;
+  Matrix normal = Matrix::Zero();
+  Vector right = Vector::Zero();
   double squares = 0.0, rows = 0.0;
   for (std::size_t k = 0; k < m.counts.size(); ++k) {
     const double v = m.velocity[k];
     if (m.counts[k] == 0 || std::fabs(v) < kSlides * out.max_speed) continue;
-    const Eigen::Vector4d x(m.acceleration[k], v > 0.0 ? 1.0 : 0.0, v < 0.0 ? -1.0 : 0.0, v);
+    Vector x;
+    x.template head<4>() << m.acceleration[k], v > 0.0 ? 1.0 : 0.0, v < 0.0 ? -1.0 : 0.0, v;
+    if constexpr (kColumns > 4) x(4) = position[k] - out.middle;
     normal += x * x.transpose();
     right += x * m.command[k];
     squares += m.command[k] * m.command[k];
@@ -84,15 +89,17 @@ void Solve(const Motion& m, double independent_rows, RoughFit& out) {
   for (int i = 1; i < 3; ++i)
     if (normal(i, i) == 0.0) normal(i, i) = 1.0;
   // In units in which every column has length 1.
-  const Eigen::Vector4d unit = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::Matrix4d scaled = unit.asDiagonal() * normal * unit.asDiagonal();
-  const Eigen::Matrix4d inverse = (scaled + 1e-9 * Eigen::Matrix4d::Identity()).inverse();
-  const Eigen::Vector4d x = unit.cwiseProduct(inverse * unit.cwiseProduct(right));
+  const Vector unit = normal.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const Matrix scaled = unit.asDiagonal() * normal * unit.asDiagonal();
+  const Matrix inverse = (scaled + 1e-9 * Matrix::Identity()).inverse();
+  const Vector x = unit.cwiseProduct(inverse * unit.cwiseProduct(right));
   const double left = std::max(0.0, squares - x.dot(right)) / rows;
+  const auto sigma = [&](int i) { return std::sqrt(left * inverse(i, i) * independent_rows) * unit(i); };
   out.inertia = x(0);
-  out.inertia_sigma_rel =
-      std::sqrt(left * inverse(0, 0) * independent_rows) * unit(0) / std::max(std::fabs(x(0)), 1e-300);
+  out.inflation = inverse(0, 0);
+  out.inertia_sigma_rel = sigma(0) / std::max(std::fabs(x(0)), 1e-300);
   out.coulomb = ((up ? x(1) : 0.0) + (down ? x(2) : 0.0)) / (static_cast<int>(up) + static_cast<int>(down));
+  out.coulomb_sigma = std::max(up ? sigma(1) : 0.0, down ? sigma(2) : 0.0);
   out.viscous = x(3);
   out.unexplained = left * rows / squares;
   out.typical = std::sqrt(squares / rows);
@@ -100,7 +107,7 @@ void Solve(const Motion& m, double independent_rows, RoughFit& out) {
 
 }  // namespace
 
-RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated) {
+RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape shape) {
   RoughFit out;
   const Signals s = MakeSignals(log, stated);
   const double sigma = std::max(kSmoothingRows, kSmoothing_s / log.period_s);
@@ -109,11 +116,16 @@ RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated) {
     if (m.counts[k] != 0) out.max_speed = std::max(out.max_speed, std::fabs(m.velocity[k]));
   const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
   out.travel = *high - *low;
+  out.middle = 0.5 * (*high + *low);
   if (!(out.travel > 0.0 && out.max_speed > 0.0)) {
     out.why_not = "the axis does not move in it";
     return out;
   }
-  Solve(m, kPerIndependentRow * sigma, out);
+  const double independent_rows = kPerIndependentRow * sigma;
+  if (shape == RoughShape::kFriction)
+    Solve<4>(m, s.position, independent_rows, out);
+  else
+    Solve<5>(m, s.position, independent_rows, out);
   return out;
 }
 

@@ -13,15 +13,21 @@ struct RoughFit {
   std::string why_not;  ///< nothing was found; empty: found
   double inertia = 0.0;
   double inertia_sigma_rel = 0.0;
+  double inflation = 1.0;  ///< of the inertia's variance by what else moves like the acceleration
   double coulomb = 0.0, viscous = 0.0;
+  double coulomb_sigma = 0.0;
   double unexplained = 1.0;    ///< share of the command's square
   bool one_direction = false;  ///< it never slides in the other
   double max_speed = 0.0;      ///< of q
   double travel = 0.0;         ///< between the extremes of q
+  double middle = 0.0;         ///< of them
   double typical = 0.0;        ///< root mean square of the command
 };
 
-/// In the units of the log's command.
-RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated);
+enum class RoughShape { kFriction, kFrictionAndSpring };
+
+/// In the units of the log's command. With a force that grows with the position (a spring, a joint's
+/// weight) an inertia is only known as far as it is not the same: on one sine it is.
+RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape shape = RoughShape::kFriction);
 
 }  // namespace contour::diagnosis

@@ -14,6 +14,8 @@ namespace {
 constexpr double kMostUnexplained = 0.25;
 /// [relative] With an inertia that is known worse they do as well.
 constexpr double kMostUncertain = 0.2;
+/// [variance inflation factor] The usual bound: beyond it other columns say what this one says.
+constexpr double kMostInflated = 10.0;
 /// No model is off by so much; degrees, counts, millimetres, milliseconds and gears are.
 constexpr double kOtherUnits = 10.0;
 
@@ -42,14 +44,19 @@ std::string Elsewhere(const AxisLog& log, const RoughFit& rough, double stated) 
 std::string WrongUnits(const AxisLog& log, const StatedAxis& stated) {
   if (std::all_of(log.command.begin(), log.command.end(), [](double u) { return u == 0.0; }))
     return Force(log) + " is 0 in every row";
-  const RoughFit rough = FitRoughly(log, stated);
+  const RoughFit rough = FitRoughly(log, stated, RoughShape::kFrictionAndSpring);
   if (!rough.why_not.empty() || !(rough.unexplained < kMostUnexplained) ||
-      !(rough.inertia_sigma_rel < kMostUncertain))
+      !(rough.inertia_sigma_rel < kMostUncertain) || !(rough.inflation < kMostInflated))
     return {};
-  if (rough.inertia < 0.0) return rough.coulomb < 0.0 ? TurnedRound(log, rough) : std::string();
+  if (rough.inertia < 0.0) {
+    const bool pushes = rough.coulomb + 2.0 * rough.coulomb_sigma < 0.0;
+    return pushes ? TurnedRound(log, rough) : std::string();
+  }
+  // Fast motion shows the motor alone, slow motion all of it.
   const double inertia = stated.motor_inertia + stated.load_inertia;
-  const double apart = std::fabs(std::log(rough.inertia / inertia));
-  return apart > std::log(kOtherUnits) ? Elsewhere(log, rough, inertia) : std::string();
+  const bool far =
+      rough.inertia > kOtherUnits * inertia || kOtherUnits * rough.inertia < stated.motor_inertia;
+  return far ? Elsewhere(log, rough, inertia) : std::string();
 }
 
 }  // namespace contour::diagnosis

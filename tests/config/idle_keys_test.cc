@@ -51,6 +51,24 @@ TEST(IdleKeys, OfTheLinearLawInTorqueModeAreThoseOfTheFilterAndTheMpc) {
   EXPECT_FALSE(Holds(keys, "estimator.cogging_rate")) << "both laws learn cogging";
 }
 
+TEST(IdleKeys, ByAScaleInTorqueModeTheMotorsMassIsLearnt) {
+  YamlValue tree = OpenMachineFile(ExampleMachine("single_axis.yaml"), {});
+  std::vector<std::string> errors;
+  MachineConfig config = ReadMachine(tree, errors);
+  config.control.friction = FrictionKind::kLinear;
+  config.axes.begin()->second.drive.mode = DriveMode::kCst;
+  const YamlValue stated = OpenMachineFile(ExampleMachine("single_axis.yaml"), {"estimator.mass_rate=0.1"});
+  const auto told = [&] {
+    const std::vector<std::string> sentences = IdleKeys(stated, config);
+    return std::any_of(sentences.begin(), sentences.end(),
+                       [](const std::string& s) { return s.find("mass_rate") != std::string::npos; });
+  };
+  config.axes.begin()->second.scale_loop.reset();
+  EXPECT_TRUE(told());
+  config.axes.begin()->second.scale_loop.emplace();
+  EXPECT_FALSE(told());
+}
+
 TEST(IdleKeys, OfTheFilterInTorqueModeAreThoseOfTheOtherLoop) {
   const std::vector<std::string> keys = Idle(With({Mode("cst"), "control.friction=srukf"}));
   EXPECT_FALSE(Holds(keys, "control.full.contour_bandwidth_Hz"));

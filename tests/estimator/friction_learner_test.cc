@@ -157,6 +157,19 @@ TEST(FrictionLearner, AWeightIsLearntAndIsNoFriction) {
   }
 }
 
+TEST(FrictionLearner, AWeightIsKeptAtRestThoughFrictionIsLessThanCommissioned) {
+  const auto learner = std::make_unique<FrictionLearner>(SetupWithWeight(3.0 * kLevel_N));
+  Bench bench(kLevel_N);
+  FrictionTerms truth = learner->parameters();
+  for (std::size_t i = friction_term::kDahl; i < friction_term::kConstant; ++i) truth[i] *= 0.8;
+  truth[friction_term::kConstant] = kLevel_N;
+  for (int k = 0; k < 8000; ++k) bench.Step(*learner, truth, 0.0);
+  ASSERT_GT(learner->Weight_N(), 0.2 * kLevel_N);
+  const FrictionTerms learnt = learner->parameters();
+  learner->Rest();
+  EXPECT_EQ(learner->parameters(), learnt);
+}
+
 TEST(FrictionLearner, NoWeightIsBeyondWhatMayPush) {
   const auto learner = std::make_unique<FrictionLearner>(SetupWithWeight(0.5 * kLevel_N));
   Bench bench(kLevel_N);

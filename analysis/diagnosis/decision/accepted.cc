@@ -75,6 +75,10 @@ ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted
   return threshold;
 }
 
+double ScatterOfLast(const Problem& problem, const Fit& fit) {
+  return OverdispersionOfLast(problem, fit) * kAcceptance.few_strokes * kAcceptance.few_strokes;
+}
+
 void KeepLeadingKnown(const Problem& problem, const Fit& current, const ScoreThreshold& threshold,
                       const std::vector<Hypothesis>& hypotheses, std::vector<Cause>& leading) {
   for (const Hypothesis& h : hypotheses) {
@@ -88,7 +92,7 @@ void KeepLeadingKnown(const Problem& problem, const Fit& current, const ScoreThr
     HeldOutGain(problem, current, h.fit, CauseNamed(kind).judged_at_scale, cause, blocks);
     if (cause.heldout_gain_low <= 0.0) continue;
     Fit scattered = h.fit;
-    scattered.covariance *= OverdispersionOfLast(problem, h.fit) * std::pow(kAcceptance.few_strokes, 2);
+    scattered.covariance *= ScatterOfLast(problem, h.fit);
     DescribeEffect(problem, scattered, h.fit.point.effects.size() - 1, cause);
     leading.push_back(std::move(cause));
     return;
@@ -105,8 +109,7 @@ void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypothes
   const Experiment experiment = DecidingExperiment(problem, cause.kind, cause.indistinguishable_from);
   cause.deciding_experiment = experiment.text;
   cause.deciding_program = experiment.program;
-  accepted.scatter.push_back(OverdispersionOfLast(problem, best.fit) * kAcceptance.few_strokes *
-                             kAcceptance.few_strokes);
+  accepted.scatter.push_back(ScatterOfLast(problem, best.fit));
   std::vector<BlockGain> blocks;
   HeldOutGain(problem, accepted.fit, best.fit, CauseNamed(cause.kind).judged_at_scale, cause, blocks);
   if (out.causes.empty()) out.blocks = blocks;
@@ -125,6 +128,10 @@ Cause TakeBack(std::size_t in_fit, Accepted& accepted, Diagnosis& out) {
   const std::size_t place = accepted.places[in_fit];
   accepted.places.erase(accepted.places.begin() + at);
   accepted.scatter.erase(accepted.scatter.begin() + at);
+  if (Point& slow = accepted.by_slow_observer; place < slow.effects.size()) {
+    slow.effects.erase(slow.effects.begin() + static_cast<std::ptrdiff_t>(place));
+    slow.amplitudes.erase(slow.amplitudes.begin() + static_cast<std::ptrdiff_t>(place));
+  }
   for (std::size_t& p : accepted.places)
     if (p > place) --p;
   auto cause = out.causes.begin();
@@ -135,6 +142,10 @@ Cause TakeBack(std::size_t in_fit, Accepted& accepted, Diagnosis& out) {
   if (cause == out.causes.begin()) out.blocks.clear();  // were of the first
   Cause taken = std::move(*cause);
   out.causes.erase(cause);
+  // Of waves several orders may be there.
+  if (std::any_of(out.causes.begin(), out.causes.end(), [&](const Cause& c) { return c.kind == taken.kind; }))
+    return taken;
+  accepted.leakage_of_kind.erase(taken.kind);
   for (Candidate& c : out.candidates)
     if (c.kind == taken.kind) c.accepted = false;
   return taken;

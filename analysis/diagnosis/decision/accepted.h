@@ -31,6 +31,10 @@ ScoreThreshold ScoreThresholdOf(const Problem& problem, const Accepted& accepted
                                 std::span<const Scored> scored, double by_extras,
                                 const DiagnoseOptions& options);
 
+/// By which the deviations of the last effect are larger, squared: its residual's scatter from block to block
+/// over white noise's, and that most effects show in a few strokes only.
+double ScatterOfLast(const Problem& problem, const Fit& fit);
+
 /// Takes the first of the hypotheses into the model and says so in `out`: its cause, what cannot be told from
 /// it, the experiment that would decide.
 void AcceptFirst(const Problem& problem, const std::vector<Hypothesis>& hypotheses,

@@ -37,10 +37,11 @@ void TakeOut(const Problem& problem, std::size_t in_fit, Accepted& accepted, Dia
   TakeBack(in_fit, accepted, out);
 }
 
-/// The last one's evidence and gain, over the same model without it.
-void TellLastAnew(const Problem& problem, const Accepted& accepted, Diagnosis& out) {
+/// The last one's evidence, gain and scatter, over the same model without it.
+void TellLastAnew(const Problem& problem, Accepted& accepted, Diagnosis& out) {
   const Fit without = FitPoint(problem, WithoutLast(problem, accepted.fit.point));
   const Effect& effect = *accepted.fit.point.effects.back();
+  accepted.scatter.back() = ScatterOfLast(problem, accepted.fit);
   Cause& cause = out.causes.back();
   cause.log_evidence_gain = 0.5 * (DropOf(problem, without, accepted.fit) - Penalty(effect));
   std::vector<BlockGain> blocks;

@@ -34,7 +34,9 @@ void FollowPlay(Problem& problem, Accepted& accepted, Fit& nominal) {
     fit = std::move(other);
     problem.LearnNoise(fit.point);
   }
-  if (!(problem.Build(fit.point).gap > 0.0)) {
+  std::vector<Fit> fits =
+      FitPoints(problem, {{std::move(fit.point), kEfforts.quick}, {nominal.point, kEfforts.quick}});
+  if (!(problem.Build(fits[0].point).gap > 0.0)) {
     // Nothing of it shows behind the quicker observer, which is no size either: the slow one's stands.
     problem.setup = slow;
     problem.Take(std::move(slow_noise));
@@ -42,8 +44,6 @@ void FollowPlay(Problem& problem, Accepted& accepted, Fit& nominal) {
     return;
   }
   accepted.by_slow_observer = accepted.fit.point;
-  std::vector<Fit> fits =
-      FitPoints(problem, {{std::move(fit.point), kEfforts.quick}, {nominal.point, kEfforts.quick}});
   accepted.fit = std::move(fits[0]);
   nominal = std::move(fits[1]);
 }

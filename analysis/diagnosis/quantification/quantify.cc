@@ -30,9 +30,7 @@ void Bootstrap(const Problem& problem, const Accepted& accepted, Fit fit, const 
   std::size_t index = 0;
   for (Cause& cause : out.causes) {
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
-    DescribeEffect(problem, fit, accepted.places[index], draws, cause);
-    WidenByObserver(problem, accepted, accepted.places[index++], cause);
-    WidenIntervals(problem, fit.point, cause);
+    DescribeEffect(problem, fit, accepted.places[index++], draws, cause);
   }
   out.bootstrap_runs = options.bootstrap_runs;
 }
@@ -52,7 +50,15 @@ void Describe(const Problem& problem, const Accepted& accepted, const Fit& fit, 
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
     Fit scattered = fit;
     scattered.covariance *= accepted.scatter[index];
-    DescribeEffect(problem, scattered, accepted.places[index], cause);
+    DescribeEffect(problem, scattered, accepted.places[index++], cause);
+  }
+}
+
+/// By what the fit's scatter does not know.
+void Widen(const Problem& problem, const Accepted& accepted, const Fit& fit, Diagnosis& out) {
+  std::size_t index = 0;
+  for (Cause& cause : out.causes) {
+    if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
     WidenByObserver(problem, accepted, accepted.places[index++], cause);
     WidenIntervals(problem, fit.point, cause);
   }
@@ -84,6 +90,7 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
       else
         Describe(problem, accepted, fit, out);
     } while (WithdrawIdle(problem, fit, accepted, out));
+    Widen(problem, accepted, fit, out);
     if (accepted.play_is_bound && problem.Build(fit.point).gap > 0.0)
       out.notes.emplace_back(
           "The play is at least as wide as stated: it shows in what noise leaves of a slow observer, which "

@@ -19,6 +19,9 @@ bool HoldsZero(const Cause& cause) {
 }  // namespace
 
 bool WithdrawIdle(const Problem& problem, Fit& fit, Accepted& accepted, Diagnosis& out) {
+  // A shape that nobody knows takes over what known causes explain, which are still what comes nearest.
+  if (std::any_of(out.causes.begin(), out.causes.end(), [](const Cause& c) { return Outside(c.kind); }))
+    return false;
   std::size_t in_fit = 0;
   for (const Cause& cause : out.causes) {
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit

@@ -31,6 +31,15 @@ TEST(StandsOut, CountsOfTheEncoderCome) {
   EXPECT_FALSE(stands_out(1000));
 }
 
+// A count that flickers at rest, of an encoder whose counts nobody stated.
+TEST(StandsOut, NothingStandsOutFromALogThatRestsMostOfTheTime) {
+  std::vector<double> values(4000, 0.0);
+  for (std::size_t k = 0; k < 1500; ++k) values[k] = (k % 2 == 0 ? 1.0 : -1.0);
+  values[2500] = 1.0;
+  StandsOut stands_out(values, 0.0);
+  EXPECT_FALSE(stands_out(2500));
+}
+
 TEST(StandsOut, MissingValuesAreNone) {
   std::vector<double> values = Noise();
   for (std::size_t k = 0; k < 900; ++k) values[k] = std::numeric_limits<double>::quiet_NaN();

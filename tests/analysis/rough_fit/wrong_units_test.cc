@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstddef>
+#include <numbers>
 #include <string>
 
 #include "tests/analysis/support/hidden_axis.h"
@@ -42,6 +45,30 @@ TEST(WrongUnits, ASignThatIsTurnedRoundIsNoticed) {
   const std::string text = Complaint(axis);
   EXPECT_NE(text.find("opposite signs"), std::string::npos) << text;
   EXPECT_NE(text.find("torque_Nm=HEADER*-1"), std::string::npos) << text;
+}
+
+// A joint above the horizontal: on one slow sine its weight looks like so many times its inertia.
+TEST(WrongUnits, AForceOfThePositionIsNoOtherInertia) {
+  test::HiddenAxis axis = Made();
+  const double inertia = axis.stated.motor_inertia + axis.stated.load_inertia,
+               w = 2.0 * std::numbers::pi * 0.5;
+  for (const double spring : {20.0, -20.0}) {
+    const double stiffness = spring * inertia * w * w, amplitude = 5.0;
+    const double coulomb = 0.05 * std::fabs(stiffness) * amplitude;
+    for (std::size_t k = 0; k < axis.log.size(); ++k) {
+      const double t = static_cast<double>(k) * axis.log.period_s;
+      const double q = amplitude * std::sin(w * t), a = -w * w * q;
+      axis.log.position[k] = q;
+      axis.log.command[k] = inertia * a - stiffness * q + std::copysign(coulomb, std::cos(w * t));
+    }
+    EXPECT_EQ(Complaint(axis), "") << spring;
+  }
+}
+
+TEST(WrongUnits, FastMotionMayShowTheMotorAlone) {
+  test::HiddenAxis axis = Made();
+  axis.stated.load_inertia = 20.0 * axis.stated.motor_inertia;
+  EXPECT_EQ(Complaint(axis), "");
 }
 
 TEST(WrongUnits, ACommandOfNothingIsNoticed) {

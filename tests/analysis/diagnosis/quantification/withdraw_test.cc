@@ -63,6 +63,25 @@ TEST_F(WithdrawTest, WhatIsZeroWithinItsIntervalGoesAndTheRestIsFittedAgain) {
   EXPECT_FALSE(Withdraw()) << "the torque is not zero";
 }
 
+TEST_F(WithdrawTest, WhereASlowObserversFitEndedGoesAlong) {
+  Accept({"cable_spring", "constant_torque"});
+  Size(0, "torque_at_stroke_end_Nm", {-0.001, -0.003, 0.0005});
+  Size(1, "torque_Nm", {0.02, 0.018, 0.022});
+  accepted_.by_slow_observer = fit_.point;
+  ASSERT_TRUE(Withdraw());
+  ASSERT_EQ(accepted_.by_slow_observer.effects.size(), 1U);
+  EXPECT_EQ(accepted_.by_slow_observer.effects[0]->kind, "constant_torque");
+  EXPECT_EQ(accepted_.by_slow_observer.amplitudes.size(), 1U);
+}
+
+TEST_F(WithdrawTest, BesideAShapeFromOutsideTheCatalogueNothingGoes) {
+  Accept({"cable_spring"});
+  Size(0, "torque_at_stroke_end_Nm", {0.0001, -0.002, 0.002});
+  out_.causes.emplace_back();
+  out_.causes.back().kind = "outside:force of time";
+  EXPECT_FALSE(Withdraw());
+}
+
 TEST_F(WithdrawTest, OneNumberBeyondZeroIsEnoughToStay) {
   Accept({"constant_torque", "friction_drift"});
   Size(0, "torque_Nm", {0.02, 0.018, 0.022});
