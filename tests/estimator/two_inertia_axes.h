@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "control/monitored_axis.h"
 #include "core/two_inertia_axis.h"
 #include "core/two_inertia_loop.h"
 #include "estimator/two_inertia_estimator.h"
@@ -77,6 +78,7 @@ inline TwoInertiaEstimator::Setup EstimatorOf(const FamilyAxis& a, double period
   s.filter = AxisEstimator::SetupOf(m, f, {}, period_s, truth.lag_s, truth.lead_m / 1048576);
   s.axis = ToTwoInertiaAxis(m, f.sigma2_Ns_m, truth.lag_s, 1);
   s.loop = DesignLoop(s.axis, kSteadyTuning, period_s, false);
+  s.external_force_N = kExternalShare * a.rated_N;
   s.position_min_m = -0.2;
   s.position_max_m = 0.2;
   return s;
