@@ -2,18 +2,27 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/base_there.h"
 #include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
 namespace {
 
+bool HoldsZero(const Interval& i) { return i.low <= 0.0 && i.high >= 0.0; }
+
+/// All of its numbers are zero within their intervals; or the one that says how large it is, of a cause that
+/// chance may bring about. Where chance cannot, that interval is wide since other numbers of the cause do
+/// nearly the same.
 bool HoldsZero(const Cause& cause) {
-  return !cause.parameters.empty() &&
+  const auto main = cause.parameters.find(std::string(*CauseNamed(cause.kind).main_parameter));
+  if (main == cause.parameters.end() || !HoldsZero(main->second)) return false;
+  return 2.0 * cause.log_evidence_gain < kAcceptance.no_chance_score ||
          std::all_of(cause.parameters.begin(), cause.parameters.end(),
-                     [](const auto& p) { return p.second.low <= 0.0 && p.second.high >= 0.0; });
+                     [](const auto& p) { return HoldsZero(p.second); });
 }
 
 }  // namespace

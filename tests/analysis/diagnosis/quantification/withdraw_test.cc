@@ -82,14 +82,18 @@ TEST_F(WithdrawTest, BesideAShapeFromOutsideTheCatalogueNothingGoes) {
   EXPECT_FALSE(Withdraw());
 }
 
-TEST_F(WithdrawTest, OneNumberBeyondZeroIsEnoughToStay) {
+TEST_F(WithdrawTest, OneNumberBeyondZeroIsEnoughToStayWhereChanceIsOutOfTheQuestion) {
   Accept({"constant_torque", "friction_drift"});
   Size(0, "torque_Nm", {0.02, 0.018, 0.022});
   Size(1, "change_rel", {0.1, -0.1, 0.3});
   Size(1, "time_constant_s", {30.0, 10.0, 90.0});
+  out_.causes[1].log_evidence_gain = 60.0;
   EXPECT_FALSE(Withdraw());
   EXPECT_EQ(out_.causes.size(), 2U);
   EXPECT_EQ(out_.blocks.size(), 1U);
+  out_.causes[1].log_evidence_gain = 10.0;
+  EXPECT_TRUE(Withdraw());
+  EXPECT_EQ(out_.causes.size(), 1U);
 }
 
 TEST_F(WithdrawTest, TheLastOneOfAllMayGoToo) {
