@@ -16,8 +16,6 @@ namespace {
 constexpr double kFree = 1.0;
 /// A number that is known no better is not known.
 constexpr double kMostUncertain = 0.7;
-/// [share of the command's square] More that the motion does not explain is no friction's.
-constexpr double kMostUnexplained = 0.25;
 /// Two estimates of one inertia.
 constexpr double kFarApart = 1.5;
 constexpr FitEffort kThorough = {.most_steps = 40, .most_refreshes = 12, .close_enough = 0.1};

@@ -24,6 +24,9 @@ struct RoughFit {
   double typical = 0.0;        ///< root mean square of the command
 };
 
+/// [share of the command's square] With more that the motion does not explain, least squares say little.
+inline constexpr double kMostUnexplained = 0.25;
+
 enum class RoughShape { kFriction, kFrictionAndSpring };
 
 /// In the units of the log's command. With a force that grows with the position (a spring, a joint's

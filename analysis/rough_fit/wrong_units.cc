@@ -10,8 +10,6 @@
 namespace contour::diagnosis {
 namespace {
 
-/// [share of the command's square] With more that the motion does not explain, least squares say little.
-constexpr double kMostUnexplained = 0.25;
 /// [relative] With an inertia that is known worse they do as well.
 constexpr double kMostUncertain = 0.2;
 /// [variance inflation factor] The usual bound: beyond it other columns say what this one says.
