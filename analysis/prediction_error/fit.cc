@@ -53,6 +53,11 @@ class Descent {
     if (known_ == columns) {
       fit_ = known;
       fit_.converged = false;
+    } else if (known_ > columns) {
+      known_ = columns;
+      fit_.jacobian = known.jacobian.leftCols(columns);
+      fit_.raw_jacobian = known.raw_jacobian.leftCols(columns);
+      fit_.normal = known.normal.topLeftCorner(columns, columns);
     } else {
       fit_.jacobian.resize(size_, columns);
       fit_.raw_jacobian.resize(size_, columns);
@@ -92,16 +97,11 @@ class Descent {
         fit_.residual = std::move(white);
         break;
       case Stage::kColumns: {
-        if (i == 0) {
-          middle_raw_ = std::move(raw);
-          middle_white_ = std::move(white);
-          break;
-        }
-        const std::size_t at = static_cast<std::size_t>(from_) + i - 1;
+        const std::size_t at = static_cast<std::size_t>(from_) + i;
         const double step = StepOf(problem_, fit_.point, at);
         const auto column = static_cast<Eigen::Index>(at);
-        fit_.raw_jacobian.col(column) = (ColumnOf(raw) - ColumnOf(middle_raw_)) / step;
-        fit_.jacobian.col(column) = (ColumnOf(white) - ColumnOf(middle_white_)) / step;
+        fit_.raw_jacobian.col(column) = (ColumnOf(raw) - ColumnOf(fit_.raw)) / step;
+        fit_.jacobian.col(column) = (ColumnOf(white) - ColumnOf(fit_.residual)) / step;
         break;
       }
       case Stage::kStep: {
@@ -124,7 +124,6 @@ class Descent {
   void Proceed() {
     switch (stage_) {
       case Stage::kColumns:
-        middle_raw_ = middle_white_ = {};
         MakeConsistent(problem_, fit_.point, fit_.jacobian);
         MakeConsistent(problem_, fit_.point, fit_.raw_jacobian);
         AddProducts(fit_.jacobian, 0, fit_.normal);
@@ -169,7 +168,7 @@ class Descent {
       fit_.raw_jacobian.resize(size_, columns);
       fit_.normal.resize(columns, columns);
     }
-    std::vector<Point> around = {fit_.point};
+    std::vector<Point> around;
     for (Eigen::Index i = from; i < columns; ++i) {
       Eigen::VectorXd by = Eigen::VectorXd::Zero(columns);
       by(i) = StepOf(problem_, fit_.point, static_cast<std::size_t>(i));
@@ -292,7 +291,6 @@ class Descent {
   std::vector<Point> tried_;
   std::size_t chosen_ = 0;
   std::vector<double> chosen_raw_, chosen_white_;
-  std::vector<double> middle_raw_, middle_white_;  // of the point itself, in the columns' sub-steps
 };
 
 }  // namespace

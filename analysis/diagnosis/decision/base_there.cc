@@ -26,6 +26,10 @@ Point WithoutLast(const Problem& problem, Point point) {
   return Without(problem, std::move(point), last);
 }
 
+bool MayLieLower(const Fit& there, const Fit& here, double enough, double lost) {
+  return there.cost - there.promised < here.cost - enough || !(there.cost < here.cost + lost);
+}
+
 bool BaseLiesThere(const Problem& problem, const Hypothesis& r, const FitEffort& effort, Fit& current) {
   const double drop = current.cost - r.fit.cost;
   if (!(drop > 0.0)) return false;

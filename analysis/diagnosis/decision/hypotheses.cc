@@ -99,17 +99,6 @@ std::vector<InitialGuess> Far(const Problem& problem, const Fit& current, const 
   return out;
 }
 
-}  // namespace
-
-bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const ScoreThreshold& threshold,
-                  const std::vector<std::string>& tried) {
-  return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
-    return !Outside(s.effect->kind) && !Among(tried, s) && Promising(problem, s, threshold);
-  });
-}
-
-namespace {
-
 /// Next to each guess, those of kinds that do the same to an axis that slides. Which of them the score test
 /// likes best also depends on the bristle's numbers, which are not fitted yet.
 void GuessSameInSliding(const Problem& problem, const Fit& current, const std::vector<Scored>& scored,
@@ -252,6 +241,13 @@ void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
 
 }  // namespace
 
+bool MorePromised(const Problem& problem, const std::vector<Scored>& scored, const ScoreThreshold& threshold,
+                  const std::vector<std::string>& tried) {
+  return std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+    return !Outside(s.effect->kind) && !Among(tried, s) && Promising(problem, s, threshold);
+  });
+}
+
 std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current,
                                       const std::vector<Scored>& scored, const ScoreThreshold& threshold,
                                       std::vector<std::string>& tried) {
@@ -364,11 +360,11 @@ bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
     if (!r.given_up) RewhitenSensitivities(problem, r.fit);
   // A basin may end in two places: the base goes on from where the best hypothesis's lies, too.
   const double best = hypotheses[0].score;
-  // A base is as well known as the scores need it.
-  FitEffort base = FitEffort{};
+  FitEffort base;  // as well known as the scores need it
   base.close_enough = std::max(base.close_enough, kScreening.negligible_share * best);
+  const Point there = WithoutLast(problem, hypotheses[0].fit.point);
   std::vector<InitialGuess> guesses = {{current.point, base, nullptr, &current},
-                                       {WithoutLast(problem, hypotheses[0].fit.point), base}};
+                                       {there, WithTheirSensitivities(), &hypotheses[0].fit}};
   std::vector<std::size_t> again;
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     const Hypothesis& r = hypotheses[i];
@@ -380,9 +376,11 @@ bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   const double before = hypotheses[0].fit.cost;
   const Effect* const first_before = &hypotheses[0].effect();
   std::vector<Fit> fits = FitPoints(problem, std::move(guesses));
-  const bool lower = fits[1].cost < fits[0].cost;
   // Most of what the best hypothesis was to explain.
-  const bool elsewhere = fits[0].cost - fits[1].cost > kHypotheses.half_share * (fits[0].cost - before);
+  const double most = kHypotheses.half_share * (fits[0].cost - before);
+  if (MayLieLower(fits[1], fits[0], base.close_enough, most)) fits[1] = FitPoint(problem, there, base);
+  const double below = fits[0].cost - fits[1].cost;
+  const bool lower = below > base.close_enough;
   current = std::move(fits[lower ? 1 : 0]);
   for (std::size_t i = 0; i < again.size(); ++i) hypotheses[again[i]].fit = std::move(fits[i + 2]);
   for (Hypothesis& r : hypotheses)
@@ -393,7 +391,7 @@ bool FitAgain(const Problem& problem, Fit& current, std::vector<Hypothesis>& hyp
   OneOfEach(hypotheses);
   if (&hypotheses[0].effect() != first)
     hypotheses[0].fit = FitOn(problem, std::move(hypotheses[0].fit), QuickToTheEnd());
-  if (lower && elsewhere) return true;
+  if (lower && below > most) return true;
   return &hypotheses[0].effect() != first_before && BaseLiesThere(problem, hypotheses[0], base, current);
 }
 

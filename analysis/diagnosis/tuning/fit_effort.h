@@ -31,6 +31,13 @@ struct EffortTuning {
 
 inline constexpr EffortTuning kEfforts;
 
+/// A quick one with the sensitivities that it is given.
+constexpr FitEffort WithTheirSensitivities() {
+  FitEffort effort = kEfforts.quick;
+  effort.most_refreshes = 0;
+  return effort;
+}
+
 /// A quick one whose end is needed as exactly as any.
 constexpr FitEffort QuickToTheEnd() {
   return {.most_steps = kEfforts.quick.most_steps, .most_refreshes = kEfforts.far.most_refreshes};

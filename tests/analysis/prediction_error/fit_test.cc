@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "analysis/prediction_error/refit.h"
 #include "tests/analysis/support/learnt_problem.h"
@@ -66,6 +67,26 @@ TEST(Fit, SeveralFitsTogetherAreEachTheSameAsAlone) {
   ASSERT_EQ(both.size(), 2U);
   EXPECT_NEAR(both[0].cost, both[1].cost, 0.5);
   EXPECT_NEAR(both[1].cost, FitPoint(Made().problem, far).cost, 0.5);
+}
+
+// Of a larger model, that is: its last columns are for what the start does without.
+TEST(Fit, SensitivitiesOfALargerModelServe) {
+  auto effect = std::make_shared<Effect>();
+  effect->steps = {1e-3};
+  effect->apply = [](const std::vector<double>& a, AxisModel& m) { m.offset += a[0]; };
+  Point larger = Made().point;
+  larger.effects.push_back(effect);
+  larger.amplitudes.push_back({0.0});
+  const Fit known = FitPoint(Made().problem, larger);
+  FitEffort held;
+  held.most_refreshes = 0;
+  held.covariance = false;
+  Point start = Made().point;
+  start.base[IndexOf("Fc")] = 0.02;
+  const Fit fit = std::move(FitPoints(Made().problem, {{start, held, &known}})[0]);
+  EXPECT_EQ(fit.jacobian.cols(), known.jacobian.cols() - 1);
+  EXPECT_TRUE(fit.point.effects.empty());
+  EXPECT_NEAR(fit.cost, FitPoint(Made().problem, start).cost, 0.5);
 }
 
 TEST(Fit, AmplitudesStayInsideTheirBounds) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 
 #include "analysis/diagnosis/screening/score.h"
@@ -26,6 +27,22 @@ TEST_F(BaseThereTest, ABaseThatLiesWhereTheHypothesisDoesExplainsIt) {
   EXPECT_TRUE(BaseLiesThere(axis_.problem, torque, FitEffort{}, current));
   EXPECT_NEAR(current.cost, axis_.base.cost, 1.0);
   EXPECT_TRUE(current.point.effects.empty());
+}
+
+TEST(MayLieLower, WhatPromisesToOrSaysNothing) {
+  const auto fit = [](double cost, double promised) {
+    Fit out;
+    out.cost = cost;
+    out.promised = promised;
+    return out;
+  };
+  const Fit here = fit(1000.0, 0.0);
+  EXPECT_FALSE(MayLieLower(fit(1000.0, 0.0), here, 1.0, 50.0)) << "the same place";
+  EXPECT_FALSE(MayLieLower(fit(1020.0, 10.0), here, 1.0, 50.0)) << "above, and stays above";
+  EXPECT_TRUE(MayLieLower(fit(1020.0, 30.0), here, 1.0, 50.0)) << "promises to end below";
+  EXPECT_TRUE(MayLieLower(fit(990.0, 0.0), here, 1.0, 50.0)) << "below";
+  EXPECT_TRUE(MayLieLower(fit(1e6, 0.0), here, 1.0, 50.0)) << "led astray by sensitivities that do not serve";
+  EXPECT_TRUE(MayLieLower(fit(std::nan(""), 0.0), here, 1.0, 50.0));
 }
 
 TEST_F(BaseThereTest, NumbersThatAHypothesisFreesAreWhereTheBaseBegins) {
