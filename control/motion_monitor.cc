@@ -68,6 +68,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   doubt_lasts_ = false;
   astray_m_ = 0.0;
   scale_apart_ = 0;
+  swing_.Restart();
 }
 
 // At skipped grid points the drives hold the last torque.
@@ -265,7 +266,8 @@ Reason MotionMonitor::Momentum(double velocity_m_s, double explained_N, bool sta
   const bool driven =
       won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0 && std::abs(velocity_m_s) > axis_.slide_m_s;
   const double allowed_N =
-      (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N : explained_N) +
+      (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N + swing_.Left_N(t_)
+              : explained_N) +
       jitter_N_ + std::abs(on_its_way_N_) + ringing_N_;
   jitter_N_ *= 1.0 - t_.filter;
   beyond_ = std::abs(unexplained_N_) > allowed_N ? beyond_ + 1 : 0;
@@ -387,7 +389,8 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
     // What it would be with a drive that answers a cycle later than stated.
     const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
     on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
-    const double explained_N = t_.Unexplained_N(velocity_m_s, force_N_);
+    swing_.See(missing_N - unexplained_N_, force_N - force_N_, t_);
+    const double explained_N = t_.Unexplained_N(velocity_m_s, force_N_) + swing_.Left_N(t_);
     keep(off_.Acts(Watch::kMomentum),
          Momentum(velocity_m_s, explained_N, std::abs(s.position_m - position_m_) <= t_.flicker_m));
     if (off_.Acts(Watch::kMomentum)) KeepDoubt(s, velocity_m_s, explained_N);

@@ -6,6 +6,7 @@
 #include "control/drive_push.h"
 #include "control/motion_thresholds.h"
 #include "control/report_turns.h"
+#include "control/screw_swing.h"
 #include "control/torque_constant_watch.h"
 #include "core/reason.h"
 #include "core/state_keeper.h"
@@ -37,8 +38,8 @@ struct MotionSample {
 ///   or it stands under a torque that changed by more than friction and outside forces explain;
 /// - jump: the reading is further from its prediction than any force can take the motor;
 /// - momentum: u - m a, low-passed, is the force that neither torque nor motion explain (De Luca et al.,
-///   collision detection by generalised momentum); beyond friction and outside forces it is torque without
-///   motion, or motion against the torque;
+///   collision detection by generalised momentum); beyond friction, outside forces and what motor and table
+///   swing by against each other (ScrewSwing) it is torque without motion, or motion against the torque;
 /// - delivery: the drive reports another torque than it was sent;
 /// - scale: table and motor are further apart than the screw can wind up.
 class MotionMonitor {
@@ -59,7 +60,7 @@ class MotionMonitor {
          slower_force_N_, rest_least_N_, rest_most_N_, drive_push_, same_turns_, near_turns_, turns_N_,
          settling_N_, least_N_, most_N_, same_, same_reference_m_, near_, near_position_m_, near_reference_m_,
          near_periods_, least_lead_m_, most_lead_m_, near_least_N_, near_most_N_, same_gone_, near_gone_,
-         pushed_least_N_, pushed_most_N_, pushed_periods_, on_its_way_N_, ringing_N_, force_N_,
+         pushed_least_N_, pushed_most_N_, pushed_periods_, on_its_way_N_, ringing_N_, swing_, force_N_,
          unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_,
          doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
   }
@@ -139,6 +140,7 @@ class MotionMonitor {
   std::uint32_t same_gone_ = 0, near_gone_ = 0;  ///< periods that the reference has been too far for that
   double on_its_way_N_ = 0.0;                    ///< low-passed: a period's change of the torque
   double ringing_N_ = 0.0;                       ///< csp: that changes of torque leave in the filtered force
+  ScrewSwing swing_;                             ///< of motor and table
   double force_N_ = 0.0;                         ///< low-passed torque
   double unexplained_N_ = 0.0;                   ///< low-passed u - m a
   double jitter_N_ = 0.0;                        ///< of it, what a SYNC that came late may have made

@@ -11,6 +11,8 @@ namespace {
 constexpr double kBelowMode = 3.0;
 // Oscillations of a screw whose damping is not known are taken to last for so many periods of its mode.
 constexpr double kRinging_periods = 5.0;
+// A screw may be so many times softer than stated: what catalogues leave open.
+constexpr double kSofterScrew = 2.0;
 // Of the torque limit, what is left over friction and outside forces must do to be told from nothing.
 constexpr double kSureOfLimit = 0.9;
 // Largest share of the torque that may go unexplained: a table that was made much heavier than stated.
@@ -141,6 +143,15 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   // A step rings by the motor's acceleration beyond that of a rigid axis; the filter passes so much of it.
   const double filtered_s = -period_s / std::log1p(-t.filter);
   t.ringing = t.mass_kg * t.screw_share_1_kg / std::hypot(1.0, mode_rad_s * filtered_s);
+  // Half a swing: that of a square has come round. The mean of a constant comes out right in any case.
+  t.swing_filter = 1.0 - std::exp(-period_s * mode_rad_s / std::numbers::pi);
+  // A first-order filter passes f / |z - (1 - f)| and takes out (1 - f) |z - 1| / |z - (1 - f)|.
+  const double least_mode_rad_s = mode_rad_s / std::sqrt(kSofterScrew * (1.0 + c.mass_error_rel));
+  const double turned_rad = std::min(least_mode_rad_s * period_s, std::numbers::pi);
+  t.swing_left = t.filter / ((1.0 - t.filter) * 2.0 * std::sin(0.5 * turned_rad));
+  // A swing that fades within that many periods grows to pi times as many strokes of what stirs it.
+  t.swing_gain =
+      std::numbers::pi * kRinging_periods * (1.0 + c.mass_error_rel) * a.table_mass_kg / t.motor_kg;
   t.unexplained_rel =
       std::clamp(1.0 - (t.friction_N + t.external_N) / std::max(sure_N, 1e-9), 0.0, kMostUnexplained);
   t.delivery_N = c.reported_torque_error_rel * a.rated_force_N;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/control/motion_rig.h"
 
@@ -76,6 +77,68 @@ TEST(MonitorOfAScrew, ATorqueThatSwingsLeavesItRingingAndNothingIsReversed) {
         }
       }
       EXPECT_EQ(reason, Reason::kNone) << Name(reason) << ", " << stiffness_N_m << " N/m, " << swings;
+    }
+}
+
+/// A table that slides behind its motor while a torque goes through their mode, in torque mode: what the
+/// monitor says. `softer`: the screw is so many times softer than stated.
+Reason ShakenThroughTheMode(double table_over_motor, double softer, double& largest_ma_N) {
+  MonitoredAxis axis = Axis();
+  axis.motor_mass_kg = 177.0;
+  axis.table_mass_kg = table_over_motor * axis.motor_mass_kg;
+  const double stiffness_N_m = 70e6;
+  axis.stiffness_N_m = softer * stiffness_N_m;
+  axis.rated_force_N = 3500.0;
+  axis.force_limit_N = 2.5 * axis.rated_force_N;
+  axis.external_force_N = 0.25 * axis.rated_force_N;
+  MotionMonitor monitor(axis, {}, kPeriod_s);
+  const double reduced_kg =
+      axis.motor_mass_kg * axis.table_mass_kg / (axis.motor_mass_kg + axis.table_mass_kg);
+  const double mode_Hz = std::sqrt(stiffness_N_m / reduced_kg) / (2.0 * std::numbers::pi);
+  const double damping_Ns_m = 0.06 * std::sqrt(stiffness_N_m * reduced_kg);
+  constexpr double kSlides_m_s = 0.02, kSweep_s = 0.5;
+  double motor_m = 0.0, motor_m_s = kSlides_m_s, table_m = 0.0, table_m_s = kSlides_m_s;
+  double acting_N = 0.0, sent_N = 0.0;
+  largest_ma_N = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    MotionSample s;
+    s.enabled = s.fresh = true;
+    s.reference_m = kSlides_m_s * kPeriod_s * k;
+    s.position_m = axis.count_m * std::floor(motor_m / axis.count_m);
+    s.sent_force_N = sent_N;
+    s.reported_force_N = acting_N;
+    if (const Reason reason = monitor.Step(s); reason != Reason::kNone) return reason;
+    acting_N = sent_N;
+    const double t = std::fmod(kPeriod_s * k, kSweep_s);
+    const double from_Hz = 0.3 * mode_Hz, growth = (0.48 / kPeriod_s - from_Hz) / kSweep_s;
+    sent_N = axis.Fc_N + axis.sigma2_Ns_m * kSlides_m_s +
+             0.075 * axis.rated_force_N * std::sin(2.0 * std::numbers::pi * (from_Hz + 0.5 * growth * t) * t);
+    constexpr int kSub = 50;
+    constexpr double kStep_s = kPeriod_s / kSub;
+    for (int i = 0; i < kSub; ++i) {
+      const double screw_N = stiffness_N_m * (motor_m - table_m) + damping_Ns_m * (motor_m_s - table_m_s);
+      const double friction_N = axis.Fc_N * std::tanh(table_m_s / 1e-4) + axis.sigma2_Ns_m * table_m_s;
+      const double motor_m_s2 = (acting_N - screw_N) / axis.motor_mass_kg;
+      motor_m_s += motor_m_s2 * kStep_s;
+      table_m_s += (screw_N - friction_N) / axis.table_mass_kg * kStep_s;
+      motor_m += motor_m_s * kStep_s;
+      table_m += table_m_s * kStep_s;
+      const double ma_N = (axis.motor_mass_kg + axis.table_mass_kg) * std::abs(motor_m_s2);
+      largest_ma_N = std::max(largest_ma_N, ma_N);
+    }
+  }
+  return Reason::kNone;
+}
+
+// At its mode a light motor goes to and fro by many times what its torque makes of both masses, and between
+// antiresonance and mode it goes against it. That is a screw, and no encoder that counts backwards.
+TEST(MonitorOfAScrew, ATorqueThatGoesThroughTheModeOfAHeavyTableReversesNothing) {
+  for (const double table_over_motor : {0.1, 0.5, 1.0, 1.75, 2.5})
+    for (const double softer : {0.5, 1.0, 1.5, 2.0}) {
+      double largest_ma_N = 0.0;
+      const Reason reason = ShakenThroughTheMode(table_over_motor, softer, largest_ma_N);
+      EXPECT_EQ(reason, Reason::kNone) << Name(reason) << ", table over motor " << table_over_motor
+                                       << ", softer " << softer << ", m a " << largest_ma_N << " N";
     }
 }
 
