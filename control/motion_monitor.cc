@@ -389,7 +389,8 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
     // What it would be with a drive that answers a cycle later than stated.
     const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
     on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
-    swing_.See(missing_N - unexplained_N_, force_N - force_N_, t_);
+    // A drive's own loop brakes the screw, and what its report changes by at once rings as ringing_N_ says.
+    if (!axis_.in_cascade) swing_.See(missing_N - unexplained_N_, force_N - force_N_, t_);
     const double explained_N = t_.Unexplained_N(velocity_m_s, force_N_) + swing_.Left_N(t_);
     keep(off_.Acts(Watch::kMomentum),
          Momentum(velocity_m_s, explained_N, std::abs(s.position_m - position_m_) <= t_.flicker_m));

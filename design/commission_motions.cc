@@ -25,6 +25,15 @@ constexpr double kHighestBegin_Hz = 100.0;
 /// The chirp moves the axis to and fro by this share of the slowest stroke's speed at most, should the masses
 /// be as light as a catalogue allows: the bristle must not turn back.
 constexpr double kShareOfSlide = 0.6;
+constexpr double kChirpPeriod_s = 0.5;
+/// At the mode the motor swings, all the more where its table is the heavier of the two. It must not turn
+/// back either, or the stroke falls into pieces that are too short to see the screw in. The slowest stroke is
+/// up to this share of the way per second for it, and the chirp smaller beyond.
+constexpr double kQuickestSlowStroke = 0.5;
+/// Damping of a screw is in no catalogue.
+constexpr double kLeastOfDamping = 0.5;
+/// A sweep's oscillation overshoots what it leaves by that much.
+constexpr double kSweepOvershoot = 1.17;
 
 /// Torques in steps up to beyond break-away, both ways: shares of the stated level.
 std::string TorqueSteps(double level_Nm, double most_Nm) {
@@ -96,13 +105,17 @@ class Motions {
     const double travel = limits_.travel_mm;
     std::vector<double> slides;
     for (const double speed : ShakenSpeeds_mm_s(travel)) slides.push_back(std::min(speed, 0.8 * top_mm_s_));
-    const double begin_Hz = ChirpBegin_Hz(1e-3 * *std::min_element(slides.begin(), slides.end()));
-    BothWays(
-        FormatText("chirp while sliding, %.0f to %.0f Hz", begin_Hz, top_Hz), slides,
-        FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: %.1f, "
-                   "frequency_max_hz: %.0f, "
-                   "period_s: 0.5}\n",
-                   name_.c_str(), CommissionShaking_N(axis_) * mechanics_.radius_m_rad, begin_Hz, top_Hz));
+    double& slowest = *std::min_element(slides.begin(), slides.end());
+    double force_N = CommissionShaking_N(axis_);
+    const double stirred_s_kg = SwingPerForce_s_kg(top_Hz - ChirpBegin_Hz(force_N, 1e-3 * slowest));
+    const double most_mm_s = std::max(slowest, std::min(kQuickestSlowStroke * travel, 0.8 * top_mm_s_));
+    slowest = std::clamp(1e3 * force_N * stirred_s_kg, slowest, most_mm_s);
+    force_N = std::min(force_N, 1e-3 * slowest / stirred_s_kg);
+    const double begin_Hz = ChirpBegin_Hz(force_N, 1e-3 * slowest);
+    BothWays(FormatText("chirp while sliding, %.0f to %.0f Hz", begin_Hz, top_Hz), slides,
+             FormatText("torque: {axis: %s, kind: chirp, amplitude_Nm: %.6f, frequency_min_hz: %.1f, "
+                        "frequency_max_hz: %.0f, period_s: %g}\n",
+                        name_.c_str(), force_N * mechanics_.radius_m_rad, begin_Hz, top_Hz, kChirpPeriod_s));
   }
 
   std::vector<CommissionMotion> Take() { return std::move(motions_); }
@@ -119,12 +132,25 @@ class Motions {
     if (!LedByDrive(axis_)) return {std::max(3.0, travel / 4.0), 0.75 * travel, travel};
     return {0.5 * travel, 0.5 * travel, 0.75 * travel, travel};
   }
-  [[nodiscard]] double ChirpBegin_Hz(double slowest_m_s) const {
+  [[nodiscard]] double ChirpBegin_Hz(double force_N, double slowest_m_s) const {
     const Mechanics& m = mechanics_;
     const double mode_Hz = ModeFrequency_Hz(TwoInertiaAxisOf(axis_));
-    const double least_Hz = CommissionShaking_N(axis_) / (kLightestOfCatalogue * m.mass_kg * 2.0 *
-                                                          std::numbers::pi * kShareOfSlide * slowest_m_s);
+    const double least_Hz =
+        force_N / (kLightestOfCatalogue * m.mass_kg * 2.0 * std::numbers::pi * kShareOfSlide * slowest_m_s);
     return std::min(kHighestBegin_Hz, std::max(kBelowMode * mode_Hz, least_Hz));
+  }
+
+  /// Speed of the motor's swing at the mode per force of a chirp that goes through `range_Hz`, with a motor
+  /// as light and a screw as little damped as may be: M2 / (M1 M) over the rate at which it fades, which for
+  /// a frequency that grows by g per second is one of 2 sqrt(g) without damping.
+  [[nodiscard]] double SwingPerForce_s_kg(double range_Hz) const {
+    TwoInertiaAxis a = TwoInertiaAxisOf(axis_);
+    a.motor_mass_kg *= kLightestOfCatalogue;
+    const double mass_kg = a.motor_mass_kg + a.table_mass_kg;
+    const double damping_1_s =
+        kLeastOfDamping * a.damping_Ns_m * mass_kg / (a.motor_mass_kg * a.table_mass_kg);
+    const double swept_1_s = 2.0 / (kSweepOvershoot * std::sqrt(kChirpPeriod_s / range_Hz));
+    return a.table_mass_kg / (a.motor_mass_kg * mass_kg * (damping_1_s + swept_1_s));
   }
 
   void BothWays(const std::string& what, const std::vector<double>& speeds, const std::string& torque) {

@@ -138,6 +138,7 @@ ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, d
     const double table_m = std::fabs(state(2, 0));
     step.peak_m = std::max(step.peak_m, table_m);
     step.mean_m += table_m / periods;
+    step.left_m = table_m;
     if ((j + 1) * period_s < kStepSettles_s) continue;
     step.rms_m += table_m * table_m;
     ++settled;

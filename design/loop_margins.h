@@ -30,6 +30,7 @@ struct ForceStep {
   double peak_m = 0.0;
   double mean_m = 0.0;  ///< of the absolute error over 200 ms
   double rms_m = 0.0;   ///< from 10 to 200 ms after it
+  double left_m = 0.0;  ///< of the error, 200 ms after it
 };
 ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, double period_s,
                          double force_N);

@@ -19,6 +19,9 @@ constexpr double kGentleSlope = 3.0;
 constexpr double kLimitSlope = 8.0;
 // However far beyond: what is unstable costs more than what only has no margin.
 constexpr double kWorstExcess = 5.0;
+// A force that stays costs more than any limit: what only holds against it is a valley of its own, which
+// small steps do not leave.
+constexpr double kLeftSlope = 30.0;
 constexpr double kHopeless = 1e6;
 constexpr double kFirstStep = 0.1;
 constexpr double kSmallStep = 0.05;
@@ -106,6 +109,12 @@ double Excess(const WorstMember& w) {
   return std::clamp(w.peak / w.limit - 1.0, 0.0, kWorstExcess);
 }
 
+/// Beyond what may be left of the error under a force.
+double Left(const ForceStep& step, double most) {
+  const double left = step.left_m / step.peak_m;
+  return left > most ? std::min(left - most, kWorstExcess) : 0.0;
+}
+
 }  // namespace
 
 double LoopCost(const LoopVerdict& v, double limit_slope) {
@@ -132,7 +141,9 @@ FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOpti
   const Box box(period_s, scale);
   const auto cost = [&](const std::vector<double>& point, double slope) {
     try {
-      return LoopCost(judge.Judge(DesignLoop(axis.axis, box.At(point), period_s, scale)), slope);
+      const LoopVerdict verdict = judge.Judge(DesignLoop(axis.axis, box.At(point), period_s, scale));
+      return std::min(LoopCost(verdict, slope) + kLeftSlope * Left(verdict.step, options.most_left),
+                      kHopeless);
     } catch (const std::invalid_argument&) {
       return kHopeless;
     }

@@ -18,6 +18,8 @@ struct LoopSearchOptions {
   int threads = 1;
   std::optional<LoopTuning> start;  ///< for instance, the one that the machine has
   std::vector<LoopMember> members;  ///< what it must bear; empty: UncertaintySet
+  /// Share of the error under a step of force that may be left after 200 ms.
+  double most_left = 1.0;
 };
 
 /// The tuning found, and how good it is.

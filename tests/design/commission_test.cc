@@ -69,6 +69,57 @@ TEST(CommissionPlanTest, ShakesMoreWhereTheDriveLeads) {
   EXPECT_NEAR(chirp_Nm(), 2.0 * torque_mode_Nm, 1e-6);
 }
 
+double NumberOf(const std::string& yaml, const std::string& key) {
+  return std::stod(yaml.substr(yaml.find(key) + key.size()));
+}
+
+/// The least speed of the motor in its slowest stroke, as a share of it, while the chirp of the plan goes
+/// through the screw's mode; on an axis as stated but for this share of the motor.
+double SlowestOverStroke(const AxisConfig& axis, const CommissionMotion& motion, double motor_share) {
+  const Mechanics m = ToSi(axis.model.mechanics);
+  const double motor_kg = motor_share * (m.mass_kg - m.table_mass_kg);
+  const double force_N = NumberOf(motion.yaml, "amplitude_Nm: ") / m.radius_m_rad;
+  const double from_Hz = NumberOf(motion.yaml, "frequency_min_hz: ");
+  const double to_Hz = NumberOf(motion.yaml, "frequency_max_hz: ");
+  const double sweep_s = NumberOf(motion.yaml, "period_s: ");
+  const double stroke_m_s = 1e-3 * NumberOf(motion.yaml, "velocities_mm_s: [");
+  constexpr double kStep_s = 1e-5;
+  double motor_m = 0.0, motor_m_s = 0.0, table_m = 0.0, table_m_s = 0.0, slowest = 1.0;
+  for (double t = 0.0; t < sweep_s; t += kStep_s) {
+    const double growth = (to_Hz - from_Hz) / sweep_s;
+    const double push_N = force_N * std::sin(2.0 * M_PI * (from_Hz + 0.5 * growth * t) * t);
+    const double screw_N = m.stiffness_N_m * (motor_m - table_m) + m.damping_Ns_m * (motor_m_s - table_m_s);
+    motor_m_s += (push_N - screw_N) / motor_kg * kStep_s;
+    table_m_s += screw_N / m.table_mass_kg * kStep_s;
+    motor_m += motor_m_s * kStep_s;
+    table_m += table_m_s * kStep_s;
+    // The motor's share of what the two swing by.
+    const double swing_m_s = (motor_m_s - table_m_s) * m.table_mass_kg / (motor_kg + m.table_mass_kg);
+    slowest = std::min(slowest, 1.0 + swing_m_s / stroke_m_s);
+  }
+  return slowest;
+}
+
+// The screw is seen in strokes that go on: a motor that the chirp turns back at the mode sticks, and cuts
+// them.
+TEST(CommissionPlanTest, TheChirpTurnsNoMotorBackHoweverHeavyItsTable) {
+  MachineConfig machine = Example();
+  AxisConfig& axis = machine.axes.at("x");
+  const double motor_kg = ToSi(axis.model.mechanics).mass_kg - axis.model.mechanics.table_mass_kg;
+  for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp})
+    for (const double table_over_motor : {0.13, 0.5, 1.0, 1.75, 3.0}) {
+      axis.drive.mode = mode;
+      axis.model.mechanics.table_mass_kg = table_over_motor * motor_kg;
+      axis.limits.torque_Nm = 20.0;
+      const CommissionPlan plan = PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis));
+      for (const CommissionMotion& motion : plan.motions) {
+        if (motion.yaml.find("kind: chirp") == std::string::npos) continue;
+        EXPECT_GT(SlowestOverStroke(axis, motion, 1.0), 0.0) << table_over_motor << ", " << motion.what;
+        EXPECT_GT(SlowestOverStroke(axis, motion, 0.7), 0.0) << table_over_motor << ", " << motion.what;
+      }
+    }
+}
+
 TEST(CommissionPlanTest, RefusesWhatDoesNotFitAndSaysWhatDoes) {
   EXPECT_NE(Refusal(0.0, {500.0, 100.0, 0.9}).find("--travel_mm: found 500"), std::string::npos);
   EXPECT_NE(Refusal(0.0, {3.0, 100.0, 0.9}).find("whole turn"), std::string::npos);

@@ -55,6 +55,17 @@ TEST(StartLoop, ALoopForTheModelAloneIsNotCertainForTheCatalogue) {
   EXPECT_GT(start.verdict.step.peak_m, tuned.verdict.step.peak_m);
 }
 
+// A table heavier than its motor, and a screw that may be half or twice as stiff: what bears all of it with
+// the smallest error for 200 ms only holds against friction and never takes it up.
+TEST(StartLoop, TakesUpAForceWhereTheDoubtLeavesLittle) {
+  LoopAxis axis = AxisOf({"heavy table", 280.0, 163.0, 104.0, 53.0, 3480.0});
+  axis.axis.lag_s = 0.36e-3;
+  axis.encoder_step_m = 2.15e-3 / 524288.0;
+  const StartLoop start = FindStartLoop(axis, kPeriod_s, 2);
+  EXPECT_EQ(start.wrong, "");
+  EXPECT_LT(start.found.verdict.step.left_m, 0.55 * start.found.verdict.step.peak_m);
+}
+
 TEST(StartLoop, AMachineIsNotCommissionedWithALoopThatIsNotCertain) {
   MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/family/t30.yaml");
   machine.control.friction = FrictionKind::kLinear;
