@@ -4,7 +4,7 @@
     commission_changes_mode.py CONTOURD CONTOUR MACHINE_FILE [--soft]
 
 The emulated machine in lock-step. A drive without torque mode stays in csp and is told of; what makes no sense is refused
-before anything ends. With --soft a heavy table on a soft screw that is stated half as stiff and else as a catalogue has it:
+before anything ends. A stop in torque mode names csp and tries nothing by itself. With --soft a heavy table on a soft screw that is stated half as stiff and else as a catalogue has it:
 no loop is stable for all of that, so it is recorded in csp first.
 """
 import subprocess
@@ -76,6 +76,26 @@ def commission_once(daemon, scratch, contour):
     return done.stdout, yaml.safe_load(Path(f"{scratch}/model.yaml").read_text(encoding="utf-8"))
 
 
+def stops_in_torque_mode(contourd, contour, machine_file):
+    """Friction that no model states takes the axis off its path: one enabling, no second try."""
+    overrides = ["emulator.parameter_variation_rel=0", "axes.x.limits.following_error_mm=0.075"]
+    overrides += [f"emulator.axes.x.friction.{level}_{way}_N=200" for level in ("Fs", "Fc") for way in ("plus", "minus")]
+    with tempfile.TemporaryDirectory() as scratch:
+        daemon = Daemon(contourd, machine_file, scratch, overrides)
+        try:
+            done = subprocess.run([contour, "commission", "--axis", "x", "--socket", daemon.path, "--yes", "--out",
+                                   f"{scratch}/model.yaml", "--report", f"{scratch}/report", "--loop", f"{scratch}/loop.yaml"],
+                                  capture_output=True, text=True)
+            assert done.returncode == 1, (done.returncode, done.stdout, done.stderr)
+            assert "did not end by itself" in done.stderr and "following_error_mm" in done.stderr, done.stderr
+            assert "--mode csp" in done.stderr and "nothing is tried again by itself" in done.stderr, done.stderr
+            assert daemon.ask(request="status")["status"]["state"] == "Faulted", "left to the operator"
+            assert not Path(f"{scratch}/model.yaml").exists()
+        finally:
+            status = daemon.end()
+        assert status == 0, (status, Path(daemon.messages).read_text(encoding="utf-8"))
+
+
 def soft_screw(contourd, contour, machine_file):
     own = {"table_mass_kg": 60, "screw_stiffness_N_um": 15}
     overrides = [f"emulator.axes.x.{key}={value}" for key, value in own.items()]
@@ -115,6 +135,8 @@ def main():
         finally:
             status = daemon.end()
         assert status == 0, (status, Path(daemon.messages).read_text(encoding="utf-8"))
+
+        stops_in_torque_mode(contourd, contour, machine_file)
 
         daemon = Daemon(contourd, machine_file, scratch, ["emulator.parameter_variation_rel=0"])
         try:

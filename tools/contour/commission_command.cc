@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <exception>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -125,6 +126,12 @@ class Watchman {
   std::uint64_t lost_ = 0;
 };
 
+/// The machine stopped by itself.
+class MachineStopped : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// Runs one motion to its end; stops the machine and throws when something is not as it should be.
 void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion& motion,
                const std::string& progress) {
@@ -145,7 +152,9 @@ void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion
         (state != "Ready" && state != "Running" && state != "Stopping")) {
       if (ours && status.at("reason") == "program_end") return;
       if (!watchman.offence().empty()) throw std::runtime_error("stopped: " + watchman.offence());
-      throw std::runtime_error("\"" + motion.what + "\" did not end by itself: " + StateSentence(status));
+      const std::string message = "\"" + motion.what + "\" did not end by itself: " + StateSentence(status);
+      if (state == "Faulted" && !stopping) throw MachineStopped(message);
+      throw std::runtime_error(message);
     }
     if (terminal && program.at("time_s").is_number() && program.at("duration_s").is_number())
       std::fprintf(stderr, "\r\x1b[K%s  %s  %.1f of %.1f s", progress.c_str(), motion.what.c_str(),
@@ -268,19 +277,19 @@ void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& p
       kEnableLimit);
   if (status.at("state") != "Ready")
     throw std::runtime_error("could not be enabled: " + StateSentence(status));
-  std::string failure;
+  std::exception_ptr failure;
   try {
     for (std::size_t i = 0; i < plan.motions.size(); ++i)
       RunMotion(client, watchman, plan.motions[i],
                 std::to_string(i + 1) + " of " + std::to_string(plan.motions.size()));
-  } catch (const std::exception& e) {
-    failure = e.what();
+  } catch (const std::exception&) {
+    failure = std::current_exception();
   }
   if (::isatty(STDERR_FILENO) != 0) std::fputs("\r\x1b[K", stderr);
   // Whatever happened, the torque goes off again.
   const std::uint64_t last = Status(client).at("cycle");
   client.Ask({{"request", "disable"}});
-  if (!failure.empty()) throw std::runtime_error(failure);
+  if (failure) std::rethrow_exception(failure);
   const auto deadline = std::chrono::steady_clock::now() + kLastRows;
   while (watchman.newest_cycle() < last && std::chrono::steady_clock::now() < deadline)
     client.Listen(kLookEvery);
@@ -359,6 +368,16 @@ std::map<std::string, Found> KnowBetter(ControlClient& client, const std::vector
   return found;
 }
 
+/// A stop in torque mode may be the loop's from here, or a fault of the axis that nobody should enable it
+/// again with: the drive's own loop is named, and left to who has looked at the axis.
+std::string InCspInstead(const MachineConfig& own, const std::string& axis) {
+  const std::string set = DriveLeads(own, axis) ? "" : " with --set axes." + axis + ".drive.mode=csp";
+  return ". Nothing was written, and nothing is tried again by itself. If the axis is sound (look at it "
+         "first), "
+         "its drive's own loop can hold it for the record, where the drive has csp: contourd anew" +
+         set + ", then contour commission --mode csp";
+}
+
 std::string DescribeAll(const MachineConfig& own, const MachineConfig& recorded, const json& status,
                         const TorqueLoops& torque, const Options& options) {
   std::string text;
@@ -410,6 +429,10 @@ int RunCommission(const Options& options) {
     std::unique_ptr<Watchman> watchman;
     try {
       watchman = Record(*client, machine, PlanFor(machine, Status(*client), options.axis, options));
+    } catch (const MachineStopped& stopped) {
+      stay.LeaveOrSay();
+      if (DriveLeads(machine, options.axis)) throw;
+      throw std::runtime_error(stopped.what() + InCspInstead(own, options.axis));
     } catch (const std::exception&) {
       stay.LeaveOrSay();
       throw;
