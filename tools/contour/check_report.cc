@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "config/bus_timing.h"
+#include "config/following_room.h"
 #include "config/machine_checks.h"
 #include "config/mode_advice.h"
 #include "config/motion_bounds.h"
@@ -205,6 +206,7 @@ std::string Timing(const MachineConfig& c) {
 std::string Advice(const MachineConfig& c) {
   std::string text;
   for (const std::string& advice : ModeAdvice(c)) text += "  " + advice + "\n";
+  for (const std::string& advice : FollowingAdvice(c)) text += "  " + advice + "\n";
   return text.empty() ? text : "\nAdvice\n" + text;
 }
 
