@@ -62,7 +62,8 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   pushed_least_N_ = pushed_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
   near_ = false;
-  same_ = near_periods_ = same_gone_ = near_gone_ = pushed_periods_ = beyond_ = undelivered_ = 0;
+  same_ = near_periods_ = same_gone_ = near_gone_ = pushed_periods_ = beyond_ = beyond_rigid_ = undelivered_ =
+      0;
   report_seen_ = scale_seen_ = tells_none_ = false;
   doubt_ = Reason::kNone;
   doubt_lasts_ = false;
@@ -265,18 +266,26 @@ Reason MotionMonitor::Momentum(double velocity_m_s, double explained_N, bool sta
   // mass explains it.
   const bool driven =
       won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0 && std::abs(velocity_m_s) > axis_.slide_m_s;
-  const double allowed_N =
-      (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N + swing_.Left_N(t_)
-              : explained_N) +
+  const double rigid_N =
+      (driven ? t_.external_N + config_.mass_error_rel * std::abs(won_N) + axis_.Fs_N : explained_N) +
       jitter_N_ + std::abs(on_its_way_N_) + ringing_N_;
   jitter_N_ *= 1.0 - t_.filter;
-  beyond_ = std::abs(unexplained_N_) > allowed_N ? beyond_ + 1 : 0;
-  if (beyond_ < kBeyondAtLeast) return Reason::kNone;
+  const double size_N = std::abs(unexplained_N_);
+  beyond_rigid_ = size_N > rigid_N ? beyond_rigid_ + 1 : 0;
+  beyond_ = size_N > rigid_N + swing_.Left_N(t_) ? beyond_ + 1 : 0;
+  // By the time that it is no swing of the screw, the loop may have turned its torque round.
+  if (beyond_rigid_ == kBeyondAtLeast) contradiction_ = Contradiction(velocity_m_s, stands, driven);
+  return beyond_ < kBeyondAtLeast ? Reason::kNone : contradiction_;
+}
+
+// What momentum beyond torque and friction says.
+Reason MotionMonitor::Contradiction(double velocity_m_s, bool stands, bool driven) const noexcept {
   // A reading that stands contradicts a small torque by itself; under a large one the axis may stand.
   if (stands) {
     return std::abs(force_N_) > t_.friction_N + t_.external_N ? Reason::kTorqueWithoutMotion
                                                               : Reason::kFeedbackFrozen;
   }
+  const double won_N = force_N_ - unexplained_N_;
   // Momentum won, in the torque's direction or against it.
   const bool lacks = unexplained_N_ * force_N_ > 0.0;
   // An axis without torque is braked by friction.
@@ -302,8 +311,10 @@ void MotionMonitor::KeepDoubt(const MotionSample& s, double velocity_m_s, double
   const double astray_m = std::abs(s.reference_m - s.position_m);
   if (std::abs(unexplained_N_) > kInDoubt * explained_N) {
     const double won_N = force_N_ - unexplained_N_;
-    // Without torque an axis falls behind, with a reversed encoder it seems to gain speed the other way.
-    const bool gains = won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0;
+    // Without torque an axis falls behind, with a reversed encoder it seems to gain speed the other way; one
+    // that hardly moves does neither.
+    const bool gains =
+        won_N * force_N_ < 0.0 && velocity_m_s * force_N_ < 0.0 && std::abs(velocity_m_s) > axis_.slide_m_s;
     doubt_ =
         unexplained_N_ * force_N_ > 0.0 && !gains ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
     doubt_lasts_ = doubt_lasts_ || !believed_;
@@ -389,12 +400,11 @@ Reason MotionMonitor::Judge(const MotionSample& s) noexcept {
     // What it would be with a drive that answers a cycle later than stated.
     const double before_N = axis_.in_cascade ? force_N : forces_N_[axis_.delay_cycles + 1];
     on_its_way_N_ += t_.filter * (force_N - before_N - on_its_way_N_);
-    // A drive's own loop brakes the screw, and what its report changes by at once rings as ringing_N_ says.
-    if (!axis_.in_cascade) swing_.See(missing_N - unexplained_N_, force_N - force_N_, t_);
-    const double explained_N = t_.Unexplained_N(velocity_m_s, force_N_) + swing_.Left_N(t_);
+    swing_.See(missing_N - unexplained_N_, force_N - force_N_, t_);
+    const double explained_N = t_.Unexplained_N(velocity_m_s, force_N_);
     keep(off_.Acts(Watch::kMomentum),
          Momentum(velocity_m_s, explained_N, std::abs(s.position_m - position_m_) <= t_.flicker_m));
-    if (off_.Acts(Watch::kMomentum)) KeepDoubt(s, velocity_m_s, explained_N);
+    if (off_.Acts(Watch::kMomentum)) KeepDoubt(s, velocity_m_s, explained_N + swing_.Left_N(t_));
     Learn(velocity_m_s);
   }
   keep(off_.Acts(Watch::kDelivery), Delivery(s));

@@ -61,8 +61,9 @@ class MotionMonitor {
          settling_N_, least_N_, most_N_, same_, same_reference_m_, near_, near_position_m_, near_reference_m_,
          near_periods_, least_lead_m_, most_lead_m_, near_least_N_, near_most_N_, same_gone_, near_gone_,
          pushed_least_N_, pushed_most_N_, pushed_periods_, on_its_way_N_, ringing_N_, swing_, force_N_,
-         unexplained_N_, jitter_N_, beyond_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_,
-         doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
+         unexplained_N_, jitter_N_, beyond_, beyond_rigid_, contradiction_, sent_N_, reported_N_,
+         report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_,
+         scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -91,6 +92,7 @@ class MotionMonitor {
   inline bool Pushed(const MotionSample& s, double settling_N) noexcept;
   inline Reason Named(Reason found, const MotionSample& s, double force_N) noexcept;
   inline Reason Momentum(double velocity_m_s, double explained_N, bool stands) noexcept;
+  [[nodiscard]] inline Reason Contradiction(double velocity_m_s, bool stands, bool driven) const noexcept;
   inline void KeepDoubt(const MotionSample& s, double velocity_m_s, double explained_N) noexcept;
   inline void Learn(double velocity_m_s) noexcept;
   inline Reason Delivery(const MotionSample& s) noexcept;
@@ -145,6 +147,8 @@ class MotionMonitor {
   double unexplained_N_ = 0.0;                   ///< low-passed u - m a
   double jitter_N_ = 0.0;                        ///< of it, what a SYNC that came late may have made
   std::uint32_t beyond_ = 0;                     ///< readings in a row
+  std::uint32_t beyond_rigid_ = 0;               ///< the same, of an axis with no screw
+  Reason contradiction_ = Reason::kNone;         ///< what the first of them said
   double sent_N_ = 0.0, reported_N_ = 0.0;       ///< low-passed, for delivery
   bool report_seen_ = false;                     ///< the report has been seen to be one, in this enabling
   bool tells_none_ = false;                      ///< a report that has been seen shows no torque

@@ -301,6 +301,21 @@ TEST(MotionMonitor, AnEncoderThatTurnedRoundIsInDoubtAsLongAsTheAxisStrays) {
   }
 }
 
+// Without its torque an axis may creep back a little while its loop pulls: that is not the speed which an
+// encoder that turned round seems to gain.
+TEST(MotionMonitor, AnAxisThatHardlyMovesUnderItsTorqueIsInDoubtAsOneWithoutTorque) {
+  MotionMonitor monitor(Axis(), {}, kPeriod_s);
+  MotionSample s;
+  s.enabled = s.fresh = true;
+  s.sent_force_N = s.reported_force_N = 350.0;
+  for (int k = 0; k < 200; ++k) {
+    s.position_m -= 0.001 * (1.0 + 0.001 * k) * kPeriod_s;
+    ASSERT_EQ(monitor.Step(s), Reason::kNone) << "period " << k;
+    if (k < 20) continue;
+    ASSERT_EQ(monitor.Doubt(), Reason::kTorqueWithoutMotion) << "period " << k;
+  }
+}
+
 // The reading before was another one, of an axis without torque: it stands where it jumped to.
 TEST(MotionMonitor, AJumpJustBeforeTheTorqueIsNoFrozenReading) {
   MotionMonitor monitor(Axis(), {}, kPeriod_s);
