@@ -19,8 +19,6 @@ constexpr std::array<double, 5> kSofter{1.0, 0.85, 0.7, 0.5, 0.35};
 // Evaluations of a search that begins there: some tenths of a second.
 constexpr int kPolish = 80;
 
-double Error_m(const LoopVerdict& v) { return v.step.peak_m + 2.0 * v.step.mean_m; }
-
 /// With three digits, as it stands in a file; the loop is judged as it is written.
 class Writer {
  public:
@@ -61,7 +59,7 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
       try {
         const LoopVerdict verdict = judge.Judge(DesignLoop(axis.axis, tuning, period_s, scale));
         if (!Acceptable(verdict)) continue;
-        const double error_m = Error_m(verdict);
+        const double error_m = StepError_m(verdict);
         if (!best || error_m < least_m) {
           best = tuning;
           least_m = error_m;
@@ -81,7 +79,7 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
   Writer rounding;
   found.tuning.Visit(rounding);
   found.verdict = judge.Judge(DesignLoop(axis.axis, found.tuning, period_s, scale));
-  if (Acceptable(found.verdict) && (!best || Error_m(found.verdict) < least_m)) best = found.tuning;
+  if (Acceptable(found.verdict) && (!best || StepError_m(found.verdict) < least_m)) best = found.tuning;
   return best;
 }
 

@@ -57,6 +57,8 @@ double Growth(const LoopMatrix& closed) {
   return solver.eigenvalues().cwiseAbs().maxCoeff();
 }
 
+double ErrorOf_m(const ForceStep& step) { return step.peak_m + 2.0 * step.mean_m; }
+
 /// L of negative feedback.
 std::vector<Complex> OpenLoop(const std::vector<std::array<Complex, 2>>& plant,
                               const std::vector<std::array<Complex, 2>>& controller) {
@@ -147,6 +149,8 @@ ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, d
   return step;
 }
 
+double StepError_m(const LoopVerdict& v) { return std::max(ErrorOf_m(v.step), ErrorOf_m(v.step_astray)); }
+
 bool Acceptable(const LoopVerdict& v, double tolerance) {
   const auto keeps = [&](const WorstMember& w) { return w.stable && w.peak <= w.limit * (1.0 + tolerance); };
   return std::all_of(v.worst.begin(), v.worst.end(), keeps) &&
@@ -192,6 +196,15 @@ LoopVerdict LoopJudge::Judge(const TwoInertiaLoop& loop) const {
   }
   v.step =
       UnderForceStep(members_.front().member, loop, period_s_, axis_.limits.force_step * axis_.rated_force_N);
+  v.step_astray = v.step;
+  if (axis_.scale_step_m)
+    for (const double stiffness : {1.0 - axis_.limits.far_off, 1.0 + axis_.limits.far_off}) {
+      LoopMember m = members_.front().member;
+      m.axis.stiffness_N_m *= stiffness;
+      const ForceStep step =
+          UnderForceStep(m, loop, period_s_, axis_.limits.force_step * axis_.rated_force_N);
+      if (!(ErrorOf_m(step) <= ErrorOf_m(v.step_astray))) v.step_astray = step;
+    }
   // The torque that the noise of the readings leads to, on the stated axis.
   const auto open = OpenLoop(members_.front().response, response);
   const double encoder_m = kNoiseOfStep * axis_.encoder_step_m;

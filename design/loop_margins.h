@@ -48,9 +48,16 @@ struct WorstMember {
 struct LoopVerdict {
   std::array<WorstMember, kMemberKinds> worst;  ///< by MemberKind
   ForceStep step;
+  /// With a linear scale the same on screws that are as far off as may be, the worst. How fast the observer
+  /// lets encoder and scale drift apart (bias_Hz) matters there alone: it looks best at rest where the screw
+  /// is as stated, and takes the wind-up of another one for a force of the table's. Without one, `step`.
+  ForceStep step_astray;
   double torque_noise = 0.0;  ///< from the resolution of the encoder (and scale), in rated torque
   double noise_limit = 0.0;
 };
+/// What loops are compared by: peak and twice the mean of the error under a step of force, on the worst of
+/// both.
+[[nodiscard]] double StepError_m(const LoopVerdict& verdict);
 /// Every limit is kept, but for this share.
 [[nodiscard]] bool Acceptable(const LoopVerdict& verdict, double tolerance = 0.02);
 /// What is nearest to its limit.

@@ -28,7 +28,9 @@ constexpr double kSmallStep = 0.05;
 constexpr int kLargePopulation = 20;
 
 /// One number of the tuning and where it is searched, as a logarithm. Frequencies are in those of sampling:
-/// what bounds a loop is its delay.
+/// what bounds a loop is its delay. What encoder and scale are apart by follows within about a period: of
+/// what it leaves, friction at the motor or another stiffness, the observer makes a force on the table, which
+/// is learnt as its friction.
 struct Parameter {
   double LoopTuning::*value;
   double low, high;
@@ -45,7 +47,7 @@ constexpr std::array<Parameter, 11> kParameters{{
     {&LoopTuning::notch_pole_damping, 0.1, 2.0, false},
     {&LoopTuning::notch_zero_damping, 0.02, 2.0, false},
     {&LoopTuning::scale_noise_ratio, 0.05, 50.0, false},
-    {&LoopTuning::bias_Hz, 3e-4, 0.2, true},
+    {&LoopTuning::bias_Hz, 0.2, 4.0, true},
 }};
 constexpr std::size_t kWithoutScale = 9;
 
@@ -120,7 +122,7 @@ double Left(const ForceStep& step, double most) {
 double LoopCost(const LoopVerdict& v, double limit_slope) {
   double excess = std::clamp(v.torque_noise / v.noise_limit - 1.0, 0.0, kWorstExcess);
   for (const WorstMember& w : v.worst) excess += Excess(w);
-  const double error_um = 1e6 * (v.step.peak_m + 2.0 * v.step.mean_m);
+  const double error_um = 1e6 * StepError_m(v);
   // An unstable loop's error says nothing.
   const double cost = std::isfinite(error_um) ? std::min(std::log(error_um), 20.0) : 20.0;
   return std::min(cost + limit_slope * excess, kHopeless);

@@ -107,6 +107,28 @@ TEST(LoopJudge, NamesWhatIsUnstable) {
   EXPECT_FALSE(Binding(v).name.empty());
 }
 
+// A bias that follows slowly looks best on the axis as stated; a screw of another stiffness leaves the table
+// beside its path for as long as it takes.
+TEST(LoopJudge, AScaleLoopIsJudgedOnOtherScrewsToo) {
+  LoopAxis axis = AxisOf({"stiff screw", 361.0, 496.0, 944.0, 145.0, 6105.0}, true);
+  axis.axis.lag_s = 0.15e-3;
+  constexpr double kLong_s = 2e-3;
+  const LoopTuning tuning{15.7, 0.457, 0.236, 89.1, 313.0, 92.8, 0.97, 0.301, 0.205, 0.93, 0.5};
+  const LoopJudge judge(axis, kLong_s);
+  const auto judged = [&](double bias_Hz) {
+    LoopTuning t = tuning;
+    t.bias_Hz = bias_Hz;
+    return judge.Judge(DesignLoop(axis.axis, t, kLong_s, true));
+  };
+  const LoopVerdict slow = judged(0.5), quick = judged(100.0);
+  EXPECT_LT(slow.step.mean_m, quick.step.mean_m);
+  EXPECT_GT(slow.step_astray.mean_m, 2.0 * quick.step_astray.mean_m);
+  EXPECT_GT(StepError_m(slow), StepError_m(quick));
+  axis.scale_step_m.reset();
+  const LoopVerdict alone = LoopJudge(axis, kLong_s).Judge(DesignLoop(axis.axis, tuning, kLong_s, false));
+  EXPECT_EQ(alone.step_astray.peak_m, alone.step.peak_m);
+}
+
 TEST(LoopJudge, CoarseEncodersMakeTorqueNoise) {
   LoopAxis axis = AxisOf("base");
   const TwoInertiaLoop loop = DesignLoop(axis.axis, kTuning, kPeriod_s, false);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/design/family_axes.h"
 
@@ -27,6 +28,10 @@ TEST_P(EveryBallScrew, HasALoopThatKeepsItsLimits) {
     const LoopAxis axis = AxisOf(GetParam(), scale);
     const FoundLoop found = SearchLoop(axis, kPeriod_s, kShort);
     EXPECT_TRUE(Acceptable(found.verdict, 0.05)) << Binding(found.verdict).name;
+    // What encoder and scale are apart by is followed within a period.
+    if (scale) {
+      EXPECT_LT(1.0, 2.0 * std::numbers::pi * found.tuning.bias_Hz * kPeriod_s);
+    }
     const double deflection_m = axis.limits.force_step * axis.rated_force_N / axis.axis.stiffness_N_m;
     EXPECT_LT(found.verdict.step.peak_m, 60.0 * deflection_m);
   }
