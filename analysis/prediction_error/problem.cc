@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -222,6 +221,10 @@ void Problem::WhitenInto(std::span<const std::span<const double>> raw,
   for (const double*& p : in) p += n;
   for (double*& p : out) p += n;
   ApplyColourFilter(scale_noise, in, out, counted, weight.data() + n, segments);
+  std::vector<std::size_t> begins;
+  for (const Segment& s : segments) begins.push_back(s.at);
+  TakeOutWander(scale_wander, std::span(weight).subspan(n), whole ? signals->begins : begins,
+                whole ? 1.0 : excerpt.per_row, out);
 }
 
 std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points, Extent extent) const {
@@ -293,12 +296,11 @@ void Problem::LearnNoise(const Point& point) {
   if (has_scale()) {
     AddScale(noise.linear().table, model.two_inertia,
              model.scale_error_m ? model.scale_error_m->data() : nullptr, log.table_position_m.data(), raw);
-    const std::vector<double> shapeless = WithoutShape(std::span(raw).subspan(n), counted, *signals);
-    std::copy(shapeless.begin(), shapeless.end(), raw.begin() + static_cast<std::ptrdiff_t>(n));
-    scale_noise = Whitener(std::span(raw).subspan(n), counted);
   }
   root_weight.assign(data_size(), 1.0);
+  if (has_scale()) LearnScaleNoise(raw);
   const std::vector<double> white = White(std::span(&raw, 1))[0];
+  const std::vector<double> known = std::exchange(root_weight, std::vector<double>(data_size(), 1.0));
   for (std::size_t base = 0; base < data_size(); base += n) {
     const double* r = &white[base];
     double* w = &root_weight[base];
@@ -315,15 +317,28 @@ void Problem::LearnNoise(const Point& point) {
     Lower(r, kRows.long_window_rows, kRows.long_by_chance, w);
     Lower(slow.data(), kRows.slow_window_rows, kRows.slow_by_chance, w);
   }
-  if (has_scale()) LowerWhereScaleRests(&root_weight[n]);
-  for (std::size_t k = 0; k < data_size(); ++k)
-    if (counted[k % n] == 0) root_weight[k] = 0.0;
+  for (std::size_t k = 0; k < data_size(); ++k) root_weight[k] *= counted[k % n] != 0 ? known[k] : 0.0;
   WeighExcerpt();
+}
+
+void Problem::LearnScaleNoise(std::vector<double>& raw) {
+  const std::size_t n = rows();
+  const std::vector<double> shapeless = WithoutShape(std::span(raw).subspan(n), counted, *signals);
+  std::copy(shapeless.begin(), shapeless.end(), raw.begin() + static_cast<std::ptrdiff_t>(n));
+  scale_noise = Whitener(std::span(raw).subspan(n), counted);
+  scale_wander = {};
+  const std::vector<double> white = White(std::span(&raw, 1))[0];
+  LowerWhereScaleRests(&root_weight[n]);
+  for (std::size_t k = 0; k < n; ++k)
+    if (!ScaleCounts(k)) root_weight[n + k] = 0.0;
+  scale_wander =
+      LearnSlowWander(std::span(white).subspan(n), std::span(root_weight).subspan(n), signals->begins);
 }
 
 void Problem::Take(LearntNoise learnt) {
   noise = std::move(learnt.filter);
   scale_noise = std::move(learnt.scale);
+  scale_wander = learnt.wander;
   root_weight = std::move(learnt.root_weight);
   excerpt_weight_ = std::move(learnt.excerpt_weight);
 }
@@ -335,6 +350,7 @@ double Problem::LogNoise() const {
     if (root_weight[k] <= 0.0) continue;
     sum -= 2.0 * std::log(root_weight[k] * (k < n ? 1.0 : scale_noise.taps()[0]));
   }
+  if (has_scale()) sum += LogVariances(scale_wander, std::span(root_weight).subspan(n), signals->begins);
   return sum;
 }
 
@@ -349,15 +365,9 @@ void Problem::WeighExcerpt() {
 void Problem::LowerWhereScaleRests(double* w) const {
   // Within one count of the scale its rounding error is the same from row to row: no more is known than after
   // the first.
-  const std::vector<double>& x = log.table_position_m;
-  const std::size_t n = rows();
-  double step = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 1; k < n; ++k) {
-    const double d = std::fabs(x[k] - x[k - 1]);
-    if (d > 1e-12) step = std::min(step, d);
-  }
+  const double step = CountOf(log.table_position_m);
   if (!std::isfinite(step)) return;
-  for (std::size_t k = 0; k < n; ++k) {
+  for (std::size_t k = 0; k < rows(); ++k) {
     const double counts_per_row = std::fabs(signals->velocity[k]) * log.period_s * stated.table_per_q / step;
     w[k] *= std::sqrt(std::clamp(counts_per_row, kRows.least_counts_per_row, 1.0));
   }

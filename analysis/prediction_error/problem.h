@@ -16,6 +16,7 @@
 #include "analysis/prediction_error/noise_filter.h"
 #include "analysis/prediction_error/signal_cache.h"
 #include "analysis/prediction_error/signals.h"
+#include "analysis/prediction_error/slow_wander.h"
 #include "analysis/prediction_error/whitener.h"
 #include "analysis/recording/axis_log.h"
 #include "analysis/recording/data_quality.h"
@@ -57,6 +58,7 @@ struct Point {
 struct LearntNoise {
   NoiseFilter filter;
   Whitener scale;
+  SlowWander wander;
   std::vector<double> root_weight, excerpt_weight;
 };
 
@@ -88,7 +90,9 @@ class Problem {
   /// Ratio of the noises of torque and reading, the colour that is left, then the level from place to place.
   void LearnNoise(const Point& point);
   /// What was learnt last, to have it again without learning.
-  [[nodiscard]] LearntNoise Learnt() const { return {noise, scale_noise, root_weight, excerpt_weight_}; }
+  [[nodiscard]] LearntNoise Learnt() const {
+    return {noise, scale_noise, scale_wander, root_weight, excerpt_weight_};
+  }
   void Take(LearntNoise learnt);
   /// What the noise learnt adds to |r|^2 in -2 log likelihood, up to a constant: points whose noise was
   /// learnt at each of them compare by the sum of both.
@@ -123,6 +127,7 @@ class Problem {
   Excerpt excerpt;
   NoiseFilter noise;
   Whitener scale_noise;
+  SlowWander scale_wander;  ///< what the whitener leaves
 
  private:
   bool ScaleCounts(std::size_t k) const { return counted[k] != 0 && std::isfinite(log.table_position_m[k]); }
@@ -138,6 +143,8 @@ class Problem {
   void Begin();
   void ChooseSubsteps();
   void CountRows();
+  /// The scale's noise: its colour, and how it wanders; weights go down where the scale rests.
+  void LearnScaleNoise(std::vector<double>& raw);
   void LowerWhereScaleRests(double* w) const;
   /// Lowers the weights w where the mean square of r over 2 half + 1 rows exceeds the limit.
   void Lower(const double* r, std::size_t half, double largest_by_chance, double* w) const;

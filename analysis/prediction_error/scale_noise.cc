@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
@@ -45,6 +46,15 @@ std::vector<double> WithoutShape(std::span<const double> residual, const std::ve
   for (std::size_t k = 0; k < out.size(); ++k)
     if (counted[k] != 0) out[k] -= shape.dot(terms_at(k));
   return out;
+}
+
+double CountOf(std::span<const double> readings_m) {
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 1; k < readings_m.size(); ++k) {
+    const double d = std::fabs(readings_m[k] - readings_m[k - 1]);
+    if (d > 1e-12) step = std::min(step, d);
+  }
+  return step;
 }
 
 }  // namespace contour::diagnosis

@@ -14,4 +14,7 @@ namespace contour::diagnosis {
 std::vector<double> WithoutShape(std::span<const double> residual, const std::vector<std::uint8_t>& counted,
                                  const Signals& signals);
 
+/// Of a scale, by the smallest difference between neighbouring readings; infinite where it does not move.
+double CountOf(std::span<const double> readings_m);
+
 }  // namespace contour::diagnosis

@@ -63,5 +63,11 @@ TEST(ScaleNoise, AnAxisThatHardlyMovesHasNoShape) {
     ASSERT_TRUE(std::isfinite(x));
 }
 
+TEST(ScaleNoise, ACountIsTheSmallestDifference) {
+  const std::vector<double> moves = {0.0, 3e-7, 3e-7, 2e-7, 6e-7};
+  EXPECT_NEAR(CountOf(moves), 1e-7, 1e-12);
+  EXPECT_TRUE(std::isinf(CountOf(std::vector<double>(5, 0.2))));
+}
+
 }  // namespace
 }  // namespace contour::diagnosis
