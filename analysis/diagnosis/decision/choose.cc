@@ -25,6 +25,11 @@ bool GainsBeyondChance(const Cause& cause, double rate) {
   return cause.heldout_gain > deviations / kNormal95 * (cause.heldout_gain - cause.heldout_gain_low);
 }
 
+/// Of blocks that have nothing to do with the cause, as many say against it as for it: the sum of their drops
+/// over the root of the sum of their squares is a normal deviate, and with few of them less. It is 1 where
+/// one block carries all, and 1.4 where two do.
+double ConsistencyAsked(double rate) { return std::sqrt(ChiSquareQuantile(1, std::min(1.0, 2.0 * rate))); }
+
 bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested,
            const ScoreThreshold& threshold) {
   // From outside the catalogue only what is beyond doubt.
@@ -45,16 +50,13 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     std::vector<BlockGain> blocks;
     HeldOutGain(problem, current, r.fit, definition.judged_at_scale, cause, blocks);
     if (cause.heldout_gain_high < 0.0) return false;
-    // A scale's noise is never white: there, only what others of its rows confirm, and with no more chance
-    // than every kind has.
     gains_unseen = GainsBeyondChance(cause, threshold.rate);
-    if (definition.judged_at_scale && !gains_unseen) return false;
     // Nor is a shape that nobody knows beyond doubt where it foresees nothing.
     if (Outside(r.effect().kind) && !gains_unseen) return false;
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
-  if (Consistency(problem, current, r.fit, true) > kAcceptance.consistency) return true;
+  if (Consistency(problem, current, r.fit, true) > ConsistencyAsked(threshold.rate)) return true;
   // Left out, the only stroke that shows a base parameter may take it far, to first order. Where chance is
   // out of the question, by the score or by the gain on the halves that were not fitted on, it is enough that
   // the drop does not come from one event.
