@@ -20,7 +20,7 @@ USERS = ["analysis", "tools"]
 PAGE = "docs/diagnosis_thresholds.md"
 BELOW = "prediction_tuning.h"
 # Numbers, not entries: a list of three counts three. To be lowered as they go.
-MOST_SET_BY_HAND = 42
+MOST_SET_BY_HAND = 43
 MOST_BELOW = 59
 NOT_COUNTED = {0.0, 1.0, 2.0}
 

@@ -25,11 +25,6 @@ bool GainsBeyondChance(const Cause& cause, double rate) {
   return cause.heldout_gain > deviations / kNormal95 * (cause.heldout_gain - cause.heldout_gain_low);
 }
 
-/// Of blocks that have nothing to do with the cause, as many say against it as for it: the sum of their drops
-/// over the root of the sum of their squares is a normal deviate, and with few of them less. It is 1 where
-/// one block carries all, and 1.4 where two do.
-double ConsistencyAsked(double rate) { return std::sqrt(ChiSquareQuantile(1, std::min(1.0, 2.0 * rate))); }
-
 bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested,
            const ScoreThreshold& threshold) {
   // From outside the catalogue only what is beyond doubt.
@@ -56,7 +51,7 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
-  if (Consistency(problem, current, r.fit, true) > ConsistencyAsked(threshold.rate)) return true;
+  if (Consistency(problem, current, r.fit, true) > kAcceptance.consistency) return true;
   // Left out, the only stroke that shows a base parameter may take it far, to first order. Where chance is
   // out of the question, by the score or by the gain on the halves that were not fitted on, it is enough that
   // the drop does not come from one event.

@@ -60,6 +60,9 @@ struct ThresholdTuning {
 
 /// Whether a hypothesis holds, and what it cannot be told from.
 struct AcceptanceTuning {
+  /// [sum of the drops in unseen blocks over the root of their sum of squares] More than one block carries
+  /// it. Source: archive; it is 1 where one block carries all. 2026-11-21
+  double consistency = 1.2;
   /// [chi^2] From here on chance is out of the question. Source: reasoning. 2026-11-21
   double no_chance_score = 100.0;
   /// [share of its drop] What is still there with another effect in the model is not explained by it. Source:
