@@ -1,6 +1,7 @@
 #include "config/following_room.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "config/extended_model.h"
 #include "config/number_text.h"
@@ -9,6 +10,15 @@
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
+namespace {
+
+/// To three digits: what is printed leaves the room that it promises.
+double RoundedUp(double x) {
+  const double step = std::pow(10.0, std::floor(std::log10(x)) - 2.0);
+  return step * std::ceil(x / step * (1.0 - 1e-12));
+}
+
+}  // namespace
 
 FollowingRoom FollowingRoomOf(const MachineConfig& machine, const AxisConfig& axis) {
   const ExtendedModel model = Extended(axis.model);
@@ -38,7 +48,8 @@ std::vector<std::string> FollowingAdvice(const MachineConfig& machine) {
         " mm of wind-up (friction, what may push and acceleration, over the screw's stiffness), and a drive "
         "that answers one cycle later than drive.delay_cycles states is behind by " +
         RoundedText(room.late_mm) + " mm at velocity_mm_s: it may be stopped above " +
-        RoundedText(room.feed_mm_s) + " mm/s, " + RoundedText(room.expected_mm) + " mm leave room for both");
+        RoundedText(room.feed_mm_s) + " mm/s, " + RoundedText(RoundedUp(room.expected_mm)) +
+        " mm leave room for both");
   }
   return advice;
 }

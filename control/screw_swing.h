@@ -22,7 +22,9 @@ class ScrewSwing {
 
   /// After the low-passes: force that nothing explains and torque, each less its low-passed value.
   void See(double unexplained_N, double torque_N, const MotionThresholds& t) noexcept {
-    square_N2_ += t.swing_filter * (unexplained_N * unexplained_N - square_N2_);
+    // A reading that lies by a jump is no swing that grew from what stirred it.
+    const double swing_N = std::min(std::abs(unexplained_N), t.swing_gain * stirred_N_);
+    square_N2_ += t.swing_filter * (swing_N * swing_N - square_N2_);
     stirred_N_ = std::max(stirred_N_ * t.peak_decay, std::abs(torque_N));
   }
 

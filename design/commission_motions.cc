@@ -53,10 +53,11 @@ bool LedByDrive(const AxisConfig& axis) { return axis.drive.mode == DriveMode::k
 /// What the motions are made of, and where they have room.
 class Motions {
  public:
-  Motions(const CommissionPlan& plan, const AxisConfig& axis, double position_mm)
+  Motions(const CommissionPlan& plan, const AxisConfig& axis, double position_mm, double cycle_us)
       : axis_(axis),
         name_(plan.axis),
         limits_(plan.limits),
+        cycle_us_(cycle_us),
         mechanics_(ToSi(axis.model.mechanics)),
         friction_(ToSi(axis.model.friction, mechanics_.radius_m_rad)),
         top_mm_s_(kCommissionShareOfTop * plan.limits.max_speed_mm_s),
@@ -94,13 +95,13 @@ class Motions {
             name_.c_str(), travel_mm, TorqueSteps(level_Nm, limits_.max_torque_Nm).c_str()));
   }
 
-  void Shake(double cycle_us) {
+  void Shake() {
     Add("shaking at rest, 8 to 120 Hz",
         FormatText("shape: hold\nseconds: 4\ntorque: {axis: %s, kind: multisine, "
                    "amplitude_Nm: %.6f, frequency_min_hz: 8, "
                    "frequency_max_hz: 120, lines: %d}\n",
                    name_.c_str(), kLineOfRated * axis_.drive.rated_torque_Nm, kLines));
-    const double top_Hz = 0.48e6 / cycle_us;
+    const double top_Hz = TopOfChirp_Hz();
     // Fast enough that a controller which swings, its mass being wrong, does not turn the axis back.
     const double travel = limits_.travel_mm;
     std::vector<double> slides;
@@ -132,12 +133,15 @@ class Motions {
     if (!LedByDrive(axis_)) return {std::max(3.0, travel / 4.0), 0.75 * travel, travel};
     return {0.5 * travel, 0.5 * travel, 0.75 * travel, travel};
   }
+  /// Just below half the rate of the cycle. A chirp begins an octave below it at the latest, however slow the
+  /// cycle.
+  [[nodiscard]] double TopOfChirp_Hz() const { return 0.48e6 / cycle_us_; }
   [[nodiscard]] double ChirpBegin_Hz(double force_N, double slowest_m_s) const {
     const Mechanics& m = mechanics_;
     const double mode_Hz = ModeFrequency_Hz(TwoInertiaAxisOf(axis_));
     const double least_Hz =
         force_N / (kLightestOfCatalogue * m.mass_kg * 2.0 * std::numbers::pi * kShareOfSlide * slowest_m_s);
-    return std::min(kHighestBegin_Hz, std::max(kBelowMode * mode_Hz, least_Hz));
+    return std::min({kHighestBegin_Hz, 0.5 * TopOfChirp_Hz(), std::max(kBelowMode * mode_Hz, least_Hz)});
   }
 
   /// Speed of the motor's swing at the mode per force of a chirp that goes through `range_Hz`, with a motor
@@ -161,6 +165,7 @@ class Motions {
   const AxisConfig& axis_;
   const std::string& name_;
   const CommissionLimits& limits_;
+  const double cycle_us_;
   const Mechanics mechanics_;
   const Friction friction_;
   const double top_mm_s_, up_mm_, down_mm_;
@@ -185,10 +190,10 @@ double CommissionShaking_N(const AxisConfig& axis) {
 
 std::vector<CommissionMotion> CommissionMotions(const CommissionPlan& plan, const AxisConfig& axis,
                                                 double position_mm, double cycle_us) {
-  Motions motions(plan, axis, position_mm);
+  Motions motions(plan, axis, position_mm, cycle_us);
   motions.Slide();
   motions.BreakAway();
-  motions.Shake(cycle_us);
+  motions.Shake();
   return motions.Take();
 }
 

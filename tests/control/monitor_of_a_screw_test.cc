@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "tests/control/motion_rig.h"
 
@@ -143,6 +145,78 @@ TEST(MonitorOfAScrew, ATorqueThatGoesThroughTheModeOfAHeavyTableReversesNothing)
             << Name(reason) << (in_cascade ? ", csp" : ", cst") << ", table over motor " << table_over_motor
             << ", softer " << softer << ", m a " << largest_ma_N << " N";
       }
+}
+
+/// A table that slides behind its motor under a slow loop on its speed, and from a period on the reading
+/// counts backwards: what the monitor says, and how far the motor went until then.
+struct Reversal {
+  Reason reason = Reason::kNone;
+  double went_m = 0.0;
+};
+Reversal ReversedBehindAHeavyTable(double table_over_motor, double mode_Hz, double period_s,
+                                   double slides_m_s) {
+  MonitoredAxis axis = Axis();
+  axis.motor_mass_kg = 40.0;
+  axis.table_mass_kg = table_over_motor * axis.motor_mass_kg;
+  const double mass_kg = axis.motor_mass_kg + axis.table_mass_kg;
+  const double reduced_kg = axis.motor_mass_kg * axis.table_mass_kg / mass_kg;
+  axis.stiffness_N_m = reduced_kg * std::pow(2.0 * std::numbers::pi * mode_Hz, 2);
+  MotionMonitor monitor(axis, {}, period_s);
+  const double damping_Ns_m = 0.06 * std::sqrt(axis.stiffness_N_m * reduced_kg);
+  const double loop_Ns_m = mass_kg * 2.0 * std::numbers::pi * 0.1 * mode_Hz;
+  double motor_m = 0.0, motor_m_s = slides_m_s, table_m = 0.0, table_m_s = slides_m_s;
+  double acting_N = 0.0, sent_N = 0.0, before_m = 0.0, turned_at_m = 0.0;
+  const int turns = static_cast<int>(0.3 / period_s);
+  for (int k = 0; k < 10 * turns; ++k) {
+    if (k == turns) turned_at_m = motor_m;
+    const double seen_m = k < turns ? motor_m : 2.0 * turned_at_m - motor_m;
+    MotionSample s;
+    s.enabled = s.fresh = true;
+    s.reference_m = slides_m_s * period_s * k;
+    s.position_m = axis.count_m * std::floor(seen_m / axis.count_m);
+    s.sent_force_N = sent_N;
+    s.reported_force_N = acting_N;
+    const Reason reason = monitor.Step(s);
+    if (k < turns) {
+      EXPECT_EQ(reason, Reason::kNone);
+    }
+    if (reason != Reason::kNone) return {reason, std::abs(motor_m - turned_at_m)};
+    acting_N = sent_N;
+    const double wanted_N = axis.Fc_N + axis.sigma2_Ns_m * slides_m_s +
+                            loop_Ns_m * (slides_m_s - (s.position_m - before_m) / period_s);
+    if (k > 0) sent_N = std::clamp(wanted_N, -axis.force_limit_N, axis.force_limit_N);
+    before_m = s.position_m;
+    constexpr int kSub = 50;
+    const double step_s = period_s / kSub;
+    for (int i = 0; i < kSub; ++i) {
+      const double screw_N =
+          axis.stiffness_N_m * (motor_m - table_m) + damping_Ns_m * (motor_m_s - table_m_s);
+      const double friction_N = axis.Fc_N * std::tanh(table_m_s / 1e-4) + axis.sigma2_Ns_m * table_m_s;
+      motor_m_s += (acting_N - screw_N) / axis.motor_mass_kg * step_s;
+      table_m_s += (screw_N - friction_N) / axis.table_mass_kg * step_s;
+      motor_m += motor_m_s * step_s;
+      table_m += table_m_s * step_s;
+    }
+  }
+  return {};
+}
+
+// What is allowed for the screw hides no encoder that counts backwards. The loop has a tenth of the mode's
+// frequency: until momentum shows it the axis goes as far as it does within a share of the loop's period.
+TEST(MonitorOfAScrew, AnEncoderThatTurnsRoundBehindAHeavyTableIsSeen) {
+  for (const double period_s : {1e-3, 0.25e-3})
+    for (const double mode_Hz : {40.0, 65.0, 127.0})
+      for (const double table_over_motor : {0.1, 1.0, 2.5})
+        for (const double slides_m_s : {1e-3, 3e-3, 10e-3, 50e-3}) {
+          const Reversal r = ReversedBehindAHeavyTable(table_over_motor, mode_Hz, period_s, slides_m_s);
+          const auto where = [&] {
+            return std::string(Name(r.reason)) + ", " + std::to_string(1e3 * r.went_m) + " mm, mode " +
+                   std::to_string(mode_Hz) + " Hz, table over motor " + std::to_string(table_over_motor) +
+                   ", period " + std::to_string(period_s) + " s, " + std::to_string(slides_m_s) + " m/s";
+          };
+          EXPECT_TRUE(r.reason == Reason::kFeedbackReversed || r.reason == Reason::kFeedbackJump) << where();
+          EXPECT_LT(r.went_m, 20e-3 * std::pow(40.0 / mode_Hz, 2) + 0.1 * slides_m_s) << where();
+        }
 }
 
 // A torque far beyond friction moves the axis out of any band within some periods.

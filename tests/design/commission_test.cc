@@ -120,6 +120,24 @@ TEST(CommissionPlanTest, TheChirpTurnsNoMotorBackHoweverHeavyItsTable) {
     }
 }
 
+// A chirp has a range however slow the cycle; before, one of 5 ms gave speeds that were no numbers.
+TEST(CommissionPlanTest, SlowCyclesHaveAChirpToo) {
+  MachineConfig machine = Example();
+  for (const int cycle_us : {1000, 5000, 20000}) {
+    machine.machine.cycle_us = cycle_us;
+    const CommissionPlan plan =
+        PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(machine.axes.at("x")));
+    for (const CommissionMotion& motion : plan.motions) {
+      EXPECT_EQ(motion.yaml.find("nan"), std::string::npos) << cycle_us << ": " << motion.yaml;
+      if (motion.yaml.find("kind: chirp") == std::string::npos) continue;
+      const auto number = [&](const std::string& key) {
+        return std::stod(motion.yaml.substr(motion.yaml.find(key) + key.size()));
+      };
+      EXPECT_LE(number("frequency_min_hz: "), 0.6 * number("frequency_max_hz: ")) << cycle_us;
+    }
+  }
+}
+
 TEST(CommissionPlanTest, RefusesWhatDoesNotFitAndSaysWhatDoes) {
   EXPECT_NE(Refusal(0.0, {500.0, 100.0, 0.9}).find("--travel_mm: found 500"), std::string::npos);
   EXPECT_NE(Refusal(0.0, {3.0, 100.0, 0.9}).find("whole turn"), std::string::npos);

@@ -126,7 +126,14 @@ class Watchman {
   std::uint64_t lost_ = 0;
 };
 
-/// The machine stopped by itself.
+/// What a loop in torque mode may have brought about, and a drive's own loop does not.
+bool MayBeTheLoops(const std::string& reason) {
+  for (const char* one : {"following_error", "velocity_limit", "oscillation", "feedback_reversed"})
+    if (reason == one) return true;
+  return false;
+}
+
+/// The machine stopped by itself, which may be its loop's doing.
 class MachineStopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -153,7 +160,8 @@ void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion
       if (ours && status.at("reason") == "program_end") return;
       if (!watchman.offence().empty()) throw std::runtime_error("stopped: " + watchman.offence());
       const std::string message = "\"" + motion.what + "\" did not end by itself: " + StateSentence(status);
-      if (state == "Faulted" && !stopping) throw MachineStopped(message);
+      if (state == "Faulted" && !stopping && MayBeTheLoops(status.at("reason")))
+        throw MachineStopped(message);
       throw std::runtime_error(message);
     }
     if (terminal && program.at("time_s").is_number() && program.at("duration_s").is_number())

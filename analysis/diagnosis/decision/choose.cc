@@ -43,9 +43,9 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
   if (!definition.common_factor) {
     Cause cause;
     std::vector<BlockGain> blocks;
-    HeldOutGain(problem, current, r.fit, definition.judged_at_scale, cause, blocks);
+    const bool as_asked = HeldOutGain(problem, current, r.fit, definition.judged_at_scale, cause, blocks);
     if (cause.heldout_gain_high < 0.0) return false;
-    gains_unseen = GainsBeyondChance(cause, threshold.rate);
+    gains_unseen = as_asked && GainsBeyondChance(cause, threshold.rate);
     // Nor is a shape that nobody knows beyond doubt where it foresees nothing.
     if (Outside(r.effect().kind) && !gains_unseen) return false;
   }

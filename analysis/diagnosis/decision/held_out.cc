@@ -361,7 +361,13 @@ void TellGain(const Problem& problem, const Squares& squares, Seen seen, Cause& 
 
 }  // namespace
 
-void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
+bool MostGain(const std::vector<BlockGain>& blocks) {
+  const auto gain =
+      std::count_if(blocks.begin(), blocks.end(), [](const BlockGain& b) { return b.gain > 0.0; });
+  return 2 * static_cast<std::size_t>(gain) > blocks.size();
+}
+
+bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks) {
   const Seen seen = SeenIn(problem, with, scale);
   // The base has taken a number of its own to where the log wants it: what it gains is over what is stated.
@@ -369,14 +375,15 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
                                               ? std::vector<std::size_t>{}
                                               : FreedTerms(problem, with.point.effects.back()->kind);
   TellGain(problem, SquaresOf(problem, without, with, seen, stated), seen, cause, blocks);
-  if (seen != Seen::kTorque || cause.heldout_gain_high >= 0.0) return;
+  if (seen != Seen::kTorque || cause.heldout_gain_high >= 0.0) return true;
   // A few blocks in which the axis sticks may have more torque that nobody foresees than all others have in
-  // all: which model slips at the better instant there is chance. As multiples of the noise that every row
-  // has they count no more than the others.
+  // all: which model slips at the better instant there is chance. Where most blocks gain all the same, the
+  // rows are asked: as multiples of the noise that each has, those blocks count no more than the others.
+  if (!MostGain(blocks)) return true;
   Cause white;
   std::vector<BlockGain> of_white;
   TellGain(problem, SquaresOf(problem, without, with, Seen::kWhite, stated), Seen::kWhite, white, of_white);
-  if (!(white.heldout_gain_low > 0.0)) return;
+  if (!(white.heldout_gain_low > 0.0)) return true;
   cause.unit = white.unit;
   cause.heldout_rms_before = white.heldout_rms_before;
   cause.heldout_rms_after = white.heldout_rms_after;
@@ -384,6 +391,7 @@ void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
   cause.heldout_gain_low = white.heldout_gain_low;
   cause.heldout_gain_high = white.heldout_gain_high;
   blocks = std::move(of_white);
+  return false;
 }
 
 }  // namespace contour::diagnosis

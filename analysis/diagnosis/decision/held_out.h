@@ -15,7 +15,12 @@ double Consistency(const Problem& problem, const Fit& without, const Fit& with, 
 /// Gain of `with` over `without` on blocks that the fit did not see (two interleaved folds; parameters of
 /// each fold by one Gauss-Newton step from the whole fit, then run anew), 95 % interval by a bootstrap of the
 /// blocks. Numbers of the base that the last effect of `with` frees are where they are stated without it.
-void HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
+/// False: what a cause of this kind is asked for, torque, is lost in some blocks that have most of it, though
+/// most blocks gain, and the gain told is that of the rows as multiples of their noise.
+bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks);
+
+/// Whether more than half of them gain.
+bool MostGain(const std::vector<BlockGain>& blocks);
 
 }  // namespace contour::diagnosis
