@@ -85,7 +85,7 @@ void Problem::ChooseSubsteps() {
     int s = 4;
     while (s < kMostSubsteps && (presliding * log.period_s / s > 0.36 || damped * log.period_s / s > 0.3 ||
                                  mode * log.period_s / s > 0.65))
-      ++s;
+      s *= 2;
     return s;
   };
   setup.substeps_rigid = steps(0.0);

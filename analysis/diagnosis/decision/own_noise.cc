@@ -24,16 +24,13 @@ UnderOwnNoise FitUnderOwnNoise(Problem& problem, const Fit& begin, LearntNoise* 
     const Fit& from = turn == 0 ? begin : best.fit;
     problem.LearnNoise(from.point);
     if (turn == 0 && first != nullptr) *first = problem.Learnt();
-    Fit fit = from;
-    Rewhiten(problem, fit);
-    const double begun = fit.cost;
-    fit = FitOn(problem, std::move(fit), kEfforts.quick);
-    // Where it stays, or hardly moves, its noise is learnt.
-    const bool moved = begun - fit.cost > kAcceptance.no_chance_score;
+    Fit fit = FitFrom(problem, from, kEfforts.quick);
     const double unlikely = fit.cost + problem.LogNoise() + Penalty(*fit.point.effects.back());
     const double gained = best.unlikely - unlikely;
     if (!(gained > 0.0)) break;
+    const bool moved = !(fit.point == from.point);
     best = {std::move(fit), unlikely};
+    // Where it stays its noise is learnt.
     if (!moved || gained < kAcceptance.no_chance_score) break;
   }
   return best;

@@ -2,9 +2,6 @@
 
 #include <bit>
 #include <cstdint>
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
 
 // Eight runs of the same model side by side: the runs differ in parameters only, so one instruction stream
 // serves all of them and their latencies hide each other. Each lane's result is the same whatever runs next
@@ -21,25 +18,6 @@ using VecBits [[gnu::vector_size(64)]] = std::int64_t;
 CONTOUR_LANES_INLINE Vec Spread(double x) { return Vec{x, x, x, x, x, x, x, x}; }
 
 CONTOUR_LANES_INLINE Vec Abs(const Vec& x) { return x < 0.0 ? -x : x; }
-
-/// Whether any lane lies below.
-CONTOUR_LANES_INLINE bool AnyBelow(const Vec& x, double bound) {
-#if defined(__AVX512F__)
-  return _mm512_cmp_pd_mask(std::bit_cast<__m512d>(x), _mm512_set1_pd(bound), _CMP_LT_OQ) != 0;
-#elif defined(__AVX2__)
-  struct Halves {
-    __m256d low, high;
-  };
-  const auto [low, high] = std::bit_cast<Halves>(x);
-  const __m256d b = _mm256_set1_pd(bound);
-  return _mm256_movemask_pd(
-             _mm256_or_pd(_mm256_cmp_pd(low, b, _CMP_LT_OQ), _mm256_cmp_pd(high, b, _CMP_LT_OQ))) != 0;
-#else
-  bool any = false;
-  for (int i = 0; i < kLanes; ++i) any = any || x[i] < bound;
-  return any;
-#endif
-}
 
 /// e^x for x <= 0, relative error under 1e-9 and smooth, which is what differences of runs need.
 CONTOUR_LANES_INLINE Vec ExpNegative(const Vec& x) {

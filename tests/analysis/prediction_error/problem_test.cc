@@ -62,23 +62,6 @@ TEST(Problem, WhatWasLearntOfTheNoiseIsThereAgainWithoutLearning) {
   EXPECT_EQ(problem.Residuals(std::span(&made.point, 1))[0], white);
 }
 
-// As many sub-steps as the bristle asks for, not the next power of two.
-TEST(Problem, SubstepsFollowTheBristle) {
-  test::HiddenAxis axis = test::MakeHiddenAxis(Short());
-  const auto substeps = [&](double needed) {
-    // The leapfrog's steps: 0.36 rad of sqrt(2 s0 / J) each.
-    axis.stated.sigma["s0"] = 0.2;
-    const double carried = axis.stated.two_inertia ? axis.stated.load_inertia : axis.stated.motor_inertia;
-    axis.stated.friction.s1 = 0.0;
-    axis.stated.friction.s0 = 0.5 * carried * std::pow(0.36 * needed / axis.log.period_s, 2);
-    return Problem(axis.log, axis.stated, 1).setup.substeps_rigid;
-  };
-  EXPECT_EQ(substeps(1.5), 4);
-  EXPECT_EQ(substeps(4.5), 5);
-  EXPECT_EQ(substeps(8.5), 9);
-  EXPECT_EQ(substeps(1000.0), 32) << "at most";
-}
-
 TEST(Problem, WithoutAStribeckDropBothLevelsGoTogether) {
   test::HiddenAxis axis = test::MakeHiddenAxis(Short());
   axis.stated.friction.Fs_plus = axis.stated.friction.Fc_plus;

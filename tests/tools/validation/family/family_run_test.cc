@@ -75,7 +75,9 @@ TEST(FamilyRun, StiffnessAndDisturbanceAreOffByWhatIsStatedOfThem) {
 // what was learnt of it grew until the table's share was right and the motor's was many times what it is: 6.2
 // and 7.6 F/K.
 TEST(FamilyRun, ByAScaleATableOfAnotherMassLeavesTheMotorItsOwn) {
-  for (const std::string variation : {"table_minus_30", "table_plus_30", "masses_minus_30"}) {
+  // And a softer screw, which was learnt as friction of 9 F/K while the bias was slow. All masses 30 % lower
+  // are no part of this since it is quick: 2.7 F/K (docs/laboratory/scale_in_the_loop.md).
+  for (const std::string variation : {"table_minus_30", "table_plus_30", "k_minus_30"}) {
     const FamilyResult r =
         Drawn("t30s", "cst", 'S', {.variation = variation, .set = {"control.friction=linear"}});
     ASSERT_EQ(r.failure, "") << variation;
