@@ -25,8 +25,9 @@ struct Fit {
 struct InitialGuess {
   Point point;
   FitEffort effort;
-  /// Of the same noise: its sensitivities serve for the parameters that it has; its residual too, where it
-  /// has all of them.
+  /// Of the same noise and rows: its sensitivities serve for the parameters that it has, first ones first;
+  /// its residual too, where it has all of them. Columns are taken against that residual, so it has to be the
+  /// one of this noise (RewhitenResidual).
   const Fit* known = nullptr;
   /// The same, of all its parameters, and given up for this fit: two of them at a time would take memory.
   Fit* continued = nullptr;

@@ -10,6 +10,37 @@
 namespace contour {
 namespace {
 
+/// A motor, and behind a screw its table, which has the friction.
+struct MotorAndTable {
+  double motor_kg, table_kg, stiffness_N_m, damping_Ns_m, Fc_N, viscous_Ns_m;
+  double motor_m = 0.0, motor_m_s = 0.0, table_m = 0.0, table_m_s = 0.0;
+  double largest_m_s2 = 0.0;  ///< of the motor
+
+  /// A period under a force on the motor.
+  void Go(double force_N, double period_s) {
+    constexpr int kSub = 100;
+    const double step_s = period_s / kSub;
+    for (int i = 0; i < kSub; ++i) {
+      const double screw_N = stiffness_N_m * (motor_m - table_m) + damping_Ns_m * (motor_m_s - table_m_s);
+      const double friction_N = Fc_N * std::tanh(table_m_s / 1e-4) + viscous_Ns_m * table_m_s;
+      const double motor_m_s2 = (force_N - screw_N) / motor_kg;
+      motor_m_s += motor_m_s2 * step_s;
+      table_m_s += (screw_N - friction_N) / table_kg * step_s;
+      motor_m += motor_m_s * step_s;
+      table_m += table_m_s * step_s;
+      largest_m_s2 = std::max(largest_m_s2, std::abs(motor_m_s2));
+    }
+  }
+};
+
+/// The axis as `monitored` states it, sliding.
+MotorAndTable Sliding(const MonitoredAxis& monitored, double damping_Ns_m, double slides_m_s) {
+  MotorAndTable out{monitored.motor_mass_kg, monitored.table_mass_kg, monitored.stiffness_N_m, damping_Ns_m,
+                    monitored.Fc_N,          monitored.sigma2_Ns_m};
+  out.motor_m_s = out.table_m_s = slides_m_s;
+  return out;
+}
+
 MonitoredAxis InCascade() {
   MonitoredAxis axis = Axis();
   axis.in_cascade = true;
@@ -56,7 +87,8 @@ TEST(MonitorOfAScrew, ATorqueThatSwingsLeavesItRingingAndNothingIsReversed) {
       axis.stiffness_N_m = stiffness_N_m;
       axis.force_limit_N = 4000.0;
       MotionMonitor monitor(axis, {}, kPeriod_s);
-      double motor_m = 0.0, motor_m_s = 0.02, table_m = 0.0, table_m_s = 0.02;
+      MotorAndTable moved = Sliding(axis, 1000.0, 0.02);
+      moved.viscous_Ns_m = 500.0;
       Reason reason = Reason::kNone;
       for (int k = 0; k < 60 && reason == Reason::kNone; ++k) {
         const double swing_N =
@@ -64,19 +96,10 @@ TEST(MonitorOfAScrew, ATorqueThatSwingsLeavesItRingingAndNothingIsReversed) {
         MotionSample s;
         s.enabled = s.fresh = true;
         s.reference_m = 2e-5 * k;
-        s.position_m = axis.count_m * std::floor(motor_m / axis.count_m);
-        s.reported_force_N = axis.Fc_N + 500.0 * table_m_s + swing_N;
+        s.position_m = axis.count_m * std::floor(moved.motor_m / axis.count_m);
+        s.reported_force_N = axis.Fc_N + 500.0 * moved.table_m_s + swing_N;
         reason = monitor.Step(s);
-        constexpr int kSub = 100;
-        constexpr double kStep_s = kPeriod_s / kSub;
-        for (int i = 0; i < kSub; ++i) {
-          const double screw_N = axis.stiffness_N_m * (motor_m - table_m) + 1000.0 * (motor_m_s - table_m_s);
-          const double friction_N = axis.Fc_N * std::tanh(table_m_s / 1e-4) + 500.0 * table_m_s;
-          motor_m_s += (s.reported_force_N - screw_N) / axis.motor_mass_kg * kStep_s;
-          table_m_s += (screw_N - friction_N) / axis.table_mass_kg * kStep_s;
-          motor_m += motor_m_s * kStep_s;
-          table_m += table_m_s * kStep_s;
-        }
+        moved.Go(s.reported_force_N, kPeriod_s);
       }
       EXPECT_EQ(reason, Reason::kNone) << Name(reason) << ", " << stiffness_N_m << " N/m, " << swings;
     }
@@ -100,14 +123,14 @@ Reason ShakenThroughTheMode(bool in_cascade, double table_over_motor, double sof
   const double mode_Hz = std::sqrt(stiffness_N_m / reduced_kg) / (2.0 * std::numbers::pi);
   const double damping_Ns_m = 0.06 * std::sqrt(stiffness_N_m * reduced_kg);
   constexpr double kSlides_m_s = 0.02, kSweep_s = 0.5;
-  double motor_m = 0.0, motor_m_s = kSlides_m_s, table_m = 0.0, table_m_s = kSlides_m_s;
+  MotorAndTable moved = Sliding(axis, damping_Ns_m, kSlides_m_s);
+  moved.stiffness_N_m = stiffness_N_m;
   double acting_N = 0.0, sent_N = 0.0;
-  largest_ma_N = 0.0;
   for (int k = 0; k < 1000; ++k) {
     MotionSample s;
     s.enabled = s.fresh = true;
     s.reference_m = kSlides_m_s * kPeriod_s * k;
-    s.position_m = axis.count_m * std::floor(motor_m / axis.count_m);
+    s.position_m = axis.count_m * std::floor(moved.motor_m / axis.count_m);
     s.sent_force_N = sent_N;
     s.reported_force_N = acting_N;
     if (const Reason reason = monitor.Step(s); reason != Reason::kNone) return reason;
@@ -116,19 +139,8 @@ Reason ShakenThroughTheMode(bool in_cascade, double table_over_motor, double sof
     const double from_Hz = 0.3 * mode_Hz, growth = (0.48 / kPeriod_s - from_Hz) / kSweep_s;
     sent_N = axis.Fc_N + axis.sigma2_Ns_m * kSlides_m_s +
              0.075 * axis.rated_force_N * std::sin(2.0 * std::numbers::pi * (from_Hz + 0.5 * growth * t) * t);
-    constexpr int kSub = 50;
-    constexpr double kStep_s = kPeriod_s / kSub;
-    for (int i = 0; i < kSub; ++i) {
-      const double screw_N = stiffness_N_m * (motor_m - table_m) + damping_Ns_m * (motor_m_s - table_m_s);
-      const double friction_N = axis.Fc_N * std::tanh(table_m_s / 1e-4) + axis.sigma2_Ns_m * table_m_s;
-      const double motor_m_s2 = (acting_N - screw_N) / axis.motor_mass_kg;
-      motor_m_s += motor_m_s2 * kStep_s;
-      table_m_s += (screw_N - friction_N) / axis.table_mass_kg * kStep_s;
-      motor_m += motor_m_s * kStep_s;
-      table_m += table_m_s * kStep_s;
-      const double ma_N = (axis.motor_mass_kg + axis.table_mass_kg) * std::abs(motor_m_s2);
-      largest_ma_N = std::max(largest_ma_N, ma_N);
-    }
+    moved.Go(acting_N, kPeriod_s);
+    largest_ma_N = (axis.motor_mass_kg + axis.table_mass_kg) * moved.largest_m_s2;
   }
   return Reason::kNone;
 }
@@ -164,12 +176,12 @@ Reversal ReversedBehindAHeavyTable(double table_over_motor, double mode_Hz, doub
   MotionMonitor monitor(axis, {}, period_s);
   const double damping_Ns_m = 0.06 * std::sqrt(axis.stiffness_N_m * reduced_kg);
   const double loop_Ns_m = mass_kg * 2.0 * std::numbers::pi * 0.1 * mode_Hz;
-  double motor_m = 0.0, motor_m_s = slides_m_s, table_m = 0.0, table_m_s = slides_m_s;
+  MotorAndTable moved = Sliding(axis, damping_Ns_m, slides_m_s);
   double acting_N = 0.0, sent_N = 0.0, before_m = 0.0, turned_at_m = 0.0;
   const int turns = static_cast<int>(0.3 / period_s);
   for (int k = 0; k < 10 * turns; ++k) {
-    if (k == turns) turned_at_m = motor_m;
-    const double seen_m = k < turns ? motor_m : 2.0 * turned_at_m - motor_m;
+    if (k == turns) turned_at_m = moved.motor_m;
+    const double seen_m = k < turns ? moved.motor_m : 2.0 * turned_at_m - moved.motor_m;
     MotionSample s;
     s.enabled = s.fresh = true;
     s.reference_m = slides_m_s * period_s * k;
@@ -180,23 +192,13 @@ Reversal ReversedBehindAHeavyTable(double table_over_motor, double mode_Hz, doub
     if (k < turns) {
       EXPECT_EQ(reason, Reason::kNone);
     }
-    if (reason != Reason::kNone) return {reason, std::abs(motor_m - turned_at_m)};
+    if (reason != Reason::kNone) return {reason, std::abs(moved.motor_m - turned_at_m)};
     acting_N = sent_N;
     const double wanted_N = axis.Fc_N + axis.sigma2_Ns_m * slides_m_s +
                             loop_Ns_m * (slides_m_s - (s.position_m - before_m) / period_s);
     if (k > 0) sent_N = std::clamp(wanted_N, -axis.force_limit_N, axis.force_limit_N);
     before_m = s.position_m;
-    constexpr int kSub = 50;
-    const double step_s = period_s / kSub;
-    for (int i = 0; i < kSub; ++i) {
-      const double screw_N =
-          axis.stiffness_N_m * (motor_m - table_m) + damping_Ns_m * (motor_m_s - table_m_s);
-      const double friction_N = axis.Fc_N * std::tanh(table_m_s / 1e-4) + axis.sigma2_Ns_m * table_m_s;
-      motor_m_s += (acting_N - screw_N) / axis.motor_mass_kg * step_s;
-      table_m_s += (screw_N - friction_N) / axis.table_mass_kg * step_s;
-      motor_m += motor_m_s * step_s;
-      table_m += table_m_s * step_s;
-    }
+    moved.Go(acting_N, period_s);
   }
   return {};
 }
