@@ -34,6 +34,8 @@ constexpr std::int64_t kLockstepIdlePoll_ns = 2'000'000;
 constexpr std::int64_t kLockstepHeartbeat_ns = 20'000'000;
 /// Feedback that has not come after this long of wall time will not come.
 constexpr std::int64_t kLockstepFeedbackTimeout_ns = 2'000'000'000;
+/// A look that comes later counts for no more than this: a host that held us up held the drives up, too.
+constexpr std::int64_t kLockstepLook_ns = kLockstepFeedbackTimeout_ns / 8;
 
 /// Of frames that say the same, the latest: while time stands still, repetition is no news.
 void KeepLatestOfEach(ReceivedFrames& frames) noexcept {
@@ -159,7 +161,7 @@ void Loop::RunLockstep() noexcept {
 }
 
 void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
-  const std::int64_t begin = ClockNow_ns();
+  std::int64_t waited = 0, looked = ClockNow_ns();
   // Before the drives answer SYNC there is nothing to keep step with but the period itself. A drive that has
   // let its time go by is not waited for as long again until it answers.
   const bool expected = cycle_.ExpectsFeedback();
@@ -169,8 +171,10 @@ void Loop::WaitForFeedback(const GridPoint& grid, CycleInput& in) noexcept {
     answered_ = !expected || cycle_.FeedbackComplete(in);
     if (expected && answered_) return;
     const std::int64_t now = ClockNow_ns();
-    if (now - begin >= limit || in.frames.full()) return;
-    WaitForFrames(begin + limit);
+    waited += std::min(now - looked, kLockstepLook_ns);
+    looked = now;
+    if (waited >= limit || in.frames.full()) return;
+    WaitForFrames(now + std::min(limit - waited, kLockstepLook_ns));
   }
 }
 

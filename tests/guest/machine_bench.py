@@ -51,6 +51,8 @@ class MachineBench:
         # On a busy host a process may be held up for long, which neither the emulated drives nor the I/O client is to
         # take for the other's death: time-outs by the clock do not belong to lock-step.
         self.patience_ms = 4000
+        # The emulated drives know when it was they who did not listen; the I/O client goes by the clock: the most that it takes.
+        self.io_patience_ms = 5000
         self.work = Path("/tmp/bench")
         self.socket = self.work / "contourd.sock"
         self.processes = {}
@@ -106,7 +108,7 @@ class MachineBench:
         self._log_number += 1
         return self.start("contourd", self.programs / "contourd", "--config", self.config, "--bus", self.bus, "--clock",
                           self.clock, "--socket", self.socket, "--log", self.work / f"cycles{self._log_number}.lcm",
-                          "--set", f"io.modbus.timeout_ms={self.patience_ms}",
+                          "--set", f"io.modbus.timeout_ms={self.io_patience_ms}",
                           "--set", "io.modbus.accept_blind_travel=true", *arguments)
 
     def wait_for_end(self, name, seconds=20):

@@ -56,6 +56,25 @@ TEST(EmulatedMachine, SyncNumberNFallsOnPlantTimeNPeriods) {
   EXPECT_DOUBLE_EQ(h.machine.truth().time_s, 0.007);
 }
 
+TEST(EmulatedMachine, AHostThatWasHeldUpIsNoSilentMaster) {
+  EmulatorConfig config = NominalMachine();
+  DriveHarness h(config, {Place("x", 1), Place("y", 2)});
+  h.BringUp();
+  h.Enable();
+  for (int k = 0; k < 3; ++k) {
+    // Nobody ran for ten times silence_ms; then the timer comes first, and a frame after it.
+    h.now_ns += static_cast<std::int64_t>(config.silence_ms * 1e7);
+    PendingFrames out;
+    h.machine.node(0).OnTimer(h.now_ns, out);
+    h.Cycle(0x0F);
+    EXPECT_FALSE(h.machine.truth().free_running);
+  }
+  h.RunTimers(static_cast<std::int64_t>(config.silence_ms * 1e6) - 2'000'000);
+  EXPECT_FALSE(h.machine.truth().free_running);
+  h.RunTimers(4'000'000);
+  EXPECT_TRUE(h.machine.truth().free_running) << "listened to all along, the master was silent";
+}
+
 TEST(EmulatedMachine, SameSeedSameMachineBitForBit) {
   for (const auto law : {EmulatedFrictionLaw::kLugre, EmulatedFrictionLaw::kMaxwellSlip}) {
     EmulatorConfig c = NominalMachine();

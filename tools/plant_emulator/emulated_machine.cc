@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::uint16_t kSyncCobId = 0x080;
 constexpr std::int64_t kFreeStep_ns = 1'000'000;
+/// Silence is listened to in so many parts. A part that took longer counts as one: the host held us up, and
+/// what was sent meanwhile, or by a master that was held up too, is not silence.
+constexpr std::int64_t kLooksPerSilence = 8;
 /// Streams of random numbers an axis uses: parameters, encoder, scale.
 constexpr std::uint64_t kStreamsPerAxis = 4;
 
@@ -43,7 +46,8 @@ class EmulatedMachine::Impl {
   struct Bus {
     std::vector<std::size_t> axes;
     std::uint64_t syncs = 0;
-    std::int64_t last_frame_ns = 0;
+    std::int64_t silent_ns = 0;     ///< listened to since the last frame
+    std::int64_t looked_ns = 0;     ///< the last time handed in
     std::int64_t followed_ns = 0;   ///< the time handed in up to which the plant has followed
     std::int64_t next_step_ns = 0;  ///< when it follows again while it runs free
     bool running_free = false;
@@ -118,7 +122,7 @@ void EmulatedMachine::Impl::OnFrame(std::size_t index, const CanFrame& frame, st
                                     PendingFrames& out) noexcept {
   Bus& bus = buses_[index];
   Follow(bus, time_ns);
-  bus.last_frame_ns = time_ns;
+  bus.silent_ns = 0;
   if (frame.id == kSyncCobId) {
     OnSync(bus, time_ns, out);
   } else {
@@ -156,13 +160,15 @@ void EmulatedMachine::Impl::Follow(Bus& bus, std::int64_t time_ns) noexcept {
   if (!bus.seen_time) {
     bus.seen_time = true;
     bus.followed_ns = time_ns;
-    bus.last_frame_ns = time_ns;
+    bus.looked_ns = time_ns;
     bus.next_step_ns = time_ns + kFreeStep_ns;
   }
+  bus.silent_ns += std::min(time_ns - bus.looked_ns, silence_ns_ / kLooksPerSilence);
+  bus.looked_ns = time_ns;
   if (clock_ == EmulatedClock::kSync && !bus.running_free) {
-    if (!Alive(bus) || time_ns - bus.last_frame_ns < silence_ns_) return;
+    if (!Alive(bus) || bus.silent_ns < silence_ns_) return;
     bus.running_free = true;
-    bus.followed_ns = bus.last_frame_ns + silence_ns_;
+    bus.followed_ns = time_ns - (bus.silent_ns - silence_ns_);
     bus.next_step_ns = bus.followed_ns;
   }
   if (time_ns > bus.followed_ns) Advance(bus, time_ns - bus.followed_ns);
@@ -206,7 +212,9 @@ std::int64_t EmulatedMachine::Impl::NextTimer(std::size_t index) const noexcept 
   std::int64_t next = kNever;
   for (const std::size_t a : bus.axes) next = std::min(next, axes_[a]->NextTimer());
   if (clock_ == EmulatedClock::kWall || bus.running_free) return std::min(next, bus.next_step_ns);
-  if (bus.seen_time && Alive(bus)) next = std::min(next, bus.last_frame_ns + silence_ns_);
+  if (bus.seen_time && Alive(bus))
+    next =
+        std::min(next, bus.looked_ns + std::min(silence_ns_ - bus.silent_ns, silence_ns_ / kLooksPerSilence));
   return next;
 }
 

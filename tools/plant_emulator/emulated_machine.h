@@ -45,7 +45,7 @@ enum class EmulatedClock : std::uint8_t {
 /// With EmulatedClock::kSync, SYNC n falls on plant time n periods. The drives' watchdogs count plant time,
 /// so a slow host trips none. If a drive is enabled (or an axis still moves) and no frame at all came for
 /// silence_ms of the time handed in, the plant follows that time until the next SYNC, so that the drives can
-/// notice and stop.
+/// notice and stop. Time in which nobody listened (a timer that comes late) is no silence.
 class EmulatedMachine {
  public:
   /// Throws std::invalid_argument, with the axis and the value named, on a configuration that cannot be
