@@ -59,9 +59,9 @@ class Finder {
     if (const auto at = Column(axis_.empty() ? quantity : axis_ + "_" + quantity)) return at;
     return Column(quantity);
   }
-  /// The same under either of two spellings.
+  /// The same under either of two spellings; the one that was named on the command line first.
   [[nodiscard]] std::optional<LogColumn> Find(const std::string& a, const std::string& b) const {
-    const auto at = Find(a);
+    const auto at = Named(b) && !Named(a) ? std::nullopt : Find(a);
     return at ? at : Find(b);
   }
   [[nodiscard]] LogColumn Demand(const std::string& quantity) const {
@@ -178,7 +178,9 @@ const Command* FindCommand(const Finder& finder) {
 }
 
 void FindMotion(const Finder& finder, LogColumns& columns) {
-  const auto angle = finder.Find("motor_angle_rad", "position_rad");
+  const bool by_metres =
+      finder.Named("position_m") && !finder.Named("motor_angle_rad") && !finder.Named("position_rad");
+  const auto angle = by_metres ? std::nullopt : finder.Find("motor_angle_rad", "position_rad");
   const auto metres = finder.Find("position_m");
   if (columns.in_ampere)
     columns.linear = !angle && (metres || (finder.Find("velocity_m_s") && !finder.Find("velocity_rad_s")));
@@ -213,7 +215,9 @@ LogColumns FindColumns(const std::string& file, const std::vector<std::string>& 
   if (!columns.axis2_position && !finder.axis().empty())
     for (const std::string& other : finder.OtherAxes())
       if (!columns.axis2_position) columns.axis2_position = finder.Find(other + "_position_m");
-  if (!columns.linear) columns.reference = finder.Find("reference_angle_rad");
+  const bool reference_by_metres =
+      finder.Named("reference_position_m") && !finder.Named("reference_angle_rad");
+  if (!columns.linear && !reference_by_metres) columns.reference = finder.Find("reference_angle_rad");
   if (!columns.reference) {
     columns.reference = finder.Find("reference_position_m");
     columns.reference_in_m = columns.reference.has_value();

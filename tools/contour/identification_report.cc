@@ -43,6 +43,4 @@ ModelConfig Report(const IdentificationJob& job, const identify::Identification&
   return model;
 }
 
-ModelConfig IdentifyAndReport(const IdentificationJob& job) { return Report(job, IdentifyWithProgress(job)); }
-
 }  // namespace contour

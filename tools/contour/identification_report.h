@@ -28,12 +28,9 @@ struct IdentificationJob {
 /// Identifies, with progress on a terminal.
 identify::Identification IdentifyWithProgress(const IdentificationJob& job);
 
-/// Of what was identified: writes the model and its report as IdentifyAndReport() does.
+/// Writes the model, and with a report directory identification.json and its pictures; prints the table of
+/// results. Throws std::runtime_error, with nothing written, where the result must not be used (WhyUnusable).
+/// Gives the model.
 ModelConfig Report(const IdentificationJob& job, const identify::Identification& id);
-
-/// Identifies, with progress on a terminal; writes the model, and with a report directory identification.json
-/// and its pictures; prints the table of results. Throws std::runtime_error, with nothing written, where the
-/// result must not be used (WhyUnusable). Gives the model.
-ModelConfig IdentifyAndReport(const IdentificationJob& job);
 
 }  // namespace contour

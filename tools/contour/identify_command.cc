@@ -14,6 +14,7 @@
 #include "analysis/parallel/parallel_for.h"
 #include "analysis/recording/read_log.h"
 #include "analysis/rough_fit/fit_numbers.h"
+#include "analysis/rough_fit/sound_logs.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
 #include "config/yaml_tree.h"
@@ -107,7 +108,11 @@ int RunIdentify(const Options& options) {
   job.out = options.out;
   job.report = options.report;
   job.threads = options.threads;
-  IdentifyAndReport(job);
+  const diagnosis::SoundLogs sound = diagnosis::MakeSound(job.logs, job.stated);
+  if (!sound.unusable.empty()) throw std::runtime_error("no model was written: " + sound.unusable);
+  identify::Identification found = IdentifyWithProgress(job);
+  if (!sound.note.empty()) found.notes.insert(found.notes.begin(), sound.note);
+  Report(job, found);
   return kExitDone;
 }
 

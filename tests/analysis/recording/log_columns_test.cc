@@ -60,6 +60,23 @@ TEST(LogColumns, NamesThatAreGivenComeFirst) {
             std::string::npos);
 }
 
+// Before: position_rad=q*57.3 was read and left aside where the table has a motor_angle_rad.
+TEST(LogColumns, ANamedSpellingComesBeforeAnotherThatTheTableHas) {
+  const Names header = {"time_s", "torque_Nm", "motor_angle_rad", "x", "reference_angle_rad"};
+  const LogColumns angle = FindColumns("f", header, "", {{"position_rad", "x*0.5"}});
+  ASSERT_TRUE(angle.position);
+  EXPECT_EQ(angle.position->at, 3U);
+  EXPECT_EQ(angle.position->factor, 0.5);
+  EXPECT_FALSE(angle.position_in_m);
+  const LogColumns metres =
+      FindColumns("f", header, "", {{"position_m", "x"}, {"reference_position_m", "x"}});
+  EXPECT_EQ(metres.position, 3U);
+  EXPECT_TRUE(metres.position_in_m);
+  EXPECT_FALSE(metres.linear);
+  EXPECT_EQ(metres.reference, 3U);
+  EXPECT_TRUE(metres.reference_in_m);
+}
+
 TEST(LogColumns, WhatIsMissingIsNamedWithWhatThereIs) {
   EXPECT_NE(Error({"time_s", "foo"}).find("neither torque_Nm nor force_N; there are time_s, foo"),
             std::string::npos);
