@@ -96,6 +96,30 @@ void AlongRows(const SlowWander& wander, std::span<const double> root_weight,
   }
 }
 
+/// Each row waits for the one before it; columns next to each other do not wait for each other.
+constexpr std::size_t kAbreast = 4;
+
+struct Innovations {
+  double keep;
+  std::span<const double> root_weight;
+  std::vector<double> narrow, gain;
+  std::vector<std::uint8_t> begin;
+
+  template <std::size_t kColumns>
+  void Of(double* const* columns) const {
+    double* x[kColumns];
+    std::copy_n(columns, kColumns, x);
+    double state[kColumns] = {};
+    for (std::size_t k = 0; k < narrow.size(); ++k) {
+      if (begin[k] != 0) std::fill_n(state, kColumns, 0.0);
+      for (std::size_t i = 0; i < kColumns; ++i) {
+        x[i][k] = (x[i][k] - root_weight[k] * state[i]) * narrow[k];
+        state[i] = keep * (state[i] + gain[k] * x[i][k]);
+      }
+    }
+  }
+};
+
 }  // namespace
 
 SlowWander LearnSlowWander(std::span<const double> white, std::span<const double> root_weight,
@@ -124,24 +148,18 @@ SlowWander LearnSlowWander(std::span<const double> white, std::span<const double
 void TakeOutWander(const SlowWander& wander, std::span<const double> root_weight,
                    std::span<const std::size_t> begins, double per_row, std::span<double* const> columns) {
   if (!(wander.variance > 0.0)) return;
-  const std::size_t n = root_weight.size();
-  std::vector<double> narrow(n), gain(n);
-  std::vector<std::uint8_t> begin(n, 0);
+  Innovations to{Unknown(wander).keep(), root_weight, {}, {}, {}};
+  to.narrow.resize(root_weight.size());
+  to.gain.resize(root_weight.size());
+  to.begin.assign(root_weight.size(), 0);
   AlongRows(wander, root_weight, begins, per_row,
             [&](std::size_t k, bool anew, double information, double unknown) {
-              narrow[k] = 1.0 / std::sqrt(unknown * information + 1.0);
-              gain[k] = unknown * root_weight[k] / per_row * narrow[k];
-              begin[k] = anew ? 1 : 0;
+              to.narrow[k] = 1.0 / std::sqrt(unknown * information + 1.0);
+              to.gain[k] = unknown * root_weight[k] / per_row * to.narrow[k];
+              to.begin[k] = anew ? 1 : 0;
             });
-  const double keep = Unknown(wander).keep();
-  for (double* const x : columns) {
-    double state = 0.0;
-    for (std::size_t k = 0; k < n; ++k) {
-      if (begin[k] != 0) state = 0.0;
-      x[k] = (x[k] - root_weight[k] * state) * narrow[k];
-      state = keep * (state + gain[k] * x[k]);
-    }
-  }
+  for (; columns.size() >= kAbreast; columns = columns.subspan(kAbreast)) to.Of<kAbreast>(columns.data());
+  for (double* const& column : columns) to.Of<1>(&column);
 }
 
 double LogVariances(const SlowWander& wander, std::span<const double> root_weight,
