@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "control/control_config.h"
 #include "control/motion_thresholds.h"
 #include "core/mechanics.h"
 
