@@ -68,7 +68,7 @@ void MomentumBalance::LearnMass(double acceleration_m_s2, double change_m_s2, do
   const double late_m_s2 = acceleration_m_s2 + delay_periods_ * change_m_s2;
   const double seen = period_ms_ * late_m_s2;
   mass_seen_ = std::min(mass_seen_ + seen * late_m_s2, 1.0 / tuning_.mass_rate);
-  const double most_kg = kMost * (tuning_.heavier_kg > 0.0 ? tuning_.heavier_kg : tuning_.mass_kg);
+  const double most_kg = kMost * tuning_.mass_kg;
   extra_kg_ = std::clamp(extra_kg_ + seen * (force_N - mass_kg * late_m_s2) / (mass_seen_ + kMassPrior),
                          -most_kg, most_kg);
 }

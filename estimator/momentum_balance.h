@@ -19,7 +19,6 @@ class MomentumBalance {
     double period_s = 1e-3;
     double mass_rate = 0.0;   ///< share of the error learnt per ms at 1 m/s^2 in the long run; 0: none
     double delay_rate = 0.0;  ///< and per ms at 100 N of change per ms
-    double heavier_kg = 0.0;  ///< of the body that may be heavier or lighter; 0: all of it
   };
 
   MomentumBalance() noexcept = default;

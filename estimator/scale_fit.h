@@ -44,6 +44,8 @@ class ScaleFit {
   [[nodiscard]] double compliance_std_m_N() const noexcept {
     return std::sqrt(covariance_[kCompliance][kCompliance]);
   }
+  /// What the motor is heavier than commissioned, in that over the commissioned stiffness: m per m/s^2.
+  [[nodiscard]] double motor_extra_s2() const noexcept { return -value_[kMass]; }
   /// Error of the lead there.
   [[nodiscard]] double Lead_m(double travel_m, double position_m) const noexcept;
 

@@ -134,8 +134,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       map_(AngleForceTuning(s.filter)),
       balance_({.mass_kg = s.filter.mechanics.mass_kg,
                 .period_s = s.filter.period_s,
-                .mass_rate = s.scale_loop && s.filter.config.adapt ? s.filter.config.mass_rate : 0.0,
-                .heavier_kg = s.scale_loop ? s.axis.motor_mass_kg : 0.0}),
+                .mass_rate = s.scale_loop && s.filter.config.adapt ? s.filter.config.mass_rate : 0.0}),
       wind_up_(WindUpTuning(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
       lead_(Lead(s.axis), s.filter.period_s),
@@ -183,14 +182,17 @@ void TwoInertiaEstimator::Reset(double position_m) noexcept {
 }
 
 // By the parameters of this moment: friction beside sigma2 v, which the observer's own model has on the
-// table. What the axis is heavier than commissioned belongs to both in the ratio of their masses.
+// table. What the axis is heavier than commissioned belongs to both in the ratio of their masses, or as the
+// scale tells it: the observer that goes by it cannot, since what a motor of another mass does to the encoder
+// passes for an error of the screw there, and what it does to the table for a force on that.
 void TwoInertiaEstimator::Lay() noexcept {
   const double extra_kg = learner_.parameters()[kMass];
   const double sigma2_Ns_m = setup_.friction.sigma2_Ns_m;
   const double weight_N = learner_.Weight_N();
-  // By a scale the observer finds what the table lacks, and nothing of the motor's: each has a mass to learn.
+  const double motor_extra_kg = by_scale_ ? MotorExtra_kg() : 0.0;
   const double motors_share = by_scale_ ? 0.0 : motor_share_;
-  const double motor_extra_kg = balance_.extra_kg();
+  // What the momentum of the whole axis still lacks; without a scale nothing.
+  const double rest_kg = balance_.extra_kg();
   const bool cogs = map_.in_use();
   for (std::size_t j = 0; j < along_.size(); ++j) {
     const FrictionTerms& terms = along_.terms(j);
@@ -207,7 +209,8 @@ void TwoInertiaEstimator::Lay() noexcept {
     // Of sigma2 v, the motor's share has to be taken from the table, which alone has a weight.
     const double before_N =
         before_screw_ * (node.friction_N - weight_N + sigma2_Ns_m * along_.velocity_m_s(j));
-    node.table_N = node.friction_N + (1.0 - motors_share) * node.heavier_N - before_N + side_.At_N(j);
+    node.table_N = node.friction_N + (1.0 - motors_share) * node.heavier_N +
+                   (rest_kg - motor_extra_kg) * terms[kMass] - before_N + side_.At_N(j);
     node.inertia_N = motors_share * node.heavier_N + motor_extra_kg * terms[kMass];
     node.motor_N = node.driving_N - node.inertia_N - before_N;
     if (by_scale_)

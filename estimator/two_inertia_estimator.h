@@ -95,6 +95,7 @@ class TwoInertiaEstimator {
   void Remember(const AxisEstimatorInput& in) noexcept;
   // In two_inertia_scale.cc:
   static std::unique_ptr<TableScale> MakeScale(const Setup& setup, double level_N, double most_N);
+  [[nodiscard]] double MotorExtra_kg() const noexcept;
   void Begin(double position_m) noexcept;
   void ReadScale(const AxisEstimatorInput& in) noexcept;
   TwoInertiaObserver::Seen Correct(const AxisEstimatorInput& in) noexcept;
@@ -116,7 +117,7 @@ class TwoInertiaEstimator {
   TwoInertiaObserver observer_;
   FrictionLearner learner_;
   AngleForceMap map_;        ///< force on the motor over the screw's turn: cogging
-  MomentumBalance balance_;  ///< for what is missing; by a scale it learns the motor's mass
+  MomentumBalance balance_;  ///< for what is missing; by a scale it learns what the mass still lacks
   WindUpFit wind_up_;
   DriveLag<1> lag_;
   std::unique_ptr<TableScale> scale_;  ///< none: there is no linear scale

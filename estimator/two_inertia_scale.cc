@@ -39,6 +39,12 @@ void TwoInertiaEstimator::Begin(double position_m) noexcept {
   observer_.Reset(position_m, by_scale_ ? scale_->table_m() : position_m);
 }
 
+// What the motor is heavier than commissioned, as encoder and scale tell it.
+double TwoInertiaEstimator::MotorExtra_kg() const noexcept {
+  const ScaleFit& fit = scale_->fit();
+  return fit.motor_extra_s2() / (1.0 / axis_.stiffness_N_m + fit.extra_compliance_m_N());
+}
+
 void TwoInertiaEstimator::ReadScale(const AxisEstimatorInput& in) noexcept {
   if (!scale_) return;
   TableScale::Sample s;

@@ -114,15 +114,6 @@ TEST(MomentumBalance, IsBounded) {
   EXPECT_DOUBLE_EQ(balance.extra_kg(), 36.0);
 }
 
-TEST(MomentumBalance, OfOneBodyNoMoreIsLearntThanThatBodyMayBeOff) {
-  Axis axis{.mass_kg = 900.0};
-  MomentumBalance::Tuning motor = kTuning;
-  motor.heavier_kg = 30.0;
-  MomentumBalance balance(motor);
-  Circle(axis, balance, 3000);
-  EXPECT_DOUBLE_EQ(balance.extra_kg(), 12.0);
-}
-
 TEST(MomentumBalance, NothingIsLearntFromNoMotionOrAcrossAGap) {
   MomentumBalance balance(kTuning);
   for (int k = 0; k < 1000; ++k) balance.Learn(1e-3, 20.0, 0.0);

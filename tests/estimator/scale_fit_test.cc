@@ -72,6 +72,23 @@ TEST(ScaleFit, AMotorHeavierThanStatedIsNotTakenForASofterScrew) {
   EXPECT_NEAR(fit.extra_compliance_m_N(), motion.extra_m_N, 0.03 / kStiffness_N_m);
 }
 
+// Corners tell it from the lead, which follows the travel.
+TEST(ScaleFit, CornersTellTheMotorsMass) {
+  constexpr double kLighter_kg = 24.0;
+  ScaleFit fit(TheSetup());
+  fit.Reset(0.0);
+  std::mt19937 random(1);
+  const Motion motion{.extra_m_N = 0.2 / kStiffness_N_m, .slope = 5e-5, .noise_m = 20e-9};
+  for (int k = 0; k < 2000; ++k) {
+    ScaleFit::Sample s = motion.At(k, random);
+    const double corner_m_s2 = k / 250 % 2 == 0 ? 2.0 : -2.0;
+    s.acceleration_m_s2 = k % 250 < 20 ? corner_m_s2 : 0.0;
+    s.apart_m += kLighter_kg * s.acceleration_m_s2 / kStiffness_N_m;
+    fit.Learn(s);
+  }
+  EXPECT_NEAR(kStiffness_N_m * fit.motor_extra_s2(), -kLighter_kg, 0.1 * kLighter_kg);
+}
+
 // A minute of rest with a zero that creeps, as of a screw that cools.
 TEST(ScaleFit, AtRestOnlyTheZeroIsLearnt) {
   ScaleFit fit(TheSetup());
