@@ -124,11 +124,13 @@ LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, doub
 }
 
 ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, double period_s,
-                         double force_N) {
+                         double force_N, ForcePlace place) {
   const double unit_N = ForceUnit_N(member.axis, period_s);
   const LinearSystem plant = MakePlant(member, period_s, unit_N).system;
   const LoopMatrix closed = Closed(plant, MakeController(loop, unit_N));
   const Index n = plant.a.rows();
+  // A force on the motor acts as a torque that nobody commanded.
+  const LoopMatrix pushes = place == ForcePlace::kMotor ? plant.b.col(0) : plant.b.col(1);
   LoopMatrix state = LoopMatrix::Zero(closed.rows(), 1);
   ForceStep step;
   const auto periods = static_cast<int>(std::ceil(kStepTime_s / period_s));
@@ -136,7 +138,7 @@ ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, d
   for (int j = 0; j < periods; ++j) {
     const double time_s = (j + 0.5) * period_s;
     state = (closed * state).eval();
-    state.topRows(n) += plant.b.col(1) * (force_N / unit_N * (1.0 - std::exp(-time_s / kStepLag_s)));
+    state.topRows(n) += pushes * (force_N / unit_N * (1.0 - std::exp(-time_s / kStepLag_s)));
     const double table_m = std::fabs(state(2, 0));
     step.peak_m = std::max(step.peak_m, table_m);
     step.mean_m += table_m / periods;
@@ -149,7 +151,10 @@ ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, d
   return step;
 }
 
-double StepError_m(const LoopVerdict& v) { return std::max(ErrorOf_m(v.step), ErrorOf_m(v.step_astray)); }
+double StepError_m(const LoopVerdict& v) {
+  const double table_m = std::max(ErrorOf_m(v.step), ErrorOf_m(v.step_astray));
+  return 0.5 * (table_m + ErrorOf_m(v.step_of_motor));
+}
 
 bool Acceptable(const LoopVerdict& v, double tolerance) {
   const auto keeps = [&](const WorstMember& w) { return w.stable && w.peak <= w.limit * (1.0 + tolerance); };
@@ -196,8 +201,10 @@ LoopVerdict LoopJudge::Judge(const TwoInertiaLoop& loop) const {
   }
   v.step =
       UnderForceStep(members_.front().member, loop, period_s_, axis_.limits.force_step * axis_.rated_force_N);
-  v.step_astray = v.step;
-  if (axis_.scale_step_m)
+  v.step_astray = v.step_of_motor = v.step;
+  if (axis_.scale_step_m) {
+    v.step_of_motor = UnderForceStep(members_.front().member, loop, period_s_,
+                                     axis_.limits.force_step * axis_.rated_force_N, ForcePlace::kMotor);
     for (const double stiffness : {1.0 - axis_.limits.far_off, 1.0 + axis_.limits.far_off}) {
       LoopMember m = members_.front().member;
       m.axis.stiffness_N_m *= stiffness;
@@ -205,6 +212,7 @@ LoopVerdict LoopJudge::Judge(const TwoInertiaLoop& loop) const {
           UnderForceStep(m, loop, period_s_, axis_.limits.force_step * axis_.rated_force_N);
       if (!(ErrorOf_m(step) <= ErrorOf_m(v.step_astray))) v.step_astray = step;
     }
+  }
   // The torque that the noise of the readings leads to, on the stated axis.
   const auto open = OpenLoop(members_.front().response, response);
   const double encoder_m = kNoiseOfStep * axis_.encoder_step_m;

@@ -24,6 +24,10 @@ struct LoopMargins {
 LoopMargins MarginsOf(const std::vector<Complex>& open, const std::vector<double>& frequencies_Hz);
 LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s);
 
+/// Where a force acts that the loop is not told of. On the motor: what its mass, its friction or the drive's
+/// torque is off by.
+enum class ForcePlace { kTable, kMotor };
+
 /// The table under a force that steps through a lag of 4 ms, on the stated axis, sliding, with nothing
 /// learnt.
 struct ForceStep {
@@ -33,7 +37,7 @@ struct ForceStep {
   double left_m = 0.0;  ///< of the error, 200 ms after it
 };
 ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, double period_s,
-                         double force_N);
+                         double force_N, ForcePlace place = ForcePlace::kTable);
 
 /// The worst of the members of one kind.
 struct WorstMember {
@@ -52,11 +56,15 @@ struct LoopVerdict {
   /// lets encoder and scale drift apart (bias_Hz) matters there alone: it looks best at rest where the screw
   /// is as stated, and takes the wind-up of another one for a force of the table's. Without one, `step`.
   ForceStep step_astray;
+  /// With a linear scale the same of a force on the motor. An observer that takes what the encoder does by
+  /// itself for an error of the screw hears nothing of such a force, and makes up for it late. Without one,
+  /// `step`: there a force is the same wherever it acts.
+  ForceStep step_of_motor;
   double torque_noise = 0.0;  ///< from the resolution of the encoder (and scale), in rated torque
   double noise_limit = 0.0;
 };
-/// What loops are compared by: peak and twice the mean of the error under a step of force, on the worst of
-/// both.
+/// What loops are compared by: peak and twice the mean of the error under a step of force, the mean of one on
+/// the table, on the worst screw, and of one on the motor.
 [[nodiscard]] double StepError_m(const LoopVerdict& verdict);
 /// Every limit is kept, but for this share.
 [[nodiscard]] bool Acceptable(const LoopVerdict& verdict, double tolerance = 0.02);

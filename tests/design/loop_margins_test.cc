@@ -129,6 +129,31 @@ TEST(LoopJudge, AScaleLoopIsJudgedOnOtherScrewsToo) {
   EXPECT_EQ(alone.step_astray.peak_m, alone.step.peak_m);
 }
 
+// A bias that is quick beside what the motor's equation is believed leaves an observer that hears of a force
+// on the motor only by what it does to the table: twice the error that a loop without a scale leaves of it.
+TEST(LoopJudge, AScaleLoopIsJudgedByAForceOnTheMotorToo) {
+  LoopAxis axis = AxisOf({"heavy motor", 120.0, 710.0, 289.0, 76.5, 6620.0}, true);
+  axis.axis.lag_s = 0.277e-3;
+  axis.axis.delay_cycles = 2;
+  const LoopTuning deaf{16.4, 0.129, 0.122, 342.0, 1410.0, 20.5, 0.815, 0.617, 0.02, 50.0, 1300.0};
+  const LoopTuning hears{20.0, 0.0463, 0.104, 149.0, 25.9, 1250.0, 0.611, 0.123, 0.55, 50.0, 338.0};
+  const LoopTuning motor_alone{20.0, 0.022, 0.0931, 213.0, 327.0, 2000.0, 0.608, 0.1, 0.47, 1.0, 5.0};
+  const LoopJudge judge(axis, kPeriod_s);
+  const auto judged = [&](const LoopTuning& t) {
+    return judge.Judge(DesignLoop(axis.axis, t, kPeriod_s, true));
+  };
+  const LoopVerdict late = judged(deaf), early = judged(hears);
+  EXPECT_LT(late.step.peak_m, early.step.peak_m);
+  EXPECT_GT(StepError_m(late), StepError_m(early));
+  axis.scale_step_m.reset();
+  const LoopVerdict alone =
+      LoopJudge(axis, kPeriod_s).Judge(DesignLoop(axis.axis, motor_alone, kPeriod_s, false));
+  EXPECT_EQ(alone.step_of_motor.peak_m, alone.step.peak_m);
+  EXPECT_EQ(StepError_m(alone), alone.step.peak_m + 2.0 * alone.step.mean_m);
+  EXPECT_GT(late.step_of_motor.peak_m, 1.5 * alone.step.peak_m);
+  EXPECT_LT(early.step_of_motor.peak_m, 1.1 * alone.step.peak_m);
+}
+
 TEST(LoopJudge, CoarseEncodersMakeTorqueNoise) {
   LoopAxis axis = AxisOf("base");
   const TwoInertiaLoop loop = DesignLoop(axis.axis, kTuning, kPeriod_s, false);

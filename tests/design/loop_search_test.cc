@@ -74,7 +74,7 @@ TEST(SearchLoop, FollowsTheScaleOfTheAxis) {
 TEST(LoopCost, ChargesWhatIsBeyondALimitAndNothingWithin) {
   LoopVerdict v;
   for (WorstMember& w : v.worst) w = {"one", true, 1.9, 0.9, 2.0};
-  v.step = {10e-6, 1e-6, 1e-6};
+  v.step = v.step_astray = v.step_of_motor = {10e-6, 1e-6, 1e-6};
   v.noise_limit = 0.01;
   const double within = LoopCost(v, 8.0);
   EXPECT_NEAR(within, std::log(12.0), 1e-12);
