@@ -35,6 +35,9 @@ LoopAxis LoopAxisOf(const AxisConfig& axis) {
   out.stiffness_std = std_of("screw_stiffness_N_um");
   out.motor_mass_std = std_of("motor_inertia_kgm2");
   out.table_mass_std = std_of("table_mass_kg");
+  for (const char* key : {"Fc_plus_N", "Fc_minus_N", "Fc_plus_Nm", "Fc_minus_Nm"})
+    if (axis.model.uncertainty.contains(key)) out.friction_std = std::max(out.friction_std, std_of(key));
+  if (out.friction_std == 0.0) out.friction_std = axis.loop_limits.uncertainty;
   const auto share = axis.model.uncertainty.find("motor_share_rel");
   if (share != axis.model.uncertainty.end()) out.motor_share_std = share->second;
   out.side_modes = axis.model.side_modes;

@@ -24,6 +24,7 @@ struct LoopAxis {
   double motor_mass_std = 0.0;
   double table_mass_std = 0.0;
   double motor_share_std = 0.0;  ///< of friction.motor_share, absolute
+  double friction_std = 0.0;     ///< of all of it
   std::vector<SideMode> side_modes;
 };
 

@@ -157,9 +157,12 @@ double StepError_m(const LoopVerdict& v) {
 }
 
 bool Acceptable(const LoopVerdict& v, double tolerance) {
-  const auto keeps = [&](const WorstMember& w) { return w.stable && w.peak <= w.limit * (1.0 + tolerance); };
-  return std::all_of(v.worst.begin(), v.worst.end(), keeps) &&
-         v.torque_noise <= v.noise_limit * (1.0 + tolerance);
+  for (std::size_t i = 0; i < kMemberKinds; ++i) {
+    if (static_cast<MemberKind>(i) == MemberKind::kCreeping) continue;
+    const WorstMember& w = v.worst[i];
+    if (!w.stable || w.peak > w.limit * (1.0 + tolerance)) return false;
+  }
+  return v.torque_noise <= v.noise_limit * (1.0 + tolerance);
 }
 
 const WorstMember& Binding(const LoopVerdict& v) {
@@ -167,6 +170,8 @@ const WorstMember& Binding(const LoopVerdict& v) {
     if (a.stable != b.stable) return a.stable;
     return a.peak / a.limit < b.peak / b.limit;
   };
+  const WorstMember& creeping = v.worst[static_cast<std::size_t>(MemberKind::kCreeping)];
+  if (!creeping.name.empty()) return creeping;
   return *std::max_element(v.worst.begin(), v.worst.end(), nearer);
 }
 

@@ -66,9 +66,9 @@ struct LoopVerdict {
 /// What loops are compared by: peak and twice the mean of the error under a step of force, the mean of one on
 /// the table, on the worst screw, and of one on the motor.
 [[nodiscard]] double StepError_m(const LoopVerdict& verdict);
-/// Every limit is kept, but for this share.
+/// Every limit is kept, but for this share. Members that creep have none.
 [[nodiscard]] bool Acceptable(const LoopVerdict& verdict, double tolerance = 0.02);
-/// What is nearest to its limit.
+/// What is nearest to its limit; of an axis that creeps, where on the slope it is worst.
 [[nodiscard]] const WorstMember& Binding(const LoopVerdict& verdict);
 
 /// Judges loops of one axis; what does not depend on the loop is computed once.

@@ -94,8 +94,7 @@ std::vector<LoopMember> AsStated(const LoopAxis& a) {
         sigma0, motors));
   }
   for (LoopMember& m : WithSideModes(a)) set.push_back(std::move(m));
-  for (const double speed : kSlopeSpeeds) {
-    const double v_m_s = speed * a.friction.vs_m_s;
+  for (const double v_m_s : SlopeSpeeds_m_s(a)) {
     LoopMember m = Vary(a, kKind, "on the Stribeck slope at " + RoundedText(1e3 * v_m_s) + " mm/s", {});
     m.bristle = BristleAt(a.friction, v_m_s);
     set.push_back(std::move(m));
@@ -134,6 +133,8 @@ double PeakLimit(const LoopLimits& limits, MemberKind kind) {
     case MemberKind::kFarOff:
       return limits.peak_far_off;
     case MemberKind::kLate:
+    case MemberKind::kHeld:
+    case MemberKind::kCreeping:
       break;
   }
   return limits.peak_late;
@@ -176,6 +177,23 @@ std::vector<LoopMember> UncertaintySet(const LoopAxis& a) {
   late.kind = MemberKind::kLate;
   ++late.axis.delay_cycles;
   set.push_back(std::move(late));
+  return set;
+}
+
+std::vector<double> SlopeSpeeds_m_s(const LoopAxis& a) {
+  std::vector<double> speeds;
+  for (const double speed : kSlopeSpeeds) speeds.push_back(speed * a.friction.vs_m_s);
+  return speeds;
+}
+
+std::vector<LoopMember> CreepingSet(const LoopAxis& a) {
+  std::vector<LoopMember> set = UncertaintySet(a);
+  for (LoopMember& m : set) {
+    if (m.bristle.decay_1_s > 0.0)
+      m.kind = MemberKind::kCreeping;
+    else if (m.bristle.stiffness_N_m > 0.0)
+      m.kind = MemberKind::kHeld;
+  }
   return set;
 }
 

@@ -17,8 +17,9 @@ struct TableBristle {
 };
 
 /// How far from the stated axis a member of the uncertainty set is, and so which limit holds for it.
-enum class MemberKind { kAsStated, kFarOff, kLate };
-inline constexpr std::size_t kMemberKinds = 3;
+/// kCreeping has none: what becomes of it is for design/creep.h.
+enum class MemberKind { kAsStated, kFarOff, kLate, kHeld, kCreeping };
+inline constexpr std::size_t kMemberKinds = 5;
 [[nodiscard]] double PeakLimit(const LoopLimits& limits, MemberKind kind);
 
 /// One axis that the stated one might be, on which its loop must be stable.
@@ -37,6 +38,11 @@ LoopMember SlidingMember(const LoopAxis& axis);
 LoopMember RestingMember(const LoopAxis& axis);
 /// All that the loop must bear. The first is SlidingMember.
 std::vector<LoopMember> UncertaintySet(const LoopAxis& axis);
+/// The same for an axis whose friction leaves no loop to bear all of it: what the bristle holds, and what is
+/// on the falling slope, are kinds of their own.
+std::vector<LoopMember> CreepingSet(const LoopAxis& axis);
+/// Speeds on the falling slope of its friction at which the set has members.
+std::vector<double> SlopeSpeeds_m_s(const LoopAxis& axis);
 
 /// LuGre friction about steady sliding at this speed.
 TableBristle BristleAt(const Friction& friction, double velocity_m_s);

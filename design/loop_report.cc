@@ -14,7 +14,8 @@ namespace {
 constexpr double kRounding = 0.05;
 // As fine as scales of machine tools are, where the axis has none to go by.
 constexpr double kScaleStep_m = 1e-7;
-constexpr std::array<double, 3> kStiffer{2.0, 4.0, 8.0};
+// The stiffest first: where that does not help, nothing between does.
+constexpr std::array<double, 3> kStiffer{8.0, 4.0, 2.0};
 constexpr LoopSearchOptions kShortSearch{.random_starts = 30,
                                          .runs = 3,
                                          .evaluations_per_run = 300,
@@ -40,14 +41,40 @@ std::string Line(const char* state, const LoopMargins& m) {
          Fixed(m.peak_Hz, 0) + " Hz), bandwidth " + Fixed(m.bandwidth_Hz, 1) + " Hz\n";
 }
 
-constexpr std::array<const char*, kMemberKinds> kKinds{"as stated", "far off", "late"};
+constexpr std::array<const char*, kMemberKinds> kKinds{"as stated", "far off", "late", "held", "creeping"};
+
+/// Members that creep have none.
+std::string Limit(std::size_t kind, const WorstMember& w) {
+  return static_cast<MemberKind>(kind) == MemberKind::kCreeping ? "" : ", limit " + Fixed(w.limit, 2);
+}
+
+std::string Describe(const StickSlip& s) {
+  const auto mm_s = [](double v_m_s) { return RoundedText(1e3 * v_m_s); };
+  std::string text =
+      "  friction falls with speed faster than a loop in torque mode follows here; held and creeping, the "
+      "axis has less margin: ";
+  if (s.slowest_m_s < s.fastest_m_s)
+    text += "from " + mm_s(s.slowest_m_s) + " to " + mm_s(s.fastest_m_s) + " mm/s its table sticks and slips";
+  else
+    text += s.Sticks() ? "its table sticks and slips" : "its table swings";
+  return text + " by up to " + Fixed(1e6 * s.swing_m, 1) + " um, most at " + mm_s(s.at_m_s) +
+         " mm/s; with drive.mode: csp the drive's own loop follows\n";
+}
 
 }  // namespace
 
 LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s) {
   const TwoInertiaLoop loop = DesignLoop(axis.axis, tuning, period_s, axis.scale_step_m.has_value());
-  return {LoopJudge(axis, period_s).Judge(loop), MarginsOn(SlidingMember(axis), loop, period_s),
-          MarginsOn(RestingMember(axis), loop, period_s)};
+  LoopReport report{LoopJudge(axis, period_s).Judge(loop),
+                    MarginsOn(SlidingMember(axis), loop, period_s),
+                    MarginsOn(RestingMember(axis), loop, period_s),
+                    {}};
+  if (Acceptable(report.verdict, kRounding)) return report;
+  const LoopVerdict creeping = LoopJudge(axis, period_s, CreepingSet(axis)).Judge(loop);
+  if (!Acceptable(creeping, kRounding)) return report;
+  report.verdict = creeping;
+  report.stick_slip = StickSlipOf(axis, loop, period_s);
+  return report;
 }
 
 std::string Describe(const LoopReport& r) {
@@ -56,12 +83,12 @@ std::string Describe(const LoopReport& r) {
     const WorstMember& w = r.verdict.worst[i];
     if (w.name.empty()) continue;  // the set has no member of this kind
     text += std::string("  worst of the axis ") + kKinds[i] + ": " +
-            (w.stable ? "peak " + Fixed(w.peak, 2) + ", limit " + Fixed(w.limit, 2) : "unstable") + " (" +
-            w.name + ")\n";
+            (w.stable ? "peak " + Fixed(w.peak, 2) + Limit(i, w) : "unstable") + " (" + w.name + ")\n";
   }
   text += "  binding: " + Binding(r.verdict).name + "\n";
   text += "  expected error of the table under the force step: " + Fixed(1e6 * r.verdict.step.peak_m, 1) +
           " um at most, " + Fixed(1e6 * r.verdict.step.mean_m, 1) + " um on average over 200 ms\n";
+  if (r.stick_slip) text += Describe(*r.stick_slip);
   return text + "  torque noise by the encoder: " + Fixed(100.0 * r.verdict.torque_noise, 2) +
          " % of rated torque\n";
 }
@@ -80,28 +107,41 @@ std::string WhatIsWrong(const LoopVerdict& v) {
          Fixed(100.0 * v.noise_limit, 2) + " %";
 }
 
-std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads) {
+std::string WhatIsWrong(const LoopReport& r) {
+  const std::string wrong = WhatIsWrong(r.verdict);
+  if (!wrong.empty() || !r.stick_slip) return wrong;
+  const ForceStep& step = r.verdict.step;
+  if (step.left_m > kMostLeftCreeping * step.peak_m * (1.0 + kRounding))
+    return "a force is not taken up, after 200 ms the table is still off by " + Fixed(1e6 * step.left_m, 1) +
+           " of " + Fixed(1e6 * step.peak_m, 1) + " um: " + Binding(r.verdict).name;
+  if (r.stick_slip->ComesToRest()) return "";
+  return "at rest the table hunts by " + Fixed(1e6 * r.stick_slip->rest_m, 1) + " um, limit " +
+         Fixed(1e6 * r.stick_slip->most_rest_m, 1) + ": " + Binding(r.verdict).name;
+}
+
+std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads, bool searched) {
   LoopSearchOptions options = kShortSearch;
   options.threads = threads;
   const auto works = [&](const LoopAxis& other) {
     return Acceptable(SearchLoop(other, period_s, options).verdict, kRounding);
   };
-  if (works(axis)) return {"another tuning: contour tune --from-model finds one"};
+  if (!searched && works(axis)) return {"another tuning: contour tune --from-model finds one"};
   std::vector<std::string> help{"drive.mode: csp, in which the drive closes the loop"};
   if (!axis.scale_step_m) {
     LoopAxis with = axis;
     with.scale_step_m = kScaleStep_m;
     if (works(with)) help.emplace_back("a linear scale at the table, in the loop");
   }
+  std::string stiffer;
   for (const double factor : kStiffer) {
     LoopAxis stiff = axis;
     stiff.axis.stiffness_N_m *= factor;
     stiff.axis.damping_Ns_m *= std::sqrt(factor);
-    if (!works(stiff)) continue;
-    help.push_back("a screw of " + RoundedText(1e-6 * stiff.axis.stiffness_N_m) + " N/um instead of " +
-                   RoundedText(1e-6 * axis.axis.stiffness_N_m));
-    break;
+    if (!works(stiff)) break;
+    stiffer = "a screw of " + RoundedText(1e-6 * stiff.axis.stiffness_N_m) + " N/um instead of " +
+              RoundedText(1e-6 * axis.axis.stiffness_N_m);
   }
+  if (!stiffer.empty()) help.push_back(stiffer);
   return help;
 }
 

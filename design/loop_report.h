@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "config/loop_axis.h"
+#include "design/creep.h"
 #include "design/loop_margins.h"
 
 namespace contour {
@@ -12,6 +14,9 @@ namespace contour {
 struct LoopReport {
   LoopVerdict verdict;
   LoopMargins sliding, rest;
+  /// Where friction leaves no margin on the whole UncertaintySet: the verdict is on CreepingSet, if that has
+  /// one.
+  std::optional<StickSlip> stick_slip;
 };
 LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s);
 
@@ -23,9 +28,12 @@ double Compliance_m_N(const LoopAxis& axis, const LoopReport& report);
 
 /// What of it breaks a limit, in one sentence; empty when nothing does.
 std::string WhatIsWrong(const LoopVerdict& verdict);
+std::string WhatIsWrong(const LoopReport& report);
 
 /// What would give an axis a loop that keeps its limits, tried on the model: another tuning, and where there
 /// is none, a linear scale or a stiffer screw. That its drive may close the loop (csp) helps always.
-std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads);
+/// `searched`: another tuning was looked for at length.
+std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads,
+                                       bool searched = false);
 
 }  // namespace contour

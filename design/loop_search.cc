@@ -22,6 +22,9 @@ constexpr double kWorstExcess = 5.0;
 // A force that stays costs more than any limit: what only holds against it is a valley of its own, which
 // small steps do not leave.
 constexpr double kLeftSlope = 30.0;
+// Where no loop bears friction's slope it is no limit, but of two loops that err by nearly the same the one
+// that bears it better sticks and slips by less.
+constexpr double kCreepingSlope = 0.1;
 constexpr double kHopeless = 1e6;
 constexpr double kFirstStep = 0.1;
 constexpr double kSmallStep = 0.05;
@@ -120,12 +123,15 @@ double Left(const ForceStep& step, double most) {
 }  // namespace
 
 double LoopCost(const LoopVerdict& v, double limit_slope) {
-  double excess = std::clamp(v.torque_noise / v.noise_limit - 1.0, 0.0, kWorstExcess);
-  for (const WorstMember& w : v.worst) excess += Excess(w);
+  double excess = std::clamp(v.torque_noise / v.noise_limit - 1.0, 0.0, kWorstExcess), creeping = 0.0;
+  for (std::size_t i = 0; i < kMemberKinds; ++i) {
+    const bool creeps = static_cast<MemberKind>(i) == MemberKind::kCreeping;
+    (creeps ? creeping : excess) += Excess(v.worst[i]);
+  }
   const double error_um = 1e6 * StepError_m(v);
   // An unstable loop's error says nothing.
   const double cost = std::isfinite(error_um) ? std::min(std::log(error_um), 20.0) : 20.0;
-  return std::min(cost + limit_slope * excess, kHopeless);
+  return std::min(cost + limit_slope * excess + kCreepingSlope * creeping, kHopeless);
 }
 
 std::vector<LoopTuning> LoopsOfOtherAxes(double period_s) {
@@ -170,6 +176,12 @@ FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOpti
   int evaluations = static_cast<int>(starts.size());
   for (const SearchResult& r : results) evaluations += r.evaluations;
   std::sort(results.begin(), results.end(), by_cost);
+  const auto judged = [&](const SearchResult& r) {
+    return judge.Judge(DesignLoop(axis.axis, box.At(r.best), period_s, scale));
+  };
+  if (options.hopeless_excess < kNeverHopeless && results.front().cost < kHopeless &&
+      !Acceptable(judged(results.front()), options.hopeless_excess))
+    return {box.At(results.front().best), judged(results.front()), results.front().cost, evaluations};
   results.resize(std::min(runs, static_cast<std::size_t>(std::max(1, options.refinements))));
   ParallelFor(results.size(), options.threads, [&](std::size_t i) {
     results[i] = EvolutionSearch([&](const std::vector<double>& point) { return cost(point, kLimitSlope); },
@@ -182,7 +194,7 @@ FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOpti
   FoundLoop found;
   found.tuning = box.At(best->best);
   found.cost = best->cost;
-  found.verdict = judge.Judge(DesignLoop(axis.axis, found.tuning, period_s, scale));
+  found.verdict = judged(*best);
   found.evaluations = evaluations;
   return found;
 }

@@ -9,6 +9,8 @@
 
 namespace contour {
 
+inline constexpr double kNeverHopeless = 1e9;
+
 struct LoopSearchOptions {
   int random_starts = 60;
   int runs = 6;
@@ -20,6 +22,8 @@ struct LoopSearchOptions {
   std::vector<LoopMember> members;  ///< what it must bear; empty: UncertaintySet
   /// Share of the error under a step of force that may be left after 200 ms.
   double most_left = 1.0;
+  /// Do not refine what is still further than this beyond a limit, as a share of it.
+  double hopeless_excess = kNeverHopeless;
 };
 
 /// The tuning found, and how good it is.
@@ -31,7 +35,7 @@ struct FoundLoop {
 };
 
 /// What the search makes small: the logarithm of the table's error under a force step (peak and twice the
-/// mean, in micrometres), and `limit_slope` per share beyond a limit.
+/// mean, in micrometres), and `limit_slope` per share beyond a limit (a little where the axis creeps).
 double LoopCost(const LoopVerdict& verdict, double limit_slope);
 
 /// What was found on other axes, with all frequencies in those of this sampling.

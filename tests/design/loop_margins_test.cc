@@ -96,6 +96,17 @@ TEST(UnderForceStep, GrowsWithTheForceAndIsMadeUpFor) {
   EXPECT_LT(one.mean_m, 0.5 * one.peak_m);
 }
 
+TEST(Acceptable, HasNoLimitForWhatCreepsAndNamesIt) {
+  LoopVerdict v;
+  for (WorstMember& w : v.worst) w = {"one", true, 1.9, 0.9, 2.0};
+  v.noise_limit = 0.01;
+  v.worst[static_cast<std::size_t>(MemberKind::kCreeping)] = {"on the slope", false, 9.0, 1.01, 4.0};
+  EXPECT_TRUE(Acceptable(v));
+  EXPECT_EQ(Binding(v).name, "on the slope");
+  v.worst[static_cast<std::size_t>(MemberKind::kHeld)].peak = 2.1;
+  EXPECT_FALSE(Acceptable(v));
+}
+
 TEST(LoopJudge, NamesWhatIsUnstable) {
   // One more cycle, and twice as fast as this axis can be held.
   const LoopAxis axis = AxisOf("t50");

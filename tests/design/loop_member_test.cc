@@ -54,6 +54,19 @@ TEST(UncertaintySet, IsAsWideAsTheModelSaysItIs) {
   EXPECT_DOUBLE_EQ(high, 1.2 * axis.axis.stiffness_N_m);
 }
 
+TEST(CreepingSet, IsTheSameSetWithKindsOfItsOwnForWhatFrictionPassesThrough) {
+  const LoopAxis axis = AxisOf("base");
+  const std::vector<LoopMember> strict = UncertaintySet(axis), creeping = CreepingSet(axis);
+  ASSERT_EQ(strict.size(), creeping.size());
+  for (std::size_t i = 0; i < strict.size(); ++i) {
+    EXPECT_EQ(strict[i].name, creeping[i].name);
+    const bool slope = strict[i].name.find("Stribeck") != std::string::npos;
+    const bool held = strict[i].name.find("held") != std::string::npos;
+    const MemberKind kind = slope ? MemberKind::kCreeping : held ? MemberKind::kHeld : strict[i].kind;
+    EXPECT_EQ(creeping[i].kind, kind) << strict[i].name;
+  }
+}
+
 TEST(UncertaintySet, HasSlopeSpeedsOfTheAxisItself) {
   LoopAxis axis = AxisOf("base");
   const auto slowest = [&] {

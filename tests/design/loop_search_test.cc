@@ -71,6 +71,31 @@ TEST(SearchLoop, FollowsTheScaleOfTheAxis) {
   EXPECT_NEAR(a.cost, b.cost, 1e-3);
 }
 
+TEST(SearchLoop, DoesNotRefineWhatIsHopeless) {
+  LoopSearchOptions options = kShort;
+  const int all = SearchLoop(AxisOf("belt"), kPeriod_s, options).evaluations;
+  options.hopeless_excess = 0.5;
+  EXPECT_LT(SearchLoop(AxisOf("belt"), kPeriod_s, options).evaluations, all);
+  EXPECT_EQ(SearchLoop(AxisOf("base"), kPeriod_s, options).cost,
+            SearchLoop(AxisOf("base"), kPeriod_s, kShort).cost);
+}
+
+TEST(LoopCost, ChargesALittleForTheSlopeOfAnAxisThatCreeps) {
+  LoopVerdict v;
+  for (WorstMember& w : v.worst) w = {"one", true, 1.9, 0.9, 2.0};
+  v.step = {10e-6, 1e-6, 1e-6};
+  v.noise_limit = 0.01;
+  const double within = LoopCost(v, 8.0);
+  WorstMember& creeping = v.worst[static_cast<std::size_t>(MemberKind::kCreeping)];
+  creeping.peak = 4.0;
+  const double beyond = LoopCost(v, 8.0);
+  EXPECT_GT(beyond, within);
+  creeping.stable = false;
+  creeping.growth_per_cycle = 1.01;
+  EXPECT_GT(LoopCost(v, 8.0), beyond);
+  EXPECT_LT(LoopCost(v, 8.0), within + 1.0);
+}
+
 TEST(LoopCost, ChargesWhatIsBeyondALimitAndNothingWithin) {
   LoopVerdict v;
   for (WorstMember& w : v.worst) w = {"one", true, 1.9, 0.9, 2.0};

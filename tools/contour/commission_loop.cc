@@ -8,8 +8,8 @@
 #include "config/friction_choice.h"
 #include "config/loop_axis.h"
 #include "config/yaml_writer.h"
+#include "design/find_loop.h"
 #include "design/loop_report.h"
-#include "design/loop_search.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
@@ -23,13 +23,13 @@ void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, con
   LoopSearchOptions options;
   options.threads = ThreadsOf(0);
   options.start = config.loop;
-  const FoundLoop found = SearchLoop(loop_axis, period_s, options);
+  const FoundLoop found = FindLoop(loop_axis, period_s, options);
   const LoopReport report = ReportOn(loop_axis, found.tuning, period_s);
   std::cout << "the loop of axis " << axis << " (control.friction: linear, drive.mode: cst)\n"
             << Describe(report);
-  if (const std::string wrong = WhatIsWrong(report.verdict); !wrong.empty()) {
+  if (const std::string wrong = WhatIsWrong(report); !wrong.empty()) {
     std::cout << "no loop in torque mode keeps its limits (" << wrong << "); none was written\n";
-    for (const std::string& help : WhatWouldHelp(loop_axis, period_s, options.threads))
+    for (const std::string& help : WhatWouldHelp(loop_axis, period_s, options.threads, true))
       std::cout << "  what would help: " << help << "\n";
     return;
   }
@@ -51,7 +51,7 @@ void FindLoopWhereItIsNoLongerGood(const MachineConfig& machine, const std::stri
   const bool linear = machine.control.friction == FrictionKind::kLinear;
   if (!linear && ChooseFriction(now) != FrictionKind::kLinear) return;
   const LoopReport report = ReportOn(LoopAxisOf(config), *config.loop, 1e-6 * now.machine.cycle_us);
-  const std::string wrong = WhatIsWrong(report.verdict);
+  const std::string wrong = WhatIsWrong(report);
   if (wrong.empty()) return;
   std::cout << "with this model the loop of axis " << axis << " does not keep its limits (" << wrong
             << "). contourd runs with it until the machine file has another one:\n";

@@ -64,7 +64,7 @@ void Judge(const Judged& loop, double period_s, bool used, LoopSection& section,
   try {
     const LoopReport report = ReportOn(loop.axis, loop.tuning, period_s);
     section.text += loop.title + "\n" + Describe(report);
-    const std::string wrong = WhatIsWrong(report.verdict);
+    const std::string wrong = WhatIsWrong(report);
     if (wrong.empty()) {
       if (advised != nullptr) section.text += DriveAdvice(advised->first, advised->second, report);
       return;

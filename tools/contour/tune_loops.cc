@@ -14,6 +14,7 @@
 #include "config/yaml_tree.h"
 #include "config/yaml_writer.h"
 #include "core/exit_status.h"
+#include "design/find_loop.h"
 #include "design/loop_report.h"
 #include "design/loop_search.h"
 #include "design/start_loop.h"
@@ -71,18 +72,18 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
     options.evaluations_per_run = options.evaluations_per_refinement = asked.evaluations;
   // Not from what the file has: the same model gives the same loop.
   if (asked.catalogue) options.members = StartSet(axis, DoubtOf(model));
-  FoundLoop found = SearchLoop(axis, period_s, options);
+  FoundLoop found = asked.catalogue ? SearchLoop(axis, period_s, options) : FindLoop(axis, period_s, options);
   Rounding rounding;
   found.tuning.Visit(rounding);
   LoopReport report = ReportOn(axis, found.tuning, period_s);
   if (asked.catalogue) report.verdict = found.verdict;
   std::cout << Describe(report);
-  const std::string wrong = asked.catalogue ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(model))
-                                            : WhatIsWrong(report.verdict);
+  const std::string wrong =
+      asked.catalogue ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(model)) : WhatIsWrong(report);
   if (!wrong.empty()) {
     std::cout << "  NO stable loop in torque mode within the limits was found; the best of "
               << found.evaluations << ": " << wrong << "\n";
-    for (const std::string& help : WhatWouldHelp(axis, period_s, options.threads))
+    for (const std::string& help : WhatWouldHelp(axis, period_s, options.threads, true))
       std::cout << "  what would help: " << help << "\n";
     return false;
   }

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "config/loop_axis.h"
+#include "core/two_inertia_loop.h"
+
+namespace contour {
+
+/// Of the error under a step of force, 200 ms after it. A loop that only holds against a force bears
+/// friction's slope best, leaves the table beside its path by all that is not known of friction, and hunts
+/// too slowly for CreepAt to see.
+inline constexpr double kMostLeftCreeping = 0.1;
+
+/// Of a table that creeps at one speed and then stops: from top to bottom of its error, once it has settled.
+struct Creep {
+  double speed_m_s = 0.0;
+  double swing_m = 0.0;  ///< while it creeps
+  double rest_m = 0.0;   ///< once its reference stands
+};
+
+/// From a steady speed that is kicked by as much as the bristles bend. Motor and table with LuGre friction of
+/// `friction_rel` times what is stated, the steady force of it fed forward, nothing learnt, and without what
+/// holds an axis at rest (control/standstill.h). A linear loop on friction's falling slope tells whether the
+/// table leaves a steady speed; this tells where that ends.
+Creep CreepAt(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s, double speed_m_s,
+              double friction_rel = 1.0);
+
+/// What friction's falling slope does to an axis, at worst, with friction as stated and off by what it is
+/// uncertain.
+struct StickSlip {
+  double swing_m = 0.0;  ///< largest while it creeps
+  double at_m_s = 0.0;   ///< and at which speed
+  // Where it sticks: where it swings by more than the bristles bend. No range: nowhere.
+  double slowest_m_s = 0.0, fastest_m_s = 0.0;
+  double rest_m = 0.0;       ///< largest once its reference stands: it hunts
+  double most_rest_m = 0.0;  ///< by which it may
+  [[nodiscard]] bool Sticks() const { return fastest_m_s > 0.0; }
+  [[nodiscard]] bool ComesToRest() const { return rest_m <= most_rest_m; }
+};
+StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s);
+
+}  // namespace contour

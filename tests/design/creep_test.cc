@@ -1,0 +1,76 @@
+#include "design/creep.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/design/creeping_axes.h"
+
+namespace contour {
+namespace {
+
+constexpr double kPeriod_s = 1e-3;
+// Of the light stage, found without regard to the slope.
+const LoopTuning kOnLightStage{15.2, 0.241, 0.905, 165.0, 767.0, 828.0, 0.51, 0.665, 0.127, 1.0, 5.0};
+const LoopTuning kOnBase{26.7, 0.12, 0.10, 274.0, 1038.0, 793.0, 0.75, 0.10, 0.06, 1.0, 5.0};
+const LoopTuning kOnStiffTable{3.48, 20.0, 0.469, 7.69, 19.7, 0.667, 0.906, 1.96, 0.52, 1.0, 5.0};
+
+TwoInertiaLoop Loop(const LoopAxis& axis, const LoopTuning& tuning, double period_s = kPeriod_s) {
+  return DesignLoop(axis.axis, tuning, period_s, false);
+}
+
+TEST(StickSlipOf, IsNoneWhereALoopBearsTheSlope) {
+  const LoopAxis axis = AxisOf("base");
+  const StickSlip s = StickSlipOf(axis, Loop(axis, kOnBase), kPeriod_s);
+  EXPECT_FALSE(s.Sticks()) << s.swing_m << " at " << s.at_m_s;
+  EXPECT_TRUE(s.ComesToRest()) << s.rest_m;
+}
+
+TEST(StickSlipOf, SaysWhereAndByHowMuchALightStageSticks) {
+  const LoopAxis axis = LightStage();
+  const StickSlip s = StickSlipOf(axis, Loop(axis, kOnLightStage), kPeriod_s);
+  EXPECT_TRUE(s.Sticks());
+  EXPECT_LT(s.fastest_m_s, 2.0 * axis.friction.vs_m_s);
+  EXPECT_GT(s.swing_m, axis.friction.Fc_plus_N / axis.friction.sigma0_N_m);
+  EXPECT_TRUE(s.ComesToRest()) << s.rest_m;
+}
+
+TEST(StickSlipOf, IsOfTheSlopeAlone) {
+  LoopAxis axis = LightStage();
+  axis.friction.Fs_plus_N = axis.friction.Fs_minus_N = axis.friction.Fc_plus_N;
+  const StickSlip s = StickSlipOf(axis, Loop(axis, kOnLightStage), kPeriod_s);
+  EXPECT_LT(s.swing_m, 0.1 * axis.friction.Fc_plus_N / axis.friction.sigma0_N_m);
+}
+
+TEST(StickSlipOf, SeesAnAxisThatHuntsAtRest) {
+  const LoopAxis axis = StiffTable();
+  const StickSlip s = StickSlipOf(axis, Loop(axis, kOnStiffTable, kSlowPeriod_s), kSlowPeriod_s);
+  EXPECT_FALSE(s.ComesToRest());
+  // Not by a little.
+  EXPECT_GT(s.rest_m, 10.0 * s.most_rest_m);
+}
+
+TEST(CreepAt, IsWhatTheLinearLoopSaysAboutOneSpeed) {
+  // Fast enough for the slope to have faded, a steady speed is steady.
+  const LoopAxis axis = LightStage();
+  const TwoInertiaLoop loop = Loop(axis, kOnLightStage);
+  const Creep fast = CreepAt(axis, loop, kPeriod_s, 10.0 * axis.friction.vs_m_s);
+  EXPECT_LT(fast.swing_m, 1e-8);
+  const Creep slow = CreepAt(axis, loop, kPeriod_s, axis.friction.vs_m_s);
+  EXPECT_GT(slow.swing_m, 1e-6);
+  // An unstable loop does not settle at any.
+  LoopTuning wild = kOnLightStage;
+  wild.regulator_Hz = 80.0;
+  EXPECT_GT(CreepAt(axis, Loop(axis, wild), kPeriod_s, 10.0 * axis.friction.vs_m_s).swing_m, 1e-4);
+}
+
+TEST(CreepAt, HasTheDelayOfTheAxis) {
+  // A cycle late is more than this loop bears.
+  LoopAxis axis = LightStage();
+  const TwoInertiaLoop loop = Loop(axis, kOnLightStage);
+  const double speed_m_s = 10.0 * axis.friction.vs_m_s;
+  const double prompt_m = CreepAt(axis, loop, kPeriod_s, speed_m_s).swing_m;
+  axis.axis.dead_time_s = 3.5 * kPeriod_s;
+  EXPECT_GT(CreepAt(axis, loop, kPeriod_s, speed_m_s).swing_m, 100.0 * prompt_m + 1e-6);
+}
+
+}  // namespace
+}  // namespace contour

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "tests/design/family_axes.h"
+
+namespace contour {
+
+/// Friction that falls by this from standstill to sliding, within a Stribeck velocity of 1.2 mm/s.
+inline LoopAxis WithSlope(LoopAxis a, double sticks_N, double slides_N, double bends_m) {
+  Friction& f = a.friction;
+  f.Fs_plus_N = f.Fs_minus_N = sticks_N;
+  f.Fc_plus_N = f.Fc_minus_N = slides_N;
+  f.vs_m_s = f.sigma1_decay_m_s = 1.2e-3;
+  f.sigma0_N_m = slides_N / bends_m;
+  a.friction_std = 0.2;
+  return a;
+}
+
+/// A stage of 8 kg in all whose friction is worth 1.5 m/s2: the slope at which it falls is quicker than a
+/// loop over a bus of 1 kHz is on a screw of 115 Hz.
+inline LoopAxis LightStage() {
+  return WithSlope(AxisOf({"light stage", 5.5, 2.7, 0.89, 14.0, 70.0}), 15.3, 12.1, 11e-6);
+}
+
+/// Held by bristles of 10 N/um, which swing at 46 Hz with 115 kg; a cycle of 4 ms is too slow to damp that.
+inline constexpr double kSlowPeriod_s = 4e-3;
+inline LoopAxis StiffTable() {
+  LoopAxis a = WithSlope(AxisOf({"stiff table", 62.0, 53.0, 115.0, 46.0, 415.0}), 50.5, 39.8, 4e-6);
+  a.friction.vs_m_s = a.friction.sigma1_decay_m_s = 3.9e-3;
+  return a;
+}
+
+}  // namespace contour
