@@ -14,7 +14,7 @@ namespace {
 constexpr double kRounding = 0.05;
 // As fine as scales of machine tools are, where the axis has none to go by.
 constexpr double kScaleStep_m = 1e-7;
-// The stiffest first: where that does not help, nothing between does.
+// The stiffest first: where a short search finds nothing there, it hardly does between.
 constexpr std::array<double, 3> kStiffer{8.0, 4.0, 2.0};
 constexpr LoopSearchOptions kShortSearch{.random_starts = 30,
                                          .runs = 3,
@@ -61,6 +61,12 @@ std::string Describe(const StickSlip& s) {
          " mm/s; with drive.mode: csp the drive's own loop follows\n";
 }
 
+/// Whether friction's slope alone is more than the limits of the axis as stated allow.
+bool SlopeForbids(const LoopAxis& axis, const LoopVerdict& creeping) {
+  const WorstMember& slope = creeping.worst[static_cast<std::size_t>(MemberKind::kCreeping)];
+  return !slope.stable || slope.peak > axis.limits.peak_as_stated * (1.0 + kRounding);
+}
+
 }  // namespace
 
 LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s) {
@@ -71,7 +77,7 @@ LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double perio
                     {}};
   if (Acceptable(report.verdict, kRounding)) return report;
   const LoopVerdict creeping = LoopJudge(axis, period_s, CreepingSet(axis)).Judge(loop);
-  if (!Acceptable(creeping, kRounding)) return report;
+  if (!SlopeForbids(axis, creeping) || !Acceptable(creeping, kRounding)) return report;
   report.verdict = creeping;
   report.stick_slip = StickSlipOf(axis, loop, period_s);
   return report;

@@ -42,6 +42,13 @@ void ScaleFit::Reset(double apart_m) noexcept {
   for (std::size_t i = 0; i < kSize; ++i) covariance_[i][i] = prior_[i] * prior_[i];
 }
 
+void ScaleFit::LetGo(double apart_m) noexcept {
+  const double mass = value_[kMass], variance = covariance_[kMass][kMass];
+  Reset(apart_m);
+  value_[kMass] = mass;
+  covariance_[kMass][kMass] = variance;
+}
+
 void ScaleFit::Learn(const Sample& s) noexcept {
   const Row h{1.0, s.force_N, s.travel_m, s.cos, s.sin, s.acceleration_m_s2};
   double expected_m = 0.0;

@@ -36,6 +36,8 @@ class ScaleFit {
 
   /// As commissioned; motor and table are so far apart.
   void Reset(double apart_m) noexcept;
+  /// The axis is let go: the same, but for the motor's mass, which stays what it is.
+  void LetGo(double apart_m) noexcept;
   void Learn(const Sample& sample) noexcept;
 
   [[nodiscard]] double zero_m() const noexcept { return value_[kZero]; }
@@ -44,7 +46,7 @@ class ScaleFit {
   [[nodiscard]] double compliance_std_m_N() const noexcept {
     return std::sqrt(covariance_[kCompliance][kCompliance]);
   }
-  /// What the motor is heavier than commissioned, in that over the commissioned stiffness: m per m/s^2.
+  /// What the motor is heavier than commissioned over the screw's stiffness as it is: m per m/s^2.
   [[nodiscard]] double motor_extra_s2() const noexcept { return -value_[kMass]; }
   /// Error of the lead there.
   [[nodiscard]] double Lead_m(double travel_m, double position_m) const noexcept;

@@ -45,12 +45,17 @@ TableScale::TableScale(const Setup& s) noexcept
             kMassStd * s.motor_mass_kg / s.stiffness_N_m, s.turn_m, s.learns && s.stiffness_std > 0.0}) {}
 
 void TableScale::Reset() noexcept {
+  LetGo();
+  fit_.Reset(believed() ? position_m_ - table_m_ - lead_m_ : 0.0);
+}
+
+void TableScale::LetGo() noexcept {
   sudden_ = doubted_ = 0;
   lately_m_ = 0.0;
   doubt_ = missing_ < lost_ ? Reason::kNone : Reason::kScaleLost;
   filtering_ = false;
   center_m_ = 0.0;
-  fit_.Reset(believed() ? position_m_ - table_m_ - lead_m_ : 0.0);
+  fit_.LetGo(believed() ? position_m_ - table_m_ - lead_m_ : 0.0);
 }
 
 // An axis that is let go may swing on its bristles for a while: until it is first held, the mean counts.
@@ -134,7 +139,7 @@ void TableScale::Step(const Sample& s) noexcept {
   table_m_ = s.scale_m - zero_m_;
   lead_m_ = s.lead_m;
   periods_ = 0;
-  if (!s.enabled) return Reset();
+  if (!s.enabled) return LetGo();
   if (!believed()) return;
   const double screw_N = this->screw_N();
   const double beyond_m = low_[kApart] - low_[kLead] - screw_N / setup_.stiffness_N_m;

@@ -45,8 +45,10 @@ class TableScale {
 
   explicit TableScale(const Setup& setup) noexcept;
 
-  /// The axis is enabled anew: as commissioned, and believed until something speaks against it.
+  /// As commissioned, and believed until something speaks against it.
   void Reset() noexcept;
+  /// The axis is let go, and will be enabled anew: the same, but for the motor's mass.
+  void LetGo() noexcept;
   void Step(const Sample& sample) noexcept;
   /// By how much the newest reading is off from where the table was expected, at this speed: further than a
   /// force or a SYNC that came late takes it, and it is not to be used. What lasts is doubted.

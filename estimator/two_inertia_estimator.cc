@@ -191,8 +191,10 @@ void TwoInertiaEstimator::Lay() noexcept {
   const double weight_N = learner_.Weight_N();
   const double motor_extra_kg = by_scale_ ? MotorExtra_kg() : 0.0;
   const double motors_share = by_scale_ ? 0.0 : motor_share_;
-  // What the momentum of the whole axis still lacks; without a scale nothing.
+  // What the momentum of the whole axis still lacks; on an axis without a scale nothing.
   const double rest_kg = balance_.extra_kg();
+  const double besides_kg =
+      by_scale_ ? TableExtra_kg(extra_kg + rest_kg, motor_extra_kg) - extra_kg : rest_kg;
   const bool cogs = map_.in_use();
   for (std::size_t j = 0; j < along_.size(); ++j) {
     const FrictionTerms& terms = along_.terms(j);
@@ -209,8 +211,8 @@ void TwoInertiaEstimator::Lay() noexcept {
     // Of sigma2 v, the motor's share has to be taken from the table, which alone has a weight.
     const double before_N =
         before_screw_ * (node.friction_N - weight_N + sigma2_Ns_m * along_.velocity_m_s(j));
-    node.table_N = node.friction_N + (1.0 - motors_share) * node.heavier_N +
-                   (rest_kg - motor_extra_kg) * terms[kMass] - before_N + side_.At_N(j);
+    node.table_N = node.friction_N + (1.0 - motors_share) * node.heavier_N + besides_kg * terms[kMass] -
+                   before_N + side_.At_N(j);
     node.inertia_N = motors_share * node.heavier_N + motor_extra_kg * terms[kMass];
     node.motor_N = node.driving_N - node.inertia_N - before_N;
     if (by_scale_)

@@ -100,6 +100,9 @@ class TwoInertiaEstimator {
   void ReadScale(const AxisEstimatorInput& in) noexcept;
   TwoInertiaObserver::Seen Correct(const AxisEstimatorInput& in) noexcept;
   void LeaveScale(double position_m) noexcept;
+  /// What the table is heavier than commissioned: what the axis is less what the motor is, as far as that
+  /// leaves a table.
+  [[nodiscard]] double TableExtra_kg(double axis_kg, double motor_kg) const noexcept;
   void Learn(const AxisEstimatorInput& in, bool may) noexcept;
   void LearnMotor(double position_m) noexcept;
   void LearnWindUp(const AxisEstimatorInput& in) noexcept;

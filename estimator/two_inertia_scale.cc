@@ -11,6 +11,13 @@ namespace {
 // A scale shows the screw's compliance directly: what was stated need not bound what is found.
 constexpr double kLeastStdWithScale = 0.15;
 
+// Of the commissioned compliance: a screw four times as stiff is another one.
+constexpr double kLeastCompliance = 0.25;
+// Of the motor's mass, which is stated to a third of it at the worst.
+constexpr double kMostOfMotor = 0.4;
+// Of the table's mass: what is left of it where the axis is lighter by more than the motor can be.
+constexpr double kLeastOfTable = 0.1;
+
 }  // namespace
 
 std::unique_ptr<TableScale> TwoInertiaEstimator::MakeScale(const Setup& s, double level_N, double most_N) {
@@ -42,7 +49,14 @@ void TwoInertiaEstimator::Begin(double position_m) noexcept {
 // What the motor is heavier than commissioned, as encoder and scale tell it.
 double TwoInertiaEstimator::MotorExtra_kg() const noexcept {
   const ScaleFit& fit = scale_->fit();
-  return fit.motor_extra_s2() / (1.0 / axis_.stiffness_N_m + fit.extra_compliance_m_N());
+  const double stated_m_N = 1.0 / axis_.stiffness_N_m;
+  const double screw_m_N = std::max(stated_m_N + fit.extra_compliance_m_N(), kLeastCompliance * stated_m_N);
+  const double most_kg = kMostOfMotor * axis_.motor_mass_kg;
+  return std::clamp(fit.motor_extra_s2() / screw_m_N, -most_kg, most_kg);
+}
+
+double TwoInertiaEstimator::TableExtra_kg(double axis_kg, double motor_kg) const noexcept {
+  return std::max(axis_kg - motor_kg, (kLeastOfTable - 1.0) * axis_.table_mass_kg);
 }
 
 void TwoInertiaEstimator::ReadScale(const AxisEstimatorInput& in) noexcept {

@@ -45,6 +45,16 @@ TEST(FindLoop, LetsAnAxisCreepThatSlidesAndStandsWell) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
 }
 
+// A bristle three times as stiff asks for another loop; friction's slope has nothing to do with it.
+TEST(FindLoop, TheSofterLimitsAreForFrictionsSlopeAlone) {
+  LoopAxis axis = AxisOf("t20");
+  const LoopTuning tuning = SearchLoop(axis, kPeriod_s, kShort).tuning;
+  axis.friction.sigma0_N_m *= 3.0;
+  const LoopReport report = ReportOn(axis, tuning, kPeriod_s);
+  EXPECT_NE(WhatIsWrong(report), "");
+  EXPECT_FALSE(report.stick_slip);
+}
+
 TEST(FindLoop, RefusesWhatWouldHuntAtRest) {
   const LoopAxis axis = StiffTable();
   const FoundLoop found = FindLoop(axis, kSlowPeriod_s, kShort);

@@ -86,7 +86,15 @@ TEST(ScaleFit, CornersTellTheMotorsMass) {
     s.apart_m += kLighter_kg * s.acceleration_m_s2 / kStiffness_N_m;
     fit.Learn(s);
   }
-  EXPECT_NEAR(kStiffness_N_m * fit.motor_extra_s2(), -kLighter_kg, 0.1 * kLighter_kg);
+  const double known_s2 = fit.motor_extra_s2();
+  EXPECT_NEAR(kStiffness_N_m * known_s2, -kLighter_kg, 0.1 * kLighter_kg);
+  // An axis that was let go has the motor that it had.
+  fit.LetGo(1e-6);
+  EXPECT_EQ(fit.motor_extra_s2(), known_s2);
+  EXPECT_EQ(fit.extra_compliance_m_N(), 0.0);
+  EXPECT_EQ(fit.zero_m(), 1e-6);
+  fit.Reset(0.0);
+  EXPECT_EQ(fit.motor_extra_s2(), 0.0);
 }
 
 // A minute of rest with a zero that creeps, as of a screw that cools.

@@ -76,7 +76,10 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
   Rounding rounding;
   found.tuning.Visit(rounding);
   LoopReport report = ReportOn(axis, found.tuning, period_s);
-  if (asked.catalogue) report.verdict = found.verdict;
+  if (asked.catalogue) {
+    report.verdict = found.verdict;
+    report.stick_slip.reset();
+  }
   std::cout << Describe(report);
   const std::string wrong =
       asked.catalogue ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(model)) : WhatIsWrong(report);

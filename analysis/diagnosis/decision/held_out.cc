@@ -73,6 +73,12 @@ Seen SeenIn(const Problem& problem, const Fit& with, bool scale) {
   return CauseNamed(last.kind).coupling || FasterThanTheTorque(problem, last) ? Seen::kWhite : Seen::kTorque;
 }
 
+bool IsPlay(const Fit& with) {
+  if (with.point.effects.empty()) return false;
+  const CauseDefinition& last = CauseNamed(with.point.effects.back()->kind);
+  return last.acts_at_reversals && !last.takes_up_mismatch;
+}
+
 // Blocks that stay together. A scale wanders for longer than a block: what its neighbours were fitted to has
 // seen it.
 std::size_t Together(Seen seen) {
@@ -361,12 +367,6 @@ void TellGain(const Problem& problem, const Squares& squares, Seen seen, Cause& 
 
 }  // namespace
 
-bool MostGain(const std::vector<BlockGain>& blocks) {
-  const auto gain =
-      std::count_if(blocks.begin(), blocks.end(), [](const BlockGain& b) { return b.gain > 0.0; });
-  return 2 * static_cast<std::size_t>(gain) > blocks.size();
-}
-
 bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks) {
   const Seen seen = SeenIn(problem, with, scale);
@@ -379,7 +379,8 @@ bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
   // A few blocks in which the axis sticks may have more torque that nobody foresees than all others have in
   // all: which model slips at the better instant there is chance. Where most blocks gain all the same, the
   // rows are asked: as multiples of the noise that each has, those blocks count no more than the others.
-  if (!MostGain(blocks)) return true;
+  // A play is in few blocks at any rate, and its impacts are chaotic.
+  if (!IsPlay(with) && !MostGain(blocks)) return true;
   Cause white;
   std::vector<BlockGain> of_white;
   TellGain(problem, SquaresOf(problem, without, with, Seen::kWhite, stated), Seen::kWhite, white, of_white);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "analysis/diagnosis/result/finding.h"
@@ -16,11 +18,16 @@ double Consistency(const Problem& problem, const Fit& without, const Fit& with, 
 /// each fold by one Gauss-Newton step from the whole fit, then run anew), 95 % interval by a bootstrap of the
 /// blocks. Numbers of the base that the last effect of `with` frees are where they are stated without it.
 /// False: what a cause of this kind is asked for, torque, is lost in some blocks that have most of it, though
-/// most blocks gain, and the gain told is that of the rows as multiples of their noise.
+/// most blocks gain or the cause is a play, and the gain told is that of the rows as multiples of their
+/// noise.
 bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks);
 
 /// Whether more than half of them gain.
-bool MostGain(const std::vector<BlockGain>& blocks);
+inline bool MostGain(const std::vector<BlockGain>& blocks) {
+  const auto gain =
+      std::count_if(blocks.begin(), blocks.end(), [](const BlockGain& b) { return b.gain > 0.0; });
+  return 2 * static_cast<std::size_t>(gain) > blocks.size();
+}
 
 }  // namespace contour::diagnosis

@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <memory>
 #include <numeric>
 #include <random>
 
@@ -199,6 +200,22 @@ TEST(HeldOutGain, ATorqueThatDoesHarmInMostBlocksStaysOne) {
   EXPECT_EQ(cause.unit, "Nm");
   EXPECT_LT(cause.heldout_gain_high, 0.0);
   EXPECT_FALSE(MostGain(blocks));
+}
+
+// Before: a clear play of 0.8 um was refused, as a torque that does harm: its impacts are in few blocks, and
+// chaotic.
+TEST(HeldOutGain, OfAPlayTheRowsAreAskedAnyway) {
+  const test::FittedAxis axis({{"constant_torque", 0.3, 0.0, 0.0, 0.0}});
+  Fit with = axis.With(axis.Of("constant_torque"));
+  with.point.amplitudes.back()[0] *= -1.0;
+  auto play = std::make_shared<Effect>(*with.point.effects.back());
+  play->kind = "backlash";
+  with.point.effects.back() = play;
+  Cause cause;
+  std::vector<BlockGain> blocks;
+  EXPECT_FALSE(HeldOutGain(axis.problem, axis.base, with, false, cause, blocks));
+  EXPECT_EQ(cause.unit, "times the noise");
+  EXPECT_GT(cause.heldout_gain_low, 0.0);
 }
 
 TEST(HeldOutGain, MostBlocksAreMoreThanHalf) {
