@@ -53,6 +53,9 @@ class Machine:
         for override in ["telemetry.publish=false", "realtime.required=false", "telemetry.flight_recorder_s=0",
                          f"io.modbus.port={port}", f"emulator.io.port={port}"]:
             command += ["--set", override]
+        if clock != "wall":
+            # Modbus goes by the clock in lock-step, too: the longest time-out that there is.
+            command += ["--set", "io.modbus.timeout_ms=5000", "--set", "io.modbus.accept_blind_travel=true"]
         self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=stderr)
 
     def ask(self, *words, expected=0):
