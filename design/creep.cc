@@ -157,7 +157,9 @@ StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double p
     for (const double speed_m_s : speeds) {
       const Creep c = CreepAt(axis, loop, period_s, speed_m_s, std::max(1.0 + off, kLeastFriction));
       // What is not a number has run away.
-      const auto size_m = [](double swing_m) { return swing_m >= 0.0 ? swing_m : 1e300; };
+      const auto size_m = [](double swing_m) {
+        return swing_m >= 0.0 ? swing_m : std::numeric_limits<double>::infinity();
+      };
       out.rest_m = std::max(out.rest_m, size_m(c.rest_m));
       if (size_m(c.swing_m) > out.swing_m) {
         out.swing_m = size_m(c.swing_m);

@@ -57,7 +57,7 @@ struct LoopVerdict {
   /// is as stated, and takes the wind-up of another one for a force of the table's. Without one, `step`.
   ForceStep step_astray;
   /// With a linear scale the same of a force on the motor. An observer that takes what the encoder does by
-  /// itself for an error of the screw hears nothing of such a force, and makes up for it late. Without one,
+  /// itself for an error of the screw does not see such a force, and makes up for it late. Without one,
   /// `step`: there a force is the same wherever it acts.
   ForceStep step_of_motor;
   double torque_noise = 0.0;  ///< from the resolution of the encoder (and scale), in rated torque

@@ -191,7 +191,7 @@ void TwoInertiaEstimator::Lay() noexcept {
   const double weight_N = learner_.Weight_N();
   const double motor_extra_kg = by_scale_ ? MotorExtra_kg() : 0.0;
   const double motors_share = by_scale_ ? 0.0 : motor_share_;
-  // What the momentum of the whole axis still lacks; on an axis without a scale nothing.
+  // What the momentum of the whole axis still lacks; without a loop for a scale nothing.
   const double rest_kg = balance_.extra_kg();
   const double besides_kg =
       by_scale_ ? TableExtra_kg(extra_kg + rest_kg, motor_extra_kg) - extra_kg : rest_kg;

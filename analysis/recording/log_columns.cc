@@ -50,6 +50,10 @@ class Finder {
   }
 
   [[nodiscard]] bool Named(const std::string& quantity) const { return names_.contains(quantity); }
+  /// Named on the command line, and the other one not.
+  [[nodiscard]] bool NamedInstead(const std::string& quantity, const std::string& of) const {
+    return Named(quantity) && !Named(of);
+  }
   [[nodiscard]] std::optional<LogColumn> Find(const std::string& quantity) const {
     if (const auto named = names_.find(quantity); named != names_.end()) {
       if (const auto at = ByHeader(named->second)) return at;
@@ -61,7 +65,7 @@ class Finder {
   }
   /// The same under either of two spellings; the one that was named on the command line first.
   [[nodiscard]] std::optional<LogColumn> Find(const std::string& a, const std::string& b) const {
-    const auto at = Named(b) && !Named(a) ? std::nullopt : Find(a);
+    const auto at = NamedInstead(b, a) ? std::nullopt : Find(a);
     return at ? at : Find(b);
   }
   [[nodiscard]] LogColumn Demand(const std::string& quantity) const {
@@ -179,7 +183,7 @@ const Command* FindCommand(const Finder& finder) {
 
 void FindMotion(const Finder& finder, LogColumns& columns) {
   const bool by_metres =
-      finder.Named("position_m") && !finder.Named("motor_angle_rad") && !finder.Named("position_rad");
+      finder.NamedInstead("position_m", "motor_angle_rad") && !finder.Named("position_rad");
   const auto angle = by_metres ? std::nullopt : finder.Find("motor_angle_rad", "position_rad");
   const auto metres = finder.Find("position_m");
   if (columns.in_ampere)
@@ -215,9 +219,8 @@ LogColumns FindColumns(const std::string& file, const std::vector<std::string>& 
   if (!columns.axis2_position && !finder.axis().empty())
     for (const std::string& other : finder.OtherAxes())
       if (!columns.axis2_position) columns.axis2_position = finder.Find(other + "_position_m");
-  const bool reference_by_metres =
-      finder.Named("reference_position_m") && !finder.Named("reference_angle_rad");
-  if (!columns.linear && !reference_by_metres) columns.reference = finder.Find("reference_angle_rad");
+  if (!columns.linear && !finder.NamedInstead("reference_position_m", "reference_angle_rad"))
+    columns.reference = finder.Find("reference_angle_rad");
   if (!columns.reference) {
     columns.reference = finder.Find("reference_position_m");
     columns.reference_in_m = columns.reference.has_value();

@@ -9,8 +9,8 @@
 namespace contour::diagnosis {
 
 struct SoundLogs {
-  std::string
-      unusable;      ///< why nothing may be identified from them, with the numbers; empty: they may be used
+  /// Why nothing may be identified from them, with the numbers; empty: they may be used.
+  std::string unusable;
   std::string note;  ///< what was left out; empty: nothing
 };
 

@@ -4,19 +4,12 @@
 
 #include "design/loop_report.h"
 #include "tests/design/creeping_axes.h"
+#include "tests/design/short_search.h"
 
 namespace contour {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
-const LoopSearchOptions kShort{.random_starts = 20,
-                               .runs = 2,
-                               .evaluations_per_run = 200,
-                               .refinements = 1,
-                               .evaluations_per_refinement = 200,
-                               .threads = 2,
-                               .start = {},
-                               .members = {}};
 
 TEST(FindLoop, IsTheSearchWhereThatFindsOne) {
   const LoopAxis axis = AxisOf("t20");
@@ -59,6 +52,21 @@ TEST(FindLoop, RefusesWhatWouldHuntAtRest) {
   const LoopAxis axis = StiffTable();
   const FoundLoop found = FindLoop(axis, kSlowPeriod_s, kShort);
   EXPECT_NE(WhatIsWrong(ReportOn(axis, found.tuning, kSlowPeriod_s)), "");
+}
+
+// Of a loop that keeps its limits but for the slope.
+TEST(WhatIsWrong, NamesWhatAnAxisThatCreepsDoesAtRestAndUnderAForce) {
+  LoopReport report;
+  for (WorstMember& w : report.verdict.worst) w = {"on the slope", true, 1.0, 0.9, 2.0};
+  report.verdict.noise_limit = 0.01;
+  report.verdict.step = {.peak_m = 10e-6, .mean_m = 1e-6, .rms_m = 1e-6, .left_m = 0.5e-6};
+  report.stick_slip = StickSlip{.rest_m = 1e-6, .most_rest_m = 2e-6};
+  EXPECT_EQ(WhatIsWrong(report), "");
+  report.stick_slip->rest_m = 3e-6;
+  EXPECT_EQ(WhatIsWrong(report), "at rest the table hunts by 3.0 um, limit 2.0: on the slope");
+  report.verdict.step.left_m = 2e-6;
+  EXPECT_EQ(WhatIsWrong(report),
+            "a force is not taken up, after 200 ms the table is still off by 2.0 of 10.0 um: on the slope");
 }
 
 TEST(FindLoop, RefusesABelt) {

@@ -6,20 +6,12 @@
 #include <numbers>
 
 #include "tests/design/family_axes.h"
+#include "tests/design/short_search.h"
 
 namespace contour {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
-// Much less than what `contour tune --from-model` spends.
-const LoopSearchOptions kShort{.random_starts = 20,
-                               .runs = 2,
-                               .evaluations_per_run = 200,
-                               .refinements = 1,
-                               .evaluations_per_refinement = 200,
-                               .threads = 2,
-                               .start = {},
-                               .members = {}};
 
 class EveryBallScrew : public testing::TestWithParam<FamilyAxis> {};
 

@@ -73,6 +73,7 @@ Seen SeenIn(const Problem& problem, const Fit& with, bool scale) {
   return CauseNamed(last.kind).coupling || FasterThanTheTorque(problem, last) ? Seen::kWhite : Seen::kTorque;
 }
 
+// Of those at reversals a coupling is seen in the rows anyway, and a bristle of its own takes up a mismatch.
 bool IsPlay(const Fit& with) {
   if (with.point.effects.empty()) return false;
   const CauseDefinition& last = CauseNamed(with.point.effects.back()->kind);
