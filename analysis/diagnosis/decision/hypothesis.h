@@ -16,6 +16,7 @@ struct Hypothesis {
   bool given_up = false;
   /// A coupling that every screw has, no cause of a deviation: it belongs to the base.
   bool no_fault = false;
+  bool implausible = false;  ///< the fit ended where the cause is not what its name says
 
   [[nodiscard]] const Effect& effect() const { return *fit.point.effects.back(); }
 };
