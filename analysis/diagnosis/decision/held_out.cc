@@ -3,14 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <random>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "analysis/diagnosis/causes/catalogue.h"
-#include "analysis/diagnosis/causes/waves.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
@@ -43,34 +41,17 @@ void HoldShapes(const Fit& fit, Eigen::MatrixXd& normal) {
 }
 
 // Where a gain is seen: as a torque, on the scale, or in the white residual, as multiples of the noise. A
-// coupling moves a resonance about, which a torque below 100 Hz does not have.
+// coupling moves a resonance about, which a torque below 100 Hz does not have; what is about timing turns
+// phases by a frequency times a time, and hardly does below it.
 enum class Seen { kTorque, kScale, kWhite };
-
-// A wave that is mostly faster than what the torque's smoothing leaves shows in the rows only.
-bool FasterThanTheTorque(const Problem& problem, const Effect& effect) {
-  const CauseDefinition& cause = CauseNamed(effect.kind);
-  if (!effect.wave || *cause.wave == nullptr) return false;
-  double radians_per_s = effect.order;
-  if ((*cause.wave)->wave == Wave::kForceOfTime) {
-    radians_per_s *= 2.0 * std::numbers::pi;
-  } else {
-    const Signals& s = *problem.signals;
-    double squares = 0.0, rows = 0.0;
-    for (std::size_t k = 0; k < problem.rows(); ++k) {
-      if (problem.counted[k] == 0) continue;
-      squares += std::pow(s.angle_per_q * s.velocity[k], 2);
-      rows += 1.0;
-    }
-    radians_per_s *= std::sqrt(squares / std::max(1.0, rows));
-  }
-  return radians_per_s * ResidualSmoothing(problem.log.period_s) * problem.log.period_s > 1.0;
-}
 
 Seen SeenIn(const Problem& problem, const Fit& with, bool scale) {
   if (scale) return Seen::kScale;
   if (with.point.effects.empty()) return Seen::kTorque;
   const Effect& last = *with.point.effects.back();
-  return CauseNamed(last.kind).coupling || FasterThanTheTorque(problem, last) ? Seen::kWhite : Seen::kTorque;
+  const CauseDefinition& cause = CauseNamed(last.kind);
+  const bool in_rows = cause.coupling || cause.about_timing || FasterThanTheTorque(problem, last);
+  return in_rows ? Seen::kWhite : Seen::kTorque;
 }
 
 // Of those at reversals a coupling is seen in the rows anyway, and a bristle of its own takes up a mismatch.

@@ -1,7 +1,12 @@
 #include "analysis/diagnosis/decision/residual_trace.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <span>
 
+#include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/causes/waves.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
@@ -51,6 +56,25 @@ Traces MakeTraces(const Problem& problem, const Point& before, const Point& afte
     t.scale_after.assign(raw[1].begin() + static_cast<std::ptrdiff_t>(n), raw[1].end());
   }
   return t;
+}
+
+bool FasterThanTheTorque(const Problem& problem, const Effect& effect) {
+  const CauseDefinition& cause = CauseNamed(effect.kind);
+  if (!effect.wave || *cause.wave == nullptr) return false;
+  double radians_per_s = effect.order;
+  if ((*cause.wave)->wave == Wave::kForceOfTime) {
+    radians_per_s *= 2.0 * std::numbers::pi;
+  } else {
+    const Signals& s = *problem.signals;
+    double squares = 0.0, rows = 0.0;
+    for (std::size_t k = 0; k < problem.rows(); ++k) {
+      if (problem.counted[k] == 0) continue;
+      squares += std::pow(s.angle_per_q * s.velocity[k], 2);
+      rows += 1.0;
+    }
+    radians_per_s *= std::sqrt(squares / std::max(1.0, rows));
+  }
+  return radians_per_s * ResidualSmoothing(problem.log.period_s) * problem.log.period_s > 1.0;
 }
 
 }  // namespace contour::diagnosis

@@ -16,4 +16,7 @@ Signal TorqueResidualFrom(const Problem& problem, const Point& point, const std:
 
 Traces MakeTraces(const Problem& problem, const Point& before, const Point& after);
 
+/// A wave that is mostly faster than what the torque's smoothing leaves: it shows in the rows only.
+bool FasterThanTheTorque(const Problem& problem, const Effect& effect);
+
 }  // namespace contour::diagnosis

@@ -6,7 +6,6 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/base_there.h"
-#include "analysis/diagnosis/screening/score.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 
 namespace contour::diagnosis {
@@ -34,7 +33,8 @@ bool WithdrawIdle(const Problem& problem, Fit& fit, Accepted& accepted, Diagnosi
   std::size_t in_fit = 0;
   for (const Cause& cause : out.causes) {
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
-    if (HoldsZero(cause) && !InBase(problem, cause.kind)) {
+    // A factor on all forces against the torque has its interval from what is stated.
+    if (HoldsZero(cause) && !CauseNamed(cause.kind).common_factor) {
       fit = FitPoint(problem, Without(problem, fit.point, accepted.places[in_fit]));
       out.notes.push_back(
           TakeBack(in_fit, accepted, out).kind +

@@ -96,6 +96,24 @@ TEST_F(WithdrawTest, OneNumberBeyondZeroIsEnoughToStayWhereChanceIsOutOfTheQuest
   EXPECT_EQ(out_.causes.size(), 1U);
 }
 
+// Before: a delay of -45 us (-97 to 3) stood before the saturation that it had been taken for.
+TEST_F(WithdrawTest, ANumberOfTheModelGoesLikeAnyOtherCause) {
+  Accept({"input_delay", "constant_torque"});
+  Size(0, "delay_us", {-45.0, -97.0, 3.0});
+  Size(1, "torque_Nm", {0.02, 0.018, 0.022});
+  ASSERT_TRUE(Withdraw());
+  ASSERT_EQ(out_.causes.size(), 1U);
+  EXPECT_EQ(out_.causes[0].kind, "constant_torque");
+  ASSERT_EQ(fit_.point.effects.size(), 1U);
+  EXPECT_EQ(fit_.point.effects[0]->kind, "constant_torque");
+}
+
+TEST_F(WithdrawTest, AFactorOnAllForcesStays) {
+  Accept({"torque_constant"});
+  Size(0, "ratio", {0.1, -0.1, 0.3});
+  EXPECT_FALSE(Withdraw());
+}
+
 TEST_F(WithdrawTest, TheLastOneOfAllMayGoToo) {
   Accept({"cable_spring"});
   Size(0, "torque_at_stroke_end_Nm", {0.0001, -0.002, 0.002});
