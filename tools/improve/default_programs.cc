@@ -9,8 +9,12 @@
 namespace contour::improve {
 namespace {
 
-// The circle of ISO 230-4 that the manuals use.
+// The circle of ISO 230-4 that the manuals use, or one of as many turns of a steep screw as its diameter has
+// leads: what repeats with the motor's turn shows as such in no less than two.
 constexpr double kRadius_mm = 10.0;
+constexpr double kRadius_leads = 1.0;
+/// The same for the whole way, which experiments use: a turn more than the circle's diameter.
+constexpr double kLeastWay_leads = 3.0;
 constexpr double kSpeed_mm_s = 50.0;
 constexpr double kShareOfWay = 0.45;
 constexpr double kShareOfSpeed = 0.9;
@@ -36,7 +40,9 @@ Curve CurveFor(const MachineConfig& machine, const WorkingSpace& space, double s
     acceleration_mm_s2 = std::min(acceleration_mm_s2, limits.acceleration_mm_s2);
     jerk_mm_s3 = std::min(jerk_mm_s3, limits.jerk_mm_s3);
   }
-  Curve curve{size * std::min(kRadius_mm, kShareOfWay * way_mm), speed * speed_mm_s};
+  const double lead_mm = machine.axes.at(space.names[space.axis]).model.mechanics.lead_mm;
+  const double radius_mm = std::max(kRadius_mm, kRadius_leads * lead_mm);
+  Curve curve{size * std::min(radius_mm, kShareOfWay * way_mm), speed * speed_mm_s};
   const double r_mm = curve.radius_mm;
   curve.speed_mm_s = std::min({curve.speed_mm_s, std::sqrt(kShareOfCurve * acceleration_mm_s2 * r_mm),
                                std::cbrt(kShareOfCurve * jerk_mm_s3 * r_mm * r_mm)});
@@ -61,6 +67,14 @@ ProgramText Make(const WorkingSpace& space, const Curve& c, const char* directio
 }
 
 }  // namespace
+
+CommissionLimits UsualLimits(const AxisConfig& axis) {
+  CommissionLimits limits = DefaultCommissionLimits(axis);
+  const double stroke_mm = axis.limits.position_mm[1] - axis.limits.position_mm[0];
+  const double least_mm = kLeastWay_leads * axis.model.mechanics.lead_mm;
+  limits.travel_mm = std::min(std::max(limits.travel_mm, least_mm), stroke_mm);
+  return limits;
+}
 
 ProgramText UsualPath(const MachineConfig& machine, const WorkingSpace& space) {
   return Make(space, CurveFor(machine, space, 1.0, 1.0), "ccw");

@@ -24,6 +24,13 @@ double SumOfSquares(const std::vector<double>& x, double mean) {
   return sum;
 }
 
+/// Of errors; what is smaller than the place of measurement tells counts as much as that.
+std::vector<double> Logarithms(const std::vector<double>& x, double least) {
+  std::vector<double> out;
+  for (const double v : x) out.push_back(std::log(std::max(v, least)));
+  return out;
+}
+
 std::string InNumbers(const char* what, const Comparison& c) {
   return FormatText("%s %.3g um, before %.3g um (a difference below %.2g um is chance)", what, c.after_um,
                     c.before_um, c.repeatability_um);
@@ -53,15 +60,19 @@ Comparison Compare(const Repeats& r, double resolution_um, std::size_t candidate
   Comparison c;
   c.before_um = Mean(r.before_um);
   c.after_um = Mean(r.after_um);
-  const std::size_t freedom = r.before_um.size() + r.after_um.size() - 2;
-  const double variance = (SumOfSquares(r.before_um, c.before_um) + SumOfSquares(r.after_um, c.after_um)) /
-                          static_cast<double>(freedom);
-  const double shares =
-      1.0 / static_cast<double>(r.before_um.size()) + 1.0 / static_cast<double>(r.after_um.size());
+  c.resolution_um = resolution_um;
+  const std::vector<double> before = Logarithms(r.before_um, resolution_um);
+  const std::vector<double> after = Logarithms(r.after_um, resolution_um);
+  c.log_ratio = Mean(after) - Mean(before);
+  const std::size_t freedom = before.size() + after.size() - 2;
+  const double variance =
+      (SumOfSquares(before, Mean(before)) + SumOfSquares(after, Mean(after))) / static_cast<double>(freedom);
+  const double shares = 1.0 / static_cast<double>(before.size()) + 1.0 / static_cast<double>(after.size());
   const double quantile =
       StudentQuantile(freedom, kChance / static_cast<double>(std::max<std::size_t>(1, candidates)));
-  c.deviation_um = std::max(resolution_um, std::sqrt(variance * shares));
-  c.repeatability_um = std::max(resolution_um, quantile * std::sqrt(variance * shares));
+  c.log_deviation = std::sqrt(variance * shares);
+  c.log_chance = quantile * c.log_deviation;
+  c.repeatability_um = std::max(resolution_um, -c.before_um * std::expm1(-c.log_chance));
   return c;
 }
 

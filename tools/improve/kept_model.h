@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -10,22 +11,29 @@ struct Repeats {
   std::vector<double> before_um, after_um;
 };
 
-/// What two sets of repeats say of each other.
+/// What two sets of repeats say of each other. Largest errors scatter in proportion to their size: what draws
+/// ten times better repeats ten times better, and one scatter in micrometres would hide it.
 struct Comparison {
   double before_um = 0.0, after_um = 0.0;  ///< means
-  double repeatability_um = 0.0;           ///< a difference of the means below it is chance
-  double deviation_um = 0.0;               ///< standard deviation of that difference
-  [[nodiscard]] bool better() const { return before_um - after_um > repeatability_um; }
-  [[nodiscard]] bool worse() const { return after_um - before_um > repeatability_um; }
+  double repeatability_um = 0.0;           ///< lower than before by less than this is chance
+  double log_ratio = 0.0;                  ///< mean logarithm after less the one before
+  double log_chance = 0.0;                 ///< of that, what is chance
+  double log_deviation = 0.0;              ///< its standard deviation
+  double resolution_um = 0.0;              ///< a smaller difference is none
+  [[nodiscard]] bool better() const { return -log_ratio > log_chance && Differ(); }
+  [[nodiscard]] bool worse() const { return log_ratio > log_chance && Differ(); }
   /// By more than repeats usually differ: not proof, but reason enough to leave things as they are.
-  [[nodiscard]] bool higher() const { return after_um - before_um > deviation_um; }
+  [[nodiscard]] bool higher() const { return log_ratio > log_deviation && Differ(); }
+
+ private:
+  [[nodiscard]] bool Differ() const { return std::fabs(before_um - after_um) > resolution_um; }
 };
 
 /// The value that Student's t exceeds with `probability`, at most one half.
 double StudentQuantile(std::size_t freedom, double probability);
 
-/// Student's test of two means with one scatter, one-sided at 2.5 % for all `candidates` that are to be
-/// compared, and never below `resolution_um`, what the place of measurement tells apart. Two repeats on
+/// Student's test of two mean logarithms with one scatter, one-sided at 2.5 % for all `candidates` that are
+/// to be compared, and never below `resolution_um`, what the place of measurement tells apart. Two repeats on
 /// either side at least: std::invalid_argument.
 Comparison Compare(const Repeats& repeats, double resolution_um, std::size_t candidates = 1);
 

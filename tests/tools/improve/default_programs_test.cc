@@ -46,5 +46,26 @@ TEST(DefaultPrograms, TheSpaceStaysInsideTheLimitsAndHasTheSameShareOfTorque) {
   EXPECT_NEAR(space.axes[1].max_torque_Nm, 0.25, 1e-12);
 }
 
+// Before: of a screw of 20 mm the path was nine tenths of a turn, and a cogging was not found.
+TEST(DefaultPrograms, ASteepScrewIsGivenTurnsEnough) {
+  MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/xy_emulated.yaml");
+  for (auto& [name, axis] : machine.axes) {
+    axis.model.mechanics.lead_mm = 20.0;
+    axis.limits.position_mm = {-300.0, 300.0};
+  }
+  const CommissionLimits limits = UsualLimits(machine.axes.at("x"));
+  EXPECT_DOUBLE_EQ(limits.travel_mm, 60.0);
+  const WorkingSpace space = SpaceFor(machine, "x", limits, At(machine, 0.0));
+  EXPECT_NE(UsualPath(machine, space).text.find("radius_mm: 20.0"), std::string::npos);
+  // As far as the stroke has them.
+  machine.axes.at("x").limits.position_mm = {-20.0, 20.0};
+  EXPECT_DOUBLE_EQ(UsualLimits(machine.axes.at("x")).travel_mm, 40.0);
+  // A fine one keeps what commissioning has.
+  machine.axes.at("x").limits.position_mm = {-100.0, 100.0};
+  machine.axes.at("x").model.mechanics.lead_mm = 5.0;
+  EXPECT_DOUBLE_EQ(UsualLimits(machine.axes.at("x")).travel_mm,
+                   DefaultCommissionLimits(machine.axes.at("x")).travel_mm);
+}
+
 }  // namespace
 }  // namespace contour::improve

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <stdexcept>
 
 namespace contour::improve {
@@ -12,13 +13,26 @@ Comparison Of(std::vector<double> before, std::vector<double> after) {
 }
 
 TEST(KeptModel, ADifferenceCountsBeyondTheScatterOfTheRepeats) {
-  // One deviation of 0.1 um in either set, two means of three: 2.776 * 0.1 * sqrt(2 / 3).
+  // Deviations of 0.100 and 0.168 in the logarithms, two means of three: 2.776 * 0.1386 * sqrt(2 / 3) =
+  // 0.314.
   const Comparison c = Of({0.9, 1.0, 1.1}, {0.5, 0.6, 0.7});
-  EXPECT_NEAR(c.repeatability_um, 0.2267, 1e-3);
+  EXPECT_NEAR(c.log_chance, 0.314, 1e-3);
+  EXPECT_NEAR(c.repeatability_um, 1.0 - std::exp(-0.314), 1e-3);
   EXPECT_TRUE(c.better());
   EXPECT_FALSE(c.worse());
   EXPECT_FALSE(Of({0.9, 1.0, 1.1}, {0.7, 0.8, 0.9}).better());
   EXPECT_TRUE(Of({0.5, 0.6, 0.7}, {0.9, 1.0, 1.1}).worse());
+}
+
+// Before: one scatter in um, that of the old model, made a tenth of the error chance (4.1 um of 3.6).
+TEST(KeptModel, ATenthOfTheErrorIsNoChanceHoweverTheOldModelScatters) {
+  EXPECT_TRUE(Compare({{2.5, 2.7, 5.7}, {0.37, 0.36, 0.38}}, 0.005, 2).better());
+  EXPECT_FALSE(Compare({{2.5, 2.7, 5.7}, {2.2, 3.9, 2.4}}, 0.005, 2).better());
+}
+
+TEST(KeptModel, AnErrorOfNothingCountsAsTheResolution) {
+  EXPECT_TRUE(Of({1.0, 1.01}, {0.0, 0.0}).better());
+  EXPECT_FALSE(Of({0.0, 0.0}, {0.004, 0.003}).worse());
 }
 
 TEST(KeptModel, QuantilesAreThoseOfTables) {
