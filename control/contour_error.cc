@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/contour_path.h"
+#include "core/wide_vectors.h"
 
 namespace contour {
 namespace {
@@ -48,6 +49,7 @@ bool StandsStill(const PerAxis<AxisHorizon>& reference) noexcept {
 
 }  // namespace
 
+CONTOUR_WIDE_VECTORS
 ContourError FindContourError(const PerAxis<double>& position_m, const PerAxis<AxisHorizon>& reference,
                               double period_s, std::size_t now) noexcept {
   ContourError error;

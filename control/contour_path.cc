@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/wide_vectors.h"
+
 namespace contour {
 namespace {
 
@@ -32,6 +34,7 @@ ContourPath::ContourPath(const PerAxis<AxisHorizon>& reference, double period_s)
   for (const AxisHorizon& axis : reference) points_ = std::min(points_, axis.size());
 }
 
+CONTOUR_WIDE_VECTORS
 void ContourPath::At(double periods, PathSample& sample) const noexcept {
   const std::size_t axes = reference_->size();
   sample.position_m.resize(axes);

@@ -8,6 +8,7 @@
 #include "control/control_law.h"
 #include "control/path_weights.h"
 #include "control/qp_solver.h"
+#include "core/wide_numbers.h"
 
 namespace contour {
 namespace {
@@ -98,15 +99,21 @@ class PlannerGroup final : public PlannerGroupBase {
   [[nodiscard]] bool Possible(const PerAxis<AxisHorizon>& wanted) const noexcept {
     for (std::size_t i = 0; i < Axes; ++i) {
       const AxisHorizon& axis = wanted[first_ + i];
-      double most_m_s = 0.0, before_m_s = PointAt(axis, 1).velocity_m_s;
       const std::size_t end = std::min(axis.size(), problem_.horizon + 3);
-      // Every cycle looks at every point: the loop's own counting would be half of it.
+      // Every cycle looks at every point: two steps at a time, and the loop's own counting would be half of
+      // it.
+      wide::Pair most{}, least{};
+      std::size_t n = 2;
 #pragma GCC unroll 8
-      for (std::size_t n = 2; n < end; ++n) {
-        const double now_m_s = axis[n].velocity_m_s;
-        most_m_s = std::max(most_m_s, std::abs(now_m_s - before_m_s));
-        before_m_s = now_m_s;
+      for (; n + 1 < end; n += 2) {
+        const double middle_m_s = axis[n].velocity_m_s;
+        const wide::Pair step = wide::Pair{middle_m_s, axis[n + 1].velocity_m_s} -
+                                wide::Pair{axis[n - 1].velocity_m_s, middle_m_s};
+        most = most < step ? step : most;
+        least = step < least ? step : least;
       }
+      double most_m_s = std::max(std::max(most[0], most[1]), -std::min(least[0], least[1]));
+      if (n < end) most_m_s = std::max(most_m_s, std::abs(axis[n].velocity_m_s - axis[n - 1].velocity_m_s));
       if (most_m_s / period_s_ > bound_m_s2_[i]) return false;
     }
     return true;

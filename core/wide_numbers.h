@@ -30,4 +30,28 @@ using QuadInMemory = double __attribute__((vector_size(32), aligned(8), may_alia
   *reinterpret_cast<QuadInMemory*>(p) = v;
 }
 
+using QuadBits = long long __attribute__((vector_size(32)));
+
+/// Without their signs.
+[[gnu::always_inline]] inline void Sizes(const Quad& x, Quad& out) noexcept {
+  constexpr long long kAllButSign = 0x7fffffffffffffff;
+  const QuadBits mask{kAllButSign, kAllButSign, kAllButSign, kAllButSign};
+  out = reinterpret_cast<Quad>(reinterpret_cast<QuadBits>(x) & mask);
+}
+
+/// Positive numbers with the signs of `like`.
+[[gnu::always_inline]] inline void WithSigns(const Quad& positive, const Quad& like, Quad& out) noexcept {
+  Quad size;
+  Sizes(like, size);
+  const QuadBits signs = reinterpret_cast<QuadBits>(like) ^ reinterpret_cast<QuadBits>(size);
+  out = reinterpret_cast<Quad>(reinterpret_cast<QuadBits>(positive) | signs);
+}
+
+/// Each between -most and most.
+[[gnu::always_inline]] inline void Clamp(Quad& x, double most) noexcept {
+  const Quad high = Quad{} + most, low = -high;
+  x = x < low ? low : x;
+  x = high < x ? high : x;
+}
+
 }  // namespace contour::wide

@@ -28,19 +28,23 @@ template <>
 struct BitsOf<wide::Pair> {
   using Type = std::uint64_t __attribute__((vector_size(16)));
 };
+template <>
+struct BitsOf<wide::Quad> {
+  using Type = std::uint64_t __attribute__((vector_size(32)));
+};
 
-/// |x| <= 700.
+/// |x| <= 700. By reference, as all that is meant for wide::Quad, too.
 template <class T>
-inline Reduced<T> Reduce(T x) noexcept {
+[[gnu::always_inline]] inline void Reduce(const T& x, Reduced<T>& out) noexcept {
   constexpr double kShift = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer
   const T shifted = x * 1.4426950408889634 + kShift;
   const T n = shifted - kShift;
   // ln 2 in two parts, the first with 20 trailing zero bits, so that n * kHigh is exact.
   constexpr double kHigh = 6.93147180369123816490e-01;
   constexpr double kLow = 1.90821492927058770002e-10;
-  const T r = (x - n * kHigh) - n * kLow;
+  out.r = (x - n * kHigh) - n * kLow;
   const auto bits = __builtin_bit_cast(typename BitsOf<T>::Type, shifted) << 52U;
-  return {r, __builtin_bit_cast(T, bits + std::bit_cast<std::uint64_t>(1.0))};
+  out.power = __builtin_bit_cast(T, bits + std::bit_cast<std::uint64_t>(1.0));
 }
 
 /// (exp(r) - 1) / r for |r| <= ln 2 / 2: the polynomial of degree 10 that is 1 at 0 and nearest to it at
@@ -48,7 +52,7 @@ inline Reduced<T> Reduce(T x) noexcept {
 /// Estrin's scheme, which does not wait for one term after the other: exponentials follow one another in the
 /// filter, and a third of the time goes.
 template <class T>
-inline T Series(T r) noexcept {
+[[gnu::always_inline]] inline void Series(const T& r, T& out) noexcept {
   const T r2 = r * r;
   const T r4 = r2 * r2;
   const T t0 = 1.0 + 0.5000000000000001 * r;
@@ -59,26 +63,45 @@ inline T Series(T r) noexcept {
   const T u0 = t0 + t2 * r2;
   const T u4 = t4 + t6 * r2;
   const T u8 = t8 + 2.510038549551032e-08 * r2;
-  return u0 + r4 * (u4 + r4 * u8);
+  out = u0 + r4 * (u4 + r4 * u8);
 }
 
 }  // namespace exponential
 
 /// exp(x) for x <= 0; below -700 as at -700. Half of the limits and most of their cost are not needed there.
-/// T: double, or two of them side by side.
+/// T: double, or two or four of them side by side.
+template <class T>
+[[gnu::always_inline]] inline void ExpOfNegative(const T& x, T& out) noexcept {
+  const T lowest = T{} - 700.0;
+  const T bounded = x < lowest ? lowest : x;
+  exponential::Reduced<T> reduced;
+  exponential::Reduce<T>(bounded, reduced);
+  T series;
+  exponential::Series<T>(reduced.r, series);
+  out = reduced.power + reduced.power * (reduced.r * series);
+}
 template <class T>
 inline T ExpOfNegative(T x) noexcept {
-  const T lowest = T{} - 700.0;
-  x = x < lowest ? lowest : x;
-  const auto [r, power] = exponential::Reduce<T>(x);
-  return power + power * (r * exponential::Series<T>(r));
+  T out;
+  ExpOfNegative<T>(x, out);
+  return out;
 }
 
 /// exp(x) - 1 for x <= 0, without cancellation near zero.
+template <class T>
+[[gnu::always_inline]] inline void Expm1OfNegative(const T& x, T& out) noexcept {
+  const T lowest = T{} - 700.0;
+  const T bounded = x < lowest ? lowest : x;
+  exponential::Reduced<T> reduced;
+  exponential::Reduce<T>(bounded, reduced);
+  T series;
+  exponential::Series<T>(reduced.r, series);
+  out = reduced.power * (reduced.r * series) + (reduced.power - 1.0);
+}
 inline double Expm1OfNegative(double x) noexcept {
-  x = x < -700.0 ? -700.0 : x;
-  const auto [r, power] = exponential::Reduce(x);
-  return power * (r * exponential::Series(r)) + (power - 1.0);
+  double out;
+  Expm1OfNegative(x, out);
+  return out;
 }
 
 /// Arguments beyond +-700 are taken as +-700.

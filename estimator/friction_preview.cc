@@ -22,23 +22,39 @@ constexpr double kHeldShare = 0.3;
 using Row = std::array<double, kMaxHorizonPoints>;
 using View = ReferenceTerms::View;
 
+constexpr std::size_t kVector = ReferenceTerms::kVector;
+
 /// The law along the reference, one row per quantity. Only the bristle itself needs one point after the
-/// other.
+/// other; all else is four points at a time, in registers.
 struct Along {
-  alignas(32) Row factor, level_N, target_N, per_level_1_N, relaxation;
+  alignas(32) Row level_N, target_N, per_level_1_N, relaxation;
   alignas(32) Row bristle_N, next_N;  // at the point and at the next
-  alignas(32) Row node_N, middle_N;   // friction
 };
 
-/// BristleRelaxation at every point, and where the bristle goes.
-[[gnu::always_inline]] inline void Relax(double sigma0_N_m, double period_s, const View& at,
-                                         std::size_t count, Along& a) noexcept {
-  for (std::size_t j = 0; j < count; ++j) {
-    a.per_level_1_N[j] = 1.0 / a.level_N[j];
-    a.relaxation[j] =
-        -Expm1OfNegative(-sigma0_N_m * std::abs(at.velocity_m_s[j]) * a.per_level_1_N[j] * period_s);
-    a.target_N[j] = std::copysign(a.level_N[j], at.velocity_m_s[j]);
-  }
+/// Level and BristleRelaxation at four points, and where the bristle goes.
+[[gnu::always_inline]] inline void LayLevels(const SevenStateModel& model, const StateVector<kSevenStates>& x,
+                                             const LevelCorrection& correction, const KnownNow& known,
+                                             double period_s, const View& at, std::size_t from,
+                                             Along& a) noexcept {
+  wide::Quad velocity, low_speed, factor, level, size, target, relaxed;
+  wide::Load(at.velocity_m_s + from, velocity);
+  wide::Load(at.low_speed + from, low_speed);
+  std::array<const double*, LevelCorrection::kTerms> basis = at.basis;
+  for (const double*& row : basis) row += from;
+  correction.Factors(basis, velocity, factor);
+  if (!known.effects.neutral())
+    for (std::size_t j = 0; j < kVector; ++j) factor[j] *= known.effects.LevelFactor(at.position_m[from + j]);
+  model.Levels(x, velocity, low_speed, factor, level);
+  const wide::Quad per_level = 1.0 / level;
+  wide::Sizes(velocity, size);
+  const wide::Quad exponent = -known.sigma0_N_m * size * per_level * period_s;
+  Expm1OfNegative<wide::Quad>(exponent, relaxed);
+  wide::WithSigns(level, velocity, target);
+  wide::Store(&a.level_N[from], level);
+  wide::Store(&a.target_N[from], target);
+  wide::Store(&a.per_level_1_N[from], per_level);
+  const wide::Quad relaxation = -relaxed;
+  wide::Store(&a.relaxation[from], relaxation);
 }
 
 /// The bristle from point to point.
@@ -55,22 +71,43 @@ struct Along {
   for (std::size_t j = size; j < count; ++j) a.bristle_N[j] = a.next_N[j] = bristle_N;
 }
 
-/// Bristle with its damping: sigma1(v) (v - |v| F / G), see BristleDamping.
-[[gnu::always_inline]] inline double Damped_N(double bristle_N, double per_level_1_N, double velocity_m_s,
-                                              double sigma1_Ns_m) noexcept {
-  const double share = std::min(std::max(bristle_N * per_level_1_N, -kMostLevels), kMostLevels);
-  return bristle_N + sigma1_Ns_m * (velocity_m_s - std::abs(velocity_m_s) * share);
+/// Adds the bristle's damping at four points: sigma1(v) (v - |v| F / G), see BristleDamping.
+[[gnu::always_inline]] inline void Damp(const wide::Quad& per_level, const double* velocity_m_s,
+                                        const double* sigma1_Ns_m, wide::Quad& force_N) noexcept {
+  wide::Quad velocity, sigma1, size, share = force_N * per_level;
+  wide::Load(velocity_m_s, velocity);
+  wide::Load(sigma1_Ns_m, sigma1);
+  wide::Clamp(share, kMostLevels);
+  wide::Sizes(velocity, size);
+  force_N = force_N + sigma1 * (velocity - size * share);
 }
 
-[[gnu::always_inline]] inline void AddDamping(double sigma1_Ns_m, const View& at, std::size_t count,
-                                              Along& a) noexcept {
-  for (std::size_t j = 0; j < count; ++j) a.node_N[j] = a.bristle_N[j];
-  for (std::size_t j = 0; j < count; ++j) a.middle_N[j] = 0.5 * (a.bristle_N[j] + a.next_N[j]);
-  if (sigma1_Ns_m == 0.0) return;
-  for (std::size_t j = 0; j < count; ++j) {
-    a.node_N[j] = Damped_N(a.node_N[j], a.per_level_1_N[j], at.node_velocity_m_s[j], at.node_sigma1_Ns_m[j]);
-    a.middle_N[j] = Damped_N(a.middle_N[j], a.per_level_1_N[j], at.velocity_m_s[j], at.middle_sigma1_Ns_m[j]);
+/// What is added to the bristle's force at every point.
+struct Extra {
+  bool damped;  ///< there is bristle damping
+  double sigma2_Ns_m, node_N, mid_N, half_kg;
+};
+
+/// Friction at four points.
+[[gnu::always_inline]] inline void LayFriction(const Extra& extra, const View& at, std::size_t from,
+                                               const Along& a, wide::Quad& node_N,
+                                               wide::Quad& middle_N) noexcept {
+  wide::Quad next, per_level, velocity, acceleration, acceleration_next;
+  wide::Load(&a.bristle_N[from], node_N);
+  wide::Load(&a.next_N[from], next);
+  middle_N = 0.5 * (node_N + next);
+  if (extra.damped) {
+    wide::Load(&a.per_level_1_N[from], per_level);
+    Damp(per_level, at.node_velocity_m_s + from, at.node_sigma1_Ns_m + from, node_N);
+    Damp(per_level, at.velocity_m_s + from, at.middle_sigma1_Ns_m + from, middle_N);
   }
+  wide::Load(at.node_velocity_m_s + from, velocity);
+  node_N = node_N + extra.node_N + extra.sigma2_Ns_m * velocity;
+  wide::Load(at.velocity_m_s + from, velocity);
+  wide::Load(at.acceleration_m_s2 + from, acceleration);
+  wide::Load(at.acceleration_m_s2 + from + 1, acceleration_next);
+  middle_N = middle_N + extra.mid_N + extra.sigma2_Ns_m * velocity +
+             extra.half_kg * (acceleration + acceleration_next);
 }
 
 /// What extensions of the model add.
@@ -109,18 +146,13 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
   const std::size_t size = std::min(points, reference.size());
   out.resize(size);
   if (size == 0) return;
-  constexpr std::size_t kVector = ReferenceTerms::kVector;
   const std::size_t count = (size + kVector - 1) / kVector * kVector;
   const Friction& f = model.friction();
   const View at = terms_.Follow(model, correction, reference, count);
   Along a;
-  correction.Factors(at.basis, at.velocity_m_s, count, a.factor);
-  if (!known.effects.neutral())
-    for (std::size_t j = 0; j < count; ++j) a.factor[j] *= known.effects.LevelFactor(at.position_m[j]);
-  model.Levels(x, at.velocity_m_s, at.low_speed, a.factor, count, a.level_N);
-  Relax(f.sigma0_N_m * Exp(x[kLogSigma0]), period_s_, at, count, a);
+  for (std::size_t from = 0; from < count; from += kVector)
+    LayLevels(model, x, correction, known, period_s_, at, from, a);
   RollBristle(bristle_N_, size, count, a);
-  AddDamping(f.sigma1_Ns_m, at, count, a);
 
   const double offset_N = x[kBristle] - a.bristle_N[0];
   bristle_N_ = a.next_N[0];
@@ -147,19 +179,18 @@ void FrictionRoll::Run(const SevenStateModel& model, const StateVector<kSevenSta
     const double gap_N = unexplained_N - lead_N_;
     lead_N_ += (at_rest ? rest_share_ : lead_share_) * (gap_N - std::min(std::max(gap_N, -held_N), held_N));
   }
-  const double node_extra_N = cascade_ ? lead_N_ : unexplained_N;
-  const double mid_extra_N = cascade_ ? 0.0 : unexplained_N;
-  const double half_extra_kg = cascade_ ? 0.0 : 0.5 * known.extra_kg;
-  for (std::size_t j = 0; j < count; ++j) {
-    a.node_N[j] = a.node_N[j] + node_extra_N + sigma2 * at.node_velocity_m_s[j];
-    a.middle_N[j] = a.middle_N[j] + mid_extra_N + sigma2 * at.velocity_m_s[j] +
-                    half_extra_kg * (at.acceleration_m_s2[j] + at.acceleration_m_s2[j + 1]);
+  const Extra extra{f.sigma1_Ns_m != 0.0, sigma2, cascade_ ? lead_N_ : unexplained_N,
+                    cascade_ ? 0.0 : unexplained_N, cascade_ ? 0.0 : 0.5 * known.extra_kg};
+  for (std::size_t from = 0; from < count; from += kVector) {
+    wide::Quad node_N, middle_N;
+    LayFriction(extra, at, from, a, node_N, middle_N);
+    // There is room for whole vectors.
+    for (std::size_t j = 0; j < kVector; ++j) out[from + j] = {node_N[j], middle_N[j], 0.0};
   }
-  for (std::size_t j = 0; j < size; ++j) out[j] = {a.node_N[j], a.middle_N[j], 0.0};
   if (!known.effects.neutral()) AddKnown(known, at, out);
   if (known.map.in_use()) AddMap(known.map, at, out);
   rolled_N_ =
-      out[0].mid_N - mid_extra_N - half_extra_kg * (at.acceleration_m_s2[0] + at.acceleration_m_s2[1]);
+      out[0].mid_N - extra.mid_N - extra.half_kg * (at.acceleration_m_s2[0] + at.acceleration_m_s2[1]);
 }
 
 }  // namespace contour

@@ -16,8 +16,9 @@ struct KnownNow {
   const KnownEffects& effects;  ///< extensions of the model, at the present temperature
   double temperature_degC;
   const AngleForceMap& map;
-  double extra_kg;   ///< by which the axis is heavier than commissioned
-  double lasting_N;  ///< the part of the disturbance that is an outside force for certain
+  double extra_kg;    ///< by which the axis is heavier than commissioned
+  double lasting_N;   ///< the part of the disturbance that is an outside force for certain
+  double sigma0_N_m;  ///< as the filter's state has it
   bool learns = true;
 };
 

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/wide_vectors.h"
+
 namespace contour {
 namespace {
 
@@ -72,6 +74,7 @@ void FullEstimator::TellKnownForces(const AxisEstimatorInput& followed) noexcept
       Driving_N(0.5 * (ahead[kPosition] + next_m), ahead[kVelocity]));
 }
 
+CONTOUR_WIDE_VECTORS
 AxisEstimate FullEstimator::Update(const AxisEstimatorInput& in) noexcept {
   const auto& ahead = filter_.predicted();
   const auto basis = learnt_.level.Basis(ahead[kPosition], ahead[kVelocity]);
@@ -123,8 +126,9 @@ void FullEstimator::LearnWindUp(const AxisEstimatorInput& followed, double force
     StateVector<kSevenStates> x{};
     x[kLevelPlus] = estimate.g_plus_N;
     x[kLevelMinus] = estimate.g_minus_N;
+    auto basis = learnt_.level.RippleBasis(sample.position_m);
     const auto level_N = [&](double at_m_s) {
-      const auto basis = learnt_.level.Basis(sample.position_m, at_m_s);
+      basis[LevelCorrection::kRippleTerms] = ExpOfNegative(learnt_.level.LowSpeedExponent(at_m_s));
       x[kVelocity] = at_m_s;
       return filter_.model().Level(
                  x, filter_.model().TermsAt(at_m_s),
@@ -140,15 +144,22 @@ void FullEstimator::LearnWindUp(const AxisEstimatorInput& followed, double force
 
 void FullEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t points,
                                     FrictionPreview& out) noexcept {
-  const KnownNow known{
-      known_, temperature_degC_, learnt_.map, learnt_.momentum.extra_kg(), filter_.lasting_N(), !frozen_};
+  const KnownNow known{known_,
+                       temperature_degC_,
+                       learnt_.map,
+                       learnt_.momentum.extra_kg(),
+                       filter_.lasting_N(),
+                       filter_.sigma0_N_m(),
+                       !frozen_};
   roll_.Run(filter_.model(), filter_.state(), learnt_.level, learnt_.viscous, known, at_rest_, reference,
             points, out);
   // The commissioned compliance is made up for where the reference is; what has been learnt of it, here.
   const double extra_m_N = learnt_.wind_up.extra_compliance_m_N() / (1.0 - before_screw_);
-  for (FrictionAhead& f : out) f.node_N -= before_screw_ * f.node_N;
-  for (std::size_t j = 0; j < out.size(); ++j)
-    out[j].lead_m += extra_m_N * (out[j].node_N + table_mass_kg_ * reference[j].acceleration_m_s2);
+  if (before_screw_ != 0.0)
+    for (FrictionAhead& f : out) f.node_N -= before_screw_ * f.node_N;
+  if (extra_m_N != 0.0)
+    for (std::size_t j = 0; j < out.size(); ++j)
+      out[j].lead_m += extra_m_N * (out[j].node_N + table_mass_kg_ * reference[j].acceleration_m_s2);
   knows_followed_ = reference.size() > 1;
   if (knows_followed_) followed_ = reference[1];
 }

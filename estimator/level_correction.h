@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "core/wide_numbers.h"
 #include "estimator/exponential.h"
 #include "estimator/share_of_period.h"
 #include "estimator/turn.h"
@@ -45,9 +46,18 @@ class LevelCorrection {
 
   /// Term values at a place and speed: cos, sin of the screw's angle and of twice it, and exp(-|v| / vs).
   [[nodiscard]] Terms Basis(double position_m, double velocity_m_s) const noexcept {
+    Terms basis = RippleBasis(position_m);
+    basis[kRippleTerms] = ExpOfNegative(LowSpeedExponent(velocity_m_s));
+    return basis;
+  }
+
+  /// All terms but the last, and what the last is an exponential of.
+  [[nodiscard]] Terms RippleBasis(double position_m) const noexcept {
     const CosSin one = Turn(position_m * per_turn_1_m_);
-    return {one.cos, one.sin, one.cos * one.cos - one.sin * one.sin, 2.0 * one.sin * one.cos,
-            ExpOfNegative(-std::abs(velocity_m_s) * per_speed_s_m_)};
+    return {one.cos, one.sin, one.cos * one.cos - one.sin * one.sin, 2.0 * one.sin * one.cos, 0.0};
+  }
+  [[nodiscard]] double LowSpeedExponent(double velocity_m_s) const noexcept {
+    return -std::abs(velocity_m_s) * per_speed_s_m_;
   }
 
   /// The same for `count` places, row i of `basis` for term i.
@@ -63,24 +73,23 @@ class LevelCorrection {
       const double cos = basis[0][k], sin = basis[1][k];
       basis[2][k] = cos * cos - sin * sin;
       basis[3][k] = 2.0 * sin * cos;
-      basis[4][k] = ExpOfNegative(-std::abs(velocity_m_s[k]) * per_speed_s_m_);
+      basis[kRippleTerms][k] = ExpOfNegative(LowSpeedExponent(velocity_m_s[k]));
     }
   }
 
-  /// Factors at `count` places in the direction of motion there.
-  template <class Basis, class Velocity, class Row>
-  [[gnu::always_inline]] void Factors(const std::array<Basis, kTerms>& basis, const Velocity& velocity_m_s,
-                                      std::size_t count, Row& factor) const noexcept {
-    const Terms plus = plus_.coefficient, minus = minus_.coefficient;
-    for (std::size_t k = 0; k < count; ++k) {
-      double forward = 0.0, backward = 0.0;
-      for (std::size_t i = 0; i < kTerms; ++i) {
-        forward += plus[i] * basis[i][k];
-        backward += minus[i] * basis[i][k];
-      }
-      const double sum = velocity_m_s[k] >= 0.0 ? forward : backward;
-      factor[k] = 1.0 + std::min(std::max(sum, -kLargest), kLargest);
+  /// Factors at four places in the direction of motion there; `basis[i]`: from where term i stands.
+  [[gnu::always_inline]] void Factors(const std::array<const double*, kTerms>& basis,
+                                      const wide::Quad& velocity_m_s, wide::Quad& factor) const noexcept {
+    wide::Quad forward{}, backward{};
+    for (std::size_t i = 0; i < kTerms; ++i) {
+      wide::Quad term;
+      wide::Load(basis[i], term);
+      forward += plus_.coefficient[i] * term;
+      backward += minus_.coefficient[i] * term;
     }
+    wide::Quad sum = velocity_m_s >= 0.0 ? forward : backward;
+    wide::Clamp(sum, kLargest);
+    factor = 1.0 + sum;
   }
 
   /// Factor of the level, within 1 +- kLargest.

@@ -52,13 +52,12 @@ void ReferenceTerms::Lay(const AxisHorizon& reference, std::size_t from, std::si
   }
 }
 
-[[gnu::always_inline]] inline void ReferenceTerms::Compute(const SevenStateModel& model,
-                                                           const LevelCorrection& correction,
-                                                           std::size_t from, std::size_t count) noexcept {
+[[gnu::always_inline]] inline void ReferenceTerms::ComputeAll(const SevenStateModel& model,
+                                                              const LevelCorrection& correction) noexcept {
   // Rows of their own, so that the compiler sees that none of them is another.
   alignas(32) Short position, node_velocity, velocity, low_speed, node_sigma1, middle_sigma1;
   alignas(32) std::array<Short, LevelCorrection::kTerms> basis;
-  const std::size_t begin = head_ + from, size = count - from;
+  const std::size_t begin = head_, size = count_;
   for (std::size_t j = 0; j < size; ++j) position[j] = nodes_[kAt][begin + j];
   for (std::size_t j = 0; j < size; ++j) node_velocity[j] = nodes_[kNodeVelocity][begin + j];
   for (std::size_t j = 0; j < size; ++j)
@@ -82,6 +81,30 @@ void ReferenceTerms::Lay(const AxisHorizon& reference, std::size_t from, std::si
   keep(kMiddleSigma1, middle_sigma1);
 }
 
+// The exponentials of one place are side by side, and take as long as one of them.
+[[gnu::always_inline]] inline void ReferenceTerms::ComputeLast(const SevenStateModel& model,
+                                                               const LevelCorrection& correction) noexcept {
+  const std::size_t last = head_ + count_ - 1;
+  const double node_velocity = nodes_[kNodeVelocity][last];
+  const double velocity = 0.5 * (node_velocity + nodes_[kNodeVelocity][last + 1]);
+  const double per_decay = 1.0 / model.friction().sigma1_decay_m_s;
+  const double at_node = node_velocity * per_decay, in_middle = velocity * per_decay;
+  std::array<double, 1> power;
+  model.StribeckPowers(std::array<double, 1>{velocity}, 1, power);
+  const wide::Quad exponents{correction.LowSpeedExponent(velocity), -power[0], -at_node * at_node,
+                             -in_middle * in_middle};
+  wide::Quad e;
+  ExpOfNegative<wide::Quad>(exponents, e);
+  const LevelCorrection::Terms ripple = correction.RippleBasis(nodes_[kAt][last]);
+  for (std::size_t i = 0; i < LevelCorrection::kRippleTerms; ++i) terms_[i][last] = ripple[i];
+  const double sigma1 = model.friction().sigma1_Ns_m;
+  terms_[LevelCorrection::kRippleTerms][last] = e[0];
+  terms_[kMiddleVelocity][last] = velocity;
+  terms_[kLowSpeed][last] = e[1];
+  terms_[kNodeSigma1][last] = sigma1 * e[2];
+  terms_[kMiddleSigma1][last] = sigma1 * e[3];
+}
+
 void ReferenceTerms::Rewind() noexcept {
   for (Row& row : nodes_)
     std::copy_n(row.begin() + static_cast<std::ptrdiff_t>(head_), count_ + 1, row.begin());
@@ -95,14 +118,13 @@ ReferenceTerms::View ReferenceTerms::Follow(const SevenStateModel& model, const 
   if (MovedOn(reference, count)) {
     if (head_ + 1 + count >= kLength) Rewind();
     ++head_;
-    // One point is new: the last vector has it.
     Lay(reference, count, count);
-    Compute(model, correction, count - kVector, count);
+    ComputeLast(model, correction);
   } else {
     head_ = 0;
     count_ = count;
     Lay(reference, 0, count);
-    Compute(model, correction, 0, count);
+    ComputeAll(model, correction);
   }
   View view{&nodes_[kAt][head_],
             &nodes_[kNodeVelocity][head_],

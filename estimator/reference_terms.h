@@ -39,8 +39,9 @@ class ReferenceTerms {
 
   [[nodiscard]] bool MovedOn(const AxisHorizon& reference, std::size_t count) const noexcept;
   void Lay(const AxisHorizon& reference, std::size_t from, std::size_t count) noexcept;
-  void Compute(const SevenStateModel& model, const LevelCorrection& correction, std::size_t from,
-               std::size_t count) noexcept;
+  void ComputeAll(const SevenStateModel& model, const LevelCorrection& correction) noexcept;
+  /// Of element count_ - 1; those before it are there.
+  void ComputeLast(const SevenStateModel& model, const LevelCorrection& correction) noexcept;
   void Rewind() noexcept;
 
   std::size_t head_ = 0;

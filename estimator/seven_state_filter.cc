@@ -103,6 +103,7 @@ void SevenStateFilter<Core>::Reset(double position_m) noexcept {
   core_.x[kLevelMinus] = setup_.friction.Fc_minus_N;
   core_.s = {};
   for (std::size_t i = 0; i < kSevenStates; ++i) core_.s[i][i] = initial_std_[i];
+  sigma0_N_m_ = model_.Sigma0_N_m(core_.x);
   band_.Reset();
   last_position_m_ = position_m;
   periods_since_position_ = 1.0;
@@ -205,8 +206,8 @@ StateMask<kSevenStates> SevenStateFilter<Core>::Adapted(bool at_rest) const noex
 }
 
 template <class Core>
-UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput& in,
-                                                       Innovation& innovation) noexcept {
+CONTOUR_WIDE_VECTORS UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput& in,
+                                                                            Innovation& innovation) noexcept {
   auto& x = core_.x;
   const double y = in.position_m - WindUpShare_m(Total_N(x, at_), x[kDisturbance], lag_.force_N());
   const Friction& f = setup_.friction;
@@ -361,6 +362,33 @@ double SevenStateFilter<Core>::FrictionStd_N(double acceleration_m_s2) const noe
 }
 
 template <class Core>
+CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::Tell(const AxisEstimatorInput& in,
+                                                       AxisEstimate& out) noexcept {
+  const auto& x = core_.x;
+  sigma0_N_m_ = model_.Sigma0_N_m(x);
+  LookAhead(in);
+
+  const double friction_N = Total_N(x, at_);
+  const double ahead_N = Total_N(predicted_, model_.TermsAt(predicted_[kVelocity]));
+  out.position_m = x[kPosition] + WindUpShare_m(friction_N, x[kDisturbance], lag_.force_N());
+  out.velocity_m_s = x[kVelocity];
+  out.predicted_position_m =
+      predicted_[kPosition] + WindUpShare_m(ahead_N, predicted_[kDisturbance], in.force_N[0]);
+  out.predicted_velocity_m_s = predicted_[kVelocity];
+  out.bristle_N = x[kBristle];
+  out.disturbance_N = x[kDisturbance];
+  if (in.enabled && !in.at_rest) band_.Step(x[kDisturbance]);
+  const double filter_N = core_.Std({0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, kDisturbance, kDisturbance + 1);
+  out.disturbance_std_N = band_.Std_N(surprise_ * filter_N * filter_N);
+  out.friction_N = friction_N;
+  out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
+  out.g_plus_N = x[kLevelPlus];
+  out.g_minus_N = x[kLevelMinus];
+  out.sigma0_N_m = sigma0_N_m_;
+  out.diverged = !square_root::Sound(core_.x, core_.s, std_limit_);
+}
+
+template <class Core>
 AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexcept {
   AxisEstimate out;
   at_rest_ = in.at_rest;
@@ -408,28 +436,7 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
     last_position_m_ = in.position_m;
     periods_since_position_ = 0.0;
   }
-  const auto& x = core_.x;
-  sigma0_N_m_ = model_.Sigma0_N_m(x);
-  LookAhead(in);
-
-  const double friction_N = Total_N(x, at_);
-  const double ahead_N = Total_N(predicted_, model_.TermsAt(predicted_[kVelocity]));
-  out.position_m = x[kPosition] + WindUpShare_m(friction_N, x[kDisturbance], lag_.force_N());
-  out.velocity_m_s = x[kVelocity];
-  out.predicted_position_m =
-      predicted_[kPosition] + WindUpShare_m(ahead_N, predicted_[kDisturbance], in.force_N[0]);
-  out.predicted_velocity_m_s = predicted_[kVelocity];
-  out.bristle_N = x[kBristle];
-  out.disturbance_N = x[kDisturbance];
-  if (in.enabled && !in.at_rest) band_.Step(x[kDisturbance]);
-  const double filter_N = core_.Std({0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0}, kDisturbance, kDisturbance + 1);
-  out.disturbance_std_N = band_.Std_N(surprise_ * filter_N * filter_N);
-  out.friction_N = friction_N;
-  out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
-  out.g_plus_N = x[kLevelPlus];
-  out.g_minus_N = x[kLevelMinus];
-  out.sigma0_N_m = sigma0_N_m_;
-  out.diverged = !square_root::Sound(core_.x, core_.s, std_limit_);
+  Tell(in, out);
   return out;
 }
 

@@ -56,6 +56,8 @@ class SevenStateFilter {
   [[nodiscard]] const StateVector<kSevenStates>& state() const noexcept { return core_.x; }
   [[nodiscard]] const StateVector<kSevenStates>& predicted() const noexcept { return predicted_; }
   [[nodiscard]] const SevenStateModel& model() const noexcept { return model_; }
+  /// Of the mean state.
+  [[nodiscard]] double sigma0_N_m() const noexcept { return sigma0_N_m_; }
   /// Friction (bristle, viscous, disturbance) in the middle of the interval in which the next torque acts.
   [[nodiscard]] double FrictionAhead_N() const noexcept { return friction_ahead_N_; }
   /// The part of the disturbance that is an outside force for certain, because friction cannot be that wrong.
@@ -88,13 +90,15 @@ class SevenStateFilter {
   void Follow(double position_m) noexcept;
   void Reverse(double commanded_velocity_m_s) noexcept;
   CONTOUR_WIDE_VECTORS void TimeUpdate(const AxisEstimatorInput& in) noexcept;
-  UpdateResult MeasurementUpdate(const AxisEstimatorInput& in, Innovation& innovation) noexcept;
+  CONTOUR_WIDE_VECTORS UpdateResult MeasurementUpdate(const AxisEstimatorInput& in,
+                                                      Innovation& innovation) noexcept;
   [[nodiscard]] StateMask<kSevenStates> Adapted(bool at_rest) const noexcept;
   void JudgeLevel(bool at_rest) noexcept;
   void TakeLevelBack(double held_N, double least_N) noexcept;
   void HoldLastingForce() noexcept;
   void ShareAsymmetry() noexcept;
   bool Bound() noexcept;
+  CONTOUR_WIDE_VECTORS void Tell(const AxisEstimatorInput& in, AxisEstimate& out) noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
   [[nodiscard]] double WindUpShare_m(double total_N, double disturbance_N, double force_N) const noexcept;

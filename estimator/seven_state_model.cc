@@ -76,6 +76,7 @@ void SevenStateModel::Propagate(SigmaPoints<kSevenStates>& points, const SevenSt
   }
 }
 
+CONTOUR_WIDE_VECTORS
 void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in, double low_speed,
                                 double sigma0_N_m) const noexcept {
   using One = std::array<double, 1>;
@@ -91,6 +92,7 @@ void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateIn
   x[kDisturbance] = d[0];
 }
 
+CONTOUR_WIDE_VECTORS
 SpeedTerms SevenStateModel::TermsAt(double velocity_m_s) const noexcept {
   const double u = velocity_m_s / friction_.sigma1_decay_m_s;
   const double power = StribeckPower(std::abs(velocity_m_s), friction_.vs_m_s, friction_.stribeck_exponent);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "core/wide_numbers.h"
 #include "estimator/friction_model.h"
 #include "estimator/sqrt_ukf.h"
 #include "estimator/square_root.h"
@@ -87,33 +88,38 @@ class SevenStateModel {
     return std::max(g * (1.0 + (ratio - 1.0) * at.low_speed), kLeastLevel_N);
   }
 
+  /// (|v| / vs)^n of the Stribeck curve at `count` velocities.
+  template <class Row>
+  [[gnu::always_inline]] void StribeckPowers(const Row& velocity_m_s, std::size_t count,
+                                             Row& power) const noexcept {
+    const double inverse_vs = 1.0 / friction_.vs_m_s;
+    for (std::size_t k = 0; k < count; ++k) power[k] = std::abs(velocity_m_s[k]) * inverse_vs;
+    if (friction_.stribeck_exponent == 2.0) {
+      for (std::size_t k = 0; k < count; ++k) power[k] *= power[k];
+    } else if (friction_.stribeck_exponent != 1.0) {
+      for (std::size_t k = 0; k < count; ++k) power[k] = std::pow(power[k], friction_.stribeck_exponent);
+    }
+  }
+
   /// SpeedTerms::low_speed at `count` velocities.
   template <class Row>
   [[gnu::always_inline]] void LowSpeeds(const Row& velocity_m_s, std::size_t count,
                                         Row& low_speed) const noexcept {
-    const double inverse_vs = 1.0 / friction_.vs_m_s;
-    for (std::size_t k = 0; k < count; ++k) low_speed[k] = std::abs(velocity_m_s[k]) * inverse_vs;
-    if (friction_.stribeck_exponent == 2.0) {
-      for (std::size_t k = 0; k < count; ++k) low_speed[k] *= low_speed[k];
-    } else if (friction_.stribeck_exponent != 1.0) {
-      for (std::size_t k = 0; k < count; ++k)
-        low_speed[k] = std::pow(low_speed[k], friction_.stribeck_exponent);
-    }
+    StribeckPowers(velocity_m_s, count, low_speed);
     for (std::size_t k = 0; k < count; ++k) low_speed[k] = ExpOfNegative(-low_speed[k]);
   }
 
-  /// Levels with the parameters of `x` at `count` other velocities, each with its factor.
-  template <class Velocity, class Row>
-  [[gnu::always_inline]] void Levels(const StateVector<kSevenStates>& x, const Velocity& velocity_m_s,
-                                     const Velocity& low_speed, const Row& factor, std::size_t count,
-                                     Row& level_N) const noexcept {
+  /// Levels with the parameters of `x` at four other velocities, each with its factor.
+  [[gnu::always_inline]] void Levels(const StateVector<kSevenStates>& x, const wide::Quad& velocity_m_s,
+                                     const wide::Quad& low_speed, const wide::Quad& factor,
+                                     wide::Quad& level_N) const noexcept {
     const double plus_N = x[kLevelPlus], minus_N = x[kLevelMinus];
     const double more_plus_N = plus_N * (ratio_plus_ - 1.0), more_minus_N = minus_N * (ratio_minus_ - 1.0);
-    for (std::size_t k = 0; k < count; ++k) {
-      const double forward_N = plus_N + more_plus_N * low_speed[k];
-      const double backward_N = minus_N + more_minus_N * low_speed[k];
-      level_N[k] = std::max((velocity_m_s[k] >= 0.0 ? forward_N : backward_N) * factor[k], kLeastLevel_N);
-    }
+    const wide::Quad forward_N = plus_N + more_plus_N * low_speed;
+    const wide::Quad backward_N = minus_N + more_minus_N * low_speed;
+    const wide::Quad least_N = wide::Quad{} + kLeastLevel_N;
+    level_N = (velocity_m_s >= 0.0 ? forward_N : backward_N) * factor;
+    level_N = level_N < least_N ? least_N : level_N;
   }
 
   /// Bristle, its damping, viscous friction and disturbance together.

@@ -213,8 +213,7 @@ inline bool Sound(const StateVector<N>& x, const SquareMatrix<N>& s,
                   const StateVector<N>& std_limit) noexcept {
   bool ok = true;
   for (std::size_t i = 0; i < N; ++i) {
-    double variance = 0.0;
-    for (std::size_t j = 0; j <= i; ++j) variance += s[i][j] * s[i][j];
+    const double variance = Dot<N + N % 2>(s[i].data(), s[i].data());
     // Comparisons are false for NaN.
     ok = ok && std::abs(x[i]) < std::numeric_limits<double>::max() && variance <= std_limit[i] * std_limit[i];
   }

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "core/nearest_whole.h"
+
 // The only home of raw units: counts and per mille of the rated torque.
 namespace contour {
 
@@ -16,7 +18,7 @@ struct TorqueScale {
   [[nodiscard]] std::int16_t ToPerMille(double torque_Nm) const noexcept {
     const double per_mille = torque_Nm / rated_Nm * 1000.0;
     if (std::isnan(per_mille)) return 0;
-    return static_cast<std::int16_t>(std::lround(std::clamp(per_mille, -32768.0, 32767.0)));
+    return static_cast<std::int16_t>(NearestWhole(std::clamp(per_mille, -32768.0, 32767.0)));
   }
   [[nodiscard]] double FromPerMille(std::int16_t per_mille) const noexcept {
     return per_mille * rated_Nm / 1000.0;
@@ -36,7 +38,7 @@ struct PositionScale {
     const double counts = position_rad / (2.0 * std::numbers::pi) * counts_per_rev;
     if (!(std::abs(counts) < 9.0e15)) return 0;
     return static_cast<std::int32_t>(
-        static_cast<std::uint32_t>(static_cast<std::uint64_t>(std::llround(counts))));
+        static_cast<std::uint32_t>(static_cast<std::uint64_t>(NearestWhole(counts))));
   }
 };
 

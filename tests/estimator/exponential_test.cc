@@ -27,6 +27,20 @@ TEST(Exponential, Expm1KeepsItsDigitsNearZero) {
   EXPECT_EQ(Exp(0.0), 1.0);
 }
 
+TEST(Exponential, FourSideBySideAreTheSameAsOneByOne) {
+  for (int i = 0; i < 800; ++i) {
+    const double x = -0.97 * i;
+    wide::Quad four{x, -1e-9 * i, -701.0, std::nan("")}, e, expm1;
+    ExpOfNegative<wide::Quad>(four, e);
+    Expm1OfNegative<wide::Quad>(four, expm1);
+    for (int j = 0; j < 3; ++j) {
+      EXPECT_EQ(e[j], ExpOfNegative(four[j])) << four[j];
+      EXPECT_EQ(expm1[j], Expm1OfNegative(four[j])) << four[j];
+    }
+    EXPECT_TRUE(std::isnan(e[3]) && std::isnan(expm1[3]));
+  }
+}
+
 TEST(Exponential, SaturatesInsteadOfOverflowing) {
   EXPECT_TRUE(std::isfinite(Exp(1e300)));
   EXPECT_GE(Exp(-1e300), 0.0);

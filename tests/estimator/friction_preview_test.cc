@@ -23,7 +23,7 @@ AxisHorizon Horizon(int k, int points) {
 
 const KnownEffects kNoEffects;
 const AngleForceMap kNoMap;
-const KnownNow kNothingKnown{kNoEffects, std::nan(""), kNoMap, 0.0, 0.0};
+const KnownNow kNothingKnown{kNoEffects, std::nan(""), kNoMap, 0.0, 0.0, kFriction.sigma0_N_m};
 
 TEST(FrictionRoll, FollowsTheBristleAlongTheReference) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
@@ -202,7 +202,7 @@ TEST(FrictionRoll, WhatTheAxisIsHeavierThanCommissionedMustBePushedToo) {
   const SevenStateModel model(kFriction, 89.0, kPeriod_s, 0.2);
   LevelCorrection correction({5e-3, 2e-3, 0.0, 0.0});
   ViscousCorrection viscous({500.0, 0.0});
-  const KnownNow heavier{kNoEffects, std::nan(""), kNoMap, 5.0, 0.0};
+  const KnownNow heavier{kNoEffects, std::nan(""), kNoMap, 5.0, 0.0, kFriction.sigma0_N_m};
   StateVector<kSevenStates> x{};
   x[kLevelPlus] = 42;
   x[kLevelMinus] = 36;

@@ -24,15 +24,23 @@ TEST(LevelCorrection, ManyPlacesAtOnceAreTheSameAsOneByOne) {
     const double p = 37e-6 * k, v = forward ? 0.003 : -0.004;
     correction.Learn(correction.Basis(p, v), forward, 0.1, 0.05 * std::sin(1e3 * p), v * 1e-3, true);
   }
-  std::array<double, 7> position{}, velocity{}, factor{};
-  for (std::size_t k = 0; k < 7; ++k) {
+  constexpr std::size_t kPlaces = 8;
+  std::array<double, kPlaces> position{}, velocity{}, factor{};
+  for (std::size_t k = 0; k < kPlaces; ++k) {
     position[k] = 0.7e-3 * static_cast<double>(k) - 2e-3;
     velocity[k] = 1e-3 * (3.0 - static_cast<double>(k));
   }
-  std::array<std::array<double, 7>, LevelCorrection::kTerms> basis{};
-  correction.Basis(position, velocity, 7, basis);
-  correction.Factors(basis, velocity, 7, factor);
-  for (std::size_t k = 0; k < 7; ++k) {
+  std::array<std::array<double, kPlaces>, LevelCorrection::kTerms> basis{};
+  correction.Basis(position, velocity, kPlaces, basis);
+  for (std::size_t from = 0; from < kPlaces; from += 4) {
+    std::array<const double*, LevelCorrection::kTerms> rows{};
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = &basis[i][from];
+    wide::Quad four_velocities, four;
+    wide::Load(&velocity[from], four_velocities);
+    correction.Factors(rows, four_velocities, four);
+    wide::Store(&factor[from], four);
+  }
+  for (std::size_t k = 0; k < kPlaces; ++k) {
     const auto one = correction.Basis(position[k], velocity[k]);
     for (std::size_t i = 0; i < one.size(); ++i) EXPECT_DOUBLE_EQ(basis[i][k], one[i]);
     EXPECT_NEAR(factor[k], correction.Factor(one, velocity[k] >= 0.0), 1e-15);
