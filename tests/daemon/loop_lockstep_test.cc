@@ -31,6 +31,11 @@ class SilencedBus final : public FrameBus {
     looks_here_ = now_ns == here_ns_ ? looks_here_ + 1 : 1;
     here_ns_ = now_ns;
     most_looks = std::max(most_looks, looks_here_);
+    if (sync_sent_ && stands_still_ms > 0) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(stands_still_ms.exchange(0)));
+      return 0;
+    }
+    sync_sent_ = false;
     if (chatter > 0) return Chatter(now_ns, frames);
     const std::size_t got = bus_.Receive(now_ns, frames);
     if (!silent) return got;
@@ -38,12 +43,15 @@ class SilencedBus final : public FrameBus {
     return 0;
   }
   std::size_t Send(std::int64_t now_ns, std::span<const CanFrame> frames) noexcept override {
+    sync_sent_ = sync_sent_ || !frames.empty();
     return bus_.Send(now_ns, frames);
   }
   [[nodiscard]] BusState State() const noexcept override { return bus_.State(); }
 
   std::atomic<bool> silent{false};
   std::atomic<int> chatter{0};  ///< heartbeats that arrive before anything else
+  /// The host stands still for so long in the first look after the next SYNC, which comes to nothing for it.
+  std::atomic<int> stands_still_ms{0};
   // Of the loop's thread, until it has ended.
   std::map<std::int64_t, int> looks;
   int most_looks = 0;  ///< at one grid point, silent or not
@@ -58,6 +66,7 @@ class SilencedBus final : public FrameBus {
   }
 
   LoopbackBus bus_;
+  bool sync_sent_ = false;  ///< since the last look
   std::int64_t here_ns_ = -1;
   int looks_here_ = 0;
 };
@@ -188,6 +197,18 @@ TEST_F(LockstepLoop, HeartbeatsOfALongPauseDoNotHideTheFeedback) {
   while (bus_.chatter > 0) std::this_thread::yield();
   mailbox_.Post(RequestKind::kDisable);
   AwaitState(MachineState::kIdle);
+  EXPECT_EQ(stale_cycles_, missing);
+}
+
+// What answers is there, and a look that came late says no more of its silence than one in time.
+TEST_F(LockstepLoop, AHostThatStandsStillMakesNoDriveSilent) {
+  AwaitState(MachineState::kIdle);
+  while (!quiescent_) AwaitRecord([](const CycleRecord&) { return true; });
+  const std::uint64_t missing = stale_cycles_;
+  bus_.stands_still_ms = 2200;  // an answer is waited for 2 s
+  mailbox_.Post(RequestKind::kEnable);
+  AwaitState(MachineState::kReady);
+  EXPECT_EQ(bus_.stands_still_ms, 0);
   EXPECT_EQ(stale_cycles_, missing);
 }
 
