@@ -24,6 +24,7 @@ LoopAxis LoopAxisOf(const AxisConfig& axis) {
   out.friction = ToSi(model.friction, mechanics.radius_m_rad);
   out.axis = TwoInertiaAxisOf(axis);
   out.rated_force_N = axis.drive.rated_torque_Nm / mechanics.radius_m_rad;
+  out.most_force_N = axis.limits.torque_Nm / mechanics.radius_m_rad;
   out.encoder_step_m = 1e-3 * model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
   out.limits = axis.loop_limits;
   const auto std_of = [&](const char* key) {

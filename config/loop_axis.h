@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct LoopAxis {
   TwoInertiaAxis axis;
   Friction friction;
   double rated_force_N = 0.0;
+  double most_force_N = std::numeric_limits<double>::infinity();  ///< that the axis's torque limit leaves
   double encoder_step_m = 0.0;
   std::optional<double> scale_step_m;  ///< of the linear scale, where the loop has one
   LoopLimits limits;

@@ -4,27 +4,32 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <numbers>
 
+#include "design/loop_margins.h"
 #include "design/loop_member.h"
 #include "design/loop_plant.h"
 
 namespace contour {
 namespace {
 
-// Of the screw's mode, and of the period.
+// Of the fastest swing of motor and table, and of the period.
 constexpr double kStepsPerSwing = 40.0;
 constexpr double kStepsPerPeriod = 8.0;
-// A loop of some hertz has settled by then, or swings.
-constexpr double kCreeps_s = 3.0;
-constexpr double kRests_s = 4.0;
-constexpr double kLooksFor_s = 1.0;
-// What is commanded beyond the peak torque of a drive, three times rated, is not had.
-constexpr double kPeakForce = 3.0;
+// Of the slowest time constant: what is left of a settling after it is below a hundredth, and what grows has
+// come from the kick's size to where it ends.
+constexpr double kTimeConstants = 5.0;
+// What takes longer to settle or to grow is looked at as if it took so many periods: the simulation has to
+// end.
+constexpr double kLongest_periods = 2000.0;
 // In Stribeck velocities: where the slope has faded.
 constexpr double kFast = 10.0;
-// At rest an axis may move by this share of what friction winds its screw up by, as every one may.
+// Of what friction winds its screw up by an axis may move by this share at rest, as every one may; and by all
+// of it while it settles, which is what its reversals cost it anyway.
 constexpr double kRestShare = 0.2;
+constexpr double kStopShare = 1.0;
 constexpr double kLeastFriction = 0.1;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double Coulomb_N(const Friction& f) { return 0.5 * (f.Fc_plus_N + f.Fc_minus_N); }
 
@@ -93,6 +98,24 @@ class Swing {
   double high_m_ = -std::numeric_limits<double>::infinity();
 };
 
+/// In which what a loop does on one member dies down or grows by a factor of e.
+double TimeConstant_s(const LoopMember& member, const TwoInertiaLoop& loop, double period_s) {
+  const double per_period = std::fabs(std::log(GrowthOn(member, loop, period_s)));
+  // Also where it is not a number.
+  return per_period * kLongest_periods > 1.0 ? period_s / per_period : kLongest_periods * period_s;
+}
+
+/// 1 / s, of motor and table, each held by its bristles; and what the bristles' damping takes speed by.
+double Fastest_1_s(const TwoInertiaAxis& m, const Friction& f) {
+  const double motor_1_s2 = (m.stiffness_N_m + f.motor_share * f.sigma0_N_m) / m.motor_mass_kg;
+  const double table_1_s2 = (m.stiffness_N_m + (1.0 - f.motor_share) * f.sigma0_N_m) / m.table_mass_kg;
+  const double swing_1_s2 = 0.5 * (motor_1_s2 + table_1_s2) +
+                            std::hypot(0.5 * (motor_1_s2 - table_1_s2),
+                                       m.stiffness_N_m / std::sqrt(m.motor_mass_kg * m.table_mass_kg));
+  return std::max({std::sqrt(swing_1_s2), f.motor_share * f.sigma1_Ns_m / m.motor_mass_kg,
+                   (1.0 - f.motor_share) * f.sigma1_Ns_m / m.table_mass_kg});
+}
+
 Friction Times(Friction f, double factor) {
   for (double* v : {&f.Fs_plus_N, &f.Fs_minus_N, &f.Fc_plus_N, &f.Fc_minus_N, &f.sigma0_N_m, &f.sigma1_Ns_m})
     *v *= factor;
@@ -100,6 +123,17 @@ Friction Times(Friction f, double factor) {
 }
 
 }  // namespace
+
+CreepTimes TimesOf(const LoopAxis& a, const TwoInertiaLoop& loop, double period_s, double speed_m_s) {
+  const double creeping_s = TimeConstant_s(CreepingMember(a, speed_m_s), loop, period_s);
+  const double sliding_s = TimeConstant_s(SlidingMember(a), loop, period_s);
+  const double resting_s = TimeConstant_s(RestingMember(a), loop, period_s);
+  // Sticking and slipping, bristles bend one way and the other, and the loop swings.
+  const double swings_s =
+      kTurn * sliding_s + std::min(2.0 * Bends_m(a.friction) / speed_m_s, kLongest_periods * period_s);
+  return {kTimeConstants * creeping_s + swings_s, swings_s,
+          std::max(kTimeConstants * resting_s, kStandsAfter_s), kTurn * sliding_s + resting_s};
+}
 
 Creep CreepAt(const LoopAxis& a, const TwoInertiaLoop& loop, double period_s, double speed_m_s,
               double friction_rel) {
@@ -114,25 +148,27 @@ Creep CreepAt(const LoopAxis& a, const TwoInertiaLoop& loop, double period_s, do
   const double fed_N = table_N + motor.Steady_N(speed_m_s);
   const double lead_m = table_N / m.stiffness_N_m;
 
-  const auto steps =
-      static_cast<int>(std::ceil(std::max(kStepsPerPeriod, kStepsPerSwing * ModeFrequency_Hz(m) * period_s)));
+  const auto steps = static_cast<int>(
+      std::ceil(std::max(kStepsPerPeriod, kStepsPerSwing * Fastest_1_s(m, friction) * period_s / kTurn)));
   const double dt_s = period_s / steps;
   const double follows = m.lag_s > 0.0 ? 1.0 - std::exp(-dt_s / m.lag_s) : 1.0;
-  const double most_N = kPeakForce * a.rated_force_N;
   Delay delay(m, period_s, steps, fed_N);
   // It begins in steady sliding, behind by as much as the bristles bend.
   table.SlideAt(speed_m_s);
   motor.SlideAt(speed_m_s);
   double p2 = -Bends_m(friction), v2 = speed_m_s, p1 = p2 + lead_m, v1 = speed_m_s, force_N = fed_N;
-  Swing creeping, resting;
-  const auto cycles = static_cast<int>((kCreeps_s + kRests_s) / period_s);
+  Swing creeping, stopping, resting;
+  const CreepTimes times = TimesOf(a, loop, period_s, speed_m_s);
+  const double stops_s = times.creeps_s + times.looks_creeping_s,
+               ends_s = stops_s + times.rests_s + times.looks_resting_s;
+  const auto cycles = static_cast<int>(ends_s / period_s);
   for (int i = 0; i < cycles; ++i) {
     const double time_s = i * period_s;
-    const double wanted_m = speed_m_s * std::min(time_s, kCreeps_s);
+    const double wanted_m = speed_m_s * std::min(time_s, stops_s);
     y << p1 - wanted_m - lead_m, p2 - wanted_m;
     const double command_N = (controller.c * state + controller.d * y)(0, 0) * unit_N + fed_N;
     state = (controller.a * state + controller.b * y).eval();
-    delay.Send(std::clamp(command_N, -most_N, most_N));
+    delay.Send(std::clamp(command_N, -a.most_force_N, a.most_force_N));
     for (int j = 0; j < steps; ++j) {
       force_N += (delay.At(j) - force_N) * follows;
       const double screw_N = m.stiffness_N_m * (p1 - p2) + m.damping_Ns_m * (v1 - v2);
@@ -141,10 +177,11 @@ Creep CreepAt(const LoopAxis& a, const TwoInertiaLoop& loop, double period_s, do
       p1 += dt_s * v1;
       p2 += dt_s * v2;
     }
-    if (time_s < kCreeps_s && time_s >= kCreeps_s - kLooksFor_s) creeping.Put(p2 - wanted_m);
-    if (time_s >= kCreeps_s + kRests_s - kLooksFor_s) resting.Put(p2 - wanted_m);
+    if (time_s < stops_s && time_s >= times.creeps_s) creeping.Put(p2 - wanted_m);
+    if (time_s >= stops_s + kStandsAfter_s) stopping.Put(p2 - wanted_m);
+    if (time_s >= ends_s - times.looks_resting_s) resting.Put(p2 - wanted_m);
   }
-  return {speed_m_s, creeping.size_m(), resting.size_m()};
+  return {speed_m_s, creeping.size_m(), stopping.size_m(), resting.size_m()};
 }
 
 StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s) {
@@ -152,7 +189,9 @@ StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double p
   std::vector<double> speeds = SlopeSpeeds_m_s(axis);
   speeds.push_back(kFast * axis.friction.vs_m_s);
   StickSlip out;
-  out.most_rest_m = kRestShare * Coulomb_N(axis.friction) / axis.axis.stiffness_N_m;
+  const double wind_up_m = Coulomb_N(axis.friction) / axis.axis.stiffness_N_m;
+  out.most_rest_m = kRestShare * wind_up_m;
+  out.most_stop_m = kStopShare * wind_up_m;
   for (const double off : {-axis.friction_std, 0.0, axis.friction_std}) {
     for (const double speed_m_s : speeds) {
       const Creep c = CreepAt(axis, loop, period_s, speed_m_s, std::max(1.0 + off, kLeastFriction));
@@ -161,6 +200,7 @@ StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double p
         return swing_m >= 0.0 ? swing_m : std::numeric_limits<double>::infinity();
       };
       out.rest_m = std::max(out.rest_m, size_m(c.rest_m));
+      out.stop_m = std::max(out.stop_m, size_m(c.stop_m));
       if (size_m(c.swing_m) > out.swing_m) {
         out.swing_m = size_m(c.swing_m);
         out.at_m_s = speed_m_s;

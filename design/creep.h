@@ -12,12 +12,29 @@ namespace contour {
 /// too slowly for CreepAt to see.
 inline constexpr double kMostLeftCreeping = 0.1;
 
+/// What is asked of an axis after a program: that it stands so long after. Until then it may settle; what
+/// holds an axis at rest (control/standstill.h) takes the rest of a slow settling, but not of a table that
+/// runs on.
+inline constexpr double kStandsAfter_s = 3.0;
+
 /// Of a table that creeps at one speed and then stops: from top to bottom of its error, once it has settled.
 struct Creep {
   double speed_m_s = 0.0;
   double swing_m = 0.0;  ///< while it creeps
-  double rest_m = 0.0;   ///< once its reference stands
+  double stop_m = 0.0;   ///< from kStandsAfter_s after its reference has come to stand
+  double rest_m = 0.0;   ///< once what settles slowest has
 };
+
+/// How long an axis is looked at: what settles slowest at this speed, and at rest with its table held by the
+/// bristles (which hide a loop's integral action from the axis), must have settled or grown before. At rest
+/// not less than kStandsAfter_s.
+struct CreepTimes {
+  double creeps_s = 0.0;
+  double looks_creeping_s = 0.0;  ///< after it
+  double rests_s = 0.0;
+  double looks_resting_s = 0.0;
+};
+CreepTimes TimesOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s, double speed_m_s);
 
 /// From a steady speed that is kicked by as much as the bristles bend. Motor and table with LuGre friction of
 /// `friction_rel` times what is stated, the steady force of it fed forward, nothing learnt, and without what
@@ -33,10 +50,13 @@ struct StickSlip {
   double at_m_s = 0.0;   ///< and at which speed
   // Where it sticks: where it swings by more than the bristles bend. No range: nowhere.
   double slowest_m_s = 0.0, fastest_m_s = 0.0;
-  double rest_m = 0.0;       ///< largest once its reference stands: it hunts
+  double stop_m = 0.0;       ///< largest from kStandsAfter_s after the stop: it settles too slowly
+  double most_stop_m = 0.0;  ///< by which it may
+  double rest_m = 0.0;       ///< largest once it has settled: it hunts
   double most_rest_m = 0.0;  ///< by which it may
   [[nodiscard]] bool Sticks() const { return fastest_m_s > 0.0; }
-  [[nodiscard]] bool ComesToRest() const { return rest_m <= most_rest_m; }
+  [[nodiscard]] bool Settles() const { return stop_m <= most_stop_m; }
+  [[nodiscard]] bool ComesToRest() const { return Settles() && rest_m <= most_rest_m; }
 };
 StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "design/creep.h"
-#include "design/loop_report.h"
 
 namespace contour {
 namespace {
@@ -12,13 +11,15 @@ namespace {
 /// as many evaluations as a refinement has, there is none.
 constexpr double kHopelessExcess = 0.5;
 
-/// What is nearest to its limit has to do with friction.
-bool FrictionForbids(const LoopAxis& axis, const LoopVerdict& verdict) {
-  const std::vector<LoopMember> set = CreepingSet(axis);
-  return std::any_of(set.begin(), set.end(), [&](const LoopMember& m) {
-    return m.name == Binding(verdict).name &&
-           (m.kind == MemberKind::kHeld || m.kind == MemberKind::kCreeping);
-  });
+/// Of what friction does to the axis, held by its bristles or on the falling slope, something breaks its
+/// limit, be it what is farthest beyond or not.
+bool FrictionForbids(const LoopAxis& axis, const LoopTuning& tuning, double period_s) {
+  std::vector<LoopMember> set = UncertaintySet(axis);
+  // The first is the axis as stated, which a judge goes by.
+  set.erase(std::remove_if(set.begin() + 1, set.end(), [](const LoopMember& m) { return !HasBristle(m); }),
+            set.end());
+  const bool scale = axis.scale_step_m.has_value();
+  return !Acceptable(LoopJudge(axis, period_s, set).Judge(DesignLoop(axis.axis, tuning, period_s, scale)));
 }
 
 }  // namespace
@@ -27,15 +28,25 @@ FoundLoop FindLoop(const LoopAxis& axis, double period_s, const LoopSearchOption
   LoopSearchOptions strict = options;
   strict.hopeless_excess = kHopelessExcess;
   FoundLoop found = SearchLoop(axis, period_s, strict);
-  if (WhatIsWrong(found.verdict).empty() || !FrictionForbids(axis, found.verdict)) return found;
+  if (WhatIsWrong(found.verdict).empty() || !FrictionForbids(axis, found.tuning, period_s)) return found;
   LoopSearchOptions creeping = strict;
   creeping.members = CreepingSet(axis);
   creeping.most_left = kMostLeftCreeping;
   FoundLoop other = SearchLoop(axis, period_s, creeping);
   found.evaluations += other.evaluations;
-  if (!WhatIsWrong(ReportOn(axis, other.tuning, period_s)).empty()) return found;
+  const LoopReport report = ReportOn(axis, other.tuning, period_s);
+  // Of a loop that does not even keep what is left of the limits the report has the strict verdict.
+  found.wrong_creeping = report.stick_slip ? WhatIsWrong(report) : WhatIsWrong(other.verdict);
+  if (!WhatIsWrong(report).empty()) return found;
   other.evaluations = found.evaluations;
   return other;
+}
+
+std::string WhyRefused(const FoundLoop& found, const LoopReport& report) {
+  std::string why = WhatIsWrong(report);
+  if (!why.empty() && !found.wrong_creeping.empty())
+    why += "; and of those whose table may stick and slip where it creeps, " + found.wrong_creeping;
+  return why;
 }
 
 }  // namespace contour

@@ -6,8 +6,8 @@
 
 #include "config/config_error.h"
 #include "config/friction_choice.h"
-#include "design/loop_report.h"
 #include "design/loop_search.h"
+#include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {

@@ -123,6 +123,11 @@ LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, doub
   return m;
 }
 
+double GrowthOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s) {
+  const double unit_N = ForceUnit_N(member.axis, period_s);
+  return Growth(Closed(MakePlant(member, period_s, unit_N).system, MakeController(loop, unit_N)));
+}
+
 ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, double period_s,
                          double force_N, ForcePlace place) {
   const double unit_N = ForceUnit_N(member.axis, period_s);
@@ -165,14 +170,18 @@ bool Acceptable(const LoopVerdict& v, double tolerance) {
   return v.torque_noise <= v.noise_limit * (1.0 + tolerance);
 }
 
-const WorstMember& Binding(const LoopVerdict& v) {
+const WorstMember& Limiting(const LoopVerdict& v) {
   const auto nearer = [](const WorstMember& a, const WorstMember& b) {
     if (a.stable != b.stable) return a.stable;
     return a.peak / a.limit < b.peak / b.limit;
   };
+  static_assert(static_cast<std::size_t>(MemberKind::kCreeping) == kMemberKinds - 1);
+  return *std::max_element(v.worst.begin(), v.worst.end() - 1, nearer);
+}
+
+const WorstMember& Binding(const LoopVerdict& v) {
   const WorstMember& creeping = v.worst[static_cast<std::size_t>(MemberKind::kCreeping)];
-  if (!creeping.name.empty()) return creeping;
-  return *std::max_element(v.worst.begin(), v.worst.end(), nearer);
+  return creeping.name.empty() ? Limiting(v) : creeping;
 }
 
 LoopJudge::LoopJudge(const LoopAxis& axis, double period_s)

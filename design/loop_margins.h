@@ -24,6 +24,9 @@ struct LoopMargins {
 LoopMargins MarginsOf(const std::vector<Complex>& open, const std::vector<double>& frequencies_Hz);
 LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s);
 
+/// The closed loop's largest eigenvalue alone.
+double GrowthOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s);
+
 /// Where a force acts that the loop is not told of. On the motor: what its mass, its friction or the drive's
 /// torque is off by.
 enum class ForcePlace { kTable, kMotor };
@@ -70,6 +73,8 @@ struct LoopVerdict {
 [[nodiscard]] bool Acceptable(const LoopVerdict& verdict, double tolerance = 0.02);
 /// What is nearest to its limit; of an axis that creeps, where on the slope it is worst.
 [[nodiscard]] const WorstMember& Binding(const LoopVerdict& verdict);
+/// What is nearest to its limit of all that has one.
+[[nodiscard]] const WorstMember& Limiting(const LoopVerdict& verdict);
 
 /// Judges loops of one axis; what does not depend on the loop is computed once.
 class LoopJudge {

@@ -94,11 +94,7 @@ std::vector<LoopMember> AsStated(const LoopAxis& a) {
         sigma0, motors));
   }
   for (LoopMember& m : WithSideModes(a)) set.push_back(std::move(m));
-  for (const double v_m_s : SlopeSpeeds_m_s(a)) {
-    LoopMember m = Vary(a, kKind, "on the Stribeck slope at " + RoundedText(1e3 * v_m_s) + " mm/s", {});
-    m.bristle = BristleAt(a.friction, v_m_s);
-    set.push_back(std::move(m));
-  }
+  for (const double v_m_s : SlopeSpeeds_m_s(a)) set.push_back(CreepingMember(a, v_m_s));
   return set;
 }
 
@@ -169,6 +165,13 @@ LoopMember RestingMember(const LoopAxis& a) {
   return m;
 }
 
+LoopMember CreepingMember(const LoopAxis& a, double velocity_m_s) {
+  LoopMember m = Vary(a, MemberKind::kAsStated,
+                      "on the Stribeck slope at " + RoundedText(1e3 * velocity_m_s) + " mm/s", {});
+  m.bristle = BristleAt(a.friction, velocity_m_s);
+  return m;
+}
+
 std::vector<LoopMember> UncertaintySet(const LoopAxis& a) {
   std::vector<LoopMember> set = AsStated(a);
   for (LoopMember& m : FarOff(a)) set.push_back(std::move(m));
@@ -191,7 +194,7 @@ std::vector<LoopMember> CreepingSet(const LoopAxis& a) {
   for (LoopMember& m : set) {
     if (m.bristle.decay_1_s > 0.0)
       m.kind = MemberKind::kCreeping;
-    else if (m.bristle.stiffness_N_m > 0.0)
+    else if (HasBristle(m))
       m.kind = MemberKind::kHeld;
   }
   return set;

@@ -32,10 +32,14 @@ struct LoopMember {
   std::vector<SideMode> side_modes;
 };
 
+[[nodiscard]] inline bool HasBristle(const LoopMember& m) { return m.bristle.stiffness_N_m > 0.0; }
+
 /// The stated axis, sliding.
 LoopMember SlidingMember(const LoopAxis& axis);
 /// The stated axis, at rest: held by the bristle.
 LoopMember RestingMember(const LoopAxis& axis);
+/// The stated axis, creeping at this speed on the falling slope of its friction.
+LoopMember CreepingMember(const LoopAxis& axis, double velocity_m_s);
 /// All that the loop must bear. The first is SlidingMember.
 std::vector<LoopMember> UncertaintySet(const LoopAxis& axis);
 /// The same for an axis whose friction leaves no loop to bear all of it: what the bristle holds, and what is

@@ -5,26 +5,12 @@
 #include <cstdio>
 
 #include "config/number_text.h"
-#include "design/loop_search.h"
 
 namespace contour {
 namespace {
 
 // A written tuning is rounded, and a limit that is missed by so little bounds nothing.
 constexpr double kRounding = 0.05;
-// As fine as scales of machine tools are, where the axis has none to go by.
-constexpr double kScaleStep_m = 1e-7;
-// The stiffest first: where a short search finds nothing there, it hardly does between.
-constexpr std::array<double, 3> kStiffer{8.0, 4.0, 2.0};
-constexpr LoopSearchOptions kShortSearch{.random_starts = 30,
-                                         .runs = 3,
-                                         .evaluations_per_run = 300,
-                                         .refinements = 1,
-                                         .evaluations_per_refinement = 300,
-                                         .threads = 1,
-                                         .start = {},
-                                         .members = {}};
-
 std::string Fixed(double value, int decimals) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
@@ -105,7 +91,7 @@ double Compliance_m_N(const LoopAxis& axis, const LoopReport& report) {
 
 std::string WhatIsWrong(const LoopVerdict& v) {
   if (Acceptable(v, kRounding)) return "";
-  const WorstMember& w = Binding(v);
+  const WorstMember& w = Limiting(v);
   if (!w.stable) return "unstable: " + w.name;
   if (w.peak > w.limit * (1.0 + kRounding))
     return "peak " + Fixed(w.peak, 2) + ", limit " + Fixed(w.limit, 2) + ": " + w.name;
@@ -121,34 +107,12 @@ std::string WhatIsWrong(const LoopReport& r) {
     return "a force is not taken up, after 200 ms the table is still off by " + Fixed(1e6 * step.left_m, 1) +
            " of " + Fixed(1e6 * step.peak_m, 1) + " um: " + Binding(r.verdict).name;
   if (r.stick_slip->ComesToRest()) return "";
+  if (!r.stick_slip->Settles())
+    return "from three seconds after a stop the table still moves by " +
+           Fixed(1e6 * r.stick_slip->stop_m, 1) + " um, limit " + Fixed(1e6 * r.stick_slip->most_stop_m, 1) +
+           ": " + Binding(r.verdict).name;
   return "at rest the table hunts by " + Fixed(1e6 * r.stick_slip->rest_m, 1) + " um, limit " +
          Fixed(1e6 * r.stick_slip->most_rest_m, 1) + ": " + Binding(r.verdict).name;
-}
-
-std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads, bool searched) {
-  LoopSearchOptions options = kShortSearch;
-  options.threads = threads;
-  const auto works = [&](const LoopAxis& other) {
-    return Acceptable(SearchLoop(other, period_s, options).verdict, kRounding);
-  };
-  if (!searched && works(axis)) return {"another tuning: contour tune --from-model finds one"};
-  std::vector<std::string> help{"drive.mode: csp, in which the drive closes the loop"};
-  if (!axis.scale_step_m) {
-    LoopAxis with = axis;
-    with.scale_step_m = kScaleStep_m;
-    if (works(with)) help.emplace_back("a linear scale at the table, in the loop");
-  }
-  std::string stiffer;
-  for (const double factor : kStiffer) {
-    LoopAxis stiff = axis;
-    stiff.axis.stiffness_N_m *= factor;
-    stiff.axis.damping_Ns_m *= std::sqrt(factor);
-    if (!works(stiff)) break;
-    stiffer = "a screw of " + RoundedText(1e-6 * stiff.axis.stiffness_N_m) + " N/um instead of " +
-              RoundedText(1e-6 * axis.axis.stiffness_N_m);
-  }
-  if (!stiffer.empty()) help.push_back(stiffer);
-  return help;
 }
 
 }  // namespace contour

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "config/loop_axis.h"
 #include "design/creep.h"
@@ -29,11 +28,5 @@ double Compliance_m_N(const LoopAxis& axis, const LoopReport& report);
 /// What of it breaks a limit, in one sentence; empty when nothing does.
 std::string WhatIsWrong(const LoopVerdict& verdict);
 std::string WhatIsWrong(const LoopReport& report);
-
-/// What would give an axis a loop that keeps its limits, tried on the model: another tuning, and where there
-/// is none, a linear scale or a stiffer screw. That its drive may close the loop (csp) helps always.
-/// `searched`: another tuning was looked for at length.
-std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, int threads,
-                                       bool searched = false);
 
 }  // namespace contour

@@ -179,12 +179,14 @@ FoundLoop SearchLoop(const LoopAxis& axis, double period_s, const LoopSearchOpti
   const auto judged = [&](const SearchResult& r) {
     return judge.Judge(DesignLoop(axis.axis, box.At(r.best), period_s, scale));
   };
-  if (options.hopeless_excess < kNeverHopeless && results.front().cost < kHopeless) {
-    const LoopVerdict verdict = judged(results.front());
-    if (!Acceptable(verdict, options.hopeless_excess))
-      return {box.At(results.front().best), verdict, results.front().cost, evaluations};
-  }
   results.resize(std::min(runs, static_cast<std::size_t>(std::max(1, options.refinements))));
+  if (options.hopeless_excess < kNeverHopeless && results.front().cost < kHopeless) {
+    // Any of them may be the one that comes back within the limits.
+    if (std::none_of(results.begin(), results.end(), [&](const SearchResult& r) {
+          return r.cost < kHopeless && Acceptable(judged(r), options.hopeless_excess);
+        }))
+      return {box.At(results.front().best), judged(results.front()), results.front().cost, evaluations, {}};
+  }
   ParallelFor(results.size(), options.threads, [&](std::size_t i) {
     results[i] = EvolutionSearch([&](const std::vector<double>& point) { return cost(point, kLimitSlope); },
                                  results[i].best,

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/loop_tuning.h"
@@ -22,7 +23,7 @@ struct LoopSearchOptions {
   std::vector<LoopMember> members;  ///< what it must bear; empty: UncertaintySet
   /// Share of the error under a step of force that may be left after 200 ms.
   double most_left = 1.0;
-  /// Do not refine what is still further than this beyond a limit, as a share of it.
+  /// Do not refine where all that would be is still further than this beyond a limit, as a share of it.
   double hopeless_excess = kNeverHopeless;
 };
 
@@ -32,6 +33,9 @@ struct FoundLoop {
   LoopVerdict verdict;
   double cost = 0.0;
   int evaluations = 0;
+  /// Of FindLoop, where neither of its searches has found one: what is wrong with the best loop that leaves
+  /// friction's falling slope aside. Empty where none was looked for.
+  std::string wrong_creeping;
 };
 
 /// What the search makes small: the logarithm of the table's error under a force step (peak and twice the

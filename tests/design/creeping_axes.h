@@ -21,6 +21,16 @@ inline LoopAxis LightStage() {
   return WithSlope(AxisOf({"light stage", 5.5, 2.7, 0.89, 14.0, 70.0}), 15.3, 12.1, 11e-6);
 }
 
+/// A light stage behind soft bristles (1.1 N/um): held by them, what a loop adds up moves the table with a
+/// time constant of more than a second.
+inline LoopAxis SoftlyHeld() {
+  LoopAxis a = WithSlope(AxisOf({"softly held", 7.85, 3.3, 2.6, 21.0, 108.0}), 23.7, 18.6, 16.8e-6);
+  a.friction.vs_m_s = a.friction.sigma1_decay_m_s = 2.37e-3;
+  a.axis.lag_s = 0.41e-3;
+  a.encoder_step_m = 3.7e-3 / 1048576.0;
+  return a;
+}
+
 /// Held by bristles of 10 N/um, which swing at 46 Hz with 115 kg; a cycle of 4 ms is too slow to damp that.
 inline constexpr double kSlowPeriod_s = 4e-3;
 inline LoopAxis StiffTable() {

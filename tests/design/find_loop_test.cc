@@ -48,10 +48,17 @@ TEST(FindLoop, TheSofterLimitsAreForFrictionsSlopeAlone) {
   EXPECT_FALSE(report.stick_slip);
 }
 
+void ExpectHas(const std::string& text, const std::string& part) {
+  EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+}
+
+// The refusal tells of both searches.
 TEST(FindLoop, RefusesWhatWouldHuntAtRest) {
   const LoopAxis axis = StiffTable();
   const FoundLoop found = FindLoop(axis, kSlowPeriod_s, kShort);
-  EXPECT_NE(WhatIsWrong(ReportOn(axis, found.tuning, kSlowPeriod_s)), "");
+  const std::string why = WhyRefused(found, ReportOn(axis, found.tuning, kSlowPeriod_s));
+  ExpectHas(why, "on the Stribeck slope at ");
+  ExpectHas(why, "; and of those whose table may stick and slip where it creeps, ");
 }
 
 // Of a loop that keeps its limits but for the slope.
@@ -60,8 +67,12 @@ TEST(WhatIsWrong, NamesWhatAnAxisThatCreepsDoesAtRestAndUnderAForce) {
   for (WorstMember& w : report.verdict.worst) w = {"on the slope", true, 1.0, 0.9, 2.0};
   report.verdict.noise_limit = 0.01;
   report.verdict.step = {.peak_m = 10e-6, .mean_m = 1e-6, .rms_m = 1e-6, .left_m = 0.5e-6};
-  report.stick_slip = StickSlip{.rest_m = 1e-6, .most_rest_m = 2e-6};
+  report.stick_slip = StickSlip{.stop_m = 0.0, .most_stop_m = 10e-6, .rest_m = 1e-6, .most_rest_m = 2e-6};
   EXPECT_EQ(WhatIsWrong(report), "");
+  report.stick_slip->stop_m = 11e-6;
+  EXPECT_EQ(WhatIsWrong(report),
+            "from three seconds after a stop the table still moves by 11.0 um, limit 10.0: on the slope");
+  report.stick_slip->stop_m = 9e-6;
   report.stick_slip->rest_m = 3e-6;
   EXPECT_EQ(WhatIsWrong(report), "at rest the table hunts by 3.0 um, limit 2.0: on the slope");
   report.verdict.step.left_m = 2e-6;
@@ -72,7 +83,16 @@ TEST(WhatIsWrong, NamesWhatAnAxisThatCreepsDoesAtRestAndUnderAForce) {
 TEST(FindLoop, RefusesABelt) {
   const LoopAxis axis = AxisOf("belt");
   const FoundLoop found = FindLoop(axis, kPeriod_s, kShort);
-  EXPECT_NE(WhatIsWrong(ReportOn(axis, found.tuning, kPeriod_s)), "");
+  const std::string why = WhyRefused(found, ReportOn(axis, found.tuning, kPeriod_s));
+  ExpectHas(why, "on the Stribeck slope at ");
+  ExpectHas(why, "; and of those whose table may stick and slip where it creeps, ");
+}
+
+TEST(WhyRefused, IsNothingOfALoopThatWillDo) {
+  const LoopAxis axis = AxisOf("t20");
+  const FoundLoop found = FindLoop(axis, kPeriod_s, kShort);
+  EXPECT_EQ(WhyRefused(found, ReportOn(axis, found.tuning, kPeriod_s)), "");
+  EXPECT_EQ(found.wrong_creeping, "");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "config/yaml_writer.h"
 #include "design/find_loop.h"
 #include "design/loop_report.h"
+#include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
@@ -27,7 +28,7 @@ void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, con
   const LoopReport report = ReportOn(loop_axis, found.tuning, period_s);
   std::cout << "the loop of axis " << axis << " (control.friction: linear, drive.mode: cst)\n"
             << Describe(report);
-  if (const std::string wrong = WhatIsWrong(report); !wrong.empty()) {
+  if (const std::string wrong = WhyRefused(found, report); !wrong.empty()) {
     std::cout << "no loop in torque mode keeps its limits (" << wrong << "); none was written\n";
     for (const std::string& help : WhatWouldHelp(loop_axis, period_s, options.threads, true))
       std::cout << "  what would help: " << help << "\n";

@@ -10,6 +10,7 @@
 #include "config/mode_advice.h"
 #include "design/loop_choice.h"
 #include "design/loop_report.h"
+#include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {

@@ -18,6 +18,7 @@
 #include "design/loop_report.h"
 #include "design/loop_search.h"
 #include "design/start_loop.h"
+#include "design/what_would_help.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour {
@@ -81,8 +82,8 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
     report.stick_slip.reset();
   }
   std::cout << Describe(report);
-  const std::string wrong =
-      asked.catalogue ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(model)) : WhatIsWrong(report);
+  const std::string wrong = asked.catalogue ? WhyNotToStartWith(axis, found.tuning, period_s, DoubtOf(model))
+                                            : WhyRefused(found, report);
   if (!wrong.empty()) {
     std::cout << "  NO stable loop in torque mode within the limits was found; the best of "
               << found.evaluations << ": " << wrong << "\n";

@@ -62,6 +62,8 @@ TEST(TuneFromModel, RefusesABeltAndSaysWhatWouldHelp) {
   const Outcome o = Contour("tune --from-model " + machine + " --axis x --evaluations 60 --out " + tuned);
   EXPECT_EQ(o.status, 1) << o.out;
   ExpectHas(o, "NO stable loop in torque mode");
+  ExpectHas(o, "on the Stribeck slope at ");
+  ExpectHas(o, "; and of those whose table may stick and slip where it creeps, ");
   ExpectHas(o, "what would help: drive.mode: csp");
   ExpectHas(o, "nothing was written");
   EXPECT_FALSE(std::filesystem::exists(tuned));
