@@ -16,6 +16,19 @@ constexpr double kBendRate_1_s = 40.0;
 // An error above this is something else: a blow, or a torque limit.
 constexpr double kLargestBend_m = 20e-6;
 
+// In which a drive takes over what its offset no longer has, once the axis moves.
+constexpr double kFades_s = 0.05;
+
+// Nodes that the offset is made from.
+constexpr std::size_t kNodes = 3;
+
+bool NothingMoves(const PerAxis<AxisHorizon>& references) noexcept {
+  for (const AxisHorizon& reference : references)
+    for (std::size_t n = 0; n < std::min(kNodes, reference.size()); ++n)
+      if (reference[n].velocity_m_s != 0.0) return false;
+  return true;
+}
+
 FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept {
   if (friction.empty()) return {};
   return friction[std::min(index, friction.size() - 1)];
@@ -37,11 +50,11 @@ void BendCorrection::Learn(double error_m, double velocity_m_s, double accelerat
 }
 
 CascadeLaw::CascadeLaw(const PerAxis<ControlledAxis>& axes, double period_s)
-    : axes_(axes), period_s_(period_s) {
+    : axes_(axes), period_s_(period_s), fading_(std::exp(-period_s / kFades_s)) {
   for (const ControlledAxis& axis : axes_) {
     if (!(axis.mechanics.stiffness_N_m > 0.0))
       throw std::invalid_argument("cascade: wind-up compensation needs the screw's stiffness");
-    states_.push_back({BendCorrection(period_s), {}, 0});
+    states_.push_back({BendCorrection(period_s)});
   }
 }
 
@@ -49,12 +62,14 @@ void CascadeLaw::Reset() noexcept {
   for (Axis& axis : states_) {
     axis.bend.Reset();
     axis.known = 0;
+    axis.beyond_N = 0.0;
   }
+  stands_ = false;
 }
 
-void CascadeLaw::Axis::Keep(StateKeeper& keep) noexcept { keep(bend, told, known); }
+void CascadeLaw::Axis::Keep(StateKeeper& keep) noexcept { keep(bend, told, known, offset_N, beyond_N); }
 
-void CascadeLaw::Keep(StateKeeper& keep) noexcept { keep(states_, share_); }
+void CascadeLaw::Keep(StateKeeper& keep) noexcept { keep(states_, share_, stands_); }
 
 // The measured position belongs to t(k-1), the motor then to t(k-3/2): between the targets for t(k-2) and
 // t(k-1), which were sent at t(k-3) and t(k-2). The newest target told is the one for t(k).
@@ -71,8 +86,15 @@ void CascadeLaw::Learn(Axis& axis, double position_m) noexcept {
   axis.bend.Learn(error_m, velocity_m_s, acceleration_m_s2);
 }
 
+double CascadeLaw::Offset_N(Axis& axis, double foreseen_N, bool stands) const noexcept {
+  axis.beyond_N = stands && stands_ ? axis.offset_N - foreseen_N : fading_ * axis.beyond_N;
+  axis.offset_N = foreseen_N + axis.beyond_N;
+  return axis.offset_N;
+}
+
 void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   output.iterations = 0;
+  const bool stands = NothingMoves(Reference(input));
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = states_[i];
     const AxisHorizon& reference = Reference(input)[i];
@@ -90,9 +112,10 @@ void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept
     // The drive moves the motor with its table; what winds the screw up moves the motor alone. It is half a
     // period behind its targets: what acts from t(k) to t(k+1) belongs to node 1.
     const double motor_m_s2 = PointAt(reference, 1).acceleration_m_s2 + w_acceleration;
-    const double wanted = 0.5 * (Ahead(friction, 0).mid_N + Ahead(friction, 1).mid_N) -
-                          m.table_mass_kg * w_acceleration +
-                          axes_[i].acceleration_share * m.mass_kg * motor_m_s2;
+    const double foreseen_N = 0.5 * (Ahead(friction, 0).mid_N + Ahead(friction, 1).mid_N) -
+                              m.table_mass_kg * w_acceleration +
+                              axes_[i].acceleration_share * m.mass_kg * motor_m_s2;
+    const double wanted = Offset_N(axis, foreseen_N, stands);
     const double limit = axes_[i].limits.force_N;
     const ReferencePoint& next = PointAt(reference, 2);
     output.feedforward_N[i] = wanted;
@@ -103,6 +126,7 @@ void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept
                  axis.told[1]};
     axis.known = std::min(axis.known + 1, axis.told.size());
   }
+  stands_ = stands;
 }
 
 }  // namespace contour

@@ -39,6 +39,10 @@ class BendCorrection {
 /// told to be at t(k-1/2), and the offset is the friction for that time. The drive feeds forward the whole
 /// mass times the acceleration of its target; of that, what belongs to the table's share of the wind-up's
 /// motion is taken back.
+///
+/// While no axis moves the offset stays what it is: the drive's integral has made up for the rest, and would
+/// have to for every change of it; with the gains that some drives have for an axis at rest it does so in
+/// seconds, and until then the axis is pushed away.
 class CascadeLaw final : public ControlLaw {
  public:
   CascadeLaw(const PerAxis<ControlledAxis>& axes, double period_s);
@@ -60,15 +64,20 @@ class CascadeLaw final : public ControlLaw {
     BendCorrection bend;
     std::array<Told, 3> told{};  // newest first: for t(k+1), t(k), ...
     std::size_t known = 0;
+    double offset_N = 0.0;  ///< sent, but for limits
+    double beyond_N = 0.0;  ///< of it, beyond what is foreseen
 
     void Keep(StateKeeper& keep) noexcept;
   };
 
   void Learn(Axis& axis, double position_m) noexcept;
+  [[nodiscard]] double Offset_N(Axis& axis, double foreseen_N, bool stands) const noexcept;
 
   PerAxis<ControlledAxis> axes_;
   double period_s_;
-  double share_ = 1.0;  ///< of the torque offset
+  double fading_;        ///< per period, of what an offset was kept beyond what is foreseen
+  double share_ = 1.0;   ///< of the torque offset
+  bool stands_ = false;  ///< no axis moves
   std::vector<Axis> states_;
 };
 

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "estimator/exponential.h"
+#include "estimator/resting_window.h"
 
 namespace contour {
 
@@ -24,17 +25,22 @@ class CascadeLead {
   CascadeLead(const Tuning& tuning, double period_s) noexcept
       : held_share_(tuning.held_share),
         moving_share_(-Expm1(-2.0 * std::numbers::pi * tuning.lead_Hz * period_s)),
-        rest_share_(-Expm1(-2.0 * std::numbers::pi * tuning.lead_at_rest_Hz * period_s)) {}
+        rest_share_(-Expm1(-2.0 * std::numbers::pi * tuning.lead_at_rest_Hz * period_s)),
+        window_(period_s) {}
 
   void Reset() noexcept {
     lead_N_ = 0.0;
     moved_ = false;
+    window_.Move();
   }
-  void Step(double unexplained_N, double level_N, bool at_rest) noexcept {
+  /// `noise_takes_s`: see RestingWindow.
+  void Step(double unexplained_N, double level_N, bool at_rest, double noise_takes_s) noexcept {
     moved_ = moved_ || !at_rest;
+    if (!at_rest) window_.Move();
     const double held_N = moved_ ? 0.0 : held_share_ * level_N;
     const double gap_N = unexplained_N - lead_N_;
-    lead_N_ += (at_rest ? rest_share_ : moving_share_) * (gap_N - std::min(std::max(gap_N, -held_N), held_N));
+    lead_N_ += (at_rest ? window_.Rest(rest_share_, noise_takes_s) : moving_share_) *
+               (gap_N - std::min(std::max(gap_N, -held_N), held_N));
   }
   [[nodiscard]] double lead_N() const noexcept { return lead_N_; }
 
@@ -44,6 +50,7 @@ class CascadeLead {
   double rest_share_ = 1.0;
   double lead_N_ = 0.0;
   bool moved_ = false;  // since the start
+  RestingWindow window_;
 };
 
 }  // namespace contour

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/state_keeper.h"
+#include "estimator/resting_window.h"
 
 namespace contour {
 
@@ -17,12 +18,13 @@ class RestingBristles {
   /// The axis is no longer at rest.
   void Move() noexcept;
   /// A period of rest has passed. `carried_N`: by the bristles, as believed; `unexplained_N`: what the axis
-  /// needs beyond what is believed, in the same direction. The factor by which the bristles carry less from
-  /// now on, or as much again: never more than when the axis came to rest, nor the other way round.
-  double Step(double carried_N, double unexplained_N) noexcept;
+  /// needs beyond what is believed, in the same direction; `noise_takes_s`: see RestingWindow. The factor by
+  /// which the bristles carry less from now on, or as much again: never more than when the axis came to rest,
+  /// nor the other way round.
+  double Step(double carried_N, double unexplained_N, double noise_takes_s) noexcept;
 
   /// Constants stay as constructed.
-  void Keep(StateKeeper& keep) noexcept { keep(share_, outside_N_); }
+  void Keep(StateKeeper& keep) noexcept { keep(share_, outside_N_, window_); }
 
  private:
   double most_unexplained_N_ = 0.0;
@@ -31,6 +33,7 @@ class RestingBristles {
 
   double share_ = 1.0;  // of what they carried when the axis came to rest
   double outside_N_ = 0.0;
+  RestingWindow window_;
 };
 
 }  // namespace contour

@@ -347,7 +347,7 @@ void TwoInertiaEstimator::PreviewFriction(const AxisHorizon& reference, std::siz
   const double sigma2 = setup_.friction.sigma2_Ns_m;
   double lead_N = 0.0;
   if (setup_.reported_torque) {
-    lead_.Step(unexplained_N_, learner_.Level_N(along_.velocity_m_s(0) >= 0.0), at_rest_);
+    lead_.Step(unexplained_N_, learner_.Level_N(along_.velocity_m_s(0) >= 0.0), at_rest_, NoiseTakes_s());
     lead_N = WindsUp_N(lead_.lead_N());
   }
   const double extra_m_N = wind_up_.extra_compliance_m_N() / (1.0 - before_screw_);

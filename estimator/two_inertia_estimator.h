@@ -88,6 +88,7 @@ class TwoInertiaEstimator {
   void Lay() noexcept;
   [[nodiscard]] const Node& At(std::size_t point) const noexcept;
   [[nodiscard]] PeriodForces Forces(std::size_t period, bool ahead) const noexcept;
+  [[nodiscard]] double NoiseTakes_s() const noexcept;
   [[nodiscard]] double WindsUp_N(double unforeseen_N) const noexcept;
   [[nodiscard]] double Expected_N(std::size_t period) const noexcept;
   [[nodiscard]] double Motor_N(std::size_t period) const noexcept;

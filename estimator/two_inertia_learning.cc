@@ -18,6 +18,10 @@ constexpr double kLateByMore = 2.0;
 // variances of the noise, which a difference has twice.
 constexpr double kNoiseOfChange = 2.0 * 4.0;
 
+// Of the level, as a standard deviation: three of them to either side, and as much again by bristles that
+// answer what the target does, stay below a tenth of what friction winds the screw up by.
+constexpr double kNoAccount = 0.01;
+
 }  // namespace
 
 void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept {
@@ -61,10 +65,17 @@ void TwoInertiaEstimator::LearnMotor(double position_m) noexcept {
     map_.Learn(m.position_m, m.velocity_m_s, m.acceleration_m_s2, m.force_N);
 }
 
+// Noise hangs together over about the time in which the observer sees a force, and a mean has the less of it
+// the longer it is beyond that.
+double TwoInertiaEstimator::NoiseTakes_s() const noexcept {
+  const double no_account_N = kNoAccount * along_.basis().scale().level_N;
+  return static_cast<double>(settle_) * setup_.period_s * noise_N2_ / (no_account_N * no_account_N);
+}
+
 void TwoInertiaEstimator::Rest() noexcept {
   learner_.Rest();
   if (frozen_ || !along_.Still()) return;
-  along_.Relax(resting_.Step(along_.Carried_N(learner_.parameters()), unexplained_N_));
+  along_.Relax(resting_.Step(along_.Carried_N(learner_.parameters()), unexplained_N_, NoiseTakes_s()));
 }
 
 // What the force has changed by since the observer could see it is what is off in between: on average, and at

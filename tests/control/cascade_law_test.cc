@@ -133,6 +133,88 @@ TEST(CascadeLaw, FrictionGoesIntoTheOffsetAndItsWindUpIntoTheTarget) {
   EXPECT_LT(std::abs(without.output.force_N[0]), 0.1);
 }
 
+/// Two axes that stand until they are moved; the friction that is foreseen may change at rest.
+struct Standing {
+  Standing() : axes(TwoAxes()), law(axes, kPeriod_s) {
+    input.estimate.resize(2);
+    input.reference.resize(2);
+    input.friction.resize(2);
+    output.force_N.resize(2);
+    output.feedforward_N.resize(2);
+    output.target_position_m.resize(2);
+    output.limit.resize(2);
+  }
+  static PerAxis<ControlledAxis> TwoAxes() {
+    PerAxis<ControlledAxis> both;
+    both.push_back(Stiff());
+    both.push_back(Stiff());
+    return both;
+  }
+  /// The offset of the first axis under `friction_N`, the second one moving at `other_m_s`.
+  double Offset_N(double friction_N, double own_m_s = 0.0, double other_m_s = 0.0) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      input.reference[i].clear();
+      input.friction[i].clear();
+      for (int n = 0; n < 4; ++n) {
+        input.reference[i].push_back({0.0, i == 0 ? own_m_s : other_m_s, 0.0});
+        input.friction[i].push_back({friction_N, friction_N, 0.0});
+      }
+    }
+    law.Step(input, output);
+    return output.force_N[0];
+  }
+
+  PerAxis<ControlledAxis> axes;
+  CascadeLaw law;
+  ControlInput input;
+  ControlOutput output;
+};
+
+// What the drive's integral has made up for it would have to make up for anew, with the gains of an axis at
+// rest in seconds: every change moves the axis.
+TEST(CascadeLaw, WhileNothingMovesTheOffsetStays) {
+  Standing axis;
+  EXPECT_NEAR(axis.Offset_N(40.0, 0.01), 40.0, 1e-9);
+  EXPECT_NEAR(axis.Offset_N(38.0), 38.0, 1e-9);
+  for (int i = 0; i < 1000; ++i) EXPECT_NEAR(axis.Offset_N(38.0 - 0.03 * i), 38.0, 1e-9);
+  // The target follows: it is where the table is to be.
+  EXPECT_NEAR(axis.output.target_position_m[0], (38.0 - 0.03 * 999) / 4e7, 1e-12);
+}
+
+TEST(CascadeLaw, AnAxisThatWaitsForAnotherIsGivenWhatIsForeseen) {
+  Standing axis;
+  axis.Offset_N(38.0, 0.01);
+  for (int i = 0; i < 100; ++i) EXPECT_NEAR(axis.Offset_N(38.0 - 0.3 * i, 0.0, 0.01), 38.0 - 0.3 * i, 1e-9);
+}
+
+TEST(CascadeLaw, WithMotionTheOffsetGoesOverToWhatIsForeseenWithoutAJump) {
+  Standing axis;
+  axis.Offset_N(38.0);
+  double before_N = axis.Offset_N(8.0);
+  EXPECT_NEAR(before_N, 38.0, 1e-9);
+  for (int i = 0; i < 300; ++i) {
+    const double now_N = axis.Offset_N(8.0, 0.01);
+    EXPECT_LT(std::abs(now_N - before_N), 0.03 * 30.0);
+    before_N = now_N;
+  }
+  EXPECT_NEAR(before_N, 8.0, 0.1);
+}
+
+TEST(CascadeLaw, AnEnabledAxisBeginsWithWhatIsForeseen) {
+  Standing axis;
+  axis.Offset_N(38.0);
+  axis.Offset_N(8.0);
+  axis.law.Reset();
+  EXPECT_NEAR(axis.Offset_N(8.0), 8.0, 1e-9);
+}
+
+TEST(CascadeLaw, ASoftenedOffsetIsSofterAtRestToo) {
+  Standing axis;
+  axis.Offset_N(38.0);
+  axis.law.Soften(Softness::kSofter);
+  EXPECT_NEAR(axis.Offset_N(8.0), 19.0, 1e-9);
+}
+
 TEST(CascadeLaw, ADriveThatDoesNotFeedAccelerationForwardIsGivenIt) {
   Loop does({0.0, 0.0}), does_not({0.0, 0.0}, 1.0), by_half({0.0, 0.0}, 0.5);
   for (int i = 0; i < 40; ++i)
