@@ -61,6 +61,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   near_turns_.Restart(s.reported_force_N);
   pushed_least_N_ = pushed_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
+  same_lead_m_ = s.lead_m;
   near_ = false;
   same_ = near_periods_ = same_gone_ = near_gone_ = pushed_periods_ = beyond_ = beyond_rigid_ = undelivered_ =
       0;
@@ -146,6 +147,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   if (readings_ == 0 || s.position_m != position_m_) {
     least_N_ = most_N_ = slow_force_N_;
     same_reference_m_ = s.reference_m;
+    same_lead_m_ = s.lead_m;
     same_ = 0;
     same_turns_.Restart(settled_N);
   } else {
@@ -166,6 +168,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     near_ = true;
     near_position_m_ = s.position_m;
     near_reference_m_ = s.reference_m;
+    near_lead_m_ = s.lead_m;
     near_periods_ = 0;
     near_least_N_ = near_most_N_ = slow_force_N_;
     near_turns_.Restart(settled_N);
@@ -193,19 +196,22 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
       (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N + same_noise_N) ||
       (near_periods_ >= kSameAtLeast_periods && near_most_N_ - near_least_N_ > flickering_N);
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
-  const auto gone = [&](std::uint32_t& periods, double from_m, double path_m) {
+  const auto gone = [&](std::uint32_t& periods, double from_m, double from_lead_m, double path_m) {
     const double gone_m = s.reference_m - from_m;
     // An axis that had slipped far ahead rightly stands until the reference has come up with it.
     const double lead_m = s.position_m - from_m;
     const double ahead_m = gone_m > 0.0 ? lead_m - least_lead_m_ : most_lead_m_ - lead_m;
-    const bool beyond = std::abs(gone_m) > path_m + (ahead_m > kSlipped * path_m ? ahead_m : 0.0);
+    // What a drive was told, along the path.
+    const double told_m = gone_m + s.lead_m - from_lead_m;
+    const bool beyond = std::abs(gone_m) > path_m + (ahead_m > kSlipped * path_m ? ahead_m : 0.0) &&
+                        (gone_m > 0.0 ? told_m : -told_m) > path_m;
     periods = beyond ? periods + waited_periods_ : 0;
     return periods > t_.begin_periods;
   };
   bool by_path = false, by_flicker = false;
   const double path_m = t_.frozen.Path_m(loop_N_m, settling_N);
   if (std::abs(s.reference_m - same_reference_m_) > path_m) {
-    by_path = gone(same_gone_, same_reference_m_, path_m) && same_ >= answer_periods;
+    by_path = gone(same_gone_, same_reference_m_, same_lead_m_, path_m) && same_ >= answer_periods;
   } else {
     same_gone_ = 0;
   }
@@ -215,7 +221,8 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     const double force_N = settling_N + inertial_N;
     const bool answered = axis_.in_cascade || near_most_N_ - near_least_N_ > t_.flickering.force_N + force_N;
     const double flicker_path_m = answered ? t_.flickering.Path_m(loop_N_m, force_N) : HUGE_VAL;
-    by_flicker = gone(near_gone_, near_reference_m_, flicker_path_m) && near_periods_ >= answer_periods;
+    by_flicker =
+        gone(near_gone_, near_reference_m_, near_lead_m_, flicker_path_m) && near_periods_ >= answer_periods;
   } else {
     near_gone_ = 0;
   }

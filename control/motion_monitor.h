@@ -24,6 +24,7 @@ struct MotionSample {
   double sent_force_N = 0.0;  ///< of the cycle before: it begins to act at this sample
   double reported_force_N = 0.0;  ///< 0x6077 of this sample
   double reference_m = 0.0;       ///< of this sample
+  double lead_m = 0.0;            ///< csp: by which the drive was told to be ahead of it
   double spring_N_m = 0.0;        ///< above 0: an experiment holds the axis by a spring instead of the loop
   bool has_scale = false;
   double table_position_m = 0.0;
@@ -34,7 +35,8 @@ struct MotionSample {
 /// for granted does not learn, so nothing can teach it a fault.
 ///
 /// - frozen: the reading stands, or only flickers, although the reference went further than the loop can
-/// bear;
+/// bear, and where a drive closes the loop what it is told has, too: the wind-up that it is told to lead by
+/// may change against the path;
 ///   or it stands under a torque that changed by more than friction and outside forces explain;
 /// - jump: the reading is further from its prediction than any force can take the motor;
 /// - momentum: u - m a, low-passed, is the force that neither torque nor motion explain (De Luca et al.,
@@ -58,12 +60,12 @@ class MotionMonitor {
     keep(watch_, until_learning_, readings_, position_m_, velocity_m_s_, waited_periods_, last_gap_periods_,
          believed_, late_readings_, held_, forces_N_, report_before_N_, peak_N_, slow_force_N_,
          slower_force_N_, rest_least_N_, rest_most_N_, drive_push_, same_turns_, near_turns_, turns_N_,
-         settling_N_, least_N_, most_N_, same_, same_reference_m_, near_, near_position_m_, near_reference_m_,
-         near_periods_, least_lead_m_, most_lead_m_, near_least_N_, near_most_N_, same_gone_, near_gone_,
-         pushed_least_N_, pushed_most_N_, pushed_periods_, on_its_way_N_, ringing_N_, swing_, force_N_,
-         unexplained_N_, jitter_N_, beyond_, beyond_rigid_, contradiction_, sent_N_, reported_N_,
-         report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_, astray_m_, scale_seen_, scale_apart_,
-         scale_offset_m_, scale_begin_m_);
+         settling_N_, least_N_, most_N_, same_, same_reference_m_, same_lead_m_, near_, near_position_m_,
+         near_reference_m_, near_lead_m_, near_periods_, least_lead_m_, most_lead_m_, near_least_N_,
+         near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_, pushed_periods_,
+         on_its_way_N_, ringing_N_, swing_, force_N_, unexplained_N_, jitter_N_, beyond_, beyond_rigid_,
+         contradiction_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_,
+         astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -131,9 +133,11 @@ class MotionMonitor {
   double least_N_ = 0.0, most_N_ = 0.0;            ///< of the force, since the reading last changed
   std::uint32_t same_ = 0;                         ///< periods since then
   double same_reference_m_ = 0.0;                  ///< the reference when that began
+  double same_lead_m_ = 0.0;                       ///< and its lead
   bool near_ = false;                              ///< the reading has been near the one below
   double near_position_m_ = 0.0;
   double near_reference_m_ = 0.0;  ///< the reference when that began
+  double near_lead_m_ = 0.0;
   std::uint32_t near_periods_ = 0;
   double least_lead_m_ = 0.0, most_lead_m_ = 0.0;  ///< reading less reference, where it moves; soon forgotten
   double near_least_N_ = 0.0, near_most_N_ = 0.0;  ///< of the force, since then

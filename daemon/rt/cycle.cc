@@ -201,6 +201,9 @@ FaultSeen Cycle::Contradiction(const Feedback& feedback) noexcept {
     s.sent_force_N = axis.sent_force_N[0];
     s.reported_force_N = f.torque_Nm / axis.radius_m_rad;
     s.reference_m = AtSample(i).position_m;
+    // The newest target is that of the sample to come.
+    s.lead_m =
+        csp_ ? setpoints_[i].position_rad * axis.radius_m_rad - control_in_.reference[i][1].position_m : 0.0;
     s.spring_N_m = csp_ ? 0.0 : control_in_.reference[i][1].spring_N_m;
     s.has_scale = f.has_scale && (f.scale_fresh || !two_inertias_);
     s.table_position_m = f.has_scale ? TableAt_m(i, f) : 0.0;
