@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
@@ -142,6 +143,38 @@ std::vector<InitialGuess> OtherPlaces(const Problem& problem, const Fit& current
       return FamilyOf(*s.effect) == family && !fitted(s);
     });
     if (next != scored.end()) guesses.push_back(Near(problem, current, *next));
+  }
+  return guesses;
+}
+
+std::vector<InitialGuess> Mirrored(const Problem& problem, const Fit& current,
+                                   const std::vector<Scored>& scored,
+                                   const std::vector<Hypothesis>& hypotheses) {
+  std::vector<InitialGuess> guesses;
+  for (const Hypothesis& r : hypotheses) {
+    if (!AddsCoupling(problem, r) || r.implausible || r.no_fault || !std::isfinite(r.fit.cost)) continue;
+    const AxisModel m = problem.Build(r.fit.point);
+    const double seen_Hz =
+        std::sqrt(m.stiffness * (1.0 / m.motor_inertia + 1.0 / m.load_inertia)) / (2.0 * std::numbers::pi);
+    const double above_Hz = 1.0 / problem.log.period_s - seen_Hz;
+    if (!(above_Hz > NoFault_Hz(problem))) continue;
+    // How much is behind it shows in the line's height only, as its width does: as much as before it.
+    const double share = 1.0 / 2.0;
+    const double clamped_Hz = above_Hz * std::sqrt(1.0 - share);
+    const auto off = [&](const Scored& s) { return std::fabs(std::log(s.effect->order / clamped_Hz)); };
+    const Scored* nearest = nullptr;
+    for (const Scored& s : scored)
+      if (s.effect->kind == r.effect().kind && (nearest == nullptr || off(s) < off(*nearest))) nearest = &s;
+    if (nearest == nullptr) continue;
+    Point point = r.fit.point;
+    point.effects.back() = nearest->effect;
+    std::vector<double>& a = point.amplitudes.back();
+    // As wide a line as the one that is seen.
+    a = {share, std::log(clamped_Hz / nearest->effect->order), a[2] + std::log(seen_Hz / above_Hz)};
+    for (std::size_t i = 0; i < a.size(); ++i)
+      a[i] = std::clamp(a[i], nearest->effect->low[i], nearest->effect->high[i]);
+    guesses.push_back(
+        {std::move(point), WorthFrom(current, kEfforts.far, kScreening.negligible_share), &current});
   }
   return guesses;
 }

@@ -30,4 +30,10 @@ std::vector<InitialGuess> OtherPlaces(const Problem& problem, const Fit& current
                                       const std::vector<Scored>& scored,
                                       const std::vector<Hypothesis>& hypotheses);
 
+/// Of couplings that were fitted below half the rate of the rows: the one above it that looks the same from
+/// row to row.
+std::vector<InitialGuess> Mirrored(const Problem& problem, const Fit& current,
+                                   const std::vector<Scored>& scored,
+                                   const std::vector<Hypothesis>& hypotheses);
+
 }  // namespace contour::diagnosis

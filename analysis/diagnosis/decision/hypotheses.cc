@@ -150,6 +150,11 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
       Judge(problem, current, out.back());
       best = std::max(best, out.back().score);
     }
+    for (Fit& fit : FitPoints(problem, Mirrored(problem, current, scored, out))) {
+      out.push_back({std::move(fit)});
+      Judge(problem, current, out.back());
+      best = std::max(best, out.back().score);
+    }
     // Where the best came to nothing, those far behind it have their turn.
     if (best > kScreening.little_share * most || !MorePromised(problem, scored, threshold, tried)) break;
   }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -66,6 +68,38 @@ TEST_F(GuessesTest, WhatEndedWhereNoMachineIsBeginsAtTheNextPlaceOfItsFamily) {
   const Effect& next = *guesses[0].point.effects.back();
   EXPECT_NE(&next, bent->effect.get());
   EXPECT_EQ(FamilyOf(next), FamilyOf(*bent->effect));
+}
+
+// A mode of 766 Hz shows in rows at 1 kHz as one of 234 Hz.
+TEST(Guesses, ACouplingBelowHalfTheRateIsAlsoTriedAsTheOneAboveIt) {
+  test::HiddenOptions options = test::FittedAxis::Short({{"constant_torque", 0.3, 0.0, 0.0, 0.0}});
+  options.two_inertia = false;
+  const test::FittedAxis axis(options);
+  std::vector<SharedEffect> effects;
+  for (const SharedEffect& e : CatalogueEffects(axis.problem))
+    if (e->kind == "compliance") effects.push_back(e);
+  std::vector<Scored> scored;
+  for (const SharedEffect& e : effects) {
+    scored.emplace_back();
+    scored.back().effect = e;
+  }
+  const auto seen =
+      std::find_if(effects.begin(), effects.end(), [](const SharedEffect& e) { return e->order == 180.0; });
+  ASSERT_NE(seen, effects.end());
+  std::vector<Hypothesis> hypotheses(1);
+  hypotheses[0].fit.point = axis.base.point;
+  hypotheses[0].fit.point.effects.push_back(*seen);
+  hypotheses[0].fit.point.amplitudes.push_back({0.4, 0.0, 0.0});
+  const std::vector<InitialGuess> guesses = Mirrored(axis.problem, axis.base, scored, hypotheses);
+  ASSERT_EQ(guesses.size(), 1u);
+  const auto resonance_Hz = [&](const Point& point) {
+    const AxisModel m = axis.problem.Build(point);
+    return std::sqrt(m.stiffness * (1.0 / m.motor_inertia + 1.0 / m.load_inertia)) / (2.0 * std::numbers::pi);
+  };
+  EXPECT_NEAR(resonance_Hz(hypotheses[0].fit.point) + resonance_Hz(guesses[0].point),
+              1.0 / axis.problem.log.period_s, 1.0);
+  hypotheses[0].no_fault = true;
+  EXPECT_TRUE(Mirrored(axis.problem, axis.base, scored, hypotheses).empty());
 }
 
 TEST_F(GuessesTest, AWaveOfAnotherOrderIsAnotherCause) {
