@@ -100,6 +100,11 @@ SpeedTerms SevenStateModel::TermsAt(double velocity_m_s) const noexcept {
   return {e[0], friction_.sigma1_Ns_m * e[1]};
 }
 
+// Here, not in the header: a function that is translated twice may not be used before it is defined.
+void SevenStateModel::Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept {
+  Propagate(x, in, TermsAt(x[kVelocity]).low_speed, Sigma0_N_m(x));
+}
+
 void SevenStateModel::PropagateTangent(StateVector<kSevenStates>& x, SquareMatrix<kSevenStates>& t,
                                        const SevenStateInput& in) const noexcept {
   const double s0 = friction_.sigma0_N_m * Exp(x[kLogSigma0]);

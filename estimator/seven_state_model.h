@@ -65,9 +65,7 @@ class SevenStateModel {
   /// One state, over a period, whose `low_speed` and stiffness are known already.
   void Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in, double low_speed,
                  double sigma0_N_m) const noexcept;
-  void Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept {
-    Propagate(x, in, TermsAt(x[kVelocity]).low_speed, Sigma0_N_m(x));
-  }
+  void Propagate(StateVector<kSevenStates>& x, const SevenStateInput& in) const noexcept;
 
   [[nodiscard]] double Sigma0_N_m(const StateVector<kSevenStates>& x) const noexcept {
     return friction_.sigma0_N_m * Exp(x[kLogSigma0]);
