@@ -197,8 +197,9 @@ int RunImprove(const Options& options) {
 }
 
 void AddLimits(CLI::App& sub, Options& options) {
-  sub.add_option("--travel_mm", options.travel_mm,
-                 "Whole way (default: a tenth of the stroke, at most 20 mm; three turns of the motor at least)");
+  sub.add_option(
+      "--travel_mm", options.travel_mm,
+      "Whole way (default: a tenth of the stroke, at most 20 mm; three turns of the motor at least)");
   sub.add_option("--max_speed_mm_s", options.max_speed_mm_s,
                  "Largest speed (default: 40 % of the axis's limit, at most 100 mm/s)");
   sub.add_option("--max_torque_Nm", options.max_torque_Nm,
