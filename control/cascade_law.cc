@@ -25,7 +25,7 @@ constexpr std::size_t kNodes = 3;
 bool NothingMoves(const PerAxis<AxisHorizon>& references) noexcept {
   for (const AxisHorizon& reference : references)
     for (std::size_t n = 0; n < std::min(kNodes, reference.size()); ++n)
-      if (reference[n].velocity_m_s != 0.0) return false;
+      if (reference[n].velocity_m_s != 0.0 || reference[n].acceleration_m_s2 != 0.0) return false;
   return true;
 }
 

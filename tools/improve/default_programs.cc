@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/text/format_text.h"
+#include "design/commission_motions.h"
 
 namespace contour::improve {
 namespace {
@@ -71,8 +72,9 @@ ProgramText Make(const WorkingSpace& space, const Curve& c, const char* directio
 CommissionLimits UsualLimits(const AxisConfig& axis) {
   CommissionLimits limits = DefaultCommissionLimits(axis);
   const double stroke_mm = axis.limits.position_mm[1] - axis.limits.position_mm[0];
-  const double least_mm = kLeastWay_leads * axis.model.mechanics.lead_mm;
-  limits.travel_mm = std::min(std::max(limits.travel_mm, least_mm), stroke_mm);
+  const double inside_mm = stroke_mm - 2.0 * kLeastCommissionStroke_mm;
+  const double least_mm = std::min(kLeastWay_leads * axis.model.mechanics.lead_mm, inside_mm);
+  limits.travel_mm = std::max(limits.travel_mm, least_mm);
   return limits;
 }
 

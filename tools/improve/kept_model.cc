@@ -31,9 +31,9 @@ std::vector<double> Logarithms(const std::vector<double>& x, double least) {
   return out;
 }
 
-std::string InNumbers(const char* what, const Comparison& c) {
+std::string InNumbers(const char* what, const Comparison& c, double usual_um) {
   return FormatText("%s %.3g um, before %.3g um (a difference below %.2g um is chance)", what, c.after_um,
-                    c.before_um, c.repeatability_um);
+                    c.before_um, usual_um);
 }
 
 }  // namespace
@@ -79,16 +79,17 @@ Comparison Compare(const Repeats& r, double resolution_um, std::size_t candidate
 Judgement Judge(const Comparison& path, const Comparison& check) {
   if (check.worse())
     return {false, "the new model is worse on the program that it was not fitted on: " +
-                       InNumbers("largest error", check)};
+                       InNumbers("largest error", check, check.Rise_um(check.log_chance))};
   if (!check.better())
     return {false,
             "the new model is not better on the program that it was not fitted on, beyond "
             "repeatability: " +
-                InNumbers("largest error", check)};
+                InNumbers("largest error", check, check.repeatability_um)};
   if (path.higher())
     return {false, "the new model is higher on the path, by more than repeats usually differ: " +
-                       InNumbers("largest error", path)};
-  return {true, InNumbers("largest error on the program that it was not fitted on", check)};
+                       InNumbers("largest error", path, path.Rise_um(path.log_deviation))};
+  return {true,
+          InNumbers("largest error on the program that it was not fitted on", check, check.repeatability_um)};
 }
 
 }  // namespace contour::improve

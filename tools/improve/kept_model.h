@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -20,13 +21,19 @@ struct Comparison {
   double log_chance = 0.0;                 ///< of that, what is chance
   double log_deviation = 0.0;              ///< its standard deviation
   double resolution_um = 0.0;              ///< a smaller difference is none
-  [[nodiscard]] bool better() const { return -log_ratio > log_chance && Differ(); }
-  [[nodiscard]] bool worse() const { return log_ratio > log_chance && Differ(); }
+  [[nodiscard]] bool better() const {
+    return -log_ratio > log_chance && before_um - after_um > resolution_um;
+  }
+  [[nodiscard]] bool worse() const { return log_ratio > log_chance && Rises(); }
   /// By more than repeats usually differ: not proof, but reason enough to leave things as they are.
-  [[nodiscard]] bool higher() const { return log_ratio > log_deviation && Differ(); }
+  [[nodiscard]] bool higher() const { return log_ratio > log_deviation && Rises(); }
+  /// The same as repeatability_um of an error that rises, with another limit of the logarithm.
+  [[nodiscard]] double Rise_um(double log_limit) const {
+    return std::max(resolution_um, before_um * std::expm1(log_limit));
+  }
 
  private:
-  [[nodiscard]] bool Differ() const { return std::fabs(before_um - after_um) > resolution_um; }
+  [[nodiscard]] bool Rises() const { return after_um - before_um > resolution_um; }
 };
 
 /// The value that Student's t exceeds with `probability`, at most one half.

@@ -129,7 +129,7 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
 
 std::vector<InitialGuess> OtherPlaces(const Problem& problem, const Fit& current,
                                       const std::vector<Scored>& scored,
-                                      const std::vector<Hypothesis>& hypotheses) {
+                                      std::span<const Hypothesis> hypotheses) {
   std::vector<InitialGuess> guesses;
   for (const Hypothesis& r : hypotheses) {
     // A wave of another order is another cause; of what is far from linear the whole grid was looked at.
@@ -149,7 +149,7 @@ std::vector<InitialGuess> OtherPlaces(const Problem& problem, const Fit& current
 
 std::vector<InitialGuess> Mirrored(const Problem& problem, const Fit& current,
                                    const std::vector<Scored>& scored,
-                                   const std::vector<Hypothesis>& hypotheses) {
+                                   std::span<const Hypothesis> hypotheses) {
   std::vector<InitialGuess> guesses;
   for (const Hypothesis& r : hypotheses) {
     if (!AddsCoupling(problem, r) || r.implausible || r.no_fault || !std::isfinite(r.fit.cost)) continue;

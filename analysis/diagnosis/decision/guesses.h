@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,11 @@ std::vector<InitialGuess> NextGuesses(const Problem& problem, const Fit& current
 /// learnt without it a cause that is there may look more bent than it is.
 std::vector<InitialGuess> OtherPlaces(const Problem& problem, const Fit& current,
                                       const std::vector<Scored>& scored,
-                                      const std::vector<Hypothesis>& hypotheses);
+                                      std::span<const Hypothesis> hypotheses);
 
 /// Of couplings that were fitted below half the rate of the rows: the one above it that looks the same from
 /// row to row.
 std::vector<InitialGuess> Mirrored(const Problem& problem, const Fit& current,
-                                   const std::vector<Scored>& scored,
-                                   const std::vector<Hypothesis>& hypotheses);
+                                   const std::vector<Scored>& scored, std::span<const Hypothesis> hypotheses);
 
 }  // namespace contour::diagnosis

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
@@ -140,19 +141,23 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
   double best = -std::numeric_limits<double>::infinity();
   for (int turn = 0; turn < kHypotheses.most_turns; ++turn) {
     double most = 0.0;
+    const std::size_t from = out.size();
     for (Fit& fit : FitPoints(problem, NextGuesses(problem, current, scored, threshold, tried, most))) {
       out.push_back({std::move(fit)});
       Judge(problem, current, out.back());
       best = std::max(best, out.back().score);
     }
-    for (Fit& fit : FitPoints(problem, OtherPlaces(problem, current, scored, out))) {
+    for (Fit& fit : FitPoints(problem, OtherPlaces(problem, current, scored, std::span(out).subspan(from)))) {
       out.push_back({std::move(fit)});
       Judge(problem, current, out.back());
       best = std::max(best, out.back().score);
     }
-    for (Fit& fit : FitPoints(problem, Mirrored(problem, current, scored, out))) {
-      out.push_back({std::move(fit)});
-      Judge(problem, current, out.back());
+    for (Fit& fit : FitPoints(problem, Mirrored(problem, current, scored, std::span(out).subspan(from)))) {
+      Hypothesis mirrored{std::move(fit)};
+      Judge(problem, current, mirrored);
+      // A soft screw is not taken for one above by chance.
+      if (mirrored.no_fault && mirrored.score <= best + AlikeScore()) continue;
+      out.push_back(std::move(mirrored));
       best = std::max(best, out.back().score);
     }
     // Where the best came to nothing, those far behind it have their turn.

@@ -39,8 +39,9 @@ bool AddsCoupling(const Problem& problem, const Hypothesis& r) {
 void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
   // A fit may end at parameters that no machine can have.
   const bool coupling = AddsCoupling(problem, r);
-  r.implausible = Implausible(problem, r);
-  const bool out = !std::isfinite(r.fit.cost) || r.implausible;
+  const bool ended = std::isfinite(r.fit.cost);
+  r.implausible = ended && Implausible(problem, r);
+  const bool out = !ended || r.implausible;
   r.no_fault = !out && coupling && NoFault(problem, r);
   r.score = out ? kNoScore : DropOf(problem, current, r.fit) - Penalty(r.effect());
 }

@@ -30,6 +30,14 @@ TEST(KeptModel, ATenthOfTheErrorIsNoChanceHoweverTheOldModelScatters) {
   EXPECT_FALSE(Compare({{2.5, 2.7, 5.7}, {2.2, 3.9, 2.4}}, 0.005, 2).better());
 }
 
+TEST(KeptModel, WhatIsLargerInTheMeanIsNotBetterForItsLogarithms) {
+  std::vector<double> after(9, 0.3);
+  after.push_back(12.0);
+  const Comparison c = Of(std::vector<double>(10, 1.0), after);
+  ASSERT_LT(c.log_ratio, 0.0);
+  EXPECT_FALSE(c.better());
+}
+
 TEST(KeptModel, AnErrorOfNothingCountsAsTheResolution) {
   EXPECT_TRUE(Of({1.0, 1.01}, {0.0, 0.0}).better());
   EXPECT_FALSE(Of({0.0, 0.0}, {0.004, 0.003}).worse());
