@@ -66,19 +66,28 @@ template <class T>
   out = u0 + r4 * (u4 + r4 * u8);
 }
 
+/// For x <= 0, below -700 as at -700: exp(x) = power (1 + beyond_1).
+template <class T>
+[[gnu::always_inline]] inline void PartsOfNegative(const T& x, T& power, T& beyond_1) noexcept {
+  const T lowest = T{} - 700.0;
+  const T bounded = x < lowest ? lowest : x;
+  Reduced<T> reduced;
+  Reduce<T>(bounded, reduced);
+  T series;
+  Series<T>(reduced.r, series);
+  power = reduced.power;
+  beyond_1 = reduced.r * series;
+}
+
 }  // namespace exponential
 
 /// exp(x) for x <= 0; below -700 as at -700. Half of the limits and most of their cost are not needed there.
 /// T: double, or two or four of them side by side.
 template <class T>
 [[gnu::always_inline]] inline void ExpOfNegative(const T& x, T& out) noexcept {
-  const T lowest = T{} - 700.0;
-  const T bounded = x < lowest ? lowest : x;
-  exponential::Reduced<T> reduced;
-  exponential::Reduce<T>(bounded, reduced);
-  T series;
-  exponential::Series<T>(reduced.r, series);
-  out = reduced.power + reduced.power * (reduced.r * series);
+  T power, beyond_1;
+  exponential::PartsOfNegative<T>(x, power, beyond_1);
+  out = power + power * beyond_1;
 }
 template <class T>
 inline T ExpOfNegative(T x) noexcept {
@@ -90,13 +99,9 @@ inline T ExpOfNegative(T x) noexcept {
 /// exp(x) - 1 for x <= 0, without cancellation near zero.
 template <class T>
 [[gnu::always_inline]] inline void Expm1OfNegative(const T& x, T& out) noexcept {
-  const T lowest = T{} - 700.0;
-  const T bounded = x < lowest ? lowest : x;
-  exponential::Reduced<T> reduced;
-  exponential::Reduce<T>(bounded, reduced);
-  T series;
-  exponential::Series<T>(reduced.r, series);
-  out = reduced.power * (reduced.r * series) + (reduced.power - 1.0);
+  T power, beyond_1;
+  exponential::PartsOfNegative<T>(x, power, beyond_1);
+  out = power * beyond_1 + (power - 1.0);
 }
 inline double Expm1OfNegative(double x) noexcept {
   double out;

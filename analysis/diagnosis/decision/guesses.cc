@@ -158,7 +158,8 @@ std::vector<InitialGuess> Mirrored(const Problem& problem, const Fit& current,
         std::sqrt(m.stiffness * (1.0 / m.motor_inertia + 1.0 / m.load_inertia)) / (2.0 * std::numbers::pi);
     const double above_Hz = 1.0 / problem.log.period_s - seen_Hz;
     if (!(above_Hz > NoFault_Hz(problem))) continue;
-    // How much is behind it shows in the line's height only, as its width does: as much as before it.
+    // How much of the inertia is behind the coupling shows only in the height of the resonance, where its
+    // damping shows, too: the fit begins with as much behind it as before it.
     const double share = 1.0 / 2.0;
     const double clamped_Hz = above_Hz * std::sqrt(1.0 - share);
     const auto off = [&](const Scored& s) { return std::fabs(std::log(s.effect->order / clamped_Hz)); };
@@ -169,7 +170,7 @@ std::vector<InitialGuess> Mirrored(const Problem& problem, const Fit& current,
     Point point = r.fit.point;
     point.effects.back() = nearest->effect;
     std::vector<double>& a = point.amplitudes.back();
-    // As wide a line as the one that is seen.
+    // The damping that makes the resonance as wide, in Hz, as it is seen.
     a = {share, std::log(clamped_Hz / nearest->effect->order), a[2] + std::log(seen_Hz / above_Hz)};
     for (std::size_t i = 0; i < a.size(); ++i)
       a[i] = std::clamp(a[i], nearest->effect->low[i], nearest->effect->high[i]);

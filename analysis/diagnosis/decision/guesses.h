@@ -31,8 +31,8 @@ std::vector<InitialGuess> OtherPlaces(const Problem& problem, const Fit& current
                                       const std::vector<Scored>& scored,
                                       std::span<const Hypothesis> hypotheses);
 
-/// Of couplings that were fitted below half the rate of the rows: the one above it that looks the same from
-/// row to row.
+/// For couplings that were fitted with a resonance below half the rate of the rows: from the one above half
+/// the rate of which that resonance is the image (aliasing).
 std::vector<InitialGuess> Mirrored(const Problem& problem, const Fit& current,
                                    const std::vector<Scored>& scored, std::span<const Hypothesis> hypotheses);
 
