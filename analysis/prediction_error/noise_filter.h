@@ -7,19 +7,20 @@
 
 #include "analysis/prediction_error/excerpt.h"
 #include "analysis/prediction_error/linear_model.h"
+#include "analysis/prediction_error/noise_levels.h"
 #include "analysis/prediction_error/whitener.h"
 
 namespace contour::diagnosis {
 
 /// Makes innovations white. Torque that nobody commanded moves a sliding axis and hardly a stuck one, and the
-/// reading has noise of its own: a Kalman filter on the linearised model (time-varying gain; Anderson and
-/// Moore, Optimal Filtering, 6.2) takes both into account; an autoregressive filter after it takes what
-/// colour is left.
+/// reading has noise of its own: a Kalman filter on the linearised model (KalmanPass) takes both into
+/// account, and a torque that wanders slowly, which says when a stuck axis breaks away; an autoregressive
+/// filter after it takes what colour is left.
 class NoiseFilter {
  public:
   NoiseFilter() = default;
-  /// The ratio of the two noises by maximum likelihood from the innovations of the linearised run.
-  /// `counted`: rows whose innovation counts. `before`: the log's filter of an earlier run, whose ratio lies
+  /// The ratios of the noises by maximum likelihood from the innovations of the linearised run.
+  /// `counted`: rows whose innovation counts. `before`: the log's filter of an earlier run, whose ratios lie
   /// near; null: none.
   NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::vector<std::uint8_t>& counted,
               double inertia, double period_s, double reading_step, const NoiseFilter* before);
@@ -52,11 +53,16 @@ class NoiseFilter {
   double ObserverBandwidth_Hz(double period_s) const;
 
  private:
+  [[nodiscard]] const float* Step() const;
+  [[nodiscard]] std::size_t Stride() const;
+
   std::shared_ptr<const LinearModel> linear_;
-  std::vector<float> gain_;  ///< per transition: kappa, 1 / sqrt(S)
+  NoiseLevels levels_;
+  int states_ = 0;                ///< the linearised model's, and the slow torque where there is any
+  std::vector<float> with_slow_;  ///< transitions with it; empty: those of the linearised model
+  std::vector<float> gain_;       ///< per transition: kappa, 1 / sqrt(S)
   std::vector<double> taps_;
   double torque_noise_ = 0.0;
-  double ratio_ = 0.0;  ///< of the variances, torque's over the reading's: its decimal logarithm
 };
 
 /// A colour filter alone.

@@ -10,7 +10,7 @@
 // residual white; inner products of columns.
 namespace contour::diagnosis {
 
-inline constexpr int kMostStates = 7;
+inline constexpr int kMostStates = 8;
 /// Motor force from, to; load force from, to; level from, to.
 inline constexpr int kLinearInputs = 6;
 
