@@ -295,6 +295,10 @@ class Descent {
 
 }  // namespace
 
+bool Plausible(const Problem& problem, const Point& point) {
+  return PriorOf(problem, point) <= kFits.hardly_ever * static_cast<double>(problem.terms.size());
+}
+
 double PriorOf(const Problem& problem, const Point& p) {
   double sum = 0.0;
   for (std::size_t i = 0; i < p.base.size(); ++i) sum += std::pow(p.base[i] / problem.terms[i].sigma, 2);

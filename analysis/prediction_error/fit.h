@@ -48,6 +48,9 @@ Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort);
 /// What its deviations from the stated numbers add to the cost of a point.
 double PriorOf(const Problem& problem, const Point& point);
 
+/// Not where the stated numbers would have to be off as they hardly ever are.
+bool Plausible(const Problem& problem, const Point& point);
+
 std::size_t ParameterCount(const Point& point);
 
 /// Base terms first; amplitudes stay inside their effects' bounds.

@@ -23,7 +23,8 @@ class NoiseFilter {
   /// `counted`: rows whose innovation counts. `before`: the log's filter of an earlier run, whose ratios lie
   /// near; null: none.
   NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::vector<std::uint8_t>& counted,
-              double inertia, double period_s, double reading_step, const NoiseFilter* before);
+              double inertia, double period_s, double reading_step, const NoiseFilter* before,
+              bool slow_torque = true);
 
   /// Whitens each, in place of size rows; rows that do not count come out 0 before the colour filter.
   /// Of an excerpt's segments where there are any: in, out and weight are theirs then, back to back.

@@ -27,12 +27,13 @@ class Search {
     length_ = std::min(n / kNoise.segments, std::max(n / kNoise.segments_of_log, kNoise.segment_rows));
   }
 
-  NoiseLevels From(const NoiseLevels* before) {
+  NoiseLevels From(const NoiseLevels* before, bool slow_torque) {
     if (before != nullptr)
-      Look(*before);
+      Look(slow_torque ? *before : NoiseLevels{.torque = before->torque});
     else
       for (double x = -4.5; x <= 4.6; x += 1.5) Look({.torque = x});
-    for (const double step : {0.75, 0.375, 0.19, 0.09}) Beside(&NoiseLevels::torque, step);
+    for (const double step : {0.75, 0.375, 0.19, 0.09}) Around(&NoiseLevels::torque, step);
+    if (!slow_torque) return best_;
     AddSlow();
     DropSlow();
     return best_;
@@ -59,7 +60,7 @@ class Search {
     return sums.Unlikely() + (l.slow_there ? kTwoNumbers : 0.0);
   }
 
-  void Beside(double NoiseLevels::*number, double step) {
+  void Around(double NoiseLevels::*number, double step) {
     for (const double by : {-step, step}) {
       NoiseLevels l = best_;
       l.*number += by;
@@ -77,7 +78,7 @@ class Search {
     if (!best_.slow_there) return;
     for (const double step : {0.4, 0.2, 0.1})
       for (double NoiseLevels::*number : {&NoiseLevels::slow, &NoiseLevels::memory, &NoiseLevels::torque})
-        Beside(number, step);
+        Around(number, step);
   }
 
   void DropSlow() {
@@ -106,8 +107,9 @@ NoiseVariances VariancesOf(const NoiseLevels& levels, double reading, double uni
 }
 
 NoiseLevels LikeliestLevels(const LinearModel& model, const std::vector<std::uint8_t>& counted,
-                            double period_s, double reading, double unit, const NoiseLevels* before) {
-  return Search(model, counted, period_s, reading, unit).From(before);
+                            double period_s, double reading, double unit, const NoiseLevels* before,
+                            bool slow_torque) {
+  return Search(model, counted, period_s, reading, unit).From(before, slow_torque);
 }
 
 }  // namespace contour::diagnosis

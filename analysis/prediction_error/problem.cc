@@ -9,6 +9,7 @@
 
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/extras.h"
+#include "analysis/prediction_error/fit.h"
 #include "analysis/prediction_error/scale_noise.h"
 #include "analysis/prediction_error/simd/lane_run.h"
 
@@ -291,12 +292,12 @@ void Problem::LearnNoise(const Point& point) {
   const AxisModel model = Build(point);
   noise = NoiseFilter(std::make_shared<const LinearModel>(Linearise(setup, model)), counted,
                       model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0), log.period_s,
-                      stated.position_step, noise.learnt() ? &noise : nullptr);
+                      stated.position_step, noise.learnt() ? &noise : nullptr,
+                      slow_torque && Plausible(*this, point));
   std::vector<double> raw = noise.linear().innovation;
-  if (has_scale()) {
+  if (has_scale())
     AddScale(noise.linear().table, model.two_inertia,
              model.scale_error_m ? model.scale_error_m->data() : nullptr, log.table_position_m.data(), raw);
-  }
   root_weight.assign(data_size(), 1.0);
   if (has_scale()) LearnScaleNoise(raw);
   const std::vector<double> white = White(std::span(&raw, 1))[0];
@@ -304,8 +305,7 @@ void Problem::LearnNoise(const Point& point) {
   for (std::size_t base = 0; base < data_size(); base += n) {
     const double* r = &white[base];
     double* w = &root_weight[base];
-    // Level of the noise over short and longer windows, and of its slow part: stuck, the axis answers to
-    // torque with another spectrum than sliding. Where any stands out, the largest counts.
+    // Its level in short and longer windows, and that of its slow part: the largest that stands out.
     std::vector<double> slow(n, 0.0);
     double sum = 0.0;
     for (std::size_t k = 0; k < n; ++k) {

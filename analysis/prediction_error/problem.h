@@ -89,6 +89,9 @@ class Problem {
                                                                  std::span<const SharedEffect> effects) const;
   /// Ratio of the noises of torque and reading, the colour that is left, then the level from place to place.
   void LearnNoise(const Point& point);
+  /// Whether the noise has a slow torque in it where the numbers are plausible: of a model that is far off,
+  /// what it lacks passes for one.
+  bool slow_torque = false;
   /// What was learnt last, to have it again without learning.
   [[nodiscard]] LearntNoise Learnt() const {
     return {noise, scale_noise, scale_wander, root_weight, excerpt_weight_};

@@ -16,15 +16,10 @@ using Column = Eigen::Map<const Eigen::VectorXd>;
 
 Column ColumnOf(const std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
 
-bool Implausible(const Problem& problem, const Fit& fit) {
-  const auto terms = static_cast<double>(problem.terms.size());
-  return fit.prior > kFits.hardly_ever * terms;
-}
-
 }  // namespace
 
 bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, double worth) {
-  if (!Implausible(problem, fit)) return false;
+  if (Plausible(problem, fit.point)) return false;
   Point back = fit.point;
   for (std::size_t i = 0; i < back.base.size(); ++i) {
     const BaseTerm& t = problem.terms[i];

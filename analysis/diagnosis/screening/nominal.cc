@@ -28,6 +28,11 @@ Nominal FitNominal(Problem& problem) {
   }
   // A resonance may have been taken for another one.
   FitFromStated(problem, nominal.fit, FitEffort{});
+  problem.slow_torque = Plausible(problem, nominal.fit.point);
+  if (problem.slow_torque) {
+    problem.LearnNoise(nominal.fit.point);
+    nominal.fit = FitFrom(problem, std::move(nominal.fit), FitEffort{});
+  }
   problem.LearnSignals(nominal.fit.point);
   nominal.catalogue = CatalogueEffects(problem);
   nominal.by_extras = std::max(0.0, problem.ExplainedByExtras(nominal.fit.point));

@@ -2,64 +2,27 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
-#include <random>
 
 #include "analysis/prediction_error/noise_filter.h"
-#include "tests/analysis/support/learnt_problem.h"
+#include "tests/analysis/support/noise_moved.h"
 
 namespace contour::diagnosis {
 namespace {
 
 constexpr double kSlowMemory_rows = 20.0, kDensity = 100.0, kWhite_Nm = 0.002;
 
-test::HiddenOptions Options() {
-  test::HiddenOptions o;
-  o.seed = 5;
-  o.duration_s = 40.0;
-  o.parameter_spread = 0.0;
-  o.scale = false;
-  return o;
-}
+const Problem& Axis() { return test::SlidingAndStuck().problem; }
+double Unit() { return Axis().stated.motor_inertia / std::pow(Axis().log.period_s, 2); }
 
-const test::LearntProblem& Made() {
-  static const test::LearntProblem made(test::MakeHiddenAxis(Options()));
-  return made;
-}
-
-double Reading() { return std::pow(Made().problem.stated.position_step, 2) / 12.0; }
-double Unit() { return Made().problem.stated.motor_inertia / std::pow(Made().problem.log.period_s, 2); }
-
-/// An axis that slides and sticks, moved by noise alone: white torque, first-order torque, rounding.
 std::shared_ptr<const LinearModel> Moved(double density) {
-  const Problem& problem = Made().problem;
-  auto model = std::make_shared<LinearModel>(problem.noise.linear());
-  const std::size_t n = model->rows;
-  std::mt19937_64 random(11);
-  std::normal_distribution<double> normal;
-  const double keep = std::exp(-1.0 / kSlowMemory_rows);
-  const double deviation = kWhite_Nm * std::sqrt(density * (1.0 - keep) / (1.0 + keep));
-  LinearInput input;
-  auto torque = std::make_shared<Signal>(2 * n), reading = std::make_shared<Signal>(n);
-  double slow = deviation * normal(random);
-  for (std::size_t k = 0; k < n; ++k) {
-    const double next = keep * slow + deviation * std::sqrt(1.0 - keep * keep) * normal(random);
-    const double white = kWhite_Nm * normal(random);
-    (*torque)[k] = white + slow;
-    (*torque)[n + k] = white + next;
-    slow = next;
-    (*reading)[k] = std::sqrt(Reading()) * normal(random);
-  }
-  input.motor_force = torque;
-  input.reading_error = reading;
-  model->innovation = LinearColumns(*model, std::span(&input, 1), false)[0].innovation;
-  return model;
+  const double white = kWhite_Nm * kWhite_Nm, keep = std::exp(-1.0 / kSlowMemory_rows);
+  return test::MovedBy({white, test::ReadingVariance(), white * density * (1.0 - keep) / (1.0 + keep), keep});
 }
 
 NoiseLevels Likeliest(const LinearModel& model) {
-  return LikeliestLevels(model, Made().problem.counted, Made().problem.log.period_s, Reading(), Unit(),
+  return LikeliestLevels(model, Axis().counted, Axis().log.period_s, test::ReadingVariance(), Unit(),
                          nullptr);
 }
 
@@ -68,13 +31,13 @@ TEST(NoiseLevels, FindASlowTorqueNextToWhiteOne) {
   ASSERT_TRUE(levels.slow_there);
   EXPECT_NEAR(levels.memory, std::log10(kSlowMemory_rows), 0.35);
   EXPECT_NEAR(levels.slow, std::log10(kDensity), 0.35);
-  EXPECT_NEAR(levels.torque, 2.0 * std::log10(kWhite_Nm / Unit()) - std::log10(Reading()), 0.3);
+  EXPECT_NEAR(levels.torque, 2.0 * std::log10(kWhite_Nm / Unit()) - std::log10(test::ReadingVariance()), 0.3);
 }
 
 TEST(NoiseLevels, AreThoseOfWhiteTorqueWhereThereIsNoOther) {
   const NoiseLevels levels = Likeliest(*Moved(0.0));
   EXPECT_FALSE(levels.slow_there);
-  EXPECT_NEAR(levels.torque, 2.0 * std::log10(kWhite_Nm / Unit()) - std::log10(Reading()), 0.3);
+  EXPECT_NEAR(levels.torque, 2.0 * std::log10(kWhite_Nm / Unit()) - std::log10(test::ReadingVariance()), 0.3);
 }
 
 TEST(NoiseLevels, OfFirstOrderTorqueHaveTheDensityOfTheirVariance) {
@@ -87,7 +50,7 @@ TEST(NoiseLevels, OfFirstOrderTorqueHaveTheDensityOfTheirVariance) {
 }
 
 NoiseFilter FilterOf(std::shared_ptr<const LinearModel> model) {
-  const Problem& problem = Made().problem;
+  const Problem& problem = Axis();
   return {std::move(model),
           problem.counted,
           problem.stated.motor_inertia,
@@ -100,7 +63,7 @@ NoiseFilter FilterOf(std::shared_ptr<const LinearModel> model) {
 // has a sum of squares as large as its information. The slow torque moves a stuck axis, and says when it
 // breaks away; a filter after one that knows white torque alone cannot tell.
 TEST(NoiseFilter, ScoresScatterAsTheirInformationSaysUnderASlowTorque) {
-  const Problem& problem = Made().problem;
+  const Problem& problem = Axis();
   const std::shared_ptr<const LinearModel> model = Moved(kDensity);
   const NoiseFilter filter = FilterOf(model);
   LinearInput inputs[2];
@@ -132,7 +95,7 @@ TEST(NoiseFilter, ScoresScatterAsTheirInformationSaysUnderASlowTorque) {
 
 // Back() is the gradient with one more state, too.
 TEST(NoiseFilter, BackIsTheGradientUnderASlowTorque) {
-  const Problem& problem = Made().problem;
+  const Problem& problem = Axis();
   const std::shared_ptr<const LinearModel> model = Moved(kDensity);
   const NoiseFilter filter = FilterOf(model);
   const std::vector<double> weight(model->rows, 1.0);
