@@ -48,21 +48,20 @@ void ApplyAll(const LaneWhiten& whole, std::span<const double* const> in, std::s
 }  // namespace
 
 NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::vector<std::uint8_t>& counted,
-                         double inertia, double period_s, double reading_step, const NoiseFilter* before,
-                         bool slow_torque)
+                         const NoiseSetup& setup, const NoiseFilter* before)
     : linear_(std::move(linear)) {
   const LinearModel& m = *linear_;
   const std::size_t n = m.rows;
-  const double unit = inertia / (period_s * period_s);
-  const double reading = std::max(reading_step * reading_step / 12.0, 1e-24);
-  levels_ = LikeliestLevels(m, counted, period_s, reading, unit,
-                            before != nullptr ? &before->levels_ : nullptr, slow_torque);
+  const double unit = setup.inertia / (setup.period_s * setup.period_s);
+  const double reading = std::max(setup.reading_step * setup.reading_step / 12.0, 1e-24);
+  levels_ = LikeliestLevels(m, {counted, setup.period_s, reading, unit, setup.slow_torque},
+                            before != nullptr ? &before->levels_ : nullptr);
   const NoiseVariances noise = VariancesOf(levels_, reading, unit);
   states_ = FilterStates(m, noise);
   if (levels_.slow_there) with_slow_ = WithSlowTorque(m, noise.keep);
   gain_.resize((n - 1) * (static_cast<std::size_t>(states_) + 1));
   LikelihoodSums sums;
-  KalmanPass({m, counted, period_s, 0, n}, noise, sums, gain_.data());
+  KalmanPass({m, counted, setup.period_s, 0, n}, noise, sums, gain_.data());
   torque_noise_ = std::sqrt(noise.torque * sums.squares / std::max(sums.count, 1.0));
   taps_.assign(kWhitenTaps, 0.0);
   taps_[0] = 1.0;
@@ -82,7 +81,7 @@ std::size_t NoiseFilter::Stride() const {
 }
 
 double NoiseFilter::LogVariances(const std::vector<std::uint8_t>& counted) const {
-  const auto columns = static_cast<std::size_t>(states_ + 1);
+  const auto columns = static_cast<std::size_t>(states_) + 1;
   double sum = 0.0;
   for (std::size_t k = 1; k < counted.size(); ++k)
     if (counted[k] != 0) sum -= 2.0 * std::log(static_cast<double>(gain_[k * columns - 1]) * taps_[0]);

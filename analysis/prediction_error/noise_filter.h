@@ -12,6 +12,14 @@
 
 namespace contour::diagnosis {
 
+/// What is known of an axis before its noise is learnt.
+struct NoiseSetup {
+  double inertia = 0.0;  ///< [kg m^2] of all that moves
+  double period_s = 0.0;
+  double reading_step = 0.0;  ///< [rad]
+  bool slow_torque = true;    ///< whether a slow torque is looked for
+};
+
 /// Makes innovations white. Torque that nobody commanded moves a sliding axis and hardly a stuck one, and the
 /// reading has noise of its own: a Kalman filter on the linearised model (KalmanPass) takes both into
 /// account, and a torque that wanders slowly, which says when a stuck axis breaks away; an autoregressive
@@ -23,8 +31,7 @@ class NoiseFilter {
   /// `counted`: rows whose innovation counts. `before`: the log's filter of an earlier run, whose ratios lie
   /// near; null: none.
   NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::vector<std::uint8_t>& counted,
-              double inertia, double period_s, double reading_step, const NoiseFilter* before,
-              bool slow_torque = true);
+              const NoiseSetup& setup, const NoiseFilter* before);
 
   /// Whitens each, in place of size rows; rows that do not count come out 0 before the colour filter.
   /// Of an excerpt's segments where there are any: in, out and weight are theirs then, back to back.

@@ -19,21 +19,19 @@ constexpr double kShortestMemory = 2.0;
 
 class Search {
  public:
-  Search(const LinearModel& model, const std::vector<std::uint8_t>& counted, double period_s, double reading,
-         double unit)
-      : model_(model), counted_(counted), period_s_(period_s), reading_(reading), unit_(unit) {
+  Search(const LinearModel& model, const LevelsSearch& by) : model_(model), by_(by) {
     // Some segments all over the log are enough for few numbers.
     const std::size_t n = model.rows;
     length_ = std::min(n / kNoise.segments, std::max(n / kNoise.segments_of_log, kNoise.segment_rows));
   }
 
-  NoiseLevels From(const NoiseLevels* before, bool slow_torque) {
+  NoiseLevels From(const NoiseLevels* before) {
     if (before != nullptr)
-      Look(slow_torque ? *before : NoiseLevels{.torque = before->torque});
+      Look(by_.slow_torque ? *before : NoiseLevels{.torque = before->torque});
     else
       for (double x = -4.5; x <= 4.6; x += 1.5) Look({.torque = x});
     for (const double step : {0.75, 0.375, 0.19, 0.09}) Around(&NoiseLevels::torque, step);
-    if (!slow_torque) return best_;
+    if (!by_.slow_torque) return best_;
     AddSlow();
     DropSlow();
     return best_;
@@ -54,8 +52,8 @@ class Search {
     LikelihoodSums sums;
     for (std::size_t i = 0; i < kNoise.segments; ++i) {
       const std::size_t from = apart * i / (kNoise.segments - 1);
-      KalmanPass({model_, counted_, period_s_, from, from + length_}, VariancesOf(l, reading_, unit_), sums,
-                 nullptr);
+      KalmanPass({model_, by_.counted, by_.period_s, from, from + length_},
+                 VariancesOf(l, by_.reading, by_.unit), sums, nullptr);
     }
     return sums.Unlikely() + (l.slow_there ? kTwoNumbers : 0.0);
   }
@@ -86,8 +84,7 @@ class Search {
   }
 
   const LinearModel& model_;
-  const std::vector<std::uint8_t>& counted_;
-  double period_s_, reading_, unit_;
+  const LevelsSearch& by_;
   std::size_t length_ = 0;
   NoiseLevels best_;
   double lowest_ = std::numeric_limits<double>::infinity();
@@ -106,10 +103,8 @@ NoiseVariances VariancesOf(const NoiseLevels& levels, double reading, double uni
   return out;
 }
 
-NoiseLevels LikeliestLevels(const LinearModel& model, const std::vector<std::uint8_t>& counted,
-                            double period_s, double reading, double unit, const NoiseLevels* before,
-                            bool slow_torque) {
-  return Search(model, counted, period_s, reading, unit).From(before, slow_torque);
+NoiseLevels LikeliestLevels(const LinearModel& model, const LevelsSearch& search, const NoiseLevels* before) {
+  return Search(model, search).From(before);
 }
 
 }  // namespace contour::diagnosis

@@ -19,11 +19,17 @@ struct NoiseLevels {
 
 NoiseVariances VariancesOf(const NoiseLevels& levels, double reading, double unit);
 
-/// The likeliest, from segments all over the log. `unit`: [Nm/rad] inertia over period squared; `before`: of
-/// an earlier run of the log, near which they lie; null: none.
-/// `slow_torque`: whether one is looked for.
-NoiseLevels LikeliestLevels(const LinearModel& model, const std::vector<std::uint8_t>& counted,
-                            double period_s, double reading, double unit, const NoiseLevels* before,
-                            bool slow_torque = true);
+/// What the search goes by.
+struct LevelsSearch {
+  const std::vector<std::uint8_t>& counted;
+  double period_s = 0.0;
+  double reading = 0.0;     ///< [rad^2] variance
+  double unit = 0.0;        ///< [Nm/rad] inertia over period squared
+  bool slow_torque = true;  ///< whether one is looked for
+};
+
+/// The likeliest, from segments all over the log. `before`: of an earlier run of the log, near which they
+/// lie; null: none.
+NoiseLevels LikeliestLevels(const LinearModel& model, const LevelsSearch& search, const NoiseLevels* before);
 
 }  // namespace contour::diagnosis

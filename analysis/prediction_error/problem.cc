@@ -290,10 +290,10 @@ void Problem::Lower(const double* r, std::size_t half, double largest_by_chance,
 void Problem::LearnNoise(const Point& point) {
   const std::size_t n = rows();
   const AxisModel model = Build(point);
-  noise = NoiseFilter(std::make_shared<const LinearModel>(Linearise(setup, model)), counted,
-                      model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0), log.period_s,
-                      stated.position_step, noise.learnt() ? &noise : nullptr,
-                      slow_torque && Plausible(*this, point));
+  const NoiseSetup known{model.motor_inertia + (model.two_inertia ? model.load_inertia : 0.0), log.period_s,
+                         stated.position_step, slow_torque && Plausible(*this, point)};
+  noise = NoiseFilter(std::make_shared<const LinearModel>(Linearise(setup, model)), counted, known,
+                      noise.learnt() ? &noise : nullptr);
   std::vector<double> raw = noise.linear().innovation;
   if (has_scale())
     AddScale(noise.linear().table, model.two_inertia,
@@ -301,7 +301,7 @@ void Problem::LearnNoise(const Point& point) {
   root_weight.assign(data_size(), 1.0);
   if (has_scale()) LearnScaleNoise(raw);
   const std::vector<double> white = White(std::span(&raw, 1))[0];
-  const std::vector<double> known = std::exchange(root_weight, std::vector<double>(data_size(), 1.0));
+  const std::vector<double> weights = std::exchange(root_weight, std::vector<double>(data_size(), 1.0));
   for (std::size_t base = 0; base < data_size(); base += n) {
     const double* r = &white[base];
     double* w = &root_weight[base];
@@ -317,7 +317,7 @@ void Problem::LearnNoise(const Point& point) {
     Lower(r, kRows.long_window_rows, kRows.long_by_chance, w);
     Lower(slow.data(), kRows.slow_window_rows, kRows.slow_by_chance, w);
   }
-  for (std::size_t k = 0; k < data_size(); ++k) root_weight[k] *= counted[k % n] != 0 ? known[k] : 0.0;
+  for (std::size_t k = 0; k < data_size(); ++k) root_weight[k] *= counted[k % n] != 0 ? weights[k] : 0.0;
   WeighExcerpt();
 }
 

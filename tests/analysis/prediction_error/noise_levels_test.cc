@@ -22,7 +22,7 @@ std::shared_ptr<const LinearModel> Moved(double density) {
 }
 
 NoiseLevels Likeliest(const LinearModel& model) {
-  return LikeliestLevels(model, Axis().counted, Axis().log.period_s, test::ReadingVariance(), Unit(),
+  return LikeliestLevels(model, {Axis().counted, Axis().log.period_s, test::ReadingVariance(), Unit()},
                          nullptr);
 }
 
@@ -53,9 +53,7 @@ NoiseFilter FilterOf(std::shared_ptr<const LinearModel> model) {
   const Problem& problem = Axis();
   return {std::move(model),
           problem.counted,
-          problem.stated.motor_inertia,
-          problem.log.period_s,
-          problem.stated.position_step,
+          {problem.stated.motor_inertia, problem.log.period_s, problem.stated.position_step},
           nullptr};
 }
 
