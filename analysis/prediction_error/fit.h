@@ -48,7 +48,7 @@ Fit FitOn(const Problem& problem, Fit fit, const FitEffort& effort);
 /// What its deviations from the stated numbers add to the cost of a point.
 double PriorOf(const Problem& problem, const Point& point);
 
-/// Not where the stated numbers would have to be off as they hardly ever are.
+/// Whether the stated numbers are off by no more than they may well be.
 bool Plausible(const Problem& problem, const Point& point);
 
 std::size_t ParameterCount(const Point& point);

@@ -91,7 +91,7 @@ double NoiseFilter::LogVariances(const std::vector<std::uint8_t>& counted) const
 double NoiseFilter::ObserverBandwidth_Hz(double period_s) const {
   // The ratio is of what a row's torque moves the axis by, over the reading's noise: the index of
   // SteadyObserverGain, squared.
-  return std::pow(10.0, 0.25 * levels_.torque) / (2.0 * std::numbers::pi * period_s);
+  return std::pow(10.0, 0.25 * levels_.log10_torque) / (2.0 * std::numbers::pi * period_s);
 }
 
 void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* const> out,

@@ -27,10 +27,10 @@ class Search {
 
   NoiseLevels From(const NoiseLevels* before) {
     if (before != nullptr)
-      Look(by_.slow_torque ? *before : NoiseLevels{.torque = before->torque});
+      Look(by_.slow_torque ? *before : NoiseLevels{.log10_torque = before->log10_torque});
     else
-      for (double x = -4.5; x <= 4.6; x += 1.5) Look({.torque = x});
-    for (const double step : {0.75, 0.375, 0.19, 0.09}) Around(&NoiseLevels::torque, step);
+      for (double x = -4.5; x <= 4.6; x += 1.5) Look({.log10_torque = x});
+    for (const double step : {0.75, 0.375, 0.19, 0.09}) Around(&NoiseLevels::log10_torque, step);
     if (!by_.slow_torque) return best_;
     AddSlow();
     DropSlow();
@@ -40,7 +40,7 @@ class Search {
  private:
   void Look(const NoiseLevels& l) {
     const double shortest = std::log10(kShortestMemory), longest = std::log10(kLongestMemory);
-    if (l.slow_there && (l.memory < shortest || l.memory > longest)) return;
+    if (l.slow_there && (l.log10_memory_rows < shortest || l.log10_memory_rows > longest)) return;
     const double unlikely = UnlikelyAt(l);
     if (!(unlikely < lowest_)) return;
     lowest_ = unlikely;
@@ -69,18 +69,19 @@ class Search {
   /// A grid of the torque that is not there yet, then from the best point of it.
   void AddSlow() {
     if (!best_.slow_there) {
-      const double torque = best_.torque - 0.1;
+      const double torque = best_.log10_torque - 0.1;
       for (double memory = std::log10(kLongestMemory); memory > std::log10(kShortestMemory); memory -= 0.4)
         for (const double slow : {0.5, 1.2, 1.9, 2.6}) Look({torque, true, slow, memory});
     }
     if (!best_.slow_there) return;
     for (const double step : {0.4, 0.2, 0.1})
-      for (double NoiseLevels::*number : {&NoiseLevels::slow, &NoiseLevels::memory, &NoiseLevels::torque})
+      for (double NoiseLevels::*number :
+           {&NoiseLevels::log10_slow, &NoiseLevels::log10_memory_rows, &NoiseLevels::log10_torque})
         Around(number, step);
   }
 
   void DropSlow() {
-    if (best_.slow_there) Look({.torque = best_.torque});
+    if (best_.slow_there) Look({.log10_torque = best_.log10_torque});
   }
 
   const LinearModel& model_;
@@ -95,11 +96,11 @@ class Search {
 NoiseVariances VariancesOf(const NoiseLevels& levels, double reading, double unit) {
   NoiseVariances out;
   out.reading = reading;
-  out.torque = reading * unit * unit * std::pow(10.0, levels.torque);
+  out.torque = reading * unit * unit * std::pow(10.0, levels.log10_torque);
   if (!levels.slow_there) return out;
-  out.keep = std::exp(-std::pow(10.0, -levels.memory));
+  out.keep = std::exp(-std::pow(10.0, -levels.log10_memory_rows));
   // Of a first-order noise of unit variance the density at 0 Hz is (1 + keep) / (1 - keep) that of white one.
-  out.slow = out.torque * std::pow(10.0, levels.slow) * (1.0 - out.keep) / (1.0 + out.keep);
+  out.slow = out.torque * std::pow(10.0, levels.log10_slow) * (1.0 - out.keep) / (1.0 + out.keep);
   return out;
 }
 

@@ -9,14 +9,15 @@ namespace contour::diagnosis {
 
 /// Three numbers that say how torque and reading scatter, next to the size of all of it.
 struct NoiseLevels {
-  /// Decimal logarithm: variance of a row's white torque, in units in which a torque as large as the
+  /// Variance of a row's white torque, in units in which a torque as large as the
   /// reading's noise moves the axis in one row by as much, over the reading's.
-  double torque = 0.0;
-  bool slow_there = false;  ///< whether there is a first-order torque noise next to the white one
-  double slow = 0.0;        ///< decimal logarithm: its spectral density at 0 Hz over the white one's
-  double memory = 0.0;      ///< decimal logarithm of the rows after which 1 / e is left of it
+  double log10_torque = 0.0;
+  bool slow_there = false;         ///< whether there is a first-order torque noise next to the white one
+  double log10_slow = 0.0;         ///< its spectral density at 0 Hz over the white one's
+  double log10_memory_rows = 0.0;  ///< after which 1 / e is left of it
 };
 
+/// `reading`, `unit`: as in LevelsSearch.
 NoiseVariances VariancesOf(const NoiseLevels& levels, double reading, double unit);
 
 /// What the search goes by.

@@ -305,7 +305,7 @@ void Problem::LearnNoise(const Point& point) {
   for (std::size_t base = 0; base < data_size(); base += n) {
     const double* r = &white[base];
     double* w = &root_weight[base];
-    // Its level in short and longer windows, and that of its slow part: the largest that stands out.
+    // Stuck, torque has another spectrum: levels in short, longer and slow windows, the largest counts.
     std::vector<double> slow(n, 0.0);
     double sum = 0.0;
     for (std::size_t k = 0; k < n; ++k) {

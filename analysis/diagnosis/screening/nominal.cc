@@ -28,6 +28,7 @@ Nominal FitNominal(Problem& problem) {
   }
   // A resonance may have been taken for another one.
   FitFromStated(problem, nominal.fit, FitEffort{});
+  // Not before: what the stated numbers are off by would pass for a torque that wanders.
   problem.slow_torque = Plausible(problem, nominal.fit.point);
   if (problem.slow_torque) {
     problem.LearnNoise(nominal.fit.point);

@@ -10,6 +10,7 @@
 // residual white; inner products of columns.
 namespace contour::diagnosis {
 
+/// Seven of the model, and the slow torque of a noise filter.
 inline constexpr int kMostStates = 8;
 /// Motor force from, to; load force from, to; level from, to.
 inline constexpr int kLinearInputs = 6;

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <utility>
 
 #include "tests/analysis/support/learnt_problem.h"
+#include "tests/analysis/support/noise_moved.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -87,6 +90,72 @@ TEST(NoiseFilter, BackIsTheGradientOfTheSquaresWithRespectToSignals) {
     along += pulse[i] * white[row + 1 + i] * problem.root_weight[row + 1 + i];
   ASSERT_NE(along, 0.0);
   EXPECT_NEAR(gradient.motor[row] / along, 1.0, 0.05);
+}
+
+std::shared_ptr<const LinearModel> MovedBySlowTorque() {
+  return test::MovedBy({4e-6, test::ReadingVariance(), 1e-5, 0.95});
+}
+
+NoiseFilter FilterOf(std::shared_ptr<const LinearModel> model, bool slow_torque = true) {
+  const Problem& problem = test::SlidingAndStuck().problem;
+  return {std::move(model),
+          problem.counted,
+          {problem.stated.motor_inertia, problem.log.period_s, problem.stated.position_step, slow_torque},
+          nullptr};
+}
+
+/// By how much more than white noise the score of a level of friction scatters in blocks of a second, those
+/// that know more of it counting more.
+double ScatterOfLevel(const std::shared_ptr<const LinearModel>& model, bool slow_torque) {
+  const Problem& problem = test::SlidingAndStuck().problem;
+  LinearInput level;
+  level.level = std::make_shared<Signal>(model->rows, 1.0);
+  const FilterRun run = LinearColumns(*model, std::span(&level, 1), false)[0];
+  std::vector<double> noise(model->rows), column(model->rows);
+  const std::vector<double> weight(model->rows, 1.0);
+  const double* in[] = {model->innovation.data(), run.innovation.data()};
+  double* out[] = {noise.data(), column.data()};
+  FilterOf(model, slow_torque).Apply(in, out, problem.counted, weight.data());
+  double scatter = 0.0, information = 0.0;
+  for (std::size_t from = 0; from + 1000 <= model->rows; from += 1000) {
+    double product = 0.0;
+    for (std::size_t k = from; k < from + 1000; ++k) {
+      product += noise[k] * column[k];
+      information += column[k] * column[k];
+    }
+    scatter += product * product;
+  }
+  const double power = MeanProduct(noise, problem.counted, 0);
+  return scatter / (information * power);
+}
+
+// Behind a filter that knows white torque alone the colour filter is one for sliding and sticking: the score
+// scatters about twice as much as it should.
+TEST(NoiseFilter, ALevelOfFrictionScattersAsItsInformationSaysUnderASlowTorque) {
+  const std::shared_ptr<const LinearModel> model = test::MovedBy({1e-7, test::ReadingVariance(), 1e-3, 0.98});
+  const double with_slow = ScatterOfLevel(model, true);
+  EXPECT_GT(with_slow, 0.5);
+  EXPECT_LT(with_slow, 1.4);
+  EXPECT_GT(ScatterOfLevel(model, false), 1.5 * with_slow);
+}
+
+// Back() is the gradient with one more state, too.
+TEST(NoiseFilter, BackIsTheGradientUnderASlowTorque) {
+  const Problem& problem = test::SlidingAndStuck().problem;
+  const std::shared_ptr<const LinearModel> model = MovedBySlowTorque();
+  const NoiseFilter filter = FilterOf(model);
+  const std::vector<double> weight(model->rows, 1.0);
+  std::vector<double> white(model->rows);
+  const double* in[] = {model->innovation.data()};
+  double* out[] = {white.data()};
+  filter.Apply(in, out, problem.counted, weight.data());
+  const NoiseFilter::Gradient gradient = filter.Back(white, problem.counted, weight.data());
+  for (const std::size_t row : {8000U, 20000U}) {
+    const std::vector<double> pulse = filter.Pulse(row, false, 1500, problem.counted);
+    double along = 0.0;
+    for (std::size_t i = 0; i < pulse.size(); ++i) along += pulse[i] * white[row + 1 + i];
+    EXPECT_NEAR(gradient.motor[row], along, 0.05 * std::fabs(along)) << row;
+  }
 }
 
 TEST(ColourFilter, TakesTheWhitenersTaps) {
