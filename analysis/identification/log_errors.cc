@@ -1,6 +1,8 @@
 #include "analysis/identification/log_errors.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "analysis/identification/simulation.h"
 #include "analysis/parallel/parallel_for.h"
@@ -11,6 +13,30 @@ namespace {
 
 constexpr int kOrder = 12;
 constexpr double kLeastError_m = 1e-12;
+/// Of the middle window's error: no noise and no wrong parameter of a sliding axis makes one window so much
+/// worse than the others.
+constexpr double kMostOfTypical = 10.0;
+constexpr double kWindow_s = 0.1;
+
+/// A simulated axis that sticks for a moment where the real one slides is off by hundreds of what it is off
+/// by elsewhere. One such window would outweigh all that the parameters do: it counts as the most that a
+/// window may be off.
+Eigen::VectorXd WithoutSlips(Eigen::VectorXd errors, Eigen::Index window) {
+  const Eigen::Index windows = errors.size() / window;
+  if (windows < 2) return errors;
+  std::vector<double> rms;
+  for (Eigen::Index w = 0; w < windows; ++w)
+    rms.push_back(errors.segment(w * window, window).norm() / std::sqrt(static_cast<double>(window)));
+  std::vector<double> sorted = rms;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double most = kMostOfTypical * std::max(*middle, kLeastError_m);
+  for (Eigen::Index w = 0; w < windows; ++w) {
+    const double r = rms[static_cast<std::size_t>(w)];
+    if (r > most) errors.segment(w * window, window) *= most / r;
+  }
+  return errors;
+}
 
 }  // namespace
 
@@ -23,12 +49,14 @@ std::vector<double> LogErrors(const std::vector<TableAxis>& axes, const std::vec
   const double rows = static_cast<double>(errors.rows());
   const auto block =
       static_cast<std::size_t>(std::clamp(block_s / records.front().period_s, 1.0, std::max(1.0, rows)));
+  const auto window =
+      static_cast<Eigen::Index>(std::max(1.0, std::round(kWindow_s / records.front().period_s)));
   std::vector<double> logs(axes.size(), 1e300);
   ParallelFor(axes.size(), threads, [&](std::size_t i) {
     const auto column = errors.col(static_cast<Eigen::Index>(i));
     if (!column.allFinite()) return;
     diagnosis::BlockWhitening whitening;
-    whitening.Learn(column, block, kOrder, kLeastError_m);
+    whitening.Learn(WithoutSlips(column, window), block, kOrder, kLeastError_m);
     logs[i] = whitening.log_error();
   });
   return logs;

@@ -25,5 +25,23 @@ TEST(LogErrorsTest, AreLeastForTheAxisThatIsThere) {
   EXPECT_EQ(logs[3], 1e300);
 }
 
+// As where the simulated axis sticks for a moment and the real one slides.
+TEST(LogErrorsTest, OneWindowOutOfAllProportionDoesNotHideTheRest) {
+  constexpr double kAllAlike_s = std::numeric_limits<double>::infinity();
+  const TableAxis truth = Exactly(PlainAxis());
+  TableAxis heavy = truth;
+  heavy.motor_inertia *= 1.1;
+  const auto apart = [&](const identify::Measured& record) {
+    const std::vector<double> logs = LogErrors({truth, heavy}, {record}, kAllAlike_s, 1);
+    return logs[1] - logs[0];
+  };
+  const identify::Measured sound = Everything();
+  identify::Measured slipped = sound;
+  const std::size_t at = sound.size() / 2;
+  for (std::size_t k = at; k < at + 50; ++k) slipped.position_m[k] += 1e-3;
+  EXPECT_GT(apart(sound), 0.1);
+  EXPECT_GT(apart(slipped), 0.5 * apart(sound));
+}
+
 }  // namespace
 }  // namespace contour::test
