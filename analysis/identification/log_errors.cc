@@ -13,9 +13,10 @@ namespace {
 
 constexpr int kOrder = 12;
 constexpr double kLeastError_m = 1e-12;
-/// Of the middle window's error: no noise and no wrong parameter of a sliding axis makes one window so much
-/// worse than the others.
-constexpr double kMostOfTypical = 10.0;
+/// A wrong parameter makes many windows bad, as every chirp passes the mode: one in twenty tells how bad.
+/// What is so much worse than that comes alone.
+constexpr double kShareAtMost = 0.95;
+constexpr double kMostOfThose = 10.0;
 constexpr double kWindow_s = 0.1;
 
 /// A simulated axis that sticks for a moment where the real one slides is off by hundreds of what it is off
@@ -28,9 +29,10 @@ Eigen::VectorXd WithoutSlips(Eigen::VectorXd errors, Eigen::Index window) {
   for (Eigen::Index w = 0; w < windows; ++w)
     rms.push_back(errors.segment(w * window, window).norm() / std::sqrt(static_cast<double>(window)));
   std::vector<double> sorted = rms;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const double most = kMostOfTypical * std::max(*middle, kLeastError_m);
+  const auto at =
+      sorted.begin() + static_cast<std::ptrdiff_t>(kShareAtMost * static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), at, sorted.end());
+  const double most = kMostOfThose * std::max(*at, kLeastError_m);
   for (Eigen::Index w = 0; w < windows; ++w) {
     const double r = rms[static_cast<std::size_t>(w)];
     if (r > most) errors.segment(w * window, window) *= most / r;
