@@ -17,6 +17,7 @@ constexpr double kLeastError_m = 1e-12;
 /// What is so much worse than that comes alone.
 constexpr double kShareAtMost = 0.95;
 constexpr double kMostOfThose = 10.0;
+constexpr Eigen::Index kFewestWindows = 20;  ///< fewer have no one in twenty
 constexpr double kWindow_s = 0.1;
 
 /// A simulated axis that sticks for a moment where the real one slides is off by hundreds of what it is off
@@ -24,7 +25,7 @@ constexpr double kWindow_s = 0.1;
 /// window may be off.
 Eigen::VectorXd WithoutSlips(Eigen::VectorXd errors, Eigen::Index window) {
   const Eigen::Index windows = errors.size() / window;
-  if (windows < 2) return errors;
+  if (windows < kFewestWindows) return errors;
   std::vector<double> rms;
   for (Eigen::Index w = 0; w < windows; ++w)
     rms.push_back(errors.segment(w * window, window).norm() / std::sqrt(static_cast<double>(window)));
