@@ -14,31 +14,32 @@ namespace {
 constexpr int kOrder = 12;
 constexpr double kLeastError_m = 1e-12;
 /// A wrong parameter makes many windows bad, as every chirp passes the mode: one in twenty tells how bad.
-/// What is so much worse than that comes alone.
+/// What is so many times worse than that comes alone.
 constexpr double kShareAtMost = 0.95;
-constexpr double kMostOfThose = 10.0;
+constexpr double kMostOverThose = 10.0;
 constexpr Eigen::Index kFewestWindows = 20;  ///< fewer have no one in twenty
-constexpr double kWindow_s = 0.1;
+constexpr double kWindow_s = 0.1;            ///< the shortest stretch of shaken sliding
 
 /// A simulated axis that sticks for a moment where the real one slides is off by hundreds of what it is off
 /// by elsewhere. One such window would outweigh all that the parameters do: it counts as the most that a
 /// window may be off.
-Eigen::VectorXd WithoutSlips(Eigen::VectorXd errors, Eigen::Index window) {
-  const Eigen::Index windows = errors.size() / window;
-  if (windows < kFewestWindows) return errors;
-  std::vector<double> rms;
+Eigen::VectorXd WithoutSlips(Eigen::VectorXd errors_m, Eigen::Index window_rows) {
+  const Eigen::Index windows = errors_m.size() / window_rows;
+  if (windows < kFewestWindows) return errors_m;
+  std::vector<double> rms_m;
   for (Eigen::Index w = 0; w < windows; ++w)
-    rms.push_back(errors.segment(w * window, window).norm() / std::sqrt(static_cast<double>(window)));
-  std::vector<double> sorted = rms;
+    rms_m.push_back(errors_m.segment(w * window_rows, window_rows).norm() /
+                    std::sqrt(static_cast<double>(window_rows)));
+  std::vector<double> sorted_m = rms_m;
   const auto at =
-      sorted.begin() + static_cast<std::ptrdiff_t>(kShareAtMost * static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), at, sorted.end());
-  const double most = kMostOfThose * std::max(*at, kLeastError_m);
+      sorted_m.begin() + static_cast<std::ptrdiff_t>(kShareAtMost * static_cast<double>(sorted_m.size() - 1));
+  std::nth_element(sorted_m.begin(), at, sorted_m.end());
+  const double most_m = kMostOverThose * std::max(*at, kLeastError_m);
   for (Eigen::Index w = 0; w < windows; ++w) {
-    const double r = rms[static_cast<std::size_t>(w)];
-    if (r > most) errors.segment(w * window, window) *= most / r;
+    const double r = rms_m[static_cast<std::size_t>(w)];
+    if (r > most_m) errors_m.segment(w * window_rows, window_rows) *= most_m / r;
   }
-  return errors;
+  return errors_m;
 }
 
 }  // namespace
@@ -52,14 +53,14 @@ std::vector<double> LogErrors(const std::vector<TableAxis>& axes, const std::vec
   const double rows = static_cast<double>(errors.rows());
   const auto block =
       static_cast<std::size_t>(std::clamp(block_s / records.front().period_s, 1.0, std::max(1.0, rows)));
-  const auto window =
+  const auto window_rows =
       static_cast<Eigen::Index>(std::max(1.0, std::round(kWindow_s / records.front().period_s)));
   std::vector<double> logs(axes.size(), 1e300);
   ParallelFor(axes.size(), threads, [&](std::size_t i) {
     const auto column = errors.col(static_cast<Eigen::Index>(i));
     if (!column.allFinite()) return;
     diagnosis::BlockWhitening whitening;
-    whitening.Learn(WithoutSlips(column, window), block, kOrder, kLeastError_m);
+    whitening.Learn(WithoutSlips(column, window_rows), block, kOrder, kLeastError_m);
     logs[i] = whitening.log_error();
   });
   return logs;

@@ -25,7 +25,7 @@ TEST(LogErrorsTest, AreLeastForTheAxisThatIsThere) {
   EXPECT_EQ(logs[3], 1e300);
 }
 
-// As where the simulated axis sticks for a moment and the real one slides.
+// The position jumps and comes back: both models are off by as much there, and are told apart elsewhere.
 TEST(LogErrorsTest, OneWindowOutOfAllProportionDoesNotHideTheRest) {
   constexpr double kAllAlike_s = std::numeric_limits<double>::infinity();
   const TableAxis truth = Exactly(PlainAxis());
