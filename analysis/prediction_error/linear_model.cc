@@ -13,7 +13,7 @@ namespace {
 enum Slot { kInnovation, kTh, kW, kDrag, kZ, kSoft, kThl, kWl };
 
 struct Direction {
-  Vec LanePush::*push;
+  LaneValues LanePush::*push;
   double size;
 };
 

@@ -111,22 +111,32 @@ void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* con
 
 std::vector<double> NoiseFilter::Pulse(std::size_t row, bool reading, std::size_t length,
                                        const std::vector<std::uint8_t>& counted) const {
-  const std::size_t n = linear_->rows;
-  auto pulse = std::make_shared<Signal>(reading ? n : 2 * n, 0.0);
-  (*pulse)[row] = 1.0;
-  if (!reading) (*pulse)[n + row] = 1.0;
+  // Before the pulse there is nothing, and what comes after the length is not asked for.
+  const std::size_t n = linear_->rows, from = row - std::min<std::size_t>(row, 1);
+  const std::size_t first = reading ? row : row + 1, to = std::min(n, first + length), rows = to - from;
+  LinearModel part;
+  part.rows = rows;
+  part.stride = linear_->stride;
+  part.states = linear_->states;
+  part.table_state = linear_->table_state;
+  const auto at = linear_->step.begin() + static_cast<std::ptrdiff_t>(from * part.stride);
+  part.step.assign(at, at + static_cast<std::ptrdiff_t>((rows - 1) * part.stride));
+  const auto valid = linear_->valid.begin() + static_cast<std::ptrdiff_t>(from);
+  part.valid.assign(valid, valid + static_cast<std::ptrdiff_t>(rows));
+  auto pulse = std::make_shared<Signal>(reading ? rows : 2 * rows, 0.0);
+  (*pulse)[row - from] = 1.0;
+  if (!reading) (*pulse)[rows + row - from] = 1.0;
   LinearInput input;
   (reading ? input.reading_error : input.motor_force) = pulse;
-  const auto run = LinearColumns(*linear_, std::span(&input, 1), false);
-  std::vector<double> white(n);
-  const std::vector<double> weight(n, 1.0);
+  const auto run = LinearColumns(part, std::span(&input, 1), false);
+  std::vector<double> white(rows);
+  const std::vector<double> weight(rows, 1.0);
   const double* in[] = {run[0].innovation.data()};
   double* out[] = {white.data()};
-  Apply(in, out, counted, weight.data());
-  const std::size_t first = reading ? row : row + 1;
-  white.resize(std::max(n, first + length), 0.0);
-  return {white.begin() + static_cast<std::ptrdiff_t>(first),
-          white.begin() + static_cast<std::ptrdiff_t>(first + length)};
+  const Segment all{.from = from, .rows = rows};
+  Apply(in, out, counted, weight.data(), std::span(&all, 1));
+  white.resize(first - from + length, 0.0);
+  return {white.begin() + static_cast<std::ptrdiff_t>(first - from), white.end()};
 }
 
 NoiseFilter::Gradient NoiseFilter::Back(const std::vector<double>& white,

@@ -21,25 +21,41 @@ struct LaneSignal {
 /// How the coupling carries the wind-up d and its speed r over a sub-step under a constant difference a of
 /// the two accelerations: d' = dd d + dr r + da a, r' = rd d + rr r + ra a. The common motion takes the
 /// shares of the two inertias.
-struct LaneFlow {
-  Vec dd, dr, da, rd, rr, ra;
-  Vec half_rd, half_rr, half_ra;  ///< of r, over half the sub-step
-  Vec stiff, damp;                ///< over the reduced inertia
-  Vec motor_share, load_share;
+template <class V>
+struct LaneFlowOf {
+  V dd, dr, da, rd, rr, ra;
+  V half_rd, half_rr, half_ra;  ///< of r, over half the sub-step
+  V stiff, damp;                ///< over the reduced inertia
+  V motor_share, load_share;
 };
+using LaneFlow = LaneFlowOf<LaneValues>;
 
 /// For linearisation: what each lane is moved by, at every row anew. Lane 0 is not moved.
-struct LanePush {
-  Vec start{}, w{}, drag{}, z{}, soft{}, thl{}, wl{};
-  Vec reading{}, motor_from{}, motor_to{}, load_from{}, load_to{}, level_from{}, level_to{};
-  Vec inverse{};  ///< of the push, for the quotient
+template <class V>
+struct LanePushOf {
+  V start{}, w{}, drag{}, z{}, soft{}, thl{}, wl{};
+  V reading{}, motor_from{}, motor_to{}, load_from{}, load_to{}, level_from{}, level_to{};
+  V inverse{};  ///< of the push, for the quotient
 };
+using LanePush = LanePushOf<LaneValues>;
 /// Numbers kept per row and direction: innovation, then the states in the order of LanePush.
 inline constexpr std::size_t kTangentStates = 8;
 
+/// What is a number per lane.
+template <class V>
+struct LaneNumbersOf {
+  V inv_motor, inv_load, inv_payload, half_gap;
+  LaneFlowOf<V> flow{}, flow_payload{};
+  V Fc_plus, Fc_minus, dF_plus, dF_minus, inv_vs, s0, s1, inv_vd, s2, smallest, offset, gain, saturation,
+      start_z;
+  V soft_level, soft_s0, rough;
+  V elsewhere;  ///< share of the friction on the load that acts on the motor
+  LanePushOf<V> push;
+};
+
 /// One bundle of runs, as the loops take it: plain arrays, nothing that the translations of the loops
 /// (by instruction set) could share by accident.
-struct Lanes {
+struct Lanes : LaneNumbersOf<LaneValues> {
   std::size_t rows = 0;
   int substeps = 0;
   double period_s = 0.0;
@@ -49,13 +65,7 @@ struct Lanes {
   LaneRow viscous, reading;
   const double* measured = nullptr;
   const std::uint8_t* valid = nullptr;
-  Vec inv_motor, inv_load, inv_payload, half_gap;
-  LaneFlow flow{}, flow_payload{};
-  VecBits payload_row;
-  Vec Fc_plus, Fc_minus, dF_plus, dF_minus, inv_vs, s0, s1, inv_vd, s2, smallest, offset, gain, saturation,
-      start_z;
-  Vec soft_level, soft_s0, rough;
-  Vec elsewhere;  ///< share of the friction on the load that acts on the motor
+  LaneIntegers payload_row;
   double l[4] = {};
   double start_q = 0.0, start_w = 0.0;
   double linear = 1.0, square = 0.0;  ///< exponent of the Stribeck curve: 1, 0 is 1; 0, 1 is 2
@@ -67,7 +77,6 @@ struct Lanes {
   double* table[kLanes] = {};
   double* velocity[kLanes] = {};
   double* friction[kLanes] = {};
-  LanePush push;
   float* tangent = nullptr;  ///< not null: linearise; (rows - 1) x (kLanes - 1) x kTangentStates
 };
 

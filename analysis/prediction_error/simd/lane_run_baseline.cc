@@ -1,3 +1,8 @@
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
 #include "analysis/prediction_error/simd/lane_linear.h"
 #include "analysis/prediction_error/simd/lane_loops.h"
 #include "analysis/prediction_error/simd/lane_run.h"

@@ -92,6 +92,39 @@ TEST(NoiseFilter, BackIsTheGradientOfTheSquaresWithRespectToSignals) {
   EXPECT_NEAR(gradient.motor[row] / along, 1.0, 0.05);
 }
 
+/// What the filters make of a pulse, row by row of the whole log.
+std::vector<double> PulseInWholeLog(std::size_t row, bool reading) {
+  const Problem& problem = Made().problem;
+  const std::size_t n = problem.rows();
+  auto pulse = std::make_shared<Signal>(reading ? n : 2 * n, 0.0);
+  (*pulse)[row] = 1.0;
+  if (!reading) (*pulse)[n + row] = 1.0;
+  LinearInput input;
+  (reading ? input.reading_error : input.motor_force) = pulse;
+  const FilterRun run = LinearColumns(problem.noise.linear(), std::span(&input, 1), false)[0];
+  std::vector<double> white(n);
+  const std::vector<double> weight(n, 1.0);
+  const double* in[] = {run.innovation.data()};
+  double* out[] = {white.data()};
+  problem.noise.Apply(in, out, problem.counted, weight.data());
+  return white;
+}
+
+TEST(NoiseFilter, APulseIsThatOfTheWholeLogBitForBit) {
+  const Problem& problem = Made().problem;
+  constexpr std::size_t kLength = 60;
+  for (const std::size_t row : {std::size_t{0}, std::size_t{1}, std::size_t{12000}, problem.rows() - 20})
+    for (const bool reading : {false, true}) {
+      const std::vector<double> whole = PulseInWholeLog(row, reading);
+      const std::vector<double> pulse = problem.noise.Pulse(row, reading, kLength, problem.counted);
+      ASSERT_EQ(pulse.size(), kLength);
+      const std::size_t first = reading ? row : row + 1;
+      for (std::size_t i = 0; i < kLength; ++i)
+        ASSERT_EQ(pulse[i], first + i < whole.size() ? whole[first + i] : 0.0)
+            << row << " " << reading << " " << i;
+    }
+}
+
 std::shared_ptr<const LinearModel> MovedBySlowTorque() {
   return test::MovedBy({4e-6, test::ReadingVariance(), 1e-5, 0.95});
 }
