@@ -113,6 +113,17 @@ std::vector<std::string> NamesFor(const std::string& file, std::string_view comm
   return numbers;
 }
 
+/// Text in bytes, its lines ended by line feeds; what it must be for the rest to read it.
+void MakePlain(const std::string& file, std::string& text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw ConfigError({file + ": is written in UTF-16; save it as UTF-8 (plain CSV)"});
+  if (text.find('\0') != std::string::npos)
+    throw ConfigError({file + ": is no text (it holds zero bytes), expected a table (CSV) in UTF-8"});
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+  // Of old spreadsheets.
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+}
+
 }  // namespace
 
 CsvTable::CsvTable(std::string file) : file_(std::move(file)) {
@@ -121,7 +132,7 @@ CsvTable::CsvTable(std::string file) : file_(std::move(file)) {
   if (in) content << in.rdbuf();
   if (!in) throw ConfigError({file_ + ": cannot be read"});
   text_ = content.str();
-  if (text_.starts_with("\xEF\xBB\xBF")) text_.erase(0, 3);
+  MakePlain(file_, text_);
   CsvRecords records(file_, text_, 0, 1);
   if (records.Peek().empty())
     throw ConfigError({file_ + ": is empty, expected a line of column names and rows of numbers"});

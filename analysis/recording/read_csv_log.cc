@@ -102,12 +102,30 @@ void InUnitsOfAxis(const LogColumns& columns, const ReadOptions& options, TableR
     Unwrap(rows.position);
 }
 
+/// What analysis is made for: slower rows hold nothing of friction, faster ones are filtered first.
+constexpr double kSlowest_Hz = 50.0, kFastest_Hz = 10e3;
+/// [relative] A nominal rate is one, though its clock is off.
+constexpr double kOffNominal = 0.1;
+
+void DemandRate(const std::string& file, double period_s) {
+  const double rate_Hz = 1.0 / period_s;
+  const std::string found = file + ": found rows at " + RoundedText(rate_Hz) + " Hz, expected " +
+                            RoundedText(kSlowest_Hz) + " to " + RoundedText(kFastest_Hz) + " Hz";
+  if (rate_Hz < (1.0 - kOffNominal) * kSlowest_Hz)
+    throw ConfigError({found + ": slower ones show nothing of friction; are the times in seconds?"});
+  if (rate_Hz > (1.0 + kOffNominal) * kFastest_Hz)
+    throw ConfigError({found + "; --resample " + RoundedText(kFastest_Hz) + " puts them on a slower grid"});
+}
+
 }  // namespace
 
 AxisLog ReadCsvLog(const std::string& file, const ReadOptions& options) {
   const CsvTable table(file);
   const LogColumns columns =
       FindColumns(file, table.header(), options.axis, options.columns, options.sample_rate_Hz > 0.0);
+  if (columns.time && options.sample_rate_Hz > 0.0)
+    throw ConfigError({file + ": has times in its column " + table.header()[columns.time->at] +
+                       ", found --sample-rate, which is for a table without; expected one of the two"});
   TableRows rows = ReadTableRows(table, columns, options.sample_rate_Hz);
   InUnitsOfAxis(columns, options, rows);
   AxisLog log;
@@ -120,6 +138,7 @@ AxisLog ReadCsvLog(const std::string& file, const ReadOptions& options) {
     grid = FindGrid(file, rows.time_s, rows.line);
     if (columns.measured) HoldMeans(rows.command, grid);
   }
+  DemandRate(file, grid.period_s);
   if (rows.position.empty())
     rows.position = IntegralOf(rows.velocity, grid);
   else if (!rows.velocity.empty())

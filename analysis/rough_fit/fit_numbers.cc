@@ -5,6 +5,7 @@
 #include "analysis/prediction_error/fitted_half.h"
 #include "analysis/prediction_error/problem.h"
 #include "analysis/rough_fit/complete_from_log.h"
+#include "analysis/rough_fit/position_jump.h"
 #include "analysis/rough_fit/rough_fit.h"
 #include "analysis/rough_fit/wrong_units.h"
 #include "config/number_text.h"
@@ -80,6 +81,7 @@ FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
   FittedNumbers out;
   out.notes = CompleteFromLog(log, stated);
   if (out.unusable = WrongUnits(log, stated); !out.unusable.empty()) return out;
+  if (out.unusable = PositionJump(log); !out.unusable.empty()) return out;
   const RoughFit rough = FitRoughly(log, stated);
   for (const char* name : {"inertia", "load_inertia", "Fc", "Fs", "vs", "s0", "s1", "s2", "damping"})
     stated.sigma[name] = kFree;

@@ -24,6 +24,8 @@
 #include "analysis/prediction_error/keep_memory.h"
 #include "analysis/recording/read_log.h"
 #include "analysis/rough_fit/complete_from_log.h"
+#include "analysis/rough_fit/position_jump.h"
+#include "analysis/rough_fit/unrelated_force.h"
 #include "analysis/rough_fit/wrong_units.h"
 #include "config/config_error.h"
 #include "config/key_hints.h"
@@ -141,6 +143,9 @@ int RunDiagnose(const Options& options) {
   AxisLog log = ReadLogs(options, stated);
   const std::vector<std::string> assumed = CompleteFromLog(log, stated);
   if (const std::string why = WrongUnits(log, stated); !why.empty())
+    throw ConfigError({log.source + ": " + why});
+  if (const std::string why = PositionJump(log); !why.empty()) throw ConfigError({log.source + ": " + why});
+  if (const std::string why = UnrelatedForce(log, stated); !why.empty())
     throw ConfigError({log.source + ": " + why});
   Diagnosis found;
   std::optional<ContourGain> contour;

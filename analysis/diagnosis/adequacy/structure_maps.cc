@@ -44,6 +44,17 @@ int SpeedBin(const Signals& s, std::size_t k) {
   return Range{}.Bin(std::sqrt(std::fabs(s.velocity[k]) / std::max(s.max_speed, kLeast)), kBins);
 }
 
+/// Of the travel of the table: a rotary axis without a lead turns.
+struct TravelUnit {
+  double per_unit;
+  const char *travel, *speed, *after_reversal;
+};
+TravelUnit UnitOf(const Problem& p) {
+  const bool turns = !p.log.linear && p.stated.table_per_q == 1.0;
+  return turns ? TravelUnit{1.0, "rad", "rad/s", "rad after a reversal"}
+               : TravelUnit{1e3, "mm", "mm/s", "mm after a reversal"};
+}
+
 class Maps {
  public:
   Maps(const Problem& p, const std::vector<bool>& slides)
@@ -51,14 +62,17 @@ class Maps {
 
   std::vector<BinnedRows> All() {
     const Range x = RangeOf(s_.table_m);
+    const TravelUnit unit = UnitOf(p_);
     BothDirections(
         "the position", Quantity::kPosition, kBins,
         [&](std::size_t k) { return x.Bin(s_.table_m[k], kBins); },
-        [x, middle_m = s_.middle_m](int b) { return Text(1e3 * (x.Middle(b, kBins) + middle_m), "mm"); });
+        [x, unit, middle_m = s_.middle_m](int b) {
+          return Text(unit.per_unit * (x.Middle(b, kBins) + middle_m), unit.travel);
+        });
     BothDirections(
         "the speed", Quantity::kSpeed, kBins, [&](std::size_t k) { return SpeedBin(s_, k); },
-        [fastest_m_s = s_.max_speed * p_.stated.table_per_q](int b) {
-          return Text(1e3 * fastest_m_s * std::pow(Range{}.Middle(b, kBins), 2), "mm/s");
+        [unit, fastest_m_s = s_.max_speed * p_.stated.table_per_q](int b) {
+          return Text(unit.per_unit * fastest_m_s * std::pow(Range{}.Middle(b, kBins), 2), unit.speed);
         });
     const std::vector<double> travel = TravelSinceReversal(s_);
     // From the length of a bristle on.
@@ -68,8 +82,8 @@ class Maps {
     BothDirections(
         "the travel since the last reversal", Quantity::kTravelSinceReversal, kBins,
         [&](std::size_t k) { return log_travel.Bin(std::log(travel[k] + shortest_m), kBins); },
-        [log_travel](int b) {
-          return Text(1e3 * std::exp(log_travel.Middle(b, kBins)), "mm after a reversal");
+        [unit, log_travel](int b) {
+          return Text(unit.per_unit * std::exp(log_travel.Middle(b, kBins)), unit.after_reversal);
         });
     BothDirections(
         "the angle of the motor", Quantity::kAngle, kBins,

@@ -82,6 +82,11 @@ SharedEffect Custom(GridPlace place, Amplitudes amplitudes,
   return e;
 }
 
+bool AtItsBound(const Problem& /*problem*/, const Effect& effect, const std::vector<double>& amplitudes) {
+  const double size = amplitudes[0], step = effect.steps[0];
+  return size > effect.high[0] - step || size < effect.low[0] + step;
+}
+
 SharedEffect AsSignals(const SharedEffect& e) {
   auto copy = std::make_shared<Effect>(*e);
   copy->signals = true;

@@ -46,6 +46,9 @@ struct Amplitudes {
 SharedEffect Custom(GridPlace place, Amplitudes amplitudes,
                     std::function<void(const std::vector<double>&, AxisModel&)> apply);
 
+/// A size as large, or as small, as it may become: the log says nothing of it.
+bool AtItsBound(const Problem& problem, const Effect& effect, const std::vector<double>& amplitudes);
+
 SharedEffect AsSignals(const SharedEffect& e);
 SharedEffect WithShorter(const SharedEffect& e, SharedEffect shorter);
 SharedEffect WithOrder(const SharedEffect& e, double order);

@@ -14,8 +14,8 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const double J = p.nominal.motor_inertia + p.nominal.load_inertia;
   for (int i = 1; i < 20; ++i) {
     const std::size_t row = n * static_cast<std::size_t>(i) / 20;
-    // The instant moves with the rest, by rows.
-    const double reach_s = p.log.period_s * static_cast<double>(n) / 30.0, period_s = p.log.period_s;
+    // The instant moves with the rest, by rows, as far as the next one of the grid.
+    const double reach_s = p.log.period_s * (static_cast<double>(n) / 20.0 - 1.0), period_s = p.log.period_s;
     auto step = std::make_shared<Effect>(*Custom(
         {std::string(kName), "row " + std::to_string(row), 20},
         {.steps = {2e-3, 0.05}, .low = {-0.8, -reach_s}, .high = {5.0, reach_s}},
@@ -75,7 +75,7 @@ constexpr CauseDefinition payload_step = {
     .grid = Grid,
     .wave = nullptr,
     .family = nullptr,
-    .implausible = nullptr,
+    .implausible = AtItsBound,
     .parameters = Parameters,
     .main_parameter = "inertia_change_rel",
     .model_errors = kErrors,

@@ -60,7 +60,7 @@ constexpr CauseDefinition torque_constant = {
         },
     .wave = nullptr,
     .family = nullptr,
-    .implausible = nullptr,
+    .implausible = AtItsBound,
     .parameters =
         [](const FittedEffect& fitted) {
           return NamedValues{{"ratio", 1.0 + fitted.amplitudes()[0]}};

@@ -10,6 +10,7 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/base_there.h"
 #include "analysis/diagnosis/decision/guesses.h"
+#include "analysis/diagnosis/decision/instants.h"
 #include "analysis/diagnosis/decision/tested_score.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
@@ -148,6 +149,11 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
       best = std::max(best, out.back().score);
     }
     for (Fit& fit : FitPoints(problem, OtherPlaces(problem, current, scored, std::span(out).subspan(from)))) {
+      out.push_back({std::move(fit)});
+      Judge(problem, current, out.back());
+      best = std::max(best, out.back().score);
+    }
+    for (Fit& fit : FitPoints(problem, OtherInstants(problem, current, std::span(out).subspan(from)))) {
       out.push_back({std::move(fit)});
       Judge(problem, current, out.back());
       best = std::max(best, out.back().score);

@@ -19,6 +19,8 @@ constexpr double kNoScore = -1e300;
 /// Where the fit has gone the cause is not what its name says.
 bool Implausible(const Problem& problem, const Hypothesis& r) {
   const CauseDefinition& cause = CauseNamed(r.effect().kind);
+  // What only the stated numbers tell has to make them right: one number that is wrong is no factor on all.
+  if (cause.common_factor && !Plausible(problem, r.fit.point)) return true;
   return cause.implausible != nullptr &&
          (*cause.implausible)(problem, r.effect(), r.fit.point.amplitudes.back());
 }

@@ -113,7 +113,15 @@ void DescribeModelErrors(const Problem& problem, const Fit& without, const Fit& 
 }
 
 void TellModelErrors(const Problem& problem, Diagnosis& out) {
-  if (!out.model_errors.empty()) out.notes.push_back(ErrorText(problem, out));
+  if (out.model_errors.empty()) return;
+  out.notes.push_back(ErrorText(problem, out));
+  const auto [low, high] =
+      std::minmax_element(problem.signals->position.begin(), problem.signals->position.end());
+  if (!out.causes.empty() || !(out.model_errors.back().free_run_unseen > *high - *low)) return;
+  out.notes.push_back(
+      "That is further than the axis went in the whole log (" + LengthText(problem, *high - *low) +
+      "). Either next to nothing holds it against a force, or the recorded command is not what "
+      "moved it: a motor at its limit, say, or rows that do not belong together.");
 }
 
 }  // namespace contour::diagnosis

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/base_there.h"
@@ -13,6 +14,9 @@ namespace {
 
 bool HoldsZero(const Interval& i) { return i.low <= 0.0 && i.high >= 0.0; }
 
+/// When something began says nothing of how large it is.
+constexpr std::string_view kInstant = "time_s";
+
 /// All of its numbers are zero within their intervals; or the one that says how large it is, of a cause that
 /// chance may bring about. Where chance cannot, that interval is wide since other numbers of the cause do
 /// nearly the same.
@@ -21,7 +25,7 @@ bool HoldsZero(const Cause& cause) {
   if (main == cause.parameters.end() || !HoldsZero(main->second)) return false;
   return 2.0 * cause.log_evidence_gain < kAcceptance.no_chance_score ||
          std::all_of(cause.parameters.begin(), cause.parameters.end(),
-                     [](const auto& p) { return HoldsZero(p.second); });
+                     [](const auto& p) { return p.first == kInstant || HoldsZero(p.second); });
 }
 
 }  // namespace

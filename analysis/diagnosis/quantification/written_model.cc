@@ -10,6 +10,7 @@
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/quantification/model_errors.h"
+#include "analysis/diagnosis/quantification/stated_off.h"
 #include "analysis/diagnosis/quantification/widen.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 #include "analysis/prediction_error/fitted_half.h"
@@ -134,6 +135,7 @@ void DescribeModel(const Problem& problem, const Fit& nominal, const Fit& all, c
   std::erase_if(out.in_model, [](const Cause& c) { return Outside(c.kind); });
   out.fitted = FittedAxis(problem, fit, halves);
   TakeEndOfDrift(problem, fit, *out.fitted, out.notes);
+  TellStatedOff(problem, fit.point, out);
   TellModelErrors(problem, out);
 }
 

@@ -68,6 +68,20 @@ TEST(CsvTable, ErrorsNameTheLine) {
   EXPECT_THROW(CsvTable("/nowhere.csv"), ConfigError);
 }
 
+TEST(CsvTable, LinesMayEndInACarriageReturnAlone) {
+  const CsvTable t(WriteTestFile("t.csv", "a,b\r1,2\r3,4\r"));
+  EXPECT_EQ(t.header(), (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(CsvTable, WhatIsNoPlainTextIsSaidToBeNone) {
+  EXPECT_NE(Error(std::string("\xFF\xFE"
+                              "a\0,\0",
+                              6))
+                .find("UTF-16"),
+            std::string::npos);
+  EXPECT_NE(Error(std::string("a,b\n1,\0\n", 9)).find("is no text"), std::string::npos);
+}
+
 TEST(NumberOf, TakesNumbersAndNothingElse) {
   EXPECT_DOUBLE_EQ(NumberOf("-1.5e3", "f", 1, "c"), -1500.0);
   EXPECT_DOUBLE_EQ(NumberOf("+2", "f", 1, "c"), 2.0);

@@ -81,6 +81,31 @@ TEST(ReadCsvLog, ErrorsNameFileAndLine) {
   EXPECT_NE(Error("/nowhere.csv").find("cannot be read"), std::string::npos);
 }
 
+// Before: "nothing was found" of rows a second apart, and a Python traceback.
+TEST(ReadCsvLog, RowsTooSlowOrTooFastForFrictionAreRefused) {
+  const auto at = [](double period_s) {
+    std::string rows = "time_s,force_n,position_m\n";
+    for (int k = 0; k < 20; ++k) rows += std::to_string(k * period_s) + ",1," + std::to_string(k) + "\n";
+    return Error(WriteTestFile("rate.csv", rows));
+  };
+  EXPECT_NE(at(1.0).find("found rows at 1 Hz, expected 50 to 10000 Hz"), std::string::npos) << at(1.0);
+  EXPECT_NE(at(5e-5).find("--resample 10000"), std::string::npos) << at(5e-5);
+  EXPECT_EQ(at(0.02), "");
+}
+
+TEST(ReadCsvLog, ARateBesideTimesIsRefused) {
+  const std::string file =
+      WriteTestFile("times.csv", "time_s,force_n,position_m\n0,1,2\n0.001,1,2\n0.002,1,2\n");
+  ReadOptions options;
+  options.sample_rate_Hz = 500.0;
+  try {
+    ReadLog(file, options);
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("has times in its column time_s"), std::string::npos) << e.what();
+  }
+}
+
 TEST(ReadCsvLog, QuotedNotesBesideTheNumbersAreNoTrouble) {
   const std::string file = WriteTestFile(
       "log.csv",
@@ -133,9 +158,9 @@ TEST(ReadCsvLog, AVelocityOfAnotherUnitOrSignIsRefused) {
 
 TEST(ReadCsvLog, AVelocityAloneIsIntegrated) {
   const std::string file = WriteTestFile("log.csv", "torque_Nm,velocity_rad_s\n0,2\n0,4\n0,4\n");
-  const AxisLog log = ReadLog(file, {.sample_rate_Hz = 10.0});
-  EXPECT_DOUBLE_EQ(log.period_s, 0.1);
-  EXPECT_NEAR(log.position[2], 0.7, 1e-12);
+  const AxisLog log = ReadLog(file, {.sample_rate_Hz = 100.0});
+  EXPECT_DOUBLE_EQ(log.period_s, 0.01);
+  EXPECT_NEAR(log.position[2], 0.07, 1e-12);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "tests/analysis/support/known_axis.h"
 
@@ -50,6 +51,20 @@ TEST_F(StructureMapsTest, EveryBinIsOneOfThoseThatAreCounted) {
     }
     EXPECT_FALSE(m.place(0).empty());
   }
+}
+
+// Before: millimetres of an axis that turns.
+TEST_F(StructureMapsTest, WhatTurnsIsToldInRadians) {
+  Make();
+  EXPECT_NE(Over("the position").place(0).find(" mm"), std::string::npos);
+  // At the carriage, then taken for an axis without a lead.
+  test::KnownAxis turning({.linear = true});
+  turning.log.linear = false;
+  turning.problem.counted.assign(test::KnownAxis::kRows, 1);
+  maps_ = StructureMaps(turning.problem, Slides(turning.problem));
+  EXPECT_NE(Over("the position").place(0).find(" rad"), std::string::npos);
+  EXPECT_NE(Over("the speed").place(0).find(" rad/s"), std::string::npos);
+  EXPECT_NE(Over("the travel").place(0).find(" rad after"), std::string::npos);
 }
 
 TEST_F(StructureMapsTest, APlaceIsTheSameWheneverItIsPassedInTheSameDirection) {

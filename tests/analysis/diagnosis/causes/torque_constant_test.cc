@@ -21,6 +21,16 @@ TEST(TorqueConstant, IsAFactorOnTheDeliveredTorque) {
   EXPECT_GT(1.0 + e->low[0], 0.0) << "a motor that pushes back is none";
 }
 
+// Before: 0.3, the least that is looked for, of a torque that was another axis's.
+TEST(TorqueConstant, ARatioAtItsBoundIsNoMeasurement) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "");
+  const CauseDefinition& c = CauseNamed(kKind);
+  EXPECT_TRUE((*c.implausible)(axis.problem, *e, {e->low[0]}));
+  EXPECT_TRUE((*c.implausible)(axis.problem, *e, {e->high[0]}));
+  EXPECT_FALSE((*c.implausible)(axis.problem, *e, {0.3}));
+}
+
 TEST(TorqueConstant, RatiosOfTwoLogsMultiply) {
   const ExtensionsConfig e =
       test::ExtendedBy({test::CauseWith(kKind, {{"ratio", 1.2}}), test::CauseWith(kKind, {{"ratio", 0.9}})});
