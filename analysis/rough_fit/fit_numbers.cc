@@ -1,5 +1,6 @@
 #include "analysis/rough_fit/fit_numbers.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/prediction_error/fitted_half.h"
@@ -19,6 +20,8 @@ constexpr double kFree = 1.0;
 constexpr double kMostUncertain = 0.7;
 /// Two estimates of one inertia.
 constexpr double kFarApart = 1.5;
+/// [deviations; share of the level] From where two directions are not alike.
+constexpr double kSure = 4.0, kUnlike_rel = 0.1;
 constexpr FitEffort kThorough = {.most_steps = 40, .most_refreshes = 12, .close_enough = 0.1};
 
 std::string Numbers(const StatedAxis& axis, const Problem& problem) {
@@ -75,6 +78,25 @@ void SayOneDirection(const RoughFit& rough, FittedNumbers& out) {
       "strokes in both.");
 }
 
+/// The model states how the two directions' levels relate, and the fit keeps that; where the log has it
+/// otherwise, the levels are none of either.
+void SayUnlikeDirections(const RoughFit& rough, const StatedAxis& stated, const AxisLog& log,
+                         FittedNumbers& out) {
+  if (rough.one_direction || !(rough.coulomb > 0.0) || stated.sigma.contains("offset")) return;
+  const StatedFriction& f = stated.friction;
+  const double as_stated = 0.5 * (rough.coulomb_forth + rough.coulomb_back) * (f.Fc_plus - f.Fc_minus) /
+                           (0.5 * (f.Fc_plus + f.Fc_minus));
+  const double apart = rough.coulomb_forth - rough.coulomb_back;
+  if (std::abs(apart - as_stated) < std::max(kSure * rough.coulomb_sigma, kUnlike_rel * rough.coulomb))
+    return;
+  const std::string unit = log.linear ? " N" : " Nm";
+  out.notes.push_back(
+      "Forth and back differ from what the model says of them: by least squares the axis resists by " +
+      RoundedText(rough.coulomb_forth) + unit + " forth and " + RoundedText(rough.coulomb_back) + unit +
+      " back, by friction or a constant force. The levels in the file keep the stated ratio and are "
+      "right for neither; contour diagnose says which of the two it is.");
+}
+
 }  // namespace
 
 FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
@@ -98,6 +120,7 @@ FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
   out.axis = FittedAxis(problem, fit, FitHalves(problem, fit));
   out.unusable = WhyUnusable(problem, fit, out.axis, rough);
   SayOneDirection(rough, out);
+  SayUnlikeDirections(rough, stated, log, out);
   return out;
 }
 

@@ -98,6 +98,8 @@ void Solve(const Motion& m, const Signal& position, double independent_rows, Rou
   out.inertia = x(0);
   out.inflation = inverse(0, 0);
   out.inertia_sigma_rel = sigma(0) / std::max(std::fabs(x(0)), 1e-300);
+  out.coulomb_forth = up ? x(1) : 0.0;
+  out.coulomb_back = down ? x(2) : 0.0;
   out.coulomb = ((up ? x(1) : 0.0) + (down ? x(2) : 0.0)) / (static_cast<int>(up) + static_cast<int>(down));
   out.coulomb_sigma = std::max(up ? sigma(1) : 0.0, down ? sigma(2) : 0.0);
   out.viscous = x(3);

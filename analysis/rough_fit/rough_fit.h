@@ -15,6 +15,7 @@ struct RoughFit {
   double inertia_sigma_rel = 0.0;
   double inflation = 1.0;  ///< of the inertia's variance by what else moves like the acceleration
   double coulomb = 0.0, viscous = 0.0;
+  double coulomb_forth = 0.0, coulomb_back = 0.0;  ///< of each direction; 0 where it never slides so
   double coulomb_sigma = 0.0;
   double unexplained = 1.0;    ///< share of the command's square
   bool one_direction = false;  ///< it never slides in the other

@@ -37,6 +37,20 @@ TEST(FitNumbers, FindsThemFromAModelThatIsFarOff) {
   EXPECT_LT(found.axis.sigma.at("inertia"), 0.05);
 }
 
+// Before: a level for both directions, stated to 0.1 %, and no word.
+TEST(FitNumbers, SaysWhereDirectionsAreNotAsStated) {
+  test::HiddenAxis axis = Made();
+  const auto says = [](const test::HiddenAxis& of) {
+    const FittedNumbers found = FitNumbers(of.log, of.stated, 1);
+    return std::any_of(found.notes.begin(), found.notes.end(), [](const std::string& n) {
+      return n.find("Forth and back differ") != std::string::npos;
+    });
+  };
+  EXPECT_FALSE(says(axis));
+  for (double& u : axis.log.command) u += 0.3 * axis.stated.friction.Fc_plus;
+  EXPECT_TRUE(says(axis));
+}
+
 TEST(FitNumbers, RefusesForcesOfAnotherAxis) {
   test::HiddenAxis axis = Made();
   std::mt19937 random(1);
