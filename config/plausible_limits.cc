@@ -14,6 +14,8 @@ namespace {
 constexpr double kSafeTravelOfStroke = 0.25;
 // Far below any programmed motion: a distance to the path that is a fault, not a motion of its own.
 constexpr double kFollowingErrorOfStroke = 0.05;
+// Noise of a few counts and the rounding of a target are no fault.
+constexpr double kFollowingErrorInCounts = 10.0;
 // What the I/O has not yet seen may use up no more than this.
 constexpr double kBlindTravelOfStroke = 0.5;
 // A drive that misses so many of its own heartbeats is gone.
@@ -41,6 +43,15 @@ void Distances(const std::string& key, const AxisLimits& l, double stroke_mm, Pr
     problems.push_back({key + ".limits.following_error_mm",
                         "found " + Say(l.following_error_mm) + ", expected at most safe_travel_mm " +
                             Say(l.safe_travel_mm) + ": an axis off its path is to be stopped within that"});
+}
+
+void Counts(const std::string& key, const AxisConfig& axis, Problems& problems) {
+  const double least_mm =
+      kFollowingErrorInCounts * axis.model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
+  if (axis.limits.following_error_mm < least_mm)
+    problems.push_back({key + ".limits.following_error_mm",
+                        "found " + NumberText(axis.limits.following_error_mm) + ", expected at least " +
+                            Say(least_mm) + ", ten counts of the encoder: below, standing still is a fault"});
 }
 
 void Deadlines(const std::string& key, const DriveConfig& d, double quick_stop_ms, Problems& problems) {
@@ -105,6 +116,7 @@ std::vector<ConfigProblem> ImplausibleLimits(const MachineConfig& machine, const
   const std::string key = "axes." + axis;
   const StoppingAxis s = ToStoppingAxis(machine, config);
   Distances(key, limits, stroke_mm, problems);
+  Counts(key, config, problems);
   Deadlines(key, config.drive,
             s.ramp_m_s2 > 0.0
                 ? 1e3 * QuickStop(s, machine.control.guard.overspeed_factor * s.speed_m_s, 0.0).time_s

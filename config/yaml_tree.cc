@@ -189,4 +189,10 @@ std::string WhereIs(const YamlValue& root, std::string_view dotted_key) {
   return where;
 }
 
+std::vector<std::string> WithPlaces(const YamlValue& root, const std::vector<std::string>& messages) {
+  std::vector<std::string> placed;
+  for (const std::string& m : messages) placed.push_back(WhereIs(root, m.substr(0, m.find(':'))) + ": " + m);
+  return placed;
+}
+
 }  // namespace contour

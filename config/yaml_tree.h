@@ -48,5 +48,7 @@ void ApplyOverride(YamlValue& root, const std::string& assignment);
 
 /// Where a dotted key (or the deepest existing part of it) was written; for problems found after reading.
 std::string WhereIs(const YamlValue& root, std::string_view dotted_key);
+/// Messages that begin with their dotted key, behind where it is written.
+std::vector<std::string> WithPlaces(const YamlValue& root, const std::vector<std::string>& messages);
 
 }  // namespace contour

@@ -21,6 +21,13 @@ constexpr double kHysteresis = 0.2;
 constexpr double kSettledHalfWaves = 2.0;
 // Force that goes to and fro from cycle to cycle is looked at over this time.
 constexpr double kChatter_s = 0.05;
+// Of the mean that is told: what is less is the time before a swing.
+constexpr double kQuiet = 0.1;
+// Where the middle of its changes lies in the time since: half-way of a swing that stays, before it of what
+// rings and dies out after a shock; two thirds of one that has grown from there to what is told.
+constexpr double kGrowingMiddle = 0.6;
+// Of what the first of its half waves took: what falls below until it is told was a shock.
+constexpr double kStays = 0.7;
 constexpr std::uint32_t kLongAgo = 1U << 30;
 
 // A mean that follows up to half the lowest frequency looked for, per cycle.
@@ -39,13 +46,14 @@ OscillationDetector::OscillationDetector(const OscillationBounds& bounds) noexce
 
 void OscillationDetector::Reset() noexcept {
   started_ = false;
-  chatter_N_ = 0.0;
+  chatter_ = {};
   sign_ = 0;
   now_ = {};
   before_ = {};
   highest_m_s2_ = lowest_m_s2_ = before_highest_m_s2_ = before_lowest_m_s2_ = 0.0;
   moved_ago_ = kLongAgo;
-  run_ = growing_ = 0;
+  run_ = violent_run_ = growing_ = 0;
+  violent_ = false;
 }
 
 Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
@@ -95,11 +103,23 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
 // A step of the force, in a corner at full feed, is one change among many.
 bool OscillationDetector::Chatters(double force_N) noexcept {
   if (!(bounds_.chatter_N > 0.0)) return false;
-  chatter_N_ += std::min(1.0, bounds_.period_s / kChatter_s) * (std::abs(force_N - before_N_) - chatter_N_);
+  Chatter& c = chatter_;
+  const double change_N = std::abs(force_N - before_N_);
   before_N_ = force_N;
-  if (chatter_N_ < bounds_.chatter_N) return false;
-  chatter_N_ = 0.0;
-  return true;
+  c.mean_N += std::min(1.0, bounds_.period_s / kChatter_s) * (change_N - c.mean_N);
+  // Near half the sampling rate every other change is small.
+  const double two_N = change_N + c.change_N;
+  c.sum_N += two_N;
+  c.moment_N += (c.cycles + 0.5) * two_N;
+  ++c.cycles;
+  c.change_N = change_N;
+  const bool told = c.mean_N >= bounds_.chatter_N;
+  if (told) violent_ = c.moment_N >= kGrowingMiddle * c.cycles * c.sum_N;
+  if (told)
+    c = {.change_N = change_N};
+  else if (c.mean_N < kQuiet * bounds_.chatter_N)
+    c = {.mean_N = c.mean_N, .change_N = change_N};
+  return told;
 }
 
 // Against the half wave of the same side: friction and outside forces make the two sides differ.
@@ -124,6 +144,9 @@ Oscillation OscillationDetector::EndHalfWave() noexcept {
   const HalfWave same_side = before_[1];
   const bool goes_on = GoesOn(same_side);
   run_ = goes_on ? run_ + 1 : 0;
+  const double swing_N = now_.peak_N + before_[0].peak_N;
+  violent_run_ = goes_on && swing_N >= bounds_.violent_N ? violent_run_ + 1 : 0;
+  if (violent_run_ == 1) violent_first_N_ = swing_N;
   const bool grew = goes_on && same_side.cycles != 0 && now_.peak_m > kGrown * same_side.peak_m;
   growing_ = grew ? growing_ + 1 : 0;
   before_[1] = before_[0];
@@ -131,6 +154,7 @@ Oscillation OscillationDetector::EndHalfWave() noexcept {
   if (growing_ >= kGrowingHalfWaves && now_.peak_m > bounds_.growing_m) return Oscillation::kGrowing;
   if (run_ < bounds_.half_waves) return Oscillation::kNone;
   run_ = 0;
+  violent_ = 2 * violent_run_ >= bounds_.half_waves && swing_N >= kStays * violent_first_N_;
   return Oscillation::kLasting;
 }
 

@@ -20,6 +20,7 @@ struct OscillationBounds {
   /// Mean change of the force from cycle to cycle beyond what is any use: a swing too fast for half waves to
   /// be told apart; 0: not watched.
   double chatter_N = 0.0;
+  double violent_N = 1e9;  ///< peak to peak: beyond it a swing is no nuisance but a danger
 };
 
 struct OscillationSample {
@@ -45,6 +46,9 @@ class OscillationDetector {
   Oscillation Step(const OscillationSample& now) noexcept;
 
   [[nodiscard]] int run() const noexcept { return run_; }
+  /// What was told last took so much force and was not about to die out, as what a shock leaves is: the newer
+  /// half of its half waves, or a swing from cycle to cycle that has grown.
+  [[nodiscard]] bool violent() const noexcept { return violent_; }
 
  private:
   struct HalfWave {
@@ -53,6 +57,14 @@ class OscillationDetector {
     double peak_N = 0.0;
   };
   [[nodiscard]] Oscillation EndHalfWave() noexcept;
+  /// Changes of the force from cycle to cycle; but for the mean since they were quiet, or were told.
+  struct Chatter {
+    double mean_N = 0.0;
+    double change_N = 0.0;  ///< newest
+    double sum_N = 0.0;
+    double moment_N = 0.0;  ///< each times its time in cycles
+    std::uint32_t cycles = 0;
+  };
   [[nodiscard]] bool Chatters(double force_N) noexcept;
   [[nodiscard]] bool GoesOn(const HalfWave& before) const noexcept;
 
@@ -63,7 +75,7 @@ class OscillationDetector {
   double mean_m_ = 0.0;
   double mean_N_ = 0.0;
   double before_N_ = 0.0;
-  double chatter_N_ = 0.0;
+  Chatter chatter_;
   bool started_ = false;
   int sign_ = 0;
   HalfWave now_;
@@ -74,6 +86,9 @@ class OscillationDetector {
   double before_lowest_m_s2_ = 0.0;
   std::uint32_t moved_ago_ = 0;  ///< cycles since the reference last moved
   int run_ = 0;
+  int violent_run_ = 0;  ///< of them, the newest in a row that were
+  double violent_first_N_ = 0.0;
+  bool violent_ = false;
   int growing_ = 0;
 };
 

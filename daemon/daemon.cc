@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "config/config_error.h"
 #include "config/idle_keys.h"
@@ -23,7 +24,6 @@
 #include "daemon/lanes/slow_lane.h"
 #include "daemon/last_resort.h"
 #include "daemon/learning/program_learning.h"
-#include "daemon/loaded_model.h"
 #include "daemon/logging/logging.h"
 #include "daemon/machine_buses.h"
 #include "daemon/make_cycle_config.h"
@@ -35,10 +35,9 @@
 #include "daemon/rt/loop.h"
 #include "daemon/service_notifier.h"
 #include "daemon/start_again.h"
+#include "daemon/start_file.h"
 #include "daemon/supervisor.h"
 #include "daemon/telemetry/telemetry_hub.h"
-#include "daemon/torque_mode.h"
-#include "design/loop_choice.h"
 #include "design/path_following.h"
 #include "drivers/cia301/messages.h"
 #include "tools/machine/load_emulated_machine.h"
@@ -60,33 +59,6 @@ constexpr std::chrono::seconds kClosingTime{3};  ///< for the disk to take the r
 constexpr std::chrono::seconds kEndingTime{8};   ///< for everything
 constexpr std::chrono::seconds kLastLines{1};    ///< for the last messages
 constexpr std::chrono::seconds kLoopHangs{5};    ///< after which a loop without cycles is not waited for
-
-/// The command line as assignments on top of the machine file.
-std::vector<std::string> Overrides(const DaemonOptions& options) {
-  std::vector<std::string> set = options.set;
-  if (!options.controller.empty()) set.push_back("machine.controller=" + options.controller);
-  if (!options.buses.empty()) {
-    const std::vector<std::string> names = BusNames(LoadMachine(options.config, set));
-    if (options.buses.size() != names.size())
-      throw ConfigError({"--bus: found " + std::to_string(options.buses.size()) +
-                         " interfaces, expected one for each of the " + std::to_string(names.size()) +
-                         " buses of " + options.config});
-    for (std::size_t i = 0; i < names.size(); ++i)
-      set.push_back("buses." + names[i] + ".interface=" + options.buses[i]);
-  }
-  for (const std::string& model : options.models) set.push_back(ModelOverride(model));
-  for (const std::string& assignment : TorqueModeOverrides({options.torque_loops, options.torque_models}))
-    set.push_back(assignment);
-  return set;
-}
-
-/// The machine file as the command line changes it.
-MaybeEmulatedMachineFile LoadFile(const DaemonOptions& options, const std::vector<std::string>& set) {
-  for (const auto& [name, bus] : LoadMachine(options.config, set).buses)
-    if (bus.interface == "loopback") return LoadMaybeEmulatedMachine(options.config, set);
-  // Whatever stands under emulator: is none of the daemon's business on a real bus.
-  return {LoadMachine(options.config, set), false, {}};
-}
 
 std::int64_t UnixTime_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
@@ -135,8 +107,9 @@ int SignalCame(const sigset_t& set) {
 class Daemon {
  public:
   Daemon(const DaemonOptions& options, const MaybeEmulatedMachineFile& file, const MachineSource& source,
-         FrictionMemory& memory)
+         std::vector<std::string> warnings, FrictionMemory& memory)
       : options_(options),
+        warnings_(std::move(warnings)),
         source_(source),
         memory_(memory),
         seed_(file.has_emulator ? std::optional(file.emulator.seed) : std::nullopt),
@@ -195,6 +168,10 @@ class Daemon {
                              ". realtime.required: false in the machine file goes on without");
     }
     std::vector<std::string> warnings = refused;
+    for (const std::string& warning : warnings_) {
+      spdlog::warn(warning);
+      warnings.push_back(warning);
+    }
     for (const std::string& advice : ModeAdvice(machine_)) {
       spdlog::warn(advice);
       warnings.push_back(advice);
@@ -203,9 +180,9 @@ class Daemon {
       spdlog::warn(*wider);
       warnings.push_back(*wider);
     }
-    Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, warnings,
-                          {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_},
-                          source_);
+    Supervisor supervisor(
+        machine_, machine_.machine.controller, options_.clock, warnings,
+        {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_, Checks()}, source_);
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);
@@ -225,6 +202,15 @@ class Daemon {
   }
 
  private:
+  /// What a start would refuse is refused before the daemon ends for it.
+  [[nodiscard]] StartChecks Checks() const {
+    return {[this] { RequireLoops(options_, source_.overrides); },
+            [this](const NewStart& start) {
+              const DaemonOptions anew = WithNewStart(options_, start);
+              LoopsOfStart(anew, OverridesOf(anew));
+            }};
+  }
+
   std::optional<TelemetryHub::LogTarget> LogTarget() const {
     if (options_.log.empty()) return std::nullopt;
     return TelemetryHub::LogTarget{options_.log,
@@ -339,6 +325,7 @@ class Daemon {
   }
 
   DaemonOptions options_;
+  std::vector<std::string> warnings_;  ///< of the machine file
   MachineSource source_;
   FrictionMemory& memory_;
   std::optional<std::uint64_t> seed_;  ///< of the emulated machine in this process
@@ -375,13 +362,14 @@ spdlog::level::level_enum ToSpdlog(LogLevel level) {
 
 /// Until it ends; `again` is what to begin anew with.
 int RunOnce(const DaemonOptions& options, std::optional<NewStart>& again) {
-  std::vector<std::string> overrides = Overrides(options);
+  std::vector<std::string> overrides = OverridesOf(options);
   const MachineConfig stated = LoadMachine(options.config, overrides);
+  // As stated: what has been learnt of the stroke moves no limit.
+  const StartLoops loops = LoopsOfStart(options, overrides);
   FrictionMemory memory(stated, MemoryDirectory(stated.memory));
   for (const std::string& learnt : memory.Overrides()) overrides.push_back(learnt);
   // In the log, too: a replay has the same.
-  const std::vector<std::string> loops = LoopsThatAreMissing(stated);
-  overrides.insert(overrides.end(), loops.begin(), loops.end());
+  overrides.insert(overrides.end(), loops.chosen.begin(), loops.chosen.end());
   for (const std::string& following : PathFollowingIfMissing(LoadMachine(options.config, overrides)))
     overrides.push_back(following);
   const MaybeEmulatedMachineFile file = LoadFile(options, overrides);
@@ -392,11 +380,11 @@ int RunOnce(const DaemonOptions& options, std::optional<NewStart>& again) {
   logging.level = ToSpdlog(file.machine.logging.level);
   if (!file.machine.logging.file.empty()) logging.file = file.machine.logging.file;
   SetUpLogging(logging);
-  for (const std::string& loop : loops)
+  for (const std::string& loop : loops.chosen)
     spdlog::info("chosen, as the machine file has none: {}; contour tune --from-model finds a better one",
                  loop);
   if (const std::size_t idle =
-          IdleKeys(OpenMachineFile(options.config, Overrides(options)), file.machine).size();
+          IdleKeys(OpenMachineFile(options.config, OverridesOf(options)), file.machine).size();
       idle > 0)
     spdlog::info("keys of the machine file that nothing goes by: {}; contour check lists them", idle);
   for (const std::string& text : memory.used()) spdlog::info("{}", text);
@@ -410,7 +398,7 @@ int RunOnce(const DaemonOptions& options, std::optional<NewStart>& again) {
     }
     const sigset_t& set;
   } give_back{signals};
-  Daemon daemon(options, file, source, memory);
+  Daemon daemon(options, file, source, loops.warned, memory);
   const int status = daemon.Run(signals);
   again = daemon.wanted();
   return status;

@@ -48,6 +48,7 @@ PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
                       l.velocity_mm_s * 1e-3, l.acceleration_mm_s2 * 1e-3, l.jerk_mm_s3 * 1e-3, l.torque_Nm,
                       l.following_error_mm * 1e-3, mechanics.radius_m_rad, mechanics.mass_kg, tolerance_m,
                       following_m});
+    limits.back().cycle_s = 1e-6 * machine.machine.cycle_us;
     // A loop on the scale sees the table itself.
     if (!machine.machine.slow_for_tolerance || (axis.scale_loop && axis.drive.linear_scale)) continue;
     const ScrewDoubt doubt = DoubtOf(axis);

@@ -194,6 +194,7 @@ Answer Supervisor::Reload() {
               "nothing was changed: only gains of the controllers may change while contourd runs; restart "
               "it for the rest:" +
                   refused};
+    if (parts_.checks.reload) parts_.checks.reload();
     controllers_.push_back(
         std::make_unique<ContourController>(MakeController(MakeCycleConfig(wanted, controller_))));
     parts_.hub.Note(kTuningNote + std::to_string(++changes_), changes);
@@ -261,6 +262,7 @@ Answer Supervisor::BeginAnew(const std::vector<std::string>& overrides, NewStart
             "contourd begins anew while the machine is Idle, and it is " + std::string(Name(now.state))};
   try {
     MakeCycleConfig(LoadMachine(ReadSource(source_.name, overrides)), controller_);
+    if (parts_.checks.begin_anew) parts_.checks.begin_anew(start);
     wanted_ = std::move(start);
     return {true, ""};
   } catch (const std::exception& e) {

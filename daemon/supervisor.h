@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -27,6 +28,12 @@
 
 namespace contour {
 
+/// What a start of contourd asks beyond what a machine file can say wrong; each throws ConfigError.
+struct StartChecks {
+  std::function<void()> reload;                     ///< of the machine file as it is now
+  std::function<void(const NewStart&)> begin_anew;  ///< of it with what is asked for
+};
+
 /// What the supervisor watches and speaks to; all of it outlives the supervisor.
 struct SupervisedParts {
   CommandMailbox& mailbox;
@@ -37,6 +44,7 @@ struct SupervisedParts {
   ProgramLearning& learning;
   const IoClient* io = nullptr;                  ///< null without auxiliary I/O
   std::optional<std::uint64_t> emulator_seed{};  ///< of an emulated machine in this process
+  StartChecks checks{};                          ///< those that are empty find nothing
 };
 
 /// Carries an operator's requests to the cycle and its answers back. It asks through the mailbox and decides

@@ -31,7 +31,11 @@ constexpr std::array<const char*, kMemberKinds> kKinds{"as stated", "far off", "
 
 /// Members that creep have none.
 std::string Limit(std::size_t kind, const WorstMember& w) {
-  return static_cast<MemberKind>(kind) == MemberKind::kCreeping ? "" : ", limit " + Fixed(w.limit, 2);
+  if (static_cast<MemberKind>(kind) == MemberKind::kCreeping) return "";
+  const bool rounded = w.peak > w.limit && w.peak <= w.limit * (1.0 + kRounding);
+  return ", limit " + Fixed(w.limit, 2) +
+         (rounded ? ", kept: a tuning that is rounded may exceed it by " + Fixed(100.0 * kRounding, 0) + " %"
+                  : "");
 }
 
 std::string Describe(const StickSlip& s) {

@@ -13,6 +13,10 @@ constexpr double kLeadStd_rel = 1.5e-4;
 constexpr double kTurnStd_rel = 1e-4;
 // Beyond so many standard deviations nothing is believed.
 constexpr double kBound = 4.0;
+// Of a count: variance of what rounding takes away.
+constexpr double kRounding = 1.0 / 12.0;
+// Of a count in a period: an axis that is slower tells nothing.
+constexpr double kLeastMove = 1e-6;
 // What is not told apart by the others becomes the zero's, within a quarter of a second.
 constexpr double kZeroRate_1_s = 4.0;
 // Variance that a second of motion adds, as a share of the one at the start.
@@ -21,7 +25,7 @@ constexpr double kDrift_1_s = 3e-3;
 }  // namespace
 
 ScaleFit::ScaleFit(const Setup& setup) noexcept : setup_(setup) {
-  prior_ = {setup.noise_m,
+  prior_ = {std::hypot(setup.noise_m, std::sqrt(kRounding) * setup.count_m),
             setup.compliance_std,
             kLeadStd_rel,
             kTurnStd_rel * setup.turn_m,
@@ -49,20 +53,43 @@ void ScaleFit::LetGo(double apart_m) noexcept {
   covariance_[kMass][kMass] = variance;
 }
 
+// All readings within one count are rounded by one error: together they tell as much as one. As variance of
+// each of them, at rest without end.
+double ScaleFit::Rounding_m2(double velocity_m_s) const noexcept {
+  if (!(setup_.count_m > 0.0)) return 0.0;
+  const double moved_m = std::max(std::abs(velocity_m_s) * setup_.period_s, kLeastMove * setup_.count_m);
+  return kRounding * setup_.count_m * setup_.count_m * std::max(1.0, setup_.count_m / moved_m);
+}
+
+// What a bound keeps from its value, the others must not keep from theirs: a zero that moves one way while
+// the lead that it was to make up for stays where it is explains the next sample worse, and the one after
+// worse still. The best values with that one at its bound are off along the covariance.
+void ScaleFit::Bound() noexcept {
+  for (std::size_t i = kCompliance; i < kSize; ++i) {
+    const double bounded = std::clamp(value_[i], -kBound * prior_[i], kBound * prior_[i]);
+    if (bounded == value_[i]) continue;
+    const double share = (bounded - value_[i]) / covariance_[i][i];
+    for (std::size_t j = 0; j < kSize; ++j) value_[j] += share * covariance_[i][j];
+  }
+  for (std::size_t i = kCompliance; i < kSize; ++i)
+    value_[i] = std::clamp(value_[i], -kBound * prior_[i], kBound * prior_[i]);
+}
+
 void ScaleFit::Learn(const Sample& s) noexcept {
   const Row h{1.0, s.force_N, s.travel_m, s.cos, s.sin, s.acceleration_m_s2};
   double expected_m = 0.0;
   for (std::size_t i = 0; i < kSize; ++i) expected_m += value_[i] * h[i];
   const double error_m = s.apart_m - expected_m;
   if (!setup_.learns || !s.moves) {
-    // A standing axis tells of the zero alone.
-    value_[kZero] += zero_share_ * error_m;
+    // A standing axis tells of the zero alone, and no more of it than where the count lies.
+    const double count_m = 0.5 * setup_.count_m;
+    value_[kZero] += zero_share_ * (error_m - std::clamp(error_m, -count_m, count_m));
     return;
   }
   Row along{};
   // In corners more is off than a mass: torque that comes late, a screw that swings.
   const double inertial_m = setup_.mass_std_s2 * s.acceleration_m_s2;
-  double variance = setup_.noise_m * setup_.noise_m + inertial_m * inertial_m;
+  double variance = setup_.noise_m * setup_.noise_m + inertial_m * inertial_m + Rounding_m2(s.velocity_m_s);
   covariance_[kZero][kZero] += zero_drift_m2_;
   for (std::size_t i = 0; i < kSize; ++i) {
     // What nothing excites does not become less known than it was at the start.
@@ -70,15 +97,13 @@ void ScaleFit::Learn(const Sample& s) noexcept {
     for (std::size_t j = 0; j < kSize; ++j) along[i] += covariance_[i][j] * h[j];
     variance += along[i] * h[i];
   }
-  for (std::size_t i = 0; i < kSize; ++i) {
-    value_[i] += along[i] / variance * error_m;
-    if (i != kZero) value_[i] = std::clamp(value_[i], -kBound * prior_[i], kBound * prior_[i]);
-  }
+  for (std::size_t i = 0; i < kSize; ++i) value_[i] += along[i] / variance * error_m;
   // Each factor on its own, so that rounding keeps it symmetric.
   const double root = 1.0 / std::sqrt(variance);
   for (double& a : along) a *= root;
   for (std::size_t i = 0; i < kSize; ++i)
     for (std::size_t j = 0; j < kSize; ++j) covariance_[i][j] -= along[i] * along[j];
+  Bound();
 }
 
 double ScaleFit::Lead_m(double travel_m, double position_m) const noexcept {

@@ -20,6 +20,7 @@ class ScaleFit {
     double mass_std_s2 = 0.0;     ///< m per m/s^2: error of the motor's mass, which force_N has in it, over K
     double turn_m = 5e-3;         ///< travel of a turn of the screw
     bool learns = true;
+    double count_m = 0.0;  ///< of the scale: what a reading is rounded to
   };
   /// Low-passed alike, all of one instant.
   struct Sample {
@@ -29,6 +30,7 @@ class ScaleFit {
     double cos = 0.0, sin = 0.0;     ///< of the screw's angle
     double acceleration_m_s2 = 0.0;  ///< of the motor
     bool moves = false;
+    double velocity_m_s = 0.0;  ///< of the motor
   };
 
   ScaleFit() noexcept = default;
@@ -52,6 +54,8 @@ class ScaleFit {
   [[nodiscard]] double Lead_m(double travel_m, double position_m) const noexcept;
 
  private:
+  [[nodiscard]] double Rounding_m2(double velocity_m_s) const noexcept;
+  void Bound() noexcept;
   static constexpr std::size_t kZero = 0, kCompliance = 1, kSlope = 2, kCos = 3, kSin = 4, kMass = 5,
                                kSize = 6;
   using Row = std::array<double, kSize>;

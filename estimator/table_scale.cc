@@ -42,7 +42,8 @@ TableScale::TableScale(const Setup& s) noexcept
       most_samples_(std::max(1, static_cast<int>(std::lround(kZero_s / s.period_s)))),
       lost_(std::max(kLostReadings, static_cast<int>(std::lround(kLost_s / s.period_s)))),
       fit_({s.period_s, kNoiseShare * s.level_N / s.stiffness_N_m, s.stiffness_std / s.stiffness_N_m,
-            kMassStd * s.motor_mass_kg / s.stiffness_N_m, s.turn_m, s.learns && s.stiffness_std > 0.0}) {}
+            kMassStd * s.motor_mass_kg / s.stiffness_N_m, s.turn_m, s.learns && s.stiffness_std > 0.0,
+            s.count_m}) {}
 
 void TableScale::Reset() noexcept {
   LetGo();
@@ -78,8 +79,8 @@ double TableScale::Allowed_m(double screw_N, double acceleration_m_s2) const noe
   const double planned_m_s2 = std::min(std::abs(acceleration_m_s2), setup_.acceleration_m_s2);
   const double wound_N =
       kWindUpShare * std::abs(screw_N) + setup_.friction_N + kMassShare * setup_.motor_mass_kg * planned_m_s2;
-  return wound_N / setup_.stiffness_N_m + 2.0 * setup_.reading_m + kTurnError_rel * setup_.turn_m +
-         kLeadError_rel * std::abs(position_m_ - zero_at_m_);
+  return wound_N / setup_.stiffness_N_m + 2.0 * setup_.reading_m + setup_.count_m +
+         kTurnError_rel * setup_.turn_m + kLeadError_rel * std::abs(position_m_ - zero_at_m_);
 }
 
 void TableScale::Filter(const Sample& s) noexcept {
@@ -148,12 +149,13 @@ void TableScale::Step(const Sample& s) noexcept {
     return;
   }
   center_m_ += creep_share_ * (beyond_m - center_m_);
-  fit_.Learn({beyond_m, screw_N, low_[kTravel], low_[kCos], low_[kSin], acceleration_m_s2_, s.moves});
+  fit_.Learn(
+      {beyond_m, screw_N, low_[kTravel], low_[kCos], low_[kSin], acceleration_m_s2_, s.moves, low_[kRate]});
 }
 
 bool TableScale::Sudden(double off_m, double velocity_m_s) noexcept {
   const double size_m = std::abs(off_m);
-  const double forced_m = setup_.sudden_m + setup_.sample_jitter_s * std::abs(velocity_m_s);
+  const double forced_m = setup_.sudden_m + setup_.count_m + setup_.sample_jitter_s * std::abs(velocity_m_s);
   lately_m_ *= SuddenGate::kKeeps;
   // As there, what a loop makes of a reading that was off is not sudden.
   if (size_m <= std::max(forced_m, SuddenGate::kTwoPeriods * lately_m_)) {

@@ -31,6 +31,7 @@ class TableScale {
     double sudden_m = 1e-6;        ///< so far forces take the table in a period besides what is foreseen
     double sample_jitter_s = 0.0;  ///< by which a SYNC may come late or early
     bool learns = true;
+    double count_m = 0.0;  ///< of the scale
   };
   struct Sample {
     bool enabled = false;

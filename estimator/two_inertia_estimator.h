@@ -46,6 +46,7 @@ class TwoInertiaEstimator {
     double acceleration_m_s2 = 10.0;  ///< of paths, at most
     double sample_jitter_s = 0.0;     ///< by which a SYNC may come late or early
     bool has_scale = false;
+    double scale_count_m = 0.0;                  ///< what its readings are rounded to
     double external_force_N = 0.0;               ///< besides friction, at most; a weight may be as large
     std::optional<TwoInertiaLoop> scale_loop{};  ///< of the loop that goes by the linear scale
   };

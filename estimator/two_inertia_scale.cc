@@ -35,6 +35,7 @@ std::unique_ptr<TableScale> TwoInertiaEstimator::MakeScale(const Setup& s, doubl
   scale.sample_jitter_s = s.sample_jitter_s;
   scale.turn_m = 2.0 * std::numbers::pi * s.filter.mechanics.radius_m_rad;
   scale.reading_m = std::sqrt(12.0) * s.filter.measurement_std_m;
+  scale.count_m = s.scale_count_m;
   scale.sudden_m = scale.reading_m + 0.5 * kSuddenFrictions * most_N / s.axis.table_mass_kg *
                                          s.filter.period_s * s.filter.period_s;
   return std::make_unique<TableScale>(scale);

@@ -33,6 +33,7 @@ struct PlanLimits {
   double inertia_doubt_s2 = 0.0;
   /// And by what is not known of friction, whatever the acceleration.
   double friction_doubt_m = 0.0;
+  double cycle_s = 0.0;  ///< a torque is set once in it; 0: not known
 };
 
 /// The commanded circle of a circle program.

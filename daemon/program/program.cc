@@ -142,6 +142,7 @@ TorqueSignal ReadTorque(const YamlEntry& entry) {
   } else if (!(signal.frequency_min_hz > 0.0) || !(signal.frequency_max_hz > signal.frequency_min_hz)) {
     throw ProgramError(where + "expected frequency_min_hz and a higher frequency_max_hz");
   }
+  signal.highest_where = WhereIs(entry.value, "frequency_max_hz");
   return signal;
 }
 

@@ -247,6 +247,7 @@ struct TorqueSignal {
   int lines = 20;
   double period_s = 5.0;
   double width_s = 0.005;
+  std::string highest_where;  ///< where frequency_max_hz is written
 
   template <class Visitor>
   void Visit(Visitor& v) {

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "config/number_text.h"
+
 namespace contour {
 namespace {
 
@@ -19,11 +21,22 @@ double SmoothStep(double u) {
   return x * x * (3.0 - 2.0 * x);
 }
 
+/// What is set once per cycle is another torque, of a lower frequency, from half the cycle's rate on.
+void RequireBelowHalfTheRate(const TorqueSignal& signal, double cycle_s) {
+  if (signal.kind == TorqueSignalKind::kPulses || !(cycle_s > 0.0)) return;
+  const double half_rate_hz = 0.5 / cycle_s;
+  if (signal.frequency_max_hz < half_rate_hz) return;
+  throw ProgramError(signal.highest_where + ": torque.frequency_max_hz: found " +
+                     RoundedText(signal.frequency_max_hz) + ", expected less than " +
+                     RoundedText(half_rate_hz) + ", half the cycle's rate: the torque is set once per cycle");
+}
+
 }  // namespace
 
 TorquePlan::TorquePlan(std::shared_ptr<const MotionPlan> inner, const TorqueSignal& signal, std::size_t axis,
                        const PerAxis<PlanLimits>& limits, const std::string& origin)
     : inner_(std::move(inner)), signal_(signal), axis_(axis) {
+  RequireBelowHalfTheRate(signal, limits[axis].cycle_s);
   if (signal.kind == TorqueSignalKind::kMultisine) {
     const double ratio = signal.frequency_max_hz / signal.frequency_min_hz;
     for (int k = 0; k < signal.lines; ++k) {

@@ -11,7 +11,8 @@ namespace contour {
 /// Another plan with a torque added on one axis, faded in and out at its ends.
 class TorquePlan : public MotionPlan {
  public:
-  /// Throws ProgramError when the torque is beyond the axis's limit; `origin` begins the message.
+  /// Throws ProgramError when the torque is beyond the axis's limit or faster than half the cycle's rate;
+  /// `origin` begins the message, or where the frequency is written.
   TorquePlan(std::shared_ptr<const MotionPlan> inner, const TorqueSignal& signal, std::size_t axis,
              const PerAxis<PlanLimits>& limits, const std::string& origin);
 

@@ -161,6 +161,8 @@ AxisEstimator MakeEstimator(const CycleConfig& config, std::size_t axis) {
   setup.sample_jitter_s =
       kLongestFrame_bits / config.master.buses[config.master.axes[axis].bus].bitrate_bit_s;
   setup.has_scale = a.has_scale;
+  const auto& scale = config.master.axes[axis].drive.linear_scale;
+  if (a.has_scale && scale) setup.scale_count_m = 1e-3 / scale->counts_per_mm;
   setup.external_force_N =
       ExternalForce_N(ToSi(a.limits, a.mechanics.radius_m_rad),
                       config.master.axes[axis].drive.rated_torque_Nm / a.mechanics.radius_m_rad);

@@ -24,6 +24,9 @@ constexpr double kFewestCyclesPerPeriod = 4.0;
 // Of the torque limit that a filter's model may be off by, for a period: rivals ride corners at full feed
 // with a mass, a delay or friction that is not stated, and keep the path.
 constexpr double kUnmodelled = 0.5;
+// Of all the torque there is, from limit to limit: what is left is for the path and what comes from outside,
+// and a swing that takes so much of it leaves no margin for either.
+constexpr double kViolentShare = 0.25;
 // Of the following error that is a fault.
 constexpr double kDangerousShare = 0.125;
 
@@ -64,6 +67,8 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
   b.swing_m = kBeyondRounding * (kRoundingCounts * count_m + torque_step_N / f.sigma0_N_m);
   b.swing_N = kBeyondRounding * torque_step_N;
   b.swing_moving_N = 2.0 * std::max(f.Fs_plus_N, f.Fs_minus_N);
+  const double limits_N = 2.0 * a.limits.torque_Nm / m.radius_m_rad;
+  b.violent_N = std::max(b.swing_moving_N, kViolentShare * limits_N);
   b.mass_kg = m.mass_kg;
   b.growing_m = kDangerousShare * a.limits.following_error_mm * 1e-3;
   b.half_waves = config.control.supervision.half_waves;
@@ -96,6 +101,7 @@ void SelfWatch::Reset() noexcept {
   for (InARow& c : capped_) c.Reset();
   late_.Reset();
   alarm_ = growing_ = {};
+  violent_ = false;
   clean_ = true;
 }
 
@@ -117,6 +123,8 @@ void SelfWatch::Look(std::size_t axis, const Seen& seen) noexcept {
       break;
     case Oscillation::kLasting:
       Raise(Reason::kOscillation, axis);
+      // Of a drive's own loop nothing is stopped; see Stop.
+      violent_ = violent_ || (!in_cascade_ && oscillation_[axis].violent());
       break;
     case Oscillation::kNone:
       break;
@@ -132,11 +140,12 @@ void SelfWatch::Look(std::size_t axis, const Seen& seen) noexcept {
 void SelfWatch::EndCycle(bool late) noexcept {
   if (late_.Step(late)) Raise(Reason::kCyclesLate, 0xFF);
   const SupervisionStep before = ladder_.step();
-  ladder_.Step(alarm_.reason, alarm_.where);
+  ladder_.Step(alarm_.reason, alarm_.where, violent_);
   // What the filter said of itself says nothing of the observer that has taken its place.
   if (ladder_.step() == SupervisionStep::kFallenBack && before == SupervisionStep::kSoftened)
     for (InnovationWatch& w : innovation_) w.Reset();
   alarm_ = {};
+  violent_ = false;
 }
 
 Softness SelfWatch::softness() const noexcept {

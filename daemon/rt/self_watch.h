@@ -52,6 +52,7 @@ class SelfWatch {
   InARow late_;
   FaultSeen alarm_;
   FaultSeen growing_;
+  bool violent_ = false;  ///< what swings in this cycle
   bool friction_filter_ = false;
   bool in_cascade_ = false;
   bool clean_ = true;

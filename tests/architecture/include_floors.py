@@ -89,10 +89,12 @@ MAY_INCLUDE = {
 }
 # The daemon's program joins the parts: these files alone know the emulated machine, for the bus `loopback`.
 EMULATED_MACHINE = ["tools/plant_emulator", "tools/machine"]
-PROGRAM_FILES = ["daemon/main.cc", "daemon/daemon.cc", "daemon/machine_buses.cc", "daemon/machine_buses.h", "daemon/truth_relay.h"]
+PROGRAM_FILES = ["daemon/main.cc", "daemon/daemon.cc", "daemon/machine_buses.cc", "daemon/machine_buses.h", "daemon/start_file.cc",
+                 "daemon/start_file.h", "daemon/truth_relay.h"]
 PROGRAMS_MAY_INCLUDE = {name: EMULATED_MACHINE for name in PROGRAM_FILES}
-# A machine file without loops gets them before the cycle is made.
-PROGRAMS_MAY_INCLUDE["daemon/daemon.cc"] = [*EMULATED_MACHINE, "design"]
+# A machine file without loops gets them, and those that it has are judged, before the cycle is made.
+for program_file in ("daemon/daemon.cc", "daemon/start_file.cc"):
+    PROGRAMS_MAY_INCLUDE[program_file] = [*EMULATED_MACHINE, "design"]
 
 # The real-time side: what would allocate, lock, wait or talk stays out.
 REALTIME = ["core", *RT_DRIVERS, "estimator", "control", "daemon/rt"]

@@ -41,6 +41,16 @@ TEST(PlausibleLimits, DistancesThatBoundNothing) {
       "more keeps nothing from its end");
 }
 
+TEST(PlausibleLimits, FollowingErrorWithinTheCountsOfTheEncoder) {
+  MachineConfig c = Good();
+  c.axes.at("x").limits.following_error_mm = 1e-5;
+  EXPECT_EQ(Only(c),
+            "axes.x.limits.following_error_mm: found 1e-05, expected at least 4.768e-05, ten counts of the "
+            "encoder: below, standing still is a fault");
+  c.axes.at("x").limits.following_error_mm = 4.8e-5;
+  EXPECT_TRUE(Check(c).empty());
+}
+
 TEST(PlausibleLimits, SilenceOfADrive) {
   MachineConfig c = Good();
   c.axes.at("x").drive.heartbeat_timeout_ms = 501;

@@ -145,5 +145,56 @@ TEST(OscillationDetector, FindsAForceThatChangesFromCycleToCycle) {
     EXPECT_EQ(detector.Step({.force_N = k % 200 < 100 ? 800.0 : -800.0}), Oscillation::kNone) << k;
 }
 
+TEST(OscillationDetector, ViolentIsWhatTakesMuchOfTheTorque) {
+  OscillationBounds bounds = Bounds();
+  bounds.violent_N = 900.0;
+  const auto is_violent = [&](double force_N) {
+    OscillationDetector detector(bounds);
+    bool violent = false, found = false;
+    for (double t = 0.0; t < 1.0; t += kPeriod_s)
+      if (detector.Step({20e-6 * Wave(t, 60.0), force_N * Wave(t, 60.0), 0.0, 0.0, true}) ==
+          Oscillation::kLasting) {
+        found = true;
+        violent = violent || detector.violent();
+      }
+    EXPECT_TRUE(found) << force_N;
+    return violent;
+  };
+  EXPECT_FALSE(is_violent(400.0));
+  EXPECT_TRUE(is_violent(500.0));
+}
+
+/// What a violent alarm of the force alone needs: how often such a swing of 240 Hz is told, and told violent.
+template <class Size>
+Found Chattering(Size size_N) {
+  OscillationBounds bounds = Bounds();
+  bounds.chatter_N = bounds.swing_moving_N;
+  OscillationDetector detector(bounds);
+  Found found;
+  for (double t = 0.0; t < 2.0; t += kPeriod_s)
+    if (detector.Step({.force_N = size_N(t) * Wave(t, 240.0)}) == Oscillation::kLasting) {
+      ++found.lasting;
+      found.growing += detector.violent() ? 1 : 0;
+    }
+  return found;
+}
+
+TEST(OscillationDetector, ViolentFromCycleToCycleIsWhatHasGrown) {
+  for (const double per_s : {15.0, 40.0, 200.0})
+    EXPECT_EQ(Chattering([&](double t) { return std::min(1500.0, std::exp(per_s * t)); }).growing, 1)
+        << per_s;
+}
+
+// However large: what it leaves rings, and dies out.
+TEST(OscillationDetector, ASingleShockIsNotViolent) {
+  for (const double per_s : {2.0, 5.0, 20.0, 60.0})
+    for (const double shock_N : {500.0, 2000.0, 8000.0})
+      EXPECT_EQ(Chattering([&](double t) {
+                  return t < 0.5 ? 0.0 : shock_N * std::exp(-per_s * (t - 0.5));
+                }).growing,
+                0)
+          << per_s << ' ' << shock_N;
+}
+
 }  // namespace
 }  // namespace contour

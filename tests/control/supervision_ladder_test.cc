@@ -23,6 +23,52 @@ TEST(SupervisionLadder, OneStepForEveryAlarmAndOneBackAfterAQuietTime) {
   EXPECT_EQ(ladder.reason(), Reason::kNone);
 }
 
+/// Up to softened by violence, and so many quiet times down again.
+SupervisionLadder AfterViolence(int quiet_times) {
+  SupervisionLadder ladder(50, 100);
+  ladder.Step(Reason::kOscillation, 1, true);
+  for (int i = 0; i < 50; ++i) ladder.Step(Reason::kOscillation, 1);
+  EXPECT_EQ(ladder.step(), SupervisionStep::kSoftened);
+  for (int i = 0; i < quiet_times * 100; ++i) ladder.Step(Reason::kNone, 0);
+  return ladder;
+}
+
+// Before: softened and taken back without end, a burst for every quiet time.
+TEST(SupervisionLadder, ViolenceThatReturnsWhenSoftnessIsTakenBackIsTheLastStep) {
+  SupervisionLadder ladder = AfterViolence(1);
+  ASSERT_EQ(ladder.step(), SupervisionStep::kNoticed);
+  ladder.Step(Reason::kOscillation, 1, true);
+  EXPECT_EQ(ladder.step(), SupervisionStep::kStopped);
+  EXPECT_EQ(ladder.reason(), Reason::kOscillation);
+}
+
+// What is told first may be what the swing makes of a filter; the time to act is no excuse for the swing.
+TEST(SupervisionLadder, ViolenceThatReturnsBehindAnotherAlarmIsTheLastStepToo) {
+  SupervisionLadder ladder = AfterViolence(1);
+  ladder.Step(Reason::kEstimatorInconsistent, 1);
+  EXPECT_EQ(ladder.step(), SupervisionStep::kSoftened);
+  ladder.Step(Reason::kOscillation, 1, true);
+  EXPECT_EQ(ladder.step(), SupervisionStep::kStopped);
+  EXPECT_EQ(ladder.reason(), Reason::kOscillation);
+}
+
+TEST(SupervisionLadder, WhatIsNotViolentOrLongPastStopsNothing) {
+  SupervisionLadder mild = AfterViolence(1);
+  mild.Step(Reason::kOscillation, 1);
+  EXPECT_EQ(mild.step(), SupervisionStep::kSoftened);
+  SupervisionLadder past = AfterViolence(2);
+  ASSERT_EQ(past.step(), SupervisionStep::kNone);
+  for (int i = 0; i < 51; ++i) past.Step(Reason::kOscillation, 1, true);
+  EXPECT_EQ(past.step(), SupervisionStep::kSoftened);
+  // What was softened for another reason has not swung yet.
+  SupervisionLadder first(0, 100);
+  first.Step(Reason::kCyclesLate, 0xFF);
+  first.Step(Reason::kCyclesLate, 0xFF);
+  for (int i = 0; i < 100; ++i) first.Step(Reason::kNone, 0);
+  first.Step(Reason::kOscillation, 1, true);
+  EXPECT_EQ(first.step(), SupervisionStep::kSoftened);
+}
+
 TEST(SupervisionLadder, TheLastStepStays) {
   SupervisionLadder ladder(0, 10);
   for (int i = 0; i < 5; ++i) ladder.Step(Reason::kOscillation, 1);

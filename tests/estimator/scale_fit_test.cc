@@ -113,6 +113,80 @@ TEST(ScaleFit, AtRestOnlyTheZeroIsLearnt) {
   EXPECT_EQ(fit.Lead_m(1e-3, 1e-3), 0.0);
 }
 
+/// A scale that counts in steps tells of a stiff screw; the fit after so many periods of motion.
+ScaleFit AfterCountsOf(double count_m, int periods, unsigned seed) {
+  ScaleFit::Setup setup = TheSetup();
+  setup.count_m = count_m;
+  ScaleFit fit(setup);
+  fit.Reset(0.0);
+  std::mt19937 random(seed);
+  const Motion motion{.extra_m_N = 0.2 / kStiffness_N_m, .noise_m = 20e-9};
+  const double where_m = count_m * std::uniform_real_distribution<double>(0.0, 1.0)(random);
+  double before_m = 0.0;
+  for (int k = 0; k < periods; ++k) {
+    ScaleFit::Sample s = motion.At(k, random);
+    const double table_m = s.travel_m - s.apart_m + where_m;
+    s.velocity_m_s = (s.travel_m - before_m) / kPeriod_s;
+    s.apart_m += table_m - count_m * std::round(table_m / count_m);
+    before_m = s.travel_m;
+    fit.Learn(s);
+  }
+  return fit;
+}
+
+// Before: rounding counted as nothing, and 5 um made the screw as stiff or soft as bounds allow within 2 %.
+TEST(ScaleFit, RoundingOfACoarseScaleIsNoStiffness) {
+  for (const double count_m : {1e-6, 5e-6, 20e-6})
+    for (const unsigned seed : {1U, 2U, 3U, 4U})
+      for (const int periods : {100, 300, 1000, 8000}) {
+        const ScaleFit fit = AfterCountsOf(count_m, periods, seed);
+        EXPECT_LT(std::abs(fit.extra_compliance_m_N() - 0.2 / kStiffness_N_m), 3.0 * fit.compliance_std_m_N())
+            << count_m << ' ' << seed << ' ' << periods;
+        // Nor is it a lead: what the target is moved by beyond the scale's zero stays below a count.
+        EXPECT_LT(std::abs(fit.Lead_m(10e-3, 10e-3)), 0.75 * count_m + 0.75e-6)
+            << count_m << ' ' << seed << ' ' << periods;
+      }
+}
+
+TEST(ScaleFit, AtRestACountTellsNoMoreThanWhereItLies) {
+  ScaleFit::Setup setup = TheSetup();
+  setup.count_m = 5e-6;
+  ScaleFit fit(setup);
+  fit.Reset(0.0);
+  ScaleFit::Sample s;
+  s.apart_m = 2.4e-6;
+  for (int k = 0; k < 5000; ++k) fit.Learn(s);
+  EXPECT_EQ(fit.zero_m(), 0.0);
+  s.apart_m = 4e-6;
+  for (int k = 0; k < 5000; ++k) fit.Learn(s);
+  EXPECT_NEAR(fit.zero_m(), 1.5e-6, 1e-9);
+}
+
+// Before: the bound held the lead back and the zero that went with it ran on, 82 mm in six seconds.
+TEST(ScaleFit, ALeadBeyondItsBoundDoesNotTakeTheZeroAlong) {
+  constexpr double kTurnError_m = 20e-6, kSlow_m_s = 1e-3;
+  const double w = std::numbers::pi;
+  ScaleFit fit(TheSetup());
+  fit.Reset(0.0);
+  double before_m = 0.0;
+  for (int k = 0; k < 6000; ++k) {
+    const double t = kPeriod_s * k;
+    ScaleFit::Sample s;
+    s.moves = true;
+    // It starts as programs do: a while of little motion, in which lead and zero are hardly apart.
+    s.travel_m = 10e-3 * std::min(1.0, t) * std::sin(w * t);
+    s.velocity_m_s = (s.travel_m - before_m) / kPeriod_s;
+    before_m = s.travel_m;
+    s.force_N = 40.0 * std::tanh(s.velocity_m_s / kSlow_m_s);
+    const double angle = 2.0 * std::numbers::pi * s.travel_m / kTurn_m;
+    s.cos = std::cos(angle);
+    s.sin = std::sin(angle);
+    s.apart_m = kTurnError_m * s.cos;
+    fit.Learn(s);
+    ASSERT_LT(std::abs(fit.zero_m()), 1.1 * kTurnError_m) << k;
+  }
+}
+
 TEST(ScaleFit, StaysWithinBoundsWhateverItIsTold) {
   ScaleFit fit(TheSetup());
   fit.Reset(0.0);

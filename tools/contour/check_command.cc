@@ -60,14 +60,6 @@ ExitStatus CheckInterfaces(const MachineConfig& config) {
   return status;
 }
 
-/// Messages that begin with their dotted key, behind where it is written.
-std::vector<std::string> WithPlaces(const Options& options, const std::vector<std::string>& messages) {
-  const YamlValue tree = OpenMachineFile(options.file, options.set);
-  std::vector<std::string> placed;
-  for (const std::string& m : messages) placed.push_back(WhereIs(tree, m.substr(0, m.find(':'))) + ": " + m);
-  return placed;
-}
-
 std::string IdleSection(const Options& options, const MachineConfig& machine) {
   std::string text;
   for (const std::string& idle : IdleKeys(OpenMachineFile(options.file, options.set), machine))
@@ -91,7 +83,8 @@ int RunCheck(const Options& options) {
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
   const LoopSection loops = JudgeLoops(file.machine);
   std::cout << CheckReport(file.machine) << loops.text << std::flush;
-  if (!loops.refused.empty()) throw ConfigError(WithPlaces(options, loops.refused));
+  if (!loops.refused.empty())
+    throw ConfigError(WithPlaces(OpenMachineFile(options.file, options.set), loops.refused));
   std::vector<std::string> with_loops = options.set;
   with_loops.insert(with_loops.end(), loops.chosen.begin(), loops.chosen.end());
   const MachineConfig whole = LoadMaybeEmulatedMachine(options.file, with_loops).machine;

@@ -55,7 +55,7 @@ void FindLoopWhereItIsNoLongerGood(const MachineConfig& machine, const std::stri
   const std::string wrong = WhatIsWrong(report);
   if (wrong.empty()) return;
   std::cout << "with this model the loop of axis " << axis << " does not keep its limits (" << wrong
-            << "). contourd runs with it until the machine file has another one:\n";
+            << "). contourd warns of it at every start, and refuses it where it is unstable:\n";
   FindAndWriteLoop(machine, axis, model, file);
 }
 

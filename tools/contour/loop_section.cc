@@ -9,8 +9,8 @@
 #include "config/loop_axis.h"
 #include "config/mode_advice.h"
 #include "design/loop_choice.h"
+#include "design/loop_judgement.h"
 #include "design/loop_report.h"
-#include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
@@ -51,20 +51,12 @@ void Chosen(const MachineConfig& machine, const std::string& name, const std::op
   section.chosen.push_back(LoopAssignment(name, *tuning));
 }
 
-/// A loop of an axis and the key that has its tuning.
-struct Judged {
-  std::string key;
-  std::string title;
-  LoopAxis axis;
-  LoopTuning tuning;
-};
-
 /// `advised`: the axis that may be better off in the other mode.
-void Judge(const Judged& loop, double period_s, bool used, LoopSection& section,
-           const std::pair<const std::string, AxisConfig>* advised = nullptr) {
+void Judge(const StatedLoop& loop, const std::string& title, double period_s, bool used, LoopSection& section,
+           const std::pair<const std::string, AxisConfig>* advised) {
   try {
     const LoopReport report = ReportOn(loop.axis, loop.tuning, period_s);
-    section.text += loop.title + "\n" + Describe(report);
+    section.text += title + "\n" + Describe(report);
     const std::string wrong = WhatIsWrong(report);
     if (wrong.empty()) {
       if (advised != nullptr) section.text += DriveAdvice(advised->first, advised->second, report);
@@ -75,13 +67,9 @@ void Judge(const Judged& loop, double period_s, bool used, LoopSection& section,
       section.text += "  NOT within its limits (" + wrong + "); control.friction: linear would be refused\n";
       return;
     }
-    std::string message = loop.key + "found a loop that does not keep its limits (" + wrong +
-                          "), expected one that does; what would help:";
-    for (const std::string& help : WhatWouldHelp(loop.axis, period_s, 1)) message += " " + help + ";";
-    message.pop_back();
-    section.refused.push_back(std::move(message));
+    section.refused.push_back(WhyRefused({loop, wrong}, period_s));
   } catch (const std::invalid_argument& e) {
-    section.refused.push_back(loop.key + e.what());
+    section.refused.push_back(loop.key + ": " + e.what());
   }
 }
 
@@ -113,19 +101,15 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
       section.text += "  axis " + name + ": no loop: tuning; contour tune --from-model finds it\n";
       continue;
     }
-    const std::optional<LoopAxis> with = ScaleLoopAxisOf(config);
-    Judge({"axes." + name + ".loop: ", "  axis " + name, LoopAxisOf(config), *config.loop}, period_s, used,
-          section, with ? nullptr : &axis);
-    if (!with) continue;
-    if (!config.scale_loop) {
+    const bool has_scale = config.drive.linear_scale.has_value();
+    for (const StatedLoop& loop : StatedLoopsOf(machine, name)) {
+      const std::string title = "  axis " + name + (loop.scale ? ", with its linear scale" : "");
+      Judge(loop, title, period_s, used, section, has_scale ? nullptr : &axis);
+    }
+    if (has_scale && !config.scale_loop)
       section.text += "  axis " + name +
                       ": its linear scale is not in the loop, there is no scale_loop: tuning; contour tune "
                       "--from-model finds it\n";
-      continue;
-    }
-    Judge({"axes." + name + ".scale_loop: ", "  axis " + name + ", with its linear scale", *with,
-           *config.scale_loop},
-          period_s, used, section);
   }
   if (!section.text.empty()) section.text = "\nLoops in torque mode\n" + section.text;
   return section;

@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "config/load_machine.h"
 #include "config/number_text.h"
 #include "core/exit_status.h"
 #include "daemon/make_log_header.h"
 #include "daemon/output_words.h"
 #include "daemon/program/path_walk.h"
 #include "daemon/program/program.h"
+#include "design/loop_judgement.h"
 #include "design/path_following.h"
 #include "tools/contour/choice_flag.h"
 #include "tools/contour/program_warnings.h"
@@ -79,6 +81,16 @@ std::vector<FeedFrom> FeedsOf(const std::vector<std::string>& texts) {
   return feeds;
 }
 
+/// A simulation hurts nobody, and what a limit is worth may be what it is for; but what an unstable loop does
+/// there says nothing of the machine.
+void RequireStableLoops(MachineConfig machine, ControllerName controller, const Options& options) {
+  machine.machine.controller = controller;
+  const LoopVerdicts verdicts = JudgeStatedLoops(machine, LoopDemand::kStability);
+  if (!verdicts.refused.empty())
+    throw ConfigError(WithPlaces(OpenMachineFile(options.config, options.set), verdicts.refused));
+  for (const std::string& warned : verdicts.warned) std::cerr << "warning: " << warned << "\n";
+}
+
 int RunSimulate(const Options& options) {
   SimulationRequest request;
   request.feeds = options.feeds;
@@ -94,6 +106,7 @@ int RunSimulate(const Options& options) {
               << Choices(ControllerName{}) << "\n";
     return kExitBadUsage;
   }
+  RequireStableLoops(request.file.machine, request.controller, options);
   try {
     if (FormatOf(options.program) == ProgramFormat::kGcode) {
       request.program.name = options.program;
@@ -111,7 +124,7 @@ int RunSimulate(const Options& options) {
   WarnOfProgram(options.program,
                 UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)), true,
                 1e-3 * said.machine.path_following_mm.value_or(0.0));
-  if (const std::optional<std::string> wider = WiderToleranceText(said); wider && !request.gcode.empty())
+  if (const std::optional<std::string> wider = WiderToleranceText(said); wider && request.gcode)
     std::cerr << "contour: " << *wider << "\n";
   request.out = options.out;
   if (!options.log.empty()) {

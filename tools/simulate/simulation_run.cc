@@ -197,8 +197,8 @@ SimulationResult RunSimulation(const SimulationRequest& request) {
       scoring.Add(entry.output.record, truth);
       feeds.Count();
     });
-    machine.Run(request.gcode.empty() ? request.program
-                                      : machine.ReadGcode(request.gcode, request.program.name, request.part),
+    machine.Run(request.gcode ? machine.ReadGcode(*request.gcode, request.program.name, request.part)
+                              : request.program,
                 feeds.Begin());
     machine.SetObserver(nullptr);
     const RunMetrics metrics = scoring.Finish();

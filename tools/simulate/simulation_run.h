@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,8 @@ struct SimulationRequest {
   EmulatedMachineFile file;
   ControllerName controller = ControllerName::kFull;
   Program program;
-  /// Not empty: G-code, read anew for where the machine stands before each pass; `program` has its name.
-  std::string gcode;
+  /// G-code, read anew for where the machine stands before each pass; `program` has its name.
+  std::optional<std::string> gcode;
   PartOfProgram part{};       ///< of it
   std::filesystem::path log;  ///< of every cycle, for replay; empty: none
   LogHeader log_header;

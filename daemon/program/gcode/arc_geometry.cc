@@ -26,9 +26,10 @@ constexpr double kSamePoint_m = 1e-9;
 constexpr double kWholeTurn_rad = 1e-6;
 
 std::string Millimetres(double value_m) {
-  std::array<char, 32> buffer{};
+  std::array<char, 400> buffer{};  // of any double
   const double rounded = std::round(value_m * 1e9) / 1e6;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), rounded);
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), rounded, std::chars_format::fixed);
   return std::string(buffer.data(), end.ptr) + " mm";
 }
 
@@ -42,7 +43,11 @@ std::optional<std::string> WrongCentre(const ArcEnds& ends, const PlanePoint& ce
                                        const ArcTolerance& tolerance) {
   const double at_start = Distance(ends.from_m, centre_m);
   const double at_end = Distance(ends.to_m, centre_m);
-  if (at_start < tolerance.radius_m || at_end < tolerance.radius_m) return "the arc's radius is zero";
+  const double radius = std::min(at_start, at_end);
+  if (radius < kSamePoint_m) return "the arc's radius is zero";
+  if (radius < tolerance.radius_m)
+    return "the arc's radius of " + Millimetres(radius) + " is too small, expected at least " +
+           Millimetres(tolerance.radius_m) + " as LinuxCNC does";
   const double differ = std::abs(at_start - at_end);
   const bool much = differ > kEndsRelative * std::max(at_start, at_end) && differ > tolerance.ends_m;
   if (!much && differ <= kEndsLargest * tolerance.ends_m) return std::nullopt;

@@ -78,6 +78,24 @@ TEST(TorquePlan, MultisineStaysWithinTheTorqueItWasCheckedFor) {
   EXPECT_NE(ErrorOf([&] { PlanOf(Yaml(louder)); }).find("axis x: extra torque of"), std::string::npos);
 }
 
+TEST(TorquePlan, RefusesFrequenciesFromHalfTheCyclesRateOn) {
+  PerAxis<PlanLimits> limits = testing::TableLimits();
+  for (PlanLimits& l : limits) l.cycle_s = 1e-3;
+  for (const char* kind : {"chirp", "multisine"}) {
+    const auto error = [&](const std::string& highest_hz) {
+      const std::string text =
+          std::string("shape: hold\nseconds: 2\ntorque: {axis: x, kind: ") + kind +
+          ", amplitude_Nm: 0.01,\n  frequency_min_hz: 10, frequency_max_hz: " + highest_hz + "}\n";
+      return ErrorOf([&] { PlanMotion(Yaml(text), testing::Point(0.0, 0.0), limits); });
+    };
+    EXPECT_EQ(error("2000"),
+              "test.yaml:4: torque.frequency_max_hz: found 2000, expected less than 500, half the cycle's "
+              "rate: the torque is set once per cycle");
+    EXPECT_NE(error("500"), "");
+    EXPECT_EQ(error("499"), "");
+  }
+}
+
 TEST(TorquePlan, TheAxisMustExist) {
   EXPECT_NE(ErrorOf([] {
               PlanOf(Yaml("shape: hold\nseconds: 3\ntorque: {axis: z, kind: pulses, amplitude_Nm: 0.2}\n"));

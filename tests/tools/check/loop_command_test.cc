@@ -56,6 +56,31 @@ TEST(TuneFromModel, WritesALoopThatCheckAccepts) {
   ExpectHas(fast, "another tuning: contour tune --from-model finds one");
 }
 
+/// Into a folder of its own: tests run side by side.
+std::string SimulateCommand(const std::string& program) {
+  return "simulate --config " + ExampleMachine("single_axis.yaml") + " --program " + program + " --out " +
+         program + ".out";
+}
+
+TEST(Simulate, RefusesALoopThatIsUnstableAndWarnsOfOneThatBreaksALimit) {
+  const std::string program = WriteTestFile("hold.yaml", "shape: hold\nseconds: 0.2\n");
+  const std::string simulate = SimulateCommand(program) + " --set axes.x.loop.regulator_Hz=";
+  const Outcome unstable = Contour(simulate + "150");
+  EXPECT_EQ(unstable.status, 2) << unstable.out;
+  ExpectHas(unstable, ": axes.x.loop: found a loop that does not keep its limits (unstable: ");
+  const Outcome rival = Contour(simulate + "150 --controller pid");
+  EXPECT_EQ(rival.status, 0) << rival.out;
+  const Outcome experiment = Contour(simulate + "35");
+  EXPECT_EQ(experiment.status, 0) << experiment.out;
+  ExpectHas(experiment, "warning: axes.x.loop: found a loop that does not keep its limits (peak ");
+}
+
+TEST(Simulate, TakesAnEmptyFileForTheProgramThatItIs) {
+  const Outcome o = Contour(SimulateCommand(WriteTestFile("empty.ngc", "")));
+  EXPECT_EQ(o.status, 2) << o.out;
+  ExpectHas(o, "empty.ngc: the program does not move");
+}
+
 TEST(TuneFromModel, RefusesABeltAndSaysWhatWouldHelp) {
   const std::string machine = WriteTestFile("belt.yaml", ReadText(ExampleMachine("family/belt.yaml")));
   const std::string tuned = machine + ".tuned.yaml";
