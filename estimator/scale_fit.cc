@@ -81,9 +81,9 @@ void ScaleFit::Learn(const Sample& s) noexcept {
   for (std::size_t i = 0; i < kSize; ++i) expected_m += value_[i] * h[i];
   const double error_m = s.apart_m - expected_m;
   if (!setup_.learns || !s.moves) {
-    // A standing axis tells of the zero alone, and no more of it than where the count lies.
-    const double count_m = 0.5 * setup_.count_m;
-    value_[kZero] += zero_share_ * (error_m - std::clamp(error_m, -count_m, count_m));
+    // A standing axis tells of the zero alone. Half a count is what this reading is rounded by, another half
+    // what those that the zero is from were.
+    value_[kZero] += zero_share_ * (error_m - std::clamp(error_m, -setup_.count_m, setup_.count_m));
     return;
   }
   Row along{};

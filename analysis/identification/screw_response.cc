@@ -76,7 +76,7 @@ std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records) {
     const double frequency = static_cast<double>(b) / (kSegment * t);
     if (frequency < kLowest_share / t || frequency > kHighest_share / t) continue;
     const double coherence = std::norm(s.xf[b]) / std::max(1e-300, s.xx[b] * s.ff[b]);
-    response.push_back({frequency, std::abs(s.xf[b]) / s.ff[b], coherence});
+    response.push_back({frequency, std::abs(s.xf[b]) / s.ff[b], coherence, std::arg(s.xf[b])});
   }
   return response;
 }

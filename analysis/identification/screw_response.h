@@ -12,6 +12,7 @@ struct ResponsePoint {
   double frequency_Hz = 0.0;
   double accelerance_1_kg = 0.0;  ///< |x| (2 pi f)^2 / |F|: 1 / mass where the axis is rigid
   double coherence = 0.0;
+  double phase_rad = 0.0;  ///< of the acceleration against the force; negative where it comes later
 };
 
 /// Coherence from which a point of the response says something.

@@ -8,6 +8,7 @@
 
 #include "analysis/identification/basins.h"
 #include "analysis/identification/log_errors.h"
+#include "analysis/identification/response_fit.h"
 
 namespace contour::identify {
 namespace {
@@ -218,9 +219,16 @@ std::vector<TableAxis> Starts(const TableAxis& start, const std::vector<Measured
   return chosen;
 }
 
+/// What the axis was shaken by.
+struct Shaken {
+  const std::vector<Measured>& segments;
+  const std::vector<ResponsePoint>& response;
+  Band band;
+};
+
 /// The two masses with a part of the table on a spring of its own, where that foresees better.
-void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& segments, const Band& band,
-              int threads) {
+void TakeSide(std::pair<double, TableAxis>& best, const Shaken& shaken, int threads) {
+  const auto& [segments, response, band] = shaken;
   std::vector<TableAxis> tried;
   for (double f = band.low_Hz; f < band.high_Hz; f *= kNextSide) {
     for (const double share : kSideShares) {
@@ -247,6 +255,9 @@ void TakeSide(std::pair<double, TableAxis>& best, const std::vector<Measured>& s
   std::vector<TableAxis> chosen;
   for (const std::size_t i : Basins(of_places))
     if (chosen.size() < kSidesRefined) chosen.push_back(places[i]);
+  // The errors of the time series lead nowhere from some of them; the response shows where to begin.
+  if (const auto seen = FitResponse(best.second, response, segments.front().period_s))
+    chosen.push_back(*seen);
   const double alone = best.first;
   for (const TableAxis& start : chosen) {
     const auto found = FollowBasin(start, segments, threads);
@@ -271,13 +282,13 @@ void WidenByHalves(std::vector<FittedParameter>& parameters) {
 
 /// The last fit, from the best of two masses alone or with a part that swings. A share that could as well be
 /// none is none: what the model lacks otherwise may look like one.
-JointFit WithSideWhereSure(std::pair<double, TableAxis>& best, const std::vector<Measured>& segments,
-                           const Band& band, int threads) {
+JointFit WithSideWhereSure(std::pair<double, TableAxis>& best, const Shaken& shaken, int threads) {
+  const std::vector<Measured>& segments = shaken.segments;
   FitOptions last = Options(true, true, threads);
   last.refine = true;
   last.rounds = 1;
   const std::pair<double, TableAxis> alone = best;
-  TakeSide(best, segments, band, threads);
+  TakeSide(best, shaken, threads);
   JointFit fit = FitJointly(best.second, segments, last);
   if (!(fit.axis.side.share > 0.0)) return fit;
   std::vector<FittedParameter> widened = fit.parameters;
@@ -341,7 +352,7 @@ ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& 
     if (found.first < best.first) best = found;
     if (same) break;
   }
-  JointFit fit = WithSideWhereSure(best, segments, band, threads);
+  JointFit fit = WithSideWhereSure(best, {segments, s.response, band}, threads);
   s.axis = fit.axis;
   s.antiresonance_Hz = Hz(s.axis.stiffness, s.axis.load_inertia);
   s.resonance_Hz = s.antiresonance_Hz * std::sqrt(s.axis.mass_kg() / s.axis.motor_inertia);
