@@ -13,6 +13,8 @@ namespace contour {
 namespace {
 
 /// Forces in those of rated torque: of the chirp, and of each line of the multisine.
+/// Beyond it a bristle that is shaken at rest shows nothing new.
+constexpr double kShakenAtRest_Hz = 120.0;
 constexpr double kChirpOfRated = 0.075;
 constexpr double kLineOfRated = 0.0025;
 constexpr int kLines = 12;
@@ -96,12 +98,13 @@ class Motions {
   }
 
   void Shake() {
-    Add("shaking at rest, 8 to 120 Hz",
+    const double top_Hz = TopOfChirp_Hz();
+    const double at_rest_Hz = std::min(kShakenAtRest_Hz, top_Hz);
+    Add(FormatText("shaking at rest, 8 to %g Hz", at_rest_Hz),
         FormatText("shape: hold\nseconds: 4\ntorque: {axis: %s, kind: multisine, "
                    "amplitude_Nm: %.6f, frequency_min_hz: 8, "
-                   "frequency_max_hz: 120, lines: %d}\n",
-                   name_.c_str(), kLineOfRated * axis_.drive.rated_torque_Nm, kLines));
-    const double top_Hz = TopOfChirp_Hz();
+                   "frequency_max_hz: %g, lines: %d}\n",
+                   name_.c_str(), kLineOfRated * axis_.drive.rated_torque_Nm, at_rest_Hz, kLines));
     // Fast enough that a controller which swings, its mass being wrong, does not turn the axis back.
     const double travel = limits_.travel_mm;
     std::vector<double> slides;

@@ -28,8 +28,9 @@ std::optional<LoopFault> FaultOf(StatedLoop loop, double period_s) {
 constexpr const char* kWhoTries = "contour check tries other tunings, scales and screws";
 
 std::string Warning(const LoopFault& fault) {
-  return fault.loop.key + ": found a loop that does not keep its limits (" + fault.wrong +
-         "), but it is stable enough to begin with and runs; what would help: " + kWhoTries;
+  return fault.loop.key + ": found a loop that does not keep its limits (" + fault.wrong + "), and runs, " +
+         (fault.unstable ? "to commission with: it is stable on the axis as stated" : "being stable") +
+         "; what would help: " + kWhoTries;
 }
 
 /// A loop to commission with is stable on all that a catalogue leaves open, which is another set than what is

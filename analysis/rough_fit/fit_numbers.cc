@@ -82,8 +82,11 @@ void SayOneDirection(const RoughFit& rough, FittedNumbers& out) {
 /// otherwise, the levels are none of either.
 void SayUnlikeDirections(const RoughFit& rough, const StatedAxis& stated, const AxisLog& log,
                          FittedNumbers& out) {
-  if (rough.one_direction || !(rough.coulomb > 0.0) || stated.sigma.contains("offset")) return;
   const StatedFriction& f = stated.friction;
+  // A force that is stated is fitted with the rest.
+  if (rough.one_direction || !(rough.coulomb > 0.0) || stated.offset != 0.0 ||
+      !(f.Fc_plus + f.Fc_minus > 0.0))
+    return;
   const double as_stated = 0.5 * (rough.coulomb_forth + rough.coulomb_back) * (f.Fc_plus - f.Fc_minus) /
                            (0.5 * (f.Fc_plus + f.Fc_minus));
   const double apart = rough.coulomb_forth - rough.coulomb_back;

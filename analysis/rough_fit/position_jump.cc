@@ -10,10 +10,9 @@
 namespace contour::diagnosis {
 namespace {
 
-/// [rows] A motion is as fast in the rows next to one, whatever its acceleration.
-constexpr std::size_t kNext = 3;
-/// [of the fastest elsewhere] A reading that was not renewed for a few rows catches up with less.
-constexpr double kFarFaster = 10.0;
+/// [of the steps next to it, and of the largest elsewhere] A motion is as fast in the rows next to one,
+/// whatever its acceleration; a reading that was not renewed for a few rows catches up with less.
+constexpr double kFarLarger = 10.0;
 
 /// Travel to the next row; 0 where either is missing.
 std::vector<double> StepsOf(const AxisLog& log) {
@@ -29,11 +28,16 @@ std::vector<double> StepsOf(const AxisLog& log) {
 std::string PositionJump(const AxisLog& log) {
   if (log.size() < 2) return {};
   const std::vector<double> steps = StepsOf(log);
-  const auto at = static_cast<std::size_t>(std::max_element(steps.begin(), steps.end()) - steps.begin());
+  const auto alone = [&](std::size_t k) {
+    const double before = k > 0 ? steps[k - 1] : 0.0, after = k + 1 < steps.size() ? steps[k + 1] : 0.0;
+    return steps[k] > kFarLarger * std::max(before, after);
+  };
   double elsewhere = 0.0;
   for (std::size_t k = 0; k < steps.size(); ++k)
-    if (k + kNext < at || k > at + kNext) elsewhere = std::max(elsewhere, steps[k]);
-  if (!(steps[at] > kFarFaster * elsewhere) || !(elsewhere > 0.0)) return {};
+    if (!alone(k)) elsewhere = std::max(elsewhere, steps[k]);
+  std::size_t at = 0;
+  while (at < steps.size() && !(alone(at) && steps[at] > kFarLarger * elsewhere)) ++at;
+  if (at == steps.size() || !(elsewhere > 0.0)) return {};
   return "the position jumps by " + RoundedText(log.linear ? 1e3 * steps[at] : steps[at]) +
          (log.linear ? " mm" : " rad") + " from one row to the next at " +
          RoundedText(log.period_s * static_cast<double>(at + 1)) + " s, and by no more than " +

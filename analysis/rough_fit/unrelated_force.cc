@@ -11,6 +11,8 @@ namespace {
 /// [share of the command's square] Cogging or a weight may leave as much of the force of an axis that has
 /// both.
 constexpr double kMostUnseen = 0.5;
+/// [counts] What noise makes of a position that stands.
+constexpr double kStands_counts = 4.0;
 /// [deviations] Least squares of noise come to less.
 constexpr double kSeen = 3.0;
 
@@ -27,7 +29,11 @@ std::string UnrelatedForce(const AxisLog& log, const StatedAxis& stated) {
   double least = 1.0;
   for (const RoughShape shape : {RoughShape::kFriction, RoughShape::kFrictionAndSpring}) {
     const RoughFit r = FitRoughly(log, stated, shape);
-    if (!r.why_not.empty()) return r.why_not + ": record strokes at several speeds";
+    // Rows that are missing all over a log leave nothing to smooth, though the axis moves.
+    if (!r.why_not.empty())
+      return r.travel > kStands_counts * stated.position_step
+                 ? std::string()
+                 : r.why_not + ": record strokes at several speeds";
     if (r.unexplained < kMostUnseen || SeesInertia(r) || SeesFriction(r)) return {};
     least = std::min(least, r.unexplained);
   }

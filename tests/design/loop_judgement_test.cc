@@ -46,7 +46,7 @@ TEST(LoopJudgement, OfALoopThatIsHandedInForCommissioningTheAxisAsStatedDecides)
   const LoopVerdicts verdicts = JudgeStatedLoops(machine, LoopDemand::kStabilityAsStated);
   EXPECT_TRUE(verdicts.refused.empty());
   ASSERT_EQ(verdicts.warned.size(), 1u);
-  EXPECT_NE(verdicts.warned.front().find("stable enough to begin with"), std::string::npos);
+  EXPECT_NE(verdicts.warned.front().find("stable on the axis as stated"), std::string::npos);
   machine = SingleAxis(150.0);
   EXPECT_EQ(JudgeStatedLoops(machine, LoopDemand::kStabilityAsStated).refused.size(), 1u);
 }

@@ -27,6 +27,26 @@ TEST(PositionJump, AReferenceThatIsLostIsOne) {
   EXPECT_NE(text.find("at 10 s"), std::string::npos) << text;
 }
 
+TEST(PositionJump, OneThatComesBackIsSeenToo) {
+  test::HiddenAxis axis = Made();
+  for (std::size_t k = axis.log.size() / 3; k < axis.log.size() / 2; ++k) axis.log.position[k] += 5.0;
+  EXPECT_NE(PositionJump(axis.log).find("at 10 s"), std::string::npos) << PositionJump(axis.log);
+}
+
+// Rows of 20 ms: it takes five of them, and creeps everywhere else.
+TEST(PositionJump, AQuickMotionAmongSlowOnesIsNone) {
+  AxisLog log;
+  log.period_s = 0.02;
+  double q = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    q += 1e-3 + (k == 998 || k == 1002 ? 0.2 : k > 998 && k < 1002 ? 0.4 : 0.0);
+    log.position.push_back(q);
+    log.command.push_back(0.1);
+    log.present.push_back(1);
+  }
+  EXPECT_EQ(PositionJump(log), "");
+}
+
 TEST(PositionJump, SoIsAnEncoderThatStoodStillWhileItMoved) {
   test::HiddenAxis axis = Made();
   const std::size_t at = axis.log.size() / 3;

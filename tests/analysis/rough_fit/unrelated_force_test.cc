@@ -24,6 +24,15 @@ std::string Complaint(const test::HiddenAxis& axis) { return UnrelatedForce(axis
 
 TEST(UnrelatedForce, AnAxisIsInOrder) { EXPECT_EQ(Complaint(Made()), ""); }
 
+TEST(UnrelatedForce, SoIsOneOfWhichEveryFortiethRowIsMissing) {
+  test::HiddenAxis axis = Made();
+  for (std::size_t k = 20; k < axis.log.size(); k += 40) {
+    axis.log.present[k] = 0;
+    axis.log.position[k] = std::nan("");
+  }
+  EXPECT_EQ(Complaint(axis), "");
+}
+
 // Three times its friction, of eight periods in a turn: what a motor with much iron does.
 TEST(UnrelatedForce, SoIsOneWhoseCoggingIsMostOfItsForce) {
   test::HiddenAxis axis = Made();
