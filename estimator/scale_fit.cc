@@ -65,9 +65,7 @@ double ScaleFit::Rounding_m2(double velocity_m_s) const noexcept {
 // the lead that it was to make up for stays where it is explains the next sample worse, and the one after
 // worse still. The best values with that one at its bound are off along the covariance.
 void ScaleFit::Bound() noexcept {
-  // To correct for one may push another out: once for each, as often as there are any.
-  for (std::size_t step = 0; step < kSize * kSize; ++step) {
-    const std::size_t i = kCompliance + step % (kSize - kCompliance);
+  for (std::size_t i = kCompliance; i < kSize; ++i) {
     const double bounded = std::clamp(value_[i], -kBound * prior_[i], kBound * prior_[i]);
     if (bounded == value_[i] || !(covariance_[i][i] > 0.0)) continue;
     const double share = (bounded - value_[i]) / covariance_[i][i];

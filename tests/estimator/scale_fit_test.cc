@@ -154,10 +154,10 @@ TEST(ScaleFit, AtRestACountTellsNoMoreThanWhereItLies) {
   ScaleFit fit(setup);
   fit.Reset(0.0);
   ScaleFit::Sample s;
-  s.apart_m = 2.4e-6;
+  s.apart_m = 4.9e-6;
   for (int k = 0; k < 5000; ++k) fit.Learn(s);
   EXPECT_EQ(fit.zero_m(), 0.0);
-  s.apart_m = 4e-6;
+  s.apart_m = 6.5e-6;
   for (int k = 0; k < 5000; ++k) fit.Learn(s);
   EXPECT_NEAR(fit.zero_m(), 1.5e-6, 1e-9);
 }
