@@ -20,7 +20,8 @@ struct StartLoops {
   std::vector<std::string> warned;  ///< of loops that break a limit and run all the same
 };
 /// For a start with this command line; `overrides` are OverridesOf() it. Throws ConfigError where a loop is
-/// unstable on the axis as stated or on its uncertainty set; of loops that commission hands in
+/// unstable on the axis as stated or on its uncertainty set and is none to commission with; of loops that
+/// commission hands in
 /// (`--torque-loop`), which it judges on what a catalogue leaves open, on the axis as stated alone. What
 /// breaks another limit of `contour check` is warned of.
 StartLoops LoopsOfStart(const DaemonOptions& options, const std::vector<std::string>& overrides);

@@ -13,7 +13,7 @@ namespace contour {
 namespace {
 
 /// Forces in those of rated torque: of the chirp, and of each line of the multisine.
-/// Beyond it a bristle that is shaken at rest shows nothing new.
+/// Set by hand; where cycles are slow, less: what their rate bears.
 constexpr double kShakenAtRest_Hz = 120.0;
 constexpr double kChirpOfRated = 0.075;
 constexpr double kLineOfRated = 0.0025;

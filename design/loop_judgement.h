@@ -19,7 +19,7 @@ struct StatedLoop {
 /// Of one axis, the loop without its scale first; none in csp, where the drive closes them.
 std::vector<StatedLoop> StatedLoopsOf(const MachineConfig& machine, const std::string& name);
 
-/// A loop that must not move its axis.
+/// A loop that breaks a limit of `contour check`; whether it may move its axis all the same is LoopDemand's.
 struct LoopFault {
   StatedLoop loop;
   std::string wrong;                ///< which limit it breaks, in one sentence

@@ -19,10 +19,11 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr double kHighest_share = 0.3;
 /// A coherence of 1 has no noise; what the windows smear is left.
 constexpr double kLeastNoise = 0.02;
-/// Starts, as in the fits of the time series; between frequencies a tenth.
+/// Starts: shares of the table in all that moves, and of the part in the table; frequencies a tenth apart.
 constexpr double kShares[] = {0.1, 0.25, 0.5};
 constexpr double kSideShares[] = {0.05, 0.12, 0.25};
 constexpr double kNext = 1.1;
+/// So many of the best are fitted, half a second of work in all.
 constexpr std::size_t kRefined = 16;
 constexpr int kMostEvaluations = 2000;
 

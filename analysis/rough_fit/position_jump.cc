@@ -38,10 +38,12 @@ std::string PositionJump(const AxisLog& log) {
   std::size_t at = 0;
   while (at < steps.size() && !(alone(at) && steps[at] > kFarLarger * elsewhere)) ++at;
   if (at == steps.size() || !(elsewhere > 0.0)) return {};
-  return "the position jumps by " + RoundedText(log.linear ? 1e3 * steps[at] : steps[at]) +
-         (log.linear ? " mm" : " rad") + " from one row to the next at " +
+  const auto told = [&](double step) {
+    return log.linear ? RoundedText(1e3 * step) + " mm" : RoundedText(step) + " rad";
+  };
+  return "the position jumps by " + told(steps[at]) + " from one row to the next at " +
          RoundedText(log.period_s * static_cast<double>(at + 1)) + " s, and by no more than " +
-         RoundedText(log.linear ? 1e3 * elsewhere : elsewhere) +
+         told(elsewhere) +
          " anywhere else: the encoder lost its reference there, or stood still. Use what lies before it or "
          "after it";
 }

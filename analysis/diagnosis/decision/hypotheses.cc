@@ -140,24 +140,19 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
                                       std::vector<std::string>& tried) {
   std::vector<Hypothesis> out;
   double best = -std::numeric_limits<double>::infinity();
+  const auto fit_all = [&](std::vector<InitialGuess> guesses) {
+    for (Fit& fit : FitPoints(problem, std::move(guesses))) {
+      out.push_back({std::move(fit)});
+      Judge(problem, current, out.back());
+      best = std::max(best, out.back().score);
+    }
+  };
   for (int turn = 0; turn < kHypotheses.most_turns; ++turn) {
     double most = 0.0;
     const std::size_t from = out.size();
-    for (Fit& fit : FitPoints(problem, NextGuesses(problem, current, scored, threshold, tried, most))) {
-      out.push_back({std::move(fit)});
-      Judge(problem, current, out.back());
-      best = std::max(best, out.back().score);
-    }
-    for (Fit& fit : FitPoints(problem, OtherPlaces(problem, current, scored, std::span(out).subspan(from)))) {
-      out.push_back({std::move(fit)});
-      Judge(problem, current, out.back());
-      best = std::max(best, out.back().score);
-    }
-    for (Fit& fit : FitPoints(problem, OtherInstants(problem, current, std::span(out).subspan(from)))) {
-      out.push_back({std::move(fit)});
-      Judge(problem, current, out.back());
-      best = std::max(best, out.back().score);
-    }
+    fit_all(NextGuesses(problem, current, scored, threshold, tried, most));
+    fit_all(OtherPlaces(problem, current, scored, std::span(out).subspan(from)));
+    fit_all(OtherInstants(problem, current, std::span(out).subspan(from)));
     for (Fit& fit : FitPoints(problem, Mirrored(problem, current, scored, std::span(out).subspan(from)))) {
       Hypothesis mirrored{std::move(fit)};
       Judge(problem, current, mirrored);

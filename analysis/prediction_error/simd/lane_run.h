@@ -21,7 +21,8 @@ struct LaneSignal {
 /// How the coupling carries the wind-up d and its speed r over a sub-step under a constant difference a of
 /// the two accelerations: d' = dd d + dr r + da a, r' = rd d + rr r + ra a. The common motion takes the
 /// shares of the two inertias.
-template <class V>
+/// `Where`: nothing, or a type of one translation's own, so that none shares code with another's.
+template <class V, class Where = void>
 struct LaneFlowOf {
   V dd, dr, da, rd, rr, ra;
   V half_rd, half_rr, half_ra;  ///< of r, over half the sub-step
@@ -31,7 +32,7 @@ struct LaneFlowOf {
 using LaneFlow = LaneFlowOf<LaneValues>;
 
 /// For linearisation: what each lane is moved by, at every row anew. Lane 0 is not moved.
-template <class V>
+template <class V, class Where = void>
 struct LanePushOf {
   V start{}, w{}, drag{}, z{}, soft{}, thl{}, wl{};
   V reading{}, motor_from{}, motor_to{}, load_from{}, load_to{}, level_from{}, level_to{};
@@ -42,15 +43,15 @@ using LanePush = LanePushOf<LaneValues>;
 inline constexpr std::size_t kTangentStates = 8;
 
 /// What is a number per lane.
-template <class V>
+template <class V, class Where = void>
 struct LaneNumbersOf {
   V inv_motor, inv_load, inv_payload, half_gap;
-  LaneFlowOf<V> flow{}, flow_payload{};
+  LaneFlowOf<V, Where> flow{}, flow_payload{};
   V Fc_plus, Fc_minus, dF_plus, dF_minus, inv_vs, s0, s1, inv_vd, s2, smallest, offset, gain, saturation,
       start_z;
   V soft_level, soft_s0, rough;
   V elsewhere;  ///< share of the friction on the load that acts on the motor
-  LanePushOf<V> push;
+  LanePushOf<V, Where> push;
 };
 
 /// One bundle of runs, as the loops take it: plain arrays, nothing that the translations of the loops

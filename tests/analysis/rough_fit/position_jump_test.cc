@@ -10,11 +10,7 @@
 namespace contour::diagnosis {
 namespace {
 
-test::HiddenAxis Made() {
-  test::HiddenOptions o;
-  o.duration_s = 30.0;
-  return test::MakeHiddenAxis(o);
-}
+test::HiddenAxis Made() { return test::HiddenAxisFor(30.0); }
 
 TEST(PositionJump, AnAxisHasNone) { EXPECT_EQ(PositionJump(Made().log), ""); }
 

@@ -14,11 +14,7 @@
 namespace contour::diagnosis {
 namespace {
 
-test::HiddenAxis Made() {
-  test::HiddenOptions o;
-  o.duration_s = 30.0;
-  return test::MakeHiddenAxis(o);
-}
+test::HiddenAxis Made() { return test::HiddenAxisFor(30.0); }
 
 std::string Complaint(const test::HiddenAxis& axis) { return UnrelatedForce(axis.log, axis.stated); }
 

@@ -53,6 +53,12 @@ struct Truth {
 
 }  // namespace
 
+HiddenAxis HiddenAxisFor(double duration_s) {
+  HiddenOptions o;
+  o.duration_s = duration_s;
+  return MakeHiddenAxis(o);
+}
+
 HiddenAxis MakeHiddenAxis(const HiddenOptions& o) {
   std::mt19937_64 random(o.seed * 7919 + 17);
   std::normal_distribution<double> normal;

@@ -42,5 +42,7 @@ struct HiddenAxis {
 };
 
 HiddenAxis MakeHiddenAxis(const HiddenOptions& options);
+/// As it is by default, for so long.
+HiddenAxis HiddenAxisFor(double duration_s);
 
 }  // namespace contour::diagnosis::test
