@@ -2,7 +2,7 @@
 """clang-tidy over the real-time side, with the checks of .clang-tidy.
 
     lint.py ROOT BUILD_DIR          runs it on every source file of FOLDERS
-    lint.py ROOT BUILD_DIR --self-test   the checks named in .clang-tidy exist, and a planted error is found
+    lint.py ROOT BUILD_DIR --self-test   the checks named in .clang-tidy exist, and planted errors are found
 """
 import json
 import re
@@ -13,12 +13,14 @@ from pathlib import Path
 
 # Where a mistake moves the machine. The rest has the compiler's warnings and its tests.
 FOLDERS = ["core", "drivers/can", "drivers/cia301", "drivers/cia402", "estimator", "control", "daemon/rt"]
+# Files that are read together are headers to clang-tidy.
+LINES_OF_ALL = r"--header-filter=/(core|drivers|estimator|control|config|daemon|tools)/.*\.(h|cc)$"
 
 
 def translation_units(root, build):
     commands = json.loads(Path(build, "compile_commands.json").read_text(encoding="utf-8"))
     wanted = tuple(str(root / folder) + "/" for folder in FOLDERS)
-    return sorted({command["file"] for command in commands if command["file"].startswith(wanted)})
+    return {command["file"]: command for command in reversed(commands) if command["file"].startswith(wanted)}
 
 
 def tidy(arguments):
@@ -27,19 +29,52 @@ def tidy(arguments):
     return result.returncode, result.stdout.strip() or (result.stderr.strip() if result.returncode else "")
 
 
-def lint(root, build):
-    files = translation_units(root, build)
-    if not files:
-        return [f"no source files of {', '.join(FOLDERS)} in {build}/compile_commands.json"]
-    # What g++ knows and clang does not must not stop it.
-    flags = ["--extra-arg=-Wno-unknown-warning-option"]
-    findings = []
-    for name in files:
-        status, text = tidy(["-p", str(build), *flags, name])
+def in_file_order(folder, units):
+    return [name for name in sorted(units) if str(Path(name).parent).endswith("/" + folder)]
+
+
+def lint_together(folder, units, scratch):
+    """Findings of all files of a folder, read as one: most of the time goes into headers, which are the same for all.
+
+    Files whose own names collide with another's, or that do not compile behind another, are read in a further round.
+    """
+    findings, waiting = [], in_file_order(folder, units)
+    while waiting:
+        together, later = waiting, []
+        while True:
+            source = Path(scratch, folder.replace("/", "_") + ".cc")
+            source.write_text("".join(f'#include "{name}"\n' for name in together), encoding="utf-8")
+            entry = dict(units[together[0]], file=str(source))
+            entry["command"] = entry["command"].replace(f"-c {together[0]}", f"-c {source}")
+            Path(scratch, "compile_commands.json").write_text(json.dumps([entry]), encoding="utf-8")
+            # What g++ knows and clang does not must not stop it.
+            flags = ["-p", scratch, "--extra-arg=-Wno-unknown-warning-option", LINES_OF_ALL]
+            status, text = tidy(["--checks=-*,clang-diagnostic-*,misc-misplaced-const", *flags, str(source)])
+            blamed = set(re.findall(r"^(\S+?):\d+:\d+: error", text, re.MULTILINE)) if status else set()
+            colliding = blamed & set(together[1:])
+            if not colliding:
+                break
+            together, later = [name for name in together if name not in colliding], later + sorted(colliding)
+        status, text = tidy(["--checks=-bugprone-suspicious-include", *flags, str(source)])
         if status:
-            findings.append(text or f"{name}: clang-tidy failed")
+            findings.append(text or f"{folder}: clang-tidy failed")
+        waiting = later
+    return findings
+
+
+def lint(root, build):
+    units = translation_units(root, build)
+    if not units:
+        return [f"no source files of {', '.join(FOLDERS)} in {build}/compile_commands.json"]
+    findings, seen = [], set()
+    with tempfile.TemporaryDirectory() as scratch:
+        Path(scratch, ".clang-tidy").write_text((root / ".clang-tidy").read_text(encoding="utf-8"), encoding="utf-8")
+        for folder in sorted({str(Path(name).parent.relative_to(root)) for name in units}):
+            findings += lint_together(folder, units, scratch)
+            seen |= set(in_file_order(folder, units))
+    findings += [f"{name}: not read" for name in sorted(set(units) - seen)]
     if not findings:
-        print(f"clang-tidy is content with {len(files)} files")
+        print(f"clang-tidy is content with {len(units)} files")
     return findings
 
 
@@ -52,13 +87,24 @@ def self_test(root):
         if not re.search(r"^    \S|^all$", listing, re.MULTILINE):
             offences.append(f".clang-tidy: {pattern} matches no check")
     with tempfile.TemporaryDirectory() as folder:
-        planted = Path(folder, "planted.cc")
-        planted.write_text("int* Nothing() { return 0; }\n", encoding="utf-8")
-        status, found = tidy([f"--config-file={root}/.clang-tidy", str(planted), "--", "-std=c++20"])
-        if status == 0 or "modernize-use-nullptr" not in found:
-            offences.append(f"a planted error was not found; clang-tidy said: {found!r}")
+        Path(folder, ".clang-tidy").write_text(text, encoding="utf-8")
+        sources = {"a.cc": "namespace { int One() { return 1; } }\nint A() { return One(); }\n",
+                   "b.cc": "namespace { int One() { return 2; } }\nint* B() { return One() ? 0 : nullptr; }\n",
+                   "c.cc": "int* C() { return 0; }\n"}
+        units = {}
+        for name, source in sources.items():
+            path = Path(folder, "core", name)
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(source, encoding="utf-8")
+            units[str(path)] = {"directory": folder, "file": str(path), "command": f"c++ -std=c++20 -c {path}"}
+        found = "\n".join(lint_together("core", units, folder))
+        for name in ("b.cc:2", "c.cc:1"):
+            if not re.search(rf"{re.escape(name)}:.*modernize-use-nullptr", found):
+                offences.append(f"the error planted in {name} was not found; clang-tidy said: {found!r}")
+        if "redefinition" in found:
+            offences.append(f"files whose names collide were read together: {found!r}")
     if not offences:
-        print(f"{len(patterns)} patterns of .clang-tidy match checks; a planted error is found")
+        print(f"{len(patterns)} patterns of .clang-tidy match checks; planted errors are found")
     return offences
 
 
