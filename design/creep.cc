@@ -184,30 +184,56 @@ Creep CreepAt(const LoopAxis& a, const TwoInertiaLoop& loop, double period_s, do
   return {speed_m_s, creeping.size_m(), stopping.size_m(), resting.size_m()};
 }
 
-StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s) {
-  const double bends_m = Bends_m(axis.friction);
-  std::vector<double> speeds = SlopeSpeeds_m_s(axis);
-  speeds.push_back(kFast * axis.friction.vs_m_s);
-  StickSlip out;
+namespace {
+
+StickSlip Limits(const LoopAxis& axis) {
   const double wind_up_m = Coulomb_N(axis.friction) / axis.axis.stiffness_N_m;
+  StickSlip out;
   out.most_rest_m = kRestShare * wind_up_m;
   out.most_stop_m = kStopShare * wind_up_m;
-  for (const double off : {-axis.friction_std, 0.0, axis.friction_std}) {
-    for (const double speed_m_s : speeds) {
-      const Creep c = CreepAt(axis, loop, period_s, speed_m_s, std::max(1.0 + off, kLeastFriction));
-      // What is not a number has run away.
-      const auto size_m = [](double swing_m) {
-        return swing_m >= 0.0 ? swing_m : std::numeric_limits<double>::infinity();
-      };
-      out.rest_m = std::max(out.rest_m, size_m(c.rest_m));
-      out.stop_m = std::max(out.stop_m, size_m(c.stop_m));
-      if (size_m(c.swing_m) > out.swing_m) {
-        out.swing_m = size_m(c.swing_m);
-        out.at_m_s = speed_m_s;
-      }
-      if (size_m(c.swing_m) <= bends_m) continue;
-      out.slowest_m_s = out.Sticks() ? std::min(out.slowest_m_s, speed_m_s) : speed_m_s;
-      out.fastest_m_s = std::max(out.fastest_m_s, speed_m_s);
+  return out;
+}
+
+std::vector<double> Speeds_m_s(const LoopAxis& axis) {
+  std::vector<double> speeds = SlopeSpeeds_m_s(axis);
+  speeds.push_back(kFast * axis.friction.vs_m_s);
+  return speeds;
+}
+
+void Put(const Creep& c, double bends_m, StickSlip& out) {
+  // What is not a number has run away.
+  const auto size_m = [](double swing_m) {
+    return swing_m >= 0.0 ? swing_m : std::numeric_limits<double>::infinity();
+  };
+  out.rest_m = std::max(out.rest_m, size_m(c.rest_m));
+  out.stop_m = std::max(out.stop_m, size_m(c.stop_m));
+  if (size_m(c.swing_m) > out.swing_m) {
+    out.swing_m = size_m(c.swing_m);
+    out.at_m_s = c.speed_m_s;
+  }
+  if (size_m(c.swing_m) <= bends_m) return;
+  out.slowest_m_s = out.Sticks() ? std::min(out.slowest_m_s, c.speed_m_s) : c.speed_m_s;
+  out.fastest_m_s = std::max(out.fastest_m_s, c.speed_m_s);
+}
+
+}  // namespace
+
+StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s) {
+  StickSlip out = Limits(axis);
+  for (const double off : {-axis.friction_std, 0.0, axis.friction_std})
+    for (const double speed_m_s : Speeds_m_s(axis))
+      Put(CreepAt(axis, loop, period_s, speed_m_s, std::max(1.0 + off, kLeastFriction)),
+          Bends_m(axis.friction), out);
+  return out;
+}
+
+StickSlip RestAfterStops(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s) {
+  StickSlip out = Limits(axis);
+  for (const double off : {0.0, axis.friction_std, -axis.friction_std}) {
+    for (const double speed_m_s : Speeds_m_s(axis)) {
+      Put(CreepAt(axis, loop, period_s, speed_m_s, std::max(1.0 + off, kLeastFriction)),
+          Bends_m(axis.friction), out);
+      if (!out.ComesToRest()) return out;
     }
   }
   return out;

@@ -4,13 +4,17 @@
 
 #include "config/loop_axis.h"
 #include "core/two_inertia_loop.h"
+#include "design/loop_margins.h"
 
 namespace contour {
 
 /// Of the error under a step of force, 200 ms after it. A loop that only holds against a force bears
-/// friction's slope best, leaves the table beside its path by all that is not known of friction, and hunts
-/// too slowly for CreepAt to see.
-inline constexpr double kMostLeftCreeping = 0.1;
+/// friction's slope best, leaves the table beside its path by all that is not known of friction, and hunts,
+/// on an axis that creeps too slowly for CreepAt to see. Where nothing creeps CreepAt tells whether it hunts.
+inline constexpr double kMostLeft = 0.1;
+[[nodiscard]] inline bool TakesUp(const ForceStep& step, double tolerance = 0.0) {
+  return step.left_m <= kMostLeft * step.peak_m * (1.0 + tolerance);
+}
 
 /// What is asked of an axis after a program: that it stands so long after. Until then it may settle; what
 /// holds an axis at rest (control/standstill.h) takes the rest of a slow settling, but not of a table that
@@ -59,5 +63,8 @@ struct StickSlip {
   [[nodiscard]] bool ComesToRest() const { return Settles() && rest_m <= most_rest_m; }
 };
 StickSlip StickSlipOf(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s);
+
+/// The same, but no longer than until it is seen that the table does not come to rest: seconds, else.
+StickSlip RestAfterStops(const LoopAxis& axis, const TwoInertiaLoop& loop, double period_s);
 
 }  // namespace contour

@@ -6,6 +6,7 @@
 
 #include "config/config_error.h"
 #include "config/friction_choice.h"
+#include "design/creep.h"
 #include "design/loop_search.h"
 #include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
@@ -58,7 +59,7 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
       tuning.Visit(rounding);
       try {
         const LoopVerdict verdict = judge.Judge(DesignLoop(axis.axis, tuning, period_s, scale));
-        if (!Acceptable(verdict)) continue;
+        if (!Acceptable(verdict) || !TakesUp(verdict.step)) continue;
         const double error_m = StepError_m(verdict);
         if (!best || error_m < least_m) {
           best = tuning;
@@ -76,10 +77,16 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
   brief.evaluations_per_run = brief.evaluations_per_refinement = kPolish;
   brief.start = best;
   FoundLoop found = SearchLoop(axis, period_s, brief);
+  if (!TakesUp(found.verdict.step)) {
+    brief.most_left = kMostLeft;
+    found = SearchLoop(axis, period_s, brief);
+  }
   Writer rounding;
   found.tuning.Visit(rounding);
   found.verdict = judge.Judge(DesignLoop(axis.axis, found.tuning, period_s, scale));
-  if (Acceptable(found.verdict) && (!best || StepError_m(found.verdict) < least_m)) best = found.tuning;
+  if (Acceptable(found.verdict) && TakesUp(found.verdict.step) &&
+      (!best || StepError_m(found.verdict) < least_m))
+    best = found.tuning;
   return best;
 }
 

@@ -21,6 +21,7 @@ constexpr std::size_t kFrequenciesOfReport = 6000;
 constexpr double kStepLag_s = 4e-3;
 constexpr double kStepTime_s = 0.2;
 constexpr double kStepSettles_s = 0.01;
+constexpr double kGone = 0.1;
 // A reading is off by this much of a step of the encoder, one standard deviation.
 constexpr double kNoiseOfStep = 0.3;
 
@@ -140,6 +141,8 @@ ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, d
   ForceStep step;
   const auto periods = static_cast<int>(std::ceil(kStepTime_s / period_s));
   int settled = 0;
+  std::vector<double> errors_m;
+  errors_m.reserve(static_cast<std::size_t>(periods));
   for (int j = 0; j < periods; ++j) {
     const double time_s = (j + 0.5) * period_s;
     state = (closed * state).eval();
@@ -148,11 +151,14 @@ ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, d
     step.peak_m = std::max(step.peak_m, table_m);
     step.mean_m += table_m / periods;
     step.left_m = table_m;
+    errors_m.push_back(table_m);
     if ((j + 1) * period_s < kStepSettles_s) continue;
     step.rms_m += table_m * table_m;
     ++settled;
   }
   step.rms_m = std::sqrt(step.rms_m / std::max(1, settled));
+  while (!errors_m.empty() && errors_m.back() <= kGone * step.peak_m) errors_m.pop_back();
+  step.gone_s = static_cast<double>(errors_m.size()) * period_s;
   return step;
 }
 

@@ -38,6 +38,7 @@ struct ForceStep {
   double mean_m = 0.0;  ///< of the absolute error over 200 ms
   double rms_m = 0.0;   ///< from 10 to 200 ms after it
   double left_m = 0.0;  ///< of the error, 200 ms after it
+  double gone_s = 0.0;  ///< from then on no more than a tenth of the peak; 200 ms and more: not within them
 };
 ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, double period_s,
                          double force_N, ForcePlace place = ForcePlace::kTable);

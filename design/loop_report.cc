@@ -51,6 +51,20 @@ std::string Describe(const StickSlip& s) {
          " mm/s; with drive.mode: csp the drive's own loop follows\n";
 }
 
+std::string NotTakenUp(const ForceStep& step) {
+  return "a force is not taken up, after 200 ms the table is still off by " + Fixed(1e6 * step.left_m, 1) +
+         " of " + Fixed(1e6 * step.peak_m, 1) + " um";
+}
+
+std::string WhyNoRest(const StickSlip& s) {
+  if (s.ComesToRest()) return "";
+  if (!s.Settles())
+    return "from three seconds after a stop the table still moves by " + Fixed(1e6 * s.stop_m, 1) +
+           " um, limit " + Fixed(1e6 * s.most_stop_m, 1);
+  return "at rest the table hunts by " + Fixed(1e6 * s.rest_m, 1) + " um, limit " +
+         Fixed(1e6 * s.most_rest_m, 1);
+}
+
 /// Whether friction's slope alone is more than the limits of the axis as stated allow.
 bool SlopeForbids(const LoopAxis& axis, const LoopVerdict& creeping) {
   const WorstMember& slope = creeping.worst[static_cast<std::size_t>(MemberKind::kCreeping)];
@@ -64,8 +78,12 @@ LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double perio
   LoopReport report{LoopJudge(axis, period_s).Judge(loop),
                     MarginsOn(SlidingMember(axis), loop, period_s),
                     MarginsOn(RestingMember(axis), loop, period_s),
+                    {},
                     {}};
-  if (Acceptable(report.verdict, kRounding)) return report;
+  if (Acceptable(report.verdict, kRounding)) {
+    if (!TakesUp(report.verdict.step, kRounding)) report.after_stops = RestAfterStops(axis, loop, period_s);
+    return report;
+  }
   const LoopVerdict creeping = LoopJudge(axis, period_s, CreepingSet(axis)).Judge(loop);
   if (!SlopeForbids(axis, creeping) || !Acceptable(creeping, kRounding)) return report;
   report.verdict = creeping;
@@ -83,7 +101,11 @@ std::string Describe(const LoopReport& r) {
   }
   text += "  binding: " + Binding(r.verdict).name + "\n";
   text += "  expected error of the table under the force step: " + Fixed(1e6 * r.verdict.step.peak_m, 1) +
-          " um at most, " + Fixed(1e6 * r.verdict.step.mean_m, 1) + " um on average over 200 ms\n";
+          " um at most, " + Fixed(1e6 * r.verdict.step.mean_m, 1) + " um on average over 200 ms, " +
+          (TakesUp(r.verdict.step, kRounding)
+               ? "a tenth of it left after " + Fixed(1e3 * r.verdict.step.gone_s, 0) + " ms"
+               : "still " + Fixed(1e6 * r.verdict.step.left_m, 1) + " um after them") +
+          "\n";
   if (r.stick_slip) text += Describe(*r.stick_slip);
   return text + "  torque noise by the encoder: " + Fixed(100.0 * r.verdict.torque_noise, 2) +
          " % of rated torque\n";
@@ -105,18 +127,15 @@ std::string WhatIsWrong(const LoopVerdict& v) {
 
 std::string WhatIsWrong(const LoopReport& r) {
   const std::string wrong = WhatIsWrong(r.verdict);
-  if (!wrong.empty() || !r.stick_slip) return wrong;
-  const ForceStep& step = r.verdict.step;
-  if (step.left_m > kMostLeftCreeping * step.peak_m * (1.0 + kRounding))
-    return "a force is not taken up, after 200 ms the table is still off by " + Fixed(1e6 * step.left_m, 1) +
-           " of " + Fixed(1e6 * step.peak_m, 1) + " um: " + Binding(r.verdict).name;
-  if (r.stick_slip->ComesToRest()) return "";
-  if (!r.stick_slip->Settles())
-    return "from three seconds after a stop the table still moves by " +
-           Fixed(1e6 * r.stick_slip->stop_m, 1) + " um, limit " + Fixed(1e6 * r.stick_slip->most_stop_m, 1) +
-           ": " + Binding(r.verdict).name;
-  return "at rest the table hunts by " + Fixed(1e6 * r.stick_slip->rest_m, 1) + " um, limit " +
-         Fixed(1e6 * r.stick_slip->most_rest_m, 1) + ": " + Binding(r.verdict).name;
+  if (!wrong.empty()) return wrong;
+  if (r.after_stops) {
+    const std::string rest = WhyNoRest(*r.after_stops);
+    return rest.empty() ? "" : NotTakenUp(r.verdict.step) + ", and " + rest;
+  }
+  if (!r.stick_slip) return "";
+  const std::string why =
+      TakesUp(r.verdict.step, kRounding) ? WhyNoRest(*r.stick_slip) : NotTakenUp(r.verdict.step);
+  return why.empty() ? "" : why + ": " + Binding(r.verdict).name;
 }
 
 }  // namespace contour

@@ -16,6 +16,8 @@ struct LoopReport {
   /// Where friction leaves no margin on the whole UncertaintySet: the verdict is on CreepingSet, if that has
   /// one.
   std::optional<StickSlip> stick_slip;
+  /// Where every limit is kept and a force is not taken up: what friction makes of that after a stop.
+  std::optional<StickSlip> after_stops;
 };
 LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s);
 

@@ -15,7 +15,7 @@ constexpr double kMostPeakFarOff = 10.0;
 constexpr double kMostPeakAsStated = 3.0;
 /// A loop that only holds against a force, without taking it up, leaves the axis beside its path by all the
 /// friction that a catalogue does not know.
-constexpr double kMostLeft = 0.5;
+constexpr double kMostLeftAtStart = 0.5;
 
 std::string WhyNotCertain(const LoopVerdict& verdict) {
   LoopVerdict wide = verdict;
@@ -32,7 +32,7 @@ StartLoop FindStartLoop(const LoopAxis& axis, double period_s, int threads, cons
   LoopSearchOptions options;
   options.threads = threads;
   options.members = StartSet(axis, doubt);
-  options.most_left = kMostLeft;
+  options.most_left = kMostLeftAtStart;
   StartLoop start;
   start.found = SearchLoop(axis, period_s, options);
   start.wrong = WhyNotCertain(start.found.verdict);

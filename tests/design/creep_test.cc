@@ -53,6 +53,16 @@ TEST(StickSlipOf, SeesAnAxisThatHuntsAtRest) {
   EXPECT_GT(s.rest_m, 10.0 * s.most_rest_m);
 }
 
+// It keeps every limit of a linear axis.
+TEST(RestAfterStops, SeesALoopThatOnlyHoldsHunt) {
+  const LoopAxis axis = HeavyTable();
+  const StickSlip s = RestAfterStops(axis, Loop(axis, kHoldsOnly), kPeriod_s);
+  EXPECT_FALSE(s.ComesToRest());
+  EXPECT_GT(std::max(s.rest_m / s.most_rest_m, s.stop_m / s.most_stop_m), 2.0);
+  const LoopTuning takes_up{10.9, 2.1, 2.66, 54.9, 442.0, 171.0, 1.58, 0.627, 0.286, 1.0, 5.0};
+  EXPECT_TRUE(RestAfterStops(axis, Loop(axis, takes_up), kPeriod_s).ComesToRest());
+}
+
 // What settles for seconds does not hunt: it is looked at once it has.
 TEST(StickSlipOf, WaitsForWhatSettlesSlowly) {
   const LoopAxis axis = SoftlyHeld();

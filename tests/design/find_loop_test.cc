@@ -80,6 +80,34 @@ TEST(WhatIsWrong, NamesWhatAnAxisThatCreepsDoesAtRestAndUnderAForce) {
             "a force is not taken up, after 200 ms the table is still off by 2.0 of 10.0 um: on the slope");
 }
 
+TEST(WhatIsWrong, SaysThatALoopOnlyHoldsWhereItsTableHunts) {
+  const LoopAxis axis = HeavyTable();
+  const LoopReport report = ReportOn(axis, kHoldsOnly, kPeriod_s);
+  EXPECT_EQ(WhatIsWrong(report.verdict), "");
+  ASSERT_TRUE(report.after_stops);
+  EXPECT_TRUE(
+      WhatIsWrong(report).starts_with("a force is not taken up, after 200 ms the table is still off by "))
+      << WhatIsWrong(report);
+  ExpectHas(Describe(report), " um on average over 200 ms, still ");
+  const LoopAxis base = AxisOf("t20");
+  const LoopReport other = ReportOn(base, FindLoop(base, kPeriod_s, kShort).tuning, kPeriod_s);
+  EXPECT_FALSE(other.after_stops);
+  ExpectHas(Describe(other), " um on average over 200 ms, a tenth of it left after ");
+}
+
+// The best within the limits only holds against a force; the next search minds that.
+TEST(FindLoop, FindsOneThatTakesAForceUp) {
+  const LoopAxis axis = HeavyTable();
+  LoopSearchOptions from = kShort;
+  from.random_starts = 0;
+  from.start = kHoldsOnly;
+  EXPECT_FALSE(TakesUp(SearchLoop(axis, kPeriod_s, from).verdict.step));
+  const FoundLoop found = FindLoop(axis, kPeriod_s, from);
+  const LoopReport report = ReportOn(axis, found.tuning, kPeriod_s);
+  EXPECT_EQ(WhatIsWrong(report), "");
+  EXPECT_TRUE(TakesUp(found.verdict.step, 0.05)) << found.verdict.step.left_m;
+}
+
 TEST(FindLoop, RefusesABelt) {
   const LoopAxis axis = AxisOf("belt");
   const FoundLoop found = FindLoop(axis, kPeriod_s, kShort);
