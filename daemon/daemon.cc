@@ -24,6 +24,7 @@
 #include "daemon/lanes/slow_lane.h"
 #include "daemon/last_resort.h"
 #include "daemon/learning/program_learning.h"
+#include "daemon/loaded_model.h"
 #include "daemon/logging/logging.h"
 #include "daemon/machine_buses.h"
 #include "daemon/make_cycle_config.h"
@@ -176,6 +177,10 @@ class Daemon {
       spdlog::warn(advice);
       warnings.push_back(advice);
     }
+    for (const std::string& loaded : LoadedModelTexts(options_.models)) {
+      spdlog::warn(loaded);
+      warnings.push_back(loaded);
+    }
     if (const std::optional<std::string> wider = WiderToleranceText(machine_)) {
       spdlog::warn(*wider);
       warnings.push_back(*wider);
@@ -284,6 +289,7 @@ class Daemon {
     auto advanced = std::chrono::steady_clock::now();
     ServiceNotifier notifier;
     while (!thread.ended()) {
+      const bool was_ending = ending;
       const int signal = SignalCame(signals);
       if (signal == SIGHUP) {
         Reload(supervisor);
@@ -300,7 +306,7 @@ class Daemon {
         spdlog::info("ends and begins anew {}", Describe(*wanted_));
       }
       const auto now = std::chrono::steady_clock::now();
-      if (const std::uint64_t n = loop_->counters().cycles.load(); n != cycles || !ending) {
+      if (const std::uint64_t n = loop_->counters().cycles.load(); n != cycles || !was_ending) {
         cycles = n;
         advanced = now;
       }

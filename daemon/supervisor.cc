@@ -256,13 +256,20 @@ Answer Supervisor::ChangeMode(const std::map<std::string, std::string>& loops,
 
 /// Holding reload_.
 Answer Supervisor::BeginAnew(const std::vector<std::string>& overrides, NewStart start) {
-  if (wanted_) return {false, "contourd is about to begin anew"};
-  if (const CycleRecord now = answers_.record(); now.state != MachineState::kIdle)
-    return {false,
-            "contourd begins anew while the machine is Idle, and it is " + std::string(Name(now.state))};
+  if (wanted()) return {false, "contourd is about to begin anew"};
+  const auto busy = [this]() -> std::optional<Answer> {
+    const CycleRecord now = answers_.record();
+    if (now.state == MachineState::kIdle) return std::nullopt;
+    return Answer{
+        false, "contourd begins anew while the machine is Idle, and it is " + std::string(Name(now.state))};
+  };
+  if (std::optional<Answer> refused = busy()) return *std::move(refused);
   try {
     MakeCycleConfig(LoadMachine(ReadSource(source_.name, overrides)), controller_);
     if (parts_.checks.begin_anew) parts_.checks.begin_anew(start);
+    // The checks may have taken seconds.
+    if (std::optional<Answer> refused = busy()) return *std::move(refused);
+    const std::lock_guard lock(wanting_);
     wanted_ = std::move(start);
     return {true, ""};
   } catch (const std::exception& e) {
@@ -271,7 +278,7 @@ Answer Supervisor::BeginAnew(const std::vector<std::string>& overrides, NewStart
 }
 
 std::optional<NewStart> Supervisor::wanted() {
-  const std::lock_guard lock(reload_);
+  const std::lock_guard lock(wanting_);
   return wanted_;
 }
 

@@ -74,7 +74,7 @@ class Supervisor final : public OperatorDesk {
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
-  /// Asked by LoadModel() or ChangeMode() and not yet carried out.
+  /// Asked by LoadModel() or ChangeMode() and not yet carried out. Waits for no file and for no check.
   [[nodiscard]] std::optional<NewStart> wanted();
 
   /// The newest record.
@@ -96,8 +96,9 @@ class Supervisor final : public OperatorDesk {
   MachineSource source_;   ///< where it came from
   std::uint32_t changes_ = 0;
   std::vector<std::unique_ptr<ContourController>> controllers_;  ///< that the cycle may still hold
-  std::mutex reload_;                                            ///< SIGHUP and the socket may both ask
-  std::optional<NewStart> wanted_;                               ///< guarded by it
+  std::mutex reload_;   ///< SIGHUP and the socket may both ask; held while files are read and checked
+  std::mutex wanting_;  ///< never held for long: the main thread asks by it, and has signals to take
+  std::optional<NewStart> wanted_;  ///< guarded by wanting_
   std::string machine_name_;
   ControllerName controller_;
   std::string clock_;

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -28,6 +29,13 @@ std::string Text(const json& request, const char* key) {
   if (at == request.end() || !at->is_string())
     throw BadRequest(std::string("\"") + key + "\" must be there and be a string");
   return at->get<std::string>();
+}
+
+/// Not a name: that would be read as a file of the daemon's computer, whoever may see that.
+void RequireYamlKeys(const std::string& text, const std::string& what) {
+  const bool keys =
+      text.empty() || text.find(": ") != std::string::npos || text.find(":\n") != std::string::npos;
+  if (!keys) throw BadRequest(what + " must be keys and values as YAML, as in \"lead_mm: 5\"");
 }
 
 bool Flag(const json& request, const char* key) {
@@ -123,8 +131,15 @@ std::map<std::string, std::string> TextsOfAxes(const json& request, const char* 
   for (const auto& [axis, text] : at->items()) {
     if (!text.is_string()) throw BadRequest(name + " must have a text for each axis");
     texts[axis] = text.get<std::string>();
+    RequireYamlKeys(texts[axis], name + " of " + axis);
   }
   return texts;
+}
+
+json LoadModel(const json& request, OperatorDesk& desk) {
+  const std::string model = Text(request, "model");
+  RequireYamlKeys(model, "\"model\"");
+  return Reply(desk.LoadModel(Text(request, "axis"), model));
 }
 
 json ChangeMode(const json& request, OperatorDesk& desk) {
@@ -133,9 +148,45 @@ json ChangeMode(const json& request, OperatorDesk& desk) {
   return Reply(desk.ChangeMode(TextsOfAxes(request, "loops"), models));
 }
 
+/// Besides "request" and "id". Stop and disable are carried out whatever else is there.
+const std::map<std::string, std::set<std::string>>& KeysOfRequests() {
+  static const std::map<std::string, std::set<std::string>> keys{
+      {"status", {}},
+      {"machine_file", {}},
+      {"enable", {}},
+      {"pause", {}},
+      {"resume", {}},
+      {"feed", {"percent"}},
+      {"zero", {}},
+      {"reset", {}},
+      {"reference", {"position_mm"}},
+      {"reload", {}},
+      {"load_model", {"axis", "model"}},
+      {"torque_mode", {"loops", "models"}},
+      {"run",
+       {"name", "format", "text", "uploaded", "controller", "forget", "from_here", "single_block",
+        "optional_stop", "block_delete", "go_there", "from_line"}},
+      {"watch", {"period_ms"}},
+      {"rows", {"on"}}};
+  return keys;
+}
+
+/// A key that is misspelt would be a wish that nobody hears of.
+void RequireKnownKeys(const json& request, const std::string& kind) {
+  const auto known = KeysOfRequests().find(kind);
+  if (known == KeysOfRequests().end()) return;
+  for (const auto& [key, value] : request.items()) {
+    if (key == "request" || key == "id" || known->second.contains(key)) continue;
+    std::string allowed;
+    for (const std::string& name : known->second) allowed += ", " + name;
+    throw BadRequest("unknown key \"" + key + "\"; \"" + kind + "\" has request, id" + allowed);
+  }
+}
+
 json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscriptions,
               const std::stop_token& unwanted, std::string* uploaded) {
   const std::string kind = Text(request, "request");
+  RequireKnownKeys(request, kind);
   if (kind == "status") return {{"ok", true}, {"status", ToJson(desk.Status())}};
   if (kind == "machine_file") return {{"ok", true}, {"yaml", desk.MachineFile()}};
   if (kind == "enable") return Reply(desk.Enable(unwanted));
@@ -153,7 +204,7 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     if (answer.accepted) reply["text"] = answer.reason;
     return reply;
   }
-  if (kind == "load_model") return Reply(desk.LoadModel(Text(request, "axis"), Text(request, "model")));
+  if (kind == "load_model") return LoadModel(request, desk);
   if (kind == "torque_mode") return ChangeMode(request, desk);
   if (kind == "run") return Run(request, desk, unwanted, uploaded);
   if (kind == "watch") return Watch(request, subscriptions);
@@ -192,6 +243,20 @@ json Parse(std::string_view line) {
   return TooDeep(line) ? json(json::value_t::discarded) : json::parse(line, nullptr, false);
 }
 
+/// A key of the request itself that is there more than once; empty when none is. JSON leaves open which
+/// counts.
+std::string RepeatedKey(std::string_view line) {
+  std::set<std::string> keys;
+  std::string repeated;
+  const json::parser_callback_t look = [&](int depth, json::parse_event_t event, const json& parsed) {
+    if (event == json::parse_event_t::key && depth == 1)
+      if (const auto name = parsed.get<std::string>(); !keys.insert(name).second) repeated = name;
+    return true;
+  };
+  [[maybe_unused]] const json whole = json::parse(line, look, false);
+  return repeated;
+}
+
 json WithId(json reply, const json& request) {
   if (!request.is_object()) return reply;
   if (const auto id = request.find("id"); id != request.end() && id->is_number_integer()) reply["id"] = *id;
@@ -204,6 +269,8 @@ json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& sub
   const json request = json::parse(line, nullptr, false);
   if (request.is_discarded()) return Refusal("this line is not JSON");
   if (!request.is_object()) return Refusal("a request is a JSON object");
+  if (const std::string key = RepeatedKey(line); !key.empty())
+    return WithId(Refusal("\"" + key + "\" is there more than once"), request);
   try {
     return WithId(Dispatch(request, desk, subscriptions, unwanted, uploaded), request);
   } catch (const BadRequest& e) {

@@ -1,6 +1,7 @@
 #include "daemon/telemetry/log_writer.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -51,13 +52,25 @@ contour_lcm::log_header ToMessage(const LogHeader& header) {
   return m;
 }
 
+/// Emptied only when no other process is writing it: a second daemon that is started by mistake must not
+/// take the record of the first.
+int OpenForOneWriter(const std::filesystem::path& file) {
+  const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
+  const bool held = fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  // Devices and pipes have no length to cut.
+  if (fd >= 0 && !held && (::ftruncate(fd, 0) == 0 || errno == EINVAL)) return fd;
+  const std::string why =
+      held ? "another process is writing it; end that one or name another file" : std::strerror(errno);
+  if (fd >= 0) ::close(fd);
+  throw std::runtime_error("cannot write log " + file.string() + ": " + why);
+}
+
 }  // namespace
 
 LogWriter::LogWriter(const std::filesystem::path& file, const LogHeader& header)
     : start_unix_us_(header.start_unix_us), last_unix_us_(header.start_unix_us) {
   stats_.file = file.string();
-  fd_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd_ < 0) throw std::runtime_error("cannot write log " + file.string() + ": " + std::strerror(errno));
+  fd_ = OpenForOneWriter(file);
   Append(kHeaderChannel, EncodeChecked(ToMessage(header)), start_unix_us_);
   if (!WritePending()) {
     ::close(fd_);

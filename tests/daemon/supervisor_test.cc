@@ -114,6 +114,35 @@ TEST_F(SupervisorTest, TorqueModeIsRefusedBeforeAnythingEnds) {
   EXPECT_FALSE(supervisor_.wanted().has_value());
 }
 
+// The main thread asks what is wanted between two looks for signals, and feeds the watchdog.
+TEST_F(SupervisorTest, ACheckThatTakesLongKeepsNobodyFromAskingWhatIsWanted) {
+  std::promise<void> go_on;
+  std::promise<void> checking;
+  const auto check = [&](const NewStart&) {
+    checking.set_value();
+    go_on.get_future().wait();
+  };
+  Supervisor slow{machine_,
+                  ControllerName::kPid,
+                  "wall",
+                  {},
+                  {mailbox_, queue_, hub_, pump_, loop_, learning_, nullptr, {}, {{}, check}},
+                  ReadSource(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml", {})};
+  Publish(0, false, MachineState::kIdle);
+  auto loading = std::async(std::launch::async, [&] { return slow.LoadModel("x", ""); });
+  checking.get_future().wait();
+  auto asking = std::async(std::launch::async, [&] { return slow.wanted().has_value(); });
+  EXPECT_EQ(asking.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  // Enabled in the meantime: nobody begins anew under a machine that moves.
+  Publish(0, false, MachineState::kReady);
+  go_on.set_value();
+  EXPECT_FALSE(asking.get());
+  const Answer answer = loading.get();
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_NE(answer.reason.find("it is Ready"), std::string::npos) << answer.reason;
+  EXPECT_FALSE(slow.wanted().has_value());
+}
+
 TEST_F(SupervisorTest, AStopMakesVoidWhatTheCycleHasNotTaken) {
   auto enabling = Enable();
   while (!mailbox_.request_waiting()) std::this_thread::yield();

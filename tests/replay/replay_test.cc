@@ -205,6 +205,24 @@ TEST_F(ReplayTest, StopsWhereCyclesAreMissing) {
   EXPECT_NE(report.message.find("3 cycles are missing after cycle 299"), std::string::npos) << report.message;
 }
 
+// As on a disk that became full: the log is closed, and nothing in it follows the gap.
+TEST_F(ReplayTest, CyclesThatAreMissingAtTheEndAreMissed) {
+  {
+    EventfulRun run(Machine(), ControllerName::kFull);
+    LogWriter writer(file_, Header());
+    TelemetryEncoder encoder({}, 1000, Header().axis_names);
+    TelemetrySink* sinks[] = {&writer};
+    run.machine().SetRecorder([&](const CycleEntry& entry) { encoder.Add(entry, sinks); });
+    run.BringUp();
+    encoder.Flush(sinks);
+    writer.Lose(5, 0, "No space left on device");
+  }
+  const ReplayReport report = ReplayFile();
+  EXPECT_EQ(report.verdict, ReplayVerdict::kIncomplete);
+  EXPECT_TRUE(report.closed);
+  EXPECT_NE(report.message.find("5 cycles are missing at the end"), std::string::npos) << report.message;
+}
+
 TEST_F(ReplayTest, ALogCutShortIsTheSameUpToThere) {
   RecordShort(Header());
   const std::string whole = Content();

@@ -71,21 +71,35 @@ class RowCollector {
 
   void SetProgram(std::uint32_t id) {
     program_id_ = id;
-    for (const std::string& row : early_) record_.Add(row, id);
+    for (const std::string& row : early_) Add(row);
     early_.clear();
   }
 
   /// Waits until the row of this cycle is here.
   void Await(std::uint64_t cycle) {
     const auto deadline = std::chrono::steady_clock::now() + kLastRows;
-    while (record_.newest_cycle() < cycle && std::chrono::steady_clock::now() < deadline)
+    while (failure_.empty() && record_.newest_cycle() < cycle && std::chrono::steady_clock::now() < deadline)
       client_.Listen(kLookEvery);
   }
 
   RunRecord& record() { return record_; }
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
+  /// Why rows could not be kept; empty while they could.
+  [[nodiscard]] const std::string& failure() const { return failure_; }
 
  private:
+  /// A full disk must not end the client while the machine moves: it follows the program, without rows.
+  void Add(const std::string& row) {
+    if (!failure_.empty()) return;
+    try {
+      record_.Add(row, *program_id_);
+    } catch (const std::exception& e) {
+      failure_ = e.what();
+      std::cerr << "contour: " << failure_
+                << "; the program goes on without rows, metrics and table. An interrupt stops the machine\n";
+    }
+  }
+
   void OnMessage(const json& message) {
     if (!message.contains("rows")) return;
     lost_ = message.at("lost");
@@ -93,7 +107,7 @@ class RowCollector {
       auto row = FromBase64(text.get<std::string>());
       if (!row) throw ConnectionLost("contourd sends rows that are not base64");
       if (program_id_) {
-        record_.Add(*row, *program_id_);
+        Add(*row);
       } else {
         early_.push_back(std::move(*row));
       }
@@ -105,6 +119,7 @@ class RowCollector {
   std::optional<std::uint32_t> program_id_;
   std::vector<std::string> early_;  ///< rows that came before the program had a number
   std::uint64_t lost_ = 0;
+  std::string failure_;
 };
 
 /// Over when the machine holds again, with a reason, or has left the states in which a program can run.
@@ -332,11 +347,13 @@ int RunRun(const Options& options) {
   if (rows) rows->Await(after.at("cycle"));
   const bool ours = after.at("program").at("id") == id;
   ProgramResult result = ours ? ResultOf(after, program.name) : ProgramResult{};
-  if (rows) WriteRows(*rows, options, before, PlaceOf(reply), result);
+  const std::string failure = rows ? rows->failure() : std::string();
+  if (rows && failure.empty()) WriteRows(*rows, options, before, PlaceOf(reply), result);
   if (ours) std::cout << ResultLine(result) << "\n" << std::flush;
   const bool done = after.at("reason") == "program_end" && ours;
   if (!done) throw std::runtime_error("the program did not end by itself: " + EndSentence(after, id));
   std::cout << "done: " << program.name << "\n";
+  if (!failure.empty()) throw std::runtime_error("the program has ended, but its rows are lost: " + failure);
   return kExitDone;
 }
 

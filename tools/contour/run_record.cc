@@ -122,6 +122,8 @@ RunMetrics RunRecord::Write(const Facts& facts, std::shared_ptr<const MotionPlan
 
   CyclesFile cycles(directory_ / "cycles.csv", names, facts.cycle_us, truth.has_value());
   RunScorer scorer(std::move(plan), facts.axes);
+  if (std::fflush(rows_.get()) != 0)
+    throw std::runtime_error("cannot write to " + directory_.string() + ": " + std::strerror(errno));
   std::rewind(rows_.get());
   for (CycleEntry entry; ReadBack(entry);) {
     const CycleRecord& record = entry.output.record;

@@ -216,6 +216,11 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
   if (report.verdict == ReplayVerdict::kSame)
     report.verdict = outputs ? Judge(report.differences) : ReplayVerdict::kNoOutputs;
   // What is missing at the end may be the very thing that the log was written for.
+  if (const std::uint64_t missing = log.missing_cycles(); missing != 0 && Passed(report.verdict)) {
+    report.verdict = ReplayVerdict::kIncomplete;
+    report.message = std::to_string(missing) + " cycles are missing at the end, after cycle " +
+                     std::to_string(report.last_cycle);
+  }
   if (!report.closed && Passed(report.verdict)) {
     report.verdict = ReplayVerdict::kCutShort;
     report.message = "the log was not closed: its writer was killed, or the file cut short after cycle " +

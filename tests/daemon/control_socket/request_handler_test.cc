@@ -115,6 +115,31 @@ TEST_F(RequestHandlerTest, WhatMakesNoSenseIsAnsweredWithAnErrorAndNeverReachesT
   EXPECT_FALSE(subscriptions_.watch_period_ms);
 }
 
+TEST_F(RequestHandlerTest, AKeyThatIsUnknownOrThereTwiceIsRefused) {
+  EXPECT_NE(
+      Ask(R"({"request": "run", "name": "a", "format": "yaml", "text": "", "form_here": true})")["error"]
+          .get<std::string>()
+          .find("unknown key \"form_here\""),
+      std::string::npos);
+  EXPECT_EQ(Ask(R"({"request": "enable", "foo": 1})")["ok"], false);
+  EXPECT_EQ(Ask(R"({"request": "status", "request": "enable"})")["error"],
+            "\"request\" is there more than once");
+  EXPECT_TRUE(desk_.asked().empty());
+  // Nothing keeps anybody from stopping.
+  EXPECT_EQ(Ask(R"({"request": "stop", "foo": 1})")["ok"], true);
+  EXPECT_EQ(Ask(R"({"request": "disable", "foo": 1})")["ok"], true);
+  // The same name in two of its objects is none of the request's own.
+  EXPECT_EQ(Ask(R"({"request": "torque_mode", "loops": {"x": "a: 1"}, "models": {"x": "b: 2"}})")["ok"],
+            true);
+}
+
+TEST_F(RequestHandlerTest, AModelIsItsKeysAndNoNameOfAFile) {
+  EXPECT_EQ(Ask(R"({"request": "load_model", "axis": "x", "model": "/etc/passwd"})")["ok"], false);
+  EXPECT_TRUE(desk_.asked().empty());
+  EXPECT_EQ(Ask(R"({"request": "load_model", "axis": "x", "model": "lead_mm: 5"})")["ok"], true);
+  EXPECT_EQ(Ask(R"({"request": "load_model", "axis": "x", "model": ""})")["ok"], true);
+}
+
 TEST_F(RequestHandlerTest, TorqueModeHasALoopForEachAxisAndModelsWhereTheyAreOthers) {
   EXPECT_EQ(Ask(R"({"request": "torque_mode", "loops": {"x": "a: 1", "y": "a: 2"}, "models": {"y": "b: 3"}})")
                 ["ok"],
@@ -139,9 +164,9 @@ TEST_F(RequestHandlerTest, SurvivesNoise) {
 
 TEST_F(RequestHandlerTest, ALineOfManyLevelsIsRefusedBeforeItIsParsed) {
   // Within a text brackets are letters.
-  EXPECT_EQ(Ask(R"({"request": "status", "x": "[[[[[[[[[[\\\"[[[[[[[[[["})")["ok"], true);
-  EXPECT_EQ(Ask(R"({"request": "status", "x": [[[[[[[]]]]]]]})")["ok"], true);
-  for (const std::string& line : {std::string(R"({"request": "status", "x": [[[[[[[[]]]]]]]]})"),
+  EXPECT_EQ(Ask(R"({"request": "stop", "x": "[[[[[[[[[[\\\"[[[[[[[[[["})")["ok"], true);
+  EXPECT_EQ(Ask(R"({"request": "stop", "x": [[[[[[[]]]]]]]})")["ok"], true);
+  for (const std::string& line : {std::string(R"({"request": "stop", "x": [[[[[[[[]]]]]]]]})"),
                                   std::string(60'000, '['), "{\"a\":" + std::string(60'000, '{')}) {
     const json reply = Ask(line);
     EXPECT_EQ(reply["ok"], false);

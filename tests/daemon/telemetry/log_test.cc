@@ -254,6 +254,27 @@ TEST_F(LogTest, RefusesWhatIsNoLog) {
   EXPECT_EQ(ReadAll().error.find(file_.string()), 0u);
 }
 
+TEST_F(LogTest, ASecondWriterLeavesTheLogOfTheFirstAsItIs) {
+  const LogWriter first(file_, Header());
+  const std::string written = Content();
+  ASSERT_FALSE(written.empty());
+  try {
+    LogWriter(file_, Header());
+    ADD_FAILURE() << "the second writer was not refused";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string(e.what()).find("another process is writing it"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(Content(), written);
+}
+
+TEST_F(LogTest, TheNextWriterBeginsTheFileAnew) {
+  Write(300);
+  const std::string longer = Content();
+  Write(100);
+  EXPECT_LT(Content().size(), longer.size());
+  EXPECT_EQ(ReadAll().cycles, 100u);
+}
+
 TEST_F(LogTest, SaysWhyALogCannotBeMade) {
   try {
     LogWriter writer(directory_ / "missing" / "run.lcmlog", Header());

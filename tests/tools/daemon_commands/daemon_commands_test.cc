@@ -50,9 +50,9 @@ class DaemonCommandsTest : public ::testing::Test {
   }
   void TearDown() override { server_.reset(); }
 
-  Outcome Contour(const std::string& arguments) const {
+  Outcome Contour(const std::string& arguments, const std::string& before = "") const {
     const fs::path errors = directory_ / "stderr.txt";
-    const std::string command = std::string(CONTOUR_PROGRAM) + " " + arguments + " 2>" + errors.string();
+    const std::string command = before + CONTOUR_PROGRAM + " " + arguments + " 2>" + errors.string();
     std::FILE* pipe = ::popen(command.c_str(), "r");
     Outcome outcome;
     std::array<char, 4096> block{};
@@ -63,8 +63,8 @@ class DaemonCommandsTest : public ::testing::Test {
     outcome.errors = ReadAll(errors);
     return outcome;
   }
-  Outcome Ask(const std::string& arguments) const {
-    return Contour(arguments + " --socket " + (directory_ / "control.sock").string());
+  Outcome Ask(const std::string& arguments, const std::string& before = "") const {
+    return Contour(arguments + " --socket " + (directory_ / "control.sock").string(), before);
   }
 
   test::ScratchDirectory scratch_;
@@ -200,6 +200,20 @@ TEST_F(DaemonCommandsTest, AProgramThatFailsIsStatusOneWithTheReasonAndKeepsItsR
   EXPECT_NE(o.errors.find("axis x is further from its reference than allowed"), std::string::npos)
       << o.errors;
   EXPECT_TRUE(fs::exists(out / "cycles.csv"));
+}
+
+// Whoever is told that it failed would go near a machine that moves.
+TEST_F(DaemonCommandsTest, AFullDiskKeepsNobodyFromFollowingTheProgramToItsEnd) {
+  const fs::path out = directory_ / "out";
+  const Outcome o = Ask("run " + (directory_ / "circle.yaml").string() + " --out " + out.string(),
+                        "trap '' XFSZ; ulimit -f 64; ");
+  EXPECT_EQ(o.status, 1);
+  const std::size_t told = o.errors.find("the program goes on without rows");
+  EXPECT_NE(told, std::string::npos) << o.errors;
+  EXPECT_NE(o.out.find("done: "), std::string::npos) << "it waits for the end: " << o.out;
+  EXPECT_NE(o.errors.find("the program has ended, but its rows are lost", told), std::string::npos)
+      << o.errors;
+  EXPECT_FALSE(fs::exists(out / "metrics.json"));
 }
 
 TEST_F(DaemonCommandsTest, AProgramThatMakesNoSenseIsStatusTwo) {
