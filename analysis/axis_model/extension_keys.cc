@@ -11,14 +11,15 @@ namespace {
 struct Key {
   std::string_view ours, in_file;
 };
-constexpr std::array<Key, 8> kLinear = {{{"amplitude_Nm", "amplitude_N"},
+constexpr std::array<Key, 9> kLinear = {{{"amplitude_Nm", "amplitude_N"},
                                          {"torque_Nm", "force_N"},
                                          {"torque_at_stroke_end_Nm", "force_at_stroke_end_N"},
                                          {"torque_at_max_speed_Nm", "force_at_max_speed_N"},
                                          {"max_speed_rad_s", "max_speed_m_s"},
                                          {"knee_rad_s", "knee_m_s"},
                                          {"vs_rad_s", "vs_m_s"},
-                                         {"stiffness_Nm_rad", "stiffness_N_m"}}};
+                                         {"stiffness_Nm_rad", "stiffness_N_m"},
+                                         {"limit_Nm", "limit_N"}}};
 constexpr std::array<Key, 1> kTurning = {{{"position_mm", "position_mrad"}}};
 
 std::span<const Key> KeysOf(ExtensionUnits units) {

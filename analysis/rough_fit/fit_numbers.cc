@@ -20,6 +20,8 @@ constexpr double kFree = 1.0;
 constexpr double kMostUncertain = 0.7;
 /// Two estimates of one inertia.
 constexpr double kFarApart = 1.5;
+/// Of least squares, from where they say nothing of it.
+constexpr double kLeastSure = 0.2;
 /// [deviations; share of the level] From where two directions are not alike.
 constexpr double kSure = 4.0, kUnlike_rel = 0.1;
 constexpr FitEffort kThorough = {.most_steps = 40, .most_refreshes = 12, .close_enough = 0.1};
@@ -38,13 +40,25 @@ std::string Numbers(const StatedAxis& axis, const Problem& problem) {
   return {};
 }
 
+/// Least squares ask for no more than rows that accelerate. Where they have them and the prediction errors
+/// say nothing, these are full of what the model has not.
+std::string UnknownInertia(const StatedAxis& axis, const RoughFit& rough) {
+  const std::string known = RoundedText(100.0 * axis.sigma.at("inertia")) + " %";
+  if (!rough.why_not.empty() || rough.inertia_sigma_rel > kLeastSure)
+    return "the log says nothing of the inertia (to " + known +
+           " only): record quick reversals, with as much acceleration as the axis may have";
+  return "prediction errors say nothing of the inertia (to " + known + " only), though the log accelerates " +
+         "enough to tell it (" + RoundedText(rough.inertia) + " to " +
+         RoundedText(100.0 * rough.inertia_sigma_rel) +
+         " % by least squares): the model lacks something that goes with the motion (a ripple, a weight, a "
+         "cable); contour diagnose names it";
+}
+
 std::string Inertia(const StatedAxis& axis, const RoughFit& rough) {
-  if (axis.sigma.at("inertia") > kMostUncertain)
-    return "the log says nothing of the inertia (to " + RoundedText(100.0 * axis.sigma.at("inertia")) +
-           " % only): record quick reversals, with as much acceleration as the axis may have";
+  if (axis.sigma.at("inertia") > kMostUncertain) return UnknownInertia(axis, rough);
   const double fitted = axis.motor_inertia + axis.load_inertia;
   const double apart = fitted / rough.inertia;
-  if (!rough.why_not.empty() || rough.inertia_sigma_rel > 0.2 ||
+  if (!rough.why_not.empty() || rough.inertia_sigma_rel > kLeastSure ||
       (apart < kFarApart && apart > 1.0 / kFarApart))
     return {};
   return "two estimates of the inertia disagree, " + RoundedText(fitted) + " by prediction errors and " +
@@ -92,6 +106,11 @@ void SayUnlikeDirections(const RoughFit& rough, const StatedAxis& stated, const 
   const double apart = rough.coulomb_forth - rough.coulomb_back;
   if (std::abs(apart - as_stated) < std::max(kSure * rough.coulomb_sigma, kUnlike_rel * rough.coulomb))
     return;
+  // What is written is off by half of the difference, whatever the fit makes of it.
+  for (const char* level : {"Fc", "Fs"}) {
+    double& sigma = out.axis.sigma[level];
+    sigma = std::max(sigma, 0.5 * std::abs(apart - as_stated) / rough.coulomb);
+  }
   const std::string unit = log.linear ? " N" : " Nm";
   out.notes.push_back(
       "Forth and back differ from what the model says of them: by least squares the axis resists by " +

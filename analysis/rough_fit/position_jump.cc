@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "analysis/prediction_error/wrong_readings.h"
 #include "config/number_text.h"
 
 namespace contour::diagnosis {
@@ -41,11 +42,20 @@ std::string PositionJump(const AxisLog& log) {
   const auto told = [&](double step) {
     return log.linear ? RoundedText(1e3 * step) + " mm" : RoundedText(step) + " rad";
   };
-  return "the position jumps by " + told(steps[at]) + " from one row to the next at " +
-         RoundedText(log.period_s * static_cast<double>(at + 1)) + " s, and by no more than " +
-         told(elsewhere) +
+  return "the position jumps by " + told(steps[at]) + " from one row to the next, " +
+         RoundedText(log.period_s * static_cast<double>(at + 1)) +
+         " s after the first row, and by no more than " + told(elsewhere) +
          " anywhere else: the encoder lost its reference there, or stood still. Use what lies before it or "
          "after it";
+}
+
+std::string PositionJump(std::span<const AxisLog> logs, const StatedAxis& stated) {
+  for (const AxisLog& log : logs) {
+    AxisLog sound = log;
+    TakeOutWrongReadings(sound, stated.position_step);
+    if (const std::string why = PositionJump(sound); !why.empty()) return log.source + ": " + why;
+  }
+  return {};
 }
 
 }  // namespace contour::diagnosis

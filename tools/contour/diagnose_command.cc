@@ -73,6 +73,7 @@ AxisLog ReadLogs(const Options& options, const StatedAxis& stated) {
                          " axis, " + options.model + " states a " + (stated.linear ? "linear" : "rotary") +
                          " one"});
   }
+  if (const std::string why = PositionJump(logs, stated); !why.empty()) throw ConfigError({why});
   return JoinLogs(std::move(logs));
 }
 
@@ -144,7 +145,6 @@ int RunDiagnose(const Options& options) {
   const std::vector<std::string> assumed = CompleteFromLog(log, stated);
   if (const std::string why = WrongUnits(log, stated); !why.empty())
     throw ConfigError({log.source + ": " + why});
-  if (const std::string why = PositionJump(log); !why.empty()) throw ConfigError({log.source + ": " + why});
   if (const std::string why = UnrelatedForce(log, stated); !why.empty())
     throw ConfigError({log.source + ": " + why});
   Diagnosis found;

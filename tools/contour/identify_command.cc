@@ -14,6 +14,7 @@
 #include "analysis/parallel/parallel_for.h"
 #include "analysis/recording/read_log.h"
 #include "analysis/rough_fit/fit_numbers.h"
+#include "analysis/rough_fit/position_jump.h"
 #include "analysis/rough_fit/sound_logs.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
@@ -63,8 +64,11 @@ int IdentifyAlone(const Options& options, const diagnosis::StatedAxis& stated) {
   diagnosis::LooseAxisFile file = diagnosis::ReadLooseFile(tree);
   const YamlEntry* model = tree.Find("model");
   const auto units = diagnosis::UnitsOf(model != nullptr ? model->value : tree);
-  const diagnosis::AxisLog log =
-      diagnosis::JoinLogs(LogsOf(options, ReadingOf(options, options.axis, stated), stated.linear));
+  std::vector<diagnosis::AxisLog> logs =
+      LogsOf(options, ReadingOf(options, options.axis, stated), stated.linear);
+  if (const std::string why = diagnosis::PositionJump(logs, stated); !why.empty())
+    throw std::runtime_error("no model was written: " + why);
+  const diagnosis::AxisLog log = diagnosis::JoinLogs(std::move(logs));
   const diagnosis::FittedNumbers found = diagnosis::FitNumbers(log, stated, ThreadsOf(options.threads));
   if (!found.unusable.empty()) throw std::runtime_error("no model was written: " + found.unusable);
   diagnosis::IntoConfig(found.axis, file);

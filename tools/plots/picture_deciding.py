@@ -109,7 +109,8 @@ def deciding(pyplot, f):
         bins, middle = sorted_into(np.nan_to_num(x), good)
         measured, fitted = means(bins, residual, good)[0], means(bins, change, good)[0]
         error = 2.0 * error_of_visits(bins, left, good)
-        panel.errorbar(middle, measured, yerr=error, fmt=".", color=colour, markersize=4, linewidth=0.7, alpha=0.75,
+        # What was visited once has no error of its own.
+        panel.errorbar(middle, measured, yerr=np.nan_to_num(error), fmt=".", color=colour, markersize=4, linewidth=0.7, alpha=0.75,
                        label=f"{side}: residual, ±2σ")
         panel.plot(middle, fitted, color=colour, linewidth=2.0, label=f"{side}: fitted")
         band = 2.0 * spread * np.abs(fitted)
@@ -118,5 +119,6 @@ def deciding(pyplot, f):
     panel.set_xlabel(label)
     panel.set_ylabel(f"{'scale minus model' if at_scale(f) else 'residual ' + f.effort} ({unit})")
     panel.set_title(f"{100 * share:.0f} % of what the extension explains goes with this", fontsize=10)
-    panel.legend(ncol=2, fontsize=8)
+    if panel.get_legend_handles_labels()[0]:
+        panel.legend(ncol=2, fontsize=8)
     return figure

@@ -93,6 +93,12 @@ def binned(x, y, count=60):
     return tuple(np.insert(a, gaps, np.nan) for a in (mean, value, error))
 
 
+def stretches(x):
+    """Slices of what lies between the places that are no number."""
+    ends = [-1, *np.flatnonzero(np.isnan(x)), len(x)]
+    return [slice(a + 1, b) for a, b in zip(ends, ends[1:]) if b > a + 1]
+
+
 def against(pyplot, f):
     """Residual against what may explain it, forward and backward apart: above before, below after."""
     columns = []
@@ -116,16 +122,17 @@ def against(pyplot, f):
                 if points is None:
                     continue
                 cx, cy, se = points
-                panel.fill_between(cx, cy - 2 * se, cy + 2 * se, color=colour, alpha=0.25, linewidth=0)
+                for part in stretches(cx):
+                    panel.fill_between(cx[part], (cy - 2 * se)[part], (cy + 2 * se)[part], color=colour, alpha=0.25, linewidth=0)
                 panel.plot(cx, cy, color=colour, linewidth=1.2, marker=".", markersize=3, label=side)
                 reach = max(reach, float(np.nanmax(np.abs(cy) + 2 * se)))
             panel.axhline(0, color=style.QUIET, linewidth=0.8)
             if row == 1:
                 panel.set_xlabel(label)
         panels[row][0].set_ylabel(f"{words}: residual ({f.unit})")
-    for panel in panels.flat:
-        panel.set_ylim(-1.15 * reach, 1.15 * reach)
-    panels[0][0].legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncol=2)
+    if reach > 0.0:
+        panels[0][0].set_ylim(-1.15 * reach, 1.15 * reach)
+        panels[0][0].legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncol=2)
     return figure
 
 

@@ -11,6 +11,7 @@
 #include "analysis/diagnosis/decision/base_there.h"
 #include "analysis/diagnosis/decision/guesses.h"
 #include "analysis/diagnosis/decision/instants.h"
+#include "analysis/diagnosis/decision/long_delays.h"
 #include "analysis/diagnosis/decision/tested_score.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
@@ -147,12 +148,14 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
       best = std::max(best, out.back().score);
     }
   };
+  const bool first = tried.empty();
   for (int turn = 0; turn < kHypotheses.most_turns; ++turn) {
     double most = 0.0;
     const std::size_t from = out.size();
     fit_all(NextGuesses(problem, current, scored, threshold, tried, most));
     fit_all(OtherPlaces(problem, current, scored, std::span(out).subspan(from)));
     fit_all(OtherInstants(problem, current, std::span(out).subspan(from)));
+    if (first && turn == 0 && !out.empty()) fit_all(LongDelays(problem, current, scored, threshold, out));
     for (Fit& fit : FitPoints(problem, Mirrored(problem, current, scored, std::span(out).subspan(from)))) {
       Hypothesis mirrored{std::move(fit)};
       Judge(problem, current, mirrored);

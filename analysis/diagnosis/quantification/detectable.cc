@@ -55,8 +55,12 @@ struct Detectable {
 std::optional<Detectable> Middle(const Problem& problem, const ScoreThreshold& threshold,
                                  std::span<const Scored> scored, const std::string& kind) {
   std::vector<std::pair<double, const Scored*>> shapes;
+  // What is far from linear is no measure of a kind of which a small size shows, too.
+  const bool small_shows = std::any_of(scored.begin(), scored.end(), [&](const Scored& s) {
+    return s.effect->kind == kind && s.effect->start.empty();
+  });
   for (const Scored& s : scored) {
-    if (s.effect->kind != kind) continue;
+    if (s.effect->kind != kind || (small_shows && !s.effect->start.empty())) continue;
     const auto longer = [&](const Scored& other) { return other.effect->shorter == s.effect; };
     if (std::any_of(scored.begin(), scored.end(), longer)) continue;
     double least = LinearSize(problem, threshold, s);

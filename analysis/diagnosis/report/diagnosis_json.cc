@@ -3,6 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "analysis/axis_model/extension_keys.h"
+#include "analysis/diagnosis/report/diagnosis_text.h"
+
 namespace contour::diagnosis {
 namespace {
 
@@ -17,10 +20,11 @@ Json ContourJson(const ContourGain& c) {
           {"gain", Number(c.gain())}};
 }
 
-Json CauseJson(const Cause& cause) {
+Json CauseJson(const Cause& cause, ExtensionUnits units) {
   Json parameters = Json::object();
   for (const auto& [name, p] : cause.parameters)
-    parameters[name] = {{"value", Number(p.value)}, {"ci95", {Number(p.low), Number(p.high)}}};
+    parameters[RenamedToFile(units, name)] = {{"value", Number(p.value)},
+                                              {"ci95", {Number(p.low), Number(p.high)}}};
   return {{"kind", cause.kind},
           {"part_of_it", cause.part_of_it},
           {"parameters", parameters},
@@ -70,12 +74,13 @@ std::string VerdictName(Verdict verdict) {
 
 std::string DiagnosisJson(const Diagnosis& d, const std::string& extended_model,
                           const std::optional<ContourGain>& contour) {
+  const ExtensionUnits units = UnitsIn(d);
   Json causes = Json::array();
-  for (const Cause& cause : d.causes) causes.push_back(CauseJson(cause));
+  for (const Cause& cause : d.causes) causes.push_back(CauseJson(cause, units));
   Json detectable = Json::object();
   for (const auto& [kind, sizes] : d.smallest_detectable) {
     detectable[kind] = Json::object();
-    for (const auto& [name, size] : sizes) detectable[kind][name] = Number(size);
+    for (const auto& [name, size] : sizes) detectable[kind][RenamedToFile(units, name)] = Number(size);
   }
   const Json json = {{"verdict", VerdictName(d.verdict)},
                      {"causes", causes},

@@ -32,7 +32,7 @@ std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, cons
   };
   std::size_t small = 0;
   for (const Scored& s : scored) {
-    if (s.effect->kind != kind) continue;
+    if (s.effect->kind != kind || s.effect->start.empty()) continue;
     for (int i = 0; i < kScreening.grid_sizes; ++i) add(s.effect, std::exp2(-2.0 * i) * s.effect->start[0]);
     // Small ones from where the score test would have them.
     if (small >= kHypotheses.most_kinds || InBase(problem, kind) || s.amplitude(0) <= 0.0) continue;
@@ -90,8 +90,7 @@ Fit OnExcerpt(const Problem& problem, const Fit& fit) {
 
 /// The best by the excerpt; of couplings, as many again of those that every screw has.
 std::vector<Point> Shortlist(const Problem& problem, const Fit& current, std::vector<Point> points) {
-  std::vector<GridPoint> points_of_grid =
-      Costs(problem, OnExcerpt(problem, current), std::move(points), Extent::kExcerpt);
+  std::vector<GridPoint> points_of_grid = RoughCosts(problem, current, std::move(points));
   std::stable_sort(points_of_grid.begin(), points_of_grid.end(),
                    [](const GridPoint& a, const GridPoint& b) { return a.cost < b.cost; });
   const auto stiff = [&](const GridPoint& p) { return p.point.effects.back()->order > NoFault_Hz(problem); };
@@ -105,6 +104,11 @@ std::vector<Point> Shortlist(const Problem& problem, const Fit& current, std::ve
 }
 
 }  // namespace
+
+std::vector<GridPoint> RoughCosts(const Problem& problem, const Fit& around, std::vector<Point> points) {
+  if (problem.excerpt.empty()) return Costs(problem, around, std::move(points), Extent::kWhole);
+  return Costs(problem, OnExcerpt(problem, around), std::move(points), Extent::kExcerpt);
+}
 
 std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
                                 const std::vector<Scored>& scored) {

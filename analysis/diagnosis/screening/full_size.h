@@ -20,4 +20,7 @@ struct GridPoint {
 std::vector<GridPoint> FullSize(const Problem& problem, const Fit& current, const std::string& kind,
                                 const std::vector<Scored>& scored);
 
+/// Of points next to a fit that have a cost: from an excerpt of the log, where that stands for the whole.
+std::vector<GridPoint> RoughCosts(const Problem& problem, const Fit& around, std::vector<Point> points);
+
 }  // namespace contour::diagnosis

@@ -65,6 +65,34 @@ TEST(Diagnose, FindsNothingOnACleanAxis) {
   EXPECT_FALSE(d.smallest_detectable.empty());
 }
 
+// Before: of a drive without a stated delay fits began at none, and a coupling was told that is not there.
+TEST(Diagnose, NamesADelayOfManyRows) {
+  test::HiddenOptions o = Hidden(7, {{"input_delay", 5.0, 0.0, 0.0, 0.0}});
+  o.duration_s = 20.0;
+  o.scale = o.temperature = o.axis2 = false;
+  test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  axis.stated.delay_s = axis.stated.lag_s = 0.0;
+  const Diagnosis d = Diagnose(axis.log, axis.stated);
+  ASSERT_FALSE(d.causes.empty());
+  EXPECT_EQ(d.causes[0].kind, "input_delay");
+  // A millisecond of delay and 0.2 of lag, which nobody stated, are there, too.
+  EXPECT_NEAR(d.causes[0].parameters.at("delay_us").value, 6200.0, 300.0);
+}
+
+// Before: "nothing was found"; the rows in which the axis did not follow counted less, and nothing looked
+// for a limit in them.
+TEST(Diagnose, NamesALimitOfTheTorque) {
+  test::HiddenOptions o = Hidden(7, {{"torque_limit", 0.5, 0.0, 0.0, 0.0}});
+  o.duration_s = 20.0;
+  o.scale = o.temperature = o.axis2 = false;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Diagnosis d = Diagnose(axis.log, axis.stated);
+  ASSERT_FALSE(d.causes.empty());
+  EXPECT_EQ(d.causes[0].kind, "torque_saturation");
+  ASSERT_TRUE(d.causes[0].parameters.contains("limit_Nm"));
+  EXPECT_NEAR(d.causes[0].parameters.at("limit_Nm").value, 0.32, 0.01);
+}
+
 TEST(Diagnose, ATorqueConstantThatNobodyStatedIsNotOff) {
   test::HiddenOptions o = Hidden(7, {});
   o.duration_s = 10.0;

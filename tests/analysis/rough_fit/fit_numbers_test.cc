@@ -37,18 +37,23 @@ TEST(FitNumbers, FindsThemFromAModelThatIsFarOff) {
   EXPECT_LT(found.axis.sigma.at("inertia"), 0.05);
 }
 
-// Before: a level for both directions, stated to 0.1 %, and no word.
+// Before: a level for both directions, stated to 0.1 %, and no word; later the word, and still 0.1 %.
 TEST(FitNumbers, SaysWhereDirectionsAreNotAsStated) {
   test::HiddenAxis axis = Made();
-  const auto says = [](const test::HiddenAxis& of) {
+  double sigma = 0.0;
+  const auto says = [&](const test::HiddenAxis& of) {
     const FittedNumbers found = FitNumbers(of.log, of.stated, 1);
+    sigma = found.axis.sigma.at("Fc");
     return std::any_of(found.notes.begin(), found.notes.end(), [](const std::string& n) {
       return n.find("Forth and back differ") != std::string::npos;
     });
   };
   EXPECT_FALSE(says(axis));
+  EXPECT_LT(sigma, 0.05);
   for (double& u : axis.log.command) u += 0.3 * axis.stated.friction.Fc_plus;
   EXPECT_TRUE(says(axis));
+  // The levels are off by as much as the force that acts in both.
+  EXPECT_NEAR(sigma, 0.3, 0.05);
 }
 
 TEST(FitNumbers, RefusesForcesOfAnotherAxis) {

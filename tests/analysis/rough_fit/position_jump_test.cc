@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "tests/analysis/support/hidden_axis.h"
 
@@ -20,13 +21,28 @@ TEST(PositionJump, AReferenceThatIsLostIsOne) {
   const std::size_t at = axis.log.size() / 3;
   for (std::size_t k = at; k < axis.log.size(); ++k) axis.log.position[k] += 5.0;
   const std::string text = PositionJump(axis.log);
-  EXPECT_NE(text.find("at 10 s"), std::string::npos) << text;
+  EXPECT_NE(text.find(" 10 s after the first row"), std::string::npos) << text;
+}
+
+// Before: at 40.5 s, which is in neither file.
+TEST(PositionJump, OfSeveralFilesIsToldInItsOwn) {
+  test::HiddenAxis made = Made();
+  std::vector<AxisLog> logs = {made.log, made.log};
+  logs[0].source = "first.csv";
+  logs[1].source = "second.csv";
+  logs[0].position[5000] += 5.0;  // a single wrong reading is none
+  EXPECT_EQ(PositionJump(logs, made.stated), "");
+  for (std::size_t k = logs[1].size() / 3; k < logs[1].size(); ++k) logs[1].position[k] += 5.0;
+  const std::string text = PositionJump(logs, made.stated);
+  EXPECT_TRUE(text.starts_with("second.csv: the position jumps")) << text;
+  EXPECT_NE(text.find(" 10 s after the first row"), std::string::npos) << text;
 }
 
 TEST(PositionJump, OneThatComesBackIsSeenToo) {
   test::HiddenAxis axis = Made();
   for (std::size_t k = axis.log.size() / 3; k < axis.log.size() / 2; ++k) axis.log.position[k] += 5.0;
-  EXPECT_NE(PositionJump(axis.log).find("at 10 s"), std::string::npos) << PositionJump(axis.log);
+  EXPECT_NE(PositionJump(axis.log).find(" 10 s after the first row"), std::string::npos)
+      << PositionJump(axis.log);
 }
 
 // Rows of 20 ms: it takes five of them, and creeps everywhere else.

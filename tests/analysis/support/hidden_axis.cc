@@ -247,6 +247,7 @@ HiddenAxis MakeHiddenAxis(const HiddenOptions& o) {
           level += e.size * done;
         }
         if (e.kind == "torque_saturation") torque *= 1.0 - e.size * std::pow(torque / s.rated, 2);
+        if (e.kind == "torque_limit") torque = std::clamp(torque, -e.size * s.rated, e.size * s.rated);
         if (e.kind == "payload_step" && now > e.extra * o.duration_s) payload = e.size * total;
         if (e.kind == "cross_coupling") at_load += e.size * f.Fc_plus * motion.axis2_m_s2[k] / 3.0;
         if (e.kind == "load_friction") {

@@ -14,7 +14,8 @@
 namespace contour::diagnosis::test {
 
 struct HiddenEffect {
-  std::string kind;   ///< a cause, or one outside the catalogue: torque_ripple, push, friction_step
+  std::string
+      kind;  ///< a cause, or one outside the catalogue: torque_ripple, torque_limit, push, friction_step
   double size = 0.0;  ///< main parameter, in units of MakeSize()
   double order = 0.0, phase = 0.0, extra = 0.0;
 };

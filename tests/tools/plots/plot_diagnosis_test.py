@@ -15,14 +15,14 @@ import numpy as np
 ROOT = Path(sys.argv[1]).resolve()
 
 
-def write_finding(directory, temperature=True, causes=True):
-    """A made-up axis with a ripple of 12 periods per turn that a second model knows."""
+def write_finding(directory, temperature=True, causes=True, of_time=False):
+    """A made-up axis with a ripple of 12 periods per turn, or a force of time, that a second model knows."""
     random = np.random.default_rng(1)
     time = np.arange(20000) * 1e-3
     position = 40 * np.sin(2 * np.pi * 0.1 * time)  # rad
     velocity = np.gradient(position, 1e-3)
     noise = 0.002 * random.standard_normal(len(time))
-    ripple = 0.01 * np.sin(12 * position)
+    ripple = 0.01 * np.sin(0.3 * time) if of_time else 0.01 * np.sin(12 * position)
     model = 0.03 * np.sign(velocity) + 1e-4 * velocity
     signals = {"time_s": time, "position": position, "velocity": velocity, "acceleration": np.gradient(velocity, 1e-3),
                "measured": model + ripple + noise, "simulated_before": model, "simulated_after": model + ripple,
@@ -53,7 +53,7 @@ def write_finding(directory, temperature=True, causes=True):
 
 
 def draw(directory):
-    return subprocess.run([sys.executable, ROOT / "tools/plots/plot_diagnosis.py", directory], capture_output=True, text=True)
+    return subprocess.run([sys.executable, "-W", "error::UserWarning", ROOT / "tools/plots/plot_diagnosis.py", directory], capture_output=True, text=True)
 
 
 class Report(unittest.TestCase):
@@ -79,6 +79,14 @@ class Report(unittest.TestCase):
             done = draw(name)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertIn("Nothing was found.", (Path(name) / "report.html").read_text(encoding="utf-8"))
+
+    # Before: "UserWarning: converting a masked element to nan", on the user's terminal.
+    def test_what_was_visited_once_is_drawn_without_a_warning(self):
+        with tempfile.TemporaryDirectory() as name:
+            write_finding(Path(name), of_time=True)
+            done = draw(name)
+            self.assertEqual(done.stderr, "")
+            self.assertEqual(done.returncode, 0)
 
     def test_no_data_is_said(self):
         with tempfile.TemporaryDirectory() as name:

@@ -1,5 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "tests/analysis/support/cause_checks.h"
 
@@ -48,6 +53,39 @@ TEST(TorqueSaturation, ATorqueThatGrowsWithCurrentIsImplausible) {
   const auto implausible = *CauseNamed(kKind).implausible;
   EXPECT_TRUE(implausible(axis.problem, *e, {-0.018}));
   EXPECT_FALSE(implausible(axis.problem, *e, {0.018}));
+}
+
+/// Asked for 0.5 Nm by turns, of which the motion needs what a limit leaves; the effects that come of it.
+std::vector<SharedEffect> WithALimitOf(double limit, test::KnownAxis& axis) {
+  for (std::size_t k = 0; k < test::KnownAxis::kRows; ++k) {
+    axis.log.command[k] = 0.5 * std::sin(0.016 * static_cast<double>(k));
+    axis.problem.signals->model_torque[k] = std::clamp(axis.log.command[k], -limit, limit);
+  }
+  return test::GridOf(axis, kKind);
+}
+
+TEST(TorqueSaturation, ALimitBeginsWhereTheMotionNeedsNoMoreWhateverIsAsked) {
+  test::KnownAxis axis;
+  axis.log.command.assign(test::KnownAxis::kRows, 0.0);
+  const std::vector<SharedEffect> grid = WithALimitOf(0.4, axis);
+  ASSERT_EQ(grid.size(), 2U);
+  const double limit = 1.0 / grid[1]->start[0];
+  EXPECT_NEAR(limit, 0.4, 0.02);
+  // At its top 0.5 Nm are asked for: what is beyond the limit is not given.
+  const std::size_t top = 98;
+  EXPECT_NEAR(test::MeanOverRow(test::With(axis, grid[1], {2.5}).motor_force, top), -0.1, 1e-3);
+  EXPECT_EQ(test::With(axis, grid[1], {0.0}).motor_force, nullptr);
+  EXPECT_EQ(test::Told(axis, grid[1], {2.5}), (NamedValues{{"limit_Nm", 0.4}}));
+  // One that was never asked for is none.
+  const auto implausible = *CauseNamed(kKind).implausible;
+  EXPECT_TRUE(implausible(axis.problem, *grid[1], {1.9}));
+  EXPECT_FALSE(implausible(axis.problem, *grid[1], {2.5}));
+}
+
+TEST(TorqueSaturation, NoLimitIsLookedForWhereTheMotionNeedsWhatIsAsked) {
+  test::KnownAxis axis;
+  axis.log.command.assign(test::KnownAxis::kRows, 0.0);
+  EXPECT_EQ(WithALimitOf(1.0, axis).size(), 1U);
 }
 
 TEST(TorqueSaturation, NoModelIsExtendedByItAndPulsesDecide) {

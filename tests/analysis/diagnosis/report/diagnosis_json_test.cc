@@ -33,6 +33,20 @@ TEST(DiagnosisJson, JsonHasTheKeysOfTheInterface) {
   EXPECT_EQ(json["extended_model"], "out/model.yaml");
 }
 
+// Before: a linear axis had stiffness_Nm_rad, with a number in N/m.
+TEST(DiagnosisJson, KeysOfALinearAxisAreInItsUnits) {
+  Diagnosis d = Example();
+  d.fitted.emplace();
+  d.fitted->linear = true;
+  d.causes[0].parameters["stiffness_Nm_rad"] = {4e6, 3e6, 5e6};
+  const auto json = nlohmann::json::parse(DiagnosisJson(d, ""));
+  const auto& told = json["causes"][0]["parameters"];
+  EXPECT_EQ(told["stiffness_N_m"]["value"], 4e6);
+  EXPECT_EQ(told["amplitude_N"]["value"], 0.0191);
+  EXPECT_FALSE(told.contains("stiffness_Nm_rad"));
+  EXPECT_EQ(json["smallest_detectable"]["cogging"]["amplitude_N"], 0.001);
+}
+
 TEST(DiagnosisJson, WithoutAnExtendedModelAndAContourThereIsNull) {
   const auto json = nlohmann::json::parse(DiagnosisJson(Example(), ""));
   EXPECT_TRUE(json["extended_model"].is_null());
