@@ -63,15 +63,16 @@ void TogetherPlan::At(double time_s, PerAxis<ReferencePoint>& axes) const {
 }
 
 double TogetherPlan::Distance_m(const PerAxis<double>& point_m) const {
-  // Every axis has its own path: the figure they draw together is the box of all of them.
+  // Every part has a figure of its own in its own axes: what they draw together is the product of all of
+  // them.
   PerAxis<ReferencePoint> at_rest;
   At(0.0, at_rest);
   double squared = 0.0;
-  for (std::size_t axis = 0; axis < point_m.size(); ++axis) {
-    PerAxis<double> on_this_axis;
-    for (const ReferencePoint& p : at_rest) on_this_axis.push_back(p.position_m);
-    on_this_axis[axis] = point_m[axis];
-    squared += std::pow(plans_[mover_[axis]]->Distance_m(on_this_axis), 2);
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    PerAxis<double> on_its_axes = point_m;
+    for (std::size_t axis = 0; axis < point_m.size(); ++axis)
+      if (mover_[axis] != i) on_its_axes[axis] = at_rest[axis].position_m;
+    squared += std::pow(plans_[i]->Distance_m(on_its_axes), 2);
   }
   return std::sqrt(squared);
 }

@@ -177,6 +177,34 @@ TEST(CombinedPlans, TogetherMovesEachAxisByItsOwnPart) {
             std::string::npos);
 }
 
+TEST(CombinedPlans, DistanceOfWhatRunsTogetherIsThatOfEachFigureInItsAxes) {
+  PerAxis<PlanLimits> limits = testing::TableLimits();
+  for (const char* axis : {"z", "u", "w"}) {
+    limits.push_back(limits[0]);
+    limits[limits.size() - 1].axis = axis;
+  }
+  const PerAxis<double> start(limits.size());
+  const auto plan =
+      PlanMotion(Yaml("together:\n  - {shape: circle, radius_mm: 5, feed_mm_min: 2000, axes: [x, y]}\n"
+                      "  - {sequence: [{shape: creep, axis: z, stroke_mm: 3, velocities_mm_s: [20]}, "
+                      "{shape: creep, axis: u, stroke_mm: 4, velocities_mm_s: [20]}]}\n"),
+                 start, limits);
+  for (double t = 0.0; t < plan->duration_s(); t += 0.01) {
+    PerAxis<ReferencePoint> at;
+    plan->At(t, at);
+    PerAxis<double> place_m;
+    for (const ReferencePoint& p : at) place_m.push_back(p.position_m);
+    ASSERT_LT(plan->Distance_m(place_m), 1e-12) << t;
+    // The axis that nothing moves, away from where it stands.
+    place_m[4] += 4e-6;
+    ASSERT_NEAR(plan->Distance_m(place_m), 4e-6, 1e-12) << t;
+    // Away from the circle, along its radius from the centre that it turns about.
+    const double centre_m[2] = {-0.005, 0.0};
+    for (std::size_t i = 0; i < 2; ++i) place_m[i] += 3e-6 * (place_m[i] - centre_m[i]) / 0.005;
+    ASSERT_NEAR(plan->Distance_m(place_m), 5e-6, 1e-12) << t;
+  }
+}
+
 TEST(CombinedPlans, ReversalsReachEveryAmplitude) {
   const auto plan =
       PlanOf(Yaml("{shape: reversals, axis: x, amplitudes_mm: [0.001, 0.1, 2], frequency_hz: 2, cycles: 3}"));
