@@ -1,11 +1,13 @@
 #include "config/plausible_limits.h"
 
 #include <charconv>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "config/number_text.h"
 #include "config/stopping.h"
+#include "core/path_room.h"
 
 namespace contour {
 namespace {
@@ -105,6 +107,26 @@ std::optional<int> TimeToLive(const std::string& url) {
   return std::nullopt;
 }
 
+/// The cycle keeps so many points of the path, and has to come to rest on those.
+void PathStops(const std::string& key, const AxisLimits& limits, double period_s, Problems& problems) {
+  const double most_s = kMostRamp_periods * period_s;
+  const double steep_s = 1.5 * limits.velocity_mm_s / limits.acceleration_mm_s2;
+  const double bent_s = std::sqrt(6.0 * limits.velocity_mm_s / limits.jerk_mm_s3);
+  const bool jerk = bent_s > steep_s;
+  const double takes_s = jerk ? bent_s : steep_s;
+  if (takes_s <= most_s) return;
+  const double share = takes_s / most_s;
+  problems.push_back(
+      {key + ".limits." + (jerk ? "jerk_mm_s3" : "acceleration_mm_s2"),
+       "found " + RoundedText(jerk ? limits.jerk_mm_s3 : limits.acceleration_mm_s2) +
+           ", with which a stop on the path from " + RoundedText(limits.velocity_mm_s) + " mm/s takes " +
+           RoundedText(takes_s) + " s, expected at least " +
+           RoundedText(jerk ? limits.jerk_mm_s3 * share * share : limits.acceleration_mm_s2 * share) + ": " +
+           RoundedText(most_s) +
+           " s are what the cycle keeps points of the path for; a lower velocity_mm_s or a longer "
+           "machine.cycle_us would do, too"});
+}
+
 }  // namespace
 
 std::vector<ConfigProblem> ImplausibleLimits(const MachineConfig& machine, const std::string& axis) {
@@ -117,6 +139,7 @@ std::vector<ConfigProblem> ImplausibleLimits(const MachineConfig& machine, const
   const StoppingAxis s = ToStoppingAxis(machine, config);
   Distances(key, limits, stroke_mm, problems);
   Counts(key, config, problems);
+  PathStops(key, limits, s.period_s, problems);
   Deadlines(key, config.drive,
             s.ramp_m_s2 > 0.0
                 ? 1e3 * QuickStop(s, machine.control.guard.overspeed_factor * s.speed_m_s, 0.0).time_s

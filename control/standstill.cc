@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace contour {
 namespace {
@@ -30,20 +31,52 @@ constexpr double kSettles_s = 0.05;
 constexpr double kWatch_s = 0.07;
 // Means of error and force: over some periods of what the loop steps to and fro by.
 constexpr double kMean_s = 0.01;
-// From one step of torque to the next: some periods of an axis on its bristles (10 to 40 Hz).
+// From one step of torque to the next: some periods of an axis on its bristles, two at least. What a ramp
+// leaves ringing is then a fifth of what a step does, where their stiffness is off by half.
 constexpr double kRamp_s = 0.1;
+constexpr double kRampSwings = 2.0;
 
 int Cycles(double time_s, double period_s) noexcept {
   return std::max(1, static_cast<int>(std::lround(time_s / period_s)));
 }
 
+double LoopStiffness_N_m(const RestingAxis& a) noexcept {
+  const double regulator_1_s = 2.0 * std::numbers::pi * a.regulator_Hz;
+  return a.mass_kg * regulator_1_s * regulator_1_s;
+}
+
+// What the bristles alone take to damp a swing to a third. Not all of a ring is gone by the next correction,
+// but then it does not build up.
+bool RingsOn(const RestingAxis& a) noexcept {
+  return 2.0 * a.mass_kg > (kRamp_s + kSettles_s + kWatch_s) * a.sigma1_Ns_m;
+}
+
 }  // namespace
+
+Holder WhatHolds(const RestingAxis& a) noexcept {
+  if (!(a.friction_N > kHeldSteps * a.step_N)) return Holder::kLoopFewSteps;
+  // A loop that lets go leaves the speed of its own noise, which is more where it is the quicker of both.
+  return LoopStiffness_N_m(a) > a.sigma0_N_m && RingsOn(a) ? Holder::kLoopLongRinging : Holder::kFriction;
+}
+
+// Where friction gives way more easily than the loop, it is the loop that says what a step moves.
+double StepMoves_m(const RestingAxis& a) noexcept {
+  return a.step_N / std::max(a.sigma0_N_m, LoopStiffness_N_m(a));
+}
+
+StandstillBounds BoundsOf(const RestingAxis& a, double count_m, double period_s) noexcept {
+  const double swings_s =
+      a.sigma0_N_m > 0.0 ? 2.0 * std::numbers::pi * std::sqrt(a.mass_kg / a.sigma0_N_m) : kPatience_s;
+  return {a.step_N, WhatHolds(a) == Holder::kFriction ? StepMoves_m(a) : 0.0, count_m, period_s,
+          std::min(swings_s, kPatience_s)};
+}
 
 Standstill::Standstill(const StandstillBounds& bounds) noexcept
     : bounds_(bounds),
       share_(std::min(1.0, bounds.period_s / kMean_s)),
       settle_(Cycles(kSettles_s, bounds.period_s)),
-      watch_(Cycles(kWatch_s, bounds.period_s)),
+      watch_(Cycles(std::max(kWatch_s, bounds.swings_s), bounds.period_s)),
+      ramp_s_(std::max(kRamp_s, kRampSwings * bounds.swings_s)),
       patience_((kSofter - 1.0) * bounds.period_s / kPatience_s) {
   Forget();
 }
@@ -59,7 +92,7 @@ void Standstill::Forget() noexcept {
   Leave();
   unit_m_ = moves_m_ = std::max(bounds_.step_moves_m, bounds_.count_m);
   waits_ = 1.0;
-  ramp_N_ = bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);
+  ramp_N_ = bounds_.step_N * std::min(1.0, bounds_.period_s / ramp_s_);
   started_ = false;
 }
 
@@ -136,7 +169,7 @@ void Standstill::Correct(double mean_m) noexcept {
   steps_ = size_m > kCorrected * late * unit_m_ ? most : 0.0;
   before_m_ = mean_m;
   target_N_ -= std::copysign(steps_ * bounds_.step_N, mean_m);
-  ramp_N_ = std::max(1.0, steps_) * bounds_.step_N * std::min(1.0, bounds_.period_s / kRamp_s);
+  ramp_N_ = std::max(1.0, steps_) * bounds_.step_N * std::min(1.0, bounds_.period_s / ramp_s_);
 }
 
 }  // namespace contour

@@ -11,7 +11,33 @@ struct StandstillBounds {
   double step_moves_m = 0.0;  ///< what it moves an axis that friction holds; 0: the axis is never left alone
   double count_m = 0.0;       ///< of the encoder
   double period_s = 1e-3;
+  double swings_s = 0.0;  ///< period in which the axis swings on its bristles
 };
+
+/// An axis at rest: its friction and its loop, at the table.
+struct RestingAxis {
+  double mass_kg = 0.0;
+  double step_N = 0.0;      ///< of the torque
+  double friction_N = 0.0;  ///< Coulomb, of the direction that has less of it
+  double sigma0_N_m = 0.0;
+  double sigma1_Ns_m = 0.0;
+  double regulator_Hz = 0.0;
+};
+/// What holds it.
+enum class Holder : std::uint8_t {
+  kFriction,        ///< a constant torque, and friction
+  kLoopFewSteps,    ///< its loop: friction holds too few steps of torque
+  kLoopLongRinging  ///< its loop, the stiffer of both: bristles would ring on from one correction to the next
+};
+[[nodiscard]] Holder WhatHolds(const RestingAxis& axis) noexcept;
+/// What a step of the torque moves it by, whatever holds it.
+[[nodiscard]] double StepMoves_m(const RestingAxis& axis) noexcept;
+[[nodiscard]] StandstillBounds BoundsOf(const RestingAxis& axis, double count_m, double period_s) noexcept;
+
+/// Steps of torque that friction must hold for an axis to be left alone at rest.
+inline constexpr double kHeldSteps = 5.0;
+/// Of rated torque: the unit of torques on the bus.
+inline constexpr double kTorqueStep = 1e-3;
 
 /// An axis at rest within friction. A loop that answers there what is smaller than a step of torque steps to
 /// and fro, friction gives way under that shaking, and the axis creeps or hunts. So it is held by a constant
@@ -47,6 +73,7 @@ class Standstill {
   StandstillBounds bounds_;
   double share_ = 1.0;          ///< of the means, per cycle
   int settle_ = 1, watch_ = 1;  ///< cycles
+  double ramp_s_ = 0.0;         ///< from one step of torque to the next
   double patience_ = 0.0;       ///< per cycle
 
   double waits_ = 1.0;     ///< how much more than a small error it is let off with, growing at rest

@@ -37,9 +37,13 @@ std::string Warning(const LoopFault& fault) {
 /// not known of an identified axis.
 bool ToBeginWith(const LoopFault& fault, const MachineConfig& machine) {
   const ModelConfig& model = machine.axes.at(fault.loop.axis_name).model;
-  return WhyNotToStartWith(fault.loop.axis, fault.loop.tuning, 1e-6 * machine.machine.cycle_us,
-                           DoubtOf(model))
-      .empty();
+  try {
+    return WhyNotToStartWith(fault.loop.axis, fault.loop.tuning, 1e-6 * machine.machine.cycle_us,
+                             DoubtOf(model))
+        .empty();
+  } catch (const std::invalid_argument&) {
+    return false;  // no loop at all: what is wrong with it is the fault's
+  }
 }
 
 bool IsRefused(const LoopFault& fault, const MachineConfig& machine, LoopDemand demand) {

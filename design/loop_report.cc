@@ -65,6 +65,32 @@ std::string WhyNoRest(const StickSlip& s) {
          Fixed(1e6 * s.most_rest_m, 1);
 }
 
+RestingAxis RestingOf(const LoopAxis& a, const LoopTuning& tuning) {
+  return {.mass_kg = a.axis.motor_mass_kg + a.axis.table_mass_kg,
+          .step_N = kTorqueStep * a.rated_force_N,
+          .friction_N = std::min(a.friction.Fc_plus_N, a.friction.Fc_minus_N),
+          .sigma0_N_m = a.friction.sigma0_N_m,
+          .sigma1_Ns_m = a.friction.sigma1_Ns_m,
+          .regulator_Hz = tuning.regulator_Hz};
+}
+
+/// Nothing of an axis that friction holds.
+std::string Describe(const RestingAxis& a) {
+  const std::string swings =
+      "at rest the loop holds the axis and may swing it by " + Fixed(1e6 * StepMoves_m(a), 2) + " um";
+  switch (WhatHolds(a)) {
+    case Holder::kFriction:
+      return "";
+    case Holder::kLoopFewSteps:
+      return "  friction of " + Fixed(a.friction_N, 1) + " N holds fewer than " + Fixed(kHeldSteps, 0) +
+             " steps of torque (a thousandth of rated, " + Fixed(a.step_N, 2) + " N): " + swings +
+             "; a smaller rated torque has finer steps\n";
+    case Holder::kLoopLongRinging:
+      return "  bristles that hold less than the loop ring for long: " + swings + "\n";
+  }
+  return "";
+}
+
 /// Whether friction's slope alone is more than the limits of the axis as stated allow.
 bool SlopeForbids(const LoopAxis& axis, const LoopVerdict& creeping) {
   const WorstMember& slope = creeping.worst[static_cast<std::size_t>(MemberKind::kCreeping)];
@@ -79,7 +105,8 @@ LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double perio
                     MarginsOn(SlidingMember(axis), loop, period_s),
                     MarginsOn(RestingMember(axis), loop, period_s),
                     {},
-                    {}};
+                    {},
+                    RestingOf(axis, tuning)};
   if (Acceptable(report.verdict, kRounding)) {
     if (!TakesUp(report.verdict.step, kRounding)) report.after_stops = RestAfterStops(axis, loop, period_s);
     return report;
@@ -107,6 +134,7 @@ std::string Describe(const LoopReport& r) {
                : "still " + Fixed(1e6 * r.verdict.step.left_m, 1) + " um after them") +
           "\n";
   if (r.stick_slip) text += Describe(*r.stick_slip);
+  text += Describe(r.resting);
   return text + "  torque noise by the encoder: " + Fixed(100.0 * r.verdict.torque_noise, 2) +
          " % of rated torque\n";
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "config/loop_axis.h"
+#include "control/standstill.h"
 #include "design/creep.h"
 #include "design/loop_margins.h"
 
@@ -18,6 +19,7 @@ struct LoopReport {
   std::optional<StickSlip> stick_slip;
   /// Where every limit is kept and a force is not taken up: what friction makes of that after a stop.
   std::optional<StickSlip> after_stops;
+  RestingAxis resting;  ///< as the cycle holds it
 };
 LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s);
 

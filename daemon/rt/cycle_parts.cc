@@ -18,12 +18,6 @@ constexpr std::uint32_t kOnItsWay_cycles = 20;
 /// and for those before it: of a fault that was just reset, and of its end.
 constexpr double kMessages = 3.0;
 
-// Of rated torque: the unit of torques on the bus.
-constexpr double kTorqueStep = 1e-3;
-
-// Steps of torque that friction must hold for an axis to be left alone at rest.
-constexpr double kHeldSteps = 5.0;
-
 // In a cascade the observer only watches: fast enough to see what friction does, slow enough for the noise of
 // a reported torque. No machine's own number is in it.
 constexpr LoopTuning kWatching{.regulator_Hz = 20.0,
@@ -69,21 +63,17 @@ TwoInertiaLoop LoopOf(const CycleConfig& config, std::size_t axis, double softer
   return DesignLoop(two, tuning, period_s, false);
 }
 
-// Friction has to hold some steps of torque, or the axis is better off in its loop; and where friction gives
-// way more easily than the loop, it is the loop that says what a step moves.
 StandstillBounds StandstillOf(const CycleConfig& config, std::size_t axis) {
   const CycleAxisConfig& a = config.axes[axis];
   const double r = a.mechanics.radius_m_rad;
   const Friction f = ToSi(a.friction, r);
-  StandstillBounds b;
-  b.step_N = kTorqueStep * config.master.axes[axis].drive.rated_torque_Nm / r;
-  b.count_m = 2.0 * std::numbers::pi * r / a.encoder_counts_per_rev;
-  b.period_s = config.cycle_us * 1e-6;
-  const double regulator_1_s = 2.0 * std::numbers::pi * a.loop->regulator_Hz;
-  const double loop_N_m = a.mechanics.mass_kg * regulator_1_s * regulator_1_s;
-  if (std::min(f.Fc_plus_N, f.Fc_minus_N) > kHeldSteps * b.step_N)
-    b.step_moves_m = b.step_N / std::max(f.sigma0_N_m, loop_N_m);
-  return b;
+  return BoundsOf({.mass_kg = a.mechanics.mass_kg,
+                   .step_N = kTorqueStep * config.master.axes[axis].drive.rated_torque_Nm / r,
+                   .friction_N = std::min(f.Fc_plus_N, f.Fc_minus_N),
+                   .sigma0_N_m = f.sigma0_N_m,
+                   .sigma1_Ns_m = f.sigma1_Ns_m,
+                   .regulator_Hz = a.loop->regulator_Hz},
+                  2.0 * std::numbers::pi * r / a.encoder_counts_per_rev, config.cycle_us * 1e-6);
 }
 
 PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {

@@ -22,6 +22,22 @@ std::string Only(const MachineConfig& c) {
   return all;
 }
 
+// What the cycle would refuse when it is made.
+TEST(PlausibleLimits, AStopOnThePathHasTheRoomThatTheCycleKeepsForIt) {
+  MachineConfig c = Good();
+  c.axes.at("x").limits.velocity_mm_s = 100.0;
+  c.axes.at("x").limits.jerk_mm_s3 = 1.0;
+  EXPECT_EQ(Only(c),
+            "axes.x.limits.jerk_mm_s3: found 1, with which a stop on the path from 100 mm/s takes 24.49 s, "
+            "expected at least 162.8: 1.92 s are what the cycle keeps points of the path for; a lower "
+            "velocity_mm_s or a longer machine.cycle_us would do, too");
+  c.axes.at("x").limits.jerk_mm_s3 = 163.0;
+  EXPECT_TRUE(Check(c).empty());
+  c.axes.at("x").limits.acceleration_mm_s2 = 70.0;
+  c.axes.at("x").limits.jerk_mm_s3 = 1e4;
+  EXPECT_TRUE(Only(c).starts_with("axes.x.limits.acceleration_mm_s2: found 70, with which a stop "));
+}
+
 TEST(PlausibleLimits, DistancesThatBoundNothing) {
   MachineConfig c = Good();
   c.axes.at("x").limits.following_error_mm = 1e6;

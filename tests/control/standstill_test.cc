@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace contour {
 namespace {
@@ -107,6 +108,76 @@ TEST(Standstill, AnErrorOfAStepIsTakenBackAtFirstAndLeftLater) {
     EXPECT_NEAR(GoesBy_N(stand, 1.2 * unit_m, 250), late ? 0.0 : kStep_N, 1e-9) << late;
     EXPECT_GT(GoesBy_N(stand, 2.0 * unit_m, 250), 0.9 * kStep_N) << "more is taken back at any time";
   }
+}
+
+// Of an axis that swings on its bristles with little damping: how far its table swings once it was brought
+// back by one step.
+double SwingsAfterACorrection_m(double swings_s, double told_s) {
+  constexpr double kMass_kg = 1000.0, kDamping = 0.03;
+  const double swings_1_s = 2.0 * std::numbers::pi / swings_s;
+  const double stiffness_N_m = kMass_kg * swings_1_s * swings_1_s;
+  StandstillBounds bounds{kStep_N, kStep_N / stiffness_N_m, 5e-9, kPeriod_s};
+  bounds.swings_s = told_s;
+  Standstill stand(bounds);
+  double position_m = 0.0, velocity_m_s = 0.0, sent_N = 0.0, outside_N = 0.0, low_m = 1.0, high_m = -1.0;
+  bool corrected = false;
+  for (int i = 0; i < 1500; ++i) {
+    if (i == 80) outside_N = 1.2 * kStep_N;
+    // It crept to where it is held now.
+    if (i == 80) position_m = -outside_N / stiffness_N_m;
+    const double force_N = stand.Step(position_m, sent_N, Motion::kNone).value_or(0.0);
+    sent_N = kStep_N * std::round(force_N / kStep_N);
+    const double sum_N = sent_N - outside_N - stiffness_N_m * position_m;
+    velocity_m_s += kPeriod_s * (sum_N / kMass_kg - 2.0 * kDamping * swings_1_s * velocity_m_s);
+    position_m += kPeriod_s * velocity_m_s;
+    // The force has come to the next step, and stays there.
+    corrected = corrected || force_N == kStep_N;
+    if (!corrected) continue;
+    low_m = std::min(low_m, position_m);
+    high_m = std::max(high_m, position_m);
+  }
+  EXPECT_TRUE(corrected);
+  return (high_m - low_m) / (kStep_N / stiffness_N_m);
+}
+
+TEST(Standstill, ACorrectionIsSlowAgainstWhatTheAxisSwingsIn) {
+  EXPECT_LT(SwingsAfterACorrection_m(0.17, 0.17), 0.15);
+  // Also where the bristles are half as stiff, or half as much again.
+  EXPECT_LT(SwingsAfterACorrection_m(0.24, 0.17), 0.4);
+  EXPECT_LT(SwingsAfterACorrection_m(0.14, 0.17), 0.4);
+  EXPECT_GT(SwingsAfterACorrection_m(0.17, 0.0), 0.7) << "which is what it would do at the usual ramp";
+}
+
+RestingAxis Resting() {
+  return {.mass_kg = 100.0,
+          .step_N = kStep_N,
+          .friction_N = 40.0,
+          .sigma0_N_m = 4e6,
+          .sigma1_Ns_m = 3000.0,
+          .regulator_Hz = 20.0};
+}
+
+TEST(Standstill, FrictionHoldsAnAxisThatHasEnoughOfItAndRingsNotForLong) {
+  RestingAxis axis = Resting();
+  EXPECT_EQ(WhatHolds(axis), Holder::kFriction);
+  const StandstillBounds bounds = BoundsOf(axis, 5e-9, kPeriod_s);
+  EXPECT_DOUBLE_EQ(bounds.step_moves_m, kStep_N / 4e6);
+  EXPECT_NEAR(bounds.swings_s, 2.0 * std::numbers::pi * std::sqrt(100.0 / 4e6), 1e-12);
+
+  axis.friction_N = 4.9 * kStep_N;
+  EXPECT_EQ(WhatHolds(axis), Holder::kLoopFewSteps);
+  EXPECT_EQ(BoundsOf(axis, 5e-9, kPeriod_s).step_moves_m, 0.0);
+
+  // A motor that is 5 t at the table, as a lead of 2 mm makes it.
+  axis = Resting();
+  axis.mass_kg = 5000.0;
+  EXPECT_EQ(WhatHolds(axis), Holder::kLoopLongRinging);
+  EXPECT_EQ(BoundsOf(axis, 5e-9, kPeriod_s).step_moves_m, 0.0);
+  axis.sigma1_Ns_m = 60e3;
+  EXPECT_EQ(WhatHolds(axis), Holder::kFriction) << "damped well";
+  axis.sigma1_Ns_m = 3000.0;
+  axis.regulator_Hz = 4.0;
+  EXPECT_EQ(WhatHolds(axis), Holder::kFriction) << "better than the loop";
 }
 
 TEST(Standstill, WhatIsLargerThanSomeStepsIsForTheLoop) {

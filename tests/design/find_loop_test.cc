@@ -95,6 +95,19 @@ TEST(WhatIsWrong, SaysThatALoopOnlyHoldsWhereItsTableHunts) {
   ExpectHas(Describe(other), " um on average over 200 ms, a tenth of it left after ");
 }
 
+// Under a thousandth of rated torque each.
+TEST(Describe, SaysWhereFrictionHoldsTooFewStepsOfTorque) {
+  LoopAxis axis = AxisOf("t20");
+  const LoopTuning tuning = FindLoop(axis, kPeriod_s, kShort).tuning;
+  const std::string held = Describe(ReportOn(axis, tuning, kPeriod_s));
+  EXPECT_EQ(held.find("at rest the loop holds"), std::string::npos) << held;
+  axis.rated_force_N *= 12.0;
+  const std::string text = Describe(ReportOn(axis, tuning, kPeriod_s));
+  ExpectHas(text,
+            "friction of 39.1 N holds fewer than 5 steps of torque (a thousandth of rated, 9.60 N): at rest "
+            "the loop holds");
+}
+
 // The best within the limits only holds against a force; the next search minds that.
 TEST(FindLoop, FindsOneThatTakesAForceUp) {
   const LoopAxis axis = HeavyTable();

@@ -59,6 +59,17 @@ TEST(LoopJudgement, ThePeakBeyondALimitThatRoundingMayTakeIsSaidToBeKept) {
   EXPECT_NE(text.find("peak 2.02, limit 2.00, kept: "), std::string::npos) << text;
 }
 
+TEST(LoopJudgement, RefusesATuningThatGivesNoLoop) {
+  MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml");
+  machine.axes.at("x").loop->regulator_Hz = 0.0;
+  for (const LoopDemand demand : {LoopDemand::kStability, LoopDemand::kStabilityAsStated}) {
+    const LoopVerdicts verdicts = JudgeStatedLoops(machine, demand);
+    ASSERT_EQ(verdicts.refused.size(), 1u);
+    EXPECT_NE(verdicts.refused.front().find("expected a positive number"), std::string::npos)
+        << verdicts.refused.front();
+  }
+}
+
 TEST(LoopJudgement, LeavesLoopsAloneThatNothingUses) {
   MachineConfig machine = SingleAxis(150.0);
   machine.control.friction = FrictionKind::kSrukf;
