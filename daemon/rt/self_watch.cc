@@ -105,8 +105,11 @@ void SelfWatch::Reset() noexcept {
   clean_ = true;
 }
 
-void SelfWatch::Raise(Reason alarm, std::size_t axis) noexcept {
-  if (alarm_.reason == Reason::kNone) alarm_ = {alarm, static_cast<std::uint8_t>(axis)};
+// The first of a cycle, unless another one is violent: a stop for that has its reason and its axis.
+void SelfWatch::Raise(Reason alarm, std::size_t axis, bool violent) noexcept {
+  if (alarm_.reason != Reason::kNone && (violent_ || !violent)) return;
+  alarm_ = {alarm, static_cast<std::uint8_t>(axis)};
+  violent_ = violent;
 }
 
 void SelfWatch::Look(std::size_t axis, const Seen& seen) noexcept {
@@ -122,9 +125,8 @@ void SelfWatch::Look(std::size_t axis, const Seen& seen) noexcept {
       growing_ = {Reason::kOscillation, static_cast<std::uint8_t>(axis)};
       break;
     case Oscillation::kLasting:
-      Raise(Reason::kOscillation, axis);
       // Of a drive's own loop nothing is stopped; see Stop.
-      violent_ = violent_ || (!in_cascade_ && oscillation_[axis].violent());
+      Raise(Reason::kOscillation, axis, !in_cascade_ && oscillation_[axis].violent());
       break;
     case Oscillation::kNone:
       break;

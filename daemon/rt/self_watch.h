@@ -43,7 +43,7 @@ class SelfWatch {
   [[nodiscard]] Reason Limit(std::size_t axis) const noexcept;
 
  private:
-  void Raise(Reason alarm, std::size_t axis) noexcept;
+  void Raise(Reason alarm, std::size_t axis, bool violent = false) noexcept;
 
   SupervisionLadder ladder_;
   PerAxis<OscillationDetector> oscillation_;
@@ -52,7 +52,7 @@ class SelfWatch {
   InARow late_;
   FaultSeen alarm_;
   FaultSeen growing_;
-  bool violent_ = false;  ///< what swings in this cycle
+  bool violent_ = false;  ///< what alarm_ tells of
   bool friction_filter_ = false;
   bool in_cascade_ = false;
   bool clean_ = true;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 
 #include "daemon/make_cycle_config.h"
@@ -293,6 +294,40 @@ TEST(SelfWatch, TheObserverIsNotJudgedByWhatTheFilterSaid) {
     watch.EndCycle(false);
     ASSERT_EQ(watch.Stop().reason, Reason::kNone) << "cycle " << i;
   }
+}
+
+// Whatever else is found in the same cycle, on an axis that comes first.
+TEST(SelfWatch, AStopForAViolentSwingNamesTheAxisThatSwings) {
+  const EmulatedMachineFile file =
+      ExampleMachine({"control.supervision.solver_cap_ms=1", "control.supervision.quiet_s=0.5"});
+  const CycleConfig config = MakeCycleConfig(file.machine, ControllerName::kFull);
+  const OscillationBounds bounds = OscillationBoundsFor(config, 1);
+  SelfWatch watch(config);
+  AxisFeedback feedback;
+  feedback.fresh = true;
+  const AxisEstimate estimate;
+  const ReferencePoint reference;
+  // Both axes look the same to it but for the swing.
+  const auto look = [&](double share, double time_s, bool capped) {
+    constexpr double kSwing_Hz = 30.0, kRadius = 1e-3;
+    const double wave = share * std::sin(2.0 * std::numbers::pi * kSwing_Hz * time_s);
+    feedback.torque_Nm = 0.0;
+    watch.Look(0, {feedback, estimate, reference, 0.0, kRadius, capped});
+    feedback.torque_Nm = wave * 2.0 * bounds.violent_N * kRadius;
+    watch.Look(1, {feedback, estimate, reference, wave * 50.0 * bounds.swing_m, kRadius, false});
+    watch.EndCycle(false);
+  };
+  int cycle = 0;
+  const auto go = [&](double share, bool capped, int cycles, SupervisionStep until) {
+    for (int i = 0; i < cycles && watch.step() != until; ++i) look(share, 1e-3 * cycle++, capped);
+  };
+  go(1.0, false, 5000, SupervisionStep::kSoftened);
+  ASSERT_EQ(watch.step(), SupervisionStep::kSoftened);
+  go(0.0, false, 5000, SupervisionStep::kNoticed);
+  ASSERT_EQ(watch.step(), SupervisionStep::kNoticed);
+  go(1.0, true, 1000, SupervisionStep::kStopped);
+  EXPECT_EQ(watch.Stop().reason, Reason::kOscillation);
+  EXPECT_EQ(watch.Stop().where, 1);
 }
 
 // What the motion monitor goes by comes with the gains, so a reload and its replay tell it the same.
