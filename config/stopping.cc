@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/mechanics.h"
+#include "core/stop_on_path.h"
 
 namespace contour {
 namespace {
@@ -18,18 +19,39 @@ double PathRamp_s(const StoppingAxis& axis) {
                   std::sqrt(6.0 * axis.speed_m_s / axis.path_jerk_m_s3));
 }
 
-// `delay_s` on the path, then the ramp; `after_s` until it counts as stopped.
-std::vector<StopBound> PathStop(const std::vector<StoppingAxis>& axes, double delay_s, double after_s) {
-  // One ramp for all axes, so that the geometry is kept: the slowest axis says how long.
+// One ramp for all axes, so that the geometry is kept: the slowest axis says how long.
+double PathRamp_s(const std::vector<StoppingAxis>& axes) {
   double ramp_s = 0.0;
   for (const StoppingAxis& a : axes) ramp_s = std::max(ramp_s, PathRamp_s(a));
+  return ramp_s;
+}
+
+// `delay_s` on the path, then so much time at a pace that falls to rest within `on_path_s` of the path;
+// `after_s` until it counts as stopped.
+std::vector<StopBound> PathStop(const std::vector<StoppingAxis>& axes, double delay_s, double stop_s,
+                                double on_path_s, double after_s) {
   std::vector<StopBound> bounds;
   for (const StoppingAxis& a : axes) {
-    const double until_ramp_s = delay_s + Cycles_s(a, 2.0);
-    bounds.push_back({until_ramp_s + ramp_s + after_s,
-                      1e3 * a.speed_m_s * (until_ramp_s + 0.5 * ramp_s) + a.following_error_mm});
+    const double until_stop_s = delay_s + Cycles_s(a, 2.0);
+    bounds.push_back({until_stop_s + stop_s + after_s,
+                      1e3 * a.speed_m_s * (until_stop_s + on_path_s) + a.following_error_mm});
   }
   return bounds;
+}
+
+// By the ramp at once.
+std::vector<StopBound> RampStop(const std::vector<StoppingAxis>& axes, double delay_s) {
+  const double ramp_s = PathRamp_s(axes);
+  return PathStop(axes, delay_s, ramp_s, 0.5 * ramp_s, kSwitchOff_s);
+}
+
+// Within every axis's limits, wherever on the path: see daemon/rt/stop_search. The search begins when a
+// cycle's frames have been sent.
+std::vector<StopBound> StopWithinLimits(const std::vector<StoppingAxis>& axes) {
+  using stop_on_path::kFarthest, stop_on_path::kLongest, stop_on_path::kSearches;
+  const double ramp_s = PathRamp_s(axes);
+  return PathStop(axes, axes.front().period_s + kSearches * ramp_s, kLongest * ramp_s, kFarthest * ramp_s,
+                  kSwitchOff_s);
 }
 
 template <class Bound>
@@ -52,11 +74,13 @@ std::vector<StopWay> IoStops(const ModbusConfig& modbus, const std::vector<Stopp
   const auto quick = [&](const StoppingAxis& a) {
     return QuickStop(a, a.speed_m_s, seen_s + Cycles_s(a, 2.0));
   };
-  return {{"emergency-stop input", "seen within " + Ms(seen_s) + ", then as a fault", Each(axes, quick)},
-          {"enable-chain input", "seen within " + Ms(seen_s) + ", then as SIGTERM",
-           PathStop(axes, seen_s, kSwitchOff_s)},
-          {"Modbus server silent", "counts as open after " + Ms(old_s) + ", then as SIGTERM",
-           PathStop(axes, old_s, kSwitchOff_s)}};
+  return {
+      {"emergency-stop input", "seen within " + Ms(seen_s) + ", then as a fault", Each(axes, quick)},
+      {"enable-chain input",
+       "seen within " + Ms(seen_s) + ", then on the path by a fixed ramp, and the drives are switched off",
+       RampStop(axes, seen_s)},
+      {"Modbus server silent", "counts as open after " + Ms(old_s) + ", then as the enable-chain input",
+       RampStop(axes, old_s)}};
 }
 
 }  // namespace
@@ -98,10 +122,10 @@ std::vector<StopWay> StopWays(const MachineConfig& config) {
   const auto silent = [](const StoppingAxis& a) { return SilentMaster(a, a.speed_m_s); };
 
   std::vector<StopWay> ways;
-  ways.push_back({"operator stop", "on the path, within the limits of acceleration and jerk",
-                  PathStop(axes, 0.0, kSwitchOff_s)});
-  ways.push_back({"SIGTERM, SIGINT", "as an operator stop, then the drives are switched off",
-                  PathStop(axes, 0.0, kSwitchOff_s)});
+  ways.push_back(
+      {"operator stop", "on the path, within the limits of acceleration and jerk", StopWithinLimits(axes)});
+  ways.push_back(
+      {"SIGTERM, SIGINT", "as an operator stop, then the drives are switched off", StopWithinLimits(axes)});
   ways.push_back({"fault (quick stop)", "torque 0 and the drives' quick-stop ramp in the cycle that sees it",
                   Each(axes, [&](const StoppingAxis& a) {
                     return QuickStop(a, overspeed * a.speed_m_s, Cycles_s(a, 2.0));

@@ -27,19 +27,16 @@ double Difference(const std::array<double, 4>& p, int order) {
 
 }  // namespace
 
-PerAxis<double> PaceRamp::Place_m(double time) const {
+PerAxis<ReferencePoint> PaceRamp::At(double time) const {
   PerAxis<ReferencePoint> axes;
   walk_.At(std::max(0.0, time * period_s_), axes);
-  PerAxis<double> place_m;
-  for (const ReferencePoint& p : axes) place_m.push_back(p.position_m);
-  return place_m;
+  return axes;
 }
 
 // Within what nobody could tell from rest: the end of a line is found by its number, to a fraction of a
 // period.
 bool PaceRamp::AtRest(double time) const {
-  PerAxis<ReferencePoint> axes;
-  walk_.At(std::max(0.0, time * period_s_), axes);
+  const PerAxis<ReferencePoint> axes = At(time);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const ReferencePoint& p = axes[i];
     if (std::abs(p.velocity_m_s) > kAtRest * limits_[i].velocity_m_s ||
@@ -51,8 +48,7 @@ bool PaceRamp::AtRest(double time) const {
 
 // What the axes need at the present speed, if the program did nothing else.
 double PaceRamp::Shortest(double time, double change_of_rate) const {
-  PerAxis<ReferencePoint> axes;
-  walk_.At(std::max(0.0, time * period_s_), axes);
+  const PerAxis<ReferencePoint> axes = At(time);
   double periods = kShortest_periods;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const double speed = std::abs(axes[i].velocity_m_s * change_of_rate);
@@ -66,34 +62,47 @@ double PaceRamp::Shortest(double time, double change_of_rate) const {
 // Whether the program as it is written has the same difference near that time, or a larger one.
 bool PaceRamp::Own(std::size_t axis, double time, int order, double found) const {
   std::array<double, 4> p{};
+  double before_m_s2 = 0.0;
   for (int step = -4; step <= 3; ++step) {
+    const ReferencePoint at = At(time + step)[axis];
     std::rotate(p.begin(), p.begin() + 1, p.end());
-    p[3] = Place_m(time + step)[axis];
-    if (step >= -1 && std::abs(Difference(p, order)) >= found) return true;
+    p[3] = at.position_m;
+    const double change_m = (at.acceleration_m_s2 - before_m_s2) * period_s_ * period_s_;
+    before_m_s2 = at.acceleration_m_s2;
+    if (step < -1) continue;
+    if (std::abs(Difference(p, order)) >= found || (order == 3 && std::abs(change_m) >= found)) return true;
   }
   return false;
 }
 
+// Velocity, acceleration and jerk by the differences of the positions; jerk also by that of the accelerations
+// handed out, which tells more of a jerk that changes from one period to the next.
 bool PaceRamp::Fits(const PaceLaw& law, double from, double to) const {
   const std::size_t axes = limits_.size();
   std::array<std::array<double, 4>, kMaxAxes> p{};
+  std::array<double, kMaxAxes> acceleration_m{};
   const double first = std::floor(from) - 3.0;
-  const std::array<double, 4> per{0.0, period_s_, period_s_ * period_s_, period_s_ * period_s_ * period_s_};
+  const double h = period_s_;
   for (double index = first; index <= to + 3.0; index += 1.0) {
     const PaceState at = law.At(std::max(0.0, index));
     if (at.rate < 0.0) return false;
-    const PerAxis<double> place_m = Place_m(at.time);
+    const PerAxis<ReferencePoint> there = At(at.time);
     for (std::size_t i = 0; i < axes; ++i) {
+      const ReferencePoint& r = there[i];
       std::rotate(p[i].begin(), p[i].begin() + 1, p[i].end());
-      p[i][3] = place_m[i];
+      p[i][3] = r.position_m;
+      const double before_m = acceleration_m[i];
+      acceleration_m[i] = at.rate * at.rate * r.acceleration_m_s2 * h * h + at.change * r.velocity_m_s * h;
       if (index < first + 3.0) continue;
       const PlanLimits& l = limits_[i];
-      const std::array<double, 4> allowed{0.0, l.velocity_m_s, l.acceleration_m_s2, l.jerk_m_s3};
-      for (int order = 1; order <= 3; ++order) {
-        const auto o = static_cast<std::size_t>(order);
-        const double found = std::abs(Difference(p[i], order));
-        if (allowed[o] <= 0.0 || found <= kWithin * allowed[o] * per[o]) continue;
-        if (!Own(i, at.time, order, found)) return false;
+      const std::array<double, 3> allowed{l.velocity_m_s * h, l.acceleration_m_s2 * h * h,
+                                          l.jerk_m_s3 * h * h * h};
+      const std::array<double, 3> found{
+          std::abs(Difference(p[i], 1)), std::abs(Difference(p[i], 2)),
+          std::max(std::abs(Difference(p[i], 3)), std::abs(acceleration_m[i] - before_m))};
+      for (std::size_t o = 0; o < 3; ++o) {
+        if (allowed[o] <= 0.0 || found[o] <= kWithin * allowed[o]) continue;
+        if (!Own(i, at.time, static_cast<int>(o) + 1, found[o])) return false;
       }
     }
   }

@@ -30,7 +30,7 @@ class PaceRamp {
  private:
   [[nodiscard]] bool AtRest(double time) const;
   [[nodiscard]] double Shortest(double time, double change_of_rate) const;
-  [[nodiscard]] PerAxis<double> Place_m(double time) const;
+  [[nodiscard]] PerAxis<ReferencePoint> At(double time) const;
   [[nodiscard]] bool Own(std::size_t axis, double time, int order, double found) const;
 
   PathWalk& walk_;

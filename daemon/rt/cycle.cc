@@ -25,6 +25,13 @@ PerAxis<double> Zeros(std::size_t n) {
   return zeros;
 }
 
+PerAxis<StopLimits> StopLimitsOf(const CycleConfig& config) {
+  PerAxis<StopLimits> limits;
+  for (const CycleAxisConfig& a : config.axes)
+    limits.push_back({1e-3 * a.limits.acceleration_mm_s2, 1e-3 * a.limits.jerk_mm_s3});
+  return limits;
+}
+
 }  // namespace
 
 Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAxis& monitored)
@@ -48,7 +55,7 @@ Cycle::Cycle(const CycleConfig& config)
       master_(config.master),
       transitions_(TransitionTimes(config)),
       reasons_(config.cycle_us),
-      follower_(config.axes.size(), period_s_, StopOnPathTime_s(config) / period_s_, kMaxHorizonPoints),
+      follower_(StopLimitsOf(config), period_s_, StopOnPathTime_s(config) / period_s_, kMaxHorizonPoints),
       controller_(MakeController(config)),
       fallback_(MakeFallback(config)),
       watch_(config),

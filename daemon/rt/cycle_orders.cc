@@ -21,7 +21,9 @@ void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
   if (!orders.torque_allowed) FollowFeedback();
   if (orders.expect_path) follower_.Expect(transitions_.program_id());
   if (orders.start_path) follower_.Start();
-  if (orders.stop_path) follower_.BeginStop();
+  if (orders.stop_path)
+    follower_.BeginStop(orders.within_limits ? PathFollower::StopKind::kWithinLimits
+                                             : PathFollower::StopKind::kShortest);
 }
 
 // An incremental encoder that was not believed, or seemed faster than its axis can be, may have lost counts.

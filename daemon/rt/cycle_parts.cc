@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "control/loop_bandwidth.h"
+#include "core/stop_on_path.h"
 #include "core/two_inertia_axis.h"
 #include "core/two_inertia_loop.h"
 
@@ -227,7 +228,8 @@ Transitions::Config TransitionTimes(const CycleConfig& config) {
     explain_ms = std::max(explain_ms, a.drive.notice_ms + kMessages * a.drive.emergency_inhibit_ms);
   }
   // From Switch On Disabled to Operation Enabled there are three transitions.
-  return {cycles(3.0 * walk_ms), cycles(1000.0 * StopOnPathTime_s(config) + quick_stop_ms), cycles(5000.0),
+  const double stop_ms = 1e3 * (stop_on_path::kSearches + stop_on_path::kLongest) * StopOnPathTime_s(config);
+  return {cycles(3.0 * walk_ms), cycles(stop_ms + quick_stop_ms), cycles(5000.0),
           cycles(explain_ms) + kOnItsWay_cycles};
 }
 

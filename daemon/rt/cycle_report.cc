@@ -49,6 +49,7 @@ void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONB
   const bool lost = r.state == MachineState::kFaulted && transitions_.since() >= kFaultSettledCycles;
   out.quiescent = ((waits || over) && transitions_.since() >= kSettledCycles) || lost;
   out.settling = (waits || r.state == MachineState::kFaulted) && !out.quiescent;
+  follower_.SearchStop();
 }
 
 void Cycle::RecordContourError(CycleRecord& record) noexcept {

@@ -6,31 +6,14 @@
 #include <string>
 
 namespace contour {
-namespace {
-
-/// Quintic Hermite interpolation on [0, 1] through position, velocity and acceleration (per period) at both
-/// ends; gives the value and its first two derivatives at s.
-struct Interpolated {
-  double value, first, second;
-};
-Interpolated Quintic(double p0, double v0, double a0, double p1, double v1, double a1, double s) noexcept {
-  const double d = p1 - p0;
-  const double c3 = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1;
-  const double c4 = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1;
-  const double c5 = 6 * d - 3 * v0 - 3 * v1 - 0.5 * a0 + 0.5 * a1;
-  return {p0 + s * (v0 + s * (0.5 * a0 + s * (c3 + s * (c4 + s * c5)))),
-          v0 + s * (a0 + s * (3 * c3 + s * (4 * c4 + s * 5 * c5))),
-          a0 + s * (6 * c3 + s * (12 * c4 + s * 20 * c5))};
-}
-
-}  // namespace
-
-PathFollower::PathFollower(std::size_t axes, double period_s, double stop_periods, std::size_t horizon)
-    : axes_(axes),
+PathFollower::PathFollower(const PerAxis<StopLimits>& limits, double period_s, double stop_periods,
+                           std::size_t horizon)
+    : axes_(limits.size()),
       period_s_(period_s),
       stop_periods_(std::max(1.0, stop_periods)),
       horizon_(std::min(horizon, kMaxHorizonPoints)),
-      hold_m_(axes) {
+      hold_m_(axes_),
+      search_(limits, period_s, stop_periods_) {
   if (0.5 * stop_periods_ + static_cast<double>(horizon_) + 16.0 > static_cast<double>(kCapacity)) {
     throw std::invalid_argument("a stop on the path would need more than " + std::to_string(kCapacity) +
                                 " path points ahead; raise limits.acceleration_mm_s2 or limits.jerk_mm_s3, "
@@ -124,38 +107,90 @@ void PathFollower::Start() noexcept {
   UpdatePaces();
 }
 
-void PathFollower::BeginStop() noexcept {
-  if (mode_ != Mode::kRunning) return;
-  mode_ = Mode::kStopping;
-  // Elements 0 and 1 are past or about to be carried out; the ramp begins after them.
-  stop_clock_ = clock_ + 1;
-  UpdatePaces();
+void PathFollower::BeginStop(StopKind kind) noexcept {
+  if (!moving()) return;
+  if (mode_ == Mode::kRunning) {
+    mode_ = Mode::kStopping;
+    stop_ = Stop::kSearched;
+    for (std::size_t j = 0; j < horizon_; ++j) pace_[j] = OwnPace(clock_ + static_cast<std::int64_t>(j));
+    search_.Begin(Point(2));
+  }
+  if (kind == StopKind::kShortest) TakeRamp(1);
 }
 
-PathFollower::Pace PathFollower::PaceAfter(int periods_from_head) const noexcept {
-  const double t = static_cast<double>(clock_ + periods_from_head);
-  if (mode_ == Mode::kRunning) {
-    if (t <= 0.0) return {0.0, 0.0, 0.0};
-    return {t, 1.0, 0.0};
+// Of a horizon element. The path begins at its point 0, at rest.
+std::uint64_t PathFollower::Point(std::int64_t element) const noexcept {
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(1, clock_ + element));
+}
+
+// Element 2 is the next cycle's element 1, about to be carried out then; a stop that is found begins after
+// it.
+void PathFollower::SearchStop() noexcept {
+  if (mode_ != Mode::kStopping || stop_ != Stop::kSearched) return;
+  // The ramp needs what is left of the points.
+  const StopSearch::Found found =
+      short_of_points() ? StopSearch::Found::kNothing : search_.Work(Points(), Point(2));
+  if (found == StopSearch::Found::kNotYet) return;
+  if (found == StopSearch::Found::kNothing) return TakeRamp(2);
+  stop_clock_ = static_cast<std::int64_t>(search_.begin());
+  stop_ = found == StopSearch::Found::kRamp ? Stop::kRamp : Stop::kLaw;
+  ramp_ = {static_cast<double>(stop_clock_), 1.0, 0.0};
+  ramp_periods_ = stop_periods_;
+  FillPaces();
+}
+
+// The shortest stop there is, after a horizon element: at the path's own pace the fixed ramp, on the way to
+// rest what ends sooner.
+void PathFollower::TakeRamp(std::int64_t element) noexcept {
+  if (stop_ == Stop::kRamp) return;
+  const std::int64_t begin = clock_ + element;
+  PathPace from = pace_[static_cast<std::size_t>(element)];
+  double length = stop_periods_;
+  if (stop_ == Stop::kLaw && begin > stop_clock_) {
+    // So long that the rate does not fall below 0.
+    if (from.rate_change < 0.0) length = std::min(length, -3.0 * from.rate / from.rate_change);
+    if (static_cast<double>(stop_clock_ + search_.length() - begin) <= length || length < 1.0) return;
+  } else {
+    from = {std::max(0.0, static_cast<double>(begin)), 1.0, 0.0};
   }
-  // Stopping: rate 1 - (3 s^2 - 2 s^3), s = time since the ramp began over its length; the integral is exact.
-  const double begin = static_cast<double>(stop_clock_);
-  if (t <= begin) return {std::max(0.0, t), t <= 0.0 ? 0.0 : 1.0, 0.0};
-  const double s = std::min(1.0, (t - begin) / stop_periods_);
-  const double travelled = stop_periods_ * (s - s * s * s + 0.5 * s * s * s * s);
-  const double rate = 1.0 - s * s * (3.0 - 2.0 * s);
-  const double change = s >= 1.0 ? 0.0 : -6.0 * s * (1.0 - s) / stop_periods_;
-  return {std::max(0.0, begin) + travelled, s >= 1.0 ? 0.0 : rate, change};
+  stop_clock_ = begin;
+  stop_ = Stop::kRamp;
+  ramp_ = from;
+  ramp_periods_ = length;
+  FillPaces();
+}
+
+PathPace PathFollower::OwnPace(std::int64_t clock) noexcept {
+  const auto t = static_cast<double>(clock);
+  return t <= 0.0 ? PathPace{} : PathPace{t, 1.0, 0.0};
+}
+
+// Of a stop, one period behind `before`.
+PathPace PathFollower::PaceAfter(const PathPace& before, std::int64_t clock) noexcept {
+  if (stop_ == Stop::kSearched || clock <= stop_clock_) return OwnPace(clock);
+  if (stop_ == Stop::kLaw) return search_.After(Points(), before);
+  return StopRamp(ramp_, static_cast<double>(clock - stop_clock_), ramp_periods_);
+}
+
+void PathFollower::FillPaces() noexcept {
+  for (std::size_t j = 1; j < horizon_; ++j) {
+    const std::int64_t clock = clock_ + static_cast<std::int64_t>(j);
+    if (clock > stop_clock_) pace_[j] = PaceAfter(pace_[j - 1], clock);
+  }
 }
 
 void PathFollower::UpdatePaces() noexcept {
   if (!moving()) return;
-  const std::size_t count = mode_ == Mode::kRunning ? 1 : horizon_;
-  for (std::size_t j = 0; j < count; ++j) pace_[j] = PaceAfter(static_cast<int>(j));
+  if (mode_ == Mode::kRunning) {
+    pace_[0] = OwnPace(clock_);
+    return;
+  }
+  std::copy(pace_.begin() + 1, pace_.begin() + static_cast<std::ptrdiff_t>(horizon_), pace_.begin());
+  pace_[horizon_ - 1] = PaceAfter(pace_[horizon_ - 2], clock_ + static_cast<std::int64_t>(horizon_) - 1);
 }
 
-PathFollower::Pace PathFollower::PaceAt(std::size_t j) const noexcept {
-  return mode_ == Mode::kRunning ? PaceAfter(static_cast<int>(j)) : pace_[j];
+PathPace PathFollower::PaceAt(std::size_t j) const noexcept {
+  return mode_ == Mode::kRunning ? OwnPace(clock_ + static_cast<std::int64_t>(j)) : pace_[j];
 }
 
 void PathFollower::Advance() noexcept {
@@ -167,7 +202,8 @@ void PathFollower::Advance() noexcept {
   if (have_last_ && pace_[0].time >= last_time) {
     mode_ = Mode::kEnded;
     for (std::size_t i = 0; i < axes_; ++i) hold_m_[i] = At(i, end_ - 1).position_m;
-  } else if (mode_ == Mode::kStopping && pace_[0].rate == 0.0 && clock_ > stop_clock_) {
+  } else if (mode_ == Mode::kStopping && stop_ != Stop::kSearched && pace_[0].rate == 0.0 &&
+             clock_ > stop_clock_) {
     for (std::size_t i = 0; i < axes_; ++i) hold_m_[i] = Evaluate(i, pace_[0]).position_m;
     mode_ = Mode::kHolding;
   }
@@ -179,8 +215,10 @@ void PathFollower::DropPassed() noexcept {
   if (now > first_ + kBehind) first_ = std::min(now - kBehind, end_ - 1);
 }
 
-bool PathFollower::running_dry() const noexcept {
-  if (mode_ != Mode::kRunning || have_last_) return false;
+bool PathFollower::running_dry() const noexcept { return mode_ == Mode::kRunning && short_of_points(); }
+
+bool PathFollower::short_of_points() const noexcept {
+  if (have_last_) return false;
   const double left = static_cast<double>(end_ - 1) - std::max(0.0, pace_[0].time);
   return left < Reserve();
 }
@@ -197,7 +235,7 @@ std::uint64_t PathFollower::IndexNow() const noexcept {
 
 ProgramPlace PathFollower::program_place() const noexcept {
   if (end_ == 0 || mode_ == Mode::kHolding) return {};
-  const Pace& now = pace_[0];
+  const PathPace& now = pace_[0];
   const double rate = moving() ? now.rate : 0.0;
   const std::uint64_t index = IndexNow();
   const Mark& here = MarkAt(index);
@@ -208,7 +246,7 @@ ProgramPlace PathFollower::program_place() const noexcept {
   return {here.program_time_s + since * step_s, rate * step_s / period_s_, here.line};
 }
 
-ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const noexcept {
+ReferencePoint PathFollower::Evaluate(std::size_t axis, const PathPace& pace) const noexcept {
   const auto last = end_ - 1;
   const double bounded = std::max(static_cast<double>(first_), pace.time);
   auto index = static_cast<std::uint64_t>(bounded);
@@ -218,8 +256,7 @@ ReferencePoint PathFollower::Evaluate(std::size_t axis, const Pace& pace) const 
   if (s == 0.0 && pace.rate == 1.0 && pace.rate_change == 0.0) return a;
   const ReferencePoint& b = At(axis, index + 1);
   const double h = period_s_;
-  const auto q = Quintic(a.position_m, a.velocity_m_s * h, a.acceleration_m_s2 * h * h, b.position_m,
-                         b.velocity_m_s * h, b.acceleration_m_s2 * h * h, s);
+  const Interpolated q = Points().Between(axis, index, s);
   // An extra torque belongs to the program's own pace: it fades with it. A spring stays to the end of a stop.
   return {q.value, pace.rate * q.first / h,
           (pace.rate * pace.rate * q.second + pace.rate_change * q.first) / (h * h),
@@ -259,7 +296,7 @@ void PathFollower::Horizon(std::size_t axis, std::size_t points, AxisHorizon& ou
 
 ReferencePoint PathFollower::Near(std::size_t axis, int offset) const noexcept {
   if (!moving()) return {hold_m_[axis], 0.0, 0.0};
-  Pace pace = pace_[0];
+  PathPace pace = pace_[0];
   pace.time += offset;
   return Evaluate(axis, pace);
 }

@@ -173,6 +173,9 @@ void Transitions::BeginStop(Orders& orders, FaultSeen why, MachineState after) n
   voltage_off_ = after == MachineState::kFaulted && RampInDoubt(why.reason);
   after_stop_ = after;
   orders.stop_path = true;
+  // Who asks for a stop has time for it; a fault and a chain that opened have none.
+  orders.within_limits = why.reason == Reason::kOperatorStop || why.reason == Reason::kDisableRequest ||
+                         why.reason == Reason::kTerminate;
   Enter(MachineState::kStopping);
 }
 

@@ -48,10 +48,11 @@ struct Orders {
   bool hold_here = false;    ///< take the measured position as reference, reset estimators and controller
   bool expect_path = false;  ///< of program_id
   bool start_path = false;
-  bool stop_path = false;    ///< begin the stop ramp
-  bool forget_path = false;  ///< hold where the reference stands
-  bool reference = false;    ///< the axis of the request is where it says
-  bool fall_silent = false;  ///< not a frame any more, until the next bring-up
+  bool stop_path = false;      ///< begin a stop on the path
+  bool within_limits = false;  ///< it may take longer, so that every axis keeps its acceleration and jerk
+  bool forget_path = false;    ///< hold where the reference stands
+  bool reference = false;      ///< the axis of the request is where it says
+  bool fall_silent = false;    ///< not a frame any more, until the next bring-up
   bool torque_allowed = false;
   bool finished = false;  ///< terminate is carried out
   DriveGoal goal = DriveGoal::kDisabled;

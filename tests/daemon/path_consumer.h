@@ -29,7 +29,7 @@ inline PerAxis<double> Origin() {
 class Consumer {
  public:
   Consumer(CommandMailbox& mailbox, double stop_periods) : mailbox_(mailbox) {
-    follower_ = std::make_unique<PathFollower>(2, kPeriod_s, stop_periods, 48);
+    follower_ = std::make_unique<PathFollower>(PerAxis<StopLimits>(2), kPeriod_s, stop_periods, 48);
     follower_->Hold(Origin());
     follower_->Expect(1);
   }

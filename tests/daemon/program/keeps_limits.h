@@ -12,7 +12,8 @@
 namespace contour::test {
 
 /// Takes the points that the cycle would follow and says by how much they exceed the axes' limits: velocity,
-/// acceleration and jerk by the differences of the positions, 1 at the limit.
+/// acceleration and jerk by the differences of the positions, jerk by that of the accelerations handed out as
+/// well, 1 at the limit.
 class LimitWatch {
  public:
   LimitWatch(const PerAxis<PlanLimits>& limits, double period_s) : limits_(limits), period_s_(period_s) {}
@@ -30,6 +31,9 @@ class LimitWatch {
           std::max(acceleration_, std::abs(p[3] - 2 * p[2] + p[1]) / (h * h) / l.acceleration_m_s2);
       if (l.jerk_m_s3 > 0.0)
         jerk_ = std::max(jerk_, std::abs(p[3] - 3 * p[2] + 3 * p[1] - p[0]) / (h * h * h) / l.jerk_m_s3);
+      if (l.jerk_m_s3 > 0.0 && count_ > 0)
+        jerk_ =
+            std::max(jerk_, std::abs(axes[i].acceleration_m_s2 - acceleration_m_s2_[i]) / h / l.jerk_m_s3);
       // Velocity and acceleration handed out belong to the positions.
       if (count_ > 1) {
         const double central = (p[3] - p[1]) / (2 * h);
@@ -44,7 +48,7 @@ class LimitWatch {
     ++count_;
   }
 
-  void ExpectKept(double within = 1.02) const {
+  void ExpectKept(double within = 1.0101) const {
     EXPECT_LE(velocity_, within);
     EXPECT_LE(acceleration_, within);
     EXPECT_LE(jerk_, within);

@@ -13,6 +13,15 @@ constexpr double kRadius_m = 0.01;
 constexpr double kOmega_rad_s = 5.0;
 constexpr std::size_t kHorizon = 24;
 constexpr double kStopPeriods = 75.0;
+constexpr auto kShortest = PathFollower::StopKind::kShortest;
+
+/// Not limited: by the fixed ramp at once.
+PerAxis<StopLimits> NoLimits() {
+  PerAxis<StopLimits> limits;
+  limits.push_back({});
+  limits.push_back({});
+  return limits;
+}
 
 /// A circle from rest: the angle runs up by a smooth ramp of 0.2 s and down again at the end.
 PathPoint CirclePoint(std::uint32_t program, int k, int count) {
@@ -39,7 +48,8 @@ PathPoint CirclePoint(std::uint32_t program, int k, int count) {
 
 class PathFollowerTest : public ::testing::Test {
  protected:
-  PathFollowerTest() : follower_(std::make_unique<PathFollower>(2, kPeriod_s, kStopPeriods, kHorizon)) {
+  PathFollowerTest()
+      : follower_(std::make_unique<PathFollower>(NoLimits(), kPeriod_s, kStopPeriods, kHorizon)) {
     PerAxis<double> zero(2);
     zero[0] = zero[1] = 0.0;
     follower_->Hold(zero);
@@ -93,7 +103,7 @@ TEST_F(PathFollowerTest, StopStaysOnThePathWithinTheAccelerationLimit) {
     Supply(kCount, kCount);
   }
   const double before = follower_->path_time();
-  follower_->BeginStop();
+  follower_->BeginStop(kShortest);
   double largest = 0.0;
   ReferencePoint last[2] = {Now(0), Now(1)};
   int cycles = 0;
@@ -130,7 +140,7 @@ TEST_F(PathFollowerTest, RunsDryInTimeToStopOnThePath) {
   int cycles = 0;
   while (!follower_->running_dry() && cycles++ < 2000) follower_->Advance();
   ASSERT_TRUE(follower_->running_dry());
-  follower_->BeginStop();
+  follower_->BeginStop(kShortest);
   while (!follower_->at_rest() && cycles++ < 4000) follower_->Advance();
   EXPECT_TRUE(follower_->at_rest());
   EXPECT_LT(follower_->path_time(), kSupplied - 1.0);
@@ -195,7 +205,7 @@ TEST_F(PathFollowerTest, AnotherLawOfTimeTakesThePlaceOfWhatWasToCome) {
   }
   EXPECT_EQ(follower_->progress().law, 1u);
   EXPECT_EQ(follower_->progress().refused_law, 0u);
-  follower_->BeginStop();
+  follower_->BeginStop(kShortest);
   EXPECT_EQ(follower_->progress().earliest, PathProgress::kNowhere) << "a stop keeps its path";
   for (int k = 0; k < 200 && !follower_->at_rest(); ++k) follower_->Advance();
   EXPECT_TRUE(follower_->at_rest());
@@ -243,7 +253,7 @@ TEST_F(PathFollowerTest, ALawMayTakeBackTheLastPoint) {
 }
 
 TEST(PathFollower, RefusesAStopThatItCannotLookAheadFor) {
-  EXPECT_THROW(PathFollower(2, kPeriod_s, 2000.0, kHorizon), std::invalid_argument);
+  EXPECT_THROW(PathFollower(NoLimits(), kPeriod_s, 2000.0, kHorizon), std::invalid_argument);
 }
 
 TEST_F(PathFollowerTest, ExtraTorqueFadesWithThePaceAndTheSpringStays) {
@@ -259,7 +269,7 @@ TEST_F(PathFollowerTest, ExtraTorqueFadesWithThePaceAndTheSpringStays) {
   for (int k = 0; k < 100; ++k) follower_->Advance();
   EXPECT_EQ(Now(0).extra_torque_Nm, 0.5);
   EXPECT_EQ(Now(1).extra_torque_Nm, 0.0);
-  follower_->BeginStop();
+  follower_->BeginStop(kShortest);
   double before = 0.5;
   while (!follower_->at_rest()) {
     follower_->Advance();
@@ -278,7 +288,7 @@ TEST_F(PathFollowerTest, StopInTheFirstCyclesOfAProgram) {
   follower_->Expect(7);
   Supply(kCount, kCount);
   follower_->Start();
-  follower_->BeginStop();
+  follower_->BeginStop(kShortest);
   for (int k = 0; k < 200 && !follower_->at_rest(); ++k) follower_->Advance();
   EXPECT_TRUE(follower_->at_rest());
   EXPECT_NEAR(Now(0).position_m, CirclePoint(7, 38, kCount).axes[0].position_m, 1e-5);

@@ -166,6 +166,21 @@ TEST_F(TransitionsTest, StopLeadsToReadyDisableToIdle) {
   EXPECT_FALSE(orders.torque_allowed);
 }
 
+TEST_F(TransitionsTest, WhoAsksForAStopHasTimeForTheLimitsAFaultHasNot) {
+  for (const RequestKind kind : {RequestKind::kStop, RequestKind::kDisable, RequestKind::kTerminate}) {
+    machine_ = Transitions({10, 20, 30});
+    SetDrives(DriveState::kSwitchedOn);
+    now_.io.enable_chain_ok = now_.path_at_rest = true;
+    now_.path_prefetched = now_.path_begins_here = false;
+    ToRunning();
+    EXPECT_TRUE(Step(kind).within_limits);
+    now_.io.enable_chain_ok = false;
+    const Orders orders = Step();
+    EXPECT_TRUE(orders.stop_path) << "one that is under way becomes the shortest";
+    EXPECT_FALSE(orders.within_limits);
+  }
+}
+
 TEST_F(TransitionsTest, TerminateStopsOnThePathThenFinishes) {
   ToRunning();
   EXPECT_TRUE(Step(RequestKind::kTerminate).stop_path);
