@@ -153,6 +153,7 @@ void AxisBundle::SetLane(std::size_t lane, const OwnForce* own, const Results& r
 
 void AxisBundle::Run(const Measured& data) {
   lanes_.rows = data.size();
+  lanes_.run_up = data.run_up;
   lanes_.sent_N = data.led_by_drive() ? data.offset_N.data() : data.force_N.data();
   lanes_.reported_N = data.led_by_drive() ? data.reported_N.data() : nullptr;
   lanes_.position_m = data.position_m.data();

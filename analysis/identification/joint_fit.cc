@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "analysis/identification/free_parameters.h"
+#include "analysis/identification/linear_step.h"
 #include "analysis/identification/spread_groups.h"
 #include "analysis/parallel/parallel_for.h"
 #include "analysis/prediction_error/block_whitening.h"
@@ -49,7 +50,7 @@ class Fit {
         records_(records),
         options_(options),
         free_(FreeParameters(start, records.front().led_by_drive(), options)) {
-    for (const Measured& r : records_) size_ += r.size();
+    for (const Measured& r : records_) size_ += r.compared();
     block_ = static_cast<std::size_t>(std::max(1.0, options.block_s / records_.front().period_s));
   }
 
@@ -64,7 +65,8 @@ class Fit {
       value = free_[i].logarithmic ? value * std::exp(step) : value + step;
     }
     if (!options_.screw) axis.load_inertia *= axis.motor_inertia / start_.motor_inertia;
-    axis.lag_s = std::max(0.0, axis.lag_s);
+    // Below the shortest lag nothing changes, and nothing would lead back: a step beyond it is reflected.
+    axis.lag_s = kShortestLag_s + std::fabs(axis.lag_s - kShortestLag_s);
     // Shares have no sign.
     axis.motor_friction_share = std::min(0.9, std::fabs(axis.motor_friction_share));
     axis.side.share = std::min(0.9, std::fabs(axis.side.share));

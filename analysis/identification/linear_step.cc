@@ -8,7 +8,6 @@
 namespace contour::identify {
 namespace {
 
-constexpr double kShortestLag_s = 5e-6;
 constexpr double kNoStep_s = 1e-9;
 
 }  // namespace

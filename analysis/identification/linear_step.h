@@ -8,6 +8,9 @@
 
 namespace contour::identify {
 
+/// Shorter lags of the torque are simulated as this.
+inline constexpr double kShortestLag_s = 5e-6;
+
 /// Everything linear over a step, with the current loop df/dt = (command - f) / lag in it: exact.
 struct LinearStep {
   Eigen::Matrix4d a;

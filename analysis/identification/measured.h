@@ -17,7 +17,11 @@ struct Measured {
   std::vector<double> position_m;     ///< R theta
   std::vector<double> table_m;        ///< linear scale; empty without one
   std::vector<std::uint8_t> present;  ///< 0: no sample at this grid point
+  /// So many rows at the beginning are simulated and not compared, so that what is compared begins with what
+  /// swings already.
+  std::size_t run_up = 0;
   [[nodiscard]] std::size_t size() const { return force_N.size(); }
+  [[nodiscard]] std::size_t compared() const { return size() - run_up; }
   [[nodiscard]] bool led_by_drive() const { return !reported_N.empty(); }
 };
 

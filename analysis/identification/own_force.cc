@@ -5,10 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/identification/linear_step.h"
+
 namespace contour::identify {
 namespace {
 
-constexpr double kShortestLag_s = 5e-6;
 constexpr std::ptrdiff_t kTaps = 4;  ///< reports to either side of a period's middle
 
 double Sinc(double x) {

@@ -11,9 +11,7 @@ namespace contour::identify {
 namespace {
 
 constexpr std::size_t kSegment = 512;
-/// Where the chirp may be: below, friction and mass say everything; above, little is left of the position.
-/// Shares of the sampling rate.
-constexpr double kLowest_share = 0.04;
+/// Of the sampling rate; above, little is left of the position.
 constexpr double kHighest_share = 0.48;
 constexpr int kFewestSegments = 4;
 /// Largest over smallest accelerance of a shaken axis that counts as rigid.
@@ -37,7 +35,7 @@ void Add(const Measured& d, Spectra& s) {
   s.xx.resize(bins);
   s.ff.resize(bins);
   s.xf.resize(bins);
-  for (std::size_t begin = 2; begin + kSegment < d.size(); begin += kSegment / 4) {
+  for (std::size_t begin = d.run_up + 2; begin + kSegment < d.size(); begin += kSegment / 4) {
     std::vector<double> x(kSegment), f(kSegment);
     bool whole = true;
     for (std::size_t i = 0; i < kSegment && whole; ++i) {
@@ -74,7 +72,7 @@ std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records) {
   const double t = records.front().period_s;
   for (std::size_t b = 1; b < s.xx.size(); ++b) {
     const double frequency = static_cast<double>(b) / (kSegment * t);
-    if (frequency < kLowest_share / t || frequency > kHighest_share / t) continue;
+    if (frequency < kLowestShown_share / t || frequency > kHighest_share / t) continue;
     const double coherence = std::norm(s.xf[b]) / std::max(1e-300, s.xx[b] * s.ff[b]);
     response.push_back({frequency, std::abs(s.xf[b]) / s.ff[b], coherence, std::arg(s.xf[b])});
   }

@@ -18,8 +18,11 @@ struct ResponsePoint {
 /// Coherence from which a point of the response says something.
 inline constexpr double kGoodCoherence = 0.7;
 
-/// From a twenty-fifth to nearly half of the sampling rate, of records that are shaken there throughout;
-/// empty when they are shorter than some windows of half a second.
+/// Of the sampling rate: below, friction and mass say everything.
+inline constexpr double kLowestShown_share = 0.04;
+
+/// From a twenty-fifth to nearly half of the sampling rate, of records that are shaken there throughout,
+/// their run-ups apart; empty when they are shorter than some windows of half a second.
 std::vector<ResponsePoint> MotorResponse(const std::vector<Measured>& records);
 
 /// The deepest point of a response that no rigid axis has; none where it is flat.

@@ -40,6 +40,9 @@ constexpr double kHalvesAgree = 2.6;
 /// when it foresees so much better.
 constexpr double kSideShares[] = {0.05, 0.12, 0.25};
 constexpr double kNextSide = 1.08;
+constexpr double kSideDamping = 0.02;
+/// It swings on into a stretch from so long before it, in times in which a swing decays by e.
+constexpr double kDecays = 3.0;
 constexpr std::size_t kSidesRefined = 3;
 constexpr double kLeastSideGain_log = 1e-2;
 /// It stays when its share is known so well, in standard deviations, or when it foresees that much better.
@@ -64,8 +67,19 @@ constexpr std::size_t kFurther = 4;
 /// The corner of a ramp is that much larger over four rows.
 constexpr double kOfFurther = 1.0 / 9.0;
 
-Measured Slice(const Measured& d, std::size_t begin, std::size_t end) {
+/// How long a part that swings as slowly as shows, damped as little as is tried, goes on when left alone.
+std::size_t LongestRunUp(double period_s) {
+  const double decay_s = 1.0 / (kSideDamping * 2.0 * std::numbers::pi * kLowestShown_share / period_s);
+  return static_cast<std::size_t>(kDecays * decay_s / period_s);
+}
+
+/// With the rows before, in which a part of the table may have begun to swing.
+Measured Slice(const Measured& d, std::size_t first, std::size_t end) {
+  std::size_t begin = first;
+  const std::size_t longest = LongestRunUp(d.period_s);
+  while (begin > 0 && first - begin < longest && d.present[begin - 1] != 0) --begin;
   Measured s;
+  s.run_up = first - begin;
   s.period_s = d.period_s;
   s.position_step_m = d.position_step_m;
   s.report_step_N = d.report_step_N;
@@ -237,7 +251,7 @@ void TakeSide(std::pair<double, TableAxis>& best, const Shaken& shaken, int thre
       TableAxis a = best.second;
       a.load_inertia /= 1.0 - share;
       a.motor_inertia = best.second.mass_kg() - a.load_inertia;
-      a.side = {share, f, 0.02};
+      a.side = {share, f, kSideDamping};
       if (a.motor_inertia > 0.0) tried.push_back(a);
     }
   }
@@ -335,7 +349,7 @@ std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, cons
 ShakenScrew FitShakenScrew(const TableAxis& start, const std::vector<Measured>& records, int threads) {
   ShakenScrew s;
   const std::vector<Measured> segments = ShakenStretches(records, start);
-  for (const Measured& d : segments) s.seconds += static_cast<double>(d.size()) * d.period_s;
+  for (const Measured& d : segments) s.seconds += static_cast<double>(d.compared()) * d.period_s;
   if (!segments.empty()) s.response = MotorResponse(segments);
   const Band band = GoodBand(s.response);
   s.highest_Hz = band.high_Hz;

@@ -11,7 +11,8 @@ namespace contour::identify {
 /// A screw whose resonance is higher is none: the axis counts as rigid.
 inline constexpr double kRigidFrom_Hz = 900.0;
 
-/// The segments in which the axis slides at a steady speed while torque shakes it quickly.
+/// The segments in which the axis slides at a steady speed while torque shakes it quickly, each with a run-up
+/// of the rows before it: what swings on the table does so from before.
 std::vector<Measured> ShakenStretches(const std::vector<Measured>& records, const TableAxis& axis);
 
 /// What shaking the sliding axis tells of its screw, on the time series: there the bristle is saturated, and

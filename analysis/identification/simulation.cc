@@ -63,7 +63,7 @@ double Place(const LevelVariation& v, double x_m) {
 Eigen::MatrixXd PredictionErrors_m(const std::vector<Followed>& axes, const std::vector<Measured>& records,
                                    int threads) {
   Eigen::Index rows = 0;
-  for (const Measured& r : records) rows += static_cast<Eigen::Index>(r.size());
+  for (const Measured& r : records) rows += static_cast<Eigen::Index>(r.compared());
   Eigen::MatrixXd errors = Eigen::MatrixXd::Zero(rows, static_cast<Eigen::Index>(axes.size()));
   std::vector<LaneAxis> prepared;
   prepared.reserve(axes.size());
@@ -83,7 +83,7 @@ Eigen::MatrixXd PredictionErrors_m(const std::vector<Followed>& axes, const std:
         bundle.SetLane(lane, own[r][i].get(), {&errors(first, static_cast<Eigen::Index>(i))});
       }
       bundle.Run(records[r]);
-      first += static_cast<Eigen::Index>(records[r].size());
+      first += static_cast<Eigen::Index>(records[r].compared());
     }
   });
   return errors;
@@ -98,7 +98,7 @@ Simulated Simulate(const TableAxis& axis, const Measured& data, const FollowGain
   Simulated s;
   s.table_m.assign(data.size(), 0.0);
   s.friction_N.assign(data.size(), 0.0);
-  std::vector<double> errors(data.size(), 0.0);
+  std::vector<double> errors(data.compared(), 0.0);
   const std::vector<LaneAxis> one{LaneAxis({axis, gain}, data.period_s)};
   AxisBundle bundle({&one.front()});
   const auto own = OwnForces(one, data);

@@ -19,10 +19,10 @@ struct Followed {
 
 /// Simulates each axis over the records, one after the other: led by the torque that was sent, corrected by
 /// the position that was measured. Column i has measured minus predicted position of axis i, zero where there
-/// is nothing to compare (no sample, or the first ones after a gap). The screw and viscous friction are
-/// stepped exactly (matrix exponential), the bristle between them (Strang splitting); hold, delay and lag of
-/// the torque are exact. Axes run side by side (simd/), and a column does not depend on its neighbours or on
-/// `threads`.
+/// is nothing to compare (no sample, or the first ones after a gap); run-ups have no rows in it. The screw
+/// and viscous friction are stepped exactly (matrix exponential), the bristle between them (Strang
+/// splitting); hold, delay and lag of the torque are exact. Axes run side by side (simd/), and a column does
+/// not depend on its neighbours or on `threads`.
 Eigen::MatrixXd PredictionErrors_m(const std::vector<Followed>& axes, const std::vector<Measured>& records,
                                    int threads);
 /// Of one axis over one record.

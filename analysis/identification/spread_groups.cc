@@ -31,9 +31,11 @@ SpreadWindows WindowsOf(const std::vector<Measured>& records) {
   std::vector<double> force_N, position_m;
   for (const Measured& r : records) {
     const std::vector<double>& sent_N = r.led_by_drive() ? r.offset_N : r.force_N;
-    force_N.insert(force_N.end(), sent_N.begin(), sent_N.end());
-    for (const double x : r.position_m)
+    for (std::size_t k = r.run_up; k < r.size(); ++k) {
+      const double x = r.position_m[k];
+      force_N.push_back(sent_N[k]);
       position_m.push_back(std::isfinite(x) || position_m.empty() ? x : position_m.back());
+    }
   }
   SpreadWindows w;
   const double period_s = records.front().period_s;

@@ -46,6 +46,7 @@ struct LaneVariation {
 struct AxisLanes {
   // The record.
   std::size_t rows = 0;
+  std::size_t run_up = 0;  ///< of these, at the beginning: not compared
   double period_s = 0.0;
   double substep_s = 0.0;
   const double* sent_N = nullptr;      ///< command, or the offset where the drive leads
@@ -72,7 +73,7 @@ struct AxisLanes {
   const double* own_at_N[kAxisLanes] = {};
   const double* own_mean_N[kAxisLanes] = {};
   const double* own_offset_N[kAxisLanes] = {};
-  // Results, of `rows` numbers each; what is null is not asked for.
+  // Results, of `rows` numbers each, errors of those behind the run-up; what is null is not asked for.
   double* error_m[kAxisLanes] = {};
   double* table_m[kAxisLanes] = {};
   double* friction_N[kAxisLanes] = {};

@@ -43,6 +43,23 @@ TEST(JointFitTest, FindsEveryParameterFromAModelThatIsHalfWrong) {
   for (const auto& p : fit.parameters) EXPECT_GT(p.sigma, 0.0) << p.key;
 }
 
+// Two masses without a part that swings, say, may have taken the lag for a delay.
+TEST(JointFitTest, ALagComesBackFromZero) {
+  const TableAxis truth = Exactly(PlainAxis());
+  for (const double lag_s : {0.0, 2e-6, 20e-6}) {
+    TableAxis start = truth;
+    start.lag_s = lag_s;
+    start.delay_s += truth.lag_s - lag_s;
+    start.variation.high_m = 25e-3;
+    identify::FitOptions options;
+    options.only = {"lag_s", "delay_s"};
+    options.spread = false;
+    const auto fit = identify::FitJointly(start, {Everything()}, options);
+    EXPECT_NEAR(fit.axis.lag_s, truth.lag_s, 20e-6) << lag_s;
+    EXPECT_NEAR(fit.axis.delay_s, truth.delay_s, 20e-6) << lag_s;
+  }
+}
+
 // The table is seen with the stiffness, as an antiresonance, and so stated no better.
 TEST(JointFitTest, TheTableIsStatedNoBetterThanTheScrewsStiffness) {
   for (const char* key : {"table_mass_kg", "screw_stiffness_N_um"}) {

@@ -45,6 +45,15 @@ TEST(ScrewResponse, ReadingsThatAreNoiseAreNotCoherent) {
     EXPECT_LT(p.coherence, kGoodCoherence);
 }
 
+TEST(ScrewResponse, ARunUpIsNotShaken) {
+  Measured d = FreeMass(20000);
+  for (std::size_t k = 0; k < 4000; ++k) d.force_N[k] = 0.0;
+  d.run_up = 4000;
+  const auto response = MotorResponse({d});
+  ASSERT_GT(response.size(), 100U);
+  for (const ResponsePoint& p : response) EXPECT_GT(p.coherence, 0.98) << p.frequency_Hz;
+}
+
 /// 1 / 90 kg but for a dip and a rise of this depth.
 std::vector<ResponsePoint> WithDip(double depth, double coherence) {
   std::vector<ResponsePoint> response;

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
+#include "analysis/identification/follow_gain.h"
+#include "analysis/identification/simulation.h"
 #include "tests/analysis/identification/generated_axis.h"
 
 namespace contour::test {
@@ -73,6 +76,60 @@ TEST(ShakenScrewTest, APartThatSwingsIsNotTakenForTheScrew) {
             0.0);
 }
 
+/// The whole of a record's or of its stretches' errors.
+double Rms_m(const TableAxis& axis, const std::vector<Measured>& records) {
+  const auto errors =
+      identify::PredictionErrors_m({{axis, identify::FollowGainFor(axis, records.front())}}, records, 1);
+  return errors.norm() / std::sqrt(static_cast<double>(errors.size()));
+}
+
+// Strokes of half a second, each shaken from its beginning on: the part swings all the time, and left alone
+// it rings for 0.13 s.
+TEST(ShakenScrewTest, AStretchBeginsWithThePartAsItSwings) {
+  constexpr double kSide_Hz = 60.0;
+  plant::AxisParameters truth = PlainAxis();
+  const double omega = kTwoPi * kSide_Hz, side_kg = 0.12 * truth.table_mass_kg;
+  truth.side_modes = {{side_kg, side_kg * omega * omega, 0.04 * side_kg * omega}};
+  TableAxis model = Exactly(truth);
+  model.side = {0.12, kSide_Hz, 0.02};
+  const GeneratedAxis axis{truth};
+  const Measured record = axis.Drive(
+      8.0, [](double t) { return 5e-3 * std::fabs(std::remainder(t, 1.2)); },
+      [](double t) {
+        const double s = std::fmod(t, 2.0);
+        return 60.0 * std::sin(kTwoPi * (40.0 + 100.0 * s) * s);
+      });
+  const std::vector<Measured> stretches = identify::ShakenStretches({record}, model);
+  ASSERT_GE(stretches.size(), 10U);
+  const double whole_m = Rms_m(model, {record});
+  EXPECT_LT(Rms_m(model, stretches), 1.5 * whole_m);
+  // What that is worth.
+  std::vector<Measured> without = stretches;
+  for (Measured& s : without) {
+    const auto rows = static_cast<std::ptrdiff_t>(std::exchange(s.run_up, 0));
+    s.force_N.erase(s.force_N.begin(), s.force_N.begin() + rows);
+    s.position_m.erase(s.position_m.begin(), s.position_m.begin() + rows);
+    s.present.erase(s.present.begin(), s.present.begin() + rows);
+  }
+  EXPECT_GT(Rms_m(model, without), 4.0 * whole_m);
+}
+
+TEST(ShakenScrewTest, ARunUpEndsWhereARowIsMissing) {
+  const plant::AxisParameters truth = PlainAxis();
+  Measured record = ShakenRecord(truth);
+  const TableAxis model = Exactly(truth);
+  const auto whole = identify::ShakenStretches({record}, model);
+  ASSERT_GE(whole.size(), 2U);
+  ASSERT_GT(whole[1].run_up, 300U);
+  // The second begins 0.2 s behind the turn at 2 s.
+  record.present[2050] = 0;
+  const auto cut = identify::ShakenStretches({record}, model);
+  ASSERT_EQ(cut.size(), whole.size());
+  EXPECT_EQ(cut[1].compared(), whole[1].compared());
+  EXPECT_LT(cut[1].run_up, 200U);
+  for (const auto present : cut[1].present) EXPECT_EQ(present, 1);
+}
+
 TEST(ShakenScrewTest, AStiffScrewIsRigidAndNotInvented) {
   plant::AxisParameters stiff = PlainAxis();
   stiff.stiffness_N_m = 400e6;  // resonance at 1070 Hz
@@ -98,8 +155,8 @@ TEST(ShakenScrewTest, WhereADriveLeadsItsOwnNoiseShakesNothing) {
   }
   const auto segments = identify::ShakenStretches({data}, Exactly(PlainAxis()));
   ASSERT_EQ(segments.size(), 1U);
-  EXPECT_NEAR(static_cast<double>(segments.front().size()), 2000.0, 200.0);
-  EXPECT_GT(segments.front().position_m.front(), 9e-3);
+  EXPECT_NEAR(static_cast<double>(segments.front().compared()), 2000.0, 200.0);
+  EXPECT_GT(segments.front().position_m[segments.front().run_up], 9e-3);
 }
 
 TEST(ShakenScrewTest, WithoutAChirpThereIsNothingToSee) {

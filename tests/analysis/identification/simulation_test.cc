@@ -28,6 +28,21 @@ TEST(SimulationTest, TheTrueModelForeseesAnIndependentAxisToItsNoise) {
   EXPECT_GT(rms, 1.5e-9);
 }
 
+TEST(SimulationTest, RowsOfTheRunUpAreSimulatedAndNotCompared) {
+  const TableAxis truth = Exactly(PlainAxis());
+  const auto gain = identify::MakeFollowGain(truth, 1e-3, 60.0);
+  Measured record = Everything();
+  const std::vector<double> all = identify::PredictionErrors_m(truth, record, gain);
+  record.run_up = 3000;
+  const std::vector<double> behind = identify::PredictionErrors_m(truth, record, gain);
+  EXPECT_EQ(behind, std::vector<double>(all.begin() + 3000, all.end()));
+  // Of two records, each its own.
+  const auto both = identify::PredictionErrors_m({{truth, gain}}, {record, Everything()}, 1);
+  ASSERT_EQ(static_cast<std::size_t>(both.rows()), behind.size() + all.size());
+  EXPECT_EQ(both(0), behind.front());
+  EXPECT_EQ(both(static_cast<Eigen::Index>(behind.size()) + 1000), all[1000]);
+}
+
 TEST(SimulationTest, EveryPartOfTheModelMatters) {
   const TableAxis truth = Exactly(PlainAxis());
   const auto gain = identify::MakeFollowGain(truth, 1e-3, 60.0);

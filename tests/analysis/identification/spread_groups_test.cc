@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "analysis/identification/joint_fit.h"
 #include "tests/analysis/identification/generated_axis.h"
@@ -27,6 +28,10 @@ TEST(SpreadGroupsTest, WindowsOfQuickForcesComeLast) {
   EXPECT_GT(w.quickness[2], w.quickness[1]);
   EXPECT_EQ(w.velocity_m_s[0], 0.0);
   EXPECT_GT(w.velocity_m_s[1], 0.0);
+  data.run_up = 30;
+  const identify::SpreadWindows behind = identify::WindowsOf({data});
+  EXPECT_EQ(behind.quickness, std::vector<double>(w.quickness.begin() + 1, w.quickness.end()));
+  EXPECT_EQ(behind.velocity_m_s, std::vector<double>(w.velocity_m_s.begin() + 1, w.velocity_m_s.end()));
 }
 
 TEST(SpreadGroupsTest, WhatGoesWithTheKeyIsSeenAndNoiseIsNotMadeMore) {
