@@ -12,6 +12,15 @@ std::string ModelOverride(const std::string& model) {
   return "axes." + model.substr(0, equals) + ".model=" + model.substr(equals + 1);
 }
 
+std::vector<std::string> LoadedModelTexts(const std::vector<std::string>& models) {
+  std::vector<std::string> out;
+  for (const std::string& model : models)
+    out.push_back("axis " + model.substr(0, model.find('=')) +
+                  " runs with a model that contourd was handed while it ran, not with the machine file's; "
+                  "contourd started anew runs with that");
+  return out;
+}
+
 std::vector<std::string> WithoutModelOf(const std::string& axis, std::vector<std::string> overrides) {
   const std::string key = "axes." + axis + ".model=";
   std::erase_if(overrides, [&](const std::string& o) { return o.starts_with(key); });

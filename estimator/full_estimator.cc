@@ -27,6 +27,8 @@ FullEstimator::FullEstimator(const FilterSetup& setup, KnownEffects known)
       known_(std::move(known)) {}
 
 void FullEstimator::Reset(double position_m) noexcept {
+  const double table_N = known_.TableForce_N(position_m);
+  filter_.SetTableForces_N(table_N, table_N);
   filter_.Reset(position_m);
   roll_.Reset(0.0);
   learnt_.Reset();
@@ -72,6 +74,7 @@ void FullEstimator::TellKnownForces(const AxisEstimatorInput& followed) noexcept
   filter_.SetDrivingForces_N(
       Driving_N(0.5 * (filter_.state()[kPosition] + ahead[kPosition]), ahead[kVelocity]),
       Driving_N(0.5 * (ahead[kPosition] + next_m), ahead[kVelocity]));
+  filter_.SetTableForces_N(known_.TableForce_N(ahead[kPosition]), known_.TableForce_N(next_m));
 }
 
 CONTOUR_WIDE_VECTORS
@@ -157,6 +160,9 @@ void FullEstimator::PreviewFriction(const AxisHorizon& reference, std::size_t po
   const double extra_m_N = learnt_.wind_up.extra_compliance_m_N() / (1.0 - before_screw_);
   if (before_screw_ != 0.0)
     for (FrictionAhead& f : out) f.node_N -= before_screw_ * f.node_N;
+  if (!known_.neutral())
+    for (std::size_t j = 0; j < out.size(); ++j)
+      out[j].node_N -= known_.TableForce_N(reference[j].position_m);
   if (extra_m_N != 0.0)
     for (std::size_t j = 0; j < out.size(); ++j)
       out[j].lead_m += extra_m_N * (out[j].node_N + table_mass_kg_ * reference[j].acceleration_m_s2);

@@ -99,8 +99,8 @@ double KnownEffects::Sum(const Waves& waves, double position_m) noexcept {
   return sum;
 }
 
-double KnownEffects::Force_N(double position_m) const noexcept {
-  return constant_N_ + Sum(cogging_, position_m) + spring_N_.At(position_m);
+double KnownEffects::MotorForce_N(double position_m) const noexcept {
+  return constant_N_ + Sum(cogging_, position_m);
 }
 
 double KnownEffects::LevelFactor(double position_m) const noexcept {

@@ -17,8 +17,15 @@ class KnownEffects {
 
   /// Without extensions: no force, no lead, nothing viscous, factor 1.
   [[nodiscard]] bool neutral() const noexcept { return neutral_; }
-  /// Force on the motor beside the command's, positive towards positive position.
-  [[nodiscard]] double Force_N(double position_m) const noexcept;
+  /// Forces beside the command's, positive towards positive position: on the motor, before the screw; on the
+  /// table, behind it, where they wind the screw up as friction does; both.
+  [[nodiscard]] double MotorForce_N(double position_m) const noexcept;
+  [[nodiscard]] double TableForce_N(double position_m) const noexcept { return spring_N_.At(position_m); }
+  [[nodiscard]] double Force_N(double position_m) const noexcept {
+    return MotorForce_N(position_m) + TableForce_N(position_m);
+  }
+  /// Of those on the motor, what is the same everywhere.
+  [[nodiscard]] double Constant_N() const noexcept { return constant_N_; }
   /// Factor of the friction level.
   [[nodiscard]] double LevelFactor(double position_m) const noexcept;
   /// Friction beside bristle and sigma2 v, with the sign of the velocity. NaN means an unknown temperature.

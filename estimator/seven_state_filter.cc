@@ -114,7 +114,9 @@ void SevenStateFilter<Core>::Reset(double position_m) noexcept {
 template <class Core>
 void SevenStateFilter<Core>::Follow(double position_m) noexcept {
   auto& x = core_.x;
-  x[kPosition] = position_m;
+  const Mechanics& m = setup_.mechanics;
+  const double table_share = m.table_mass_kg / m.mass_kg;
+  x[kPosition] = position_m + table_share * (1.0 - table_share) * table_now_N_ / m.stiffness_N_m;
   x[kVelocity] = (position_m - last_position_m_) / (setup_.period_s * periods_since_position_);
   x[kBristle] = 0.0;
   x[kDisturbance] = 0.0;
@@ -135,12 +137,12 @@ void SevenStateFilter<Core>::Follow(double position_m) noexcept {
 }
 
 // The encoder sees the motor; the model moves the centre of mass, which trails it by Mt/m of the screw's
-// wind-up (F + sigma2 v + Mt a) / K.
+// wind-up (F + sigma2 v - Ft + Mt a) / K, Ft what is known to pull at the table.
 template <class Core>
-double SevenStateFilter<Core>::WindUpShare_m(double total_N, double disturbance_N,
-                                             double force_N) const noexcept {
+double SevenStateFilter<Core>::WindUpShare_m(double total_N, double disturbance_N, double force_N,
+                                             double table_N) const noexcept {
   const Mechanics& m = setup_.mechanics;
-  const double friction = total_N - disturbance_N;
+  const double friction = total_N - disturbance_N - table_N;
   const double acceleration = (force_N + driving_N_ - inertial_N_ - total_N) / m.mass_kg;
   return m.table_mass_kg / m.mass_kg * (friction + m.table_mass_kg * acceleration) / m.stiffness_N_m;
 }
@@ -209,7 +211,8 @@ template <class Core>
 CONTOUR_WIDE_VECTORS UpdateResult SevenStateFilter<Core>::MeasurementUpdate(const AxisEstimatorInput& in,
                                                                             Innovation& innovation) noexcept {
   auto& x = core_.x;
-  const double y = in.position_m - WindUpShare_m(Total_N(x, at_), x[kDisturbance], lag_.force_N());
+  const double y =
+      in.position_m - WindUpShare_m(Total_N(x, at_), x[kDisturbance], lag_.force_N(), table_now_N_);
   const Friction& f = setup_.friction;
   const double least_plus_N = std::min(kLeastLeft * x[kLevelPlus], kLeastByReading * f.Fc_plus_N);
   const double least_minus_N = std::min(kLeastLeft * x[kLevelMinus], kLeastByReading * f.Fc_minus_N);
@@ -370,10 +373,10 @@ CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::Tell(const AxisEstimatorInput&
 
   const double friction_N = Total_N(x, at_);
   const double ahead_N = Total_N(predicted_, model_.TermsAt(predicted_[kVelocity]));
-  out.position_m = x[kPosition] + WindUpShare_m(friction_N, x[kDisturbance], lag_.force_N());
+  out.position_m = x[kPosition] + WindUpShare_m(friction_N, x[kDisturbance], lag_.force_N(), table_now_N_);
   out.velocity_m_s = x[kVelocity];
   out.predicted_position_m =
-      predicted_[kPosition] + WindUpShare_m(ahead_N, predicted_[kDisturbance], in.force_N[0]);
+      predicted_[kPosition] + WindUpShare_m(ahead_N, predicted_[kDisturbance], in.force_N[0], table_ahead_N_);
   out.predicted_velocity_m_s = predicted_[kVelocity];
   out.bristle_N = x[kBristle];
   out.disturbance_N = x[kDisturbance];

@@ -52,6 +52,13 @@ class SevenStateFilter {
     driving_ahead_N_ = ahead;
   }
 
+  /// Forces known to pull at the table, towards positive position, at the sample and at t(k): part of the
+  /// driving forces, and of what winds the screw up.
+  void SetTableForces_N(double now, double ahead) noexcept {
+    table_now_N_ = now;
+    table_ahead_N_ = ahead;
+  }
+
   /// Mean state at the sample and at t(k).
   [[nodiscard]] const StateVector<kSevenStates>& state() const noexcept { return core_.x; }
   [[nodiscard]] const StateVector<kSevenStates>& predicted() const noexcept { return predicted_; }
@@ -101,7 +108,8 @@ class SevenStateFilter {
   CONTOUR_WIDE_VECTORS void Tell(const AxisEstimatorInput& in, AxisEstimate& out) noexcept;
   void LookAhead(const AxisEstimatorInput& in) noexcept;
   [[nodiscard]] double FrictionStd_N(double acceleration_m_s2) const noexcept;
-  [[nodiscard]] double WindUpShare_m(double total_N, double disturbance_N, double force_N) const noexcept;
+  [[nodiscard]] double WindUpShare_m(double total_N, double disturbance_N, double force_N,
+                                     double table_N) const noexcept;
 
   FilterSetup setup_;
   SevenStateModel model_;
@@ -126,7 +134,9 @@ class SevenStateFilter {
   double driving_before_N_ = 0.0;
   double driving_ahead_N_ = 0.0;
   double driving_N_ = 0.0;  // of the two, the one at work
-  int direction_ = 0;       // last commanded one; 0 none yet
+  double table_now_N_ = 0.0;
+  double table_ahead_N_ = 0.0;
+  int direction_ = 0;  // last commanded one; 0 none yet
   double friction_ahead_N_ = 0.0;
   double travel_m_ = 0.0;  // in one direction
   double travel_s_ = 0.0;

@@ -206,13 +206,14 @@ void TwoInertiaEstimator::Lay() noexcept {
     node.driving_N = cogs ? map_.At_N(along_.position_m(j), along_.velocity_m_s(j)) : 0.0;
     if (!known_.neutral()) {
       node.friction_N += known_.Viscous_N(along_.velocity_m_s(j), temperature_degC_);
-      node.driving_N += known_.Force_N(along_.position_m(j));
+      node.driving_N += known_.MotorForce_N(along_.position_m(j));
+      node.pulling_N = known_.TableForce_N(along_.position_m(j));
     }
     // Of sigma2 v, the motor's share has to be taken from the table, which alone has a weight.
     const double before_N =
         before_screw_ * (node.friction_N - weight_N + sigma2_Ns_m * along_.velocity_m_s(j));
     node.table_N = node.friction_N + (1.0 - motors_share) * node.heavier_N + besides_kg * terms[kMass] -
-                   before_N + side_.At_N(j);
+                   before_N + side_.At_N(j) - node.pulling_N;
     node.inertia_N = motors_share * node.heavier_N + motor_extra_kg * terms[kMass];
     node.motor_N = node.driving_N - node.inertia_N - before_N;
     if (by_scale_)

@@ -81,6 +81,7 @@ class TwoInertiaEstimator {
     double heavier_N = 0.0;   ///< for what the axis is heavier than commissioned, all of it
     double learnt_N = 0.0;    ///< all that follows from what is learnt
     double driving_N = 0.0;   ///< known on the motor, beside the drive's
+    double pulling_N = 0.0;   ///< known on the table, towards positive position
     double table_N = 0.0;     ///< of all of it on the table, against positive motion, but for sigma2 v
     double inertia_N = 0.0;   ///< for what the motor is heavier than commissioned
     double motor_N = 0.0;     ///< on the motor, towards positive position

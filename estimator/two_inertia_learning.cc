@@ -56,10 +56,10 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
 void TwoInertiaEstimator::LearnMotor(double position_m) noexcept {
   const Node& here = At(elapsed_);
   const Node& next = At(elapsed_ + 1);
-  const double against_N =
-      0.5 *
-      (here.friction_N + next.friction_N + here.heavier_N + next.heavier_N - here.driving_N - next.driving_N +
-       setup_.friction.sigma2_Ns_m * (along_.velocity_m_s(elapsed_) + along_.velocity_m_s(elapsed_ + 1)));
+  const double against_N = 0.5 * (here.friction_N + next.friction_N + here.heavier_N + next.heavier_N -
+                                  here.driving_N - next.driving_N - here.pulling_N - next.pulling_N +
+                                  setup_.friction.sigma2_Ns_m *
+                                      (along_.velocity_m_s(elapsed_) + along_.velocity_m_s(elapsed_ + 1)));
   balance_.Learn(position_m, acted_N_, against_N);
   if (const MomentumBalance::Missing& m = balance_.missing(); m.known)
     map_.Learn(m.position_m, m.velocity_m_s, m.acceleration_m_s2, m.force_N);
@@ -104,7 +104,7 @@ void TwoInertiaEstimator::LearnWindUp(const AxisEstimatorInput& in) noexcept {
   const double velocity_m_s = along_.velocity_m_s(elapsed_ + 1);
   sample.alone = in.alone;
   sample.position_m = in.position_m;
-  sample.force_N = acted_N_ + At(elapsed_).driving_N - learner_.Weight_N();
+  sample.force_N = acted_N_ + At(elapsed_).driving_N + At(elapsed_).pulling_N - learner_.Weight_N();
   sample.mass_kg = setup_.mechanics.mass_kg + learner_.parameters()[kMass];
   sample.direction = velocity_m_s > 0.0 ? 1 : velocity_m_s < 0.0 ? -1 : 0;
   if (wind_up_.NeedsLevels(sample.direction)) {

@@ -106,6 +106,30 @@ TEST(Extensions, FrictionOfManyPeriodsAlongTheStrokeWhereItIsLinear) {
   EXPECT_LT(known, 1.5 * nothing);
 }
 
+// A cable pulls at the table, and what holds it there winds the screw up: led by motor or drive, it is as if
+// there were none.
+TEST(Extensions, ACableWindsTheScrewUp) {
+  const std::vector<std::string> pull{"emulator.axes.x.effects.cable_spring={torque_at_stroke_end_Nm: 0.6}"};
+  const std::string know =
+      "axes.x.model.extensions.cable_spring={position_mm: [-200, 200], torque_Nm: [0.6, -0.6]}";
+  for (const std::string law : {"control.friction=srukf", "control.friction=linear"})
+    for (const std::vector<std::string>& drive :
+         {std::vector<std::string>{}, {"axes.x.drive.mode=csp", "axes.y.drive.mode=csp"}}) {
+      const auto peak_um = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> set = RightModels();
+        set[0] = law;
+        set.insert(set.end(), drive.begin(), drive.end());
+        set.insert(set.end(), more.begin(), more.end());
+        return Peak_um(set);
+      };
+      const double nothing = peak_um({});
+      const double hidden = peak_um(pull);
+      const double known = peak_um({pull[0], know});
+      EXPECT_GT(hidden, 1.5 * nothing) << law << drive.size();
+      EXPECT_LT(known, nothing + 0.2 * (hidden - nothing)) << law << drive.size();
+    }
+}
+
 TEST(Extensions, PitchErrorIsTakenOutAtTheTable) {
   std::string position, error;
   for (int x = -40; x <= 40; x += 4) {

@@ -25,6 +25,9 @@ class Client(ControlSocket):
     def load(self, model):
         return self.ask(request="load_model", axis="x", model=model)
 
+    def warnings(self):
+        return self.ask(request="status")["status"]["warnings"]
+
     def await_stiffness(self, value):
         self.await_axis(lambda axis: axis["model"]["screw_stiffness_N_um"] == value)
 
@@ -46,8 +49,12 @@ def check(client, process, log):
     client.wait_for("Idle")
     assert client.load(yaml.safe_dump(model))["ok"]
     client.await_stiffness(33)
+    client.wait_for("Idle")
+    assert any("axis x runs with a model" in w for w in client.warnings()), client.warnings()
     assert client.load("")["ok"]
     client.await_stiffness(own)
+    client.wait_for("Idle")
+    assert not any("axis x runs with a model" in w for w in client.warnings()), client.warnings()
     assert process.poll() is None
     for number in ("", ".1", ".2"):
         assert Path(f"{log}{number}").stat().st_size > 1000, number

@@ -83,6 +83,10 @@ TEST(ArgumentsOf, AreReadAsTheSameOptions) {
 TEST(LoadedModel, StandsInPlaceOfTheMachineFilesOwn) {
   EXPECT_EQ(ModelOverride("x={lead_mm: 5}"), "axes.x.model={lead_mm: 5}");
   EXPECT_THROW(ModelOverride("{lead_mm: 5}"), ConfigError);
+  EXPECT_TRUE(LoadedModelTexts({}).empty());
+  const std::vector<std::string> told = LoadedModelTexts({"y=b", "x={lead_mm: 5}"});
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_NE(told[1].find("axis x"), std::string::npos);
   EXPECT_EQ(WithoutModelOf("x", {"axes.x.model={a: 1}", "axes.y.model={a: 1}", "axes.x.model.lead_mm=5"}),
             (std::vector<std::string>{"axes.y.model={a: 1}", "axes.x.model.lead_mm=5"}));
 }

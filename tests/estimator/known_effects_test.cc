@@ -32,7 +32,8 @@ TEST(KnownEffectsTest, TheMotorMakesUpForAWobbleOfTheLead) {
   }
 }
 
-TEST(KnownEffectsTest, ForcesOnTheMotor) {
+// A motor's own torque does not go through the screw; what pulls at the table does.
+TEST(KnownEffectsTest, ForcesBesideTheCommandsOnMotorAndTable) {
   ExtensionsConfig c;
   c.cogging = CoggingExtension{{0.02, 12.0, 0.7}, {}};
   c.constant_torque = ConstantTorqueExtension{0.01};
@@ -41,8 +42,12 @@ TEST(KnownEffectsTest, ForcesOnTheMotor) {
   const double r = kMechanics.radius_m_rad;
   for (const double x : {-0.123, 0.0, 0.0501}) {
     const double spring = -0.05 * std::clamp(x / 0.1, -1.0, 1.0);
-    EXPECT_NEAR(known.Force_N(x) * r, 0.01 + 0.02 * std::sin(12.0 * x / r + 0.7) + spring, 1e-12) << x;
+    const double motors = 0.01 + 0.02 * std::sin(12.0 * x / r + 0.7);
+    EXPECT_NEAR(known.MotorForce_N(x) * r, motors, 1e-12) << x;
+    EXPECT_NEAR(known.TableForce_N(x) * r, spring, 1e-12) << x;
+    EXPECT_NEAR(known.Force_N(x) * r, motors + spring, 1e-12) << x;
   }
+  EXPECT_NEAR(known.Constant_N() * r, 0.01, 1e-15);
 }
 
 TEST(KnownEffectsTest, SeveralOfOneKindAddUp) {

@@ -193,6 +193,22 @@ void DaemonMachine::Disable() {
       kStateLimit);
 }
 
+bool DaemonMachine::AwaitIdle(const std::string& what_for) {
+  // An interrupt may have led here; another one ends the waiting.
+  if (setup_.stop != nullptr) setup_.stop->store(false);
+  std::string told;
+  for (;;) {
+    const json status = Status(*client_);
+    if (status.at("state") == "Idle") return !told.empty();
+    const std::string now = StateSentence(status);
+    if (now != told) Say("waits for Idle (" + what_for + "; Ctrl-C ends the waiting): " + now);
+    told = now;
+    if (setup_.stop != nullptr && *setup_.stop)
+      throw improve::Refused("interrupted, and the machine is " + now);
+    client_->Listen(kLookEvery);
+  }
+}
+
 void DaemonMachine::Follow(std::uint32_t program_id, const std::string& name, Recording& recording) {
   bool stopping = false;
   for (;;) {
@@ -237,6 +253,7 @@ improve::Drawing DaemonMachine::Run(const improve::ProgramText& program) {
   Follow(reply.at("program_id"), program.name, recording);
   improve::Drawing drawing = recording.Finish(Status(*client_).at("cycle"));
   for (const json& m : reply.at("start_m")) drawing.start_m.push_back(m.get<double>());
+  drawing.known = improve::KnownOf(machine);
   return drawing;
 }
 

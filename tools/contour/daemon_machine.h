@@ -16,8 +16,8 @@ class DaemonMachine final : public improve::ImproveMachine {
   struct Setup {
     std::string socket;
     std::string axis;
-    bool yes = false;                         ///< the operator has granted everything beforehand
-    const std::atomic<bool>* stop = nullptr;  ///< set by an interrupt
+    bool yes = false;                   ///< the operator has granted everything beforehand
+    std::atomic<bool>* stop = nullptr;  ///< set by an interrupt
   };
   /// Throws EnvironmentError when nobody listens.
   explicit DaemonMachine(Setup setup);
@@ -31,6 +31,7 @@ class DaemonMachine final : public improve::ImproveMachine {
   void Ask(const std::string& what) override;
   void Enable() override;
   void Disable() override;
+  bool AwaitIdle(const std::string& what_for) override;
   improve::Drawing Run(const improve::ProgramText& program) override;
   void LoadModel(const std::string& yaml) override;
   void Say(const std::string& line) override;

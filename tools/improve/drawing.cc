@@ -6,7 +6,6 @@
 
 #include "config/extended_model.h"
 #include "daemon/program/program.h"
-#include "estimator/known_effects.h"
 
 namespace contour::improve {
 namespace {
@@ -16,16 +15,33 @@ struct Between {
   Mechanics mechanics;
   KnownEffects known;
 
-  explicit Between(const ModelConfig& model) {
-    const ExtendedModel extended = Extended(model);
-    mechanics = ToSi(extended.mechanics);
-    known = KnownEffects(model.extensions, mechanics, 0.0);
+  explicit Between(const ModelConfig& model)
+      : mechanics(ToSi(Extended(model).mechanics)), known(model.extensions, mechanics, 0.0) {}
+
+  /// `then`: known when it was drawn. What was not has been told as friction; a constant torque, too, which
+  /// is the motor's and winds nothing up.
+  [[nodiscard]] double Table_m(const DrawnAxis& a, const KnownEffects& then) const {
+    const double through_N = a.friction_N - then.TableForce_N(a.encoder_m) + known.Constant_N() -
+                             then.Constant_N() + mechanics.table_mass_kg * a.acceleration_m_s2;
+    return a.encoder_m - through_N / mechanics.stiffness_N_m - known.Lead_m(a.encoder_m);
   }
-  [[nodiscard]] double Table_m(const DrawnAxis& a) const {
-    const double wound_m =
-        (a.friction_N + mechanics.table_mass_kg * a.acceleration_m_s2) / mechanics.stiffness_N_m;
-    return a.encoder_m - wound_m - known.Lead_m(a.encoder_m);
+};
+
+/// Between motor and table in one drawing.
+class Screws {
+ public:
+  Screws(const MachineConfig& yardstick, const Drawing& drawing) : then_(drawing.known) {
+    for (const auto& [name, axis] : yardstick.axes) between_.emplace_back(axis.model);
+    then_.resize(between_.size());
   }
+  [[nodiscard]] std::size_t size() const { return between_.size(); }
+  [[nodiscard]] double Table_m(const DrawnCycle& c, std::size_t axis) const {
+    return between_[axis].Table_m(c.axes[axis], then_[axis]);
+  }
+
+ private:
+  std::vector<Between> between_;
+  PerAxis<KnownEffects> then_;
 };
 
 /// Mean and largest of what is added.
@@ -60,15 +76,14 @@ class Judge {
 };
 
 /// A scale's zero is its own: over a drawing the table is on average where the motor says.
-PerAxis<double> ZeroOfScales(const Drawing& drawing, const Judge& judge,
-                             const std::vector<Between>& between) {
-  PerAxis<double> zero_m(between.size());
-  for (std::size_t i = 0; i < between.size(); ++i) {
+PerAxis<double> ZeroOfScales(const Drawing& drawing, const Judge& judge, const Screws& screws) {
+  PerAxis<double> zero_m(screws.size());
+  for (std::size_t i = 0; i < screws.size(); ++i) {
     double sum_m = 0.0;
     std::size_t count = 0;
     for (const DrawnCycle& c : drawing.cycles) {
       if (!judge.Counts(c) || std::isnan(c.axes[i].scale_m)) continue;
-      sum_m += c.axes[i].scale_m - between[i].Table_m(c.axes[i]);
+      sum_m += c.axes[i].scale_m - screws.Table_m(c, i);
       ++count;
     }
     zero_m[i] = count > 0 ? sum_m / static_cast<double>(count) : 0.0;
@@ -104,6 +119,12 @@ std::optional<PathError> TruthOf(const Drawing& drawing, const Judge& judge, con
 
 }  // namespace
 
+PerAxis<KnownEffects> KnownOf(const MachineConfig& machine) {
+  PerAxis<KnownEffects> out;
+  for (const auto& [name, axis] : machine.axes) out.push_back(Between(axis.model).known);
+  return out;
+}
+
 void AddCycle(const CycleRecord& record, Drawing& drawing) {
   DrawnCycle& c = drawing.cycles.emplace_back();
   c.path_time_s = record.path_time_s;
@@ -118,17 +139,16 @@ PathErrors ErrorsOf(const Drawing& drawing, const ProgramText& program, const Pe
                     const MachineConfig& yardstick, const TruthTable* truth) {
   const Judge judge(
       PlanMotion(ParseProgram(program.text, program.name, program.format), drawing.start_m, limits));
-  std::vector<Between> between;
-  for (const auto& [name, axis] : yardstick.axes) between.emplace_back(axis.model);
+  const Screws screws(yardstick, drawing);
   const bool scales = HasScales(drawing);
-  const PerAxis<double> zero_m = ZeroOfScales(drawing, judge, between);
+  const PerAxis<double> zero_m = ZeroOfScales(drawing, judge, screws);
   Sum encoder, believed, scale;
   for (const DrawnCycle& c : drawing.cycles) {
     if (!judge.Counts(c)) continue;
     PerAxis<double> at_encoder, at_table, at_scale;
     for (std::size_t i = 0; i < c.axes.size(); ++i) {
       at_encoder.push_back(c.axes[i].encoder_m);
-      at_table.push_back(between[i].Table_m(c.axes[i]));
+      at_table.push_back(screws.Table_m(c, i));
       at_scale.push_back(c.axes[i].scale_m - zero_m[i]);
     }
     judge.Add(c, at_encoder, encoder);

@@ -9,6 +9,7 @@
 #include "config/machine_config.h"
 #include "core/cycle_record.h"
 #include "daemon/program/motion_plan.h"
+#include "estimator/known_effects.h"
 #include "tools/improve/working_space.h"
 
 namespace contour::improve {
@@ -32,8 +33,12 @@ struct Drawing {
   std::vector<DrawnCycle> cycles;
   diagnosis::AxisLog log;  ///< of the improved axis
   PerAxis<double> start_m;
-  std::uint64_t lost = 0;  ///< cycles that never arrived
+  PerAxis<KnownEffects> known;  ///< of the models it was drawn with: forces that were not told as friction
+  std::uint64_t lost = 0;       ///< cycles that never arrived
 };
+
+/// What the models of a machine state beside mechanics and friction.
+PerAxis<KnownEffects> KnownOf(const MachineConfig& machine);
 
 /// Takes the cycles in which a program ran.
 void AddCycle(const CycleRecord& record, Drawing& drawing);

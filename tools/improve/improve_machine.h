@@ -34,6 +34,9 @@ class ImproveMachine {
   virtual void Ask(const std::string& what) = 0;
   virtual void Enable() = 0;
   virtual void Disable() = 0;
+  /// Waits, as long as that takes, until the machine is Idle, and tells the operator so, and what for.
+  /// Whether it had to wait. Throws Refused at an interrupt that comes meanwhile.
+  virtual bool AwaitIdle(const std::string& what_for) = 0;
   /// Runs a program from where the machine stands, watched.
   virtual Drawing Run(const ProgramText& program) = 0;
   /// Another model of the improved axis (keys of `model:`), or with nothing the machine file's. Leads to

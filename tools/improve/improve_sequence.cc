@@ -50,10 +50,11 @@ ImproveResult ImproveSequence::Run() {
     try {
       if (enabled_) machine_.Disable();
       enabled_ = false;
-      if (loaded_) Restore();
+      if (loaded_) RestoreOnceIdle();
     } catch (const std::exception& also) {
-      throw std::runtime_error(std::string(e.what()) +
-                               "; and the old model is not back, restart contourd: " + also.what());
+      throw std::runtime_error(std::string(e.what()) + "; and the old model is not back: " + also.what() +
+                               ". contour status says with which model contourd runs; started anew, it runs "
+                               "with the machine file's");
     }
     throw;
   }
@@ -266,11 +267,24 @@ void ImproveSequence::KeepBest() {
 
 /// The machine file's own model, or what had been loaded in its place before.
 void ImproveSequence::Restore() {
-  machine_.Say("the old model is loaded again");
   const std::string old = TextOf(result_.machine.axes.at(request_.axis).model);
   machine_.LoadModel("");
   if (TextOf(machine_.Machine().axes.at(request_.axis).model) != old) machine_.LoadModel(old);
   loaded_ = false;
+  machine_.Say("the old model is loaded again");
+}
+
+/// contourd takes a model in Idle alone, and after a fault that is where an operator's reset leads.
+void ImproveSequence::RestoreOnceIdle() {
+  const std::string what_for = "the old model is loaded again then";
+  machine_.AwaitIdle(what_for);
+  for (;;) {
+    try {
+      return Restore();
+    } catch (const ModelRefused&) {
+      if (!machine_.AwaitIdle(what_for)) throw;
+    }
+  }
 }
 
 std::vector<double> Peaks_um(const std::vector<Drawing>& drawings, const ImproveRequest& request,

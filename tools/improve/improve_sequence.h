@@ -71,8 +71,9 @@ using DiagnoseAxis =
     std::function<diagnosis::Diagnosis(const diagnosis::AxisLog&, const diagnosis::StatedAxis&)>;
 
 /// Draws, diagnoses, has the experiments run that decide, loads the models that come of it, draws again and
-/// keeps the best. Whatever ends it early, an operator's no, an interrupt or a fault, the torque is off
-/// and the old model loaded when it throws.
+/// keeps the best. Whatever ends it early, an operator's no, an interrupt or a fault, the torque is off and
+/// the old model loaded when it throws; after a fault it waits until the machine has been reset for that.
+/// What it throws says so where the old model is not back.
 class ImproveSequence {
  public:
   ImproveSequence(ImproveMachine& machine, ImproveRequest request, DiagnoseAxis diagnose);
@@ -93,6 +94,7 @@ class ImproveSequence {
   [[nodiscard]] Trial Judged(const Candidate& candidate, Series drawn, std::size_t candidates) const;
   void KeepBest();
   void Restore();
+  void RestoreOnceIdle();
 
   ImproveMachine& machine_;
   ImproveRequest request_;

@@ -35,7 +35,10 @@ class FakeMachine final : public ImproveMachine {
   Drawing Run(const ProgramText& program) override {
     EXPECT_TRUE(enabled);
     ran.push_back(program.name);
-    if (ran.size() == fail_at) throw std::runtime_error("stopped: a fault");
+    if (ran.size() == fail_at) {
+      faulted = true;
+      throw std::runtime_error("stopped: a fault");
+    }
     Drawing d;
     d.start_m = Position_m();
     d.log.axis = "x";
@@ -63,17 +66,32 @@ class FakeMachine final : public ImproveMachine {
     EXPECT_FALSE(enabled) << "nothing is loaded while there is torque";
     if (!refuse_text.empty() && yaml.find(refuse_text) != std::string::npos)
       throw ModelRefused("contourd does not take it: no");
+    if (faulted) throw ModelRefused("contourd begins anew while the machine is Idle, and it is Faulted");
     loaded.push_back(yaml);
     new_model = !yaml.empty();
     for (const auto& [text, um] : error_with_um)
       if (yaml.find(text) != std::string::npos) error_after_um = um;
     if (!new_model) machine_ = file_;
   }
-  void Say(const std::string&) override {}
+  bool AwaitIdle(const std::string& what_for) override {
+    EXPECT_FALSE(enabled);
+    if (!faulted) return false;
+    if (nobody_resets) throw Refused("interrupted, and the machine is Faulted");
+    EXPECT_NE(what_for.find("old model"), std::string::npos);
+    faulted = false;
+    ++waited;
+    return true;
+  }
+  void Say(const std::string& line) override {
+    if (line == "the old model is loaded again") {
+      EXPECT_FALSE(new_model) << "not before it is";
+    }
+  }
 
   std::vector<std::string> asked, ran, loaded;
   std::size_t refuse_at = 0, fail_at = 0, lose_at = 0;
-  bool lose_all = false;
+  bool lose_all = false, faulted = false, nobody_resets = false;
+  int waited = 0;
   double error_after_um = 0.5;
   std::string refuse_text;                      ///< of a model
   std::map<std::string, double> error_with_um;  ///< by a text of the model
@@ -282,6 +300,29 @@ TEST_F(ImproveSequenceTest, AFaultInAnyProgramLeavesTheOldModelWithoutTorque) {
     EXPECT_FALSE(machine_.enabled);
     EXPECT_FALSE(machine_.new_model);
   }
+}
+
+// A fault waits for its reset, and contourd takes a model in Idle alone.
+TEST_F(ImproveSequenceTest, AFaultWithTheNewModelLoadedWaitsForTheResetAndThenLoadsTheOldOne) {
+  Run();
+  const std::size_t last = machine_.ran.size();
+  machine_ = FakeMachine(config_);
+  machine_.fail_at = last;
+  lengths_.clear();
+  EXPECT_THROW(Run(), std::runtime_error);
+  EXPECT_EQ(machine_.waited, 1);
+  EXPECT_FALSE(machine_.new_model);
+  machine_ = FakeMachine(config_);
+  machine_.fail_at = last;
+  machine_.nobody_resets = true;
+  lengths_.clear();
+  try {
+    Run();
+    FAIL();
+  } catch (const std::exception& e) {
+    EXPECT_NE(std::string(e.what()).find("the old model is not back"), std::string::npos) << e.what();
+  }
+  EXPECT_TRUE(machine_.new_model);
 }
 
 TEST_F(ImproveSequenceTest, ARecordWithHolesIsDrawnOnceMoreAndNotForEver) {
