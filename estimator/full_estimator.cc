@@ -61,7 +61,8 @@ AxisEstimatorInput FullEstimator::Followed(const AxisEstimatorInput& in) noexcep
 }
 
 double FullEstimator::Driving_N(double position_m, double velocity_m_s) const noexcept {
-  return known_.Force_N(position_m) + learnt_.map.At_N(position_m, velocity_m_s);
+  const double known_N = known_.neutral() ? 0.0 : known_.Force_N(position_m);
+  return known_N + learnt_.map.At_N(position_m, velocity_m_s);
 }
 
 void FullEstimator::TellKnownForces(const AxisEstimatorInput& followed) noexcept {
@@ -74,7 +75,8 @@ void FullEstimator::TellKnownForces(const AxisEstimatorInput& followed) noexcept
   filter_.SetDrivingForces_N(
       Driving_N(0.5 * (filter_.state()[kPosition] + ahead[kPosition]), ahead[kVelocity]),
       Driving_N(0.5 * (ahead[kPosition] + next_m), ahead[kVelocity]));
-  filter_.SetTableForces_N(known_.TableForce_N(ahead[kPosition]), known_.TableForce_N(next_m));
+  if (!known_.neutral())
+    filter_.SetTableForces_N(known_.TableForce_N(ahead[kPosition]), known_.TableForce_N(next_m));
 }
 
 CONTOUR_WIDE_VECTORS
