@@ -91,8 +91,40 @@ std::vector<Place> PlacesOf(const Directions& d, const Layout& at, bool two_iner
   return places;
 }
 
-/// Runs the model with each direction pushed in a lane of its own, and keeps what the push made of each
-/// transition.
+constexpr std::size_t kDirectionsAtOnce = kLanes - 1;
+
+/// What each of a bundle's directions made of each transition.
+using Tangent = std::vector<float>;
+
+/// A bundle whose first lane is not moved, and the others in one direction each, from `first` on.
+Lanes Pushed(const Lanes& unmoved, const Directions& d, std::size_t first, Tangent& tangent) {
+  Lanes m = unmoved;
+  m.push.inverse = m.push.inverse + 1.0;
+  for (std::size_t i = 0; i < kDirectionsAtOnce && first + i < d.columns.size(); ++i) {
+    const Direction& direction = d.columns[first + i];
+    (m.push.*direction.push)[i + 1] = direction.size;
+    m.push.inverse[i + 1] = 1.0 / direction.size;
+  }
+  m.tangent = tangent.data();
+  return m;
+}
+
+void KeepTangent(const Directions& d, const std::vector<Place>& places, std::size_t first,
+                 const Tangent& tangent, LinearModel& out) {
+  const std::size_t count = std::min(kDirectionsAtOnce, d.columns.size() - first);
+  for (std::size_t k = 0; k + 1 < out.rows; ++k) {
+    float* to = &out.step[k * out.stride];
+    for (std::size_t i = 0; i < count; ++i) {
+      const float* from = &tangent[(k * kDirectionsAtOnce + i) * kTangentStates];
+      const Place& place = places[first + i];
+      to[place.e] = -from[kInnovation];
+      for (std::size_t s = 0; s < d.states.size(); ++s) to[place.x + s * place.step] = from[d.states[s]];
+    }
+  }
+}
+
+/// Runs the model with each direction pushed in a lane of its own, two bundles side by side, and keeps what
+/// the push made of each transition.
 void RunDirections(const FilterSetup& setup, const AxisModel& model, const Directions& d,
                    const std::vector<Place>& places, LinearModel& out) {
   const std::size_t rows = out.rows;
@@ -107,38 +139,31 @@ void RunDirections(const FilterSetup& setup, const AxisModel& model, const Direc
     if (setup.valid[k] == 0) measured[k] = 0.0;
   const AxisModel* models[] = {&model};
   const Delivered* means[] = {&delivered};
-  constexpr std::size_t kAtOnce = kLanes - 1;
-  std::vector<float> tangent((rows - 1) * kAtOnce * kTangentStates);
-  for (std::size_t first = 0; first < d.columns.size(); first += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, d.columns.size() - first);
-    Lanes m = MakeLanes(traced, models, means, measured.data(), zeros.data());
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      m.innovation[i] = i == 0 ? out.innovation.data() : spare.data();
-      m.velocity[i] = i == 0 ? out.velocity.data() : spare.data();
-      m.friction[i] = spare.data();
-      m.table[i] = i == 0 ? out.table.data() : spare.data();
+  Lanes unmoved = MakeLanes(traced, models, means, measured.data(), zeros.data());
+  for (std::size_t i = 0; i < kLanes; ++i) {
+    unmoved.innovation[i] = i == 0 ? out.innovation.data() : spare.data();
+    unmoved.velocity[i] = i == 0 ? out.velocity.data() : spare.data();
+    unmoved.friction[i] = spare.data();
+    unmoved.table[i] = i == 0 ? out.table.data() : spare.data();
+  }
+  const Segment all{.rows = rows};
+  const std::span<const Segment> pieces =
+      setup.pieces.empty() ? std::span<const Segment>(&all, 1) : std::span<const Segment>(setup.pieces);
+  Tangent tangent[2];
+  for (Tangent& t : tangent) t.resize((rows - 1) * kDirectionsAtOnce * kTangentStates);
+  for (std::size_t first = 0; first < d.columns.size(); first += 2 * kDirectionsAtOnce) {
+    const std::size_t next = first + kDirectionsAtOnce;
+    const Lanes one = Pushed(unmoved, d, first, tangent[0]);
+    const Lanes other = Pushed(unmoved, d, next, tangent[1]);
+    for (const Segment& piece : pieces) {
+      const bool whole = setup.pieces.empty();
+      Lanes a = whole ? one : Over(one, piece), b = whole ? other : Over(other, piece);
+      a.tangent += piece.from * kDirectionsAtOnce * kTangentStates;
+      b.tangent += piece.from * kDirectionsAtOnce * kTangentStates;
+      BestLoops().run_both(a, b);
     }
-    m.push.inverse = m.push.inverse + 1.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      (m.push.*d.columns[first + i].push)[i + 1] = d.columns[first + i].size;
-      m.push.inverse[i + 1] = 1.0 / d.columns[first + i].size;
-    }
-    m.tangent = tangent.data();
-    if (setup.pieces.empty()) BestLoops().run(m);
-    for (const Segment& piece : setup.pieces) {
-      Lanes part = Over(m, piece);
-      part.tangent += piece.from * kAtOnce * kTangentStates;
-      BestLoops().run(part);
-    }
-    for (std::size_t k = 0; k + 1 < rows; ++k) {
-      float* to = &out.step[k * out.stride];
-      for (std::size_t i = 0; i < count; ++i) {
-        const float* from = &tangent[(k * kAtOnce + i) * kTangentStates];
-        const Place& place = places[first + i];
-        to[place.e] = -from[kInnovation];
-        for (std::size_t s = 0; s < d.states.size(); ++s) to[place.x + s * place.step] = from[d.states[s]];
-      }
-    }
+    KeepTangent(d, places, first, tangent[0], out);
+    if (next < d.columns.size()) KeepTangent(d, places, next, tangent[1], out);
   }
 }
 

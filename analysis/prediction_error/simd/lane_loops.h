@@ -11,7 +11,8 @@ struct LaneProducts;
 /// same bits; the baseline differs from them by rounding.
 struct LaneLoops {
   void (*run)(const Lanes& m);
-  /// Two bundles of one shape over the same rows, faster than one after the other. No linearisation.
+  /// Two bundles of one shape over the same rows, faster than one after the other. Where both are
+  /// linearised, the lanes that are not moved are the same.
   void (*run_both)(const Lanes& a, const Lanes& b);
   void (*columns)(const LaneColumns& m);
   void (*whiten)(const LaneWhiten& m);
