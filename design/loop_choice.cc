@@ -7,6 +7,7 @@
 #include "config/config_error.h"
 #include "config/friction_choice.h"
 #include "design/creep.h"
+#include "design/loop_report.h"
 #include "design/loop_search.h"
 #include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
@@ -48,8 +49,9 @@ class Writer {
 std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
   const bool scale = axis.scale_step_m.has_value();
   const LoopJudge judge(axis, period_s);
-  std::optional<LoopTuning> best;
-  double least_m = 0.0;
+  // The second kind only holds against a force, as long as a step is looked at.
+  std::optional<LoopTuning> best, holding;
+  double least_m = 0.0, holding_m = 0.0;
   for (LoopTuning known : LoopsOfOtherAxes(period_s)) {
     for (const double softer : kSofter) {
       LoopTuning tuning = known;
@@ -59,8 +61,15 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
       tuning.Visit(rounding);
       try {
         const LoopVerdict verdict = judge.Judge(DesignLoop(axis.axis, tuning, period_s, scale));
-        if (!Acceptable(verdict) || !TakesUp(verdict.step)) continue;
+        if (!Acceptable(verdict)) continue;
         const double error_m = StepError_m(verdict);
+        if (!TakesUp(verdict.step)) {
+          if (!holding || error_m < holding_m) {
+            holding = tuning;
+            holding_m = error_m;
+          }
+          continue;
+        }
         if (!best || error_m < least_m) {
           best = tuning;
           least_m = error_m;
@@ -87,6 +96,8 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
   if (Acceptable(found.verdict) && TakesUp(found.verdict.step) &&
       (!best || StepError_m(found.verdict) < least_m))
     best = found.tuning;
+  // A slow axis that comes to rest all the same has that one.
+  if (!best && holding && WhatIsWrong(ReportOn(axis, *holding, period_s)).empty()) return holding;
   return best;
 }
 

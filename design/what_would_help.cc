@@ -39,6 +39,8 @@ std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, in
   const auto tried = [&](const LoopAxis& other) {
     const FoundLoop found = FindLoop(other, period_s, options);
     if (!found.wrong_creeping.empty() || !WhatIsWrong(found.verdict).empty()) return Works::kNot;
+    // A loop that keeps the limits may still hunt.
+    if (!WhatIsWrong(ReportOn(other, found.tuning, period_s)).empty()) return Works::kNot;
     const bool creeps = !found.verdict.worst[static_cast<std::size_t>(MemberKind::kCreeping)].name.empty();
     return creeps ? Works::kCreeping : Works::kWell;
   };

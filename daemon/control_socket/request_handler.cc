@@ -33,8 +33,10 @@ std::string Text(const json& request, const char* key) {
 
 /// Not a name: that would be read as a file of the daemon's computer, whoever may see that.
 void RequireYamlKeys(const std::string& text, const std::string& what) {
-  const bool keys =
-      text.empty() || text.find(": ") != std::string::npos || text.find(":\n") != std::string::npos;
+  const bool block = text.find(": ") != std::string::npos || text.find(":\n") != std::string::npos ||
+                     text.find(":\r") != std::string::npos;
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  const bool keys = text.empty() || block || (first != std::string::npos && text[first] == '{');
   if (!keys) throw BadRequest(what + " must be keys and values as YAML, as in \"lead_mm: 5\"");
 }
 
@@ -269,7 +271,9 @@ json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& sub
   const json request = json::parse(line, nullptr, false);
   if (request.is_discarded()) return Refusal("this line is not JSON");
   if (!request.is_object()) return Refusal("a request is a JSON object");
-  if (const std::string key = RepeatedKey(line); !key.empty())
+  const auto kind = request.find("request");
+  const bool stops = kind != request.end() && (*kind == "stop" || *kind == "disable");
+  if (const std::string key = RepeatedKey(line); !key.empty() && !stops)
     return WithId(Refusal("\"" + key + "\" is there more than once"), request);
   try {
     return WithId(Dispatch(request, desk, subscriptions, unwanted, uploaded), request);

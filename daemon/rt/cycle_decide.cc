@@ -9,7 +9,8 @@ namespace {
 
 /// Whether carrying these orders out touches what is followed.
 bool ChangesPath(const Orders& o) noexcept {
-  return o.hold_here || o.forget_path || o.expect_path || o.start_path || o.stop_path || !o.torque_allowed;
+  return o.hold_here || o.forget_path || o.expect_path || o.start_path || o.stop_path || o.shorten_stop ||
+         !o.torque_allowed;
 }
 
 }  // namespace

@@ -24,6 +24,7 @@ void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
   if (orders.stop_path)
     follower_.BeginStop(orders.within_limits ? PathFollower::StopKind::kWithinLimits
                                              : PathFollower::StopKind::kShortest);
+  if (orders.shorten_stop) follower_.BeginStop(PathFollower::StopKind::kShortest);
 }
 
 // An incremental encoder that was not believed, or seemed faster than its axis can be, may have lost counts.

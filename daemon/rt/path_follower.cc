@@ -142,8 +142,8 @@ void PathFollower::SearchStop() noexcept {
 // The shortest stop there is, after a horizon element: at the path's own pace the fixed ramp, on the way to
 // rest what ends sooner.
 void PathFollower::TakeRamp(std::int64_t element) noexcept {
-  if (stop_ == Stop::kRamp) return;
   const std::int64_t begin = clock_ + element;
+  if (stop_ == Stop::kRamp && begin >= stop_clock_) return;
   PathPace from = pace_[static_cast<std::size_t>(element)];
   double length = stop_periods_;
   if (stop_ == Stop::kLaw && begin > stop_clock_) {

@@ -79,8 +79,9 @@ StopSearch::Found StopSearch::Work(const PathPoints& path, std::uint64_t earlies
     if (ramp_) {
       ramp_ = false;
     } else if (!Gentler()) {
-      Begin(since_);  // of the same search, from a later point on
+      Begin(since_);  // of the same search, from a later point on, that is in another cycle
       ramp_ = false;
+      break;
     }
   }
   const double searched = static_cast<double>(earliest - since_);
@@ -242,11 +243,12 @@ bool StopSearch::Keeps(const PathPoints& path, const PathPace& from, const PathP
 }
 
 // Whether the path as it is goes beyond the limits there.
-bool StopSearch::Own(const PathPoints& path, std::size_t axis, double from, double to) const noexcept {
+bool StopSearch::Own(const PathPoints& path, std::size_t axis, double from, double to) noexcept {
   const auto here = static_cast<std::uint64_t>(from);
   const std::uint64_t first = std::max(path.first, here - std::min<std::uint64_t>(here, 1));
   const std::uint64_t last = std::min(path.end, static_cast<std::uint64_t>(to) + 3);
   const double square_s2 = path.period_s * path.period_s;
+  work_ += static_cast<std::uint32_t>(last - std::min(first, last));
   for (std::uint64_t i = first; i + 1 < last; ++i) {
     const double now_m = path.At(axis, i).acceleration_m_s2 * square_s2;
     const double next_m = path.At(axis, i + 1).acceleration_m_s2 * square_s2;

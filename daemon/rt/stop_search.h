@@ -65,7 +65,7 @@ class StopSearch {
   [[nodiscard]] double Allowed(const PathPace& next, double bend, double wanted) const noexcept;
   [[nodiscard]] PathPace Onward(const PathPoints& path, const PathPace& pace) noexcept;
   [[nodiscard]] bool Keeps(const PathPoints& path, const PathPace& from, const PathPace& to) noexcept;
-  [[nodiscard]] bool Own(const PathPoints& path, std::size_t axis, double from, double to) const noexcept;
+  [[nodiscard]] bool Own(const PathPoints& path, std::size_t axis, double from, double to) noexcept;
 
   std::size_t axes_;
   double ramp_periods_;

@@ -215,6 +215,8 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
       } else if (state_ == MachineState::kEnabling) {
         reason_ = Reason::kOperatorStop;
         Enter(MachineState::kIdle);
+      } else if (state_ == MachineState::kStopping) {
+        orders.shorten_stop = true;  // who asks again is in a hurry
       }
       return;
     case RequestKind::kDisable:

@@ -50,6 +50,7 @@ struct Orders {
   bool start_path = false;
   bool stop_path = false;      ///< begin a stop on the path
   bool within_limits = false;  ///< it may take longer, so that every axis keeps its acceleration and jerk
+  bool shorten_stop = false;   ///< of the stop under way: the shortest there is
   bool forget_path = false;    ///< hold where the reference stands
   bool reference = false;      ///< the axis of the request is where it says
   bool fall_silent = false;    ///< not a frame any more, until the next bring-up

@@ -14,6 +14,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/exit_status.h"
 #include "daemon/telemetry/log_format.h"
 #include "drivers/lcm/cycle_messages.h"
 
@@ -56,13 +57,16 @@ contour_lcm::log_header ToMessage(const LogHeader& header) {
 /// take the record of the first.
 int OpenForOneWriter(const std::filesystem::path& file) {
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0644);
-  const bool held = fd >= 0 && ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  // Devices and pipes have no length to cut.
-  if (fd >= 0 && !held && (::ftruncate(fd, 0) == 0 || errno == EINVAL)) return fd;
+  // Devices and pipes are nobody's alone and have no length to cut.
+  struct stat found {};
+  const bool known = fd >= 0 && ::fstat(fd, &found) == 0;
+  if (known && !S_ISREG(found.st_mode)) return fd;
+  const bool held = known && ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (known && !held && ::ftruncate(fd, 0) == 0) return fd;
   const std::string why =
       held ? "another process is writing it; end that one or name another file" : std::strerror(errno);
   if (fd >= 0) ::close(fd);
-  throw std::runtime_error("cannot write log " + file.string() + ": " + why);
+  throw EnvironmentError("cannot write log " + file.string() + ": " + why);
 }
 
 }  // namespace

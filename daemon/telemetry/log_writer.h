@@ -22,7 +22,8 @@ namespace contour {
 /// it.
 class LogWriter final : public TelemetrySink {
  public:
-  /// Throws std::runtime_error with file and cause when the file cannot be made.
+  /// Throws EnvironmentError with file and cause when the file cannot be made or another process writes it,
+  /// std::runtime_error when it does not take its header.
   LogWriter(const std::filesystem::path& file, const LogHeader& header);
   /// Closes.
   ~LogWriter() override;

@@ -170,6 +170,8 @@ void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion
     if ((stop_requested || !watchman.offence().empty()) && !stopping) {
       stopping = true;
       client.Ask({{"request", "stop"}});
+      // A second one is the shortest stop there is.
+      if (!watchman.offence().empty()) client.Ask({{"request", "stop"}});
     }
     const auto until = std::chrono::steady_clock::now() + kLookEvery;
     while (std::chrono::steady_clock::now() < until)

@@ -231,6 +231,8 @@ void DaemonMachine::Follow(std::uint32_t program_id, const std::string& name, Re
     if ((interrupted || !recording.offence().empty()) && !stopping) {
       stopping = true;
       client_->Ask({{"request", "stop"}});
+      // A second one is the shortest stop there is.
+      if (!recording.offence().empty()) client_->Ask({{"request", "stop"}});
     }
     const auto until = std::chrono::steady_clock::now() + kLookEvery;
     while (std::chrono::steady_clock::now() < until)

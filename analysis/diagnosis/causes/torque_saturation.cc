@@ -28,6 +28,8 @@ double LargestAsked(const Problem& p) {
 /// Where the loss is told: rated torque, or the largest that the log asks for where none is stated.
 double ToldAt(const Problem& p) { return p.stated.rated > 0.0 ? p.stated.rated : LargestAsked(p); }
 
+constexpr std::string_view kLimit = "limit";
+
 /// A limit is far from linear: none of what lies below it says anything of it.
 bool IsLimit(const Effect& effect) { return !effect.start.empty(); }
 
@@ -109,7 +111,8 @@ void AddLimit(const Problem& p, std::vector<SharedEffect>& out) {
   const auto apply = [&log = p.log](const auto& a, AxisModel& m) {
     if (a[0] > 0.0) Enter(m, Input::kMotorForce, {TakenByLimit(log, m, 1.0 / a[0])}, {1.0});
   };
-  out.push_back(WithForce(Custom({std::string(kName), "limit", kLevels}, amplitudes, apply), {-1}));
+  // Of what is commanded: a factor on all forces against the torque leaves it as it is.
+  out.push_back(Custom({std::string(kName), std::string(kLimit), kLevels}, amplitudes, apply));
 }
 
 /// A torque that grows faster than the current, as no motor's does, or a limit that was never asked for.

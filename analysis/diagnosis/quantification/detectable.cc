@@ -206,7 +206,9 @@ std::map<std::string, std::map<std::string, double>> SmallestDetectable(const Pr
     described.kind = kind;
     DescribeEffect(problem, at, at.point.effects.size() - 1, described);
     const std::string name(*cause->main_parameter);
-    out[kind][name] = std::fabs(described.parameters[name].value);
+    // Of a kind that has several forms, the one that is looked for may have another size.
+    if (const auto size = described.parameters.find(name); size != described.parameters.end())
+      out[kind][name] = std::fabs(size->second.value);
   }
   if (screened.jitter.tested) {
     const CauseDefinition& cause = CauseInScatter();

@@ -128,6 +128,7 @@ TEST_F(RequestHandlerTest, AKeyThatIsUnknownOrThereTwiceIsRefused) {
   // Nothing keeps anybody from stopping.
   EXPECT_EQ(Ask(R"({"request": "stop", "foo": 1})")["ok"], true);
   EXPECT_EQ(Ask(R"({"request": "disable", "foo": 1})")["ok"], true);
+  EXPECT_EQ(Ask(R"({"request": "stop", "id": 1, "id": 2})")["ok"], true);
   // The same name in two of its objects is none of the request's own.
   EXPECT_EQ(Ask(R"({"request": "torque_mode", "loops": {"x": "a: 1"}, "models": {"x": "b: 2"}})")["ok"],
             true);
@@ -138,6 +139,7 @@ TEST_F(RequestHandlerTest, AModelIsItsKeysAndNoNameOfAFile) {
   EXPECT_TRUE(desk_.asked().empty());
   EXPECT_EQ(Ask(R"({"request": "load_model", "axis": "x", "model": "lead_mm: 5"})")["ok"], true);
   EXPECT_EQ(Ask(R"({"request": "load_model", "axis": "x", "model": ""})")["ok"], true);
+  EXPECT_EQ(Ask(R"({"request": "load_model", "axis": "x", "model": "{\"lead_mm\":5}"})")["ok"], true);
 }
 
 TEST_F(RequestHandlerTest, TorqueModeHasALoopForEachAxisAndModelsWhereTheyAreOthers) {

@@ -244,6 +244,22 @@ TEST(StopSearch, AFaultOnTheWayToRestIsNotKeptWaiting) {
   EXPECT_TRUE(sooner);
 }
 
+// With many axes and a long ramp the search ends well before the ramp that it found begins.
+TEST(StopSearch, AFaultDoesNotWaitForARampThatIsStillToBegin) {
+  Machine machine;
+  machine.axes = 8;
+  machine.jerk_m_s3 = 4.0;
+  const std::vector<PathPoint> points = Planned(machine, "G1 X150 F15000\nM2\n");
+  constexpr int kAfter = 5;
+  Runner gentle(machine, points);
+  gentle.RunTo(points.size() / 2);
+  ASSERT_GT(gentle.Stop(Kind::kWithinLimits).periods, kAfter + machine.RampPeriods() + 4.0)
+      << "it would wait";
+  Runner runner(machine, points);
+  runner.RunTo(points.size() / 2);
+  EXPECT_LE(runner.Stop(Kind::kWithinLimits, kAfter).periods, kAfter + machine.RampPeriods() + 4.0);
+}
+
 TEST(StopSearch, StopsByTheFixedRampWhereNothingFits) {
   // A zigzag without any blend: no stop keeps the limits, and none is asked for what the path itself does.
   Machine machine;

@@ -166,6 +166,14 @@ TEST_F(TransitionsTest, StopLeadsToReadyDisableToIdle) {
   EXPECT_FALSE(orders.torque_allowed);
 }
 
+TEST_F(TransitionsTest, WhoAsksForAStopAgainGetsTheShortest) {
+  ToRunning();
+  EXPECT_TRUE(Step(RequestKind::kStop).within_limits);
+  EXPECT_FALSE(Step().shorten_stop);
+  EXPECT_TRUE(Step(RequestKind::kStop).shorten_stop);
+  EXPECT_EQ(machine_.state(), MachineState::kStopping);
+}
+
 TEST_F(TransitionsTest, WhoAsksForAStopHasTimeForTheLimitsAFaultHasNot) {
   for (const RequestKind kind : {RequestKind::kStop, RequestKind::kDisable, RequestKind::kTerminate}) {
     machine_ = Transitions({10, 20, 30});

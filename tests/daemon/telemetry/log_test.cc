@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/exit_status.h"
 #include "daemon/telemetry/log_reader.h"
 #include "daemon/telemetry/log_writer.h"
 #include "tests/support/random_cycle_entry.h"
@@ -267,6 +268,11 @@ TEST_F(LogTest, ASecondWriterLeavesTheLogOfTheFirstAsItIs) {
   EXPECT_EQ(Content(), written);
 }
 
+TEST_F(LogTest, WhatIsNoFileMayHaveSeveralWriters) {
+  const LogWriter first("/dev/null", Header());
+  EXPECT_NO_THROW(LogWriter("/dev/null", Header()));
+}
+
 TEST_F(LogTest, TheNextWriterBeginsTheFileAnew) {
   Write(300);
   const std::string longer = Content();
@@ -279,7 +285,7 @@ TEST_F(LogTest, SaysWhyALogCannotBeMade) {
   try {
     LogWriter writer(directory_ / "missing" / "run.lcmlog", Header());
     FAIL() << "made a log in a directory that does not exist";
-  } catch (const std::runtime_error& e) {
+  } catch (const EnvironmentError& e) {
     EXPECT_NE(std::string(e.what()).find("No such file or directory"), std::string::npos) << e.what();
   }
   // /dev/full opens, and every write to it fails as on a full disk.
