@@ -1,13 +1,15 @@
 #include "config/plausible_limits.h"
 
 #include <charconv>
-#include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "config/number_text.h"
 #include "config/stopping.h"
+#include "core/horizon.h"
 #include "core/path_room.h"
+#include "core/stop_on_path.h"
 
 namespace contour {
 namespace {
@@ -109,12 +111,13 @@ std::optional<int> TimeToLive(const std::string& url) {
 
 /// The cycle keeps so many points of the path, and has to come to rest on those.
 void PathStops(const std::string& key, const AxisLimits& limits, double period_s, Problems& problems) {
-  const double most_s = kMostRamp_periods * period_s;
-  const double steep_s = 1.5 * limits.velocity_mm_s / limits.acceleration_mm_s2;
-  const double bent_s = std::sqrt(6.0 * limits.velocity_mm_s / limits.jerk_mm_s3);
-  const bool jerk = bent_s > steep_s;
-  const double takes_s = jerk ? bent_s : steep_s;
+  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+  const double most_s = MostRamp_periods(kMaxHorizonPoints) * period_s;
+  const double takes_s =
+      stop_on_path::RampTime_s(limits.velocity_mm_s, limits.acceleration_mm_s2, limits.jerk_mm_s3);
   if (takes_s <= most_s) return;
+  const bool jerk =
+      takes_s > stop_on_path::RampTime_s(limits.velocity_mm_s, limits.acceleration_mm_s2, kUnlimited);
   const double share = takes_s / most_s;
   problems.push_back(
       {key + ".limits." + (jerk ? "jerk_mm_s3" : "acceleration_mm_s2"),

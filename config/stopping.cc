@@ -12,17 +12,12 @@ namespace {
 
 double Cycles_s(const StoppingAxis& axis, double cycles) { return cycles * axis.period_s; }
 
-// A stop on the path: the pace falls along 1 - (3 s^2 - 2 s^3), whose steepest slope is 1.5 / T and whose
-// second derivative is at most 6 / T^2; T keeps the axis within its acceleration and jerk. Mean pace 1/2.
-double PathRamp_s(const StoppingAxis& axis) {
-  return std::max(1.5 * axis.speed_m_s / axis.path_acceleration_m_s2,
-                  std::sqrt(6.0 * axis.speed_m_s / axis.path_jerk_m_s3));
-}
-
 // One ramp for all axes, so that the geometry is kept: the slowest axis says how long.
 double PathRamp_s(const std::vector<StoppingAxis>& axes) {
   double ramp_s = 0.0;
-  for (const StoppingAxis& a : axes) ramp_s = std::max(ramp_s, PathRamp_s(a));
+  for (const StoppingAxis& a : axes)
+    ramp_s =
+        std::max(ramp_s, stop_on_path::RampTime_s(a.speed_m_s, a.path_acceleration_m_s2, a.path_jerk_m_s3));
   return ramp_s;
 }
 
@@ -39,7 +34,7 @@ std::vector<StopBound> PathStop(const std::vector<StoppingAxis>& axes, double de
   return bounds;
 }
 
-// By the ramp at once.
+// By the ramp at once; its mean pace is a half.
 std::vector<StopBound> RampStop(const std::vector<StoppingAxis>& axes, double delay_s) {
   const double ramp_s = PathRamp_s(axes);
   return PathStop(axes, delay_s, ramp_s, 0.5 * ramp_s, kSwitchOff_s);

@@ -20,10 +20,9 @@ struct StartLoops {
   std::vector<std::string> warned;  ///< of loops that break a limit and run all the same
 };
 /// For a start with this command line; `overrides` are OverridesOf() it. Throws ConfigError where a loop is
-/// unstable on the axis as stated or on its uncertainty set and is none to commission with; of loops that
-/// commission hands in
-/// (`--torque-loop`), which it judges on what a catalogue leaves open, on the axis as stated alone. What
-/// breaks another limit of `contour check` is warned of.
+/// unstable on the axis as stated or on its uncertainty set and is none to commission with. Loops that
+/// commission hands in (`--torque-loop`) it has judged on what a catalogue leaves open: they are refused only
+/// where they are unstable on the axis as stated. What breaks another limit of `contour check` is warned of.
 StartLoops LoopsOfStart(const DaemonOptions& options, const std::vector<std::string>& overrides);
 
 /// The same of a machine that is to run as `overrides` state it whole. Returns what is to be warned of.

@@ -12,9 +12,10 @@
 namespace contour {
 namespace {
 
-/// Forces in those of rated torque: of the chirp, and of each line of the multisine.
-/// Set by hand; where cycles are slow, less: what their rate bears.
+/// The highest line of the multisine at rest, set by hand. Where cycles are slow, less: what their rate
+/// bears.
 constexpr double kShakenAtRest_Hz = 120.0;
+/// Forces in those of rated torque: of the chirp, and of each line of the multisine.
 constexpr double kChirpOfRated = 0.075;
 constexpr double kLineOfRated = 0.0025;
 constexpr int kLines = 12;

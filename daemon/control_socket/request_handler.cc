@@ -245,18 +245,15 @@ json Parse(std::string_view line) {
   return TooDeep(line) ? json(json::value_t::discarded) : json::parse(line, nullptr, false);
 }
 
-/// A key of the request itself that is there more than once; empty when none is. JSON leaves open which
-/// counts.
-std::string RepeatedKey(std::string_view line) {
+/// Of the request's own keys: one that is there more than once is noted. JSON leaves open which counts.
+json ParseNoting(std::string_view line, std::string& repeated) {
   std::set<std::string> keys;
-  std::string repeated;
   const json::parser_callback_t look = [&](int depth, json::parse_event_t event, const json& parsed) {
     if (event == json::parse_event_t::key && depth == 1)
       if (const auto name = parsed.get<std::string>(); !keys.insert(name).second) repeated = name;
     return true;
   };
-  [[maybe_unused]] const json whole = json::parse(line, look, false);
-  return repeated;
+  return json::parse(line, look, false);
 }
 
 json WithId(json reply, const json& request) {
@@ -268,13 +265,14 @@ json WithId(json reply, const json& request) {
 json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& subscriptions,
                    const std::stop_token& unwanted, std::string* uploaded) {
   if (TooDeep(line)) return Refusal("a request has " + std::to_string(kDeepest) + " levels at most");
-  const json request = json::parse(line, nullptr, false);
+  std::string repeated;
+  const json request = ParseNoting(line, repeated);
   if (request.is_discarded()) return Refusal("this line is not JSON");
   if (!request.is_object()) return Refusal("a request is a JSON object");
   const auto kind = request.find("request");
   const bool stops = kind != request.end() && (*kind == "stop" || *kind == "disable");
-  if (const std::string key = RepeatedKey(line); !key.empty() && !stops)
-    return WithId(Refusal("\"" + key + "\" is there more than once"), request);
+  if (!repeated.empty() && !stops)
+    return WithId(Refusal("\"" + repeated + "\" is there more than once"), request);
   try {
     return WithId(Dispatch(request, desk, subscriptions, unwanted, uploaded), request);
   } catch (const BadRequest& e) {

@@ -249,13 +249,10 @@ std::unique_ptr<ContourController> MakeFallback(const CycleConfig& config) {
 }
 
 double StopOnPathTime_s(const CycleConfig& config) {
-  // The ramp's steepest slope is 1.5 / T, its sharpest bend 6 / T^2: an axis at its highest speed then just
-  // keeps its limits of acceleration and jerk.
   double time_s = 0.0;
   for (const CycleAxisConfig& a : config.axes) {
     const AxisLimits& l = a.limits;
-    time_s = std::max({time_s, 1.5 * l.velocity_mm_s / l.acceleration_mm_s2,
-                       std::sqrt(6.0 * l.velocity_mm_s / l.jerk_mm_s3)});
+    time_s = std::max(time_s, stop_on_path::RampTime_s(l.velocity_mm_s, l.acceleration_mm_s2, l.jerk_mm_s3));
   }
   return time_s;
 }

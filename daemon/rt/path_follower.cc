@@ -14,7 +14,7 @@ PathFollower::PathFollower(const PerAxis<StopLimits>& limits, double period_s, d
       horizon_(std::min(horizon, kMaxHorizonPoints)),
       hold_m_(axes_),
       search_(limits, period_s, stop_periods_) {
-  if (0.5 * stop_periods_ + static_cast<double>(horizon_) + 16.0 > static_cast<double>(kCapacity)) {
+  if (stop_periods_ > MostRamp_periods(horizon_)) {
     throw std::invalid_argument("a stop on the path would need more than " + std::to_string(kCapacity) +
                                 " path points ahead; raise limits.acceleration_mm_s2 or limits.jerk_mm_s3, "
                                 "or lower limits.velocity_mm_s");

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/axis.h"
+#include "core/path_room.h"
 
 namespace contour {
 
@@ -14,7 +15,6 @@ struct PathPace {
   double rate_change = 0.0;
 };
 
-inline constexpr std::size_t kPathCapacity = 1024;
 /// One ring for each axis: every cycle takes some tens of points that follow one another.
 using PathRings = std::array<std::array<ReferencePoint, kPathCapacity>, kMaxAxes>;
 

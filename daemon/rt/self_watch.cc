@@ -54,7 +54,7 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
   const CycleAxisConfig& a = config.axes[axis];
   const Mechanics& m = a.mechanics;
   const Friction f = ToSi(a.friction, m.radius_m_rad);
-  const double torque_step_N = 1e-3 * config.master.axes[axis].drive.rated_torque_Nm / m.radius_m_rad;
+  const double torque_step_N = kTorqueStep * config.master.axes[axis].drive.rated_torque_Nm / m.radius_m_rad;
   const double count_m = 2.0 * std::numbers::pi * m.radius_m_rad / a.encoder_counts_per_rev;
   const double motor_kg = m.mass_kg - m.table_mass_kg;
   const double mode_Hz =
