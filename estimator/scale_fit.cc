@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "estimator/turn.h"
+#include "estimator/within_bounds.h"
 
 namespace contour {
 namespace {
@@ -36,6 +38,8 @@ ScaleFit::ScaleFit(const Setup& setup) noexcept : setup_(setup) {
   zero_drift_m2_ = zero_m * zero_m;
   for (std::size_t i = kCompliance; i < kSize; ++i)
     drift_[i] = kDrift_1_s * setup.period_s * prior_[i] * prior_[i];
+  bound_[kZero] = std::numeric_limits<double>::infinity();
+  for (std::size_t i = kCompliance; i < kSize; ++i) bound_[i] = kBound * prior_[i];
   Reset(0.0);
 }
 
@@ -63,16 +67,11 @@ double ScaleFit::Rounding_m2(double velocity_m_s) const noexcept {
 
 // What a bound keeps from its value, the others must not keep from theirs: a zero that moves one way while
 // the lead that it was to make up for stays where it is explains the next sample worse, and the one after
-// worse still. The best values with that one at its bound are off along the covariance.
+// worse still.
 void ScaleFit::Bound() noexcept {
-  for (std::size_t i = kCompliance; i < kSize; ++i) {
-    const double bounded = std::clamp(value_[i], -kBound * prior_[i], kBound * prior_[i]);
-    if (bounded == value_[i] || !(covariance_[i][i] > 0.0)) continue;
-    const double share = (bounded - value_[i]) / covariance_[i][i];
-    for (std::size_t j = 0; j < kSize; ++j) value_[j] += share * covariance_[i][j];
-  }
-  for (std::size_t i = kCompliance; i < kSize; ++i)
-    value_[i] = std::clamp(value_[i], -kBound * prior_[i], kBound * prior_[i]);
+  bool within = true;
+  for (std::size_t i = 0; i < kSize; ++i) within = within && std::abs(value_[i]) <= bound_[i];
+  if (!within) WithinBounds<kSize>(covariance_, bound_).Move(value_);
 }
 
 void ScaleFit::Learn(const Sample& s) noexcept {

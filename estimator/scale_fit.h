@@ -62,6 +62,7 @@ class ScaleFit {
 
   Setup setup_;
   Row prior_{};  // standard deviations
+  Row bound_{};  // of the sizes of values; the zero has none
   Row drift_{};  // variance per period of motion
   double zero_drift_m2_ = 0.0;
   double zero_share_ = 0.0;  // per period of rest
