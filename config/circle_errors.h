@@ -8,7 +8,9 @@
 namespace contour {
 
 /// Of the friction that turns round at a reversal, what is not foreseen gives the table this far way. Where a
-/// drive closes the loop it is the screw that gives way, and its velocity loop answers counts of its encoder.
+/// drive closes the loop it is the screw that gives way, and the table goes on swinging on it, damped by the
+/// screw alone, the more the less of a period of that swing the reversal takes; and the drive's velocity loop
+/// answers counts of its encoder. Of a drive that holds the motor well.
 double CircleErrorByDrive_m(const AxisConfig& axis);
 
 /// The same where torques come from here; `compliance_m_N`: of the table, at most, under a force that steps

@@ -38,7 +38,10 @@ std::optional<std::string> AdviceForDrive(const std::string& axis_name, const Ax
   if (here_m <= kModesDiffer * there_m) return std::nullopt;
   return "axes." + axis_name + ".drive.mode: csp is expected to draw better circles, off by some " +
          Micrometres(there_m) + " instead of " + Micrometres(here_m) +
-         ": the drive's own loop is stiffer than one over the bus";
+         ": the drive's own loop is stiffer than one over the bus, where it keeps its margins with this "
+         "table "
+         "(contour commission --axis " +
+         axis_name + " --drive measures it)";
 }
 
 }  // namespace contour
