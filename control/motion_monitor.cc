@@ -71,6 +71,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   astray_m_ = 0.0;
   scale_apart_ = 0;
   swing_.Restart();
+  swing_ahead_.Restart();
 }
 
 // At skipped grid points the drives hold the last torque.
@@ -108,7 +109,13 @@ Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
   const double acceleration_m_s2 = force_N / t_.mass_kg;
   const double predicted_m = position_m_ + velocity_m_s_ * n * period_s_ +
                              0.5 * acceleration_m_s2 * period_s_ * period_s_ * n * (n + before);
-  const double off_m = std::abs(s.position_m - predicted_m);
+  const double beside_m = s.position_m - predicted_m;
+  const bool evenly = n == 1.0 && before == 1.0;
+  const double off_m = evenly ? swing_ahead_.Beyond_m(beside_m, t_) : std::abs(beside_m);
+  if (evenly)
+    swing_ahead_.See(beside_m, t_);
+  else
+    swing_ahead_.Restart();
   const double forced_m = t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
   believed_ = off_m <= forced_m;
   // To momentum a SYNC that came late is a push that is taken back at once; only what goes on counts.

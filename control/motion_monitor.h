@@ -7,6 +7,7 @@
 #include "control/motion_thresholds.h"
 #include "control/report_turns.h"
 #include "control/screw_swing.h"
+#include "control/swing_ahead.h"
 #include "control/torque_constant_watch.h"
 #include "core/reason.h"
 #include "core/state_keeper.h"
@@ -38,7 +39,8 @@ struct MotionSample {
 /// bear, and where a drive closes the loop what it is told has, too: the wind-up that it is told to lead by
 /// may change against the path;
 ///   or it stands under a torque that changed by more than friction and outside forces explain;
-/// - jump: the reading is further from its prediction than any force can take the motor;
+/// - jump: the reading is further from its prediction than any force can take the motor, and no swing of
+///   motor and table that was under way does (SwingAhead);
 /// - momentum: u - m a, low-passed, is the force that neither torque nor motion explain (De Luca et al.,
 ///   collision detection by generalised momentum); beyond friction, outside forces and what motor and table
 ///   swing by against each other (ScrewSwing) it is torque without motion, or motion against the torque;
@@ -63,9 +65,9 @@ class MotionMonitor {
          settling_N_, least_N_, most_N_, same_, same_reference_m_, same_lead_m_, near_, near_position_m_,
          near_reference_m_, near_lead_m_, near_periods_, least_lead_m_, most_lead_m_, near_least_N_,
          near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_, pushed_periods_,
-         on_its_way_N_, ringing_N_, swing_, force_N_, unexplained_N_, jitter_N_, beyond_, beyond_rigid_,
-         contradiction_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_, doubt_, doubt_lasts_,
-         astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
+         on_its_way_N_, ringing_N_, swing_, swing_ahead_, force_N_, unexplained_N_, jitter_N_, beyond_,
+         beyond_rigid_, contradiction_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_, doubt_,
+         doubt_lasts_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -147,6 +149,7 @@ class MotionMonitor {
   double on_its_way_N_ = 0.0;                    ///< low-passed: a period's change of the torque
   double ringing_N_ = 0.0;                       ///< csp: that changes of torque leave in the filtered force
   ScrewSwing swing_;                             ///< of motor and table
+  SwingAhead swing_ahead_;                       ///< of the next reading
   double force_N_ = 0.0;                         ///< low-passed torque
   double unexplained_N_ = 0.0;                   ///< low-passed u - m a
   double jitter_N_ = 0.0;                        ///< of it, what a SYNC that came late may have made

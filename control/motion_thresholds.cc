@@ -80,6 +80,20 @@ void UseReport(const MonitoredAxis& a, const MonitorConfig& c, double period_s,
                      Periods(std::sqrt(2.0 * t.heavy_kg * t.flickering.moved_m / t.pushed_force_N), period_s);
 }
 
+// A table of any mass swings on its motor no slower than the motor alone would on the screw; lighter than
+// stated it swings faster.
+void UseSwing(const MonitoredAxis& a, const MonitorConfig& c, double period_s, MotionThresholds& t) noexcept {
+  const double table_kg = std::max((1.0 - c.mass_error_rel) * a.table_mass_kg, 1e-9);
+  const double motor_kg = std::max(t.motor_kg, 1e-9);
+  const double slow_rad_s = std::sqrt(
+      a.stiffness_N_m / (kSofterScrew * (1.0 + c.mass_error_rel) * std::max(a.motor_mass_kg, 1e-9)));
+  const double fast_rad_s =
+      std::sqrt(kSofterScrew * a.stiffness_N_m * (motor_kg + table_kg) / (motor_kg * table_kg));
+  t.swing_ahead_slow = std::cos(std::min(slow_rad_s * period_s, std::numbers::pi));
+  t.swing_ahead_fast = std::cos(std::min(fast_rad_s * period_s, std::numbers::pi));
+  t.swing_ahead_kept = std::exp(-period_s * slow_rad_s / (2.0 * std::numbers::pi));
+}
+
 }  // namespace
 
 // The controller's stiffness goes by the mass it was told; a drive's own by the mass it was tuned for.
@@ -155,6 +169,7 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.unexplained_rel =
       std::clamp(1.0 - (t.friction_N + t.external_N) / std::max(sure_N, 1e-9), 0.0, kMostUnexplained);
   t.delivery_N = c.reported_torque_error_rel * a.rated_force_N;
+  UseSwing(a, c, period_s, t);
   t.windup_m = kWindupRoom * (a.force_limit_N + t.friction_N) / a.stiffness_N_m;
   return t;
 }

@@ -57,6 +57,9 @@ struct MotionThresholds {
   double reading_m = 0.0;            ///< by which readings may be off, in an acceleration
   double peak_decay = 0.0;           ///< per period, of a force that may still ring in the screw
   double ringing = 0.0;              ///< of a change of force, what its ringing makes of the filtered m a
+  double swing_ahead_slow = 1.0;     ///< cosine of what motor and table turn in a period, at their slowest
+  double swing_ahead_fast = 1.0;     ///< at their fastest
+  double swing_ahead_kept = 0.0;     ///< per period, of what they swung by
   double swing_filter = 0.0;         ///< of the square of what motor and table swing by
   double swing_left = 0.0;           ///< of a swing that the filter takes out, what it leaves at most
   double swing_gain = 0.0;           ///< of a torque, what its swing may make of m a at the mode

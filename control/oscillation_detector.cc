@@ -26,6 +26,10 @@ constexpr double kQuiet = 0.1;
 // Where the middle of its changes lies in the time since: half-way of a swing that stays, before it of what
 // rings and dies out after a shock; two thirds of one that has grown from there to what is told.
 constexpr double kGrowingMiddle = 0.6;
+// Of that time, within which a swing that goes on is told again; and after how many of it one that stays is
+// no shock.
+constexpr double kAgain = 2.0;
+constexpr int kSpans = 6;
 // Of what the first of its half waves took: what falls below until it is told was a shock.
 constexpr double kStays = 0.7;
 constexpr std::uint32_t kLongAgo = 1U << 30;
@@ -47,6 +51,7 @@ OscillationDetector::OscillationDetector(const OscillationBounds& bounds) noexce
 void OscillationDetector::Reset() noexcept {
   started_ = false;
   chatter_ = {};
+  lasting_ = {};
   sign_ = 0;
   now_ = {};
   before_ = {};
@@ -114,12 +119,35 @@ bool OscillationDetector::Chatters(double force_N) noexcept {
   ++c.cycles;
   c.change_N = change_N;
   const bool told = c.mean_N >= bounds_.chatter_N;
-  if (told) violent_ = c.moment_N >= kGrowingMiddle * c.cycles * c.sum_N;
-  if (told)
+  SeeLasting(two_N);
+  if (told) {
+    violent_ = Stays() || c.moment_N >= kGrowingMiddle * c.cycles * c.sum_N;
+    lasting_.goes_on = true;
     c = {.change_N = change_N};
-  else if (c.mean_N < kQuiet * bounds_.chatter_N)
-    c = {.mean_N = c.mean_N, .change_N = change_N};
+  }
+  if (!told && c.mean_N < kQuiet * bounds_.chatter_N) c = {.mean_N = c.mean_N, .change_N = change_N};
   return told;
+}
+
+// Over a loud background a swing has hardly grown when it is told, and nothing but time tells it from a
+// shock.
+void OscillationDetector::SeeLasting(double two_N) noexcept {
+  Lasting& l = lasting_;
+  if (!l.goes_on) return;
+  if (chatter_.cycles * bounds_.period_s > kAgain * kChatter_s) {
+    l = {};
+    return;
+  }
+  l.sum_N += two_N;
+  if (++l.cycles * bounds_.period_s < kChatter_s) return;
+  l.newest_N = l.sum_N / l.cycles;
+  if (l.spans++ == 0) l.first_N = l.newest_N;
+  l.sum_N = 0.0;
+  l.cycles = 0;
+}
+
+bool OscillationDetector::Stays() const noexcept {
+  return lasting_.spans >= kSpans && lasting_.newest_N >= kStays * lasting_.first_N;
 }
 
 // Against the half wave of the same side: friction and outside forces make the two sides differ.

@@ -47,7 +47,8 @@ class OscillationDetector {
 
   [[nodiscard]] int run() const noexcept { return run_; }
   /// What was told last took so much force and was not about to die out, as what a shock leaves is: the newer
-  /// half of its half waves, or a swing from cycle to cycle that has grown.
+  /// half of its half waves, or a swing from cycle to cycle that has grown, or that has stayed as
+  /// large as it was for longer than a shock rings.
   [[nodiscard]] bool violent() const noexcept { return violent_; }
 
  private:
@@ -66,6 +67,16 @@ class OscillationDetector {
     std::uint32_t cycles = 0;
   };
   [[nodiscard]] bool Chatters(double force_N) noexcept;
+  /// Of a swing from cycle to cycle that is told again and again: its mean change, span by span.
+  struct Lasting {
+    double sum_N = 0.0;
+    std::uint32_t cycles = 0;
+    double first_N = 0.0, newest_N = 0.0;
+    int spans = 0;
+    bool goes_on = false;
+  };
+  void SeeLasting(double two_N) noexcept;
+  [[nodiscard]] bool Stays() const noexcept;
   [[nodiscard]] bool GoesOn(const HalfWave& before) const noexcept;
 
   OscillationBounds bounds_;
@@ -76,6 +87,7 @@ class OscillationDetector {
   double mean_N_ = 0.0;
   double before_N_ = 0.0;
   Chatter chatter_;
+  Lasting lasting_;
   bool started_ = false;
   int sign_ = 0;
   HalfWave now_;
