@@ -5,12 +5,10 @@
 #include <cmath>
 
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
+#include "analysis/prediction_error/likelihoods.h"
 
 namespace contour::diagnosis {
 namespace {
-
-/// A single reading counts in the likelihood as if it were off by at most so many of the others' variances.
-constexpr double kMostSquare = 100.0;
 
 /// x' = A x + B u + G r, innovation e = r - c x - d u; u: white torque's mean over the row and its slope, and
 /// what drives the slow torque.

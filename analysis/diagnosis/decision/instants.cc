@@ -20,38 +20,54 @@ bool BeginsAtInstant(const Effect& e) {
   return e.from_row > 0 && e.steps.size() == kLater + 1 && e.low.size() > kLater;
 }
 
-/// The best of some instants all over a span, the other numbers as they are.
-Point BestWithin(const Problem& problem, const Point& from, double low_s, double high_s) {
-  constexpr int kCount = 2 * kLanes;
+struct Instant {
+  Point point;
+  double squares = std::numeric_limits<double>::infinity();
+};
+
+/// In which the best of some instants lies.
+struct Span_s {
+  double low, high;
+
+  [[nodiscard]] double At(int i) const { return low + (high - low) * i / kParts; }
+  [[nodiscard]] double Part() const { return (high - low) / kParts; }
+
+  static constexpr int kParts = 2 * kLanes;
+};
+
+/// The best of some instants all over a span and what is known of one; the other numbers as they are.
+void TakeBest(const Problem& problem, const Span_s& span, std::span<const int> parts, Instant& best) {
   std::vector<Point> points;
-  for (int i = 0; i <= kCount; ++i) {
-    points.push_back(from);
-    points.back().amplitudes.back()[kLater] = low_s + (high_s - low_s) * i / kCount;
+  for (const int i : parts) {
+    points.push_back(best.point);
+    points.back().amplitudes.back()[kLater] = span.At(i);
   }
-  std::size_t best = 0;
-  double least = std::numeric_limits<double>::infinity();
   const std::vector<std::vector<double>> residuals = problem.Residuals(points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     double squares = 0.0;
     for (const double r : residuals[i]) squares += r * r;
-    if (squares < least) {
-      least = squares;
-      best = i;
-    }
+    if (squares < best.squares) best = {std::move(points[i]), squares};
   }
-  return std::move(points[best]);
 }
 
 Point BestInstant(const Problem& problem, Point point) {
   const Effect& e = *point.effects.back();
-  double low_s = e.low[kLater], high_s = e.high[kLater];
-  while (high_s - low_s > problem.log.period_s) {
-    point = BestWithin(problem, point, low_s, high_s);
-    const double at_s = point.amplitudes.back()[kLater], next_s = (high_s - low_s) / (2 * kLanes);
-    low_s = std::max(low_s, at_s - next_s);
-    high_s = std::min(high_s, at_s + next_s);
+  Span_s span{e.low[kLater], e.high[kLater]};
+  Instant best{std::move(point)};
+  for (bool whole = true; span.high - span.low > problem.log.period_s; whole = false) {
+    const double known_s = best.point.amplitudes.back()[kLater];
+    std::vector<int> parts;
+    for (int i = 0; i <= Span_s::kParts; ++i) {
+      // The ends of a part, and the best in it, were looked at before.
+      const bool looked_at =
+          i == 0 || i == Span_s::kParts || 2.0 * std::fabs(span.At(i) - known_s) < span.Part();
+      if (whole || !looked_at) parts.push_back(i);
+    }
+    TakeBest(problem, span, parts, best);
+    const double at_s = best.point.amplitudes.back()[kLater], next_s = span.Part();
+    span = {std::max(span.low, at_s - next_s), std::min(span.high, at_s + next_s)};
   }
-  return point;
+  return std::move(best.point);
 }
 
 }  // namespace

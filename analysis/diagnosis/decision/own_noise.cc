@@ -17,23 +17,31 @@ struct UnderOwnNoise {
   double unlikely = std::numeric_limits<double>::infinity();  ///< -2 log likelihood, its noise included
 };
 
-/// Fit and noise in turn, while that gains what no chance does. `first`: what is learnt where it begins.
-UnderOwnNoise FitUnderOwnNoise(Problem& problem, const Fit& begin, LearntNoise* first) {
-  UnderOwnNoise best;
+/// Fit and noise in turn, while that gains what no chance does. `first`: what is learnt where it begins. One
+/// that under its own noise is further behind `best` than chance, or would be by what its fit promises, goes
+/// no further.
+UnderOwnNoise FitUnderOwnNoise(Problem& problem, const Fit& begin, double best, LearntNoise* first) {
+  const double penalty = Penalty(*begin.point.effects.back());
+  const double behind = best + kAcceptance.no_chance_score;
+  UnderOwnNoise out;
   for (int turn = 0; turn < FitEffort{}.most_refreshes; ++turn) {
-    const Fit& from = turn == 0 ? begin : best.fit;
-    problem.LearnNoise(from.point);
+    Fit fit = turn == 0 ? begin : out.fit;
+    problem.LearnNoise(fit.point);
     if (turn == 0 && first != nullptr) *first = problem.Learnt();
-    Fit fit = FitFrom(problem, from, kEfforts.quick);
-    const double unlikely = fit.cost + problem.LogNoise() + Penalty(*fit.point.effects.back());
-    const double gained = best.unlikely - unlikely;
+    Rewhiten(problem, fit);
+    const double before = fit.cost, beyond_fit = problem.LogNoise() + penalty;
+    FitEffort effort = kEfforts.quick;
+    effort.hopeless_above = behind - beyond_fit;
+    fit = FitOn(problem, std::move(fit), effort);
+    const double unlikely = fit.cost + beyond_fit;
+    const double gained = out.unlikely - unlikely;
     if (!(gained > 0.0)) break;
-    const bool moved = !(fit.point == from.point);
-    best = {std::move(fit), unlikely};
-    // Where it stays its noise is learnt.
-    if (!moved || gained < kAcceptance.no_chance_score) break;
+    // Where the fit hardly moves its noise is learnt.
+    const bool moved = before - fit.cost > penalty;
+    out = {std::move(fit), unlikely};
+    if (!moved || gained < kAcceptance.no_chance_score || unlikely > behind) break;
   }
-  return best;
+  return out;
 }
 
 /// The best, and those near it under the noise that there was. What lies outside the catalogue follows any
@@ -59,7 +67,8 @@ void LearnNoiseOfLikeliest(Problem& problem, std::vector<Hypothesis>& hypotheses
   std::size_t likeliest = 0;
   UnderOwnNoise best;
   for (const std::size_t i : contenders) {
-    UnderOwnNoise own = FitUnderOwnNoise(problem, hypotheses[i].fit, i == 0 ? &at_first : nullptr);
+    UnderOwnNoise own =
+        FitUnderOwnNoise(problem, hypotheses[i].fit, best.unlikely, i == 0 ? &at_first : nullptr);
     // Less is a matter of where the noise's own fit ends.
     if (i > 0 && !(own.unlikely < best.unlikely - kAcceptance.no_chance_score)) continue;
     best = std::move(own);

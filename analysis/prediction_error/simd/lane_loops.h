@@ -6,6 +6,7 @@ struct Lanes;
 struct LaneColumns;
 struct LaneWhiten;
 struct LaneProducts;
+struct LaneLikelihood;
 
 /// One translation of the loops. Those for AVX2 and AVX-512 multiply and add in one rounding and give the
 /// same bits; the baseline differs from them by rounding.
@@ -17,6 +18,8 @@ struct LaneLoops {
   void (*columns)(const LaneColumns& m);
   void (*whiten)(const LaneWhiten& m);
   void (*products)(const LaneProducts& m);
+  void (*likelihood)(LaneLikelihood& m);
+  int abreast;  ///< lanes that cost no more than one
 };
 
 extern const LaneLoops kBaselineLoops, kAvx2Loops, kAvx512Loops;

@@ -41,6 +41,35 @@ TEST(NoiseLevels, AreThoseOfWhiteTorqueWhereThereIsNoOther) {
               0.3);
 }
 
+// Several points are looked at together, and the search ends where one point after the other leads to.
+TEST(NoiseLevels, AreLikelierThanThoseNextToThem) {
+  const auto model = Moved(kDensity);
+  const double one_reading = test::ReadingVariance();
+  const auto unlikely = [&](const NoiseLevels& levels) {
+    const std::size_t segments = 12, length = model->rows / segments;
+    LikelihoodSums sums;
+    for (std::size_t i = 0; i < segments; ++i) {
+      const std::size_t from = (model->rows - length) * i / (segments - 1);
+      KalmanPass({*model, Axis().counted, Axis().log.period_s, from, from + length},
+                 VariancesOf(levels, one_reading, Unit()), sums, nullptr);
+    }
+    return sums.Unlikely();
+  };
+  const NoiseLevels first = Likeliest(*model);
+  const NoiseLevels again =
+      LikeliestLevels(*model, {Axis().counted, Axis().log.period_s, one_reading, Unit()}, &first);
+  for (const NoiseLevels& levels : {first, again}) {
+    const double least = unlikely(levels);
+    for (double NoiseLevels::*number :
+         {&NoiseLevels::log10_torque, &NoiseLevels::log10_slow, &NoiseLevels::log10_memory_rows})
+      for (const double by : {-0.4, 0.4}) {
+        NoiseLevels other = levels;
+        other.*number += by;
+        EXPECT_LT(least, unlikely(other)) << by;
+      }
+  }
+}
+
 TEST(NoiseLevels, OfFirstOrderTorqueHaveTheDensityOfTheirVariance) {
   const NoiseVariances v = VariancesOf(
       {.log10_torque = 0.0, .slow_there = true, .log10_slow = 2.0, .log10_memory_rows = 2.0}, 1.0, 3.0);
