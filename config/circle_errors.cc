@@ -14,6 +14,8 @@ namespace {
 constexpr double kOfScrew = 0.25;
 constexpr double kOfLoop = 0.06;
 constexpr double kCounts = 7.0;
+// The same where nothing that is made from what it reports comes back to it.
+constexpr double kCountsAlone = 3.0;
 // The loops of most axes, in what the screw gives way by under all of Coulomb friction.
 constexpr double kUsual = 0.5;
 
@@ -24,6 +26,10 @@ double Coulomb_N(const AxisConfig& axis) {
 }
 
 double WindUp_m(const AxisConfig& axis) { return Coulomb_N(axis) / ToSi(axis.model.mechanics).stiffness_N_m; }
+
+double Count_m(const AxisConfig& axis) {
+  return 1e-3 * axis.model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
+}
 
 // The 10 mm circle.
 constexpr double kFeed_m_s = 0.05;
@@ -57,8 +63,11 @@ double SwingsBeyond(const AxisConfig& axis) {
 }  // namespace
 
 double CircleErrorByDrive_m(const AxisConfig& axis) {
-  const double count_m = 1e-3 * axis.model.mechanics.lead_mm / axis.drive.encoder_counts_per_rev;
-  return kOfScrew * WindUp_m(axis) * (1.0 + SwingsBeyond(axis)) + kCounts * count_m;
+  return kOfScrew * WindUp_m(axis) * (1.0 + SwingsBeyond(axis)) + kCounts * Count_m(axis);
+}
+
+double CircleErrorByDriveAlone_m(const AxisConfig& axis) {
+  return WindUp_m(axis) + kCountsAlone * Count_m(axis);
 }
 
 double CircleErrorByTorque_m(const AxisConfig& axis, double compliance_m_N) {

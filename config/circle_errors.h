@@ -13,6 +13,10 @@ namespace contour {
 /// answers counts of its encoder. Of a drive that holds the motor well.
 double CircleErrorByDrive_m(const AxisConfig& axis);
 
+/// The same of a drive that nothing is fed forward to, `machine.controller: csp`: all of friction winds the
+/// screw up, and its counts are only those of its own loop.
+double CircleErrorByDriveAlone_m(const AxisConfig& axis);
+
 /// The same where torques come from here; `compliance_m_N`: of the table, at most, under a force that steps
 /// through a lag of 4 ms.
 double CircleErrorByTorque_m(const AxisConfig& axis, double compliance_m_N);

@@ -24,10 +24,13 @@ std::vector<std::string> ModeAdvice(const MachineConfig& machine) {
     if (ModeFor(machine.machine.controller, axis.drive) != DriveMode::kCsp) continue;
     const double here_m = CircleErrorByDrive_m(axis), there_m = UsualCircleErrorByTorque_m(axis);
     if (here_m <= kModesDiffer * there_m) continue;
-    advice.push_back("axes." + name + ".drive.mode: csp with an encoder of " +
-                     std::to_string(static_cast<long long>(axis.drive.encoder_counts_per_rev)) +
-                     " counts per turn, whose steps the drive answers: circles off by some " +
-                     Micrometres(here_m) + " are expected, in cst by " + Micrometres(there_m));
+    std::string text = "axes." + name + ".drive.mode: csp with an encoder of " +
+                       std::to_string(static_cast<long long>(axis.drive.encoder_counts_per_rev)) +
+                       " counts per turn, whose steps the drive answers: circles off by some " +
+                       Micrometres(here_m) + " are expected, in cst by " + Micrometres(there_m);
+    if (const double alone_m = CircleErrorByDriveAlone_m(axis); here_m > kModesDiffer * alone_m)
+      text += ", and with the drive's own loop alone (machine.controller: csp) by " + Micrometres(alone_m);
+    advice.push_back(text);
   }
   return advice;
 }

@@ -70,6 +70,16 @@ TEST(CircleErrors, OfADriveHaveTheTablesSwingOnItsScrew) {
   EXPECT_GT(CircleErrorByDrive_m(heavy), 1.7 * CircleErrorByDrive_m(Axis()));
 }
 
+// With 2 um a count what is made from a drive's reports costs more than it gains, with 5 nm a quarter is
+// left.
+TEST(CircleErrors, OfADriveAloneHaveAllOfTheWindUpAndFewerCounts) {
+  AxisConfig axis = Axis();
+  EXPECT_NEAR(CircleErrorByDriveAlone_m(axis), 1e-6 + 3.0 * 5e-9, 1e-12);
+  EXPECT_LT(CircleErrorByDrive_m(axis), 0.3 * CircleErrorByDriveAlone_m(axis));
+  axis.drive.encoder_counts_per_rev = 2500;
+  EXPECT_GT(CircleErrorByDrive_m(axis), kModesDiffer * CircleErrorByDriveAlone_m(axis));
+}
+
 TEST(CircleErrors, OfTorquesFromHereGrowWithTheLoopsGivingWayAndFriction) {
   AxisConfig axis = Axis();
   EXPECT_NEAR(CircleErrorByTorque_m(axis, 0.25e-6), 0.06 * 40.0 * 0.25e-6, 1e-12);

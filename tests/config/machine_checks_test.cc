@@ -230,6 +230,8 @@ TEST(ModeAdvice, CspWithACoarseEncoderIsAdvisedAgainst) {
   ASSERT_EQ(ModeAdvice(c).size(), 1u) << "y has a fine one";
   EXPECT_TRUE(ModeAdvice(c).front().starts_with("axes.x.drive.mode: csp with an encoder of 10000 counts"))
       << ModeAdvice(c).front();
+  EXPECT_NE(ModeAdvice(c).front().find("machine.controller: csp"), std::string::npos)
+      << ModeAdvice(c).front();
   EXPECT_TRUE(Check(c).empty()) << "advice refuses nothing";
   // A soft screw gives way by more than that anyway.
   c.axes.at("x").model.mechanics.screw_stiffness_N_um *= 0.02;
