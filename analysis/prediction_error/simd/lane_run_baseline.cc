@@ -8,8 +8,8 @@
 #include "analysis/prediction_error/simd/lane_loops.h"
 #include "analysis/prediction_error/simd/lane_run.h"
 // The loops themselves, translated with this file's flags.
-#include "analysis/prediction_error/simd/lane_likelihood.inc"
 #include "analysis/prediction_error/simd/lane_linear.inc"
+#include "analysis/prediction_error/simd/lane_noises.inc"
 #include "analysis/prediction_error/simd/lane_run.inc"
 
 namespace contour::diagnosis {
