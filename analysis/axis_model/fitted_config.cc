@@ -55,6 +55,7 @@ void IntoFriction(const StatedAxis& axis, double lever, LooseFrictionConfig& c) 
   const bool at_table = axis.linear || c.acts_on == FrictionSide::kTable;
   const StatedFriction f = at_table && !axis.linear ? SeenAtQ(axis.friction, 1.0 / lever) : axis.friction;
   const double speed_unit = at_table ? 1e3 : 1.0;
+  if (f.exponent != c.stribeck_exponent.value_or(1.0)) c.stribeck_exponent = f.exponent;
   c.Fc_plus = FiveDigits(f.Fc_plus);
   c.Fc_minus = FiveDigits(f.Fc_minus);
   c.Fs_plus = FiveDigits(f.Fs_plus);

@@ -169,12 +169,13 @@ class Converter {
     leave_open("vs", c.vs.has_value());
     leave_open("s0", c.sigma0.has_value());
     leave_open("s2", c.sigma2.has_value());
+    leave_open("exponent", c.stribeck_exponent.has_value());
     StatedFriction f;
     f.Fc_plus = c.Fc_plus.value_or(c.Fc_minus.value_or(1.0));
     f.Fc_minus = c.Fc_minus.value_or(f.Fc_plus);
     f.Fs_plus = c.Fs_plus.value_or(f.Fc_plus);
     f.Fs_minus = c.Fs_minus.value_or(f.Fc_minus);
-    f.exponent = c.stribeck_exponent;
+    f.exponent = c.stribeck_exponent.value_or(1.0);
     f.vs = c.vs ? *c.vs * speed_unit : no_lead ? kAssumedStribeck_rad_s : kAssumedStribeck_m_s / metres;
     f.s0 = c.sigma0.value_or(0.5 * (f.Fc_plus + f.Fc_minus) / presliding);
     f.s1 = c.sigma1.value_or(0.0);

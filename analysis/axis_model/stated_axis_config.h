@@ -20,7 +20,7 @@ namespace contour::diagnosis {
 /// or motor values in Nm.
 struct LooseFrictionConfig {
   FrictionSide acts_on = FrictionSide::kTable;
-  double stribeck_exponent = 1.0;
+  std::optional<double> stribeck_exponent;
   /// Coulomb levels and viscous friction that are left out come from the log (CompleteFromLog).
   std::optional<double> Fc_plus, Fc_minus, Fs_plus, Fs_minus, vs, sigma0, sigma1, sigma1_decay, sigma2;
   double motor_share_rel = 0.0;
@@ -28,7 +28,8 @@ struct LooseFrictionConfig {
   template <class Visitor>
   void Visit(Visitor& v) {
     v.Optional("acts_on", acts_on, kAny, "whether the values below are at the table (N) or the motor (Nm)");
-    v.Optional("stribeck_exponent", stribeck_exponent, Range{0.5, 4.0}, "n of exp(-(|v| / vs)^n)");
+    v.Optional("stribeck_exponent", stribeck_exponent, Range{0.5, 4.0},
+               "n of exp(-(|v| / vs)^n); left out: 1, or with no curve stated 1 or 2, as the log has it");
     v.Optional("motor_share_rel", motor_share_rel, Range{0.0, 0.9},
                "share of the friction at the table that acts on the motor, before the screw");
     const bool table = acts_on == FrictionSide::kTable;

@@ -121,7 +121,20 @@ Signal PerStretch(const Signal& x, const std::vector<std::size_t>& begins, F&& o
   return out;
 }
 
+/// Of the command's root mean square: dry friction below it says nothing of how large other forces are.
+constexpr double kLeastForceShare = 0.1;
+
+double UsualCommand(const AxisLog& log) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (const double u : log.command)
+    if (std::isfinite(u)) sum += u * u, ++n;
+  return n > 0 ? std::sqrt(sum / static_cast<double>(n)) : 0.0;
+}
+
 }  // namespace
+
+double Signals::ForceScale() const { return std::max(coulomb, kLeastForceShare * usual_command); }
 
 Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   Signals s;
@@ -149,6 +162,7 @@ Signals MakeSignals(const AxisLog& log, const StatedAxis& stated) {
   }
   for (const double w : s.velocity) s.max_speed = std::max(s.max_speed, std::fabs(w));
   s.coulomb = 0.5 * (stated.friction.Fc_plus + stated.friction.Fc_minus);
+  s.usual_command = UsualCommand(log);
   if (!log.temperature_degC.empty()) {
     s.temperature_K = SmoothSlow(Filled(log.temperature_degC), kRows.temperature_smoothing_s / log.period_s);
     double mean = 0.0;

@@ -32,6 +32,9 @@ struct Signals {
   double angle_per_q = 1.0;         ///< rad of the motor
   double middle_m = 0.0;            ///< table position of the stroke's middle as travelled
   double coulomb = 0.0;             ///< mean level
+  double usual_command = 0.0;       ///< u, root mean square
+  /// How large forces on this axis are: as dry friction, or, where there is next to none, as what moves it.
+  [[nodiscard]] double ForceScale() const;
 };
 
 /// Of `sign`: friction beyond it follows the motion.

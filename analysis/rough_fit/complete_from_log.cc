@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/prediction_error/wrong_readings.h"
+#include "analysis/rough_fit/falling_friction.h"
 #include "analysis/rough_fit/rough_fit.h"
 #include "config/config_error.h"
 #include "config/number_text.h"
@@ -114,6 +115,8 @@ std::vector<std::string> CompleteFromLog(AxisLog& log, StatedAxis& stated) {
         " turns, and no lead, gear or stroke is stated: it is taken to turn for ever, and no cause "
         "is looked for that goes with a stroke.");
   }
+  if (fit.why_not.empty() && stated.open.contains("Fc") && stated.open.contains("vs"))
+    OpenFallingFriction(log, stated);
   return notes;
 }
 

@@ -12,7 +12,7 @@ constexpr std::string_view kName = "cable_spring";
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const Signals& s = *p.signals;
   const std::string kind(kName);
-  const double step = 0.01 * s.coulomb;
+  const double step = 0.01 * s.ForceScale();
   out.push_back(
       WithShorter(LinearEffect({kind, "", 3}, Input::kLoadForce, LegendrePolynomials(s, 4), step),
                   LinearEffect({kind, "linear", 3}, Input::kLoadForce, LegendrePolynomials(s, 1), step)));
@@ -74,7 +74,7 @@ constexpr CauseDefinition cable_spring = {
     .main_parameter = "torque_at_stroke_end_Nm",
     .model_errors = kNoModelErrors,
     .shape = &kShape,
-    .largest = [](const Problem& p) { return 1.5 * p.signals->coulomb; },
+    .largest = [](const Problem& p) { return 1.5 * p.signals->ForceScale(); },
     .freed_terms = kFreesNothing,
     .extension = &kExtension,
     .experiment = FullStrokes,

@@ -48,9 +48,10 @@ constexpr CauseDefinition constant_torque = {
     .advice = "State it as a constant torque; check the counterbalance and the drive's current offset.",
     .grid =
         [](const Problem& p, std::vector<SharedEffect>& out) {
-          out.push_back(WithForce(Custom({std::string(kName), "", 1}, {.steps = {0.01 * p.signals->coulomb}},
-                                         [](const auto& a, AxisModel& m) { m.offset += a[0]; }),
-                                  {1}));
+          out.push_back(
+              WithForce(Custom({std::string(kName), "", 1}, {.steps = {0.01 * p.signals->ForceScale()}},
+                               [](const auto& a, AxisModel& m) { m.offset += a[0]; }),
+                        {1}));
         },
     .wave = nullptr,
     .family = nullptr,
@@ -62,7 +63,7 @@ constexpr CauseDefinition constant_torque = {
     .main_parameter = "torque_Nm",
     .model_errors = kNoModelErrors,
     .shape = nullptr,
-    .largest = [](const Problem& p) { return 0.7 * p.signals->coulomb; },
+    .largest = [](const Problem& p) { return 0.7 * p.signals->ForceScale(); },
     .freed_terms = kFrees,
     .extension = &kExtension,
     .experiment = TorqueStepsFromRest,

@@ -14,14 +14,14 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const Signals& s = *p.signals;
   if (s.axis2_m_s2.empty()) return;
   out.push_back(LinearEffect({std::string(kName), "", 1}, Input::kLoadForce,
-                             {std::make_shared<const Signal>(s.axis2_m_s2)}, 0.01 * s.coulomb));
+                             {std::make_shared<const Signal>(s.axis2_m_s2)}, 0.01 * s.ForceScale()));
 }
 
 /// As much as friction, at the other axis's highest acceleration.
 double Largest(const Problem& p) {
   double top = 0.0;
   for (const double a : p.signals->axis2_m_s2) top = std::max(top, std::fabs(a));
-  return top > 0.01 ? p.signals->coulomb / top : 0.0;
+  return top > 0.01 ? p.signals->ForceScale() / top : 0.0;
 }
 
 constexpr ModelError kErrors[] = {{"torque_per_acceleration_Nms2_m", 0.02}};

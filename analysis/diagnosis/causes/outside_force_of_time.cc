@@ -10,7 +10,7 @@ constexpr int kHats = 16;
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   out.push_back(LinearEffect({std::string(kName), "", 1}, Input::kLoadForce, HatsOverTime(p.rows(), kHats),
-                             0.01 * p.signals->coulomb));
+                             0.01 * p.signals->ForceScale()));
 }
 
 }  // namespace

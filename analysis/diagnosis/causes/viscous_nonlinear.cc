@@ -22,7 +22,7 @@ bool IsKnee(const Effect& e) { return e.order > 0.0 && e.order <= 1.0; }
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const Signals& s = *p.signals;
   const std::string kind(kName);
-  const double top = std::max(s.max_speed, 1e-12), step = 0.02 * s.coulomb;
+  const double top = std::max(s.max_speed, 1e-12), step = 0.02 * s.ForceScale();
   const auto speed = std::make_shared<const Signal>(s.velocity);
   const Input drag = p.nominal.friction_on_load ? Input::kLoadForce : Input::kMotorForce;
   for (const double power : {1.5, 2.0, 3.0})
@@ -132,7 +132,7 @@ constexpr CauseDefinition viscous_nonlinear = {
     .main_parameter = "torque_at_max_speed_Nm",
     .model_errors = kErrors,
     .shape = nullptr,
-    .largest = [](const Problem& p) { return 1.5 * p.signals->coulomb; },
+    .largest = [](const Problem& p) { return 1.5 * p.signals->ForceScale(); },
     .freed_terms = kFreesNothing,
     .extension = &kExtension,
     .experiment = FiveSpeedsAndPulses,

@@ -29,7 +29,7 @@ struct Entrance {
 };
 
 Entrance EntranceOf(Wave wave, const Problem& p) {
-  const double torque = 0.01 * p.signals->coulomb;
+  const double torque = 0.01 * p.signals->ForceScale();
   switch (wave) {
     case Wave::kFrictionOfAngle:
       return {Input::kLevel, 5e-3};

@@ -27,8 +27,9 @@ double LinearDrop(const Fit& fit, std::size_t place) {
 bool Superseded(const Problem& problem, const Fit& fit, std::size_t place, const ScoreThreshold& threshold) {
   const Effect& effect = *fit.point.effects[place];
   const double asked = Threshold(problem, ByChanceAlone(threshold), effect, ScoreScale{}) + Penalty(effect);
-  // A fit without it costs time: not where the linear estimate, which may be off, is far above.
-  if (LinearDrop(fit, place) > 2.0 * asked) return false;
+  // A fit without it costs time: not where the linear estimate, which may be off, is far above. Of what
+  // begins far from linear it says nothing: how well a limit is known is not how much it explains.
+  if (effect.start.empty() && LinearDrop(fit, place) > 2.0 * asked) return false;
   const Fit without = FitPoint(problem, Without(problem, fit.point, place), QuickToTheEnd());
   return DropOf(problem, without, fit) < asked;
 }

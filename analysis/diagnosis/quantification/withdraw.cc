@@ -28,6 +28,22 @@ bool HoldsZero(const Cause& cause) {
                      [](const auto& p) { return p.first == kInstant || HoldsZero(p.second); });
 }
 
+/// With all that was found in the model the fit went on to where the cause is not what its name says.
+bool WentTooFar(const Problem& problem, const Fit& fit, std::size_t place) {
+  const Effect& effect = *fit.point.effects[place];
+  const CauseDefinition& cause = CauseNamed(effect.kind);
+  return cause.implausible != nullptr && (*cause.implausible)(problem, effect, fit.point.amplitudes[place]);
+}
+
+void TakeOut(const Problem& problem, std::size_t in_fit, const char* why, Fit& fit, Accepted& accepted,
+             Diagnosis& out) {
+  fit = FitPoint(problem, Without(problem, fit.point, accepted.places[in_fit]));
+  out.notes.push_back(TakeBack(in_fit, accepted, out).kind +
+                      " was accepted in an earlier round and is withdrawn: with all that was found in the "
+                      "model, " +
+                      why);
+}
+
 }  // namespace
 
 bool WithdrawIdle(const Problem& problem, Fit& fit, Accepted& accepted, Diagnosis& out) {
@@ -37,13 +53,13 @@ bool WithdrawIdle(const Problem& problem, Fit& fit, Accepted& accepted, Diagnosi
   std::size_t in_fit = 0;
   for (const Cause& cause : out.causes) {
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
+    if (WentTooFar(problem, fit, accepted.places[in_fit])) {
+      TakeOut(problem, in_fit, "its size is more than such a cause can have.", fit, accepted, out);
+      return true;
+    }
     // A factor on all forces against the torque has its interval from what is stated.
     if (HoldsZero(cause) && !CauseNamed(cause.kind).common_factor) {
-      fit = FitPoint(problem, Without(problem, fit.point, accepted.places[in_fit]));
-      out.notes.push_back(
-          TakeBack(in_fit, accepted, out).kind +
-          " was accepted in an earlier round and is withdrawn: with all that was found in the model, "
-          "its size is zero within its interval.");
+      TakeOut(problem, in_fit, "its size is zero within its interval.", fit, accepted, out);
       return true;
     }
     ++in_fit;

@@ -58,6 +58,20 @@ double OverdispersionOfLast(const Problem& problem, const Fit& fit) {
 
 double NoFault_Hz(const Problem& problem) { return 0.5 / problem.log.period_s; }
 
+void LeaveOutRunaways(std::vector<double>& column) {
+  for (;;) {
+    double all = 0.0, largest = 0.0;
+    for (const double v : column) {
+      all += v * v;
+      largest = std::max(largest, v * v);
+    }
+    const double most = all / static_cast<double>(kBlocks);
+    if (!(largest > most)) return;
+    for (double& v : column)
+      if (v * v > most) v = 0.0;
+  }
+}
+
 double Penalty(const Effect& effect) {
   return kScreening.penalty_per_amplitude * static_cast<double>(effect.steps.size()) +
          2.0 * std::log(std::max(1.0, effect.grid));
@@ -241,10 +255,12 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::ve
     }
     const std::span<const SharedEffect> some = std::span(effects).subspan(at, end - at);
     std::vector<std::vector<double>> columns;
-    if (means == Means::kSignals)
+    if (means == Means::kSignals) {
       columns = problem.LinearResponses(fit.point, some);
-    else
+      for (std::vector<double>& c : columns) LeaveOutRunaways(c);
+    } else {
       columns = means == Means::kRuns ? RunColumns(problem, fit, some) : TermColumns(problem, fit, some);
+    }
     scorer.Score(some, columns, out);
     at = end;
   }

@@ -53,4 +53,9 @@ std::vector<double> PulseResponse(const Problem& problem, bool reading);
 /// Effects that the scans over orders and frequencies propose.
 std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit);
 
+/// An axis that sticks and hardly breaks away moves much later for a little less force: to first order a few
+/// rows there have nearly all of what a column says, and none of it is to be had beyond first order. No row
+/// may say as much as a block does on the average; those that do say nothing.
+void LeaveOutRunaways(std::vector<double>& column);
+
 }  // namespace contour::diagnosis

@@ -82,6 +82,23 @@ TEST(MakeSignals, GapsAreBridgedByStraightLines) {
   EXPECT_NEAR(s.position[105], before + (after - before) * 6.0 / 11.0, 1e-12);
 }
 
+// Before: cables of a voice coil without friction were compared with a thousandth of what moves it, and not
+// looked for.
+TEST(MakeSignals, ForcesAreMeasuredByFrictionOrByWhatMovesTheAxis) {
+  AxisLog log;
+  log.period_s = 1e-3;
+  for (int k = 0; k < 2000; ++k) {
+    log.position.push_back(1e-3 * std::sin(0.01 * k));
+    log.command.push_back(2.0 * std::sin(0.01 * k));
+    log.present.push_back(1);
+  }
+  StatedAxis stated;
+  stated.friction.Fc_plus = stated.friction.Fc_minus = 1.5;
+  EXPECT_DOUBLE_EQ(MakeSignals(log, stated).ForceScale(), 1.5);
+  stated.friction.Fc_plus = stated.friction.Fc_minus = 2e-3;
+  EXPECT_NEAR(MakeSignals(log, stated).ForceScale(), 0.1 * std::sqrt(2.0), 0.01);
+}
+
 TEST(UpdateFromTrace, TorqueOfTheMotionAndWhatAccelerates) {
   Signals s = MakeSignals(Sine(), Stated());
   AxisModel m = ModelOf(Stated());

@@ -29,6 +29,23 @@ TEST(CompleteFromLog, WhatIsOpenComesFromTheLogAndIsUncertain) {
   EXPECT_GE(axis.stated.sigma.at("Fc"), 0.3);
 }
 
+/// Before: a curve that nobody had stated was held flat, and told as a cause (11028 nats of Stribeck friction
+/// on a sound axis whose model states its inertia alone).
+TEST(CompleteFromLog, WithNoFrictionStatedItsCurveIsOpenToo) {
+  test::HiddenAxis axis = Made();
+  axis.stated.open = {"Fc", "s2", "vs", "s0", "exponent"};
+  axis.stated.friction = {.Fc_plus = 1.0, .Fc_minus = 1.0, .Fs_plus = 1.0, .Fs_minus = 1.0, .vs = 1.0};
+  test::HiddenAxis levels = axis;
+  CompleteFromLog(axis.log, axis.stated);
+  EXPECT_GT(axis.stated.friction.Fs_plus, 1.05 * axis.stated.friction.Fc_plus);
+  EXPECT_GT(axis.stated.friction.s1, 0.0);
+  for (const char* name : {"Fs", "vs", "s0", "s1"}) EXPECT_GE(axis.stated.sigma.at(name), 0.5) << name;
+  // Where a curve is stated, it is.
+  levels.stated.open = {"Fc", "s2"};
+  CompleteFromLog(levels.log, levels.stated);
+  EXPECT_EQ(levels.stated.friction.Fs_plus, levels.stated.friction.Fc_plus);
+}
+
 /// Before: one frame that reads 30 m made a stroke and a largest speed of its own, and friction of nothing.
 TEST(CompleteFromLog, AWrongReadingChangesNothing) {
   test::HiddenAxis axis = Made();

@@ -56,6 +56,26 @@ TEST(FitNumbers, SaysWhereDirectionsAreNotAsStated) {
   EXPECT_NEAR(sigma, 0.3, 0.05);
 }
 
+// An axis that hardly accelerates says nothing of its inertia, and the message is not that the model lacks
+// something.
+TEST(FitNumbers, AsksForQuickReversalsWhereNothingAccelerates) {
+  test::HiddenAxis axis = Made();
+  StatedAxis& stated = axis.stated;
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.05 * stated.friction.Fc_plus);
+  constexpr double kTurn_s = 5.0;
+  for (std::size_t k = 0; k < axis.log.size(); ++k) {
+    const double t = axis.log.period_s * static_cast<double>(k), phase = 2.0 * M_PI * t / kTurn_s;
+    const double speed = 2.0 * std::cos(phase);
+    axis.log.position[k] = 2.0 * kTurn_s / (2.0 * M_PI) * std::sin(phase);
+    axis.log.command[k] =
+        stated.friction.Fc_plus * std::tanh(20.0 * speed) + stated.friction.s2 * speed + noise(random);
+  }
+  const std::string said = FitNumbers(axis.log, stated, 1).unusable;
+  EXPECT_NE(said.find("says nothing of the inertia"), std::string::npos) << said;
+  EXPECT_NE(said.find("record quick reversals"), std::string::npos) << said;
+}
+
 TEST(FitNumbers, RefusesForcesOfAnotherAxis) {
   test::HiddenAxis axis = Made();
   std::mt19937 random(1);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,36 @@ TEST(DropSuperseded, WhatIsThereBesidesStays) {
   ASSERT_EQ(b.out.causes.size(), 2u);
   EXPECT_EQ(b.out.causes[1].log_evidence_gain, b.evidence);
   EXPECT_EQ(b.accepted.places, (std::vector<std::size_t>{0, 1}));
+}
+
+/// A limit that is known to a hundredth, and that explains nothing: by how well its size is known it would be
+/// there for ever.
+TEST(DropSuperseded, HowWellALimitIsKnownIsNotWhatItExplains) {
+  test::FittedAxis axis({kConstant});
+  auto limit = std::make_shared<Effect>();
+  limit->kind = "torque_saturation";
+  limit->steps = {0.01};
+  limit->start = {1.0};
+  limit->tested = 1;
+  limit->apply = [](const std::vector<double>& a, AxisModel& m) {
+    if (a[0] > 0.0) m.friction.s2 *= a[0];
+  };
+  Accepted accepted;
+  Diagnosis out;
+  Point point = axis.base.point;
+  point.effects = {limit, axis.Of("constant_torque")};
+  point.amplitudes = {{1.0}, {0.3 * axis.made.axis.stated.friction.Fc_plus}};
+  accepted.fit = FitPoint(axis.problem, point);
+  const ScoreThreshold threshold{.flips = 10.0, .calibrated = 10.0};
+  accepted.places = {0, 1};
+  accepted.scatter = {1.0, 1.0};
+  for (const char* kind : {"torque_saturation", "constant_torque"}) {
+    out.causes.emplace_back();
+    out.causes.back().kind = kind;
+  }
+  EXPECT_TRUE(DropSuperseded(axis.problem, threshold, accepted, out));
+  ASSERT_EQ(out.causes.size(), 1u);
+  EXPECT_EQ(out.causes[0].kind, "constant_torque");
 }
 
 }  // namespace

@@ -63,6 +63,24 @@ TEST_F(WithdrawTest, WhatIsZeroWithinItsIntervalGoesAndTheRestIsFittedAgain) {
   EXPECT_FALSE(Withdraw()) << "the torque is not zero";
 }
 
+// Before: an encoder's error inside its lines was told with a slope of 1.05, at which the reading runs
+// backwards.
+TEST_F(WithdrawTest, WhatTheFitTookToWhereNoSuchCauseCanBeGoes) {
+  Accept({"constant_torque", "torque_saturation"});
+  Size(0, "torque_Nm", {0.02, 0.018, 0.022});
+  Size(1, "loss_at_rated_rel", {0.1, 0.08, 0.12});
+  fit_.point.amplitudes[1][0] = 0.1;
+  EXPECT_FALSE(Withdraw());
+  // A torque that grows faster than its current, as no motor's does.
+  fit_.point.amplitudes[1][0] = -0.1;
+  Size(1, "loss_at_rated_rel", {-0.1, -0.12, -0.08});
+  ASSERT_TRUE(Withdraw());
+  ASSERT_EQ(out_.causes.size(), 1U);
+  EXPECT_EQ(out_.causes[0].kind, "constant_torque");
+  ASSERT_EQ(out_.notes.size(), 1U);
+  EXPECT_NE(out_.notes[0].find("more than such a cause can have"), std::string::npos);
+}
+
 TEST_F(WithdrawTest, WhereASlowObserversFitEndedGoesAlong) {
   Accept({"cable_spring", "constant_torque"});
   Size(0, "torque_at_stroke_end_Nm", {-0.001, -0.003, 0.0005});

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "tests/analysis/support/fitted_axis.h"
 
@@ -22,6 +23,26 @@ TEST(Score, APenaltyIsOfEveryAmplitudeAndOfThePlacesThatWereLookedAt) {
   EXPECT_NEAR(Penalty(many) - Penalty(one), 2.0 * std::log(20.0), 1e-12);
   many.grid = 0.5;
   EXPECT_EQ(Penalty(many), Penalty(one)) << "less than one place was never looked at";
+}
+
+// Before: of a cable off the middle of the stroke 16 rows, where the axis hardly broke away, had all but a
+// thousandth of a column's square, and the score test saw nothing of 16000 nats.
+TEST(Score, RowsThatRunAwaySayNothingAndTheOthersStay) {
+  std::vector<double> column(3000);
+  for (std::size_t k = 0; k < column.size(); ++k) column[k] = std::sin(0.1 * static_cast<double>(k));
+  std::vector<double> with = column;
+  LeaveOutRunaways(with);
+  EXPECT_EQ(with, column) << "none runs away";
+  double runaway = 1.0;
+  for (std::size_t k = 1000; k < 1020; ++k) with[k] = runaway *= 3.0;
+  LeaveOutRunaways(with);
+  for (std::size_t k = 1010; k < 1020; ++k) EXPECT_EQ(with[k], 0.0) << k;
+  with.erase(with.begin() + 1000, with.begin() + 1020);
+  column.erase(column.begin() + 1000, column.begin() + 1020);
+  EXPECT_EQ(with, column);
+  std::vector<double> nothing(100, 0.0);
+  LeaveOutRunaways(nothing);
+  EXPECT_EQ(nothing, std::vector<double>(100, 0.0));
 }
 
 class ScoreTest : public testing::Test {
