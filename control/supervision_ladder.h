@@ -10,9 +10,8 @@ namespace contour {
 enum class SupervisionStep : std::uint8_t { kNone, kNoticed, kSoftened, kFallenBack, kStopped };
 
 /// One step for an alarm, whoever raises it, with some time between two steps, in which what a step changes
-/// can act; one step back after a quiet time. Noticing changes nothing that would need time, so a violent
-/// swing that goes on to the next alarm is softened with that. A step that the machine does not have (nothing
-/// to fall back to) is gone through all the same, so that the time to a stop is the same.
+/// can act; one step back after a quiet time. A step that the machine does not have (nothing to fall back to)
+/// is gone through all the same, so that the time to a stop is the same.
 ///
 /// Where a violent swing returns once softness was taken back, softness is all that keeps the machine quiet.
 /// To give it and take it again and again would be a burst for every quiet time, so such a return is the last
@@ -39,8 +38,7 @@ class SupervisionLadder {
       quiet_ = 0;
       const bool returned = violent && taken_back_;
       violent_ = violent_ || violent;
-      const bool goes_on = violent_ && alarm == Reason::kOscillation && step_ == SupervisionStep::kNoticed;
-      if (since_ < step_cycles_ && !returned && !goes_on) return;
+      if (since_ < step_cycles_ && !returned) return;
       since_ = 0;
       reason_ = alarm;
       where_ = where;

@@ -69,27 +69,6 @@ TEST(SupervisionLadder, WhatIsNotViolentOrLongPastStopsNothing) {
   EXPECT_EQ(first.step(), SupervisionStep::kSoftened);
 }
 
-// Before: 0.3 s from limit to limit, in which nothing that had been changed could act.
-TEST(SupervisionLadder, ViolenceThatGoesOnIsSoftenedWithoutWaiting) {
-  SupervisionLadder ladder(300, 5000);
-  ladder.Step(Reason::kOscillation, 1, true);
-  EXPECT_EQ(ladder.step(), SupervisionStep::kNoticed);
-  ladder.Step(Reason::kOscillation, 1);
-  EXPECT_EQ(ladder.step(), SupervisionStep::kSoftened);
-  // What softness does takes its time.
-  for (int i = 0; i < 299; ++i) ladder.Step(Reason::kOscillation, 1, true);
-  EXPECT_EQ(ladder.step(), SupervisionStep::kSoftened);
-  // What is no danger, or ends by itself, waits.
-  SupervisionLadder mild(300, 5000);
-  for (int i = 0; i < 299; ++i) mild.Step(Reason::kOscillation, 1);
-  EXPECT_EQ(mild.step(), SupervisionStep::kNoticed);
-  SupervisionLadder once(300, 5000);
-  once.Step(Reason::kOscillation, 1, true);
-  for (int i = 0; i < 299; ++i) once.Step(Reason::kNone, 0);
-  once.Step(Reason::kSolverCapLasting, 0);
-  EXPECT_EQ(once.step(), SupervisionStep::kSoftened);
-}
-
 TEST(SupervisionLadder, TheLastStepStays) {
   SupervisionLadder ladder(0, 10);
   for (int i = 0; i < 5; ++i) ladder.Step(Reason::kOscillation, 1);
