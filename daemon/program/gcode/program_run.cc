@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "daemon/program/gcode/line_ends.h"
+
 namespace contour {
 namespace {
 
@@ -28,7 +30,7 @@ bool IsEmpty(std::string_view line) { return line.find_first_not_of(" \t\r") == 
 
 ProgramRun::ProgramRun(std::string_view text, const std::string& name, const GcodeSettings& settings,
                        GcodeInterpreter::Sink sink)
-    : source_(text),
+    : source_(WithoutByteOrderMark(text)),
       name_(name),
       settings_(settings),
       text_(name),
@@ -44,13 +46,13 @@ std::size_t ProgramRun::BeginOf(std::size_t index) {
     found_line_ = mark;
     found_at_ = marks_[mark / kMark];
   }
-  for (; found_line_ < index; ++found_line_) found_at_ = source_.find('\n', found_at_) + 1;
+  for (; found_line_ < index; ++found_line_) found_at_ = EndOfLineFrom(source_, found_at_).next;
   return found_at_;
 }
 
 std::string_view ProgramRun::Line(std::size_t index) {
   const std::size_t begin = BeginOf(index);
-  return source_.substr(begin, std::min(source_.find('\n', begin), end_) - begin);
+  return source_.substr(begin, EndOfLineFrom(source_, begin).text - begin);
 }
 
 /// Where lines begin, up to the end of the text or of its frame of percent signs.
@@ -58,9 +60,8 @@ void ProgramRun::FindLines() {
   std::size_t at = 0;
   bool begun = false;
   while (at < source_.size()) {
-    const std::size_t end = std::min(source_.find('\n', at), source_.size() - 1) + 1;
-    const std::string_view line = source_.substr(at, end - at);
-    const std::string_view text = line.ends_with('\n') ? line.substr(0, line.size() - 1) : line;
+    const LineEnd end = EndOfLineFrom(source_, at);
+    const std::string_view text = source_.substr(at, end.text - at);
     if (begun && framed_ && IsFrame(text)) {
       closed_ = true;
       break;
@@ -72,9 +73,8 @@ void ProgramRun::FindLines() {
       framed_ = IsFrame(text);
       first_ = framed_ ? lines_ : 0;
     }
-    at = end;
+    at = end.next;
   }
-  end_ = at;
 }
 
 void ProgramRun::FindOWords() {
@@ -143,6 +143,24 @@ bool ProgramRun::Condition() {
   return holds;
 }
 
+/// Of a loop whose condition in the line `at` holds, with its lines between `begin` and `end`: what is no
+/// parameter will always hold, and only these words leave it.
+void ProgramRun::RefuseEndless(std::size_t at, std::size_t begin, std::size_t end) {
+  if (!may_end_.insert(at).second) return;
+  text_.Assign(Line(at), static_cast<int>(at) + 1);
+  if (text_.Rest().find('#') != std::string_view::npos) return;
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    const OWord* word = o_words_.At(i);
+    const bool leaves = word != nullptr && (word->kind == Kind::kBreak || word->kind == Kind::kReturn ||
+                                            word->kind == Kind::kEndSub || word->kind == Kind::kCall);
+    // M2 and M30 end the program, and what their numbers are may be computed.
+    text_.Assign(Line(i), static_cast<int>(i) + 1);
+    if (leaves || text_.Rest().find('m') != std::string_view::npos) return;
+  }
+  text_.Assign(Line(at), static_cast<int>(at) + 1);
+  text_.Fail("the condition always holds, and nothing leaves the loop: the program does not end");
+}
+
 void ProgramRun::EndOfLine() {
   while (text_.TakeIf('(')) {
   }
@@ -180,12 +198,16 @@ std::size_t ProgramRun::Flow(std::size_t at) {
       EndOfLine();
       return at + 1;
     case Kind::kWhile:
-      return Condition() ? at + 1 : CloseOf(at) + 1;
+      if (!Condition()) return CloseOf(at) + 1;
+      RefuseEndless(at, at, CloseOf(at));
+      return at + 1;
     case Kind::kEndWhile:
       EndOfLine();
       return word.begin;
     case Kind::kDoWhile:
-      return Condition() ? word.begin + 1 : at + 1;
+      if (!Condition()) return at + 1;
+      RefuseEndless(at, word.begin, at);
+      return word.begin + 1;
     case Kind::kRepeat:
     case Kind::kEndRepeat:
       return Repeat(word, at);

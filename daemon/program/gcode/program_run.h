@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,7 @@ class ProgramRun {
   [[nodiscard]] std::size_t CloseOf(std::size_t at) const;
   void OpenOWord(std::size_t at);
   bool Condition();
+  void RefuseEndless(std::size_t at, std::size_t begin, std::size_t end);
   void EndOfLine();
 
   std::string_view source_;
@@ -48,7 +50,6 @@ class ProgramRun {
   const GcodeSettings& settings_;
   std::vector<std::size_t> marks_;  ///< where every so many lines begin
   std::size_t lines_ = 0;
-  std::size_t end_ = 0;                        ///< of the text that is read
   std::size_t found_line_ = 0, found_at_ = 0;  ///< the line that was asked for last, and where it begins
   bool framed_ = false;                        ///< by lines of a percent sign
   bool closed_ = false;
@@ -61,6 +62,7 @@ class ProgramRun {
   Block block_;
   std::vector<Return> returns_;
   std::map<std::size_t, std::int64_t> repeats_;  ///< passes left of each repeat that runs, by its line
+  std::set<std::size_t> may_end_;                ///< lines of conditions that RefuseEndless has looked at
 };
 
 }  // namespace contour

@@ -332,10 +332,59 @@ TEST(GcodeParser, BytesThatAreNoTextAreNamed) {
   const auto error = [](const std::string& text) {
     return testing::ErrorOf([&] { static_cast<void>(Parse(text)); });
   };
-  EXPECT_EQ(error("\xEF\xBB\xBFG0 X1\n"), "part.ngc:1:1: found byte 0xEF, expected a word such as X10");
+  EXPECT_EQ(error("G0 X1\n\xEF\xBB\xBFG0 X2\n"),
+            "part.ngc:2:1: found byte 0xEF, expected a word such as X10");
   EXPECT_EQ(error("G0 X1\f\n"), "part.ngc:1:6: found byte 0x0C, expected a word such as X10");
   EXPECT_EQ(error(std::string("G0 X1\0\n", 7)), "part.ngc:1:6: found byte 0x00, expected a word such as X10");
   EXPECT_EQ(error("G0 X1 !\n"), "part.ngc:1:7: found '!', expected a word such as X10");
+}
+
+// At once, and not after millions of lines.
+TEST(GcodeParser, ALoopThatNothingLeavesIsNamedByItsLine) {
+  const auto error = [](const std::string& text) {
+    return testing::ErrorOf([&] { static_cast<void>(Parse(text)); });
+  };
+  const std::string endless =
+      ": the condition always holds, and nothing leaves the loop: the program does not end";
+  const std::string found = error("G21\no1 while [1 EQ 1]\nG0 X1\nG0 X2\no1 endwhile\n");
+  EXPECT_TRUE(found.starts_with("part.ngc:2:") && found.ends_with(endless)) << found;
+  const std::string done = error("o1 do\nG0 X1\nG0 X2\no1 while [2]\n");
+  EXPECT_TRUE(done.starts_with("part.ngc:4:") && done.ends_with(endless)) << done;
+  // Who leaves it, and who never comes to it.
+  for (const char* sound :
+       {"#1=0\no1 while [1]\n#1=[#1+1]\no2 if [#1 GT 3]\no1 break\no2 endif\nG0 X#1\no1 endwhile\n",
+        "o1 while [1]\nG0 X1\nM2\no1 endwhile\n", "o1 while [0]\no1 endwhile\nG0 X1\n",
+        "#1=3\no1 while [#1 GT 0]\n#1=[#1-1]\nG0 X#1\no1 endwhile\n"})
+    EXPECT_FALSE(Parse(sound).moves.empty()) << sound;
+}
+
+TEST(GcodeParser, AByteOrderMarkBeforeTheFirstLineIsSkipped) {
+  for (const char* program : {"G0 X1\nG0 X2\n", "%\nG0 X1\nG0 X2\n%\nnonsense"}) {
+    const GcodeMoves moves = Parse(std::string("\xEF\xBB\xBF") + program);
+    ASSERT_EQ(moves.moves.size(), 2u) << program;
+    EXPECT_EQ(EndOf_mm(moves, 0), std::vector<double>{1.0});
+  }
+}
+
+// Of Unix, Windows and old controls; each counts as one line.
+TEST(GcodeParser, ALineEndsWithLfCrOrBoth) {
+  for (const std::string end : {"\n", "\r", "\r\n"}) {
+    std::string program;
+    for (const char* line :
+         {"G0 X1 ; out", "", "o1 repeat [2]", "G0 X2 (there)", "G0 X3", "o1 endrepeat", "G0 X4"})
+      program += line + end;
+    const GcodeMoves moves = Parse(program + "G0 X5");
+    ASSERT_EQ(moves.moves.size(), 7u) << static_cast<int>(end[0]);
+    EXPECT_EQ(EndOf_mm(moves, 4), std::vector<double>{3.0});
+    EXPECT_EQ(EndOf_mm(moves, 6), std::vector<double>{5.0});
+    EXPECT_EQ(testing::ErrorOf([&] { static_cast<void>(Parse(program + "G0 X!" + end)); }).substr(0, 13),
+              "part.ngc:8:5:");
+    // Further than one mark of the lines' places.
+    std::string longer;
+    for (int i = 0; i < 600; ++i) longer += "G0 X1" + end;
+    EXPECT_EQ(testing::ErrorOf([&] { static_cast<void>(Parse(longer + "G0 X!")); }).substr(0, 15),
+              "part.ngc:601:5:");
+  }
 }
 
 // Whatever comes over the socket is read or refused.
@@ -373,7 +422,7 @@ TEST(GcodeParser, NonsenseIsRefusedAndNothingWorse) {
 }
 
 TEST(GcodeParser, ProgramsThatDoNotEndAreRefused) {
-  const std::string error = testing::ErrorOf([] { Parse("o1 while [1]\n#1=2\no1 endwhile\n"); });
+  const std::string error = testing::ErrorOf([] { Parse("#1=1\no1 while [#1]\n#1=2\no1 endwhile\n"); });
   EXPECT_NE(error.find("does it end?"), std::string::npos) << error;
 }
 
