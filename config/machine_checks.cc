@@ -269,6 +269,28 @@ void CheckDepartures(const MachineConfig& c, const std::string& key, const AxisC
                    "limits.slowest_feed_mm_s says from which speed on it must hold");
 }
 
+// 0x6064 is an INT32, and an absolute encoder's count is taken as it is at every start: where it wraps within
+// reach, it is read a whole wrap away.
+void CheckEncoderRange(const std::string& key, const AxisConfig& axis, Problems& problems) {
+  if (!axis.drive.absolute_encoder) return;
+  const AxisLimits& l = axis.limits;
+  const double counts_per_mm = axis.drive.encoder_counts_per_rev / axis.model.mechanics.lead_mm;
+  const double farthest_mm =
+      std::max(std::abs(l.position_mm[0]), std::abs(l.position_mm[1])) + l.safe_travel_mm;
+  const double most_counts = std::numeric_limits<std::int32_t>::max();
+  if (farthest_mm * counts_per_mm <= most_counts) return;
+  problems.Add(key + ".limits.position_mm",
+               "found a range that goes, with safe_travel_mm, to " + Say(farthest_mm) + " mm or " +
+                   Say(farthest_mm * counts_per_mm) + " counts of the absolute encoder, expected at most " +
+                   Say(most_counts / counts_per_mm) + " mm: its position (0x6064) wraps at " +
+                   Say(most_counts) +
+                   " counts to either side of its zero, and the axis would be taken to be " +
+                   Say(2.0 * most_counts / counts_per_mm) +
+                   " mm from where it stands. Let the drive count fewer per turn (0x608F and "
+                   "drive.encoder_counts_per_rev), put its zero (0x607C) to the middle of the stroke, or "
+                   "narrow limits.position_mm");
+}
+
 std::set<std::string> ParameterKeys() {
   std::set<std::string> keys;
   for (const KeyRow& row : DescribeKeys<ModelConfig>())
@@ -365,6 +387,7 @@ std::vector<ConfigProblem> Check(const MachineConfig& c) {
     CheckLearning(c, key + ".drive", axis.drive, problems);
     Append(CheckEmergencyReactions(axis.drive, key + ".drive"), problems);
     CheckLimits(key, axis, problems);
+    CheckEncoderRange(key, axis, problems);
     CheckReserve(key, axis, problems);
     CheckStopping(c, key, axis, problems);
     Append(ImplausibleLimits(c, name), problems);

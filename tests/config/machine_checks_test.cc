@@ -40,6 +40,26 @@ TEST(MachineChecks, Nodes) {
       "axes.y.drive.node_id: found 127, which is the master's own node on bus 'second' (master_node_id)");
 }
 
+// 2^31 counts to either side are 640 mm at 2^24 counts a turn of 5 mm.
+TEST(MachineChecks, AnAbsoluteCountThatWrapsWithinTheStrokeIsRefused) {
+  MachineConfig c = Good();
+  AxisConfig& x = c.axes.at("x");
+  const double most_mm = 2147483647.0 / x.drive.encoder_counts_per_rev * x.model.mechanics.lead_mm;
+  ASSERT_GT(most_mm, 2000.0);
+  x.limits.position_mm = {-200.0, most_mm - x.limits.safe_travel_mm - 1.0};
+  EXPECT_TRUE(Check(c).empty());
+  x.limits.position_mm[1] += 2.0;
+  const std::string text = Only(c);
+  EXPECT_NE(text.find("axes.x.limits.position_mm: found a range that goes, with safe_travel_mm, to "),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("0x6064"), std::string::npos) << text;
+  x.limits.position_mm = {-x.limits.position_mm[1], 200.0};
+  EXPECT_FALSE(Check(c).empty()) << "to the other side";
+  x.drive.absolute_encoder = false;
+  EXPECT_TRUE(Check(c).empty()) << "an incremental count is continued over its wrap";
+}
+
 TEST(MachineChecks, LearningNeedsAScaleOnEveryAxis) {
   MachineConfig c = Good();
   c.learning.enabled = true;
