@@ -48,18 +48,28 @@ double Share(const CurvePiece& curve, std::size_t axis) {
   return 0.0;
 }
 
+bool IsStraight(const CurvePiece& curve) {
+  return curve.kind == CurvePiece::Kind::kPoint || curve.kind == CurvePiece::Kind::kLine;
+}
+
 double Jerk(const PlanLimits& limits) { return limits.jerk_m_s3 > 0.0 ? limits.jerk_m_s3 : kInfinite; }
 
 }  // namespace
 
 Extent CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits) {
   const Extent extent = ExtentOf(request.curve);
+  const bool straight = IsStraight(request.curve);
+  const CurvePoint begin = PointAt(request.curve, 0.0);
   for (std::size_t i = 0; i < limits.size(); ++i) {
     const PlanLimits& l = limits[i];
-    if (extent.min_m[i] < l.position_min_m - kTolerance) {
+    // An axis that stands beyond its limits, where a fault left it, is driven back. Along a straight line it
+    // goes one way; and a path that has come in does not begin outside any more.
+    const double lowest_m = straight ? std::min(l.position_min_m, begin.position_m[i]) : l.position_min_m;
+    const double highest_m = straight ? std::max(l.position_max_m, begin.position_m[i]) : l.position_max_m;
+    if (extent.min_m[i] < lowest_m - kTolerance) {
       Refuse(request, l.axis, "position", extent.min_m[i] * 1e3, l.position_min_m * 1e3, "mm");
     }
-    if (extent.max_m[i] > l.position_max_m + kTolerance) {
+    if (extent.max_m[i] > highest_m + kTolerance) {
       Refuse(request, l.axis, "position", extent.max_m[i] * 1e3, l.position_max_m * 1e3, "mm");
     }
   }

@@ -9,7 +9,8 @@ namespace contour {
 /// jerk of a curve followed at this speed. Throws ProgramError naming axis, value and limit.
 void CheckPiece(const PieceRequest& request, const PerAxis<PlanLimits>& limits);
 
-/// Its part about the position range; returns where the piece is.
+/// Its part about the position range; returns where the piece is. A straight piece that begins beyond a limit
+/// may only lead back: pieces join, so that is where the axis stands when the program begins.
 Extent CheckRange(const PieceRequest& request, const PerAxis<PlanLimits>& limits);
 
 /// Largest speed along the piece that the axes' velocity limits allow.

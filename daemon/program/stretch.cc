@@ -24,11 +24,19 @@ constexpr double kLastPart = 1.5;
 // CheckRange() lets a move go so much farther, for the rounding of its numbers.
 constexpr double kRounding_m = 1e-9;
 
-Extent TravelOf(const PerAxis<PlanLimits>& limits) {
+// CheckRange() also lets an axis that stands beyond its limits come back from there.
+Extent TravelOf(const PerAxis<PlanLimits>& limits, const std::vector<ProgrammedMove>& moves) {
   Extent travel;
   for (const PlanLimits& l : limits) {
     travel.min_m.push_back(l.position_min_m - kRounding_m);
     travel.max_m.push_back(l.position_max_m + kRounding_m);
+  }
+  for (const ProgrammedMove& m : moves) {
+    const CurvePoint begin = PointAt(m.curve, 0.0);
+    for (std::size_t i = 0; i < limits.size(); ++i) {
+      travel.min_m[i] = std::min(travel.min_m[i], begin.position_m[i]);
+      travel.max_m[i] = std::max(travel.max_m[i], begin.position_m[i]);
+    }
   }
   return travel;
 }
@@ -76,7 +84,7 @@ void Stretch::Extend() {
   Front front = *front_;
   for (;;) {
     TakeMoves(front, std::max(kAtOnce, front.moves.size()));
-    const ProgrammedPath path(front.moves, front.from_m, TravelOf(limits()));
+    const ProgrammedPath path(front.moves, front.from_m, TravelOf(limits(), front.moves));
     const SmoothFit fit = SmoothPathThrough(path, front.fixed);
     const std::size_t first = front.fixed.settled;
     const std::vector<double>& knots = fit.path.knots_m();

@@ -292,6 +292,43 @@ TEST(MotionPlan, RefusalsNameAxisValueAndLimit) {
             std::string::npos);
 }
 
+// A fault may leave an axis there; it must be possible to bring it back.
+TEST(MotionPlan, AnAxisBeyondItsLimitMayOnlyComeBack) {
+  PerAxis<double> start(1);
+  PerAxis<PlanLimits> limits(1);
+  limits[0] = {"x", -0.2, 0.2, 0.25, 5.0, 200.0};
+  start[0] = 0.202641;
+  const auto plan = [&](const Program& program) { return PlanMotion(program, start, limits); };
+  const auto end_mm = [&](const Program& program) {
+    const auto made = plan(program);
+    EXPECT_NEAR(At(*made, 0.0)[0].position_m, start[0], 1e-12) << "where it stands";
+    double before_m = start[0];
+    for (double t = 0.0; t < made->duration_s(); t += 1e-3) {
+      const double now_m = At(*made, t)[0].position_m;
+      EXPECT_LE(now_m, std::max(before_m, 0.2) + 1e-12) << "never further out";
+      before_m = now_m;
+    }
+    return 1e3 * At(*made, made->duration_s())[0].position_m;
+  };
+  EXPECT_NEAR(end_mm(Yaml("shape: line\ndx_mm: -10\nfeed_mm_min: 600\n")), 192.641, 1e-6);
+  EXPECT_NEAR(end_mm(Yaml("shape: line\ndx_mm: -1\nfeed_mm_min: 600\n")), 201.641, 1e-6) << "part of the way";
+  EXPECT_NEAR(end_mm(Gcode("G91 G1 F600 X-1\nX-1\nG4 P0.1\nX-50\n")), 150.641, 1e-6);
+  EXPECT_NEAR(end_mm(Gcode("G91 G0 X-100\n")), 102.641, 1e-6);
+  const auto refused = [&](const Program& program, const char* message) {
+    const std::string error = ErrorOf([&] { plan(program); });
+    EXPECT_NE(error.find(message), std::string::npos) << error;
+  };
+  refused(Yaml("shape: line\ndx_mm: 1\nfeed_mm_min: 600\n"),
+          "axis x: position 203.641 mm is beyond the limit of 200 mm");
+  refused(Gcode("G91 G1 F600 X1\n"), "axis x: position 203.641 mm is beyond the limit of 200 mm");
+  refused(Gcode("G91 G1 F600 X-2\nX1\n"), "axis x: position 201.641 mm is beyond the limit of 200 mm");
+  refused(Gcode("G91 G1 F600 X-10\nX9\n"), "axis x: position 201.641 mm is beyond the limit of 200 mm");
+  refused(Yaml("shape: line\ndx_mm: -450\nfeed_mm_min: 600\n"), "is beyond the limit of -200 mm");
+  start[0] = -0.21;
+  EXPECT_NEAR(end_mm(Yaml("shape: line\ndx_mm: 20\nfeed_mm_min: 600\n")), -190.0, 1e-6);
+  refused(Yaml("shape: line\ndx_mm: -1\nfeed_mm_min: 600\n"), "is beyond the limit of -200 mm");
+}
+
 TEST(MotionPlan, OneAxisMachinesDrawNoCircles) {
   PerAxis<double> start(1);
   PerAxis<PlanLimits> limits(1);
