@@ -371,7 +371,8 @@ int RunOnce(const DaemonOptions& options, std::optional<NewStart>& again) {
   std::vector<std::string> overrides = OverridesOf(options);
   const MachineConfig stated = LoadMachine(options.config, overrides);
   // As stated: what has been learnt of the stroke moves no limit.
-  const StartLoops loops = LoopsOfStart(options, overrides);
+  const StartLoops loops = LoopsOfStart(options, overrides, &ServiceNotifier::StillStarting);
+  ServiceNotifier::StillStarting();
   FrictionMemory memory(stated, MemoryDirectory(stated.memory));
   for (const std::string& learnt : memory.Overrides()) overrides.push_back(learnt);
   // In the log, too: a replay has the same.

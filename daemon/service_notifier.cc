@@ -9,6 +9,8 @@ ServiceNotifier::ServiceNotifier() {
   if (sd_watchdog_enabled(0, &period_us) > 0) watchdog_ = std::chrono::microseconds(period_us);
 }
 
+void ServiceNotifier::StillStarting() { sd_notify(0, "EXTEND_TIMEOUT_USEC=30000000"); }
+
 void ServiceNotifier::Ready() {
   if (ready_) return;
   ready_ = true;

@@ -12,6 +12,8 @@ class ServiceNotifier {
  public:
   ServiceNotifier();
 
+  /// Before READY: to be given half a minute from now, should less be left.
+  static void StillStarting();
   void Ready();
   void Stopping();
   void Status(const std::string& text);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,9 @@ struct StartLoops {
 /// unstable on the axis as stated or on its uncertainty set and is none to commission with. Loops that
 /// commission hands in (`--torque-loop`) it has judged on what a catalogue leaves open: they are refused only
 /// where they are unstable on the axis as stated. What breaks another limit of `contour check` is warned of.
-StartLoops LoopsOfStart(const DaemonOptions& options, const std::vector<std::string>& overrides);
+/// `begins`: LoopsThatAreMissing.
+StartLoops LoopsOfStart(const DaemonOptions& options, const std::vector<std::string>& overrides,
+                        const std::function<void()>& begins = nullptr);
 
 /// The same of a machine that is to run as `overrides` state it whole. Returns what is to be warned of.
 std::vector<std::string> RequireLoops(const DaemonOptions& options,

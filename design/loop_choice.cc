@@ -101,11 +101,11 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s) {
   return best;
 }
 
-std::string WhyNoLoop(const std::string& name, const LoopAxis& axis, double period_s) {
+std::string WhyNoLoop(const std::string& name, const std::vector<std::string>& help) {
   std::string text = "axes." + name +
                      ".loop: missing, and none of the loops that are tried without one keeps its limits; "
                      "expected what `contour tune --from-model` writes after a search; what would help:";
-  for (const std::string& help : WhatWouldHelp(axis, period_s, 1)) text += " " + help + ";";
+  for (const std::string& one : help) text += " " + one + ";";
   text.pop_back();
   return text;
 }
@@ -120,21 +120,23 @@ bool MayUseFilter(const MachineConfig& machine) {
   return !machine.control.friction_stated && FilterServes(machine);
 }
 
-std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine) {
+std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine,
+                                             const std::function<void()>& begins) {
   std::vector<std::string> assignments, errors;
   if (!KnowsTwoInertias(machine.machine.controller, machine.control.friction)) return assignments;
   const double period_s = 1e-6 * machine.machine.cycle_us;
   for (const auto& [name, config] : machine.axes) {
     if (config.loop || ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
-    const LoopAxis axis = LoopAxisOf(config);
-    if (const std::optional<LoopTuning> tuning = ChooseLoop(axis, period_s)) {
+    if (begins) begins();
+    if (const std::optional<LoopTuning> tuning = ChooseLoop(LoopAxisOf(config), period_s)) {
       assignments.push_back(LoopAssignment(name, *tuning));
+    } else if (MayUseFilter(machine)) {
+      return {kUseFilter};
     } else {
-      errors.push_back(WhyNoLoop(name, axis, period_s));
+      errors.push_back(WhyNoLoop(name, {kDriveCloses, kWhoTries}));
     }
   }
   if (errors.empty()) return assignments;
-  if (MayUseFilter(machine)) return {kUseFilter};
   throw ConfigError(std::move(errors));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,8 +16,8 @@ namespace contour {
 /// step of those that keep every limit; none when none does. The search finds a better one.
 std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s);
 
-/// Why there is none, and what would help.
-std::string WhyNoLoop(const std::string& name, const LoopAxis& axis, double period_s);
+/// That there is none, and what would help (WhatWouldHelp, or who tries it).
+std::string WhyNoLoop(const std::string& name, const std::vector<std::string>& help);
 
 /// `axes.<name>.loop={...}`, with three digits, to put on top of a machine file.
 std::string LoopAssignment(const std::string& name, LoopTuning tuning);
@@ -30,7 +31,9 @@ bool MayUseFilter(const MachineConfig& machine);
 
 /// A loop for every axis that needs one and has none, as assignments `axes.<name>.loop={...}` to put on top
 /// of the machine file. When there is none for an axis, kUseFilter alone if that is a way out; or else throws
-/// ConfigError, with the reason and what would help.
-std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine);
+/// ConfigError, with the reason. What would help is not tried: a start waits for this. `begins`: called
+/// before each axis, which takes some tenths of a second of one processor.
+std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine,
+                                             const std::function<void()>& begins = nullptr);
 
 }  // namespace contour

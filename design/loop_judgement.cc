@@ -25,8 +25,6 @@ std::optional<LoopFault> FaultOf(StatedLoop loop, double period_s) {
   }
 }
 
-constexpr const char* kWhoTries = "contour check tries other tunings, scales and screws";
-
 std::string Warning(const LoopFault& fault) {
   return fault.loop.key + ": found a loop that does not keep its limits (" + fault.wrong + "), and runs, " +
          (fault.unstable ? "to commission with: it is stable on the axis as stated" : "being stable") +

@@ -47,7 +47,7 @@ std::vector<std::string> WhatWouldHelp(const LoopAxis& axis, double period_s, in
   if (!searched)
     if (const Works works = tried(axis); works != Works::kNot)
       return {std::string("another tuning: contour tune --from-model finds one") + Word(works)};
-  std::vector<std::string> help{"drive.mode: csp, in which the drive closes the loop"};
+  std::vector<std::string> help{kDriveCloses};
   if (!axis.scale_step_m) {
     LoopAxis with = axis;
     with.scale_step_m = kScaleStep_m;

@@ -11,6 +11,7 @@
 #include "design/loop_choice.h"
 #include "design/loop_judgement.h"
 #include "design/loop_report.h"
+#include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
@@ -40,7 +41,7 @@ void Chosen(const MachineConfig& machine, const std::string& name, const std::op
   const LoopAxis axis = LoopAxisOf(machine.axes.at(name));
   const double period_s = 1e-6 * machine.machine.cycle_us;
   if (!tuning) {
-    section.refused.push_back(WhyNoLoop(name, axis, period_s));
+    section.refused.push_back(WhyNoLoop(name, WhatWouldHelp(axis, period_s, 1)));
     return;
   }
   const LoopReport report = ReportOn(axis, *tuning, period_s);

@@ -41,9 +41,12 @@ MaybeEmulatedMachineFile LoadMaybeEmulatedMachine(const std::string& path,
   return file;
 }
 
-EmulatedMachineFile LoadEmulatedMachine(const std::string& path, const std::vector<std::string>& overrides) {
+EmulatedMachineFile LoadEmulatedMachine(const std::string& path, const std::vector<std::string>& overrides,
+                                        std::optional<ControllerName> runs) {
   MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(path, overrides);
-  std::vector<std::string> with_loops = LoopsThatAreMissing(file.machine);
+  MachineConfig run = file.machine;
+  run.machine.controller = runs.value_or(file.machine.machine.controller);
+  std::vector<std::string> with_loops = LoopsThatAreMissing(run);
   if (!with_loops.empty()) {
     with_loops.insert(with_loops.begin(), overrides.begin(), overrides.end());
     file = LoadMaybeEmulatedMachine(path, with_loops);
