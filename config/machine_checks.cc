@@ -15,6 +15,7 @@
 #include "config/key_table.h"
 #include "config/loop_checks.h"
 #include "config/motion_bounds.h"
+#include "config/name_checks.h"
 #include "config/number_text.h"
 #include "config/plausible_limits.h"
 #include "config/stopping.h"
@@ -376,6 +377,7 @@ std::vector<ConfigProblem> Check(const ModelConfig& model, const std::string& ke
 std::vector<ConfigProblem> Check(const MachineConfig& c) {
   Problems problems;
   CheckSizes(c, problems);
+  Append(CheckNames(c), problems);
   CheckTiming(c, problems);
   CheckBuses(c, problems);
   CheckNodes(c, problems);

@@ -36,6 +36,14 @@ LoopMember Vary(const LoopAxis& a, MemberKind kind, std::string name, const Fact
   return m;
 }
 
+/// What is known to `std`, relative, off by one of it down or up. Down, beyond half of the value the straight
+/// line would end at nothing and go on below; there 1 / (4 std) takes over from it, which is as large and as
+/// steep at the half, and stays positive.
+double Off(double sign, double std) {
+  constexpr double kHalf = 0.5;
+  return sign > 0.0 || std <= kHalf ? 1.0 + sign * std : kHalf * kHalf / std;
+}
+
 /// By the bristles of table and motor, `motor_share` of them the motor's.
 LoopMember Held(LoopMember m, double stiffness_N_m, double motor_share) {
   m.bristle = {(1.0 - motor_share) * stiffness_N_m, 0.0, 1.0, 0.0};
@@ -70,11 +78,13 @@ std::vector<LoopMember> AsStated(const LoopAxis& a) {
   std::vector<LoopMember> set{SlidingMember(a)};
   for (const double sign : {1.0, -1.0}) {
     const std::string s = sign > 0.0 ? "+" : "-";
-    set.push_back(Vary(a, kKind, "stiffness " + s + Percent(k), {.stiffness = 1.0 + sign * k}));
-    set.push_back(Vary(a, kKind, "motor's mass " + s + Percent(m1), {.motor = 1.0 + sign * m1}));
-    set.push_back(Vary(a, kKind, "table's mass " + s + Percent(m2), {.table = 1.0 + sign * m2}));
-    set.push_back(Vary(a, kKind, "both masses " + s + Percent(m1) + " and " + Percent(m2),
-                       {.motor = 1.0 + sign * m1, .table = 1.0 + sign * m2}));
+    const Factors off{.stiffness = Off(sign, k), .motor = Off(sign, m1), .table = Off(sign, m2)};
+    const auto by = [](double factor) { return Percent(std::fabs(factor - 1.0)); };
+    set.push_back(Vary(a, kKind, "stiffness " + s + by(off.stiffness), {.stiffness = off.stiffness}));
+    set.push_back(Vary(a, kKind, "motor's mass " + s + by(off.motor), {.motor = off.motor}));
+    set.push_back(Vary(a, kKind, "table's mass " + s + by(off.table), {.table = off.table}));
+    set.push_back(Vary(a, kKind, "both masses " + s + by(off.motor) + " and " + by(off.table),
+                       {.motor = off.motor, .table = off.table}));
   }
   set.push_back(Vary(a, kKind, "half of the screw's damping", {.damping = kLittleDamping}));
   set.push_back(Vary(a, kKind, "twice the screw's damping", {.damping = kMuchDamping}));

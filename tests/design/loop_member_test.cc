@@ -54,6 +54,27 @@ TEST(UncertaintySet, IsAsWideAsTheModelSaysItIs) {
   EXPECT_DOUBLE_EQ(high, 1.2 * axis.axis.stiffness_N_m);
 }
 
+// A deviation of the whole value and more says that little is known, not that a mass may be negative.
+TEST(UncertaintySet, HasNoNegativeAxisHoweverLittleIsKnown) {
+  double before = 1.0;
+  for (const double std : {0.1, 0.5, 0.500001, 0.9, 1.0, 1.5, 3.0, 10.0}) {
+    LoopAxis axis = AxisOf("base");
+    axis.stiffness_std = axis.motor_mass_std = axis.table_mass_std = std;
+    double least = 1.0;
+    for (const LoopMember& m : UncertaintySet(axis)) {
+      if (m.kind != MemberKind::kAsStated) continue;
+      const double share = m.axis.table_mass_kg / axis.axis.table_mass_kg;
+      EXPECT_GT(share, 0.0) << m.name;
+      EXPECT_GT(m.axis.motor_mass_kg, 0.0) << m.name;
+      EXPECT_GT(m.axis.stiffness_N_m, 0.0) << m.name;
+      least = std::min(least, share);
+    }
+    EXPECT_LT(least, before) << std;
+    EXPECT_NEAR(least, std <= 0.5 ? 1.0 - std : 0.25 / std, 1e-12);
+    before = least;
+  }
+}
+
 TEST(CreepingSet, IsTheSameSetWithKindsOfItsOwnForWhatFrictionPassesThrough) {
   const LoopAxis axis = AxisOf("base");
   const std::vector<LoopMember> strict = UncertaintySet(axis), creeping = CreepingSet(axis);

@@ -11,6 +11,7 @@
 #include "config/mode_advice.h"
 #include "config/motion_bounds.h"
 #include "config/number_text.h"
+#include "config/screw_advice.h"
 #include "config/stopping.h"
 #include "core/mechanics.h"
 #include "drivers/cia402/mode_for.h"
@@ -205,6 +206,7 @@ std::string Timing(const MachineConfig& c) {
 
 std::string Advice(const MachineConfig& c) {
   std::string text;
+  for (const std::string& advice : ScrewAdvice(c)) text += "  " + advice + "\n";
   for (const std::string& advice : ModeAdvice(c)) text += "  " + advice + "\n";
   for (const std::string& advice : FollowingAdvice(c)) text += "  " + advice + "\n";
   return text.empty() ? text : "\nAdvice\n" + text;
