@@ -56,6 +56,9 @@ enum class Reason : std::uint16_t {
   kNotReferenced = 70,  ///< the axis does not know where it is: a program is refused
   kScaleLost = 71,      ///< the linear scale in the loop is silent; the axis goes on by its motor, and stops
   kScaleDoubted = 72,   ///< motor and torque contradict the linear scale in the loop; the same
+  kDriveStaysEnabled = 73,  ///< the drive is in Operation Enabled although told to leave it
+  kNodeAnswersTwice = 74,   ///< more answers to SYNC than SYNCs: two drives have one node number
+  kAxisMoves = 75,          ///< the axis is not at rest: it is not enabled
   // Limits: the output is held back, the machine goes on.
   kTorqueLimit = 96,
   kTorqueRateLimit = 97,
@@ -186,6 +189,12 @@ constexpr std::string_view Name(Reason r) noexcept {
       return "scale_lost";
     case Reason::kScaleDoubted:
       return "scale_doubted";
+    case Reason::kDriveStaysEnabled:
+      return "drive_stays_enabled";
+    case Reason::kNodeAnswersTwice:
+      return "node_answers_twice";
+    case Reason::kAxisMoves:
+      return "axis_moves";
     case Reason::kTorqueConstantChanged:
       return "torque_constant_changed";
     case Reason::kOscillationNoticed:

@@ -4,6 +4,7 @@
 
 #include "config/extended_model.h"
 #include "config/loop_axis.h"
+#include "config/motion_bounds.h"
 #include "drivers/cia402/mode_for.h"
 
 namespace contour {
@@ -48,6 +49,9 @@ CycleConfig MakeCycleConfig(const MachineConfig& machine, ControllerName control
     AxisDriveConfig drive{name, static_cast<std::uint8_t>(BusIndex(machine, axis.drive.bus)), axis.drive,
                           std::min(axis.limits.torque_Nm, axis.drive.peak_torque_Nm),
                           1e-3 * axis.limits.safe_travel_mm / out.axes.back().mechanics.radius_m_rad};
+    const double r_m = out.axes.back().mechanics.radius_m_rad,
+                 speed_rad_s = 1e-3 * axis.limits.velocity_mm_s / r_m;
+    drive.coast_s2_rad = 1e-3 * CoastTravel_mm(axis) / r_m / (speed_rad_s * speed_rad_s);
     drive.drive.mode = ModeFor(controller, axis.drive);
     out.master.axes.push_back(drive);
   }

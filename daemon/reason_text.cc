@@ -198,6 +198,18 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
                     "positions that cannot be") +
              "; disable the machine and tell it (contour reference " +
              (at < axis_names.size() ? axis_names[at] : "AXIS") + "=MM), then run the program";
+    case Reason::kDriveStaysEnabled:
+      return axis +
+             ": the drive stays in Operation Enabled although it was told to leave it (drive.quick_stop_ms, "
+             "drive.transition_ms); it got NMT stop. Look for another master, or a drive that is commanded "
+             "by its terminals, then reset" +
+             DriveText(detail);
+    case Reason::kNodeAnswersTwice:
+      return axis +
+             ": more answers to SYNC come under this node number than SYNCs are sent; quick stop. Two drives "
+             "have the same node number: give each its own, then reset";
+    case Reason::kAxisMoves:
+      return axis + " is not at rest; it was not enabled. Wait until it stands, then enable again";
     case Reason::kTorqueLimit:
     case Reason::kTorqueRateLimit:
     case Reason::kSolverCap:
@@ -238,6 +250,8 @@ std::string RefusalText(const CycleRecord& record, RequestKind request,
       io.reason = IoVerdict(record.io);
       if (record.state == MachineState::kIdle && io.reason != Reason::kNone)
         return "not permitted: " + ReasonText(io, axis_names, bus_names);
+      if (record.state == MachineState::kIdle && record.reason == Reason::kAxisMoves)
+        return ReasonText(record, axis_names, bus_names);
       return state + "; only an Idle machine can be enabled";
     }
     case RequestKind::kReference:

@@ -151,7 +151,9 @@ Answer Supervisor::Reference(const std::map<std::string, double>& position_mm,
     const auto found = std::find(axis_names_.begin(), axis_names_.end(), name);
     if (found == axis_names_.end()) return {false, "there is no axis " + name + " on this machine"};
     const auto index = static_cast<std::size_t>(found - axis_names_.begin());
-    if (machine_.axes.at(name).drive.absolute_encoder)
+    const CycleRecord now = answers_.record();
+    const bool lost = index < now.axes.size() && now.axes[index].reference_state == ReferenceState::kLost;
+    if (machine_.axes.at(name).drive.absolute_encoder && !lost)
       return {false,
               "axis " + name +
                   " has an absolute encoder (drive.absolute_encoder): it knows where it is, and is set up "

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "daemon/rt/cycle_parts.h"
 #include "drivers/cia301/messages.h"
@@ -16,6 +18,14 @@ constexpr std::uint64_t kMostSkipped = 1'000'000;
 
 /// Of the longest frame: more than stuff bits of the frames before a SYNC make of its time.
 constexpr double kStuffing = 0.25;
+/// A loop of bandwidth w brakes an axis that it finds at speed v by up to so many times w v.
+constexpr double kAnswer = 4.0;
+
+double Loop_rad_s(const CycleConfig& config) {
+  const double loop_Hz = StiffnessLoop_Hz(config);
+  return std::isfinite(loop_Hz) ? 2.0 * std::numbers::pi * loop_Hz : 0.0;
+}
+
 /// Of an encoder, that neighbouring readings may be off by.
 constexpr double kSteps = 4.0;
 
@@ -47,6 +57,10 @@ Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAx
       following_error_m(1e-3 * cycle.axes[index].limits.following_error_mm),
       position_min_m(1e-3 * cycle.axes[index].limits.position_mm[0]),
       position_max_m(1e-3 * cycle.axes[index].limits.position_mm[1]),
+      standing_m_s(Loop_rad_s(cycle) > 0.0
+                       ? 1e-3 * cycle.axes[index].limits.acceleration_mm_s2 / (kAnswer * Loop_rad_s(cycle))
+                       : std::numeric_limits<double>::infinity()),
+      speed_kept(std::exp(-1e-6 * cycle.cycle_us * Loop_rad_s(cycle))),
       late_from_s(kStuffing * monitored.sample_jitter_s),
       late_from_m(kSteps * monitored.count_m) {}
 
@@ -183,12 +197,30 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
+    MeasureSpeed(axes_[i], f);
     if (std::max(std::abs(f.sync_late_s), f.late_s) > axes_[i].late_from_s) TakeLateness(i, f);
     stale = stale || (f.valid && !f.fresh);
     follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
   }
   if (stale && master_.operational()) ++stale_cycles_;
   return master_.feedback();
+}
+
+// A reading after a gap says nothing of the speed now.
+void Cycle::MeasureSpeed(Axis& axis, const AxisFeedback& feedback) noexcept {
+  axis.unseen_cycles += master_.elapsed_cycles();
+  if (!feedback.fresh) {
+    if (axis.unseen_cycles > most_skipped_) axis.speed_m_s = 0.0;
+    return;
+  }
+  if (axis.seen && axis.unseen_cycles <= most_skipped_) {
+    const double now_m_s =
+        (axis.position_m - axis.seen_at_m) / (period_s_ * static_cast<double>(axis.unseen_cycles));
+    axis.speed_m_s = axis.speed_kept * axis.speed_m_s + (1.0 - axis.speed_kept) * now_m_s;
+  }
+  axis.seen = true;
+  axis.seen_at_m = axis.position_m;
+  axis.unseen_cycles = 0;
 }
 
 /// Holds what the encoders say against the torque that acted, before anybody learns from it.

@@ -93,12 +93,18 @@ class Cycle {
     double following_error_m;
     double position_min_m;
     double position_max_m;
-    double late_from_s;  ///< bit stuffing makes answers late by less
-    double late_from_m;  ///< less is of the encoder's steps
+    double standing_m_s;              ///< an axis that is slower is at rest
+    double speed_kept;                ///< per cycle
+    double speed_m_s = 0.0;           ///< of its readings, as slowly as the loop answers
+    double seen_at_m = 0.0;           ///< the newest reading
+    bool seen = false;                ///< there is one
+    std::uint64_t unseen_cycles = 0;  ///< since that one
+    double late_from_s;               ///< bit stuffing makes answers late by less
+    double late_from_m;               ///< less is of the encoder's steps
 
     void Keep(StateKeeper& keep) noexcept {
       keep(estimator, observer, monitor, sent_force_N, reported_N, in_period, wanted_torque_Nm, position_m,
-           blend_N);
+           blend_N, speed_m_s, seen_at_m, seen, unseen_cycles);
     }
   };
 
@@ -110,6 +116,7 @@ class Cycle {
   // What Act is made of, in its order:
   const Feedback& Observe(const CycleInput& in) noexcept;
   [[nodiscard]] FaultSeen Contradiction(const Feedback& feedback) noexcept;
+  void MeasureSpeed(Axis& axis, const AxisFeedback& feedback) noexcept;
   void TakeLateness(std::size_t index, const AxisFeedback& feedback) noexcept;
   [[nodiscard]] double TableAt_m(std::size_t index, const AxisFeedback& feedback) const noexcept;
   const Estimates& Estimate(const Feedback& feedback, const IoInput& io) noexcept;
@@ -131,6 +138,7 @@ class Cycle {
   [[nodiscard]] bool PathBeginsHere() const noexcept;
   [[nodiscard]] bool CanReference(const Request& request) const noexcept;
   [[nodiscard]] std::uint8_t NotReferenced() const noexcept;
+  [[nodiscard]] std::uint8_t MovingAxis() const noexcept;
   void TellWhere(const Request& request) noexcept;
   void DoubtPosition() noexcept;
   /// Nothing was sent at the skipped grid points, so the newest feedback is that much older, and the last

@@ -49,7 +49,7 @@ void Cycle::TellWhere(const Request& request) noexcept {
   const ReferenceRequest told = DecodeReference(request.program_id);
   Axis& axis = axes_[told.axis];
   master_.TellPosition(told.axis, told.position_m / axis.radius_m_rad);
-  axis.position_m = told.position_m;
+  axis.position_m = axis.seen_at_m = told.position_m;
 }
 
 void Cycle::HoldHere() noexcept {

@@ -31,6 +31,7 @@ Situation Cycle::Assess(const CycleInput& in, const Estimates& estimate) const n
       bus != DriveMaster::kNoBus && Acts(Watch::kSecondMaster))
     now.second_master = {Reason::kSecondMaster, bus};
   now.not_referenced = NotReferenced();
+  now.moves = MovingAxis();
   now.can_reference = CanReference(in.request);
   now.path_prefetched = follower_.Prefetched();
   now.path_begins_here = now.path_prefetched && PathBeginsHere();
@@ -80,6 +81,8 @@ FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
     if (s.lost_master && left_operational && Acts(Watch::kDriveLostMaster))
       return {Reason::kDriveLostMaster, where};
     if (s.heartbeat_lost && Acts(Watch::kHeartbeatLost)) return {Reason::kHeartbeatLost, where};
+    if (s.answers_twice && Acts(Watch::kDriveLeftOperational)) return {Reason::kNodeAnswersTwice, where};
+    if (s.stays_enabled && Acts(Watch::kDriveLeftEnabled)) return {Reason::kDriveStaysEnabled, where};
     if (left_operational && Acts(Watch::kDriveLeftOperational)) return {Reason::kDriveLeftOperational, where};
   }
   return {};
@@ -121,6 +124,13 @@ std::uint8_t Cycle::NotReferenced() const noexcept {
         IsReferenced(state) || (state == ReferenceState::kNeverTold && axes_[i].unreferenced_travel_m > 0.0);
     if (!may_move) return static_cast<std::uint8_t>(i);
   }
+  return 0xFF;
+}
+
+// One that its loop would brake by more than its limit of acceleration does not stand.
+std::uint8_t Cycle::MovingAxis() const noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i)
+    if (std::abs(axes_[i].speed_m_s) > axes_[i].standing_m_s) return static_cast<std::uint8_t>(i);
   return 0xFF;
 }
 

@@ -41,6 +41,13 @@ std::uint8_t FaultedDrive(const Situation& now) noexcept {
   return kNone;
 }
 
+/// Index of a drive in Operation Enabled, or kNone.
+std::uint8_t EnabledDrive(const Situation& now) noexcept {
+  for (std::size_t i = 0; i < now.drives.size(); ++i)
+    if (now.drives[i] == DriveState::kOperationEnabled) return static_cast<std::uint8_t>(i);
+  return kNone;
+}
+
 /// The drive that holds up enabling: one that missed its deadline, or else the first that is not there yet.
 std::uint8_t StuckDrive(const Situation& now) noexcept {
   if (now.stuck < now.drives.size()) return now.stuck;
@@ -240,9 +247,15 @@ void Transitions::HandleRequest(const Situation& now, Orders& orders) noexcept {
 }
 
 void Transitions::Enable(const Situation& now, Orders& orders, const Request& request) noexcept {
-  const bool ok =
+  const bool may =
       state_ == MachineState::kIdle && now.operational && IoVerdict(now.io) == Reason::kNone && !terminating_;
+  const bool ok = may && now.moves == kNone;
   Acknowledge(request, ok || state_ == MachineState::kReady);
+  if (may && !ok) {
+    // The loop would brake it as hard as it can.
+    reason_ = Reason::kAxisMoves;
+    where_ = now.moves;
+  }
   if (!ok) return;
   reason_ = Reason::kNone;
   where_ = 0xFF;
@@ -342,6 +355,8 @@ void Transitions::ProgressStarting(const Situation& now, Orders& orders) noexcep
     if (!waits) Fault({Reason::kStaleFeedback, unknown});
   } else if (const std::uint8_t faulted = FaultedDrive(now); faulted != kNone) {
     if (!resetting_ || !waits) Fault({Reason::kDriveFault, faulted});
+  } else if (const std::uint8_t enabled = EnabledDrive(now); enabled != kNone) {
+    if (!waits) Fault({Reason::kDriveStaysEnabled, enabled});
   } else {
     reason_ = Reason::kNone;
     where_ = kNone;

@@ -34,6 +34,7 @@ struct Situation {
   FaultSeen second_master;  ///< another master on a bus: acts in every state but Off; a Faulted machine only
                             ///< falls silent
   std::uint8_t not_referenced = 0xFF;  ///< an axis that may run no program before it is told where it is
+  std::uint8_t moves = 0xFF;           ///< an axis that is not at rest; 0xFF none
   bool can_reference = false;          ///< the request of this cycle tells an axis what can be true
   bool path_prefetched = false;
   bool path_begins_here = false;  ///< first point lies where the axes stand

@@ -16,15 +16,30 @@ constexpr std::uint32_t kFreshEnough_cycles = 5;  // feedback younger than this:
 // Also when nobody could have heard it begin anew.
 void DriveMaster::CountBeganAnew(std::size_t axis) noexcept {
   Axis& a = axes_[axis];
+  if (a.absolute) return;
   DoubtPosition(axis);
-  if (a.reference != ReferenceState::kAbsolute) a.offset_rad = 0.0;
+  a.offset_rad = 0.0;
   a.seen_before = false;
+}
+
+// Where an axis is found that nobody saw meanwhile. One with an absolute encoder may have coasted; an encoder
+// that was put on anew, or a zero that was moved, has the axis elsewhere.
+void DriveMaster::FindElsewhere(std::size_t axis, double found_rad) noexcept {
+  Axis& a = axes_[axis];
+  if (!a.seen_before || a.unseen_travel_rad <= 0.0) return;
+  const double coasted_rad = a.absolute ? a.coast_cycles2_rad * a.last_step_rad * a.last_step_rad : 0.0;
+  if (std::abs(found_rad - a.last_seen_rad) <= a.unseen_travel_rad + coasted_rad) return;
+  if (a.absolute) {
+    a.reference = ReferenceState::kLost;
+  } else {
+    CountBeganAnew(axis);
+  }
 }
 
 void DriveMaster::DoubtPosition(std::size_t axis) noexcept {
   Axis& a = axes_[axis];
   const bool knew = a.reference == ReferenceState::kTold || a.was_enabled;
-  if (a.reference != ReferenceState::kAbsolute && knew) a.reference = ReferenceState::kLost;
+  if (!a.absolute && knew) a.reference = ReferenceState::kLost;
 }
 
 bool DriveMaster::CanTellPosition(std::size_t axis) const noexcept {
@@ -35,7 +50,7 @@ bool DriveMaster::CanTellPosition(std::size_t axis) const noexcept {
 void DriveMaster::TellPosition(std::size_t axis, double position_rad) noexcept {
   axes_[axis].offset_rad += position_rad - feedback_[axis].position_rad;
   feedback_[axis].position_rad = position_rad;
-  axes_[axis].reference = ReferenceState::kTold;
+  axes_[axis].reference = axes_[axis].absolute ? ReferenceState::kAbsolute : ReferenceState::kTold;
 }
 
 bool DriveMaster::Healthy(std::size_t axis) const noexcept {
@@ -52,7 +67,7 @@ bool DriveMaster::operational() const noexcept {
 
 void DriveMaster::StartBringUp() noexcept {
   bool needed = !operational() || bring_up_failed();
-  for (const AxisDriveStatus& s : status_) needed = needed || s.mode_changed;
+  for (const AxisDriveStatus& s : status_) needed = needed || s.mode_changed || s.answers_twice;
   for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
   // Whoever asks for it has seen what the drives reported.
   for (std::size_t i = 0; i < axes_.size(); ++i) {
@@ -72,7 +87,7 @@ void DriveMaster::StartBringUp() noexcept {
     if (!Heard(i)) CountBeganAnew(i);
     axes_[i].boot_up_due = false;
     if (feedback_[i].valid) {
-      axes_[i].seen_before = !status_[i].restarted && !status_[i].heartbeat_lost;
+      axes_[i].seen_before = axes_[i].absolute || (!status_[i].restarted && !status_[i].heartbeat_lost);
       axes_[i].last_seen_rad = feedback_[i].position_rad;
     }
     status_[i] = {};
@@ -82,6 +97,9 @@ void DriveMaster::StartBringUp() noexcept {
     axes_[i].walk.Reset();
     axes_[i].earliest_answer_ns = axes_[i].usual_answer_ns = kNeverAnswered;
     axes_[i].behind = false;
+    axes_[i].let_go_cycles = 0;
+    axes_[i].answers = 0;
+    axes_[i].answers_since_sync = sync_number_;
   }
 }
 
@@ -183,10 +201,11 @@ CanFrame DriveMaster::SetpointFrame(std::size_t axis, const AxisSetpoint& setpoi
 // Of two controlwords before one SYNC the drive acts upon the last, and ours may never be that. A stopped
 // node takes no PDO at all, and by its abort connection option (0x6007, CiA 402) it leaves Operation Enabled;
 // only the next bring-up wakes it. Asked for again as long as it goes on answering: the other may start it
-// anew.
-bool DriveMaster::ObeysAnother(std::size_t axis) const noexcept {
+// anew. The same is the last resort with a drive that ignores its controlword, whoever else is there.
+bool DriveMaster::IgnoresUs(std::size_t axis) const noexcept {
   const Axis& a = axes_[axis];
   const AxisFeedback& f = feedback_[axis];
+  if (status_[axis].stays_enabled) return true;
   return buses_[a.bus].bring_up.second_master() && a.let_go_cycles > a.obeys_cycles && f.fresh &&
          f.drive_state == DriveState::kOperationEnabled;
 }
@@ -203,7 +222,7 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
         out.push_back({SetpointFrame(i, setpoint), index, 0});
       }
       for (std::size_t i = 0; i < axes_.size(); ++i)
-        if (axes_[i].bus == b && ObeysAnother(i))
+        if (axes_[i].bus == b && IgnoresUs(i))
           out.push_back({NmtFrame(NmtCommand::kStop, axes_[i].node_id), index, 0});
       out.push_back({SyncFrame(), index, 0});
     }

@@ -26,9 +26,12 @@ struct AxisDriveConfig {
   std::uint8_t bus = 0;  ///< index into MasterConfig::buses
   DriveConfig drive;
   double torque_limit_Nm = 0.0;  ///< written to the drive (0x6072); the axis's limit, at most its peak torque
-  /// An axis without an absolute encoder that is found further than this from where it was last seen has lost
-  /// its count; 0: not looked at.
+  /// An axis that is found further than this from where it was last seen has lost its count; 0: not looked
+  /// at.
   double unseen_travel_rad = 0.0;
+  /// How far it coasts without torque, by its speed squared. One with an absolute encoder may have gone so
+  /// much further from where it was last seen in motion.
+  double coast_s2_rad = 0.0;
 };
 
 /// How the drives are found, configured and asked while they run. A log replays as it was recorded: what is
@@ -64,6 +67,8 @@ struct AxisDriveStatus {
   EmergencyReaction emergency = EmergencyReaction::kNone;
   std::uint16_t emergency_cause = 0;  ///< the code that asks for it
   bool lost_master = false;           ///< said so by an emergency message; until it is brought up or reset
+  bool stays_enabled = false;         ///< in Operation Enabled long after it was told to leave that
+  bool answers_twice = false;         ///< more answers to SYNC than SYNCs; until it is brought up
   bool not_following = false;         ///< enabled, but bit 12 of the statusword is missing for too long
   bool mode_changed = false;          ///< 0x6061 shows another mode than was set; until it is brought up
   std::uint64_t silent_cycles = 0;    ///< since its last sign of life
@@ -94,7 +99,8 @@ class DriveMaster {
   /// the communication objects back (CiA 301), so the count goes on; a boot-up message that was not asked for
   /// is that of a power-up or a reset node.
   [[nodiscard]] ReferenceState reference(std::size_t axis) const noexcept { return axes_[axis].reference; }
-  /// The axis can be told where it is: it counts, its encoder is not absolute, and its position is known now.
+  /// The axis can be told where it is: it counts, its encoder is not absolute or has been found elsewhere,
+  /// and its position is known now.
   [[nodiscard]] bool CanTellPosition(std::size_t axis) const noexcept;
   /// Where it stands now; feedback() says so from here on. CanTellPosition() before.
   void TellPosition(std::size_t axis, double position_rad) noexcept;
@@ -157,7 +163,8 @@ class DriveMaster {
     void Keep(StateKeeper& keep) noexcept {
       keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, let_go_cycles, reported,
            reported_cycle, alive_cycle, answer_cycle, behind, earliest_answer_ns, usual_answer_ns, reference,
-           was_enabled, boot_up_due, seen_before, last_seen_rad, offset_rad);
+           was_enabled, boot_up_due, seen_before, last_seen_rad, last_step_rad, offset_rad, answers,
+           answers_since_sync);
     }
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;
@@ -177,6 +184,7 @@ class DriveMaster {
     std::uint64_t follow_cycles = 0;         ///< bit 12 may be missing that long; 0: not watched
     std::uint64_t not_following_cycles = 0;
     std::uint64_t obeys_cycles = 0;   ///< from a controlword to the statusword that shows it
+    std::uint64_t stays_cycles = 0;   ///< within which it has left Operation Enabled when told to
     std::uint64_t let_go_cycles = 0;  ///< since the goal is not kEnabled any more
     EmergencyReaction reported = EmergencyReaction::kNone;
     std::uint64_t reported_cycle = 0;  ///< when `reported` last grew
@@ -187,11 +195,16 @@ class DriveMaster {
     std::int64_t earliest_answer_ns = kNeverAnswered;  ///< after the grid point whose SYNC it answers
     std::int64_t usual_answer_ns = kNeverAnswered;     ///< the same lately
     ReferenceState reference = ReferenceState::kAbsolute;
+    bool absolute = true;        ///< its encoder, as configured
     bool was_enabled = false;    ///< ever, in this daemon's life
     bool boot_up_due = false;    ///< NMT reset communication was sent: its boot-up message is no restart
     bool seen_before = false;    ///< last_seen_rad is there to compare with
     double last_seen_rad = 0.0;  ///< before it was brought up anew
+    double last_step_rad = 0.0;  ///< per cycle, between the last two readings
     double unseen_travel_rad = 0.0;
+    double coast_cycles2_rad = 0.0;  ///< way of coasting by the square of such a step
+    std::uint32_t answers = 0;       ///< to the SYNCs since the one below
+    std::uint64_t answers_since_sync = 0;
     double offset_rad = 0.0;  ///< from the drive's count to where the axis is
   };
   struct Bus {
@@ -214,6 +227,8 @@ class DriveMaster {
   void ForgetEmergency(std::size_t axis) noexcept;
   void WatchFollowing(std::size_t axis) noexcept;
   void CountBeganAnew(std::size_t axis) noexcept;
+  void FindElsewhere(std::size_t axis, double found_rad) noexcept;
+  void CountAnswers(std::size_t axis) noexcept;
   [[nodiscard]] bool Heard(std::size_t axis) const noexcept;
   void OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept;
   bool AnswersNewestSync(Axis& axis, const AxisFeedback& feedback, std::int64_t stamp_ns) const noexcept;
@@ -227,7 +242,7 @@ class DriveMaster {
   void StartPdos() noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
   [[nodiscard]] bool Healthy(std::size_t axis) const noexcept;
-  [[nodiscard]] bool ObeysAnother(std::size_t axis) const noexcept;
+  [[nodiscard]] bool IgnoresUs(std::size_t axis) const noexcept;
 
   std::vector<Axis> axes_;
   std::vector<Bus> buses_;

@@ -107,10 +107,14 @@ DriveMaster::DriveMaster(const MasterConfig& config)
     if (d.follows_target_bit) axis.follow_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
     // The statusword in which a controlword shows was latched a SYNC later, and comes another cycle later.
     axis.obeys_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
+    axis.stays_cycles = axis.obeys_cycles + std::max(CyclesOf(d.transition_ms, config.cycle_us),
+                                                     CyclesOf(d.quick_stop_ms, config.cycle_us));
     axis.heartbeat_timeout_cycles = CyclesOf(d.heartbeat_timeout_ms, config.cycle_us);
-    if (!d.absolute_encoder && config.start_up != StartUp::kOfLogFormat4)
-      axis.reference = ReferenceState::kNeverTold;
+    axis.absolute = d.absolute_encoder || config.start_up == StartUp::kOfLogFormat4;
+    if (!axis.absolute) axis.reference = ReferenceState::kNeverTold;
     axis.unseen_travel_rad = a.unseen_travel_rad;
+    const double cycles_s = 1e6 / config.cycle_us;
+    axis.coast_cycles2_rad = a.coast_s2_rad * cycles_s * cycles_s;
     axes_.push_back(axis);
   }
   for (std::size_t b = 0; b < config.buses.size(); ++b) {

@@ -13,6 +13,11 @@ namespace {
 // load of the bus that stays is usual within some 100 ms.
 constexpr std::int64_t kUsualStep_ns = 500;
 constexpr std::int64_t kSameClock_periods = 1000;  // stamps further away from the grid are not of its clock
+// Answers are counted over so many SYNCs, and half as many more than SYNCs are those of two drives. One
+// drive's answers that were held up come later, but as many are missing before: feedback is lost long before
+// that.
+constexpr std::uint64_t kAnswersOver_syncs = 16;
+constexpr std::uint64_t kAnswersOfTwo = kAnswersOver_syncs + kAnswersOver_syncs / 2;
 
 }  // namespace
 
@@ -171,9 +176,11 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   Axis& a = axes_[axis];
   const bool newest = AnswersNewestSync(a, f, stamped.stamp_ns);
   const double counted_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
-  const double moved_rad = std::abs(counted_rad + a.offset_rad - a.last_seen_rad);
-  if (a.seen_before && a.unseen_travel_rad > 0.0 && moved_rad > a.unseen_travel_rad) CountBeganAnew(axis);
+  FindElsewhere(axis, counted_rad + a.offset_rad);
   a.seen_before = false;
+  ++a.answers;
+  if (f.valid && !f.fresh)
+    a.last_step_rad = (counted_rad + a.offset_rad - f.position_rad) / static_cast<double>(1 + f.age_cycles);
   f.position_rad = counted_rad + a.offset_rad;
   f.torque_Nm = a.torque.FromPerMille(raw.torque_per_mille);
   f.statusword = raw.statusword;
@@ -185,6 +192,15 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   if (a.mode == DriveMode::kCst) TellLateness(axis, stamped.stamp_ns);
   a.alive_cycle = cycle_;  // it answers every SYNC: a sign of life at least as good as its heartbeat
   feedback_sync_ = std::max(feedback_sync_, newest ? sync_number_ : sync_number_ - 1);
+}
+
+void DriveMaster::CountAnswers(std::size_t axis) noexcept {
+  Axis& a = axes_[axis];
+  if (sync_number_ - a.answers_since_sync < kAnswersOver_syncs) return;
+  AxisDriveStatus& s = status_[axis];
+  s.answers_twice = s.answers_twice || (s.configured && patrols_ && a.answers >= kAnswersOfTwo);
+  a.answers = 0;
+  a.answers_since_sync = sync_number_;
 }
 
 void DriveMaster::Supervise(std::size_t axis) noexcept {
@@ -201,6 +217,9 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
   if (cycle_ != axes_[axis].reported_cycle) s.emergency = axes_[axis].reported;
   s.silent_cycles = cycle_ - axes_[axis].alive_cycle;
   WatchFollowing(axis);
+  CountAnswers(axis);
+  s.stays_enabled = patrols_ && pdos_run_ && f.fresh && f.drive_state == DriveState::kOperationEnabled &&
+                    axes_[axis].let_go_cycles > axes_[axis].stays_cycles;
   if (s.configured && cycle_ - axes_[axis].alive_cycle >= axes_[axis].heartbeat_timeout_cycles) {
     if (!s.heartbeat_lost) CountBeganAnew(axis);
     s.heartbeat_lost = true;

@@ -216,7 +216,12 @@ void SetStopBehaviour(Script& script, const DriveConfig& drive) {
   script.Ensure(0x605B, 0, 2, 0, Tolerate::kAnyAbort);  // shutdown: disable
   script.Ensure(0x605C, 0, 2, 1, Tolerate::kAnyAbort);  // disable operation: slow down, then disable
   script.Ensure(0x605D, 0, 2, 1, Tolerate::kAnyAbort);  // halt: slow down
-  script.Ensure(0x605E, 0, 2, 2, Tolerate::kAnyAbort);  // fault reaction: quick-stop ramp
+  // Fault reaction: quick-stop ramp. How far an axis goes whose drive faults is promised by it.
+  if (script.reads_first()) {
+    script.Set(0x605E, 0, 2, 2, Tolerate::kAbsent);
+  } else {
+    script.Ensure(0x605E, 0, 2, 2, Tolerate::kAnyAbort);
+  }
   if (drive.quick_stop_deceleration_rad_s2 > 0.0) {
     const double counts_s2 =
         drive.quick_stop_deceleration_rad_s2 / (2.0 * std::numbers::pi) * drive.encoder_counts_per_rev;

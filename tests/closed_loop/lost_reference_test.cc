@@ -97,6 +97,38 @@ class LostReference : public ::testing::Test {
   PerAxis<double> began_mm_;
 };
 
+// Ten turns of 5 mm, while its drive was off.
+TEST_F(LostReference, AnAbsoluteEncoderThatComesBackElsewhereIsNotBelieved) {
+  UseMachine(ExampleMachine());
+  EXPECT_EQ(reference(0), ReferenceState::kAbsolute);
+  const double stands_mm = position_mm(0);
+  DriveFaults::Restart(machine_->emulated(), 0);
+  DriveFaults::Displace(machine_->emulated(), 0, 10 * 1048576);
+  Reset();
+  EXPECT_NEAR(position_mm(0), stands_mm + 50.0, 0.01);
+  EXPECT_EQ(reference(0), ReferenceState::kLost);
+  EXPECT_EQ(reference(1), ReferenceState::kAbsolute);
+  ExpectProgramsRefused(0);
+  EXPECT_FALSE(Tell(1, 0.0)) << "that one knows";
+  ASSERT_TRUE(Tell(0, stands_mm));
+  EXPECT_EQ(reference(0), ReferenceState::kAbsolute);
+  machine_->Enable();
+  Move(10.0);
+  EXPECT_NEAR(position_mm(0), stands_mm + 10.0, 0.01);
+  EXPECT_NEAR(true_mm(0), 10.0, 0.01);
+}
+
+TEST_F(LostReference, AnAbsoluteEncoderThatComesBackWhereItWasIsBelieved) {
+  UseMachine(ExampleMachine());
+  machine_->Enable();
+  BeginMove(60.0);
+  DriveFaults::Restart(machine_->emulated(), 0);  // it coasts, and is found where that took it
+  Reset();
+  EXPECT_EQ(reference(0), ReferenceState::kAbsolute);
+  machine_->Enable();
+  Move(-10.0);
+}
+
 TEST_F(LostReference, AnAxisStandsWhereItWasToldAndGoesOnFromThere) {
   EXPECT_EQ(reference(0), ReferenceState::kNeverTold);
   TellBoth();

@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "drivers/cia301/messages.h"
 #include "tests/closed_loop/test_machine.h"
@@ -196,6 +200,55 @@ INSTANTIATE_TEST_SUITE_P(Signs, SecondMaster,
                          ::testing::Values(SyncFrame(), HeartbeatFrame(127, NmtState::kOperational),
                                            CanFrame{0x202, 4, {0x0F, 0, 0, 0}},
                                            NmtFrame(NmtCommand::kStart, 0)));
+
+// Its drive gave no torque any more; the loop would brake it as hard as it can.
+TEST(StopsOfOneAxis, AnAxisThatCoastsIsNotEnabledBeforeItStands) {
+  std::vector<std::string> set{"axes.x.drive.mode=cst", "axes.y.drive.mode=cst"};
+  for (const char* friction : {"axes.x.model.friction.", "emulator.axes.x.friction."})
+    for (const char* little :
+         {"Fs_plus_N=22", "Fs_minus_N=22", "Fc_plus_N=20", "Fc_minus_N=20", "sigma2_Ns_m=50"})
+      set.push_back(std::string(friction) + little);
+  Surroundings promptly;
+  promptly.prompt = true;
+  VirtualMachine machine(ExampleMachine(set), ControllerName::kFull, EmulatedClock::kWall, promptly);
+  machine.BringUp();
+  machine.Enable();
+  machine.Start(ParseProgram("{shape: line, dx_mm: 150, dy_mm: 0, feed_mm_min: 14000}", "line of the test",
+                             ProgramFormat::kYaml));
+  const auto speed_m_s = [&] { return machine.emulated().truth().axes[0].motor_velocity_m_s; };
+  for (int i = 0; i < 3000 && speed_m_s() < 0.23; ++i) machine.Tick();
+  ASSERT_GT(speed_m_s(), 0.23);
+  DriveFaults::Report(machine.emulated(), 0, 0x7305, 0x20);
+  for (int i = 0; i < 10 && machine.record().state != MachineState::kFaulted; ++i) machine.Tick();
+  machine.mailbox().Post(RequestKind::kReset);
+  for (int i = 0; i < 500 && machine.record().state != MachineState::kIdle; ++i) machine.Tick();
+  ASSERT_EQ(machine.record().state, MachineState::kIdle);
+  ASSERT_GT(speed_m_s(), 0.07) << "it still coasts";
+
+  const auto enable = [&] {
+    const std::uint32_t sequence = machine.mailbox().Post(RequestKind::kEnable);
+    for (int i = 0; i < 10 && machine.record().acknowledged != sequence; ++i) machine.Tick();
+    return machine.record().acknowledged_ok;
+  };
+  EXPECT_FALSE(enable());
+  EXPECT_EQ(machine.record().reason, Reason::kAxisMoves);
+  EXPECT_EQ(machine.record().reason_axis, 0);
+  EXPECT_EQ(machine.record().state, MachineState::kIdle);
+  bool taken = false;
+  for (int i = 0; i < 3000 && !taken; ++i) taken = enable();
+  ASSERT_TRUE(taken);
+  // By a standing axis's loop, within the limit of acceleration: 5 m/s^2.
+  double most_m_s2 = 0.0, before_m_s = speed_m_s();
+  for (int i = 0; i < 500; ++i) {
+    machine.Tick();
+    if (machine.record().state == MachineState::kReady)
+      most_m_s2 = std::max(most_m_s2, std::abs(speed_m_s() - before_m_s) / 1e-3);
+    before_m_s = speed_m_s();
+  }
+  EXPECT_EQ(machine.record().state, MachineState::kReady);
+  EXPECT_LT(most_m_s2, 5.0);
+  RecordProperty("speed_at_enabling_mm_s", std::to_string(1e3 * before_m_s));
+}
 
 TEST_F(Stops, PathSupplyRunsDry) {
   EXPECT_LE(TicksToStandstill(3000, true), 2500);

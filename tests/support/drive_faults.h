@@ -25,6 +25,10 @@ class DriveFaults {
     machine.axis(axis).tampering().Freeze();
     machine.axis(axis).tampering().WeakenTorque(0.0, true);
   }
+  /// The encoder counts from elsewhere.
+  static void Displace(EmulatedMachine& machine, std::size_t axis, std::int64_t counts) noexcept {
+    machine.axis(axis).tampering().Jump(counts);
+  }
   /// So much is added to the torque that it is sent, from the next SYNC on: for measurements.
   static void Push(EmulatedMachine& machine, std::size_t axis, double torque_Nm) noexcept {
     machine.axis(axis).tampering().PushTarget(torque_Nm);

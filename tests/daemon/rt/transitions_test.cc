@@ -104,6 +104,47 @@ TEST_F(TransitionsTest, EnableIsRefusedWithoutPermission) {
   EXPECT_TRUE(machine_.acknowledged_ok());
 }
 
+TEST_F(TransitionsTest, AnAxisThatMovesIsNotEnabled) {
+  ToIdle();
+  now_.moves = 1;
+  Step(RequestKind::kEnable);
+  EXPECT_FALSE(machine_.acknowledged_ok());
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+  EXPECT_EQ(machine_.reason(), Reason::kAxisMoves);
+  EXPECT_EQ(machine_.reason_where(), 1);
+  now_.moves = 0xFF;
+  Step(RequestKind::kEnable);
+  EXPECT_TRUE(machine_.acknowledged_ok());
+  EXPECT_EQ(machine_.reason(), Reason::kNone);
+  for (int i = 0; i < 5; ++i) Step();
+  ASSERT_EQ(machine_.state(), MachineState::kReady);
+  now_.moves = 0;
+  Step(RequestKind::kEnable);
+  EXPECT_TRUE(machine_.acknowledged_ok()) << "it is enabled already";
+}
+
+TEST_F(TransitionsTest, ADriveThatIsFoundEnabledIsWaitedForAndThenNamed) {
+  Step();
+  now_.drives[1] = DriveState::kOperationEnabled;
+  int waited = 0;
+  while (machine_.state() == MachineState::kStarting && waited < 100) {
+    machine_.Step(now_);
+    ++waited;
+  }
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kDriveStaysEnabled);
+  EXPECT_EQ(machine_.reason_where(), 1);
+  EXPECT_GT(waited, 10);
+
+  machine_ = Transitions({10, 20, 30});
+  now_.drives[1] = DriveState::kOperationEnabled;
+  machine_.Step(now_);
+  machine_.Step(now_);
+  now_.drives[1] = DriveState::kSwitchOnDisabled;
+  machine_.Step(now_);
+  EXPECT_EQ(machine_.state(), MachineState::kIdle);
+}
+
 TEST_F(TransitionsTest, EveryMovingStateFallsToFaultedInTheSameCycle) {
   struct Case {
     Reason reason;
@@ -113,6 +154,7 @@ TEST_F(TransitionsTest, EveryMovingStateFallsToFaultedInTheSameCycle) {
        {Case{Reason::kDriveFault, false}, Case{Reason::kBusDown, true}, Case{Reason::kHeartbeatLost, true}}) {
     machine_ = Transitions({10, 20, 30});
     now_.fault = now_.lost = {};
+    SetDrives(DriveState::kSwitchedOn);
     now_.path_prefetched = now_.path_begins_here = false;
     ToRunning();
     (c.lost ? now_.lost : now_.fault) = {c.reason, 1};

@@ -71,6 +71,105 @@ TEST(DriveMaster, AnAnswerThatCameTooLateBelongsToTheSyncBefore) {
   }
 }
 
+// Two drives with one node number: one TPDO of each comes after every SYNC.
+TEST(DriveMaster, MoreAnswersThanSyncsAreThoseOfTwoDrives) {
+  Machine m;
+  m.BringUp();
+  m.Cycles(100);
+  ASSERT_FALSE(m.master.status()[1].answers_twice);
+  CanFrame other{0x182, 8, {}};
+  PutU16(other, 0, 0x0233);
+  int cycles = 0;
+  while (!m.master.status()[1].answers_twice && cycles < 200) {
+    m.Inject(other);
+    m.Cycle();
+    ++cycles;
+  }
+  EXPECT_LE(cycles, 34);
+  EXPECT_FALSE(m.master.status()[0].answers_twice);
+  m.Cycles(5);
+  EXPECT_TRUE(m.master.status()[1].answers_twice) << "until it is brought up";
+  m.BringUp();
+  m.Cycles(100);
+  EXPECT_FALSE(m.master.status()[1].answers_twice);
+}
+
+TEST(DriveMaster, AnswersThatWereHeldUpAreStillThoseOfOneDrive) {
+  Machine m;
+  m.BringUp();
+  for (int held = 1; held <= 6; ++held)
+    for (int again = 0; again < 20; ++again) {
+      m.slave[0].behaviour.tpdo_ns = 1'000'000 * (held + 1);
+      m.Cycles(held);
+      m.slave[0].behaviour.tpdo_ns = 20'000;
+      for (int i = 0; i < 7 + held; ++i) {
+        m.Cycle();
+        ASSERT_FALSE(m.master.status()[0].answers_twice) << held;
+      }
+    }
+}
+
+// An encoder that was put on anew while its drive was off, or a zero that was moved, has the axis elsewhere.
+TEST(DriveMaster, AnAbsoluteEncoderThatComesBackElsewhereIsNotBelieved) {
+  constexpr double kUnseen_rad = 1.0;
+  const std::int64_t turn = 1048576;
+  MasterConfig config = TwoAxes();
+  for (AxisDriveConfig& a : config.axes) {
+    a.drive.absolute_encoder = true;
+    a.unseen_travel_rad = kUnseen_rad;
+  }
+  Machine m(config);
+  m.BringUp();
+  m.Cycles(10);
+  const auto restart = [&](std::int64_t moved_counts) {
+    m.slave[0].Restart(m.now_ns());
+    m.slave[0].set_position(m.slave[0].position() + moved_counts);
+    m.Cycles(20);
+    m.BringUp();
+    m.Cycles(10);
+    EXPECT_TRUE(m.master.operational());
+  };
+  restart(turn / 10);
+  EXPECT_EQ(m.master.reference(0), ReferenceState::kAbsolute) << "moved by hand, no further than it may";
+  EXPECT_FALSE(m.master.CanTellPosition(0));
+  restart(5 * turn);
+  EXPECT_EQ(m.master.reference(0), ReferenceState::kLost);
+  EXPECT_EQ(m.master.reference(1), ReferenceState::kAbsolute);
+  ASSERT_TRUE(m.master.CanTellPosition(0));
+  m.master.TellPosition(0, 1.5);
+  EXPECT_EQ(m.master.reference(0), ReferenceState::kAbsolute);
+  m.Cycles(3);
+  EXPECT_NEAR(m.master.feedback()[0].position_rad, 1.5, 1e-9);
+  restart(0);
+  EXPECT_EQ(m.master.reference(0), ReferenceState::kAbsolute);
+  EXPECT_NEAR(m.master.feedback()[0].position_rad, 1.5, 1e-9) << "what it was told outlives a restart";
+}
+
+// Seen last in motion it may have coasted.
+TEST(DriveMaster, AnAbsoluteEncoderMayHaveCoastedFromWhereItWasSeen) {
+  const std::int64_t turn = 1048576;
+  for (const double coast_s2_rad : {0.0, 1.0}) {
+    MasterConfig config = TwoAxes();
+    for (AxisDriveConfig& a : config.axes) {
+      a.drive.absolute_encoder = true;
+      a.unseen_travel_rad = 1.0;
+      a.coast_s2_rad = coast_s2_rad;
+    }
+    Machine m(config);
+    m.BringUp();
+    for (int i = 0; i < 10; ++i) {  // 5 rad/s: 25 rad by coasting
+      m.slave[0].set_position(m.slave[0].position() + turn / 1257);
+      m.Cycle();
+    }
+    m.slave[0].Restart(m.now_ns());
+    m.slave[0].set_position(m.slave[0].position() + 3 * turn);
+    m.Cycles(20);
+    m.BringUp();
+    m.Cycles(10);
+    EXPECT_EQ(m.master.reference(0), coast_s2_rad > 0.0 ? ReferenceState::kAbsolute : ReferenceState::kLost);
+  }
+}
+
 TEST(DriveMaster, AnAnswerInTimeAfterALostOneBelongsToTheNewestSync) {
   Machine m;
   BringToMotion(m);

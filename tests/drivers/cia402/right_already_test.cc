@@ -33,7 +33,8 @@ const std::map<Object, std::uint32_t>& Right() {
 std::set<Object> Written() {
   Machine m(WithQuickStop());
   for (auto& [object, value] : m.slave[0].objects())
-    if (object.first == 0x605A || object.first == 0x1029) value = 7;  // right by chance in this slave
+    if (object.first == 0x605A || object.first == 0x605E || object.first == 0x1029)
+      value = 7;  // right by chance in this slave
   m.BringUp();
   return {m.slave[0].writes().begin(), m.slave[0].writes().end()};
 }
@@ -68,7 +69,7 @@ TEST(RightAlready, ReadOnlyAndDifferentIsNamedWithBothValuesAndWhatToDo) {
   };
   for (const Case& c :
        {Case{{0x6007, 0}, 1, "drive.abort_connection_option"},
-        Case{{0x605A, 0}, 6, "drive.quick_stop_option"},
+        Case{{0x605A, 0}, 6, "drive.quick_stop_option"}, Case{{0x605E, 0}, 0, "0x605E"},
         Case{{0x6085, 0}, 12345, "drive.quick_stop_deceleration_rad_s2"},
         Case{{0x60C2, 1}, 2, "machine.cycle_us"}, Case{{0x60C2, 2}, 0xFC, "machine.cycle_us"},
         Case{{0x1006, 0}, 2000, "machine.cycle_us"}, Case{{0x1017, 0}, 1000, "drive.heartbeat_ms"},
@@ -86,6 +87,28 @@ TEST(RightAlready, ReadOnlyAndDifferentIsNamedWithBothValuesAndWhatToDo) {
     EXPECT_EQ(m.master.bring_up().expected, Right().at(c.object));
     EXPECT_NE(Text(m).find(c.key), std::string::npos) << Text(m);
   }
+}
+
+// How far an axis goes whose drive faults is promised by the ramp; of what the others of these objects say,
+// no bound is made.
+TEST(RightAlready, AFaultReactionThatDoesNotTakeIsNamed) {
+  Machine m(WithQuickStop());
+  m.slave[0].objects()[{0x605E, 0}] = 1;
+  m.slave[0].behaviour.sticky[{0x605E, 0}] = 0;
+  m.BringUp();
+  EXPECT_TRUE(m.master.bring_up_failed());
+  EXPECT_EQ(m.master.bring_up().index, 0x605E);
+  EXPECT_EQ(m.master.bring_up().expected, 2u);
+  EXPECT_EQ(m.master.bring_up().found, 0u);
+
+  Machine others(WithQuickStop());
+  for (const Object& o :
+       {Object{0x605B, 0}, Object{0x605C, 0}, Object{0x605D, 0}, Object{0x1015, 0}, Object{0x1029, 1}}) {
+    others.slave[0].objects()[o] = 4;
+    others.slave[0].behaviour.read_only[o] = kReadOnlyAbort;
+  }
+  others.BringUp();
+  EXPECT_TRUE(others.master.operational()) << Text(others);
 }
 
 TEST(RightAlready, AReadOnlySyncPeriodOfZeroWatchesNothingAndIsRight) {

@@ -161,6 +161,43 @@ TEST(SecondMaster, NoOtherDriveThatDoesNotObeyIsStoppedByNmt) {
   EXPECT_EQ(m.slave[0].nmt(), NmtState::kOperational);
 }
 
+TEST(SecondMaster, ADriveThatIgnoresItsControlwordIsNamedAndStoppedByNmtInTheEnd) {
+  Machine m(Listening());
+  m.BringUp();
+  m.Reach(DriveGoal::kEnabled);
+  m.slave[0].behaviour.obeys_another = true;
+  m.Goal(DriveGoal::kSwitchedOn);
+  const int within = static_cast<int>(Listening().axes[0].drive.quick_stop_ms);
+  for (int i = 0; i < within; ++i) {
+    m.Cycle();
+    ASSERT_FALSE(m.master.status()[0].stays_enabled) << i;
+  }
+  bool named = false;
+  for (int i = 0; i < 10 && m.slave[0].nmt() == NmtState::kOperational; ++i) {
+    m.Cycle();
+    named = named || m.master.status()[0].stays_enabled;
+    EXPECT_FALSE(m.master.status()[1].stays_enabled);
+  }
+  EXPECT_TRUE(named) << "before it is stopped";
+  EXPECT_EQ(m.slave[0].nmt(), NmtState::kStopped);
+  EXPECT_EQ(m.slave[1].nmt(), NmtState::kOperational);
+}
+
+TEST(SecondMaster, ADriveThatIsFoundEnabledHasItsTimeToLeaveThat) {
+  Machine m(Listening());
+  m.BringUp();
+  m.Goal(DriveGoal::kDisabled);
+  m.Cycles(3000);
+  m.slave[0].EnterPreOperational();
+  m.Cycles(100);
+  m.BringUp();
+  m.Reach(DriveGoal::kEnabled);
+  m.slave[0].behaviour.obeys_another = true;
+  m.Goal(DriveGoal::kDisabled);
+  m.Cycles(100);
+  EXPECT_FALSE(m.master.status()[0].stays_enabled);
+}
+
 TEST(SecondMaster, AServiceToolBesideUsIsNone) {
   Machine m(Listening());
   m.BringUp();
