@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include "config/config_error.h"
@@ -18,6 +20,7 @@ namespace {
 // Far beyond any machine file; they stop aliases that contain themselves or multiply.
 constexpr int kMaxDepth = 32;
 constexpr std::size_t kMaxNodes = 200000;
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 std::string Place(const std::string& name, const YAML::Mark& mark, const std::string& fallback) {
   return mark.is_null() ? fallback : name + ":" + std::to_string(mark.line + 1);
@@ -132,6 +135,12 @@ YamlValue ParseYamlText(const std::string& text, const std::string& name) {
 }
 
 std::string ReadTextFile(const std::string& path) {
+  // A pipe that nobody writes to, or a device that goes on for ever, would be read for ever.
+  std::error_code unknown;
+  const auto status = std::filesystem::status(path, unknown);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+      !std::filesystem::is_directory(status))
+    throw ConfigError({path + ": cannot be read: found a pipe or a device, expected a file"});
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
   std::string text;
   std::array<char, 4096> block{};
@@ -139,6 +148,8 @@ std::string ReadTextFile(const std::string& path) {
   while (!failed) {
     const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
     text.append(block.data(), count);
+    if (text.size() > kMaxBytes)
+      throw ConfigError({path + ": cannot be read: more than " + std::to_string(kMaxBytes >> 20) + " MiB"});
     if (count == block.size()) continue;
     failed = std::ferror(file.get()) != 0;  // a directory opens, but cannot be read
     break;

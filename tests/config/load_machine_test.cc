@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -36,6 +39,22 @@ TEST(LoadMachine, ReadsTheExample) {
   EXPECT_EQ(c.axes.at("x").limits.position_mm[0], -200.0);
   EXPECT_EQ(c.axes.at("x").model.uncertainty.at("sigma0_N_m"), 0.2);
   EXPECT_EQ(c.io.modbus->port, 1502);
+}
+
+TEST(LoadMachine, AFileThatNeverEndsIsRefusedAtOnce) {
+  const auto pipe = std::filesystem::path(testing::TempDir()) / "nobody_writes_here.yaml";
+  std::filesystem::remove(pipe);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& endless : {std::string("/dev/zero"), pipe.string()}) {
+    EXPECT_EQ(Errors(endless),
+              std::vector{endless + ": cannot be read: found a pipe or a device, expected a file"});
+    const std::vector<std::string> named =
+        Errors(ExampleMachine("xy_emulated.yaml"), {"axes.x.model=" + endless});
+    ASSERT_EQ(named.size(), 1U);
+    EXPECT_NE(named[0].find("expected a file"), std::string::npos) << named[0];
+  }
+  std::filesystem::remove(pipe);
+  EXPECT_NE(Errors(testing::TempDir()).at(0).find("cannot be read: "), std::string::npos);
 }
 
 TEST(LoadMachine, DefaultSendDeadlineIsAFifthOfTheCycle) {
