@@ -31,7 +31,8 @@ class SupervisorTest : public ::testing::Test {
       std::this_thread::yield();
     }
   }
-  void Publish(std::uint32_t acknowledged, bool ok, MachineState state) {
+  void Publish(std::uint32_t acknowledged, bool ok, MachineState state,
+               ReferenceState reference = ReferenceState::kAbsolute, Reason reason = Reason::kNone) {
     CycleRecord& record = queue_.Reserve()->output.record;
     record = {};
     record.cycle = ++cycles_;
@@ -39,6 +40,9 @@ class SupervisorTest : public ::testing::Test {
     record.acknowledged = acknowledged;
     record.acknowledged_ok = ok;
     record.axes.resize(1);
+    record.axes[0].reference_state = reference;
+    record.reason = reason;
+    record.reason_axis = reason == Reason::kNone ? 0xFF : 0;
     queue_.Publish();
   }
   std::future<Answer> Enable() {
@@ -102,6 +106,32 @@ TEST_F(SupervisorTest, WhatTheCycleHasTakenIsAnsweredByItWhoeverIsGone) {
   EXPECT_EQ(enabling.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
   Publish(request.sequence, true, MachineState::kEnabling);
   EXPECT_TRUE(enabling.get().accepted);
+}
+
+TEST_F(SupervisorTest, AnAbsoluteEncoderIsToldOnlyWhereItIsNotBelieved) {
+  ASSERT_TRUE(machine_.axes.at("x").drive.absolute_encoder);
+  const auto tell = [this] { return supervisor_.Reference({{"x", 12.5}}, unwanted_.get_token()); };
+  Publish(0, false, MachineState::kIdle);
+  const Answer knows = tell();
+  EXPECT_FALSE(knows.accepted);
+  EXPECT_NE(knows.reason.find("it knows where it is"), std::string::npos) << knows.reason;
+  Publish(0, false, MachineState::kIdle, ReferenceState::kLost);
+  auto telling = std::async(std::launch::async, tell);
+  const Request request = TakeWhenItComes();
+  EXPECT_EQ(request.kind, RequestKind::kReference);
+  EXPECT_NEAR(DecodeReference(request.program_id).position_m, 0.0125, 1e-9);
+  Publish(request.sequence, true, MachineState::kIdle);
+  EXPECT_TRUE(telling.get().accepted);
+}
+
+TEST_F(SupervisorTest, WhyAnAxisThatMovesIsNotEnabledIsSaid) {
+  Publish(0, false, MachineState::kIdle);
+  auto enabling = Enable();
+  const Request request = TakeWhenItComes();
+  Publish(request.sequence, false, MachineState::kIdle, ReferenceState::kAbsolute, Reason::kAxisMoves);
+  const Answer answer = enabling.get();
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_NE(answer.reason.find("axis x is not at rest"), std::string::npos) << answer.reason;
 }
 
 TEST_F(SupervisorTest, TorqueModeIsRefusedBeforeAnythingEnds) {
