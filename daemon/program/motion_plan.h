@@ -11,6 +11,9 @@
 
 namespace contour {
 
+/// Three years: a program that takes longer is refused.
+inline constexpr double kLongestProgram_s = 1e8;
+
 /// What one axis of the machine allows a program to do. SI units, table side.
 struct PlanLimits {
   std::string axis;  ///< name in the machine file

@@ -18,7 +18,6 @@ constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 // Circles and sines come up to speed in this time, or within a quarter turn: gentler than the axes' limits
 // usually ask, so that the first turn settles the machine. The limits may make it longer.
 constexpr double kGentleRamp_s = 0.2;
-constexpr double kLongest_s = 1e8;
 
 using Plane = std::array<std::size_t, 2>;
 
@@ -317,7 +316,7 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
     stretches.Add(request, at);
     longest_s += move.dwell_s + (request.speed_m_s > 0.0 ? request.curve.length_m / request.speed_m_s : 0.0);
   }
-  if (!(longest_s <= kLongest_s)) RefuseDuration(place.program);
+  if (!(longest_s <= kLongestProgram_s)) RefuseDuration(place.program);
   if (passed < halts.size()) {
     PieceRequest end = Dwell(place, at, 0.0);
     end.halts = halts_before(program.moves.size());
@@ -339,7 +338,7 @@ std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAx
       std::visit([&](const auto& shape) { return Plan(shape, place); }, program.shape);
   // G-code is planned while it runs, and was asked before.
   const bool gcode = std::holds_alternative<GcodeMoves>(program.shape);
-  if (!gcode && !(plan->duration_s() <= kLongest_s)) RefuseDuration(program);
+  if (!gcode && !(plan->duration_s() <= kLongestProgram_s)) RefuseDuration(program);
   if (program.torque) {
     plan = std::make_shared<TorquePlan>(std::move(plan), *program.torque, Find(place, program.torque->axis),
                                         limits, program.name);

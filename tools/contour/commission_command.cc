@@ -34,6 +34,7 @@
 #include "tools/contour/commission_drive.h"
 #include "tools/contour/commission_loop.h"
 #include "tools/contour/daemon_link.h"
+#include "tools/contour/ends_at_once.h"
 #include "tools/contour/identification_report.h"
 #include "tools/contour/torque_mode_stay.h"
 
@@ -359,6 +360,29 @@ struct Found {
   identify::Identification id;
 };
 
+/// Takes from seconds to a minute. Nothing moves, and nothing is written yet: a signal need not wait for it.
+identify::Identification IdentifyUnlessInterrupted(const IdentificationJob& job) {
+  if (stop_requested) throw std::runtime_error("interrupted; nothing was written");
+  const EndsAtOnce ends("contour: interrupted while it identified; nothing was written\n");
+  return IdentifyWithProgress(job);
+}
+
+TorqueLoops FindTorqueLoopsUnlessInterrupted(const MachineConfig& machine, const TorqueLoops& found) {
+  if (stop_requested) throw std::runtime_error("interrupted; nothing was written");
+  const EndsAtOnce ends("contour: interrupted while it looked for loops; nothing was written\n");
+  return FindTorqueLoops(machine, ThreadsOf(0), found.loops);
+}
+
+void FindAndWriteLoopUnlessInterrupted(const MachineConfig& machine, const ModelConfig& model,
+                                       const Options& options) {
+  constexpr const char* kWithoutLoop =
+      "contour: interrupted while it looked for the loop; the model is written, a loop is not\n";
+  if (stop_requested) throw std::runtime_error("interrupted; the model is written, a loop is not");
+  const EndsAtOnce ends(kWithoutLoop);
+  FindAndWriteLoop(machine, options.axis, model,
+                   options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
+}
+
 /// Axes that have no loop for torque mode are recorded in csp: what that tells of them, however unsure, is
 /// nearer than a catalogue, and may leave so little open that there is one. `machine` gets their models.
 std::map<std::string, Found> KnowBetter(ControlClient& client, const std::vector<std::string>& axes,
@@ -369,7 +393,7 @@ std::map<std::string, Found> KnowBetter(ControlClient& client, const std::vector
     const auto watchman = Record(client, machine, PlanFor(machine, Status(client), name, options));
     Found& f = found[name];
     f.job = JobOf(machine, name, *watchman, options);
-    f.id = IdentifyWithProgress(f.job);
+    f.id = IdentifyUnlessInterrupted(f.job);
     if (const std::string why = identify::WhyNoBeginning(f.id); why.empty())
       machine.axes.at(name).model = identify::ToModel(f.id, f.job.model);
     else
@@ -404,7 +428,7 @@ std::string DescribeAll(const MachineConfig& own, const MachineConfig& recorded,
 int RunCommission(const Options& options) {
   auto client = std::make_unique<ControlClient>(ConnectToDaemon(options.socket));
   MachineConfig own = AskForMachine(*client);
-  CheckBeforehand(own, Status(*client), options);
+  CheckBeforehand(own, StatusOnceStarted(*client), options);
   TorqueLoops torque = LoopsToRecordWith(own, Status(*client), options);
   MachineConfig machine = torque.complete() ? InTorqueMode(own, torque.loops) : own;
   std::cout << DescribeAll(own, machine, Status(*client), torque, options);
@@ -421,7 +445,7 @@ int RunCommission(const Options& options) {
     MachineConfig known = own;
     in_csp = KnowBetter(*client, torque.lacking, options, known);
     for (const auto& [name, found] : in_csp) models[name] = known.axes.at(name).model;
-    torque = FindTorqueLoops(known, ThreadsOf(0), torque.loops);
+    torque = FindTorqueLoopsUnlessInterrupted(known, torque);
     if (torque.complete()) machine = InTorqueMode(known, torque.loops);
   }
   TorqueModeStay stay(client, options.socket);
@@ -453,11 +477,10 @@ int RunCommission(const Options& options) {
                            options.out.empty() ? options.axis + "_drive.json" : options.out);
     found.emplace();
     found->job = JobOf(machine, options.axis, *watchman, options);
-    found->id = IdentifyWithProgress(found->job);
+    found->id = IdentifyUnlessInterrupted(found->job);
   }
   const ModelConfig model = Report(found->job, found->id);
-  FindAndWriteLoop(machine, options.axis, model,
-                   options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
+  FindAndWriteLoopUnlessInterrupted(machine, model, options);
   return kExitDone;
 }
 
@@ -491,7 +514,8 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
   sub->add_flag("--yes", options->yes, "Do not ask before the axis is enabled and moves");
   sub->footer(
       "Enables the machine, runs its motions one after the other, and takes the torque off at the end. An "
-      "interrupt (Ctrl-C) stops the axis, takes the torque off and ends with status 1.");
+      "interrupt (Ctrl-C) stops the axis, takes the torque off and ends with status 1; while it identifies, "
+      "at once.");
   sub->callback([options, &action] { action = [options] { return RunCommission(*options); }; });
 }
 

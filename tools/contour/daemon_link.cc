@@ -1,6 +1,7 @@
 #include "tools/contour/daemon_link.h"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
@@ -12,6 +13,8 @@ namespace contour {
 namespace {
 
 constexpr std::chrono::milliseconds kLookAgain{20};
+/// Longer than the machine gives its drives before it says what is wrong with them.
+constexpr std::chrono::seconds kStartLimit{60};
 /// A line has 64 KiB at most, and a character up to six bytes in it.
 constexpr std::size_t kPiece_bytes = 8000;
 
@@ -70,6 +73,17 @@ nlohmann::json WaitForStatus(ControlClient& client, const std::function<bool(con
                                " s");
     std::this_thread::sleep_for(kLookAgain);
   }
+}
+
+nlohmann::json StatusOnceStarted(ControlClient& client) {
+  const auto starts = [](const nlohmann::json& s) {
+    return s.at("state") == "Starting" || (s.at("state") == "Off" && s.at("reason") == "none");
+  };
+  nlohmann::json status = Status(client);
+  if (!starts(status)) return status;
+  std::cerr << "the machine is " << StateSentence(status) << "; waiting for its drives to come up\n";
+  return WaitForStatus(
+      client, [&](const nlohmann::json& s) { return !starts(s); }, kStartLimit);
 }
 
 std::string StateSentence(const nlohmann::json& status) {

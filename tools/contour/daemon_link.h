@@ -34,6 +34,10 @@ nlohmann::json Status(ControlClient& client);
 nlohmann::json WaitForStatus(ControlClient& client, const std::function<bool(const nlohmann::json&)>& done,
                              std::chrono::seconds limit);
 
+/// The status once the drives have come up, for what begins from Idle: a daemon that was started a moment ago
+/// is not refused. Waits for a minute at most, and says so on stderr; throws as WaitForStatus().
+nlohmann::json StatusOnceStarted(ControlClient& client);
+
 /// "Faulted: the emergency-stop circuit is open" or just "Ready".
 std::string StateSentence(const nlohmann::json& status);
 

@@ -140,6 +140,8 @@ DaemonMachine::DaemonMachine(Setup setup)
 
 nlohmann::json DaemonMachine::StatusNow() { return Status(*client_); }
 
+nlohmann::json DaemonMachine::StatusOnceStarted() { return contour::StatusOnceStarted(*client_); }
+
 void DaemonMachine::CheckStop() const {
   if (setup_.stop != nullptr && *setup_.stop) throw improve::Refused("interrupted");
 }

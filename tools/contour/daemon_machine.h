@@ -25,6 +25,7 @@ class DaemonMachine final : public improve::ImproveMachine {
   /// Every cycle of a program is watched for these; without them nothing runs.
   void Watch(const improve::WorkingSpace& space) { space_ = space; }
   [[nodiscard]] nlohmann::json StatusNow();
+  [[nodiscard]] nlohmann::json StatusOnceStarted();
 
   MachineConfig Machine() override;
   PerAxis<double> Position_m() override;

@@ -170,7 +170,7 @@ int RunImprove(const Options& options) {
   diagnosis::KeepMemory();
   DaemonMachine daemon({options.socket, options.axis, options.yes, &stop_requested});
   const MachineConfig machine = daemon.Machine();
-  CheckBeforehand(machine, daemon.StatusNow(), options);
+  CheckBeforehand(machine, daemon.StatusOnceStarted(), options);
   const improve::ImproveRequest request = RequestFor(machine, daemon, options);
   daemon.Watch(request.space);
   SayWhatIsPlanned(request);

@@ -32,6 +32,7 @@ int RunReference(const Options& options) {
     position_mm[axis] = at_mm;
   }
   ControlClient client = ConnectToDaemon(options.socket);
+  StatusOnceStarted(client);
   AskOrThrow(client, {{"request", "reference"}, {"position_mm", position_mm}});
   std::cout << "done\n";
   return kExitDone;

@@ -48,6 +48,7 @@ bool Contains(const std::vector<std::string>& states, const std::string& state) 
 
 int RunRequest(const RequestCommand& command, const std::string& socket) {
   ControlClient client = ConnectToDaemon(socket);
+  if (command.name == "enable") StatusOnceStarted(client);
   AskOrThrow(client, {{"request", command.name}});
   const nlohmann::json status = WaitForStatus(
       client, [&](const nlohmann::json& s) { return !Contains(command.under_way, s.at("state")); }, kLimit);

@@ -98,14 +98,15 @@ int RunSimulate(const Options& options) {
   // The file's own controller judges what the file allows: in a simulation a softer rival hurts nobody. But
   // `full` may need loops that the file has no use for.
   if (options.controller == Name(ControllerName::kFull)) set.push_back("machine.controller=full");
-  request.file = LoadEmulatedMachine(options.config, set);
-  if (options.seed) request.file.emulator.seed = *options.seed;
-  request.controller = request.file.machine.machine.controller;
-  if (!options.controller.empty() && !FromName(options.controller, request.controller)) {
+  std::optional<ControllerName> runs;
+  if (!options.controller.empty() && !FromName(options.controller, runs.emplace())) {
     std::cerr << "contour: --controller: found '" << options.controller << "', expected "
               << Choices(ControllerName{}) << "\n";
     return kExitBadUsage;
   }
+  request.file = LoadEmulatedMachine(options.config, set, runs);
+  if (options.seed) request.file.emulator.seed = *options.seed;
+  request.controller = runs.value_or(request.file.machine.machine.controller);
   RequireStableLoops(request.file.machine, request.controller, options);
   try {
     if (FormatOf(options.program) == ProgramFormat::kGcode) {

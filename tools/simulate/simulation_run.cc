@@ -8,6 +8,9 @@
 
 #include "analysis/metrics/metrics_json.h"
 #include "analysis/metrics/run_metrics.h"
+#include "config/number_text.h"
+#include "daemon/program/motion_plan.h"
+#include "daemon/program/path_walk.h"
 #include "daemon/telemetry/cycle_csv.h"
 #include "tools/simulate/run_log.h"
 #include "tools/simulate/virtual_machine.h"
@@ -168,6 +171,21 @@ class FeedSchedule {
   std::uint64_t cycles_ = 0;
 };
 
+double ProgramDuration_s(const MotionPlan& plan) {
+  const auto walk = plan.Walk();
+  return walk ? walk->ProgramDuration().duration_s : plan.duration_s();
+}
+
+/// The last feed is what the rest of the program runs at, and twice its own is the most that it can have had
+/// before.
+void RefuseFeedForYears(const std::vector<FeedFrom>& feeds, const MotionPlan& plan, const std::string& name) {
+  if (feeds.back().feed <= 0.0) return;
+  const double left_s = ProgramDuration_s(plan) - PathWalk::kLargestScale * feeds.back().time_s;
+  if (left_s > kLongestProgram_s * feeds.back().feed)
+    throw ProgramError(name + ": at " + NumberText(100.0 * feeds.back().feed) +
+                       " percent of its feed the program would take more than three years");
+}
+
 }  // namespace
 
 SimulationResult RunSimulation(const SimulationRequest& request) {
@@ -197,9 +215,11 @@ SimulationResult RunSimulation(const SimulationRequest& request) {
       scoring.Add(entry.output.record, truth);
       feeds.Count();
     });
-    machine.Run(request.gcode ? machine.ReadGcode(*request.gcode, request.program.name, request.part)
-                              : request.program,
-                feeds.Begin());
+    const Program program = request.gcode
+                                ? machine.ReadGcode(*request.gcode, request.program.name, request.part)
+                                : request.program;
+    if (!request.feeds.empty()) RefuseFeedForYears(request.feeds, *machine.PlanOf(program), program.name);
+    machine.Run(program, feeds.Begin());
     machine.SetObserver(nullptr);
     const RunMetrics metrics = scoring.Finish();
     passes.Add(pass, metrics);

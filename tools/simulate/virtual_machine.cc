@@ -150,6 +150,10 @@ Program VirtualMachine::ReadGcode(const std::string& text, const std::string& na
                     {referenced, whole, events});
 }
 
+std::shared_ptr<const MotionPlan> VirtualMachine::PlanOf(const Program& program) const {
+  return PlanPlaced(program, PlaceNow(), LimitsNow(limits_, record()));
+}
+
 std::uint32_t VirtualMachine::Start(const Program& program, double feed) {
   const Placement place = PlaceNow();
   const PerAxis<PlanLimits> limits = LimitsNow(limits_, record());

@@ -60,6 +60,8 @@ class VirtualMachine {
   /// Asks for a program and supplies its points from now on; the caller ticks. Gives the request's sequence.
   /// `feed`: that it begins with, 1 as programmed.
   std::uint32_t Start(const Program& program, double feed = 1.0);
+  /// As Start() would plan it.
+  [[nodiscard]] std::shared_ptr<const MotionPlan> PlanOf(const Program& program) const;
   /// Programs count from where the machine stands now, instead of each from where it begins.
   void SetZero();
   /// G-code for where the machine stands. Throws ProgramError.

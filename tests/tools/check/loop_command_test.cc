@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <string>
 
 #include "tests/config/test_files.h"
@@ -73,6 +75,50 @@ TEST(Simulate, RefusesALoopThatIsUnstableAndWarnsOfOneThatBreaksALimit) {
   const Outcome experiment = Contour(simulate + "35");
   EXPECT_EQ(experiment.status, 0) << experiment.out;
   ExpectHas(experiment, "warning: axes.x.loop: found a loop that does not keep its limits (peak ");
+}
+
+// 0.2 s at a billionth of a percent would end in 600 years.
+TEST(Simulate, RefusesAFeedAtWhichTheProgramHardlyEnds) {
+  const std::string program = WriteTestFile("hold.yaml", "shape: hold\nseconds: 0.2\n");
+  const Outcome o = Contour(SimulateCommand(program) + " --controller pid --feed 1e-9");
+  EXPECT_EQ(o.status, 2) << o.out;
+  ExpectHas(o, "at 1e-09 percent of its feed the program would take more than three years");
+  const Outcome slow = Contour(SimulateCommand(program) + " --controller pid --feed 1e-9@0.1 --feed 100@0.2");
+  EXPECT_EQ(slow.status, 0) << slow.out;
+}
+
+// No loop is looked for where none is used.
+TEST(Simulate, NeedsNoLoopForARivalThatHasNone) {
+  const std::string program = WriteTestFile("hold.yaml", "shape: hold\nseconds: 0.2\n");
+  const std::string belt = "simulate --config " + ExampleMachine("family/belt.yaml") + " --program " +
+                           program + " --out " + program +
+                           ".out --set machine.controller=full --set control.friction=linear" +
+                           " --set axes.x.drive.mode=cst";
+  const Outcome full = Contour(belt);
+  EXPECT_EQ(full.status, 2) << full.out;
+  ExpectHas(full, "axes.x.loop: missing, and none of the loops");
+  const Outcome rival = Contour(belt + " --controller pid");
+  // It may swing on a belt; but nobody asks for a loop.
+  EXPECT_NE(rival.status, 2) << rival.out;
+  EXPECT_EQ(rival.out.find("loop"), rival.out.find("loop oscillates")) << rival.out;
+}
+
+// Each column of cycles.csv, without the axis's name before it.
+TEST(Simulate, WritesNoColumnThatTheManualDoesNotName) {
+  const std::string program = WriteTestFile("hold.yaml", "shape: hold\nseconds: 0.2\n");
+  const Outcome o = Contour(SimulateCommand(program) + " --controller pid");
+  ASSERT_EQ(o.status, 0) << o.out;
+  std::ifstream cycles(program + ".out/cycles.csv");
+  std::string header, column;
+  ASSERT_TRUE(std::getline(cycles, header));
+  const std::string manual = ReadText(std::string(SOURCE_DIR) + "/docs/telemetry.md");
+  std::istringstream columns(header);
+  int found = 0;
+  for (; std::getline(columns, column, ','); ++found) {
+    const std::string name = column.starts_with("x_") ? column.substr(2) : column;
+    EXPECT_NE(manual.find('`' + name + '`'), std::string::npos) << column;
+  }
+  EXPECT_GT(found, 40);
 }
 
 TEST(Simulate, TakesAnEmptyFileForTheProgramThatItIs) {

@@ -112,6 +112,16 @@ TEST_F(DaemonCommandsTest, RequestsEndWhereTheyLead) {
   expect("zero", "program zero is where the machine stands");
 }
 
+// contourd & contour enable, as the manual has it.
+TEST_F(DaemonCommandsTest, WhatBeginsFromIdleWaitsForADaemonThatHasJustBeenStarted) {
+  machine_.StartFor(5);
+  const Outcome enable = Ask("enable");
+  EXPECT_EQ(enable.status, 0) << enable.errors;
+  EXPECT_EQ(enable.out, "Ready\n");
+  EXPECT_EQ(enable.errors, "the machine is Starting; waiting for its drives to come up\n");
+  EXPECT_EQ(Ask("enable").errors, "");
+}
+
 TEST_F(DaemonCommandsTest, ARefusalOrAFaultIsStatusOneWithItsReason) {
   machine_.Refuse("the enable chain is open");
   Outcome o = Ask("enable");

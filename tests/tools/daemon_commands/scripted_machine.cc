@@ -28,6 +28,12 @@ void ScriptedMachine::Refuse(std::string why) {
   refusal_ = std::move(why);
 }
 
+void ScriptedMachine::StartFor(int looks) {
+  const std::lock_guard lock(mutex_);
+  starting_ = looks;
+  status_.record.state = MachineState::kStarting;
+}
+
 void ScriptedMachine::FailWith(Reason reason, std::string text) {
   const std::lock_guard lock(mutex_);
   fault_ = reason;
@@ -51,12 +57,15 @@ void ScriptedMachine::Detach(const std::shared_ptr<RowFeed>&) {
 
 MachineStatus ScriptedMachine::Status() {
   const std::lock_guard lock(mutex_);
-  return status_;
+  const MachineStatus status = status_;
+  if (starting_ > 0 && --starting_ == 0) status_.record.state = MachineState::kIdle;
+  return status;
 }
 
 Answer ScriptedMachine::Go(MachineState state, Reason reason) {
   const std::lock_guard lock(mutex_);
   if (!refusal_.empty()) return {false, refusal_, ++sequence_, 0, {}};
+  if (starting_ > 0) return {false, "the machine is Starting", ++sequence_, 0, {}};
   const bool fault = fault_ != Reason::kNone;
   status_.record.state = fault ? MachineState::kFaulted : state;
   status_.record.reason = fault ? fault_ : reason;

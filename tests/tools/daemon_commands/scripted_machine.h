@@ -42,6 +42,8 @@ class ScriptedMachine final : public OperatorDesk {
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
   void Refuse(std::string why);
+  /// Its drives come up: it is Starting, and refuses, for so many looks at its status.
+  void StartFor(int looks);
   /// Text of the program that ran last.
   [[nodiscard]] std::string program() {
     const std::lock_guard lock(mutex_);
@@ -62,6 +64,7 @@ class ScriptedMachine final : public OperatorDesk {
   std::mutex mutex_;
   MachineStatus status_;
   std::string refusal_;
+  int starting_ = 0;
   std::string program_;
   Reason fault_ = Reason::kNone;
   std::string fault_text_;
