@@ -136,6 +136,17 @@ TEST_F(TransitionsTest, ADriveThatIsFoundEnabledIsWaitedForAndThenNamed) {
   EXPECT_EQ(machine_.reason_where(), 1);
   EXPECT_GT(waited, 10);
 
+  // Its driver knows sooner, and stops it by NMT.
+  machine_ = Transitions({10, 20, 30});
+  machine_.Step(now_);
+  machine_.Step(now_);
+  now_.lost = {Reason::kDriveStaysEnabled, 1};
+  machine_.Step(now_);
+  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
+  EXPECT_EQ(machine_.reason(), Reason::kDriveStaysEnabled);
+  EXPECT_EQ(machine_.reason_where(), 1);
+  now_.lost = {};
+
   machine_ = Transitions({10, 20, 30});
   now_.drives[1] = DriveState::kOperationEnabled;
   machine_.Step(now_);
