@@ -42,13 +42,14 @@ int RunReference(const Options& options) {
 
 void AddReferenceCommand(CLI::App& app, Action& action) {
   auto options = std::make_shared<Options>();
-  CLI::App* sub = app.add_subcommand("reference", "Tell axes without an absolute encoder where they stand");
+  CLI::App* sub = app.add_subcommand("reference", "Tell axes whose place is not known where they stand");
   sub->add_option("positions", options->positions, "AXIS=MM, such as x=12.5; as many as there are")
       ->required();
   AddSocketOption(*sub, options->socket);
   sub->footer(
-      "The machine must be Idle. A drive that restarts forgets it: programs are refused until it is told "
-      "anew.");
+      "For axes without an absolute encoder, and for those whose absolute encoder came back too far from "
+      "where it was last seen. The machine must be Idle. A drive that restarts forgets it: programs are "
+      "refused until it is told anew.");
   sub->callback([options, &action] { action = [options] { return RunReference(*options); }; });
 }
 
