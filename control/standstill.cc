@@ -26,6 +26,12 @@ constexpr double kPatience_s = 1.5;
 // An error that is left after that time stays unless it is so much larger: what friction has settled for is
 // better left alone than stepped about for long.
 constexpr double kCorrectedLate = 2.0;
+// Of what friction winds the screw up by: half of what an axis may move by at rest.
+// And of friction, what a table that slides is relieved of so that it stops. It ends at so many doubts.
+constexpr double kDoubt = 0.1, kDoubtEnds = 3.0;
+// A loop that is taken answers a force within 200 ms (kMostLeft of design/creep.h). What has not come
+// to rest long after that is stopped within what grows to the doubt, well before kStandsAfter_s.
+constexpr double kDoubtFrom_s = 0.5, kDoubtGrows_s = 1.0;
 // For so long it has to be so, and so long an axis is left to come to rest after a step.
 constexpr double kSettles_s = 0.05;
 constexpr double kWatch_s = 0.07;
@@ -67,8 +73,13 @@ double StepMoves_m(const RestingAxis& a) noexcept {
 StandstillBounds BoundsOf(const RestingAxis& a, double count_m, double period_s) noexcept {
   const double swings_s =
       a.sigma0_N_m > 0.0 ? 2.0 * std::numbers::pi * std::sqrt(a.mass_kg / a.sigma0_N_m) : kPatience_s;
-  return {a.step_N, WhatHolds(a) == Holder::kFriction ? StepMoves_m(a) : 0.0, count_m, period_s,
-          std::min(swings_s, kPatience_s)};
+  return {a.step_N,
+          WhatHolds(a) == Holder::kFriction ? StepMoves_m(a) : 0.0,
+          count_m,
+          period_s,
+          std::min(swings_s, kPatience_s),
+          a.stiffness_N_m > 0.0 ? kDoubt * a.friction_N / a.stiffness_N_m : 0.0,
+          kDoubt * a.friction_N};
 }
 
 Standstill::Standstill(const StandstillBounds& bounds) noexcept
@@ -84,8 +95,8 @@ Standstill::Standstill(const StandstillBounds& bounds) noexcept
 // For the loop, until it is near again; what was seen of friction stays true.
 void Standstill::Leave() noexcept {
   quiet_ = since_ = 0;
-  sum_m_ = carry_N_ = steps_ = 0.0;
-  standing_ = false;
+  sum_m_ = carry_N_ = steps_ = acts_s_ = 0.0;
+  standing_ = doubted_ = false;
 }
 
 void Standstill::Forget() noexcept {
@@ -112,7 +123,8 @@ std::optional<double> Standstill::Step(double error_m, double sent_N, Motion mot
   mean_N_ += share_ * (sent_N - mean_N_);
   const double size_m = std::abs(mean_m_);
   if (standing_) {
-    if (size_m < kEnds * unit_m_) return Held_N(error_m, sent_N);
+    if (size_m < (doubted_ ? std::max(kEnds * unit_m_, kDoubtEnds * bounds_.doubt_m) : kEnds * unit_m_))
+      return Held_N(error_m, sent_N);
     Leave();
     return std::nullopt;
   }
@@ -120,19 +132,39 @@ std::optional<double> Standstill::Step(double error_m, double sent_N, Motion mot
     quiet_ = 0;
     return std::nullopt;
   }
-  quiet_ = size_m < kBegins * waits_ * unit_m_ ? quiet_ + 1 : 0;
+  acts_s_ += bounds_.period_s;
+  const double doubt_m = Doubt_m();
+  quiet_ = size_m < std::max(kBegins * waits_ * unit_m_, doubt_m) ? quiet_ + 1 : 0;
+  if (quiet_ <= 1) begun_m_ = mean_m_;
   if (quiet_ < settle_) return std::nullopt;
+  Stand(size_m, doubt_m);
+  return held_N_;
+}
+
+void Standstill::Stand(double size_m, double doubt_m) noexcept {
   standing_ = true;
+  // A loop that did not come to rest by what it saw does not by corrections either: which way the table goes
+  // by a force is not known.
+  doubted_ = doubt_m > 0.0 && (size_m >= kBegins * waits_ * unit_m_ || doubt_m >= bounds_.doubt_m);
+  // One that slides goes on doing so under what it slides by.
+  const double moved_m = mean_m_ - begun_m_;
+  const double relief_N =
+      doubted_ && std::abs(moved_m) > unit_m_ ? std::copysign(bounds_.relief_N, moved_m) : 0.0;
   unit_m_ = moves_m_ = std::max(unit_m_, size_m / kBegins);
   held_N_ = mean_N_;
-  target_N_ = bounds_.step_N * std::round(mean_N_ / bounds_.step_N);
-  return held_N_;
+  target_N_ = bounds_.step_N * std::round((mean_N_ - relief_N) / bounds_.step_N);
+  if (relief_N != 0.0) ramp_N_ = bounds_.relief_N * std::min(1.0, bounds_.period_s / ramp_s_);
+}
+
+// What the loop may be stopped within by now.
+double Standstill::Doubt_m() const noexcept {
+  return bounds_.doubt_m * std::clamp((acts_s_ - kDoubtFrom_s) / kDoubtGrows_s, 0.0, 1.0);
 }
 
 // Between two steps their shares in time make up the force: what rounding kept back comes with the next.
 double Standstill::Held_N(double error_m, double sent_N) noexcept {
   if (held_N_ == target_N_) {
-    Watch(error_m);
+    if (!doubted_) Watch(error_m);
   } else {
     carry_N_ += held_N_ - sent_N;
     held_N_ += std::clamp(target_N_ - held_N_, -ramp_N_, ramp_N_);

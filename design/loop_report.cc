@@ -69,6 +69,7 @@ RestingAxis RestingOf(const LoopAxis& a, const LoopTuning& tuning) {
   return {.mass_kg = a.axis.motor_mass_kg + a.axis.table_mass_kg,
           .step_N = kTorqueStep * a.rated_force_N,
           .friction_N = std::min(a.friction.Fc_plus_N, a.friction.Fc_minus_N),
+          .stiffness_N_m = a.axis.stiffness_N_m,
           .sigma0_N_m = a.friction.sigma0_N_m,
           .sigma1_Ns_m = a.friction.sigma1_Ns_m,
           .regulator_Hz = tuning.regulator_Hz};

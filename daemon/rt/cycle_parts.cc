@@ -71,6 +71,7 @@ StandstillBounds StandstillOf(const CycleConfig& config, std::size_t axis) {
   return BoundsOf({.mass_kg = a.mechanics.mass_kg,
                    .step_N = kTorqueStep * config.master.axes[axis].drive.rated_torque_Nm / r,
                    .friction_N = std::min(f.Fc_plus_N, f.Fc_minus_N),
+                   .stiffness_N_m = LoopTakesScale(config, axis) ? 0.0 : a.two_inertia.stiffness_N_m,
                    .sigma0_N_m = f.sigma0_N_m,
                    .sigma1_Ns_m = f.sigma1_Ns_m,
                    .regulator_Hz = a.loop->regulator_Hz},

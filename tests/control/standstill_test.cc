@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace contour {
 namespace {
@@ -178,6 +179,76 @@ TEST(Standstill, FrictionHoldsAnAxisThatHasEnoughOfItAndRingsNotForLong) {
   axis.sigma1_Ns_m = 3000.0;
   axis.regulator_Hz = 4.0;
   EXPECT_EQ(WhatHolds(axis), Holder::kFriction) << "better than the loop";
+}
+
+/// A table on bristles that give way at the level of its friction, behind a screw; its loop answers what a
+/// screw as stated makes of the motor's place, and integrates it, until it is told to hold.
+class TableBehindAScrew {
+ public:
+  explicit TableBehindAScrew(double stiffer) : stiffer_(stiffer) {}
+
+  /// From top to bottom of the table's place from `from_s` on, in what friction winds the screw up by.
+  double Swings(const StandstillBounds& bounds, double from_s, double to_s) {
+    Standstill stand(bounds);
+    double force_N = 30.0, held_m = -1e-6, low_m = 1.0, high_m = -1.0;
+    for (int i = 0; i * kPeriod_s < to_s; ++i) {
+      const double sent_N = kStep_N * std::round(force_N / kStep_N);
+      const double beyond_N = std::abs(sent_N) - kFriction_N;
+      if (beyond_N > 0.0) held_m += std::copysign(beyond_N * kPeriod_s / kSlides_Ns_m, sent_N);
+      const double table_m = held_m + sent_N / kSigma0_N_m;
+      const double seen_m = table_m + sent_N / (stiffer_ * kStiffness_N_m) - sent_N / kStiffness_N_m;
+      looped_N_ -= kIntegral_N_ms * seen_m * kPeriod_s;
+      const std::optional<double> constant_N = stand.Step(seen_m, sent_N, Motion::kNone);
+      // It takes over from the force that acts.
+      if (constant_N) looped_N_ = *constant_N + kProportional_N_m * seen_m;
+      force_N = looped_N_ - kProportional_N_m * seen_m;
+      if (i * kPeriod_s < from_s) continue;
+      low_m = std::min(low_m, table_m);
+      high_m = std::max(high_m, table_m);
+    }
+    return (high_m - low_m) / (kFriction_N / kStiffness_N_m);
+  }
+
+  static constexpr double kFriction_N = 95.0, kStiffness_N_m = 4e6, kSigma0_N_m = 46e6;
+
+ private:
+  static constexpr double kSlides_Ns_m = 1e6, kIntegral_N_ms = 3e7, kProportional_N_m = 1e7;
+  double stiffer_;
+  double looped_N_ = 30.0;
+};
+
+// The loop drives the table the way the force goes, from one level of friction to the other.
+TEST(Standstill, ALoopThatHuntsByAScrewStifferThanStatedIsHeld) {
+  RestingAxis axis = Resting();
+  axis.friction_N = TableBehindAScrew::kFriction_N;
+  axis.stiffness_N_m = TableBehindAScrew::kStiffness_N_m;
+  axis.sigma0_N_m = TableBehindAScrew::kSigma0_N_m;
+  const StandstillBounds bounds = BoundsOf(axis, 3e-9, kPeriod_s);
+  StandstillBounds never = bounds;
+  never.doubt_m = never.relief_N = 0.0;
+  for (const double stiffer : {1.15, 1.2, 1.25}) {
+    const double hunts = TableBehindAScrew(stiffer).Swings(never, 10.0, 20.0);
+    EXPECT_GT(hunts, 0.2) << stiffer;
+    EXPECT_LT(hunts, 5.0) << stiffer << ": it runs away";
+    EXPECT_LT(TableBehindAScrew(stiffer).Swings(bounds, 3.0, 20.0), 0.05) << stiffer;
+  }
+}
+
+// Where the table is measured there is no doubt.
+TEST(Standstill, OnlyATableThatIsNotMeasuredIsHeldWithinADoubt) {
+  RestingAxis axis = Resting();
+  EXPECT_EQ(BoundsOf(axis, 5e-9, kPeriod_s).doubt_m, 0.0);
+  axis.stiffness_N_m = 4e6;
+  const StandstillBounds bounds = BoundsOf(axis, 5e-9, kPeriod_s);
+  EXPECT_NEAR(bounds.doubt_m, 0.1 * axis.friction_N / 4e6, 1e-15);
+  Standstill stand(bounds);
+  int cycles = 0;
+  while (!stand.Step(0.9 * bounds.doubt_m, 10.0, Motion::kNone) && cycles < 10000) ++cycles;
+  EXPECT_GT(cycles, 500) << "the loop has its time";
+  EXPECT_LT(cycles, 2000);
+  EXPECT_TRUE(stand.Step(2.5 * bounds.doubt_m, 10.0, Motion::kNone).has_value());
+  while (stand.Step(4.0 * bounds.doubt_m, 10.0, Motion::kNone) && cycles < 10000) ++cycles;
+  EXPECT_LT(cycles, 2100) << "what is more is for the loop";
 }
 
 TEST(Standstill, WhatIsLargerThanSomeStepsIsForTheLoop) {
