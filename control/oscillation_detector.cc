@@ -123,6 +123,7 @@ bool OscillationDetector::Chatters(double force_N) noexcept {
   if (told) {
     violent_ = Stays() || c.moment_N >= kGrowingMiddle * c.cycles * c.sum_N;
     lasting_.goes_on = true;
+    lasting_.told_ago = 0;
     c = {.change_N = change_N};
   }
   if (!told && c.mean_N < kQuiet * bounds_.chatter_N) c = {.mean_N = c.mean_N, .change_N = change_N};
@@ -134,7 +135,7 @@ bool OscillationDetector::Chatters(double force_N) noexcept {
 void OscillationDetector::SeeLasting(double two_N) noexcept {
   Lasting& l = lasting_;
   if (!l.goes_on) return;
-  if (chatter_.cycles * bounds_.period_s > kAgain * kChatter_s) {
+  if (++l.told_ago * bounds_.period_s > kAgain * kChatter_s) {
     l = {};
     return;
   }

@@ -71,6 +71,7 @@ class OscillationDetector {
   struct Lasting {
     double sum_N = 0.0;
     std::uint32_t cycles = 0;
+    std::uint32_t told_ago = 0;  ///< cycles
     double first_N = 0.0, newest_N = 0.0;
     int spans = 0;
     bool goes_on = false;

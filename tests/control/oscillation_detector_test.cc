@@ -205,5 +205,27 @@ TEST(OscillationDetector, ASingleShockIsNotViolent) {
           << per_s << ' ' << shock_N;
 }
 
+// Before: the second was judged by what the first had left of its tail, and told violent, in 25 gaps of 100.
+TEST(OscillationDetector, ASecondShockIsJudgedByItself) {
+  OscillationBounds bounds = Bounds();
+  bounds.chatter_N = 100.0;
+  for (int gap = 0; gap < 100; ++gap) {
+    const double second_s = 5.3 + 1.3e-3 * gap;
+    OscillationDetector detector(bounds);
+    int told = 0, violent = 0;
+    for (int k = 0; k < 6000; ++k) {
+      const double t = k * kPeriod_s;
+      double size_N = 0.0;
+      for (const double from_s : {0.1, second_s})
+        if (t >= from_s) size_N += 400.0 * std::exp(-100.0 * (t - from_s));
+      if (detector.Step({.force_N = k % 2 == 0 ? size_N : -size_N}) != Oscillation::kLasting) continue;
+      ++told;
+      violent += detector.violent() ? 1 : 0;
+    }
+    EXPECT_GE(told, 2) << gap;
+    EXPECT_EQ(violent, 0) << gap;
+  }
+}
+
 }  // namespace
 }  // namespace contour
