@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "analysis/diagnosis/causes/catalogue.h"
@@ -58,15 +59,37 @@ double OverdispersionOfLast(const Problem& problem, const Fit& fit) {
 
 double NoFault_Hz(const Problem& problem) { return 0.5 / problem.log.period_s; }
 
-void LeaveOutRunaways(std::vector<double>& column) {
+namespace {
+
+using Marks = std::array<bool, static_cast<std::size_t>(kBlocks)>;
+
+/// Blocks side by side are one place.
+bool AreAFewPlaces(const Marks& marks) {
+  int places = 0, blocks = 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    blocks += marks[i] ? 1 : 0;
+    places += marks[i] && (i == 0 || !marks[i - 1]) ? 1 : 0;
+  }
+  return places <= 2 && blocks <= 2 * 2;
+}
+
+}  // namespace
+
+void LeaveOutRunaways(std::vector<double>& column, std::size_t rows) {
+  const std::vector<double> whole = column;
+  Marks marks{};
   for (;;) {
     double all = 0.0, largest = 0.0;
     for (const double v : column) {
       all += v * v;
       largest = std::max(largest, v * v);
     }
+    if (!(all > 0.0)) column = whole;
     const double most = all / static_cast<double>(kBlocks);
     if (!(largest > most)) return;
+    for (std::size_t k = 0; k < column.size(); ++k)
+      if (column[k] * column[k] > most) marks[k % rows * marks.size() / rows] = true;
+    if (!AreAFewPlaces(marks)) return;
     for (double& v : column)
       if (v * v > most) v = 0.0;
   }
@@ -257,7 +280,7 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::ve
     std::vector<std::vector<double>> columns;
     if (means == Means::kSignals) {
       columns = problem.LinearResponses(fit.point, some);
-      for (std::vector<double>& c : columns) LeaveOutRunaways(c);
+      for (std::vector<double>& c : columns) LeaveOutRunaways(c, problem.rows());
     } else {
       columns = means == Means::kRuns ? RunColumns(problem, fit, some) : TermColumns(problem, fit, some);
     }

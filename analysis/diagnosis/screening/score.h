@@ -53,9 +53,11 @@ std::vector<double> PulseResponse(const Problem& problem, bool reading);
 /// Effects that the scans over orders and frequencies propose.
 std::vector<SharedEffect> ScanWaves(const Problem& problem, const Fit& fit);
 
-/// An axis that sticks and hardly breaks away moves much later for a little less force: to first order a few
-/// rows there have nearly all of what a column says, and none of it is to be had beyond first order. No row
-/// may say as much as a block does on the average; those that do say nothing.
-void LeaveOutRunaways(std::vector<double>& column);
+/// An axis that sticks and hardly breaks away moves much later for a little less force: to first order the
+/// rows of one place there have nearly all of what a column says, and none of it is to be had beyond first
+/// order. No row may say as much as a block does on the average; those that do say nothing, as long as they
+/// are in two places of two blocks each at most. What acts at more places, at a few reversals say, stays, and
+/// so does what acts nowhere else. `rows` of every output, one output after the other.
+void LeaveOutRunaways(std::vector<double>& column, std::size_t rows);
 
 }  // namespace contour::diagnosis

@@ -31,18 +31,57 @@ TEST(Score, RowsThatRunAwaySayNothingAndTheOthersStay) {
   std::vector<double> column(3000);
   for (std::size_t k = 0; k < column.size(); ++k) column[k] = std::sin(0.1 * static_cast<double>(k));
   std::vector<double> with = column;
-  LeaveOutRunaways(with);
+  LeaveOutRunaways(with, with.size());
   EXPECT_EQ(with, column) << "none runs away";
   double runaway = 1.0;
   for (std::size_t k = 1000; k < 1020; ++k) with[k] = runaway *= 3.0;
-  LeaveOutRunaways(with);
+  LeaveOutRunaways(with, with.size());
   for (std::size_t k = 1010; k < 1020; ++k) EXPECT_EQ(with[k], 0.0) << k;
   with.erase(with.begin() + 1000, with.begin() + 1020);
   column.erase(column.begin() + 1000, column.begin() + 1020);
   EXPECT_EQ(with, column);
   std::vector<double> nothing(100, 0.0);
-  LeaveOutRunaways(nothing);
+  LeaveOutRunaways(nothing, nothing.size());
   EXPECT_EQ(nothing, std::vector<double>(100, 0.0));
+}
+
+// A place where the response grows for more than a block's length, of two outputs, over what is everywhere.
+TEST(Score, APlaceThatRunsAwayForLongIsLeftOutOfEveryOutput) {
+  const std::size_t rows = 3000;
+  std::vector<double> column(2 * rows);
+  for (std::size_t k = 0; k < column.size(); ++k) column[k] = std::sin(0.1 * static_cast<double>(k));
+  std::vector<double> with = column;
+  for (std::size_t k = 1010; k < 1090; ++k)
+    with[k] = with[rows + k] = 10.0 * std::exp(0.5 * static_cast<double>(k - 1010));
+  LeaveOutRunaways(with, rows);
+  for (std::size_t k = 0; k < rows; ++k) {
+    const bool runs_away = k >= 1010 && k < 1090;
+    EXPECT_EQ(with[k], runs_away ? 0.0 : column[k]) << k;
+    EXPECT_EQ(with[rows + k], runs_away ? 0.0 : column[rows + k]) << k;
+  }
+}
+
+// Before: the bound fell with what it left out, and of what decays exponentially nothing was left.
+TEST(Score, ShortResponsesAtAFewReversalsStay) {
+  const std::size_t rows = 24000;
+  for (const std::size_t reversals : {4u, 10u, 20u})
+    for (const double tau : {0.2, 1.0, 3.0, 10.0, 20.0}) {
+      std::vector<double> column(rows, 0.0);
+      for (std::size_t i = 0; i < reversals; ++i)
+        for (std::size_t k = 0; k < 800; ++k)
+          column[i * rows / reversals + 100 + k] += std::exp(-static_cast<double>(k) / tau);
+      std::vector<double> with = column;
+      LeaveOutRunaways(with, rows);
+      EXPECT_EQ(with, column) << reversals << " reversals of " << tau << " rows";
+    }
+}
+
+TEST(Score, WhatActsNowhereElseStays) {
+  std::vector<double> column(3000, 0.0);
+  column[1000] = 1.0;
+  std::vector<double> with = column;
+  LeaveOutRunaways(with, with.size());
+  EXPECT_EQ(with, column);
 }
 
 class ScoreTest : public testing::Test {
