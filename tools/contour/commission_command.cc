@@ -378,9 +378,8 @@ void FindAndWriteLoopUnlessInterrupted(const MachineConfig& machine, const Model
   constexpr const char* kWithoutLoop =
       "contour: interrupted while it looked for the loop; the model is written, a loop is not\n";
   if (stop_requested) throw std::runtime_error("interrupted; the model is written, a loop is not");
-  const EndsAtOnce ends(kWithoutLoop);
   FindAndWriteLoop(machine, options.axis, model,
-                   options.loop.empty() ? options.axis + "_loop.yaml" : options.loop);
+                   options.loop.empty() ? options.axis + "_loop.yaml" : options.loop, kWithoutLoop);
 }
 
 /// Axes that have no loop for torque mode are recorded in csp: what that tells of them, however unsure, is

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 
 #include "analysis/parallel/parallel_for.h"
@@ -12,11 +13,38 @@
 #include "design/loop_report.h"
 #include "design/what_would_help.h"
 #include "drivers/cia402/mode_for.h"
+#include "tools/contour/ends_at_once.h"
 
 namespace contour {
 
+namespace {
+
+/// Beside it first: whatever ends the process, no half a file stands under that name.
+void WriteWhole(const std::filesystem::path& file, const std::string& text) {
+  // Not what is no file: /dev/null stays a device.
+  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
+    std::ofstream out(file, std::ios::binary);
+    out << text << std::flush;
+    if (!out) throw std::runtime_error("cannot write " + file.string());
+    return;
+  }
+  // Where a link leads, not in its place.
+  const std::filesystem::path target = std::filesystem::weakly_canonical(file);
+  std::filesystem::path beside = target;
+  beside += ".new";
+  std::ofstream out(beside, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw std::runtime_error("cannot write " + beside.string());
+  std::filesystem::rename(beside, target);
+}
+
+}  // namespace
+
 void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, const ModelConfig& model,
-                      const std::filesystem::path& file) {
+                      const std::filesystem::path& file, const char* interrupted) {
+  std::optional<EndsAtOnce> ends;
+  if (interrupted != nullptr) ends.emplace(interrupted);
   AxisConfig config = machine.axes.at(axis);
   config.model = model;
   const LoopAxis loop_axis = LoopAxisOf(config);
@@ -34,12 +62,9 @@ void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, con
       std::cout << "  what would help: " << help << "\n";
     return;
   }
-  std::ofstream out(file, std::ios::binary);
-  out << "# Found by contour from the model of axis " << axis << ": axes." << axis
-      << ".loop of a machine file, or its file.\n"
-      << WriteYaml(found.tuning);
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
+  ends.reset();
+  WriteWhole(file, "# Found by contour from the model of axis " + axis + ": axes." + axis +
+                       ".loop of a machine file, or its file.\n" + WriteYaml(found.tuning));
   std::cout << "wrote " << file.string() << "\n";
 }
 
@@ -56,7 +81,7 @@ void FindLoopWhereItIsNoLongerGood(const MachineConfig& machine, const std::stri
   if (wrong.empty()) return;
   std::cout << "with this model the loop of axis " << axis << " does not keep its limits (" << wrong
             << "). contourd warns of it at every start, and refuses it where it is unstable:\n";
-  FindAndWriteLoop(machine, axis, model, file);
+  FindAndWriteLoop(machine, axis, model, file, nullptr);
 }
 
 }  // namespace contour
