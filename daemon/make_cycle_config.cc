@@ -51,6 +51,10 @@ CycleConfig MakeCycleConfig(const MachineConfig& machine, ControllerName control
                           1e-3 * axis.limits.safe_travel_mm / out.axes.back().mechanics.radius_m_rad};
     const double r_m = out.axes.back().mechanics.radius_m_rad,
                  speed_rad_s = 1e-3 * axis.limits.velocity_mm_s / r_m;
+    // An absolute encoder is right wherever the axis was moved to by hand while its drive was off, as long as
+    // that is where the axis can be.
+    if (axis.drive.absolute_encoder)
+      drive.unseen_travel_rad += 1e-3 * (axis.limits.position_mm[1] - axis.limits.position_mm[0]) / r_m;
     drive.coast_s2_rad = 1e-3 * CoastTravel_mm(axis) / r_m / (speed_rad_s * speed_rad_s);
     drive.drive.mode = ModeFor(controller, axis.drive);
     out.master.axes.push_back(drive);

@@ -152,17 +152,22 @@ Answer Supervisor::Reference(const std::map<std::string, double>& position_mm,
     if (found == axis_names_.end()) return {false, "there is no axis " + name + " on this machine"};
     const auto index = static_cast<std::size_t>(found - axis_names_.begin());
     const CycleRecord now = answers_.record();
-    const bool lost = index < now.axes.size() && now.axes[index].reference_state == ReferenceState::kLost;
-    if (machine_.axes.at(name).drive.absolute_encoder && !lost)
+    const bool believed =
+        index >= now.axes.size() || now.axes[index].reference_state == ReferenceState::kAbsolute;
+    if (machine_.axes.at(name).drive.absolute_encoder && believed)
       return {false,
               "axis " + name +
                   " has an absolute encoder (drive.absolute_encoder): it knows where it is, and is set up "
                   "in its drive"};
     const auto code = Encode({static_cast<std::uint8_t>(index), 1e-3 * at_mm});
-    const std::array<double, 2>& range_mm = machine_.axes.at(name).limits.position_mm;
-    if (!code || at_mm < range_mm[0] || at_mm > range_mm[1])
-      return {false, "axis " + name + " cannot be at " + RoundedText(at_mm) + " mm: limits.position_mm is " +
-                         RoundedText(range_mm[0]) + " to " + RoundedText(range_mm[1])};
+    // Where a stop may have left it beyond its limits: from there it is driven back.
+    const AxisLimits& limits = machine_.axes.at(name).limits;
+    const double least_mm = limits.position_mm[0] - limits.safe_travel_mm,
+                 most_mm = limits.position_mm[1] + limits.safe_travel_mm;
+    if (!code || at_mm < least_mm || at_mm > most_mm)
+      return {false, "axis " + name + " cannot be at " + RoundedText(at_mm) +
+                         " mm: limits.position_mm, with safe_travel_mm, is " + RoundedText(least_mm) +
+                         " to " + RoundedText(most_mm)};
     codes.push_back(*code);
     told += (told.empty() ? "" : ", ") + name + " at " + RoundedText(at_mm) + " mm";
   }

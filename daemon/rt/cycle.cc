@@ -29,6 +29,15 @@ double Loop_rad_s(const CycleConfig& config) {
 /// Of an encoder, that neighbouring readings may be off by.
 constexpr double kSteps = 4.0;
 
+/// An axis that its loop brakes within its limit of acceleration, or whose speed is that of counts that
+/// flicker.
+double Standing_m_s(const CycleConfig& config, std::size_t axis, double flicker_m) {
+  const double loop_rad_s = Loop_rad_s(config);
+  if (!(loop_rad_s > 0.0)) return std::numeric_limits<double>::infinity();
+  return std::max(1e-3 * config.axes[axis].limits.acceleration_mm_s2 / (kAnswer * loop_rad_s),
+                  flicker_m / (1e-6 * config.cycle_us));
+}
+
 PerAxis<double> Zeros(std::size_t n) {
   PerAxis<double> zeros(n);
   for (double& z : zeros) z = 0.0;
@@ -57,10 +66,9 @@ Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAx
       following_error_m(1e-3 * cycle.axes[index].limits.following_error_mm),
       position_min_m(1e-3 * cycle.axes[index].limits.position_mm[0]),
       position_max_m(1e-3 * cycle.axes[index].limits.position_mm[1]),
-      standing_m_s(Loop_rad_s(cycle) > 0.0
-                       ? 1e-3 * cycle.axes[index].limits.acceleration_mm_s2 / (kAnswer * Loop_rad_s(cycle))
-                       : std::numeric_limits<double>::infinity()),
+      safe_travel_m(1e-3 * cycle.axes[index].limits.safe_travel_mm),
       speed_kept(std::exp(-1e-6 * cycle.cycle_us * Loop_rad_s(cycle))),
+      standing_m_s(Standing_m_s(cycle, index, kSteps * monitored.count_m * (1.0 - speed_kept))),
       late_from_s(kStuffing * monitored.sample_jitter_s),
       late_from_m(kSteps * monitored.count_m) {}
 

@@ -93,8 +93,9 @@ class Cycle {
     double following_error_m;
     double position_min_m;
     double position_max_m;
-    double standing_m_s;              ///< an axis that is slower is at rest
+    double safe_travel_m;
     double speed_kept;                ///< per cycle
+    double standing_m_s;              ///< an axis that is slower is at rest
     double speed_m_s = 0.0;           ///< of its readings, as slowly as the loop answers
     double seen_at_m = 0.0;           ///< the newest reading
     bool seen = false;                ///< there is one

@@ -137,8 +137,11 @@ std::uint8_t Cycle::MovingAxis() const noexcept {
 bool Cycle::CanReference(const Request& request) const noexcept {
   if (request.kind != RequestKind::kReference) return false;
   const ReferenceRequest told = DecodeReference(request.program_id);
-  return master_.CanTellPosition(told.axis) && told.position_m >= axes_[told.axis].position_min_m &&
-         told.position_m <= axes_[told.axis].position_max_m;
+  if (!master_.CanTellPosition(told.axis)) return false;
+  // A stop may have left it beyond its limits: from there it is driven back.
+  const Axis& axis = axes_[told.axis];
+  return told.position_m >= axis.position_min_m - axis.safe_travel_m &&
+         told.position_m <= axis.position_max_m + axis.safe_travel_m;
 }
 
 }  // namespace contour

@@ -90,6 +90,10 @@ Orders Transitions::Step(const Situation& now) noexcept {
   ++since_;
   drives_off_ = AllOff(now);
   Explain(now);
+  if (state_ == MachineState::kIdle && reason_ == Reason::kAxisMoves && now.moves == kNone) {
+    reason_ = Reason::kNone;
+    where_ = kNone;
+  }
   if (state_ == MachineState::kOff && !terminating_ && now.request.kind != RequestKind::kTerminate) {
     // The first bring-up begins by itself: finding and configuring drives moves nothing.
     orders.start_bring_up = true;

@@ -23,15 +23,18 @@ void DriveMaster::CountBeganAnew(std::size_t axis) noexcept {
 }
 
 // Where an axis is found that nobody saw meanwhile. One with an absolute encoder may have coasted; an encoder
-// that was put on anew, or a zero that was moved, has the axis elsewhere.
+// that was put on anew, or a zero that was moved, has the axis elsewhere. A drive may report anything until
+// it has read its encoder, so each reading is looked at until the axis is enabled.
 void DriveMaster::FindElsewhere(std::size_t axis, double found_rad) noexcept {
   Axis& a = axes_[axis];
   if (!a.seen_before || a.unseen_travel_rad <= 0.0) return;
   const double coasted_rad = a.absolute ? a.coast_cycles2_rad * a.last_step_rad * a.last_step_rad : 0.0;
-  if (std::abs(found_rad - a.last_seen_rad) <= a.unseen_travel_rad + coasted_rad) return;
-  if (a.absolute) {
+  const bool elsewhere = std::abs(found_rad - a.last_seen_rad) > a.unseen_travel_rad + coasted_rad;
+  if (a.absolute && elsewhere) {
     a.reference = ReferenceState::kLost;
-  } else {
+  } else if (a.absolute && a.reference == ReferenceState::kLost) {
+    a.reference = a.offset_rad == 0.0 ? ReferenceState::kAbsolute : ReferenceState::kTold;
+  } else if (elsewhere) {
     CountBeganAnew(axis);
   }
 }
@@ -50,7 +53,8 @@ bool DriveMaster::CanTellPosition(std::size_t axis) const noexcept {
 void DriveMaster::TellPosition(std::size_t axis, double position_rad) noexcept {
   axes_[axis].offset_rad += position_rad - feedback_[axis].position_rad;
   feedback_[axis].position_rad = position_rad;
-  axes_[axis].reference = axes_[axis].absolute ? ReferenceState::kAbsolute : ReferenceState::kTold;
+  axes_[axis].reference = ReferenceState::kTold;
+  axes_[axis].seen_before = false;
 }
 
 bool DriveMaster::Healthy(std::size_t axis) const noexcept {
@@ -87,8 +91,10 @@ void DriveMaster::StartBringUp() noexcept {
     if (!Heard(i)) CountBeganAnew(i);
     axes_[i].boot_up_due = false;
     if (feedback_[i].valid) {
+      // An absolute encoder that is doubted is still held against where it was before.
+      const bool doubted = axes_[i].seen_before && axes_[i].reference == ReferenceState::kLost;
       axes_[i].seen_before = axes_[i].absolute || (!status_[i].restarted && !status_[i].heartbeat_lost);
-      axes_[i].last_seen_rad = feedback_[i].position_rad;
+      if (!axes_[i].absolute || !doubted) axes_[i].last_seen_rad = feedback_[i].position_rad;
     }
     status_[i] = {};
     feedback_[i].valid = feedback_[i].fresh = feedback_[i].has_scale = feedback_[i].scale_fresh = false;
@@ -98,8 +104,9 @@ void DriveMaster::StartBringUp() noexcept {
     axes_[i].earliest_answer_ns = axes_[i].usual_answer_ns = kNeverAnswered;
     axes_[i].behind = false;
     axes_[i].let_go_cycles = 0;
-    axes_[i].answers = 0;
-    axes_[i].answers_since_sync = sync_number_;
+    axes_[i].unanswered = axes_[i].unasked = 0;
+    axes_[i].counted_sync = axes_[i].unasked_since = sync_number_;
+    axes_[i].stays_seen_cycles = 0;
   }
 }
 

@@ -163,8 +163,8 @@ class DriveMaster {
     void Keep(StateKeeper& keep) noexcept {
       keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, let_go_cycles, reported,
            reported_cycle, alive_cycle, answer_cycle, behind, earliest_answer_ns, usual_answer_ns, reference,
-           was_enabled, boot_up_due, seen_before, last_seen_rad, last_step_rad, offset_rad, answers,
-           answers_since_sync);
+           was_enabled, boot_up_due, seen_before, last_seen_rad, last_step_rad, offset_rad, unanswered,
+           counted_sync, unasked, unasked_since, stays_seen_cycles);
     }
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;
@@ -183,9 +183,10 @@ class DriveMaster {
     std::size_t patrolled = 0;               ///< its place in the patrol of its bus
     std::uint64_t follow_cycles = 0;         ///< bit 12 may be missing that long; 0: not watched
     std::uint64_t not_following_cycles = 0;
-    std::uint64_t obeys_cycles = 0;   ///< from a controlword to the statusword that shows it
-    std::uint64_t stays_cycles = 0;   ///< within which it has left Operation Enabled when told to
-    std::uint64_t let_go_cycles = 0;  ///< since the goal is not kEnabled any more
+    std::uint64_t obeys_cycles = 0;       ///< from a controlword to the statusword that shows it
+    std::uint64_t stays_cycles = 0;       ///< within which it has left Operation Enabled when told to
+    std::uint64_t stays_seen_cycles = 0;  ///< for which it has been there longer than that
+    std::uint64_t let_go_cycles = 0;      ///< since the goal is not kEnabled any more
     EmergencyReaction reported = EmergencyReaction::kNone;
     std::uint64_t reported_cycle = 0;  ///< when `reported` last grew
     std::uint64_t heartbeat_timeout_cycles = 0;
@@ -203,8 +204,10 @@ class DriveMaster {
     double last_step_rad = 0.0;  ///< per cycle, between the last two readings
     double unseen_travel_rad = 0.0;
     double coast_cycles2_rad = 0.0;  ///< way of coasting by the square of such a step
-    std::uint32_t answers = 0;       ///< to the SYNCs since the one below
-    std::uint64_t answers_since_sync = 0;
+    std::uint64_t unanswered = 0;    ///< SYNCs up to the one below
+    std::uint64_t counted_sync = 0;
+    std::uint32_t unasked = 0;  ///< answers that came while no SYNC was unanswered, since the one below
+    std::uint64_t unasked_since = 0;
     double offset_rad = 0.0;  ///< from the drive's count to where the axis is
   };
   struct Bus {
@@ -228,7 +231,9 @@ class DriveMaster {
   void WatchFollowing(std::size_t axis) noexcept;
   void CountBeganAnew(std::size_t axis) noexcept;
   void FindElsewhere(std::size_t axis, double found_rad) noexcept;
-  void CountAnswers(std::size_t axis) noexcept;
+  void CountAnswer(Axis& axis, bool answered_before) const noexcept;
+  void WatchAnswers(std::size_t axis) noexcept;
+  void WatchStaying(std::size_t axis) noexcept;
   [[nodiscard]] bool Heard(std::size_t axis) const noexcept;
   void OnFeedback(std::size_t axis, const StampedFrame& stamped) noexcept;
   bool AnswersNewestSync(Axis& axis, const AxisFeedback& feedback, std::int64_t stamp_ns) const noexcept;

@@ -112,7 +112,8 @@ DriveMaster::DriveMaster(const MasterConfig& config)
     axis.heartbeat_timeout_cycles = CyclesOf(d.heartbeat_timeout_ms, config.cycle_us);
     axis.absolute = d.absolute_encoder || config.start_up == StartUp::kOfLogFormat4;
     if (!axis.absolute) axis.reference = ReferenceState::kNeverTold;
-    axis.unseen_travel_rad = a.unseen_travel_rad;
+    axis.unseen_travel_rad =
+        config.start_up == StartUp::kOfLogFormat4 && !d.absolute_encoder ? 0.0 : a.unseen_travel_rad;
     const double cycles_s = 1e6 / config.cycle_us;
     axis.coast_cycles2_rad = a.coast_s2_rad * cycles_s * cycles_s;
     axes_.push_back(axis);

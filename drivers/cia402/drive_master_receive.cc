@@ -13,11 +13,10 @@ namespace {
 // load of the bus that stays is usual within some 100 ms.
 constexpr std::int64_t kUsualStep_ns = 500;
 constexpr std::int64_t kSameClock_periods = 1000;  // stamps further away from the grid are not of its clock
-// Answers are counted over so many SYNCs, and half as many more than SYNCs are those of two drives. One
-// drive's answers that were held up come later, but as many are missing before: feedback is lost long before
-// that.
-constexpr std::uint64_t kAnswersOver_syncs = 16;
-constexpr std::uint64_t kAnswersOfTwo = kAnswersOver_syncs + kAnswersOver_syncs / 2;
+// Of an answer that comes while no SYNC is unanswered nobody was asked. Half as many as SYNCs are those of
+// another drive; answers of one that were held up, for however long, are owed.
+constexpr std::uint64_t kUnaskedOver_syncs = 16;
+constexpr std::uint32_t kUnaskedOfTwo = kUnaskedOver_syncs / 2;
 
 }  // namespace
 
@@ -177,15 +176,17 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   const bool newest = AnswersNewestSync(a, f, stamped.stamp_ns);
   const double counted_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
   FindElsewhere(axis, counted_rad + a.offset_rad);
-  a.seen_before = false;
-  ++a.answers;
-  if (f.valid && !f.fresh)
+  CountAnswer(a, f.valid);
+  if (!a.absolute) a.seen_before = false;
+  if (f.valid && !f.fresh && !a.seen_before)
     a.last_step_rad = (counted_rad + a.offset_rad - f.position_rad) / static_cast<double>(1 + f.age_cycles);
   f.position_rad = counted_rad + a.offset_rad;
   f.torque_Nm = a.torque.FromPerMille(raw.torque_per_mille);
   f.statusword = raw.statusword;
   f.drive_state = DecodeStatusword(raw.statusword);
-  a.was_enabled = a.was_enabled || f.drive_state == DriveState::kOperationEnabled;
+  const bool enabled = f.drive_state == DriveState::kOperationEnabled;
+  a.was_enabled = a.was_enabled || enabled;
+  a.seen_before = a.seen_before && !enabled;
   f.fresh = newest;
   f.valid = true;
   if (newest) f.age_cycles = 0;
@@ -194,13 +195,42 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   feedback_sync_ = std::max(feedback_sync_, newest ? sync_number_ : sync_number_ - 1);
 }
 
-void DriveMaster::CountAnswers(std::size_t axis) noexcept {
+// SYNCs before its first answer are no debts of it.
+void DriveMaster::CountAnswer(Axis& a, bool answered_before) const noexcept {
+  a.unanswered = answered_before ? a.unanswered + (sync_number_ - a.counted_sync) : 1;
+  a.counted_sync = sync_number_;
+  if (a.unanswered > 0) {
+    --a.unanswered;
+  } else {
+    ++a.unasked;
+  }
+}
+
+// What it owes for longer than its heartbeat may be missing it has lost.
+void DriveMaster::WatchAnswers(std::size_t axis) noexcept {
   Axis& a = axes_[axis];
-  if (sync_number_ - a.answers_since_sync < kAnswersOver_syncs) return;
+  a.unanswered = std::min(a.unanswered + (sync_number_ - a.counted_sync),
+                          std::max(a.heartbeat_timeout_cycles, std::uint64_t{1}));
+  a.counted_sync = sync_number_;
+  if (sync_number_ - a.unasked_since < kUnaskedOver_syncs) return;
   AxisDriveStatus& s = status_[axis];
-  s.answers_twice = s.answers_twice || (s.configured && patrols_ && a.answers >= kAnswersOfTwo);
-  a.answers = 0;
-  a.answers_since_sync = sync_number_;
+  s.answers_twice = s.answers_twice || (s.configured && patrols_ && a.unasked >= kUnaskedOfTwo);
+  a.unasked = 0;
+  a.unasked_since = sync_number_;
+}
+
+// Told to leave it, and there for as long after its time as a statusword takes to show a controlword.
+void DriveMaster::WatchStaying(std::size_t axis) noexcept {
+  Axis& a = axes_[axis];
+  const AxisFeedback& f = feedback_[axis];
+  const bool stays = patrols_ && pdos_run_ && f.drive_state == DriveState::kOperationEnabled &&
+                     a.let_go_cycles > a.stays_cycles;
+  if (!stays) {
+    a.stays_seen_cycles = 0;
+  } else if (f.fresh) {
+    a.stays_seen_cycles += elapsed_;
+  }
+  status_[axis].stays_enabled = f.fresh && a.stays_seen_cycles > a.obeys_cycles;
 }
 
 void DriveMaster::Supervise(std::size_t axis) noexcept {
@@ -217,9 +247,8 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
   if (cycle_ != axes_[axis].reported_cycle) s.emergency = axes_[axis].reported;
   s.silent_cycles = cycle_ - axes_[axis].alive_cycle;
   WatchFollowing(axis);
-  CountAnswers(axis);
-  s.stays_enabled = patrols_ && pdos_run_ && f.fresh && f.drive_state == DriveState::kOperationEnabled &&
-                    axes_[axis].let_go_cycles > axes_[axis].stays_cycles;
+  WatchAnswers(axis);
+  WatchStaying(axis);
   if (s.configured && cycle_ - axes_[axis].alive_cycle >= axes_[axis].heartbeat_timeout_cycles) {
     if (!s.heartbeat_lost) CountBeganAnew(axis);
     s.heartbeat_lost = true;

@@ -97,21 +97,23 @@ class LostReference : public ::testing::Test {
   PerAxis<double> began_mm_;
 };
 
-// Ten turns of 5 mm, while its drive was off.
+// A hundred turns of 5 mm, further than it can go, while its drive was off.
 TEST_F(LostReference, AnAbsoluteEncoderThatComesBackElsewhereIsNotBelieved) {
   UseMachine(ExampleMachine());
   EXPECT_EQ(reference(0), ReferenceState::kAbsolute);
   const double stands_mm = position_mm(0);
   DriveFaults::Restart(machine_->emulated(), 0);
-  DriveFaults::Displace(machine_->emulated(), 0, 10 * 1048576);
+  DriveFaults::Displace(machine_->emulated(), 0, 100 * 1048576);
   Reset();
-  EXPECT_NEAR(position_mm(0), stands_mm + 50.0, 0.01);
+  EXPECT_NEAR(position_mm(0), stands_mm + 500.0, 0.01);
   EXPECT_EQ(reference(0), ReferenceState::kLost);
   EXPECT_EQ(reference(1), ReferenceState::kAbsolute);
   ExpectProgramsRefused(0);
   EXPECT_FALSE(Tell(1, 0.0)) << "that one knows";
-  ASSERT_TRUE(Tell(0, stands_mm));
-  EXPECT_EQ(reference(0), ReferenceState::kAbsolute);
+  ASSERT_TRUE(Tell(0, stands_mm + 3.0));
+  EXPECT_EQ(reference(0), ReferenceState::kTold);
+  ASSERT_TRUE(Tell(0, stands_mm)) << "what was told wrong can be put right";
+  EXPECT_EQ(reference(0), ReferenceState::kTold);
   machine_->Enable();
   Move(10.0);
   EXPECT_NEAR(position_mm(0), stands_mm + 10.0, 0.01);
@@ -242,7 +244,7 @@ TEST_F(LostReference, ALinkThatWasDownMayHaveHiddenARestart) {
 }
 
 TEST_F(LostReference, ToldOnlyWhereItCanBeAndWhileNothingHoldsIt) {
-  EXPECT_FALSE(Tell(0, 200.5)) << "beyond limits.position_mm";
+  EXPECT_FALSE(Tell(0, 202.5)) << "beyond limits.position_mm by more than safe_travel_mm";
   EXPECT_FALSE(Tell(5, 0.0)) << "no such axis";
   machine_->Enable();
   EXPECT_FALSE(Tell(0, 10.0)) << "held";

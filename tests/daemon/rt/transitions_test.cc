@@ -112,7 +112,11 @@ TEST_F(TransitionsTest, AnAxisThatMovesIsNotEnabled) {
   EXPECT_EQ(machine_.state(), MachineState::kIdle);
   EXPECT_EQ(machine_.reason(), Reason::kAxisMoves);
   EXPECT_EQ(machine_.reason_where(), 1);
+  Step();
+  EXPECT_EQ(machine_.reason(), Reason::kAxisMoves);
   now_.moves = 0xFF;
+  Step();
+  EXPECT_EQ(machine_.reason(), Reason::kNone) << "it stands: nothing is in the way any more";
   Step(RequestKind::kEnable);
   EXPECT_TRUE(machine_.acknowledged_ok());
   EXPECT_EQ(machine_.reason(), Reason::kNone);
