@@ -169,7 +169,7 @@ class Converter {
     leave_open("vs", c.vs.has_value());
     leave_open("s0", c.sigma0.has_value());
     leave_open("s2", c.sigma2.has_value());
-    leave_open("exponent", c.stribeck_exponent.has_value());
+    leave_open("exponent", c.stribeck_exponent.has_value() || c.vs.has_value());
     StatedFriction f;
     f.Fc_plus = c.Fc_plus.value_or(c.Fc_minus.value_or(1.0));
     f.Fc_minus = c.Fc_minus.value_or(f.Fc_plus);

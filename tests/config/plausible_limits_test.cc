@@ -50,10 +50,10 @@ TEST(PlausibleLimits, DistancesThatBoundNothing) {
       "axes.x.limits.following_error_mm: found 2.1, expected at most safe_travel_mm 2: an axis off its path "
       "is to be stopped within that");
   c = Good();
-  c.axes.at("x").limits.safe_travel_mm = 1e6;
+  c.axes.at("x").limits.safe_travel_mm = 5000;
   EXPECT_EQ(
       Only(c),
-      "axes.x.limits.safe_travel_mm: found 1000000, expected at most 100, a quarter of a stroke of 400 mm: "
+      "axes.x.limits.safe_travel_mm: found 5000, expected at most 100, a quarter of a stroke of 400 mm: "
       "more keeps nothing from its end");
 }
 

@@ -87,7 +87,7 @@ TEST(LooseAxis, ExtensionsOfALinearAxisAreInNewtons) {
 
 TEST(LooseAxis, AModelWithNothingButInertiaLeavesTheRestOpen) {
   const StatedAxis a = ReadStatedAxis(WriteTestFile("model.yaml", "model: {motor_inertia_kgm2: 1e-4}\n"), "");
-  EXPECT_EQ(a.open, (std::set<std::string>{"Fc", "s0", "s2", "stroke", "vs"}));
+  EXPECT_EQ(a.open, (std::set<std::string>{"Fc", "exponent", "s0", "s2", "stroke", "vs"}));
   EXPECT_EQ(ReadStatedAxis(WriteTestFile("model.yaml", "mass_kg: 3\n"), "").open.count("Fc"), 1U);
 }
 

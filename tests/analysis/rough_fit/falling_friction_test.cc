@@ -44,7 +44,7 @@ TEST(OpenFallingFriction, TakesTheCurveOfTheAxis) {
 }
 
 TEST(OpenFallingFriction, AShortLogSaysNothingOfIt) {
-  Made made(2.0);
+  Made made(1.5);
   const StatedAxis before = made.axis.stated;
   OpenFallingFriction(made.axis.log, made.axis.stated);
   EXPECT_EQ(made.axis.stated.friction, before.friction);
