@@ -111,12 +111,13 @@ Reason MotionMonitor::Jump(const MotionSample& s, double force_N) noexcept {
                              0.5 * acceleration_m_s2 * period_s_ * period_s_ * n * (n + before);
   const double beside_m = s.position_m - predicted_m;
   const bool evenly = n == 1.0 && before == 1.0;
-  const double off_m = evenly ? swing_ahead_.Beyond_m(beside_m, t_) : std::abs(beside_m);
+  const double forced_m = t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
+  double off_m = std::abs(beside_m);
+  if (evenly && off_m > forced_m) off_m = swing_ahead_.Beyond_m(beside_m, t_);
   if (evenly)
     swing_ahead_.See(beside_m, t_);
   else
     swing_ahead_.Restart();
-  const double forced_m = t_.Forced_m(velocity_m_s_, peak_N_, period_s_, n, before);
   believed_ = off_m <= forced_m;
   // To momentum a SYNC that came late is a push that is taken back at once; only what goes on counts.
   if (believed_ && late_readings_ == 0) return Reason::kNone;

@@ -202,10 +202,15 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
   skipped_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(master_.elapsed_cycles() - 1, most_skipped_));
   for (std::uint32_t i = 0; i <= skipped_; ++i) follower_.Advance();
   bool stale = false;
+  const bool holds = transitions_.holds_torque();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
-    MeasureSpeed(axes_[i], f);
+    // Only who asks for `enable` wants to know.
+    if (holds)
+      axes_[i].seen = false;
+    else
+      MeasureSpeed(axes_[i], f);
     if (std::max(std::abs(f.sync_late_s), f.late_s) > axes_[i].late_from_s) TakeLateness(i, f);
     stale = stale || (f.valid && !f.fresh);
     follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
@@ -221,7 +226,9 @@ void Cycle::MeasureSpeed(Axis& axis, const AxisFeedback& feedback) noexcept {
     if (axis.unseen_cycles > most_skipped_) axis.speed_m_s = 0.0;
     return;
   }
-  if (axis.seen && axis.unseen_cycles <= most_skipped_) {
+  if (!axis.seen) {
+    axis.speed_m_s = 0.0;
+  } else if (axis.unseen_cycles <= most_skipped_) {
     const double now_m_s =
         (axis.position_m - axis.seen_at_m) / (period_s_ * static_cast<double>(axis.unseen_cycles));
     axis.speed_m_s = axis.speed_kept * axis.speed_m_s + (1.0 - axis.speed_kept) * now_m_s;

@@ -31,7 +31,7 @@ Situation Cycle::Assess(const CycleInput& in, const Estimates& estimate) const n
       bus != DriveMaster::kNoBus && Acts(Watch::kSecondMaster))
     now.second_master = {Reason::kSecondMaster, bus};
   now.not_referenced = NotReferenced();
-  now.moves = MovingAxis();
+  if (!transitions_.holds_torque()) now.moves = MovingAxis();
   now.can_reference = CanReference(in.request);
   now.path_prefetched = follower_.Prefetched();
   now.path_begins_here = now.path_prefetched && PathBeginsHere();

@@ -27,7 +27,7 @@ void DriveMaster::CountBeganAnew(std::size_t axis) noexcept {
 // it has read its encoder, so each reading is looked at until the axis is enabled.
 void DriveMaster::FindElsewhere(std::size_t axis, double found_rad) noexcept {
   Axis& a = axes_[axis];
-  if (!a.seen_before || a.unseen_travel_rad <= 0.0) return;
+  if (a.unseen_travel_rad <= 0.0) return;
   const double coasted_rad = a.absolute ? a.coast_cycles2_rad * a.last_step_rad * a.last_step_rad : 0.0;
   const bool elsewhere = std::abs(found_rad - a.last_seen_rad) > a.unseen_travel_rad + coasted_rad;
   if (a.absolute && elsewhere) {
@@ -104,8 +104,8 @@ void DriveMaster::StartBringUp() noexcept {
     axes_[i].earliest_answer_ns = axes_[i].usual_answer_ns = kNeverAnswered;
     axes_[i].behind = false;
     axes_[i].let_go_cycles = 0;
-    axes_[i].unanswered = axes_[i].unasked = 0;
-    axes_[i].counted_sync = axes_[i].unasked_since = sync_number_;
+    axes_[i].unasked = 0;
+    axes_[i].answered_sync = axes_[i].unasked_since = sync_number_;
     axes_[i].stays_seen_cycles = 0;
   }
 }

@@ -163,8 +163,8 @@ class DriveMaster {
     void Keep(StateKeeper& keep) noexcept {
       keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, let_go_cycles, reported,
            reported_cycle, alive_cycle, answer_cycle, behind, earliest_answer_ns, usual_answer_ns, reference,
-           was_enabled, boot_up_due, seen_before, last_seen_rad, last_step_rad, offset_rad, unanswered,
-           counted_sync, unasked, unasked_since, stays_seen_cycles);
+           was_enabled, boot_up_due, seen_before, last_seen_rad, last_step_rad, offset_rad, answered_sync,
+           unasked, unasked_since, stays_seen_cycles);
     }
     std::uint8_t bus = 0;
     std::uint8_t node_id = 0;
@@ -203,10 +203,9 @@ class DriveMaster {
     double last_seen_rad = 0.0;  ///< before it was brought up anew
     double last_step_rad = 0.0;  ///< per cycle, between the last two readings
     double unseen_travel_rad = 0.0;
-    double coast_cycles2_rad = 0.0;  ///< way of coasting by the square of such a step
-    std::uint64_t unanswered = 0;    ///< SYNCs up to the one below
-    std::uint64_t counted_sync = 0;
-    std::uint32_t unasked = 0;  ///< answers that came while no SYNC was unanswered, since the one below
+    double coast_cycles2_rad = 0.0;   ///< way of coasting by the square of such a step
+    std::uint64_t answered_sync = 0;  ///< as many answers as SYNCs up to this one have come or are lost
+    std::uint32_t unasked = 0;        ///< answers that came while no SYNC was unanswered, since the one below
     std::uint64_t unasked_since = 0;
     double offset_rad = 0.0;  ///< from the drive's count to where the axis is
   };

@@ -175,12 +175,15 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   Axis& a = axes_[axis];
   const bool newest = AnswersNewestSync(a, f, stamped.stamp_ns);
   const double counted_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
-  FindElsewhere(axis, counted_rad + a.offset_rad);
+  if (a.seen_before) FindElsewhere(axis, counted_rad + a.offset_rad);
   CountAnswer(a, f.valid);
   if (!a.absolute) a.seen_before = false;
-  if (f.valid && !f.fresh && !a.seen_before)
-    a.last_step_rad = (counted_rad + a.offset_rad - f.position_rad) / static_cast<double>(1 + f.age_cycles);
-  f.position_rad = counted_rad + a.offset_rad;
+  const double now_rad = counted_rad + a.offset_rad;
+  if (a.absolute && f.valid && !f.fresh && !a.seen_before) {
+    a.last_step_rad = now_rad - f.position_rad;
+    if (f.age_cycles > 0) a.last_step_rad /= static_cast<double>(1 + f.age_cycles);
+  }
+  f.position_rad = now_rad;
   f.torque_Nm = a.torque.FromPerMille(raw.torque_per_mille);
   f.statusword = raw.statusword;
   f.drive_state = DecodeStatusword(raw.statusword);
@@ -197,22 +200,20 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
 
 // SYNCs before its first answer are no debts of it.
 void DriveMaster::CountAnswer(Axis& a, bool answered_before) const noexcept {
-  a.unanswered = answered_before ? a.unanswered + (sync_number_ - a.counted_sync) : 1;
-  a.counted_sync = sync_number_;
-  if (a.unanswered > 0) {
-    --a.unanswered;
-  } else {
+  if (!answered_before)
+    a.answered_sync = sync_number_;
+  else if (a.answered_sync < sync_number_)
+    ++a.answered_sync;
+  else
     ++a.unasked;
-  }
 }
 
 // What it owes for longer than its heartbeat may be missing it has lost.
 void DriveMaster::WatchAnswers(std::size_t axis) noexcept {
   Axis& a = axes_[axis];
-  a.unanswered = std::min(a.unanswered + (sync_number_ - a.counted_sync),
-                          std::max(a.heartbeat_timeout_cycles, std::uint64_t{1}));
-  a.counted_sync = sync_number_;
   if (sync_number_ - a.unasked_since < kUnaskedOver_syncs) return;
+  if (sync_number_ - a.answered_sync > a.heartbeat_timeout_cycles)
+    a.answered_sync = sync_number_ - a.heartbeat_timeout_cycles;
   AxisDriveStatus& s = status_[axis];
   s.answers_twice = s.answers_twice || (s.configured && patrols_ && a.unasked >= kUnaskedOfTwo);
   a.unasked = 0;
@@ -223,14 +224,16 @@ void DriveMaster::WatchAnswers(std::size_t axis) noexcept {
 void DriveMaster::WatchStaying(std::size_t axis) noexcept {
   Axis& a = axes_[axis];
   const AxisFeedback& f = feedback_[axis];
-  const bool stays = patrols_ && pdos_run_ && f.drive_state == DriveState::kOperationEnabled &&
-                     a.let_go_cycles > a.stays_cycles;
-  if (!stays) {
+  AxisDriveStatus& s = status_[axis];
+  s.stays_enabled = false;
+  if (a.let_go_cycles <= a.stays_cycles || f.drive_state != DriveState::kOperationEnabled || !patrols_ ||
+      !pdos_run_) {
     a.stays_seen_cycles = 0;
-  } else if (f.fresh) {
-    a.stays_seen_cycles += elapsed_;
+    return;
   }
-  status_[axis].stays_enabled = f.fresh && a.stays_seen_cycles > a.obeys_cycles;
+  if (!f.fresh) return;
+  a.stays_seen_cycles += elapsed_;
+  s.stays_enabled = a.stays_seen_cycles > a.obeys_cycles;
 }
 
 void DriveMaster::Supervise(std::size_t axis) noexcept {
