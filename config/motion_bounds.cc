@@ -9,6 +9,7 @@
 #include "config/stopping.h"
 #include "control/loop_bandwidth.h"
 #include "control/monitored_axis.h"
+#include "control/motion_thresholds.h"
 #include "core/mechanics.h"
 #include "drivers/cia402/mode_for.h"
 
@@ -22,8 +23,6 @@ constexpr double kLagsToNothing = 3.0;
 constexpr double kTellingWords = 3.0;
 // Presliding may be so much softer than stated.
 constexpr double kSofter = 3.0;
-// What a loop's other terms add to its proportional one, at most.
-constexpr double kLoopOvershoot = 4.0;
 
 struct Axis {
   MonitoredAxis monitored;

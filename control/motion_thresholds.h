@@ -7,6 +7,10 @@
 
 namespace contour {
 
+/// Of what a loop's proportional term answers, what all of its terms do at most: forces by its stiffness, and
+/// the deceleration of an axis that it finds in motion by its bandwidth.
+inline constexpr double kLoopOvershoot = 4.0;
+
 /// What the motion monitor has to know of an axis. Table side: forces F = T / R, positions R theta.
 struct MonitoredAxis {
   double motor_mass_kg = 0.0;  ///< Jm / R^2

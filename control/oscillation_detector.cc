@@ -26,8 +26,8 @@ constexpr double kQuiet = 0.1;
 // Where the middle of its changes lies in the time since: half-way of a swing that stays, before it of what
 // rings and dies out after a shock; two thirds of one that has grown from there to what is told.
 constexpr double kGrowingMiddle = 0.6;
-// Of that time, within which a swing that goes on is told again; and after how many of it one that stays is
-// no shock.
+// A swing from cycle to cycle that goes on is told again within so many kChatter_s; one that has stayed as
+// large for so many of them is no shock.
 constexpr double kAgain = 2.0;
 constexpr int kSpans = 6;
 // Of what the first of its half waves took: what falls below until it is told was a shock.

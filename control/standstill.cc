@@ -26,9 +26,11 @@ constexpr double kPatience_s = 1.5;
 // An error that is left after that time stays unless it is so much larger: what friction has settled for is
 // better left alone than stepped about for long.
 constexpr double kCorrectedLate = 2.0;
-// Of what friction winds the screw up by: half of what an axis may move by at rest.
-// And of friction, what a table that slides is relieved of so that it stops. It ends at so many doubts.
-constexpr double kDoubt = 0.1, kDoubtEnds = 3.0;
+// The doubt, of what friction winds the screw up by: half of what an axis may move by at rest. By the same
+// share of friction the force gives way to a table that still slides, so that it stops.
+constexpr double kDoubt = 0.1;
+// Where the error is so many doubts, the loop takes over again.
+constexpr double kDoubtEnds = 3.0;
 // A loop that is taken answers a force within 200 ms (kMostLeft of design/creep.h). What has not come
 // to rest long after that is stopped within what grows to the doubt, well before kStandsAfter_s.
 constexpr double kDoubtFrom_s = 0.5, kDoubtGrows_s = 1.0;

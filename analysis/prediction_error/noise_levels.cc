@@ -194,4 +194,6 @@ NoiseLevels LikeliestLevels(const LinearModel& model, const LevelsSearch& search
   return Search(model, search).From(before);
 }
 
+std::size_t FewestRowsOfLevels() { return kNoise.segments * kNoise.settling_rows; }
+
 }  // namespace contour::diagnosis

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -32,5 +33,8 @@ struct LevelsSearch {
 /// The likeliest, from segments all over the log. `before`: of an earlier run of the log, near which they
 /// lie; null: none.
 NoiseLevels LikeliestLevels(const LinearModel& model, const LevelsSearch& search, const NoiseLevels* before);
+
+/// With fewer rows the filter does not settle in all of these segments, and the levels say nothing.
+std::size_t FewestRowsOfLevels();
 
 }  // namespace contour::diagnosis

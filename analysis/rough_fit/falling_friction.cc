@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/prediction_error/fit.h"
+#include "analysis/prediction_error/noise_levels.h"
 #include "analysis/prediction_error/problem.h"
 
 namespace contour::diagnosis {
@@ -23,8 +24,6 @@ constexpr double kByChance = 6.0;
 
 /// Break-away over Coulomb level from which there is a curve to speak of.
 constexpr double kLeastRatio = 1.05;
-/// Fewer rows than the noise needs to settle in all of its segments say nothing.
-constexpr std::ptrdiff_t kFewestRows = 1800;
 constexpr FitEffort kFar = {.most_steps = 8, .most_refreshes = 2, .close_enough = 1.0, .covariance = false};
 constexpr FitEffort kQuick = {.most_steps = 3, .most_refreshes = 1, .close_enough = 1.0, .covariance = false};
 
@@ -68,7 +67,7 @@ StatedAxis Falling(const StatedAxis& flat, double exponent) {
 
 void OpenFallingFriction(const AxisLog& log, StatedAxis& stated) {
   const auto there = std::count(log.present.begin(), log.present.end(), std::uint8_t{1});
-  if (there < kFewestRows) return;
+  if (there < static_cast<std::ptrdiff_t>(FewestRowsOfLevels())) return;
   double least = Judge(log, stated).unlikeliness - kByChance;
   const StatedAxis flat = stated;
   std::vector<double> exponents = {stated.friction.exponent};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "control/motion_thresholds.h"
 #include "daemon/rt/cycle_parts.h"
 #include "drivers/cia301/messages.h"
 
@@ -18,9 +19,6 @@ constexpr std::uint64_t kMostSkipped = 1'000'000;
 
 /// Of the longest frame: more than stuff bits of the frames before a SYNC make of its time.
 constexpr double kStuffing = 0.25;
-/// A loop of bandwidth w brakes an axis that it finds at speed v by up to so many times w v.
-constexpr double kAnswer = 4.0;
-
 double Loop_rad_s(const CycleConfig& config) {
   const double loop_Hz = StiffnessLoop_Hz(config);
   return std::isfinite(loop_Hz) ? 2.0 * std::numbers::pi * loop_Hz : 0.0;
@@ -29,12 +27,12 @@ double Loop_rad_s(const CycleConfig& config) {
 /// Of an encoder, that neighbouring readings may be off by.
 constexpr double kSteps = 4.0;
 
-/// An axis that its loop brakes within its limit of acceleration, or whose speed is that of counts that
-/// flicker.
+/// An axis that its loop, of bandwidth w, brakes within its limit of acceleration: from speed v by
+/// kLoopOvershoot times w v at most. Or whose speed is that of counts that flicker.
 double Standing_m_s(const CycleConfig& config, std::size_t axis, double flicker_m) {
   const double loop_rad_s = Loop_rad_s(config);
   if (!(loop_rad_s > 0.0)) return std::numeric_limits<double>::infinity();
-  return std::max(1e-3 * config.axes[axis].limits.acceleration_mm_s2 / (kAnswer * loop_rad_s),
+  return std::max(1e-3 * config.axes[axis].limits.acceleration_mm_s2 / (kLoopOvershoot * loop_rad_s),
                   flicker_m / (1e-6 * config.cycle_us));
 }
 
@@ -203,6 +201,7 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
   for (std::uint32_t i = 0; i <= skipped_; ++i) follower_.Advance();
   bool stale = false;
   const bool holds = transitions_.holds_torque();
+  const std::size_t ahead = controller().horizon_points();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
@@ -213,7 +212,7 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
       MeasureSpeed(axes_[i], f);
     if (std::max(std::abs(f.sync_late_s), f.late_s) > axes_[i].late_from_s) TakeLateness(i, f);
     stale = stale || (f.valid && !f.fresh);
-    follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
+    follower_.Horizon(i, ahead, control_in_.reference[i]);
   }
   if (stale && master_.operational()) ++stale_cycles_;
   return master_.feedback();

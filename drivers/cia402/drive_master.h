@@ -99,8 +99,8 @@ class DriveMaster {
   /// the communication objects back (CiA 301), so the count goes on; a boot-up message that was not asked for
   /// is that of a power-up or a reset node.
   [[nodiscard]] ReferenceState reference(std::size_t axis) const noexcept { return axes_[axis].reference; }
-  /// The axis can be told where it is: it counts, its encoder is not absolute or has been found elsewhere,
-  /// and its position is known now.
+  /// The axis can be told where it is: it counts, its position is known now, and its encoder is not absolute,
+  /// or is not believed, or was told before.
   [[nodiscard]] bool CanTellPosition(std::size_t axis) const noexcept;
   /// Where it stands now; feedback() says so from here on. CanTellPosition() before.
   void TellPosition(std::size_t axis, double position_rad) noexcept;
@@ -120,7 +120,11 @@ class DriveMaster {
   }
   /// Where bringing up stands: the failed node if there is one, else the one furthest behind.
   [[nodiscard]] BringUpStatus bring_up() const noexcept;
-  [[nodiscard]] bool bring_up_failed() const noexcept { return bring_up().error != 0; }
+  [[nodiscard]] bool bring_up_failed() const noexcept {
+    for (const Bus& bus : buses_)
+      if (bus.bring_up.failed()) return true;
+    return false;
+  }
   /// Drives are being found and configured at this moment.
   [[nodiscard]] bool BringingUp() const noexcept;
   /// All drives are Operational and configured; SYNC and PDOs run.

@@ -63,6 +63,9 @@ namespace {
 
 using Marks = std::array<bool, static_cast<std::size_t>(kBlocks)>;
 
+// An axis that hardly breaks away does so at one place of its stroke, to and fro; a block may end within it.
+constexpr int kMostPlaces = 2, kBlocksOfPlace = 2;
+
 /// Blocks side by side are one place.
 bool AreAFewPlaces(const Marks& marks) {
   int places = 0, blocks = 0;
@@ -70,7 +73,7 @@ bool AreAFewPlaces(const Marks& marks) {
     blocks += marks[i] ? 1 : 0;
     places += marks[i] && (i == 0 || !marks[i - 1]) ? 1 : 0;
   }
-  return places <= 2 && blocks <= 2 * 2;
+  return places <= kMostPlaces && blocks <= kMostPlaces * kBlocksOfPlace;
 }
 
 }  // namespace
