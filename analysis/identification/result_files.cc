@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "analysis/text/format_text.h"
+#include "config/whole_file.h"
 #include "config/yaml_writer.h"
 
 namespace contour::identify {
@@ -58,13 +58,6 @@ void RoundAll(ModelConfig& m) {
         &f.sigma1_decay_mm_s, &f.sigma2_Ns_m, &f.Fs_plus_Nm, &f.Fs_minus_Nm, &f.Fc_plus_Nm, &f.Fc_minus_Nm,
         &f.vs_rad_s, &f.sigma0_Nm_rad, &f.sigma1_Nms_rad, &f.sigma1_decay_rad_s, &f.sigma2_Nms_rad})
     *v = Rounded(*v);
-}
-
-void WriteText(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
 const FittedParameter* Find(const Identification& id, const std::string& key) {
@@ -183,7 +176,7 @@ void WriteModelFile(const std::filesystem::path& file, const ModelConfig& model,
   for (const std::string& n : id.notes) text += "# Note: " + n + "\n";
   text +=
       "# uncertainty: relative, one standard deviation, from the scatter of the fit over blocks of time.\n";
-  WriteText(file, text + WriteYaml(model));
+  WriteWholeFile(file, text + WriteYaml(model));
 }
 
 void WriteIdentificationJson(const std::filesystem::path& file, const Identification& id,
@@ -222,7 +215,7 @@ void WriteIdentificationJson(const std::filesystem::path& file, const Identifica
       {"encoder", {{"step_m", id.encoder.step_m}, {"noise_m", id.encoder.noise_m}}},
       {"overlay", Overlay(id)},
   };
-  WriteText(file, all.dump() + "\n");
+  WriteWholeFile(file, all.dump() + "\n");
 }
 
 std::string ResultTable(const Identification& id, const ModelConfig& before, const ModelConfig& after) {

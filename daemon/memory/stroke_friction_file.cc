@@ -1,16 +1,11 @@
 #include "daemon/memory/stroke_friction_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
-#include <stdexcept>
 
+#include "config/whole_file.h"
 #include "config/yaml_reader.h"
 #include "config/yaml_tree.h"
 #include "config/yaml_writer.h"
@@ -69,34 +64,6 @@ std::string ChecksumOf(std::string_view text) {
   return hex.data();
 }
 
-[[noreturn]] void Fail(const std::string& what, const fs::path& file) {
-  throw std::runtime_error(what + " " + file.string() + ": " + std::strerror(errno));
-}
-
-/// All of it is on the disk when this returns.
-void WriteToDisk(const fs::path& file, const std::string& text) {
-  const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) Fail("cannot write", file);
-  std::size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t n = write(fd, text.data() + written, text.size() - written);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int error = errno;
-      close(fd);
-      unlink(file.c_str());
-      errno = error;
-      Fail("cannot write", file);
-    }
-    written += static_cast<std::size_t>(n);
-  }
-  const bool synced = fsync(fd) == 0;
-  if (close(fd) != 0 || !synced) {
-    unlink(file.c_str());
-    Fail("cannot write", file);
-  }
-}
-
 std::string Read(const fs::path& file, const MappedAxis& axis, std::vector<StrokeFriction::Step>& steps) {
   const std::string text = ReadTextFile(file.string());
   const std::size_t last = text.rfind(kChecksumKey);
@@ -151,16 +118,7 @@ void WriteStrokeFriction(const fs::path& file, const MappedAxis& axis,
       WriteYaml(c);
   std::error_code made;
   fs::create_directories(file.parent_path(), made);
-  fs::path beside = file;
-  beside += ".new";
-  WriteToDisk(beside, body + std::string(kChecksumKey) + ChecksumOf(body) + "\n");
-  if (std::rename(beside.c_str(), file.c_str()) != 0) Fail("cannot put in place", file);
-  // The new name must outlive a power failure, too.
-  const int directory = open(file.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory >= 0) {
-    fsync(directory);
-    close(directory);
-  }
+  WriteWholeFile(file, body + std::string(kChecksumKey) + ChecksumOf(body) + "\n");
 }
 
 StrokeFrictionRead ReadStrokeFriction(const fs::path& file, const MappedAxis& axis) {

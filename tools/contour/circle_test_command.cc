@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -17,6 +16,7 @@
 #include "analysis/circle_test/circle_model.h"
 #include "analysis/recording/csv_table.h"
 #include "config/config_error.h"
+#include "config/whole_file.h"
 #include "config/yaml_writer.h"
 #include "tools/machine/load_emulated_machine.h"
 
@@ -125,11 +125,8 @@ void Say(const CircleTestResult& found, const Axes& axes) {
 
 void Write(const Options& o, const std::string& name, const ModelConfig& model) {
   const std::filesystem::path file = std::filesystem::path(o.out) / (name + ".yaml");
-  std::ofstream out(file, std::ios::binary);
-  out << "# The model of axis " << name << " of " << o.machine << ", with what a measured circle told.\n"
-      << WriteYaml(model);
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
+  WriteWholeFile(file, "# The model of axis " + name + " of " + o.machine +
+                           ", with what a measured circle told.\n" + WriteYaml(model));
   std::cout << "wrote " << file.string() << "\n";
 }
 

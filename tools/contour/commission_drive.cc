@@ -1,7 +1,6 @@
 #include "tools/contour/commission_drive.h"
 
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include "analysis/drive_loop/drive_response.h"
 #include "analysis/drive_loop/report_noise.h"
 #include "config/loop_axis.h"
+#include "config/whole_file.h"
 #include "core/exit_status.h"
 #include "core/two_inertia_axis.h"
 #include "design/drive_fit.h"
@@ -92,10 +92,7 @@ int ReportOnDrive(const MachineConfig& machine, const std::string& name,
   if (axis.loop)
     report.torque_mode_peak_m = ReportOn(LoopAxisOf(axis), *axis.loop, period_s).verdict.step.peak_m;
   std::cout << Describe(report) << Advice(report);
-  std::ofstream out(file);
-  out << ToJson(report, response, period_s).dump(2) << "\n";
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
+  WriteWholeFile(file, ToJson(report, response, period_s).dump(2) + "\n");
   std::cout << "wrote " << file.string() << "\n";
   return kExitDone;
 }

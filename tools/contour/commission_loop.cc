@@ -1,6 +1,5 @@
 #include "tools/contour/commission_loop.h"
 
-#include <fstream>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -8,6 +7,7 @@
 #include "analysis/parallel/parallel_for.h"
 #include "config/friction_choice.h"
 #include "config/loop_axis.h"
+#include "config/whole_file.h"
 #include "config/yaml_writer.h"
 #include "design/find_loop.h"
 #include "design/loop_report.h"
@@ -16,30 +16,6 @@
 #include "tools/contour/ends_at_once.h"
 
 namespace contour {
-
-namespace {
-
-/// Beside it first: whatever ends the process, no half a file stands under that name.
-void WriteWhole(const std::filesystem::path& file, const std::string& text) {
-  // Not what is no file: /dev/null stays a device.
-  if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
-    std::ofstream out(file, std::ios::binary);
-    out << text << std::flush;
-    if (!out) throw std::runtime_error("cannot write " + file.string());
-    return;
-  }
-  // Where a link leads, not in its place.
-  const std::filesystem::path target = std::filesystem::weakly_canonical(file);
-  std::filesystem::path beside = target;
-  beside += ".new";
-  std::ofstream out(beside, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + beside.string());
-  std::filesystem::rename(beside, target);
-}
-
-}  // namespace
 
 void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, const ModelConfig& model,
                       const std::filesystem::path& file, const char* interrupted) {
@@ -63,8 +39,8 @@ void FindAndWriteLoop(const MachineConfig& machine, const std::string& axis, con
     return;
   }
   ends.reset();
-  WriteWhole(file, "# Found by contour from the model of axis " + axis + ": axes." + axis +
-                       ".loop of a machine file, or its file.\n" + WriteYaml(found.tuning));
+  WriteWholeFile(file, "# Found by contour from the model of axis " + axis + ": axes." + axis +
+                           ".loop of a machine file, or its file.\n" + WriteYaml(found.tuning));
   std::cout << "wrote " << file.string() << "\n";
 }
 

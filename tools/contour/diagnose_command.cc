@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -31,6 +30,7 @@
 #include "config/key_hints.h"
 #include "config/load_machine.h"
 #include "config/number_text.h"
+#include "config/whole_file.h"
 #include "daemon/program/program.h"
 #include "tools/contour/terminal_progress.h"
 #include "tools/contour_gain/contour_gain.h"
@@ -77,19 +77,12 @@ AxisLog ReadLogs(const Options& options, const StatedAxis& stated) {
   return JoinLogs(std::move(logs));
 }
 
-void WriteFile(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
-}
-
 /// The extended model beside the report; its name, or nothing when there is none.
 std::string WriteExtendedModel(const Options& options, const Diagnosis& found, const AxisLog& log) {
   const std::string text = ExtendedFile(options.model, options.axis, found, log);
   if (text.empty()) return "";
   const std::string file = (std::filesystem::path(options.out) / "extended_model.yaml").string();
-  WriteFile(file, text);
+  WriteWholeFile(file, text);
   return file;
 }
 
@@ -168,10 +161,10 @@ int RunDiagnose(const Options& options) {
   std::cout << DiagnosisText(found);
   if (contour) std::cout << PredictionText(*contour);
   if (!extended.empty()) std::cout << "Model with what was found: " << extended << "\n";
-  if (!options.json.empty()) WriteFile(options.json, json);
+  if (!options.json.empty()) WriteWholeFile(options.json, json);
   if (!options.out.empty()) {
     const std::filesystem::path out = options.out;
-    WriteFile(out / "diagnose.json", json);
+    WriteWholeFile(out / "diagnose.json", json);
     WriteReport(out, log, stated, found, extended, contour);
     std::cout << "Report: " << (out / "report.html").string() << "\n";
   }

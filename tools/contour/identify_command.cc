@@ -1,7 +1,6 @@
 #include "tools/contour/identify_command.h"
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -18,6 +17,7 @@
 #include "analysis/rough_fit/sound_logs.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
+#include "config/whole_file.h"
 #include "config/yaml_tree.h"
 #include "tools/contour/identification_report.h"
 
@@ -76,10 +76,7 @@ int IdentifyAlone(const Options& options, const diagnosis::StatedAxis& stated) {
                      options.model + ".\n# uncertainty: relative, one standard deviation.\n";
   for (const std::string& note : found.notes) text += "# Note: " + note + "\n";
   text += diagnosis::TextOf(file, units);
-  std::ofstream out(options.out, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + options.out);
+  WriteWholeFile(options.out, text);
   std::cout << text << "wrote " << options.out << "\n";
   if (!options.report.empty()) std::cout << "no report: it is for ball screws\n";
   return kExitDone;

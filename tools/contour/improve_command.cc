@@ -4,7 +4,6 @@
 #include <atomic>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "analysis/prediction_error/keep_memory.h"
 #include "config/axis_block.h"
 #include "config/config_error.h"
+#include "config/whole_file.h"
 #include "config/yaml_tree.h"
 #include "config/yaml_writer.h"
 #include "daemon/program/program.h"
@@ -53,13 +53,6 @@ struct Options {
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 void OnSignal(int /*signal*/) { stop_requested.store(true); }
-
-void WriteFile(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
-}
 
 ProgramText FromFile(const std::string& file) {
   return {fs::path(file).filename().string(), ReadTextFile(file), FormatOf(file)};
@@ -135,8 +128,8 @@ void WriteResult(const improve::ImproveResult& result, const improve::ImproveReq
                  const improve::TruthFiles& truth, const Options& options) {
   const fs::path report = options.report.empty() ? options.axis + "_improve" : options.report;
   fs::create_directories(report);
-  WriteFile(report / "improve.json", improve::ImproveJson(result, request, truth));
-  WriteFile(report / "diagnosis.txt", diagnosis::DiagnosisText(result.diagnosed.back().found));
+  WriteWholeFile(report / "improve.json", improve::ImproveJson(result, request, truth));
+  WriteWholeFile(report / "diagnosis.txt", diagnosis::DiagnosisText(result.diagnosed.back().found));
   const auto drawn = [&](const char* name, const std::vector<improve::Drawing>& drawings) {
     if (!drawings.empty())
       improve::WriteDrawing(report / (std::string(name) + ".csv"), drawings.back(), request.space.names);
@@ -152,11 +145,11 @@ void WriteResult(const improve::ImproveResult& result, const improve::ImproveReq
   if (best != nullptr && result.judgement.keep) {
     const std::string out = options.out.empty() ? options.axis + "_model.yaml" : options.out;
     const std::string model = WriteYaml(best->model);
-    WriteFile(out, "# model of axis " + options.axis + " by contour improve\n" + model);
+    WriteWholeFile(out, "# model of axis " + options.axis + " by contour improve\n" + model);
     std::cout << "model: " << out << "; contourd runs with it until it ends\n";
     if (!options.write.empty()) {
-      WriteFile(options.write,
-                WithAxisBlock(ReadTextFile(options.write), options.write, options.axis, "model", model));
+      WriteWholeFile(options.write,
+                     WithAxisBlock(ReadTextFile(options.write), options.write, options.axis, "model", model));
       std::cout << "wrote axes." << options.axis << ".model of " << options.write << "\n";
     }
     FindLoopWhereItIsNoLongerGood(result.machine, options.axis, best->model,

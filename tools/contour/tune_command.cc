@@ -5,13 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 
 #include "analysis/parallel/parallel_for.h"
 #include "config/config_error.h"
+#include "config/whole_file.h"
 #include "core/exit_status.h"
 #include "tools/contour/tune_loops.h"
 #include "tools/validation/contest/contest_plan.h"
@@ -75,12 +75,9 @@ int RunTune(const Options& options) {
     Print(results.back());
   }
   const std::vector<std::string> axes = AxisNames(LoadEmulatedMachine(options.config).machine);
-  std::ofstream out(options.out, std::ios::binary);
-  out << "# Tuned by `contour tune`, " << evaluations
-      << " evaluations each: to be merged into the machine file.\n"
-      << TunedYaml(results, axes);
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + options.out);
+  WriteWholeFile(options.out, "# Tuned by `contour tune`, " + std::to_string(evaluations) +
+                                  " evaluations each: to be merged into the machine file.\n" +
+                                  TunedYaml(results, axes));
   std::cout << "wrote " << options.out << "\n";
   return kExitDone;
 }

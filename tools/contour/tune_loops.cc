@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
 
@@ -11,6 +10,7 @@
 #include "config/config_error.h"
 #include "config/loop_axis.h"
 #include "config/mode_advice.h"
+#include "config/whole_file.h"
 #include "config/yaml_tree.h"
 #include "config/yaml_writer.h"
 #include "core/exit_status.h"
@@ -135,10 +135,7 @@ int TuneLoops(const TuneLoopsOptions& options) {
     return kExitFailed;
   }
   if (options.out.empty()) return kExitDone;
-  std::ofstream out(options.out, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + options.out);
+  WriteWholeFile(options.out, text);
   std::cout << "wrote " << options.out << "\n";
   return kExitDone;
 }

@@ -52,18 +52,6 @@ TEST_F(StrokeFrictionFileTest, ReadsBackWhatWasWritten) {
   EXPECT_EQ(std::distance(fs::directory_iterator(directory_), fs::directory_iterator()), 1);
 }
 
-TEST_F(StrokeFrictionFileTest, AFailedWriteLeavesTheOldOneInPlace) {
-  WriteStrokeFriction(file_, kAxis, steps_);
-  const std::string before = Text();
-  // What it is written to first cannot be opened as a file.
-  fs::path beside = file_;
-  beside += ".new";
-  fs::create_directory(beside);
-  steps_[0].forward = 0.1;
-  EXPECT_THROW(WriteStrokeFriction(file_, kAxis, steps_), std::runtime_error);
-  EXPECT_EQ(Text(), before);
-}
-
 TEST_F(StrokeFrictionFileTest, RefusesWhatIsDamaged) {
   WriteStrokeFriction(file_, kAxis, steps_);
   const std::string whole = Text();

@@ -9,6 +9,7 @@
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/diagnose.h"
+#include "config/whole_file.h"
 #include "tools/validation/hidden/draw_setting.h"
 #include "tools/validation/hidden/hide_effect.h"
 #include "tools/validation/hidden/record_case.h"
@@ -101,12 +102,7 @@ KnownCase RecordCase(const Question& question, const std::filesystem::path& dire
     std::filesystem::remove(directory / "log.lcm");
   }
   // Last, and in one step: its presence says that the case is complete.
-  const std::filesystem::path unfinished = directory / "truth.json.new";
-  std::ofstream out(unfinished);
-  out << ToJson(known).dump(1) << '\n';
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + unfinished.string());
-  std::filesystem::rename(unfinished, directory / kTruthFile);
+  WriteWholeFile(directory / kTruthFile, ToJson(known).dump(1) + "\n");
   return known;
 }
 
