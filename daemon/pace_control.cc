@@ -5,12 +5,18 @@
 #include <string>
 
 #include "config/number_text.h"
+#include "daemon/program/motion_plan.h"
 #include "daemon/program/path_walk.h"
 
 namespace contour {
 namespace {
 
 constexpr double kLargestFeed_percent = 100.0 * PathWalk::kLargestScale;
+
+/// Such a program is refused, too. At 0 percent it rests, which is said.
+bool TakesYears(double program_s, double feed_percent) {
+  return feed_percent > 0.0 && program_s > kLongestProgram_s * 0.01 * feed_percent;
+}
 
 }  // namespace
 
@@ -23,6 +29,11 @@ Answer PaceControl::Change(const PaceRequest& request, const CycleRecord& now) {
       !(*request.feed_percent >= 0.0 && *request.feed_percent <= kLargestFeed_percent))
     return {false, "found " + RoundedText(*request.feed_percent) + " percent, expected 0 to " +
                        RoundedText(kLargestFeed_percent)};
+  if (running && request.feed_percent &&
+      TakesYears(pump_.program_duration().duration_s - now.path_time_s, *request.feed_percent))
+    return {false, "at " + NumberText(*request.feed_percent) +
+                       " percent of its feed the rest of the program would take more than three years; 0 "
+                       "percent holds it"};
   const std::lock_guard lock(mutex_);
   if (request.feed_percent) {
     feed_percent_ = *request.feed_percent;

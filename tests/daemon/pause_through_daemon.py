@@ -90,6 +90,9 @@ def check_pause(operator, circle):
     assert refused.returncode == 1 and "Running" in refused.stderr, refused.stderr
     assert operator.call("feed", "201").returncode == 1
     assert "runs at 100 percent of its feed, not at 120" in operator.ask("feed", "120"), "a circle is as fast as it is"
+    slow = operator.call("feed", "1e-9")
+    assert slow.returncode == 1 and "more than three years" in slow.stderr, slow.stderr
+    assert operator.status()["program"]["feed_percent"] == 120, "what is refused changes nothing"
     operator.ask("feed", "40")
     operator.ask("pause")
     again = operator.status()
