@@ -12,6 +12,7 @@
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/verdict.h"
+#include "analysis/diagnosis/quantification/displacements.h"
 #include "analysis/diagnosis/quantification/follow_play.h"
 #include "analysis/diagnosis/quantification/quantify.h"
 #include "analysis/diagnosis/quantification/written_model.h"
@@ -99,6 +100,7 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   Say(options, "errors of the models", 1.0);
   DescribeModel(problem, nominal.fit, fit, rounds.accepted, left[0].score > left[0].asked, out);
   Conclude(problem, left, out);
+  TellDisplacements(problem, nominal.fit.point, out);
   KeepStatedWhereBetter(stated, out);
   if (out.verdict == Verdict::kUnexplained && out.causes.empty()) out.causes = std::move(rounds.leading);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)
