@@ -71,14 +71,16 @@ KeyParts SplitUnit(std::string_view key) {
   std::size_t first = tokens.size();
   // "per" written out belongs to the unit, with what is counted before it: counts_per_rev, degC_per_count.
   // What is not counted but is a quantity of its own stays a stem: order_per_rev. Where more follows, it is
-  // the name that has it: torque_per_acceleration_Nms2_m.
+  // the name that has it: torque_per_acceleration_Nms2_m, amplitude_once_per_turn_um.
   const auto per = std::find(tokens.begin(), tokens.end(), "per");
   if (tokens.end() - per == 2 && per != tokens.begin()) {
     first = static_cast<std::size_t>(per - tokens.begin());
     const std::string_view before = tokens[first - 1];
     if (before == "counts" || FindUnit(before) != nullptr) --first;
   } else {
-    while (first > 1 && (FindUnit(tokens[first - 1]) != nullptr || IsInverse(tokens, first - 1))) --first;
+    while (first > 1 && tokens[first - 2] != "per" &&
+           (FindUnit(tokens[first - 1]) != nullptr || IsInverse(tokens, first - 1)))
+      --first;
   }
   KeyParts parts;
   for (std::size_t i = 0; i < tokens.size(); ++i) {

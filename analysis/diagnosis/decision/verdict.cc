@@ -29,14 +29,15 @@ std::string NearestText(const std::vector<Cause>& causes) {
   return text + ".";
 }
 
-/// Whether the unseen part of the log says plainly that the model is worse with it.
-bool DoesHarm(const Cause& c) { return c.heldout_gain_high < 0.0; }
+/// Whether the unseen part of the log says plainly that the model is worse with it. A factor on all forces
+/// moves nothing that it could harm.
+bool DoesHarm(const Cause& c) { return c.heldout_gain_high < 0.0 && !CauseNamed(c.kind).common_factor; }
 
-/// Of those that do; empty where none does. A factor on all forces moves nothing that it could harm.
+/// Of those that do; empty where none does.
 std::string HarmfulText(const std::vector<Cause>& causes) {
   std::string kinds;
   for (const Cause& c : causes)
-    if (!Outside(c.kind) && DoesHarm(c) && !CauseNamed(c.kind).common_factor)
+    if (!Outside(c.kind) && DoesHarm(c))
       kinds += (kinds.empty() ? "" : ", ") + c.kind;
   return kinds.empty() ? kinds
                        : "Part of what is missing looks like " + kinds +

@@ -34,6 +34,9 @@ TEST(KindWords, AParametersWordsHaveNoUnit) {
   EXPECT_EQ(ParameterWords("time_constant_s"), "time constant");
   EXPECT_EQ(ParameterWords("torque_per_acceleration_Nms2_m"), "torque per acceleration");
   EXPECT_EQ(ParameterWords("friction_per_torque_rel"), "friction per torque");
+  // Before: "amplitude once per", in "turn/um".
+  EXPECT_EQ(ParameterWords("amplitude_once_per_turn_um"), "amplitude once per turn");
+  EXPECT_EQ(ValueWords("amplitude_once_per_turn_um", 33.0), "33 um");
 }
 
 TEST(KindWords, EveryKindHasWords) {

@@ -75,6 +75,15 @@ TEST_F(VerdictTest, WhatDoesHarmUnseenIsNoCauseAndNotNothing) {
   EXPECT_TRUE(named.notes.empty());
 }
 
+/// Before: a motor that gives three quarters of its torque was not told at all, beside a wrong pitch error.
+TEST_F(VerdictTest, AFactorOnAllForcesHarmsNothing) {
+  Diagnosis found = Named({{"torque_constant", 600.0}, {"cogging", 100.0}});
+  found.causes[0].heldout_gain_high = -0.001;
+  const Diagnosis d = Concluded(found, {Of("time", 5.0)});
+  ASSERT_EQ(d.causes.size(), 2u);
+  EXPECT_EQ(d.causes[0].kind, "torque_constant");
+}
+
 TEST_F(VerdictTest, WhatIsLeftWithoutACauseIsUnexplained) {
   const Diagnosis d = Concluded({}, {Of("the position and the direction", 40.0)});
   EXPECT_EQ(d.verdict, Verdict::kUnexplained);
