@@ -37,8 +37,7 @@ bool DoesHarm(const Cause& c) { return c.heldout_gain_high < 0.0 && !CauseNamed(
 std::string HarmfulText(const std::vector<Cause>& causes) {
   std::string kinds;
   for (const Cause& c : causes)
-    if (!Outside(c.kind) && DoesHarm(c))
-      kinds += (kinds.empty() ? "" : ", ") + c.kind;
+    if (!Outside(c.kind) && DoesHarm(c)) kinds += (kinds.empty() ? "" : ", ") + c.kind;
   return kinds.empty() ? kinds
                        : "Part of what is missing looks like " + kinds +
                              ", but parts of the log that its fit has not seen are worse with it.";
