@@ -80,8 +80,16 @@ void WriteWholeFile(const fs::path& file, std::string_view text) {
   const int fd = OpenBeside(target, beside);
   if (fd < 0 && there && (errno == EACCES || errno == EPERM)) return WriteInPlace(target, text);
   if (fd < 0) Fail(file, errno);
-  struct stat old {};
-  int error = stat(target.c_str(), &old) == 0 && fchmod(fd, old.st_mode & kPermissions) != 0 ? errno : 0;
+  int error = 0;
+  if (struct stat old{}; there && stat(target.c_str(), &old) == 0) {
+    // Somebody else's file stays theirs.
+    if (fchown(fd, old.st_uid, old.st_gid) != 0) {
+      close(fd);
+      unlink(beside.c_str());
+      return WriteInPlace(target, text);
+    }
+    if (fchmod(fd, old.st_mode & kPermissions) != 0) error = errno;
+  }
   const int written = WriteAndClose(fd, text);
   if (error == 0) error = written;
   if (error == 0 && std::rename(beside.c_str(), target.c_str()) != 0) error = errno;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -92,6 +93,19 @@ TEST_F(WholeFile, PermissionsStay) {
   fs::permissions(file_, fs::perms::owner_read | fs::perms::owner_write);
   WriteWholeFile(file_, "new\n");
   EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(WholeFile, TheOwnerStays) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root writes somebody else's file";
+  WriteWholeFile(file_, "old\n");
+  constexpr uid_t kSomebody = 12345;
+  ASSERT_EQ(chown(file_.c_str(), kSomebody, kSomebody), 0);
+  WriteWholeFile(file_, "new\n");
+  struct stat now {};
+  ASSERT_EQ(stat(file_.c_str(), &now), 0);
+  EXPECT_EQ(now.st_uid, kSomebody);
+  EXPECT_EQ(now.st_gid, kSomebody);
+  EXPECT_EQ(ReadText(file_), "new\n");
 }
 
 TEST_F(WholeFile, ADeviceStaysADevice) {
