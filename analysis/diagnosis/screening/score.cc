@@ -98,6 +98,17 @@ void LeaveOutRunaways(std::vector<double>& column, std::size_t rows) {
   }
 }
 
+double DropAlongBase(const Eigen::MatrixXd& information, const Eigen::MatrixXd& square,
+                     const Eigen::VectorXd& gradient) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> left(information, square);
+  if (left.info() != Eigen::Success) return 0.0;
+  double drop = 0.0;
+  for (Eigen::Index i = 0; i < gradient.size() && left.eigenvalues()(i) < kScreening.negligible_share; ++i)
+    if (left.eigenvalues()(i) > 0.0)
+      drop += std::pow(left.eigenvectors().col(i).dot(gradient), 2) / left.eigenvalues()(i);
+  return drop;
+}
+
 double Penalty(const Effect& effect) {
   return kScreening.penalty_per_amplitude * static_cast<double>(effect.steps.size()) +
          2.0 * std::log(std::max(1.0, effect.grid));
@@ -245,6 +256,7 @@ class Scorer {
     s.within_blocks = WithinBlocks(s.per_block, s.covariance);
     // What the base can nearly do itself frees it from its priors and no more.
     if (nearly_base) s.drop = std::min(s.drop, 2.0 * fit_.prior);
+    if (n > 1) s.drop -= std::max(0.0, DropAlongBase(information, square, gradient) - 2.0 * fit_.prior);
     if (InBase(problem_, effect->kind)) {
       // A number of the base already: the evidence is in the prior and not in the blocks.
       s.per_block.setZero();

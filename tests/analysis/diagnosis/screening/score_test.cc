@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <span>
 #include <string>
@@ -43,6 +44,21 @@ TEST(Score, RowsThatRunAwaySayNothingAndTheOthersStay) {
   std::vector<double> nothing(100, 0.0);
   LeaveOutRunaways(nothing, nothing.size());
   EXPECT_EQ(nothing, std::vector<double>(100, 0.0));
+}
+
+// Two waves, of which the base nearly does the first: a millionth of its information is left, and a gradient
+// that a fit short of its end left there. Before: the score of a pitch error beside an eccentricity was 35
+// times what it explains alone, and neither was told as what the log cannot tell from the other.
+TEST(Score, OfWhatTheBaseNearlyDoesOnlyTheRestCounts) {
+  Eigen::MatrixXd square(2, 2), information(2, 2);
+  square << 4.0, 0.4, 0.4, 9.0;
+  const Eigen::MatrixXd all = square.llt().matrixL();
+  information = all * Eigen::Vector2d(1e-6, 0.8).asDiagonal() * all.transpose();
+  const Eigen::Vector2d along_base = all * Eigen::Vector2d(0.3, 0.0), rest = all * Eigen::Vector2d(0.0, 5.0);
+  EXPECT_NEAR(DropAlongBase(information, square, along_base), 0.09 / 1e-6, 1.0);
+  EXPECT_NEAR(DropAlongBase(information, square, along_base + rest), 0.09 / 1e-6, 1.0);
+  EXPECT_NEAR(DropAlongBase(information, square, rest), 0.0, 1e-3);
+  EXPECT_EQ(DropAlongBase(square, square, along_base + rest), 0.0);
 }
 
 // A place where the response grows for more than a block's length, of two outputs, over what is everywhere.
