@@ -62,8 +62,7 @@ void LeaveOutRunaways(std::vector<double>& column, std::size_t rows);
 
 /// Of the drop of an effect of several columns, what comes from directions that the base can nearly do
 /// itself: next to no information is left of them, so that what little a fit is short of its end by, divided
-/// by it, is any number. `information`: of the columns once the base has taken its part; `square`: without
-/// it.
+/// by it, is any number. `information`: of the columns once the base has taken its part; `square`: before.
 double DropAlongBase(const Eigen::MatrixXd& information, const Eigen::MatrixXd& square,
                      const Eigen::VectorXd& gradient);
 
