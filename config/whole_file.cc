@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
@@ -17,7 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr mode_t kPermissions = 07777;
-constexpr mode_t kUsualMode = 0666;  // less the umask, as for every new file
+constexpr mode_t kUsualMode = 0666;       // less the umask, as for every new file
+constexpr int kMostLinks = 40;            // as many as Linux follows
+constexpr std::size_t kMostOfName = 200;  // of the 255 bytes of a name
 
 [[noreturn]] void Fail(const fs::path& file, int error) {
   throw std::runtime_error("cannot write " + file.string() + ": " + std::strerror(error));
@@ -46,7 +49,9 @@ void WriteInPlace(const fs::path& file, std::string_view text) {
 /// A new file beside `target`, with a name of its own; -1 and errno where there can be none.
 int OpenBeside(const fs::path& target, std::string& beside) {
   static std::atomic<unsigned> count{0};
-  const std::string stem = target.string() + "." + std::to_string(getpid()) + ".";
+  // What is added to the name must fit, too.
+  const std::string name = target.filename().string().substr(0, kMostOfName);
+  const std::string stem = (target.parent_path() / name).string() + "." + std::to_string(getpid()) + ".";
   int fd = -1;
   do {
     beside = stem + std::to_string(++count) + ".new";
@@ -55,10 +60,35 @@ int OpenBeside(const fs::path& target, std::string& beside) {
   return fd;
 }
 
-/// /dev/stdout and its like lead to a file that somebody else has open.
+/// Where no file can be put in another's place, though that one may be written to: a directory that takes no
+/// new one, a file that something is mounted on.
+bool TakesNoOther(int error) {
+  return error == EACCES || error == EPERM || error == EROFS || error == EBUSY || error == EXDEV;
+}
+
+/// /dev/stdout and its like lead to a file that somebody else has open. /dev/shm holds files as any other.
 bool OfTheSystem(const fs::path& file) {
-  const std::string name = fs::absolute(file).lexically_normal().string();
-  return name.starts_with("/dev/") || name.starts_with("/proc/");
+  const std::string name = file.string();
+  return (name.starts_with("/dev/") && !name.starts_with("/dev/shm/")) || name.starts_with("/proc/");
+}
+
+/// The file that a name leads to, whether it is there or not; one of the system is not looked behind.
+fs::path LedTo(const fs::path& file) {
+  fs::path at = fs::absolute(file);
+  for (int links = 0; links < kMostLinks; ++links) {
+    at = fs::weakly_canonical(at.parent_path()) / at.filename();
+    std::error_code unknown;
+    if (OfTheSystem(at) || !fs::is_symlink(fs::symlink_status(at, unknown))) return at;
+    // A target that begins at the root replaces the directory.
+    at = at.parent_path() / fs::read_symlink(at);
+  }
+  Fail(file, ELOOP);
+}
+
+/// Of a file that is there: whether another may take its place.
+bool MayBeReplaced(const fs::path& target) {
+  struct stat old {};
+  return !OfTheSystem(target) && stat(target.c_str(), &old) == 0 && S_ISREG(old.st_mode) && old.st_nlink == 1;
 }
 
 /// The new name must outlive a power failure, too.
@@ -72,16 +102,18 @@ void SyncDirectory(const fs::path& directory) {
 }  // namespace
 
 void WriteWholeFile(const fs::path& file, std::string_view text) {
-  std::error_code unknown;
-  const bool there = fs::exists(file, unknown);
-  if (there && (OfTheSystem(file) || !fs::is_regular_file(file, unknown))) return WriteInPlace(file, text);
-  const fs::path target = fs::weakly_canonical(file);
+  const fs::path target = LedTo(file);
+  struct stat old {};
+  const bool there = stat(target.c_str(), &old) == 0;
+  // A file that nobody may write to stays as it is, whatever its directory takes.
+  if (there && faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) Fail(file, errno);
+  if (there && !MayBeReplaced(target)) return WriteInPlace(target, text);
   std::string beside;
   const int fd = OpenBeside(target, beside);
-  if (fd < 0 && there && (errno == EACCES || errno == EPERM)) return WriteInPlace(target, text);
+  if (fd < 0 && there && TakesNoOther(errno)) return WriteInPlace(target, text);
   if (fd < 0) Fail(file, errno);
   int error = 0;
-  if (struct stat old{}; there && stat(target.c_str(), &old) == 0) {
+  if (there) {
     // Somebody else's file stays theirs.
     if (fchown(fd, old.st_uid, old.st_gid) != 0) {
       close(fd);
@@ -95,6 +127,7 @@ void WriteWholeFile(const fs::path& file, std::string_view text) {
   if (error == 0 && std::rename(beside.c_str(), target.c_str()) != 0) error = errno;
   if (error != 0) {
     unlink(beside.c_str());
+    if (there && TakesNoOther(error)) return WriteInPlace(target, text);
     Fail(file, error);
   }
   SyncDirectory(target.parent_path());

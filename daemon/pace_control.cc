@@ -7,6 +7,7 @@
 #include "config/number_text.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/path_walk.h"
+#include "daemon/program/program.h"
 
 namespace contour {
 namespace {
@@ -14,8 +15,9 @@ namespace {
 constexpr double kLargestFeed_percent = 100.0 * PathWalk::kLargestScale;
 
 /// Such a program is refused, too. At 0 percent it rests, which is said.
-bool TakesYears(double program_s, double feed_percent) {
-  return feed_percent > 0.0 && program_s > kLongestProgram_s * 0.01 * feed_percent;
+std::string YearsText(double feed_percent, const std::string& what) {
+  return "at " + NumberText(feed_percent) + " percent of its feed " + what +
+         " would take more than three years";
 }
 
 }  // namespace
@@ -30,10 +32,8 @@ Answer PaceControl::Change(const PaceRequest& request, const CycleRecord& now) {
     return {false, "found " + RoundedText(*request.feed_percent) + " percent, expected 0 to " +
                        RoundedText(kLargestFeed_percent)};
   if (running && request.feed_percent &&
-      TakesYears(pump_.program_duration().duration_s - now.path_time_s, *request.feed_percent))
-    return {false, "at " + NumberText(*request.feed_percent) +
-                       " percent of its feed the rest of the program would take more than three years; 0 "
-                       "percent holds it"};
+      TakesYears(pump_.program_duration().duration_s - now.path_time_s, 0.01 * *request.feed_percent))
+    return {false, YearsText(*request.feed_percent, "the rest of the program") + "; 0 percent holds it"};
   const std::lock_guard lock(mutex_);
   if (request.feed_percent) {
     feed_percent_ = *request.feed_percent;
@@ -52,6 +52,13 @@ double PaceControl::Begin(bool may_exceed) {
   paused_ = false;
   may_exceed_ = may_exceed;
   return 0.01 * feed_percent_;
+}
+
+void PaceControl::RefuseYears(const std::string& program, double program_s) const {
+  const std::lock_guard lock(mutex_);
+  if (!TakesYears(program_s, 0.01 * feed_percent_)) return;
+  throw ProgramError(program + ": " + YearsText(feed_percent_, "the program") +
+                     "; contour feed sets another, 0 percent holds it");
 }
 
 std::string PaceControl::Note() const {

@@ -18,6 +18,8 @@ class PaceControl {
 
   /// `now`: the newest record.
   Answer Change(const PaceRequest& request, const CycleRecord& now);
+  /// Throws ProgramError where a program that takes so long at its own feed would take years at the one set.
+  void RefuseYears(const std::string& program, double program_s) const;
   /// A program begins: the feed for it, 1 as programmed. `may_exceed`: it can be more than that.
   [[nodiscard]] double Begin(bool may_exceed);
   /// What operators should know of the feed of the program that began last; empty: it is as they want it.

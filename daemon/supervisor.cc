@@ -315,6 +315,7 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
         *found.place, limits, {referenced, part, events});
     auto generator = std::make_unique<PathGenerator>(PlanPlaced(program, *found.place, limits), limits,
                                                      cycle_us_ * 1e-6, ++program_id_);
+    pace_.RefuseYears(upload.name, EstimatedDuration_s(*generator->plan()));
     // Planning takes its time; nothing is learnt, noted or supplied for nobody.
     if (unwanted.stop_requested()) return {false, kUnwanted};
     parts_.pump.AwaitShown(now.cycle, kPumpTimeout);

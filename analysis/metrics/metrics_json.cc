@@ -1,8 +1,8 @@
 #include "analysis/metrics/metrics_json.h"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+
+#include "config/whole_file.h"
 
 namespace contour {
 namespace {
@@ -53,10 +53,7 @@ std::string MetricsJson(const RunFacts& facts, const RunMetrics& metrics) {
 }
 
 void WriteMetrics(const std::filesystem::path& file, const RunFacts& facts, const RunMetrics& metrics) {
-  std::ofstream out(file, std::ios::binary);
-  out << MetricsJson(facts, metrics);
-  out.close();
-  if (!out) throw std::runtime_error(file.string() + ": cannot be written");
+  WriteWholeFile(file, MetricsJson(facts, metrics));
 }
 
 }  // namespace contour

@@ -96,6 +96,18 @@ class MotionPlan {
   [[nodiscard]] virtual bool feed_may_change() const { return false; }
 };
 
+/// Of all of it at its own feed; of G-code that is not planned yet, from its feeds and lengths.
+[[nodiscard]] inline double EstimatedDuration_s(const MotionPlan& plan) {
+  const auto walk = plan.Walk();
+  return walk ? walk->ProgramDuration().duration_s : plan.duration_s();
+}
+
+/// Whether what takes so long at its own feed takes longer than programs may at this one (1 as programmed).
+/// At feed 0 it rests.
+[[nodiscard]] constexpr bool TakesYears(double program_s, double feed) {
+  return feed > 0.0 && program_s > kLongestProgram_s * feed;
+}
+
 /// Places a program where the machine stands and checks it against the limits: position range, velocity,
 /// acceleration, run-up, torque. Throws ProgramError naming axis, value and limit.
 std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAxis<double>& start_m,

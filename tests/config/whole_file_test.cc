@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -86,6 +87,84 @@ TEST_F(WholeFile, ALinkStaysALink) {
   WriteWholeFile(link, "new\n");
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(ReadText(file_), "new\n");
+}
+
+TEST_F(WholeFile, ALinkToWhereNothingIsYetStaysOne) {
+  const fs::path link = directory_ / "link.yaml", second = directory_ / "second.yaml";
+  fs::create_directory(directory_ / "inner");
+  fs::create_symlink("inner/model.yaml", link);
+  fs::create_symlink(link, second);
+  WriteWholeFile(second, "new\n");
+  EXPECT_TRUE(fs::is_symlink(link) && fs::is_symlink(second));
+  EXPECT_EQ(ReadText(directory_ / "inner" / "model.yaml"), "new\n");
+  fs::create_symlink("a", directory_ / "b");
+  fs::create_symlink("b", directory_ / "a");
+  EXPECT_THROW(WriteWholeFile(directory_ / "a", "x"), std::runtime_error);
+}
+
+TEST_F(WholeFile, BothNamesOfAFileShowIt) {
+  WriteWholeFile(file_, "old\n");
+  fs::create_hard_link(file_, directory_ / "other.yaml");
+  WriteWholeFile(file_, "new\n");
+  EXPECT_EQ(ReadText(directory_ / "other.yaml"), "new\n");
+}
+
+TEST_F(WholeFile, ANameIsTakenFromWhereTheProcessIs) {
+  const fs::path before = fs::current_path();
+  fs::current_path(directory_);
+  WriteWholeFile("model.yaml", "first\n");
+  WriteWholeFile("./model.yaml", "second\n");
+  fs::current_path(before);
+  EXPECT_EQ(ReadText(file_), "second\n");
+  EXPECT_EQ(Files(), 1);
+}
+
+TEST_F(WholeFile, ANameMayBeAsLongAsNamesAre) {
+  const fs::path file = directory_ / std::string(255, 'n');
+  WriteWholeFile(file, "x");
+  EXPECT_EQ(ReadText(file), "x");
+  EXPECT_EQ(Files(), 1);
+}
+
+/// `write` as a user who is not root and owns the directory and what is in it; whether it ended well.
+template <typename Write>
+bool AsSomebody(const fs::path& directory, const Write& write) {
+  constexpr uid_t kSomebody = 12345;
+  const pid_t child = fork();
+  if (child == 0) {
+    if (geteuid() == 0) {
+      for (const auto& entry : fs::directory_iterator(directory))
+        if (lchown(entry.path().c_str(), kSomebody, kSomebody) != 0) _exit(2);
+      if (lchown(directory.c_str(), kSomebody, kSomebody) != 0 || seteuid(kSomebody) != 0) _exit(2);
+    }
+    try {
+      write();
+    } catch (const std::runtime_error&) {
+      _exit(1);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) != 2);
+  return WEXITSTATUS(status) == 0;
+}
+
+TEST_F(WholeFile, AFileThatMayNotBeWrittenStays) {
+  WriteWholeFile(file_, "old\n");
+  fs::permissions(file_, fs::perms::owner_read);
+  EXPECT_FALSE(AsSomebody(directory_, [&] { WriteWholeFile(file_, "new\n"); }));
+  EXPECT_EQ(ReadText(file_), "old\n");
+}
+
+TEST_F(WholeFile, ADirectoryThatTakesNoNewFileKeepsTheOldOnesWritable) {
+  WriteWholeFile(file_, "old\n");
+  fs::permissions(directory_, fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_TRUE(AsSomebody(directory_, [&] { WriteWholeFile(file_, "new\n"); }));
+  EXPECT_FALSE(AsSomebody(directory_, [&] { WriteWholeFile(directory_ / "another", "new\n"); }));
+  fs::permissions(directory_, fs::perms::owner_all);
+  EXPECT_EQ(ReadText(file_), "new\n");
+  EXPECT_EQ(Files(), 1);
 }
 
 TEST_F(WholeFile, PermissionsStay) {

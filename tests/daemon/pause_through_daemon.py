@@ -168,6 +168,19 @@ def check_faster(operator):
     operator.ask("feed", "100")
 
 
+def check_endless(operator, circle):
+    """A feed that was set while nothing ran is asked when a program begins."""
+    ngc = operator.scratch / "short.ngc"
+    ngc.write_text("G21 F1200\nG0 X0 Y0\nG1 X3\nX0\n", encoding="utf-8")
+    operator.ask("feed", "1e-9")
+    for program in (ngc, circle):
+        refused = operator.call("run", str(program))
+        assert refused.returncode == 1 and "program would take more than three years" in refused.stderr, refused
+        assert operator.status()["state"] == "Ready"
+    operator.ask("feed", "100")
+    operator.ask("run", str(ngc))
+
+
 def check_lines(operator):
     """Single block, and a line to begin with."""
     ngc = operator.scratch / "lines.ngc"
@@ -248,6 +261,7 @@ def main():
             check_zero(operator, circle, plain)
             circle.write_text("{shape: circle, radius_mm: 1, frequency_hz: 1, turns: 2}", encoding="utf-8")
             check_faster(operator)
+            check_endless(operator, circle)
             check_lines(operator)
             check_halts(operator)
         finally:

@@ -171,17 +171,11 @@ class FeedSchedule {
   std::uint64_t cycles_ = 0;
 };
 
-double ProgramDuration_s(const MotionPlan& plan) {
-  const auto walk = plan.Walk();
-  return walk ? walk->ProgramDuration().duration_s : plan.duration_s();
-}
-
 /// The last feed is what the rest of the program runs at, and twice its own is the most that it can have had
 /// before.
 void RefuseFeedForYears(const std::vector<FeedFrom>& feeds, const MotionPlan& plan, const std::string& name) {
-  if (feeds.back().feed <= 0.0) return;
-  const double left_s = ProgramDuration_s(plan) - PathWalk::kLargestScale * feeds.back().time_s;
-  if (left_s > kLongestProgram_s * feeds.back().feed)
+  const double left_s = EstimatedDuration_s(plan) - PathWalk::kLargestScale * feeds.back().time_s;
+  if (TakesYears(left_s, feeds.back().feed))
     throw ProgramError(name + ": at " + NumberText(100.0 * feeds.back().feed) +
                        " percent of its feed the program would take more than three years");
 }

@@ -11,40 +11,63 @@
 namespace contour::diagnosis {
 namespace {
 
-/// How far the axis is off from row k on: what two steps have brought beyond their neighbours, which is
-/// nothing under a constant acceleration, and nothing where a reading is wrong or late. NaN where a row is
-/// missing.
-double Displacement(const std::vector<double>& position, std::size_t k) {
-  const auto step = [&](std::size_t to) { return position[to] - position[to - 1]; };
-  return step(k) + step(k + 1) - step(k - 1) - step(k + 2);
+/// So many rows a wrong reading may last: as far ahead as outliers are looked at.
+constexpr std::size_t kWrongRows = 3;
+
+/// What the steps to rows `from` to `to` bring beyond the mean of the steps before and after them, which is
+/// nothing under a constant acceleration. NaN where a row is missing.
+double Beyond(const std::vector<double>& position, std::size_t from, std::size_t to) {
+  const double before = position[from - 1] - position[from - 2];
+  const double after = position[to + 1] - position[to];
+  return position[to] - position[from - 1] - static_cast<double>(to - from + 1) * 0.5 * (before + after);
 }
 
-/// How large that may be where nothing is wrong: the largest command of the log drives what the encoder sits
-/// on one direction in one row and the other in the next.
-double WithinReach(const AxisLog& log, const AxisModel& model) {
+/// How far the axis is off from row k on; nothing where one reading is wrong or late.
+double Displacement(const std::vector<double>& position, std::size_t k) { return Beyond(position, k, k + 1); }
+
+/// Whether it was where it had been going for some rows before row k, and is away for some rows after it.
+bool Stays(const std::vector<double>& position, std::size_t k, double by) {
+  const double far = Beyond(position, k - kWrongRows, k + kWrongRows);
+  return 2.0 * far * by > by * by;
+}
+
+/// How large that may be where nothing is wrong: the largest force of the log drives what the encoder sits on
+/// one direction in one row and the other in the next; and what rows show that nothing was wrong with, with
+/// their noise and the encoder's steps.
+double WithinReach(const Problem& problem, const AxisModel& model) {
+  const AxisLog& log = problem.log;
   double largest = 0.0;
   for (const double u : log.command) largest = std::max(largest, std::fabs(model.torque_gain * u));
-  return 2.0 * largest / model.motor_inertia * log.period_s * log.period_s;
+  const StatedFriction& f = model.friction;
+  largest += std::fabs(model.offset) + std::max({f.Fc_plus, f.Fc_minus, f.Fs_plus, f.Fs_minus});
+  double reach = 2.0 * largest / model.motor_inertia * log.period_s * log.period_s;
+  for (std::size_t k = 2; k + 2 < log.size(); ++k) {
+    if (problem.counted[k] == 0) continue;
+    // False, too, where a row is missing.
+    if (const double by = std::fabs(Displacement(log.position, k)); by > reach) reach = by;
+  }
+  return reach;
 }
 
 }  // namespace
 
 void TellDisplacements(const Problem& problem, const Point& fitted, Diagnosis& out) {
   const AxisLog& log = problem.log;
-  const double within_reach = WithinReach(log, problem.Build(fitted));
+  const double within_reach = WithinReach(problem, problem.Build(fitted));
   std::string first, largest_at;
-  std::size_t count = 0;
+  std::size_t count = 0, told_to = 0;
   double largest = 0.0;
   const auto size_text = [&](double by) {
     return log.linear ? RoundedText(1e3 * by) + " mm" : RoundedText(by) + " rad";
   };
-  for (std::size_t k = 2; k + 2 < log.size(); ++k) {
-    if (problem.setup.valid[k] != 0 || log.present[k] == 0 || log.position[k] == log.position[k - 1])
-      continue;
+  for (std::size_t k = kWrongRows + 2; k + kWrongRows + 1 < log.size(); ++k) {
+    if (problem.setup.valid[k] != 0 || log.present[k] == 0) continue;
     const double by = Displacement(log.position, k);
-    if (!(std::fabs(by) > within_reach)) continue;
+    if (!(std::fabs(by) > within_reach) || !Stays(log.position, k, by)) continue;
     const std::string at = RoundedText(log.period_s * static_cast<double>(k)) + " s";
-    if (count++ == 0) first = at;
+    // The row before a jump is seen to be off, too.
+    if (k >= told_to && count++ == 0) first = at;
+    told_to = k + kWrongRows;
     if (std::fabs(by) <= std::fabs(largest)) continue;
     largest = by;
     largest_at = at;

@@ -10,6 +10,7 @@
 #include "analysis/diagnosis/causes/kind_words.h"
 #include "analysis/diagnosis/report/diagnosis_json.h"
 #include "analysis/diagnosis/report/diagnosis_text.h"
+#include "config/whole_file.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -21,10 +22,6 @@ Json Numbers(const std::vector<double>& values) {
   Json list = Json::array();
   for (const double v : values) list.push_back(Number(v));
   return list;
-}
-
-void Check(const std::ofstream& out, const std::filesystem::path& file) {
-  if (!out) throw std::runtime_error("cannot write " + file.string());
 }
 
 Json CauseJson(const Cause& c, ExtensionUnits units) {
@@ -120,7 +117,7 @@ Json WriteTraces(const std::filesystem::path& file, const Traces& t) {
               static_cast<std::streamsize>(signal->size() * sizeof(double)));
   }
   out.close();
-  Check(out, file);
+  if (!out) throw std::runtime_error("cannot write " + file.string());
   return list;
 }
 
@@ -161,11 +158,7 @@ void WriteReportData(const std::filesystem::path& dir, const AxisLog& log, const
                        {"stale", found.data_quality.stale},
                        {"outliers", found.data_quality.outliers}}},
                      {"traces", WriteTraces(dir / "report_traces.bin", found.traces)}};
-  const std::filesystem::path file = dir / "report_data.json";
-  std::ofstream out(file, std::ios::binary);
-  out << json.dump() << "\n";
-  out.close();
-  Check(out, file);
+  WriteWholeFile(dir / "report_data.json", json.dump() + "\n");
 }
 
 }  // namespace contour::diagnosis

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,9 +15,11 @@
 namespace contour::diagnosis {
 namespace {
 
-/// Notes on an axis whose position is off by so much [rad] from each of these rows on.
-std::vector<std::string> NotesWith(const std::vector<std::pair<std::size_t, double>>& jumps) {
-  test::HiddenAxis made = test::HiddenAxisFor(30.0);
+/// So much further [rad] from a row on.
+using Jumps = std::vector<std::pair<std::size_t, double>>;
+
+/// What is noted of an axis whose encoder reads so: outliers are marked, as in any log.
+std::vector<std::string> NotesOn(test::HiddenAxis made, const Jumps& jumps) {
   for (const auto& [row, by] : jumps)
     for (std::size_t k = row; k < made.log.size(); ++k) made.log.position[k] += by;
   const test::LearntProblem learnt(made);
@@ -23,6 +27,8 @@ std::vector<std::string> NotesWith(const std::vector<std::pair<std::size_t, doub
   TellDisplacements(learnt.problem, learnt.point, out);
   return out.notes;
 }
+
+std::vector<std::string> NotesWith(const Jumps& jumps) { return NotesOn(test::HiddenAxisFor(30.0), jumps); }
 
 TEST(Displacements, ASoundLogHasNone) { EXPECT_TRUE(NotesWith({}).empty()); }
 
@@ -34,8 +40,22 @@ TEST(Displacements, AnEncoderThatLosesCountsIsTold) {
   EXPECT_NE(notes[0].find(" rad."), std::string::npos) << notes[0];
 }
 
-TEST(Displacements, AWrongReadingIsNone) {
-  for (const std::string& note : NotesWith({{9999, 0.1}, {10000, -0.1}})) ADD_FAILURE() << note;
+TEST(Displacements, AWrongReadingIsNoneHoweverLongItLasts) {
+  for (const std::size_t rows : {1U, 2U, 3U})
+    for (const std::string& note : NotesWith({{9999, 0.1}, {9999 + rows, -0.1}}))
+      ADD_FAILURE() << rows << " rows: " << note;
+}
+
+// Of a coarse, noisy encoder and next to no command: what a row shows is not what a force does.
+TEST(Displacements, NoiseAndStepsOfTheEncoderAreNone) {
+  test::HiddenAxis made = test::HiddenAxisFor(30.0);
+  std::uint32_t random = 1;
+  for (double& position : made.log.position) {
+    random = 1664525U * random + 1013904223U;
+    const double noise = 0.02 * (static_cast<double>(random >> 8U) / 16777216.0 - 0.5);
+    position = 0.01 * std::round((position + noise) / 0.01);
+  }
+  for (const std::string& note : NotesOn(std::move(made), {})) ADD_FAILURE() << note;
 }
 
 }  // namespace
