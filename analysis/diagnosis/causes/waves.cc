@@ -44,6 +44,29 @@ Entrance EntranceOf(Wave wave, const Problem& p) {
   return {Input::kMotorForce, torque};
 }
 
+/// By how much the angle is read too large where it is read, with X and Y the error and its slope as if the
+/// angle were the true one: x = X cos x - Y sin x, by a Newton step from where the sine is straight.
+double AtTheAngleAsRead(double X, double Y) {
+  const double x = X / (1.0 + Y);
+  return x - x * x * (X - Y * x / 3.0) / (2.0 * (1.0 + Y + X * x));
+}
+
+/// An error of the reading is a wave of the true angle: over the angle as read it has waves of twice and
+/// three times the order, too.
+void EnterAsRead(const std::vector<SharedSignal>& basis, double phase_per_q, const std::vector<double>& a,
+                 AxisModel& m) {
+  const double slope = phase_per_q * std::hypot(a[0], a[1]);
+  // At 1 the reading stands still once a period, and tells no angle.
+  if (!(slope < 1.0)) return Enter(m, Input::kReading, basis, a);
+  const Signal &sine = *basis[0], &cosine = *basis[1];
+  const SharedSignal error = Make(sine.size(), [&](std::size_t k) {
+    const double X = phase_per_q * (a[0] * sine[k] + a[1] * cosine[k]);
+    const double Y = phase_per_q * (a[0] * cosine[k] - a[1] * sine[k]);
+    return AtTheAngleAsRead(X, Y) / phase_per_q;
+  });
+  Enter(m, Input::kReading, {error}, {1.0});
+}
+
 /// At an order that stays.
 SharedEffect FixedOrder(const Problem& p, Wave wave, double order, double grid, std::string kind) {
   const Signals& s = *p.signals;
@@ -58,9 +81,14 @@ SharedEffect FixedOrder(const Problem& p, Wave wave, double order, double grid, 
     basis = WaveSignals(phases, wave == Wave::kGainOfAngle ? s.model_torque : std::vector<double>());
   const Entrance at = EntranceOf(wave, p);
   auto e = std::make_shared<Effect>(
-      *LinearEffect({std::move(kind), std::to_string(order), grid}, at.input, std::move(basis), at.step));
+      *LinearEffect({std::move(kind), std::to_string(order), grid}, at.input, basis, at.step));
   e->order = order;
   e->wave = true;
+  // Faster waves the smoothed angle does not have.
+  if (wave == Wave::kReadingOfAngle && order == 1.0)
+    e->apply = [basis, per_q = s.angle_per_q](const std::vector<double>& a, AxisModel& m) {
+      EnterAsRead(basis, per_q, a, m);
+    };
   return e;
 }
 

@@ -9,6 +9,7 @@
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/held_out.h"
+#include "analysis/diagnosis/decision/same_timing.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
 
@@ -51,11 +52,13 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
         c.accepted = &r == &best;
       }
     // What would not have been accepted alone explains too little to be the cause.
-    if (&r != &best && (!r.refused || RefusedButTheSame(best, r)) && !r.given_up && !Outside(kind) &&
-        r.score > Asked(problem, r, threshold) &&
-        r.score > best.score - std::max(AlikeScore(), alike * best.score) &&
-        !ExplainsSomethingElse(problem, best.fit, r) && !ExplainsSomethingElse(problem, r.fit, best))
-      cause.indistinguishable_from.push_back(kind);
+    if (&r == &best || (r.refused && !RefusedButTheSame(best, r)) || r.given_up || Outside(kind) ||
+        !(r.score > Asked(problem, r, threshold)))
+      continue;
+    const double less = std::max(AlikeScore(), alike * best.score);
+    const bool same = r.score > best.score - less && !ExplainsSomethingElse(problem, best.fit, r) &&
+                      !ExplainsSomethingElse(problem, r.fit, best);
+    if (same || SameTiming(problem, best, r, less)) cause.indistinguishable_from.push_back(kind);
   }
   AddSameInSliding(problem, best.fit, cause);
 }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/diagnosis/causes/catalogue.h"
@@ -17,13 +18,36 @@ TEST(EncoderEccentricity, IsOneWaveOfTheReadingPerTurn) {
   // 1 mrad sin(theta + 0.5).
   const std::vector<double> a = {1e-3 * std::cos(0.5), 1e-3 * std::sin(0.5)};
   const AxisModel m = test::With(axis, e, a);
+  // Less what the true angle is behind the one that is read.
   for (const std::size_t row : {0u, 421u, 1500u})
-    EXPECT_NEAR((*m.reading_error)[row], 1e-3 * std::sin(axis.signals().angle_rad[row] + 0.5), 1e-12);
+    EXPECT_NEAR((*m.reading_error)[row], 1e-3 * std::sin(axis.signals().angle_rad[row] + 0.5), 0.6e-6);
   EXPECT_FALSE(m.motor_force);
   const NamedValues told = test::Told(axis, e, a);
   EXPECT_NEAR(told.at("amplitude_rad"), 1e-3, 1e-12);
   EXPECT_NEAR(told.at("phase_rad"), 0.5, 1e-9);
   EXPECT_FALSE(told.contains("order_per_rev")) << "it has no other order";
+}
+
+TEST(EncoderEccentricity, IsAWaveOfTheTrueAngleWhichTheEncoderDoesNotRead) {
+  const test::KnownAxis axis;
+  const double slope = 0.03;
+  const std::vector<double> a = {slope * std::cos(0.5), slope * std::sin(0.5)};
+  const AxisModel m = test::With(axis, test::OnGrid(axis, kKind, "1.0"), a);
+  double twice = 0.0;
+  for (std::size_t row = 0; row < axis.signals().angle_rad.size(); ++row) {
+    const double read = axis.signals().angle_rad[row];
+    double angle = read;
+    for (int i = 0; i < 30; ++i) angle = read - slope * std::sin(angle + 0.5);
+    ASSERT_NEAR((*m.reading_error)[row], read - angle, 1e-8);
+    twice = std::max(twice, std::abs(read - angle - slope * std::sin(read + 0.5)));
+  }
+  EXPECT_NEAR(twice, 0.5 * slope * slope, 0.05 * slope * slope) << "a wave of twice the order";
+}
+
+TEST(EncoderEccentricity, WithoutAnAngleThatItTellsStaysAWave) {
+  const test::KnownAxis axis;
+  const AxisModel m = test::With(axis, test::OnGrid(axis, kKind, "1.0"), {1.5, 0.0});
+  EXPECT_NEAR((*m.reading_error)[421], 1.5 * std::sin(axis.signals().angle_rad[421]), 1e-12);
 }
 
 TEST(EncoderEccentricity, IsToldInRadOfTheMotorWhereTheLogHasMetres) {

@@ -122,6 +122,37 @@ TEST_F(ChooseTest, AShapeThatForeseesNothingIsNotBeyondDoubt) {
   EXPECT_FALSE(ChooseFirst(axis_.problem, current, threshold_, hypotheses).found);
 }
 
+TEST_F(ChooseTest, NorIsAShapeOnTheScaleThatForeseesNothing) {
+  // Made up: a pitch error that moves no reading of the scale, whatever its score. A scale wanders.
+  test::HiddenOptions options = test::FittedAxis::Short({{"constant_torque", 0.3, 0.0, 0.0, 0.0}});
+  options.scale = true;
+  const test::FittedAxis axis(options);
+  const Fit there = axis.With(axis.Of("constant_torque"));
+  Hypothesis shape;
+  Point with = there.point;
+  auto effect = std::make_shared<Effect>(*axis.Of("cable_spring")->shorter);
+  effect->kind = "pitch_error";
+  effect->force.clear();
+  with.effects.push_back(effect);
+  with.amplitudes.push_back({0.0});
+  shape.fit = FitPoint(axis.problem, with, FitEffort{});
+  shape.score = 1e4;
+  Fit current = there;
+  for (double& r : current.residual) r *= 1.1;
+  std::vector<Hypothesis> hypotheses = {shape};
+  EXPECT_FALSE(ChooseFirst(axis.problem, current, threshold_, hypotheses).found);
+}
+
+TEST_F(ChooseTest, APitchErrorThatIsThereHolds) {
+  test::HiddenOptions options = test::FittedAxis::Short({{"pitch_error", 3.0, 0.0, 0.0, 0.0}});
+  options.scale = true;
+  const test::FittedAxis axis(options);
+  Hypothesis h{axis.With(axis.Of("pitch_error"))};
+  h.score = axis.base.cost - h.fit.cost - Penalty(h.effect());
+  std::vector<Hypothesis> hypotheses = {h};
+  EXPECT_TRUE(ChooseFirst(axis.problem, axis.base, threshold_, hypotheses).found);
+}
+
 TEST_F(ChooseTest, WhatWasGivenUpIsNotAsked) {
   std::vector<Hypothesis> hypotheses = {Of("constant_torque")};
   hypotheses[0].given_up = true;

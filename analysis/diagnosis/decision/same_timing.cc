@@ -1,0 +1,45 @@
+#include "analysis/diagnosis/decision/same_timing.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/decision/tested_score.h"
+#include "analysis/diagnosis/screening/score.h"
+
+namespace contour::diagnosis {
+namespace {
+
+/// The most lag, in exchange for delay, that a coupling is which is no fault of an axis stated as rigid:
+/// 1 / w^2 is half of what the square of the lag has more.
+double MostLagForDelay(const Problem& problem, const Point& point) {
+  const double w = 2.0 * std::numbers::pi * NoFault_Hz(problem), lag_s = problem.Build(point).lag_s;
+  return std::sqrt(lag_s * lag_s + 2.0 / (w * w)) - lag_s;
+}
+
+/// The score that a hypothesis has where such a coupling is not held against it; none where the model has
+/// one.
+double ScoreWithACoupling(const Problem& problem, const Hypothesis& r) {
+  for (std::size_t i = 0; i < problem.terms.size(); ++i) {
+    if (problem.terms[i].name != "lag_for_delay") continue;
+    const auto at = static_cast<Eigen::Index>(i);
+    const double variance = problem.terms[i].sigma * problem.terms[i].sigma, x = r.fit.point.base[i];
+    const double free = 1.0 - r.fit.covariance(at, at) / variance, to = x / free;
+    const bool such = free > 0.0 && to > 0.0 && to < MostLagForDelay(problem, r.fit.point);
+    return such ? r.score + x * to / variance : r.score;
+  }
+  return -std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+bool SameTiming(const Problem& problem, const Hypothesis& best, const Hypothesis& r, double alike) {
+  const CauseDefinition& cause = CauseNamed(best.effect().kind);
+  if (!CauseNamed(r.effect().kind).about_timing || !(cause.about_timing || AddsCoupling(problem, best)))
+    return false;
+  return ScoreWithACoupling(problem, r) > best.score - alike;
+}
+
+}  // namespace contour::diagnosis
