@@ -69,7 +69,7 @@ struct AxisDriveStatus {
   bool lost_master = false;           ///< said so by an emergency message; until it is brought up or reset
   bool stays_enabled = false;         ///< in Operation Enabled long after it was told to leave that
   bool answers_twice = false;         ///< more answers to SYNC than SYNCs; until it is brought up
-  bool not_following = false;         ///< enabled, but bit 12 of the statusword is missing for too long
+  bool not_following = false;         ///< enabled, but bit 12 or 9 of the statusword is missing for too long
   bool mode_changed = false;          ///< 0x6061 shows another mode than was set; until it is brought up
   std::uint64_t silent_cycles = 0;    ///< since its last sign of life
 };
@@ -165,7 +165,7 @@ class DriveMaster {
   struct Axis {
     /// What is configured stays as constructed.
     void Keep(StateKeeper& keep) noexcept {
-      keep(rounding, unwrap, scale_unwrap, walk, not_following_cycles, let_go_cycles, reported,
+      keep(rounding, unwrap, scale_unwrap, walk, shown_bits, not_following_cycles, let_go_cycles, reported,
            reported_cycle, alive_cycle, answer_cycle, behind, earliest_answer_ns, usual_answer_ns, reference,
            was_enabled, boot_up_due, seen_before, last_seen_rad, last_step_rad, offset_rad, answered_sync,
            unasked, unasked_since, stays_seen_cycles);
@@ -185,7 +185,9 @@ class DriveMaster {
     DriveWalk walk;
     std::vector<StrongerReaction> stronger;  ///< as configured
     std::size_t patrolled = 0;               ///< its place in the patrol of its bus
-    std::uint64_t follow_cycles = 0;         ///< bit 12 may be missing that long; 0: not watched
+    std::uint16_t follow_bits = 0;    ///< of the statusword, that an enabled drive has to show, as configured
+    std::uint16_t shown_bits = 0;     ///< those, and what it has shown since it is enabled that may not go
+    std::uint64_t follow_cycles = 0;  ///< one of them may be missing that long
     std::uint64_t not_following_cycles = 0;
     std::uint64_t obeys_cycles = 0;       ///< from a controlword to the statusword that shows it
     std::uint64_t stays_cycles = 0;       ///< within which it has left Operation Enabled when told to

@@ -7,6 +7,7 @@
 
 #include "drivers/cia402/drive_master.h"
 #include "drivers/cia402/drive_script.h"
+#include "drivers/cia402/drive_state.h"
 
 // What a machine's drives are told of them, checked and sized before the first frame.
 namespace contour {
@@ -104,7 +105,8 @@ DriveMaster::DriveMaster(const MasterConfig& config)
     }
     axis.patrolled = patrols[a.bus].size();
     patrols[a.bus].push_back({axis.node_id, ModeOfOperation(d.mode), CyclesOf(d.sdo_ms, config.cycle_us)});
-    if (d.follows_target_bit) axis.follow_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
+    if (d.follows_target_bit) axis.follow_bits = statusword::kFollowsTarget;
+    axis.follow_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
     // The statusword in which a controlword shows was latched a SYNC later, and comes another cycle later.
     axis.obeys_cycles = 2 + static_cast<std::uint64_t>(d.delay_cycles);
     axis.stays_cycles = axis.obeys_cycles + std::max(CyclesOf(d.transition_ms, config.cycle_us),

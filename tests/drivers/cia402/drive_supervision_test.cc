@@ -133,6 +133,38 @@ TEST_F(DriveSupervision, ADriveWithoutTheBitIsConfiguredSo) {
   EXPECT_FALSE(status().not_following);
 }
 
+// A drive that was taken over at its panel or by its maker's program obeys no controlword of ours.
+TEST_F(DriveSupervision, AnEnabledDriveThatObeysAnotherIsNoticedAndStopped) {
+  for (const bool has_follows_target_bit : {true, false}) {
+    MasterConfig config = TwoAxes();
+    config.axes[0].drive.follows_target_bit = has_follows_target_bit;
+    machine_.emplace(config);
+    slave().behaviour.follows = has_follows_target_bit;
+    machine().BringUp();
+    machine().Reach(DriveGoal::kEnabled);
+    machine().Cycles(50);
+    EXPECT_FALSE(status().not_following);
+    slave().behaviour.remote = false;
+    int cycles = 0;
+    for (; !status().not_following && cycles < 50; ++cycles) machine().Cycle();
+    EXPECT_EQ(cycles, 4);
+    machine().Goal(DriveGoal::kQuickStop);
+    int until_stopped = 0;
+    for (; !status().stays_enabled && until_stopped < 5000; ++until_stopped) machine().Cycle();
+    EXPECT_TRUE(status().stays_enabled) << "it is stopped by NMT";
+    EXPECT_FALSE(status(1).not_following);
+  }
+}
+
+TEST_F(DriveSupervision, ADriveThatNeverShowsBit9IsNotAskedForIt) {
+  machine_.emplace();
+  slave().behaviour.no_remote_bit = true;
+  machine().BringUp();
+  machine().Reach(DriveGoal::kEnabled);
+  machine().Cycles(50);
+  EXPECT_FALSE(status().not_following);
+}
+
 TEST_F(DriveSupervision, TheModeOfEachDriveIsReadTenTimesASecondAndNeverOftenerThanReckoned) {
   Enable();
   machine().Cycles(200);

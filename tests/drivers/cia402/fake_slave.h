@@ -35,6 +35,8 @@ class FakeSlave : public BusNode {
     std::int64_t tpdo_ns = 20'000;  ///< from SYNC to its TPDO
     bool unanswered = false;        ///< no TPDO
     bool follows = true;            ///< bit 12 while enabled
+    bool remote = true;             ///< bit 9; without it no controlword is obeyed
+    bool no_remote_bit = false;     ///< bit 9 is never shown
     bool obeys_another = false;     ///< another master's RPDO comes last before each SYNC, unless stopped
   };
 
@@ -242,7 +244,7 @@ class FakeSlave : public BusNode {
     }
     const bool reset_edge = (word & 0x80) != 0 && (last_word_ & 0x80) == 0;
     last_word_ = word;
-    if (state_ != behaviour.stuck_in) Transition(word, reset_edge);
+    if (state_ != behaviour.stuck_in && behaviour.remote) Transition(word, reset_edge);
     if (state_ != DriveState::kOperationEnabled) torque_ = 0;
   }
 
@@ -266,21 +268,25 @@ class FakeSlave : public BusNode {
   }
 
   [[nodiscard]] std::uint16_t Statusword() const {
+    return static_cast<std::uint16_t>(StatesBits() |
+                                      (behaviour.remote && !behaviour.no_remote_bit ? 0x0200 : 0));
+  }
+  [[nodiscard]] std::uint16_t StatesBits() const {
     switch (state_) {
       case DriveState::kReadyToSwitchOn:
-        return 0x0231;
+        return 0x0031;
       case DriveState::kSwitchedOn:
-        return 0x0233;
+        return 0x0033;
       case DriveState::kOperationEnabled:
-        return behaviour.follows ? 0x1237 : 0x0237;
+        return behaviour.follows ? 0x1037 : 0x0037;
       case DriveState::kQuickStopActive:
-        return 0x0217;
+        return 0x0017;
       case DriveState::kFault:
-        return 0x0218;
+        return 0x0018;
       case DriveState::kFaultReactionActive:
-        return 0x021F;
+        return 0x001F;
       default:
-        return 0x0250;
+        return 0x0050;
     }
   }
 
