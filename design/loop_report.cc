@@ -11,6 +11,9 @@ namespace {
 
 // A written tuning is rounded, and a limit that is missed by so little bounds nothing.
 constexpr double kRounding = 0.05;
+// Of what is stated, beyond which a number is not expected to be.
+constexpr double kDeviations = 2.0;
+
 std::string Fixed(double value, int decimals) {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
@@ -92,6 +95,21 @@ std::string Describe(const RestingAxis& a) {
   return "";
 }
 
+/// Nothing of an axis whose bristles are softer than its screw, or that has a scale.
+std::string Describe(const RestingScrew& s) {
+  if (!std::isfinite(s.stable_below_N_m)) return "";
+  const double stiffer = s.stable_below_N_m / s.stated_N_m - 1.0;
+  const std::string text =
+      "  at rest the lead by friction over stiffness is stable with a screw of less than " +
+      RoundedText(1e-6 * s.stable_below_N_m) + " N/um, " + Fixed(100.0 * stiffer, 0) +
+      " % stiffer than stated";
+  if (stiffer > kDeviations * s.stated_std) return text + "\n";
+  return text + ", and stated is " + Fixed(100.0 * s.stated_std, 0) +
+         " %: if it is that stiff, the table hunts after a stop until a constant torque holds it, some way "
+         "off; "
+         "identify the stiffness, or let a scale measure the table\n";
+}
+
 /// Whether friction's slope alone is more than the limits of the axis as stated allow.
 bool SlopeForbids(const LoopAxis& axis, const LoopVerdict& creeping) {
   const WorstMember& slope = creeping.worst[static_cast<std::size_t>(MemberKind::kCreeping)];
@@ -100,6 +118,13 @@ bool SlopeForbids(const LoopAxis& axis, const LoopVerdict& creeping) {
 
 }  // namespace
 
+RestingScrew RestingScrewOf(const LoopAxis& a) {
+  RestingScrew screw{.stated_N_m = a.axis.stiffness_N_m, .stated_std = a.stiffness_std};
+  if (!a.scale_step_m && a.friction.sigma0_N_m > a.axis.stiffness_N_m)
+    screw.stable_below_N_m = 1.0 / (1.0 / a.axis.stiffness_N_m - 1.0 / a.friction.sigma0_N_m);
+  return screw;
+}
+
 LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s) {
   const TwoInertiaLoop loop = DesignLoop(axis.axis, tuning, period_s, axis.scale_step_m.has_value());
   LoopReport report{LoopJudge(axis, period_s).Judge(loop),
@@ -107,7 +132,8 @@ LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double perio
                     MarginsOn(RestingMember(axis), loop, period_s),
                     {},
                     {},
-                    RestingOf(axis, tuning)};
+                    RestingOf(axis, tuning),
+                    RestingScrewOf(axis)};
   if (Acceptable(report.verdict, kRounding)) {
     if (!TakesUp(report.verdict.step, kRounding)) report.after_stops = RestAfterStops(axis, loop, period_s);
     return report;
@@ -135,7 +161,7 @@ std::string Describe(const LoopReport& r) {
                : "still " + Fixed(1e6 * r.verdict.step.left_m, 1) + " um after them") +
           "\n";
   if (r.stick_slip) text += Describe(*r.stick_slip);
-  text += Describe(r.resting);
+  text += Describe(r.resting) + Describe(r.screw);
   return text + "  torque noise by the encoder: " + Fixed(100.0 * r.verdict.torque_noise, 2) +
          " % of rated torque\n";
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,16 @@
 #include "design/loop_margins.h"
 
 namespace contour {
+
+/// A screw that may be stiffer than stated, at rest. A loop without a scale leads its motor by F / K; of that
+/// the true screw takes F / K_true, and bristles answer the rest with sigma0 times it: from sigma0 (1 / K - 1
+/// / K_true) = 1 on the table hunts.
+struct RestingScrew {
+  double stated_N_m = 0.0;
+  double stated_std = 0.0;  ///< relative
+  double stable_below_N_m = std::numeric_limits<double>::infinity();
+};
+RestingScrew RestingScrewOf(const LoopAxis& axis);
 
 /// A loop of an axis for people: what `contour check` and `contour tune --from-model` print.
 struct LoopReport {
@@ -20,6 +31,7 @@ struct LoopReport {
   /// Where every limit is kept and a force is not taken up: what friction makes of that after a stop.
   std::optional<StickSlip> after_stops;
   RestingAxis resting;  ///< as the cycle holds it
+  RestingScrew screw;
 };
 LoopReport ReportOn(const LoopAxis& axis, const LoopTuning& tuning, double period_s);
 

@@ -108,6 +108,27 @@ TEST(Describe, SaysWhereFrictionHoldsTooFewStepsOfTorque) {
             "the loop holds");
 }
 
+// Of one whose bristles are stiffer than its screw, as on a table of 55 kg that hunted with K 20 % stiffer.
+TEST(Describe, SaysHowStiffAScrewMayBeForTheTableToRest) {
+  LoopAxis axis = AxisOf("t20");
+  LoopReport report;
+  report.screw = RestingScrewOf(axis);
+  EXPECT_EQ(Describe(report).find("at rest the lead"), std::string::npos) << "soft bristles";
+  axis.axis.stiffness_N_m = 40e6;
+  axis.friction.sigma0_N_m = 12.0 * 40e6;
+  axis.stiffness_std = 0.01;
+  report.screw = RestingScrewOf(axis);
+  EXPECT_NEAR(report.screw.stable_below_N_m, 40e6 * 12.0 / 11.0, 1.0);
+  ExpectHas(Describe(report),
+            "at rest the lead by friction over stiffness is stable with a screw of less than "
+            "43.64 N/um, 9 % stiffer than stated\n");
+  axis.stiffness_std = 0.1;
+  report.screw = RestingScrewOf(axis);
+  ExpectHas(Describe(report), ", 9 % stiffer than stated, and stated is 10 %: if it is that stiff");
+  axis.scale_step_m = 5e-9;
+  EXPECT_FALSE(std::isfinite(RestingScrewOf(axis).stable_below_N_m)) << "the table is measured";
+}
+
 // The best within the limits only holds against a force; the next search minds that.
 TEST(FindLoop, FindsOneThatTakesAForceUp) {
   const LoopAxis axis = HeavyTable();
