@@ -73,9 +73,10 @@ double Off_s(const Axis& a) {
 // is off.
 double GoesOn_m(const Axis& a, double feed_m_s) { return feed_m_s * (a.period_s + Off_s(a)); }
 
-// What the torque limit can do while a force that is on its way has not been judged yet.
-double Slam_m(const Axis& a, double speed_m_s) {
-  const double open_s = a.period_s + Off_s(a);
+// What the torque limit can do while a force that is on its way has not been judged yet, and for so long
+// before.
+double Slam_m(const Axis& a, double speed_m_s, double before_s = 0.0) {
+  const double open_s = before_s + a.period_s + Off_s(a);
   return speed_m_s * open_s + 0.5 * a.limits.force_N / a.t.light_kg * open_s * open_s;
 }
 
@@ -83,6 +84,12 @@ double JumpSeen_m(const Axis& a, double feed_m_s) {
   // Anything up to the limits may act when it happens.
   return a.t.Jump_m(feed_m_s, a.limits.force_N, a.period_s, 1.0, 1.0);
 }
+
+// What changes between two samples shows in both readings that follow, mostly in the first where it was
+// early, and in the second where it was late: three halves of a period later at most.
+double AtOnce_s(const Axis& a) { return 1.5 * a.period_s; }
+// A drive's own loop answers what changes before we have a sample of it.
+double AnswersBefore_s(const Axis& a) { return a.monitored.in_cascade ? AtOnce_s(a) : 0.0; }
 
 // From a path that begins to go on without the axis to the answer of the loop.
 double Answer_s(const Axis& a) { return (a.t.loop_periods + 1.0 + a.t.begin_periods) * a.period_s; }
@@ -138,7 +145,7 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
   const double begin_s = a.t.begin_periods * a.period_s;
   const double answer_s = begins * (a.t.loop_periods + 1.0) * a.period_s + begin_s;
   const double seen_s =
-      at_once ? a.period_s
+      at_once ? AtOnce_s(a)
               : std::max(GoneOn_s(a, standing, begins, feed_m_s) + a.period_s + begin_s, answer_s);
   // Until then the force is what moved the axis before, changed by what the loop makes of the standing
   // reading, and by no more than would show by itself; friction may fall from break-away to Coulomb's.
@@ -147,7 +154,8 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
   const double excess_N = a.friction_drop_N + built_N;
   const double acceleration = excess_N / a.t.light_kg;
   const double away_m = 0.5 * acceleration * seen_s * seen_s;
-  return {1e3 * (away_m + Slam_m(a, acceleration * seen_s) + GoesOn_m(a, feed_m_s)),
+  const double before_s = at_once ? AnswersBefore_s(a) : 0.0;
+  return {1e3 * (away_m + Slam_m(a, acceleration * seen_s, before_s) + GoesOn_m(a, feed_m_s)),
           seen_s + a.period_s + Off_s(a)};
 }
 
@@ -155,7 +163,8 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
 FaultBound ByFollowingError(const Axis& a, double feed_m_s, bool runs_away) {
   // A sign that changes in motion shows in the reading that changes: by twice the way of a period.
   if (runs_away && 2.0 * feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s))
-    return {1e3 * (Slam_m(a, 0.0) + GoesOn_m(a, feed_m_s)), a.period_s + Off_s(a)};
+    return {1e3 * (Slam_m(a, 0.0, AnswersBefore_s(a)) + GoesOn_m(a, feed_m_s)),
+            AtOnce_s(a) + a.period_s + Off_s(a)};
   const double fe_m = a.limits.following_error_m;
   const double gain_m_s = runs_away ? std::sqrt(2.0 * a.limits.force_N / a.t.light_kg * fe_m) : 0.0;
   const double open_m = runs_away ? Slam_m(a, gain_m_s + 2.0 * feed_m_s) : feed_m_s * (a.period_s + Off_s(a));

@@ -57,5 +57,22 @@ TEST(MotionBounds, AJumpInMotionCountsFromTheLastCommandedPoint) {
   }
 }
 
+// A sign that changes right after a sample shows in the second one that follows.
+TEST(MotionBounds, WhatShowsAtOnceMayMissTheFirstSample) {
+  constexpr double kFast_mm_s = 500.0;
+  const MachineConfig machine = Machine(DriveMode::kCst);
+  const AxisConfig& axis = machine.axes.begin()->second;
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  const double jump_s = BoundOf(machine, axis, MotionFault::kJump, kFast_mm_s).time_s;
+  EXPECT_NEAR(BoundOf(machine, axis, MotionFault::kReversed, kFast_mm_s).time_s - jump_s, 1.5 * period_s,
+              1e-9);
+  // Our own loops answer no sooner than they have a sample; a drive's does.
+  EXPECT_DOUBLE_EQ(Departure_mm(machine, MotionFault::kReversed, kFast_mm_s),
+                   Departure_mm(machine, MotionFault::kJump, kFast_mm_s));
+  const MachineConfig in_csp = Machine(DriveMode::kCsp);
+  EXPECT_GT(Departure_mm(in_csp, MotionFault::kReversed, kFast_mm_s),
+            Departure_mm(in_csp, MotionFault::kJump, kFast_mm_s));
+}
+
 }  // namespace
 }  // namespace contour

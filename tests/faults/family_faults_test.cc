@@ -70,6 +70,14 @@ TEST(FamilyFaults, AnEncoderThatFreezesRightAfterAStopInCspIsSeen) {
   Holds({"t30", Fault::kEncoderFrozen, Phase::kHalted, "y", 2.26, 21, DriveMode::kCsp});
 }
 
+// What breaks between two samples may show in the second, and the drive's own loop answers it before the
+// first. Before, 0.49 to 0.98 mm were promised for 0.61 to 1.06.
+TEST(FamilyFaults, ADriveAnswersALyingEncoderBeforeItIsSeen) {
+  Holds({"slow40", Fault::kEncoderFrozen, Phase::kConstant, "y", 208.0, 2, DriveMode::kCsp});
+  Holds({"slow40", Fault::kEncoderReversed, Phase::kConstant, "x", 71.4, 2, DriveMode::kCsp});
+  Holds({"slow40", Fault::kEncoderReversed, Phase::kConstant, "x", 77.8, 1, DriveMode::kCsp});
+}
+
 // Before, 0.25 mm was promised for 0.54.
 TEST(FamilyFaults, NoMoreIsPromisedOfACrawlThanADrivesReportCanShow) {
   Holds({"soft", Fault::kEncoderFrozen, Phase::kConstant, "y", 0.012, 35, DriveMode::kCsp});
