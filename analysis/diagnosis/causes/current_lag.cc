@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/causes/effect_parts.h"
@@ -9,6 +10,8 @@ namespace contour::diagnosis::causes {
 namespace {
 
 constexpr std::string_view kName = "current_lag";
+
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 constexpr std::string_view kFrees[] = {"lag"};
 
@@ -49,8 +52,10 @@ constexpr CauseDefinition current_lag = {
     .words = "the current loop is slower than stated",
     .advice = "State the lag; retune the current loop.",
     .grid =
-        [](const Problem&, std::vector<SharedEffect>& out) {
-          out.push_back(Custom({std::string(kName), "", 1}, {.steps = {2e-6}},
+        [](const Problem& p, std::vector<SharedEffect>& out) {
+          // Below no lag at all nothing changes any more.
+          out.push_back(Custom({std::string(kName), "", 1},
+                               {.steps = {2e-6}, .low = {-p.nominal.lag_s}, .high = {kNoBound}},
                                [](const auto& a, AxisModel& m) { m.lag_s = std::max(0.0, m.lag_s + a[0]); }));
         },
     .wave = nullptr,

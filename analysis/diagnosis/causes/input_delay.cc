@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/causes/effect_parts.h"
@@ -9,6 +10,8 @@ namespace contour::diagnosis::causes {
 namespace {
 
 constexpr std::string_view kName = "input_delay";
+
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 constexpr std::string_view kFrees[] = {"delay"};
 
@@ -47,8 +50,10 @@ constexpr CauseDefinition input_delay = {
     .words = "commands begin to act later than stated",
     .advice = "State the delay; look for a filter or a cycle of delay in the drive.",
     .grid =
-        [](const Problem&, std::vector<SharedEffect>& out) {
-          out.push_back(Custom({std::string(kName), "", 1}, {.steps = {2e-6}},
+        [](const Problem& p, std::vector<SharedEffect>& out) {
+          // Below no delay at all nothing changes any more.
+          out.push_back(Custom({std::string(kName), "", 1},
+                               {.steps = {2e-6}, .low = {-p.nominal.delay_s}, .high = {kNoBound}},
                                [](const auto& a, AxisModel& m) { m.delay_s += a[0]; }));
         },
     .wave = nullptr,

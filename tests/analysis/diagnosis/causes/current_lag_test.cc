@@ -27,6 +27,14 @@ TEST(CurrentLag, IsNeverNegative) {
   EXPECT_EQ(test::With(axis, test::OnGrid(axis, kKind, ""), {-1e-3}).lag_s, 0.0);
 }
 
+TEST(CurrentLag, EndsWhereNoneIsLeft) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "");
+  ASSERT_EQ(e->low.size(), 1u);
+  EXPECT_EQ(e->low[0], -2e-4);
+  EXPECT_GT(e->high[0], 1e3) << "a long one has no end";
+}
+
 TEST(CurrentLag, IsANumberOfTheModelWhoseEvidenceLiesInItsPrior) {
   const CauseDefinition& cause = CauseNamed(kKind);
   ASSERT_EQ((*cause.freed_terms).size(), 1u);

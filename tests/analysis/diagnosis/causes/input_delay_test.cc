@@ -22,6 +22,17 @@ TEST(InputDelay, IsAddedToTheStatedOneAndToldInMicroseconds) {
   EXPECT_NEAR(told.at("delay_us"), 150.0, 1e-9);
 }
 
+// Before: where the command was logged a row late, a fit went on where nothing changes any more, and nothing
+// was told.
+TEST(InputDelay, EndsWhereNoneIsLeft) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "");
+  ASSERT_EQ(e->low.size(), 1u);
+  EXPECT_EQ(e->low[0], -1e-3);
+  EXPECT_GT(e->high[0], 1e3) << "a long one has no end";
+  EXPECT_TRUE(e->start.empty()) << "and it is linear next to none";
+}
+
 TEST(InputDelay, IsANumberOfTheModelWhoseEvidenceLiesInItsPrior) {
   const CauseDefinition& cause = CauseNamed(kKind);
   ASSERT_EQ((*cause.freed_terms).size(), 1u);
