@@ -33,6 +33,15 @@ constexpr double kLeadError_rel = 5e-4;
 // A screw that warms grows within many minutes: an offset that changes no faster than that is no slip.
 constexpr double kWarms_s = 600.0;
 
+// An encoder that is reversed takes the axis away to one side. What comes back, time and again, by as much at
+// least as is missing and by more than readings may be off, is a loop that swings: one that is too fast for
+// what has been put on the table, say.
+Reason AsItSwings(Reason found, const SwingAhead& swing, double missing_m,
+                  const MotionThresholds& t) noexcept {
+  const bool swings = found == Reason::kFeedbackReversed && swing.Swings(std::max(t.reading_m, missing_m));
+  return swings ? Reason::kOscillation : found;
+}
+
 }  // namespace
 
 MotionMonitor::MotionMonitor(const MonitoredAxis& axis, const MonitorConfig& config, double period_s,
@@ -290,7 +299,8 @@ Reason MotionMonitor::Momentum(double velocity_m_s, double explained_N, bool sta
   beyond_ = size_N > rigid_N + swing_.Left_N(t_) ? beyond_ + 1 : 0;
   // By the time that it is no swing of the screw, the loop may have turned its torque round.
   if (beyond_rigid_ == kBeyondAtLeast) contradiction_ = Contradiction(velocity_m_s, stands, driven);
-  return beyond_ < kBeyondAtLeast ? Reason::kNone : contradiction_;
+  if (beyond_ < kBeyondAtLeast) return Reason::kNone;
+  return AsItSwings(contradiction_, swing_ahead_, size_N * period_s_ * period_s_ / t_.mass_kg, t_);
 }
 
 // What momentum beyond torque and friction says.
@@ -342,7 +352,8 @@ void MotionMonitor::KeepDoubt(const MotionSample& s, double velocity_m_s, double
 
 Reason MotionMonitor::Doubt() const noexcept {
   if (held_ && tells_none_) return Reason::kTorqueNotDelivered;
-  return held_ ? doubt_ : Reason::kNone;
+  const double missing_m = std::abs(unexplained_N_) * period_s_ * period_s_ / t_.mass_kg;
+  return held_ ? AsItSwings(doubt_, swing_ahead_, missing_m, t_) : Reason::kNone;
 }
 
 // A report that has never shown the torque is none: some drives leave 0x6077 at zero.

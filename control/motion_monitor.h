@@ -43,7 +43,8 @@ struct MotionSample {
 ///   motor and table that was under way does (SwingAhead);
 /// - momentum: u - m a, low-passed, is the force that neither torque nor motion explain (De Luca et al.,
 ///   collision detection by generalised momentum); beyond friction, outside forces and what motor and table
-///   swing by against each other (ScrewSwing) it is torque without motion, or motion against the torque;
+///   swing by against each other (ScrewSwing) it is torque without motion, or motion against the torque, or
+///   a loop that swings where the readings come back (SwingAhead);
 /// - delivery: the drive reports another torque than it was sent;
 /// - scale: table and motor are further apart than the screw can wind up.
 class MotionMonitor {
@@ -76,7 +77,7 @@ class MotionMonitor {
 
   [[nodiscard]] const MotionThresholds& thresholds() const noexcept { return t_; }
   /// Why the encoder is in doubt, for an axis that exceeds a limit: torque_without_motion, feedback_reversed,
-  /// or kNone.
+  /// oscillation or kNone.
   [[nodiscard]] Reason Doubt() const noexcept;
   /// Torque constant or mass are not what was stated. To be told, not to be acted upon.
   [[nodiscard]] bool torque_constant_changed() const noexcept { return watch_.changed(); }

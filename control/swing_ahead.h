@@ -36,6 +36,12 @@ class SwingAhead {
     return std::min(std::abs(off_m), std::abs(off_m - nearest_m));
   }
 
+  /// The readings go to and fro about where torque would take them, by more than `least_m` to either side.
+  [[nodiscard]] bool Swings(double least_m) const noexcept {
+    const double large_m = std::max(std::abs(before_m_), std::abs(older_m_));
+    return std::min(up_m_, down_m_) > std::max(least_m, kComesBack * large_m);
+  }
+
   void Keep(StateKeeper& keep) noexcept { keep(before_m_, older_m_, up_m_, down_m_); }
 
  private:

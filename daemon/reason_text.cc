@@ -114,9 +114,13 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
              "or gives no real time; then reset";
     case Reason::kDriveNotFollowing:
       return axis +
-             ": the enabled drive does not say that it follows its target (bit 12 of the statusword); quick "
-             "stop. Look for a limit, a halt or another mode in the drive; for a drive that has no such bit "
-             "set drive.follows_target_bit: false" +
+             ": the enabled drive does not say that it follows its target (bit 12 of the statusword), or not "
+             "any "
+             "more that it obeys its controlword (bit 9); quick stop. Look for a limit, a halt or another "
+             "mode in "
+             "the drive, and for somebody who has taken it over (its panel, its maker's program); for a "
+             "drive "
+             "that has no bit 12 set drive.follows_target_bit: false" +
              DriveText(detail);
     case Reason::kFeedbackFrozen:
       return axis +
@@ -180,7 +184,10 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
              "; ours stopped the drives and is silent now. Only one may command them: end the other, then "
              "reset";
     case Reason::kOscillation:
-      return axis + ": the loop oscillates, also with softer gains; stopped. Check model and tuning";
+      return axis +
+             ": the loop oscillates, also with softer gains or too much for them; stopped. Check model and "
+             "tuning, "
+             "and whether the table carries more than the model states";
     case Reason::kEstimatorInconsistent:
       return axis +
              ": the estimator's innovations have long been larger than it says; stopped on the path. The "

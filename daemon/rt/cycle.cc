@@ -261,8 +261,10 @@ FaultSeen Cycle::Contradiction(const Feedback& feedback) noexcept {
     s.has_scale = f.has_scale && (f.scale_fresh || !two_inertias_);
     s.table_position_m = f.has_scale ? TableAt_m(i, f) : 0.0;
     const Reason reason = axis.monitor.Step(s);
+    // Of a swing that not even the screw explains, no ramp is to be relied upon either.
+    const bool no_ramp = RampInDoubt(reason) || reason == Reason::kOscillation;
     if (reason != Reason::kNone && first.reason == Reason::kNone)
-      first = {reason, static_cast<std::uint8_t>(i)};
+      first = {reason, static_cast<std::uint8_t>(i), no_ramp};
   }
   skipped_before_ =
       static_cast<std::uint32_t>(std::min<std::uint64_t>(master_.elapsed_cycles() - 1, kMostSkipped));
@@ -284,7 +286,7 @@ const PerAxis<GuardedTorque>& Cycle::Limit(const ControlOutput& wanted, const Fe
     Guard(wanted, feedback, orders.torque_allowed);
   }
   // Seen together with another fault: that axis must not be braked by its encoder either.
-  if (transitions_.state() == MachineState::kFaulted && RampInDoubt(contradiction.reason))
+  if (transitions_.state() == MachineState::kFaulted && contradiction.voltage_off)
     orders.voltage_off = contradiction.where;
   guard_.Skip(skipped_);
   return guarded_;
@@ -303,7 +305,7 @@ FaultSeen Cycle::Guard(const ControlOutput& wanted, const Feedback& feedback, bo
       // An axis that runs away against its torque must not be braked by the encoder that says so.
       const bool ran_away = fault.reason == Reason::kFollowingError || fault.reason == Reason::kVelocityLimit;
       if (const Reason doubt = axes_[i].monitor.Doubt(); ran_away && doubt != Reason::kNone)
-        fault.reason = doubt;
+        fault = {doubt, fault.where, true};
     }
   }
   return fault;

@@ -132,6 +132,20 @@ TEST(SelfWatch, APayloadThatTheLoopCannotBearIsSoftenedAndNoJumpOfTheEncoder) {
   }
 }
 
+// 36 and 45 kg: the swing goes from torque limit to torque limit before it is softened. Before, the motor
+// that goes against its torque between antiresonance and mode was called an encoder that is reversed.
+TEST(SelfWatch, APayloadThatIsTooMuchIsNoReversedEncoder) {
+  for (const std::string share : {"0.4", "0.5"})
+    for (const std::string seed : {"1", "2"}) {
+      std::vector<std::string> set = TunedExample("cst");
+      set.push_back("emulator.axes.x.effects.payload_step={time_s: 4, inertia_change_rel: " + share + "}");
+      set.push_back("emulator.seed=" + seed);
+      const Watched seen = RunWatched(ExampleMachine(set), ControllerName::kFull,
+                                      Text("{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 4}"));
+      EXPECT_EQ(seen.ended, Reason::kOscillation) << share << ' ' << seed << ' ' << Name(seen.ended);
+    }
+}
+
 // Before: a burst from limit to limit for every quiet time, as long as the program went on.
 TEST(SelfWatch, ALinearLoopThatSwingsAgainWhenSoftnessIsTakenBackIsStopped) {
   const Watched seen = RunWatched(TooFast("300", "0.2"), ControllerName::kFull,

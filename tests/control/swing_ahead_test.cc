@@ -46,6 +46,24 @@ TEST(SwingAhead, AReadingThatJumpsOutOfQuietIsAsFarOffAsItIs) {
   }
 }
 
+// What a loop makes of a table that was loaded, and what the encoder's steps make of nothing.
+TEST(SwingAhead, OnlyWhatComesBackFromAsFarSwings) {
+  const MotionThresholds t = Thresholds();
+  constexpr double kLeast_m = 1e-6;
+  for (const double size_m : {1e-5, 5e-7}) {
+    SwingAhead swing;
+    for (int k = 0; k < 200; ++k) swing.See(size_m * std::sin(Mode_rad_s(3.0) * kPeriod_s * k), t);
+    EXPECT_EQ(swing.Swings(kLeast_m), size_m > kLeast_m);
+  }
+  for (const double factor : {1.1, 2.0}) {
+    SwingAhead swing;
+    for (int k = 0; k < 200; ++k) swing.See(2e-6 * std::sin(1.7 * k), t);
+    EXPECT_TRUE(swing.Swings(kLeast_m));
+    for (double off_m = 1e-6; off_m < 1e-3; off_m *= factor) swing.See(off_m, t);
+    EXPECT_FALSE(swing.Swings(kLeast_m)) << "it runs away to one side";
+  }
+}
+
 // An encoder that is reversed makes its loop run away to one side.
 TEST(SwingAhead, WhatRunsAwayToOneSideIsNoSwing) {
   const MotionThresholds t = Thresholds();
