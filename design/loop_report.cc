@@ -120,8 +120,9 @@ bool SlopeForbids(const LoopAxis& axis, const LoopVerdict& creeping) {
 
 RestingScrew RestingScrewOf(const LoopAxis& a) {
   RestingScrew screw{.stated_N_m = a.axis.stiffness_N_m, .stated_std = a.stiffness_std};
-  if (!a.scale_step_m && a.friction.sigma0_N_m > a.axis.stiffness_N_m)
-    screw.stable_below_N_m = 1.0 / (1.0 / a.axis.stiffness_N_m - 1.0 / a.friction.sigma0_N_m);
+  const double on_table_N_m = (1.0 - a.friction.motor_share) * a.friction.sigma0_N_m;
+  if (!a.scale_step_m && on_table_N_m > a.axis.stiffness_N_m)
+    screw.stable_below_N_m = 1.0 / (1.0 / a.axis.stiffness_N_m - 1.0 / on_table_N_m);
   return screw;
 }
 

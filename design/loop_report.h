@@ -13,7 +13,7 @@ namespace contour {
 
 /// A screw that may be stiffer than stated, at rest. A loop without a scale leads its motor by F / K; of that
 /// the true screw takes F / K_true, and bristles answer the rest with sigma0 times it: from sigma0 (1 / K - 1
-/// / K_true) = 1 on the table hunts.
+/// / K_true) = 1 on the table hunts. F and sigma0 are the table's, without the motor's share.
 struct RestingScrew {
   double stated_N_m = 0.0;
   double stated_std = 0.0;  ///< relative

@@ -125,6 +125,11 @@ TEST(Describe, SaysHowStiffAScrewMayBeForTheTableToRest) {
   axis.stiffness_std = 0.1;
   report.screw = RestingScrewOf(axis);
   ExpectHas(Describe(report), ", 9 % stiffer than stated, and stated is 10 %: if it is that stiff");
+  axis.friction.motor_share = 0.5;  // half of the bristles hold the motor
+  EXPECT_NEAR(RestingScrewOf(axis).stable_below_N_m, 40e6 * 6.0 / 5.0, 1.0);
+  axis.friction.motor_share = 0.95;
+  EXPECT_FALSE(std::isfinite(RestingScrewOf(axis).stable_below_N_m)) << "soft bristles on the table";
+  axis.friction.motor_share = 0.0;
   axis.scale_step_m = 5e-9;
   EXPECT_FALSE(std::isfinite(RestingScrewOf(axis).stable_below_N_m)) << "the table is measured";
 }
