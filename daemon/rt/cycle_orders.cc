@@ -8,6 +8,9 @@ namespace contour {
 
 void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
   DoubtPosition();
+  // What takes the voltage away as a swing may be counts that are lost, too.
+  if (transitions_.reason() == Reason::kOscillation && orders.voltage_off < axes_.size())
+    master_.DoubtPosition(orders.voltage_off);
   if (orders.reference) TellWhere(request);
   if (orders.start_bring_up) master_.StartBringUp();
   if (orders.fall_silent) master_.FallSilent();

@@ -6,6 +6,7 @@
 #include "daemon/program/path_generator.h"
 #include "daemon/program_limits.h"
 #include "tests/closed_loop/test_machine.h"
+#include "tests/closed_loop/tuned_loops.h"
 #include "tests/support/drive_faults.h"
 
 namespace contour::test {
@@ -196,6 +197,28 @@ TEST_F(LostReference, AReadingThatStandsUnderATorqueThatWasNeverReportedCostsIt)
   Ticks(600);
   ASSERT_EQ(state(), MachineState::kFaulted);
   ASSERT_EQ(machine_->record().reason, Reason::kTorqueWithoutMotion);
+  EXPECT_EQ(reference(0), ReferenceState::kLost);
+  EXPECT_EQ(reference(1), ReferenceState::kTold);
+}
+
+/// Before it was called a swing it was feedback_reversed or velocity_limit, which cost the reference.
+TEST_F(LostReference, ASwingThatTakesTheVoltageAwayCostsIt) {
+  std::vector<std::string> set = TunedExample("cst");
+  for (const std::string axis : {"x", "y"}) {
+    set.push_back("axes." + axis + ".drive.absolute_encoder=false");
+    set.push_back("emulator.axes." + axis + ".incremental_encoder=true");
+  }
+  set.push_back("emulator.axes.x.effects.payload_step={time_s: 4, inertia_change_rel: 0.5}");
+  set.push_back("emulator.seed=1");
+  UseMachine(ExampleMachine(set));
+  TellBoth();
+  machine_->Enable();
+  machine_->Start(ParseProgram("{shape: circle, radius_mm: 10, feed_mm_min: 3000, turns: 6}",
+                               "circle of the test", ProgramFormat::kYaml));
+  for (int i = 0; i < 9000 && state() != MachineState::kFaulted; ++i) machine_->Tick();
+  ASSERT_EQ(state(), MachineState::kFaulted) << Name(machine_->record().reason);
+  ASSERT_EQ(machine_->record().reason, Reason::kOscillation);
+  ASSERT_EQ(machine_->record().axes[0].goal, DriveGoal::kDisabled);
   EXPECT_EQ(reference(0), ReferenceState::kLost);
   EXPECT_EQ(reference(1), ReferenceState::kTold);
 }
