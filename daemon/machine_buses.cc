@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <cstring>
+
 #include "config/config_error.h"
 #include "config/interfaces.h"
 #include "drivers/can/loopback_bus.h"
@@ -89,6 +91,10 @@ void MachineBuses::DrainTruth() {
   if (relay_ && relay_->lost() != reported_lost_) {
     reported_lost_ = relay_->lost();
     spdlog::warn("{} rows of truth were lost, in all", reported_lost_);
+  }
+  if (relay_ && relay_->error() != 0 && !reported_failure_) {
+    reported_failure_ = true;
+    spdlog::warn("cannot write the truth: {}; it ends here", std::strerror(relay_->error()));
   }
 }
 

@@ -41,6 +41,7 @@ class MachineBuses {
   std::shared_ptr<TruthRelay> relay_;
   std::unique_ptr<SlowLane> truth_lane_;
   std::uint64_t reported_lost_ = 0;
+  bool reported_failure_ = false;
   std::vector<std::unique_ptr<InterfaceLock>> locks_;
   std::vector<std::unique_ptr<FrameBus>> buses_;
   std::vector<FrameBus*> pointers_;

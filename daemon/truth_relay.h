@@ -31,7 +31,8 @@ class TruthRelay final : public TruthSink {
     if (any) writer_.Flush();
   }
   [[nodiscard]] std::uint64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
-  [[nodiscard]] bool ok() const noexcept { return writer_.ok(); }
+  /// An errno, once the file takes no more; 0 before.
+  [[nodiscard]] int error() const noexcept { return writer_.error(); }
 
  private:
   static constexpr std::size_t kCapacity = 2048;

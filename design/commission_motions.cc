@@ -126,7 +126,8 @@ class Motions {
   std::vector<CommissionMotion> Take() { return std::move(motions_); }
 
  private:
-  std::string Creep(double stroke_mm, const std::vector<double>& speeds) const {
+  std::string Creep(double stroke_mm, std::vector<double> speeds) const {
+    for (double& v : speeds) v = std::min(v, top_mm_s_);
     return CreepProgram(name_, stroke_mm, speeds, 0.1);
   }
 

@@ -18,12 +18,18 @@ constexpr double kSpeed_mm_s = 100.0;
 constexpr double kShareOfTorque = 0.6;
 /// Two turns of the motor to average over, one at the least.
 constexpr double kFewestTurns = 1.0;
-constexpr double kSlowestTop_mm_s = 20.0;
+constexpr double kSlowestTop_mm_s = 20.0, kSlowestTop_turns_s = 2.0;
 /// What the model may be wrong by.
 constexpr double kDoubt = 1.5;
 
 void Require(bool good, const std::string& message) {
   if (!good) throw ConfigError({message});
+}
+
+/// A fine lead, or a slow axis, has no more.
+double SlowestTop_mm_s(const AxisConfig& axis) {
+  return std::min(
+      {kSlowestTop_mm_s, kSlowestTop_turns_s * axis.model.mechanics.lead_mm, axis.limits.velocity_mm_s});
 }
 
 void CheckLimits(const std::string& name, const AxisConfig& axis, const CommissionLimits& limits) {
@@ -39,9 +45,10 @@ void CheckLimits(const std::string& name, const AxisConfig& axis, const Commissi
           FormatText("--travel_mm: found %g, expected a whole turn of the motor "
                      "at least (%g mm): friction varies with it",
                      travel, lead_mm));
-  Require(limits.max_speed_mm_s >= kSlowestTop_mm_s && limits.max_speed_mm_s <= l.velocity_mm_s,
+  const double slowest_mm_s = SlowestTop_mm_s(axis);
+  Require(limits.max_speed_mm_s >= slowest_mm_s && limits.max_speed_mm_s <= l.velocity_mm_s,
           FormatText("--max_speed_mm_s: found %g, expected %g to %g (axes.%s.limits.velocity_mm_s)",
-                     limits.max_speed_mm_s, kSlowestTop_mm_s, l.velocity_mm_s, name.c_str()));
+                     limits.max_speed_mm_s, slowest_mm_s, l.velocity_mm_s, name.c_str()));
   Require(
       limits.max_torque_Nm > 0.0 && limits.max_torque_Nm <= l.torque_Nm,
       FormatText("--max_torque_Nm: found %g, expected more than 0 and at most %g (axes.%s.limits.torque_Nm)",
@@ -67,8 +74,9 @@ CommissionLimits DefaultCommissionLimits(const AxisConfig& axis) {
   // A steep screw needs more than the usual way for the turn that is asked of it.
   const double travel_mm =
       std::max(std::min(kTravel_mm, kShareOfStroke * stroke_mm), kFewestTurns * axis.model.mechanics.lead_mm);
-  return {std::min(travel_mm, stroke_mm), std::min(kSpeed_mm_s, kShareOfSpeed * l.velocity_mm_s),
-          kShareOfTorque * l.torque_Nm};
+  const double speed_mm_s =
+      std::max(std::min(kSpeed_mm_s, kShareOfSpeed * l.velocity_mm_s), SlowestTop_mm_s(axis));
+  return {std::min(travel_mm, stroke_mm), speed_mm_s, kShareOfTorque * l.torque_Nm};
 }
 
 CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string& name, double position_mm,

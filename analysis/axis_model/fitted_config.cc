@@ -85,7 +85,6 @@ bool StatesNothing(std::string_view line) {
                                                "rated_force_N: 0",
                                                "torque_constant_Nm_A: 0",
                                                "force_constant_N_A: 0",
-                                               "endless: false",
                                                "extensions: {}",
                                                "uncertainty: {}"};
   line.remove_prefix(std::min(line.size(), line.find_first_not_of(' ')));
@@ -177,7 +176,7 @@ void IntoConfig(const StatedAxis& axis, LooseAxisFile& file) {
   to.Put("lag", {"lag_ms"});
   (axis.linear ? file.drive.force_constant_N_A : file.drive.torque_constant_Nm_A) =
       FiveDigits(axis.torque_constant);
-  file.drive.endless = axis.endless;
+  if (axis.endless || axis.to_and_fro) file.drive.endless = axis.endless;
 }
 
 std::string TextOf(const LooseAxisFile& file, ExtensionUnits units) {

@@ -38,7 +38,7 @@ class Converter {
     ApplyNumbers(model_.extensions, axis_);
     ApplyExtras(model_.extensions, axis_);
     axis_.motor_share = axis_.friction_on_load ? model_.friction.motor_share_rel : 0.0;
-    Demand(!(drive_.endless && drive_.stroke_mm), "drive.stroke_mm",
+    Demand(!(drive_.endless.value_or(false) && drive_.stroke_mm), "drive.stroke_mm",
            "found on an endless axis, expected none");
     if (!drive_.stroke_mm) axis_.open.insert("stroke");
     if (drive_.stroke_mm) {
@@ -73,7 +73,7 @@ class Converter {
     Only("rotary", model_.damping_Nms_rad != 0.0, Model("damping_Nms_rad"));
     Only("rotary", model_.constant_torque_Nm != 0.0, Model("constant_torque_Nm"));
     Only("rotary", model_.gear_ratio != 1.0, Model("gear_ratio"));
-    Only("rotary", drive_.endless, "drive.endless");
+    Only("rotary", drive_.endless.has_value(), "drive.endless");
     Only("rotary", drive_.torque_constant_Nm_A != 0.0, "drive.torque_constant_Nm_A");
     Only("rotary", drive_.encoder_counts_per_rev != 0.0, "drive.encoder_counts_per_rev");
     Only("rotary", drive_.rated_torque_Nm != 0.0, "drive.rated_torque_Nm");
@@ -131,7 +131,8 @@ class Converter {
         !model_.lead_mm || model_.gear_ratio == 1.0, Model("gear_ratio"),
         "found together with lead_mm, expected one of the two: behind a screw the log has the motor's angle");
     axis_.gear_ratio = model_.gear_ratio;
-    axis_.endless = drive_.endless;
+    axis_.endless = drive_.endless.value_or(false);
+    axis_.to_and_fro = drive_.endless == false;
     axis_.torque_constant = drive_.torque_constant_Nm_A;
     axis_.table_per_q = radius;
     const double load = model_.load_inertia_kgm2.value_or(radius * radius * model_.table_mass_kg);

@@ -66,6 +66,7 @@ struct StatedAxis {
   std::string axis;    ///< its name; empty when not known
   bool linear = false;
   bool endless = false;      ///< no stroke, and nothing that goes with one
+  bool to_and_fro = false;   ///< stated not to be endless
   double gear_ratio = 1.0;   ///< turns of the motor per turn of q, where q is not the motor's angle
   double lead_m = 0.0;       ///< table travel per motor turn; 0 when unknown (linear axes without a screw)
   double table_per_q = 1.0;  ///< table travel in m per unit of q: lead / (2 pi), or 1

@@ -121,7 +121,7 @@ struct LooseDriveConfig {
   double torque_constant_Nm_A = 0.0;
   double force_constant_N_A = 0.0;
   std::optional<std::array<double, 2>> stroke_mm;
-  bool endless = false;
+  std::optional<bool> endless;  ///< nothing: as the log looks
 
   template <class Visitor>
   void Visit(Visitor& v) {

@@ -15,6 +15,7 @@
 #include "analysis/diagnosis/quantification/displacements.h"
 #include "analysis/diagnosis/quantification/follow_play.h"
 #include "analysis/diagnosis/quantification/quantify.h"
+#include "analysis/diagnosis/quantification/slow_torque.h"
 #include "analysis/diagnosis/quantification/written_model.h"
 #include "analysis/diagnosis/rounds.h"
 #include "analysis/diagnosis/screening/nominal.h"
@@ -101,6 +102,7 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   DescribeModel(problem, nominal.fit, fit, rounds.accepted, left[0].score > left[0].asked, out);
   Conclude(problem, left, out);
   TellDisplacements(problem, nominal.fit.point, out);
+  TellSlowTorque(problem, out);
   KeepStatedWhereBetter(stated, out);
   if (out.verdict == Verdict::kUnexplained && out.causes.empty()) out.causes = std::move(rounds.leading);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)

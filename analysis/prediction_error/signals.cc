@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
+#include "analysis/prediction_error/outlier_rows.h"
 #include "analysis/prediction_error/stands_out.h"
 
 namespace contour::diagnosis {
@@ -223,12 +224,12 @@ std::vector<std::uint8_t> ValidRows(const AxisLog& log, const Signals& signals, 
 void MarkOutliers(const std::vector<double>& innovation, double position_step,
                   std::vector<std::uint8_t>& valid, DataQuality& quality) {
   StandsOut stands_out(innovation, position_step);
-  for (std::size_t k = 2; k + 3 < innovation.size(); ++k) {
+  for (std::size_t k = 2; k + kOutlierRows < innovation.size(); ++k) {
     if (valid[k] == 0 || !stands_out(k)) continue;
     const double e = std::fabs(innovation[k]);
     // A shock goes on; a wrong reading is over after the rows that it pulled along.
     if (std::fabs(innovation[k - 1]) > kRows.shock_share * e ||
-        std::fabs(innovation[k + 3]) > kRows.shock_share * e)
+        std::fabs(innovation[k + kOutlierRows]) > kRows.shock_share * e)
       continue;
     valid[k] = 0;
     ++quality.outliers;

@@ -108,12 +108,13 @@ std::vector<std::string> CompleteFromLog(AxisLog& log, StatedAxis& stated) {
   }
   if (fit.why_not.empty()) Friction(fit, log, stated);
   if (!log.linear && stated.lead_m == 0.0 && stated.gear_ratio == 1.0 && stated.open.contains("stroke") &&
-      fit.travel > kEndlessTurns * 2.0 * std::numbers::pi && !stated.endless) {
+      fit.travel > kEndlessTurns * 2.0 * std::numbers::pi && !stated.endless && !stated.to_and_fro) {
     stated.endless = true;
     notes.push_back(
         "The axis makes " + RoundedText(fit.travel / (2.0 * std::numbers::pi)) +
         " turns, and no lead, gear or stroke is stated: it is taken to turn for ever, and no cause "
-        "is looked for that goes with a stroke.");
+        "is looked for that goes with a stroke. Of an axis that goes to and fro state drive.endless: false, "
+        "or its drive.stroke_mm.");
   }
   if (fit.why_not.empty() && stated.open.contains("Fc") && stated.open.contains("vs"))
     OpenFallingFriction(log, stated);

@@ -4,6 +4,8 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string_view>
 #include <system_error>
 
 #include "config/yaml_reader.h"
@@ -237,9 +239,11 @@ Program ParseProgram(std::string_view text, const std::string& name, ProgramForm
 }
 
 ProgramFormat FormatOf(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  const bool gcode =
-      extension == ".ngc" || extension == ".nc" || extension == ".gcode" || extension == ".tap";
+  std::string extension = file.extension().string();
+  for (char& c : extension)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  constexpr std::string_view kGcode[] = {".ngc", ".nc", ".cnc", ".gcode", ".gc", ".tap"};
+  const bool gcode = std::find(std::begin(kGcode), std::end(kGcode), extension) != std::end(kGcode);
   return gcode ? ProgramFormat::kGcode : ProgramFormat::kYaml;
 }
 

@@ -40,7 +40,8 @@ std::string ReadProgramText(const std::filesystem::path& file);
 /// Reads a program from a file, in the format of its name. Throws ProgramError.
 Program LoadProgram(const std::filesystem::path& file);
 
-/// G-code when the name ends in .ngc, .nc, .gcode or .tap, YAML otherwise.
+/// G-code when the name ends in .ngc, .nc, .cnc, .gcode, .gc or .tap, in small letters or capitals, YAML
+/// otherwise.
 ProgramFormat FormatOf(const std::filesystem::path& file);
 
 }  // namespace contour

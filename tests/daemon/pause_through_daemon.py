@@ -179,6 +179,8 @@ def check_endless(operator, circle):
         assert operator.status()["state"] == "Ready"
     operator.ask("feed", "100")
     operator.ask("run", str(ngc))
+    refused = operator.call("run", "nowhere.ngc")
+    assert refused.returncode == 2 and "nowhere.ngc: cannot be read" in refused.stderr, refused
 
 
 def check_lines(operator):

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
+#include <string>
 
 #include "analysis/axis_model/read_stated_axis.h"
 #include "analysis/identification/result_files.h"
@@ -134,6 +136,28 @@ TEST(CommissionPlanTest, SlowCyclesHaveAChirpToo) {
         return std::stod(motion.yaml.substr(motion.yaml.find(key) + key.size()));
       };
       EXPECT_LE(number("frequency_min_hz: "), 0.6 * number("frequency_max_hz: ")) << cycle_us;
+    }
+  }
+}
+
+// Before: "found 6, expected 20 to 15", whatever was asked for.
+TEST(CommissionPlanTest, ASlowAxisOfAFineLeadIsCommissionedAtItsOwnSpeeds) {
+  for (const double velocity_mm_s : {15.0, 3.0}) {
+    MachineConfig machine = Example();
+    AxisConfig& axis = machine.axes.at("x");
+    axis.model.mechanics.lead_mm = 1.0;
+    axis.limits.velocity_mm_s = velocity_mm_s;
+    axis.limits.acceleration_mm_s2 = 200.0;  // what the torque allows with such a lead
+    const CommissionLimits limits = DefaultCommissionLimits(axis);
+    EXPECT_LE(limits.max_speed_mm_s, velocity_mm_s);
+    CommissionLimits all_it_has = limits;
+    all_it_has.max_torque_Nm = axis.limits.torque_Nm;
+    for (const CommissionMotion& motion : PlanCommissioning(machine, "x", 0.0, all_it_has).motions) {
+      const std::size_t at = motion.yaml.find("velocities_mm_s: [");
+      if (at == std::string::npos) continue;
+      std::istringstream numbers(motion.yaml.substr(at + 18, motion.yaml.find(']', at) - at - 18));
+      for (std::string number; std::getline(numbers, number, ',');)
+        EXPECT_LE(std::stod(number), limits.max_speed_mm_s) << motion.yaml;
     }
   }
 }

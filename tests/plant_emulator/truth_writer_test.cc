@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -58,6 +59,15 @@ TEST(TruthWriter, WritesNamedColumnsAndExactNumbers) {
 
 TEST(TruthWriter, SaysWhichFileCannotBeWritten) {
   EXPECT_THROW(TruthWriter("/nonexistent/truth.csv", {"x"}), std::runtime_error);
+}
+
+TEST(TruthWriter, AFullDiskIsKnown) {
+  TruthWriter writer("/dev/full", {"x"});
+  EXPECT_FALSE(writer.ok());
+  EXPECT_EQ(writer.error(), ENOSPC);
+  writer.OnTruth({});
+  writer.Flush();
+  EXPECT_EQ(writer.error(), ENOSPC);
 }
 
 }  // namespace

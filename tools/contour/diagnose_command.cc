@@ -32,6 +32,7 @@
 #include "config/number_text.h"
 #include "config/whole_file.h"
 #include "daemon/program/program.h"
+#include "design/loop_choice.h"
 #include "tools/contour/terminal_progress.h"
 #include "tools/contour_gain/contour_gain.h"
 
@@ -86,13 +87,42 @@ std::string WriteExtendedModel(const Options& options, const Diagnosis& found, c
   return file;
 }
 
-/// By simulation of a machine file's machine with the causes found; a model alone has no path to draw.
-std::optional<ContourGain> Predict(const Options& options, const Diagnosis& found, const AxisLog& log) {
-  if (!IsMachineFile(options.model)) return {};
+/// What is simulated with the causes found.
+struct PathToDraw {
+  MachineConfig machine;
+  std::string axis;
+  Program program;
+};
+
+/// As it stands where there is none for an axis: a log says something of such an axis, too.
+MachineConfig WithLoops(const Options& options) {
   const MachineConfig machine = LoadMachine(options.model, options.set);
-  const std::string axis = options.axis.empty() ? machine.axes.begin()->first : options.axis;
-  const Program program = options.program.empty() ? UsualCircle(machine) : LoadProgram(options.program);
-  return PredictContourGain(machine, axis, found, TemperatureOf(log), program);
+  try {
+    std::vector<std::string> set = options.set;
+    for (const std::string& loop : LoopsThatAreMissing(machine)) set.push_back(loop);
+    return LoadMachine(options.model, set);
+  } catch (const ConfigError&) {
+    return machine;
+  }
+}
+
+/// Of a machine file, with loops for axes that it states none for; a model alone has no path to draw.
+std::optional<PathToDraw> PathOf(const Options& options) {
+  if (options.out.empty() || !IsMachineFile(options.model)) return {};
+  PathToDraw path{WithLoops(options), options.axis, {}};
+  if (path.axis.empty()) path.axis = path.machine.axes.begin()->first;
+  path.program = options.program.empty() ? UsualCircle(path.machine) : LoadProgram(options.program);
+  return path;
+}
+
+/// What was found stands where the simulated machine stops, too, or has no loop.
+std::optional<ContourGain> Predict(const PathToDraw& path, const AxisLog& log, Diagnosis& found) {
+  try {
+    return PredictContourGain(path.machine, path.axis, found, TemperatureOf(log), path.program);
+  } catch (const std::exception& e) {
+    found.notes.push_back(std::string("The path was not simulated: ") + e.what());
+    return {};
+  }
 }
 
 std::string PredictionText(const ContourGain& gain) {
@@ -134,6 +164,7 @@ int RunDiagnose(const Options& options) {
   KeepMemory();
   StatedAxis stated = ReadStatedAxis(options.model, options.axis, options.set);
   DiagnoseOptions how = HowOf(options);
+  const std::optional<PathToDraw> path = PathOf(options);
   AxisLog log = ReadLogs(options, stated);
   const std::vector<std::string> assumed = CompleteFromLog(log, stated);
   if (const std::string why = WrongUnits(log, stated); !why.empty())
@@ -147,9 +178,9 @@ int RunDiagnose(const Options& options) {
     how.progress = [&](std::string_view doing, double share) { progress.Show(doing, share); };
     found = Diagnose(log, stated, how);
     found.notes.insert(found.notes.begin(), assumed.begin(), assumed.end());
-    if (!options.out.empty()) {
+    if (path) {
       progress.Show("simulating the path", 1.0);
-      contour = Predict(options, found, log);
+      contour = Predict(*path, log, found);
     }
   }
   std::string extended;

@@ -53,13 +53,6 @@ static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler
 
 void OnSignal(int /*signal*/) { stop_requested.store(true); }
 
-std::string ReadText(const std::string& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad()) throw std::runtime_error("cannot read " + file);
-  return text;
-}
-
 /// Rows on their way from the daemon into a RunRecord.
 class RowCollector {
  public:
@@ -272,7 +265,7 @@ EventUse EventsFor(const Options& options, const json& status) {
 /// The program as the daemon reads it for that place.
 Program ReadFor(const Placement& place, const json& status, const Options& options) {
   const std::string& file = options.program;
-  const std::string text = ReadText(file);
+  const std::string text = ReadProgramText(file);
   bool referenced = true;
   for (const json& axis : status.at("axes")) referenced = referenced && axis.value("referenced", true);
   return ReadPlaced({text, file, FormatOf(file)}, place, LimitsOf(status),
@@ -284,7 +277,7 @@ json RequestOf(const Options& options) {
   json request{{"request", "run"},
                {"name", std::filesystem::path(options.program).filename().string()},
                {"format", gcode ? "ngc" : "yaml"},
-               {"text", ReadText(options.program)}};
+               {"text", ReadProgramText(options.program)}};
   if (!options.controller.empty()) request["controller"] = options.controller;
   if (options.forget) request["forget"] = true;
   if (options.from_here) request["from_here"] = true;

@@ -72,7 +72,7 @@ void TruthWriter::OnTruth(const TruthRow& row) noexcept {
 
 void TruthWriter::Flush() noexcept {
   if (used_ == 0) return;
-  if (std::fwrite(buffer_.data(), 1, used_, file_.get()) != used_ || std::fflush(file_.get()) != 0)
+  if (ok() && (std::fwrite(buffer_.data(), 1, used_, file_.get()) != used_ || std::fflush(file_.get()) != 0))
     error_ = errno;
   used_ = 0;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -19,7 +20,7 @@ class TruthWriter final : public TruthSink {
   ~TruthWriter() override;
 
   void OnTruth(const TruthRow& row) noexcept override;
-  /// Hands over what has gathered, so that others can read it.
+  /// Hands over what has gathered, so that others can read it. After a write that failed nothing is written.
   void Flush() noexcept;
   /// False once a write failed (disk full); message for people in error().
   [[nodiscard]] bool ok() const noexcept { return error_ == 0; }
@@ -36,7 +37,7 @@ class TruthWriter final : public TruthSink {
   std::vector<char> buffer_;
   std::size_t used_ = 0;
   std::size_t axes_;
-  int error_ = 0;
+  std::atomic<int> error_{0};  ///< told by another thread
 };
 
 }  // namespace contour

@@ -6,13 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "analysis/prediction_error/outlier_rows.h"
+#include "analysis/prediction_error/stands_out.h"
 #include "config/number_text.h"
 
 namespace contour::diagnosis {
 namespace {
-
-/// So many rows a wrong reading may last: as far ahead as outliers are looked at.
-constexpr std::size_t kWrongRows = 3;
 
 /// What the steps to rows `from` to `to` bring beyond the mean of the steps before and after them, which is
 /// nothing under a constant acceleration. NaN where a row is missing.
@@ -27,47 +26,57 @@ double Displacement(const std::vector<double>& position, std::size_t k) { return
 
 /// Whether it was where it had been going for some rows before row k, and is away for some rows after it.
 bool Stays(const std::vector<double>& position, std::size_t k, double by) {
-  const double far = Beyond(position, k - kWrongRows, k + kWrongRows);
+  const double far = Beyond(position, k - kOutlierRows, k + kOutlierRows);
   return 2.0 * far * by > by * by;
 }
 
+/// Whether the reading was held in rows that this looks at: what it makes up for afterwards is no jump.
+bool Held(const Problem& problem, std::size_t k) {
+  const std::vector<double>& position = problem.log.position;
+  for (std::size_t i = k - kOutlierRows - 1; i <= k + kOutlierRows + 1; ++i)
+    if (problem.setup.valid[i] == 0 && position[i] == position[i - 1]) return true;
+  return false;
+}
+
 /// How large that may be where nothing is wrong: the largest force of the log drives what the encoder sits on
-/// one direction in one row and the other in the next; and what rows show that nothing was wrong with, with
-/// their noise and the encoder's steps.
-double WithinReach(const Problem& problem, const AxisModel& model) {
-  const AxisLog& log = problem.log;
+/// one direction in one row and the other in the next.
+double WithinReach(const AxisLog& log, const AxisModel& model) {
   double largest = 0.0;
   for (const double u : log.command) largest = std::max(largest, std::fabs(model.torque_gain * u));
   const StatedFriction& f = model.friction;
   largest += std::fabs(model.offset) + std::max({f.Fc_plus, f.Fc_minus, f.Fs_plus, f.Fs_minus});
-  double reach = 2.0 * largest / model.motor_inertia * log.period_s * log.period_s;
-  for (std::size_t k = 2; k + 2 < log.size(); ++k) {
-    if (problem.counted[k] == 0) continue;
-    // False, too, where a row is missing.
-    if (const double by = std::fabs(Displacement(log.position, k)); by > reach) reach = by;
-  }
-  return reach;
+  return 2.0 * largest / model.motor_inertia * log.period_s * log.period_s;
+}
+
+std::vector<double> Displacements(const std::vector<double>& position) {
+  std::vector<double> out(position.size(), 0.0);
+  for (std::size_t k = 2; k + 2 < position.size(); ++k) out[k] = Displacement(position, k);
+  return out;
 }
 
 }  // namespace
 
 void TellDisplacements(const Problem& problem, const Point& fitted, Diagnosis& out) {
   const AxisLog& log = problem.log;
-  const double within_reach = WithinReach(problem, problem.Build(fitted));
+  const double within_reach = WithinReach(log, problem.Build(fitted));
+  const std::vector<double> displaced = Displacements(log.position);
+  // Noise and steps of the encoder move rows, too.
+  StandsOut stands_out(displaced, problem.stated.position_step);
   std::string first, largest_at;
   std::size_t count = 0, told_to = 0;
   double largest = 0.0;
   const auto size_text = [&](double by) {
     return log.linear ? RoundedText(1e3 * by) + " mm" : RoundedText(by) + " rad";
   };
-  for (std::size_t k = kWrongRows + 2; k + kWrongRows + 1 < log.size(); ++k) {
+  for (std::size_t k = kOutlierRows + 2; k + kOutlierRows + 1 < log.size(); ++k) {
     if (problem.setup.valid[k] != 0 || log.present[k] == 0) continue;
-    const double by = Displacement(log.position, k);
-    if (!(std::fabs(by) > within_reach) || !Stays(log.position, k, by)) continue;
+    const double by = displaced[k];
+    if (!(std::fabs(by) > within_reach) || Held(problem, k)) continue;
+    if (!stands_out(k) || !Stays(log.position, k, by)) continue;
     const std::string at = RoundedText(log.period_s * static_cast<double>(k)) + " s";
     // The row before a jump is seen to be off, too.
     if (k >= told_to && count++ == 0) first = at;
-    told_to = k + kWrongRows;
+    told_to = k + kOutlierRows;
     if (std::fabs(by) <= std::fabs(largest)) continue;
     largest = by;
     largest_at = at;

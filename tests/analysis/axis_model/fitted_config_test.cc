@@ -62,6 +62,17 @@ TEST(FittedConfig, NumbersOfEveryKindOfAxisComeBack) {
   }
 }
 
+TEST(FittedConfig, WhatIsSaidOfTheStrokeStays) {
+  for (const char* endless : {"true", "false"}) {
+    const std::string file = WriteTestFile(
+        "model.yaml", std::string("model: {motor_inertia_kgm2: 1e-4}\ndrive: {endless: ") + endless + "}\n");
+    const StatedAxis axis = ReadStatedAxis(file, "");
+    const StatedAxis again = Again(file, axis);
+    EXPECT_EQ(again.endless, axis.endless) << endless;
+    EXPECT_EQ(again.to_and_fro, axis.to_and_fro) << endless;
+  }
+}
+
 TEST(FittedConfig, ExtensionsKeepTheUnitsOfTheAxis) {
   const std::string file = WriteTestFile(
       "model.yaml",

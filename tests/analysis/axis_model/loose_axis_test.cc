@@ -99,6 +99,9 @@ TEST(LooseAxis, GearEndlessAndCurrent) {
   EXPECT_DOUBLE_EQ(a.gear_ratio, 101.0);
   EXPECT_DOUBLE_EQ(a.torque_constant, 9.5);
   EXPECT_TRUE(a.endless);
+  EXPECT_FALSE(a.to_and_fro);
+  const std::string not_endless = "model: {motor_inertia_kgm2: 10}\ndrive: {endless: false}\n";
+  EXPECT_TRUE(ReadStatedAxis(WriteTestFile("model.yaml", not_endless), "").to_and_fro);
   // Without a lead, places are in rad.
   EXPECT_DOUBLE_EQ(a.table_per_q, 1.0);
   EXPECT_NE(Error("model: {motor_inertia_kgm2: 10, gear_ratio: 3, lead_mm: 5}\n").find("gear_ratio"),

@@ -108,6 +108,10 @@ TEST(CompleteFromLog, ManyTurnsWithoutAStrokeAreEndless) {
   CompleteFromLog(axis.log, axis.stated);
   EXPECT_TRUE(axis.stated.endless);
   axis.stated.endless = false;
+  axis.stated.to_and_fro = true;
+  CompleteFromLog(axis.log, axis.stated);
+  EXPECT_FALSE(axis.stated.endless) << "it is stated";
+  axis.stated.to_and_fro = false;
   axis.stated.gear_ratio = 50.0;
   CompleteFromLog(axis.log, axis.stated);
   EXPECT_FALSE(axis.stated.endless);

@@ -93,6 +93,8 @@ TEST(ProgramText, ErrorsNamePlaceAndExpectation) {
 
 TEST(ProgramText, FormatFollowsTheNameOfTheFile) {
   EXPECT_EQ(FormatOf("a/b.ngc"), ProgramFormat::kGcode);
+  EXPECT_EQ(FormatOf("PART.NC"), ProgramFormat::kGcode);
+  EXPECT_EQ(FormatOf("part.Cnc"), ProgramFormat::kGcode);
   EXPECT_EQ(FormatOf("b.yaml"), ProgramFormat::kYaml);
   EXPECT_NE(ErrorOf([] { LoadProgram("/nowhere/circle.yaml"); }).find("/nowhere/circle.yaml: cannot be read"),
             std::string::npos);

@@ -46,6 +46,30 @@ TEST(Displacements, AWrongReadingIsNoneHoweverLongItLasts) {
       ADD_FAILURE() << rows << " rows: " << note;
 }
 
+TEST(Displacements, AReadingThatWasHeldIsNone) {
+  for (const std::size_t rows : {1U, 3U, 4U, 5U, 20U}) {
+    test::HiddenAxis made = test::HiddenAxisFor(30.0);
+    for (const std::size_t from : {4250U, 9999U, 15000U})
+      for (std::size_t k = from; k < from + rows; ++k) made.log.position[k] = made.log.position[from - 1];
+    for (const std::string& note : NotesOn(std::move(made), {})) ADD_FAILURE() << rows << " rows: " << note;
+  }
+}
+
+// Three jumps and an impact that changes the speed at once: it is no jump, and hides none.
+TEST(Displacements, AnImpactHidesNone) {
+  test::HiddenAxis made = test::HiddenAxisFor(30.0);
+  constexpr std::size_t kImpact = 20000, kLasts = 20;
+  double off = 0.0;
+  for (std::size_t k = kImpact; k < made.log.size(); ++k) {
+    if (k < kImpact + kLasts) off += 0.1;
+    made.log.position[k] += off;
+  }
+  const std::vector<std::string> notes =
+      NotesOn(std::move(made), {{6000, 0.08}, {9999, 0.08}, {15000, -0.08}});
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_NE(notes[0].find("3 times, at 6 s first"), std::string::npos) << notes[0];
+}
+
 // Of a coarse, noisy encoder and next to no command: what a row shows is not what a force does.
 TEST(Displacements, NoiseAndStepsOfTheEncoderAreNone) {
   test::HiddenAxis made = test::HiddenAxisFor(30.0);
