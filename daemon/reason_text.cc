@@ -114,13 +114,11 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
              "or gives no real time; then reset";
     case Reason::kDriveNotFollowing:
       return axis +
-             ": the enabled drive does not say that it follows its target (bit 12 of the statusword), or not "
-             "any "
-             "more that it obeys its controlword (bit 9); quick stop. Look for a limit, a halt or another "
-             "mode in "
-             "the drive, and for somebody who has taken it over (its panel, its maker's program); for a "
-             "drive "
-             "that has no bit 12 set drive.follows_target_bit: false" +
+             ": the enabled drive does not say that it follows its target (bit 12 of the statusword), or "
+             "not any more that it obeys its controlword (bit 9); quick stop. Look for a limit, a halt or "
+             "another mode in the drive, and for somebody who has taken it over (its panel, its maker's "
+             "program). For a drive whose bits 12 and 9 do not say so set drive.follows_target_bit: false; "
+             "then neither is watched" +
              DriveText(detail);
     case Reason::kFeedbackFrozen:
       return axis +

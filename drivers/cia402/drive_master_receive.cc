@@ -261,12 +261,14 @@ void DriveMaster::Supervise(std::size_t axis) noexcept {
 
 // A statusword that shows Operation Enabled for the first time was latched before any set-point was sent, and
 // so was the next one; the drive may take `delay_cycles` to act upon a set-point. Not every drive has bit 9;
-// one that has shown it and does not any more obeys another: a panel, or a maker's program.
+// one that has shown it and does not any more obeys another: a panel, or a maker's program. A drive whose
+// bits are not these is configured so.
 void DriveMaster::WatchFollowing(std::size_t axis) noexcept {
   Axis& a = axes_[axis];
   const AxisFeedback& f = feedback_[axis];
   const bool told = goal_[axis] == DriveGoal::kEnabled && f.drive_state == DriveState::kOperationEnabled;
-  a.shown_bits = told ? a.shown_bits | (f.statusword & statusword::kRemote) : a.follow_bits;
+  const std::uint16_t may_show = a.follow_bits != 0 ? statusword::kRemote : std::uint16_t{0};
+  a.shown_bits = told ? a.shown_bits | (f.statusword & may_show) : a.follow_bits;
   if (!told || (a.shown_bits & ~f.statusword) == 0) {
     a.not_following_cycles = 0;
   } else if (f.fresh) {

@@ -226,7 +226,9 @@ TEST_F(ScriptedDrives, ADriveThatNeverSaysThatItFollowsIsTheErrorThatNamesTheKey
   EXPECT_EQ(record().reason, Reason::kDriveNotFollowing);
   EXPECT_EQ(record().reason_axis, 0);
   EXPECT_EQ(record().axes[0].goal, DriveGoal::kQuickStop);
-  EXPECT_NE(Text().find("drive.follows_target_bit: false"), std::string::npos) << Text();
+  EXPECT_NE(Text().find("bits 12 and 9 do not say so set drive.follows_target_bit: false; then neither"),
+            std::string::npos)
+      << Text();
 }
 
 }  // namespace

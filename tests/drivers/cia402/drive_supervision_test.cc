@@ -147,7 +147,8 @@ TEST_F(DriveSupervision, AnEnabledDriveThatObeysAnotherIsNoticedAndStopped) {
     slave().behaviour.remote = false;
     int cycles = 0;
     for (; !status().not_following && cycles < 50; ++cycles) machine().Cycle();
-    EXPECT_EQ(cycles, 4);
+    // Where the bits may mean something else, only disobedience shows.
+    EXPECT_EQ(cycles, has_follows_target_bit ? 4 : 50);
     machine().Goal(DriveGoal::kQuickStop);
     int until_stopped = 0;
     for (; !status().stays_enabled && until_stopped < 5000; ++until_stopped) machine().Cycle();
