@@ -27,6 +27,12 @@ std::string DriveText(const ReasonDetail& detail) {
 
 std::string Milliseconds(std::uint64_t time_us) { return std::to_string((time_us + 500) / 1000) + " ms"; }
 
+/// Of the axis that the reason is about.
+bool VoltageIsOff(const CycleRecord& record) {
+  return record.state == MachineState::kFaulted && record.reason_axis < record.axes.size() &&
+         record.axes[record.reason_axis].goal == DriveGoal::kDisabled;
+}
+
 std::string WhyText(const CycleRecord& record, std::span<const std::string> axis_names,
                     std::span<const std::string> bus_names) {
   const std::uint8_t at = record.reason_axis;
@@ -182,10 +188,8 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
              "; ours stopped the drives and is silent now. Only one may command them: end the other, then "
              "reset";
     case Reason::kOscillation:
-      return axis +
-             ": the loop oscillates, also with softer gains or too much for them; stopped. Check model and "
-             "tuning, "
-             "and whether the table carries more than the model states";
+      return axis + ": the loop oscillates; " + (VoltageIsOff(record) ? "voltage off" : "stopped") +
+             ". Check model and tuning, and whether the table carries more than the model states";
     case Reason::kEstimatorInconsistent:
       return axis +
              ": the estimator's innovations have long been larger than it says; stopped on the path. The "

@@ -105,9 +105,8 @@ std::string Describe(const RestingScrew& s) {
       " % stiffer than stated";
   if (stiffer > kDeviations * s.stated_std) return text + "\n";
   return text + ", and stated is " + Fixed(100.0 * s.stated_std, 0) +
-         " %: if it is that stiff, the table hunts after a stop until a constant torque holds it, some way "
-         "off; "
-         "identify the stiffness, or let a scale measure the table\n";
+         " %: if it is that stiff, the table hunts after a stop; the loop then keeps its torque constant, "
+         "and the table stays off its target. Identify the stiffness, or let a scale measure the table\n";
 }
 
 /// Whether friction's slope alone is more than the limits of the axis as stated allow.

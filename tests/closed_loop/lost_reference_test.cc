@@ -5,6 +5,7 @@
 #include "daemon/path_feeder.h"
 #include "daemon/program/path_generator.h"
 #include "daemon/program_limits.h"
+#include "daemon/reason_text.h"
 #include "tests/closed_loop/test_machine.h"
 #include "tests/closed_loop/tuned_loops.h"
 #include "tests/support/drive_faults.h"
@@ -219,6 +220,9 @@ TEST_F(LostReference, ASwingThatTakesTheVoltageAwayCostsIt) {
   ASSERT_EQ(state(), MachineState::kFaulted) << Name(machine_->record().reason);
   ASSERT_EQ(machine_->record().reason, Reason::kOscillation);
   ASSERT_EQ(machine_->record().axes[0].goal, DriveGoal::kDisabled);
+  const std::string text =
+      ReasonText(machine_->record(), machine_->axis_names(), std::array<std::string, 1>{"main"});
+  EXPECT_TRUE(text.starts_with("axis x: the loop oscillates; voltage off. Check model")) << text;
   EXPECT_EQ(reference(0), ReferenceState::kLost);
   EXPECT_EQ(reference(1), ReferenceState::kTold);
 }

@@ -124,7 +124,9 @@ TEST(Describe, SaysHowStiffAScrewMayBeForTheTableToRest) {
             "43.64 N/um, 9 % stiffer than stated\n");
   axis.stiffness_std = 0.1;
   report.screw = RestingScrewOf(axis);
-  ExpectHas(Describe(report), ", 9 % stiffer than stated, and stated is 10 %: if it is that stiff");
+  ExpectHas(Describe(report),
+            ", 9 % stiffer than stated, and stated is 10 %: if it is that stiff, the table hunts after a "
+            "stop; the loop then keeps its torque constant");
   axis.friction.motor_share = 0.5;  // half of the bristles hold the motor
   EXPECT_NEAR(RestingScrewOf(axis).stable_below_N_m, 40e6 * 6.0 / 5.0, 1.0);
   axis.friction.motor_share = 0.95;
