@@ -124,10 +124,11 @@ void WriteWholeFile(const fs::path& file, std::string_view text) {
   }
   const int written = WriteAndClose(fd, text);
   if (error == 0) error = written;
-  if (error == 0 && std::rename(beside.c_str(), target.c_str()) != 0) error = errno;
+  const bool written_whole = error == 0;
+  if (written_whole && std::rename(beside.c_str(), target.c_str()) != 0) error = errno;
   if (error != 0) {
     unlink(beside.c_str());
-    if (there && TakesNoOther(error)) return WriteInPlace(target, text);
+    if (there && written_whole && TakesNoOther(error)) return WriteInPlace(target, text);
     Fail(file, error);
   }
   SyncDirectory(target.parent_path());

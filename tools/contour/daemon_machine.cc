@@ -268,6 +268,8 @@ void DaemonMachine::LoadModel(const std::string& yaml) {
         client_, {{"request", "load_model"}, {"axis", setup_.axis}, {"model", yaml}},
         [this] { return ConnectToDaemon(setup_.socket); }, deadline);
   } catch (const BeginRefused& e) {
+    if (const json status = Status(*client_); status.at("state") != "Idle")
+      throw improve::NotIdle("the new model was not loaded: " + StateSentence(status));
     throw improve::ModelRefused(WhyRefused(e.what(), yaml));
   }
   if (!yaml.empty() && WriteYaml(Machine().axes.at(setup_.axis).model) != WriteYaml(ModelOf(yaml)))

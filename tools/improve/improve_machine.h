@@ -21,6 +21,12 @@ class ModelRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Nor has it here, where the machine is not Idle: a fault has come, which says nothing of the model.
+class NotIdle : public ModelRefused {
+ public:
+  using ModelRefused::ModelRefused;
+};
+
 /// The machine and its operator, as improving a model needs them. Functions throw std::runtime_error when
 /// something is not as it should be; the axes stand still then.
 class ImproveMachine {
@@ -40,7 +46,7 @@ class ImproveMachine {
   /// Runs a program from where the machine stands, watched.
   virtual Drawing Run(const ProgramText& program) = 0;
   /// Another model of the improved axis (keys of `model:`), or with nothing the machine file's. Leads to
-  /// Idle. Throws ModelRefused.
+  /// Idle. Throws ModelRefused, and NotIdle.
   virtual void LoadModel(const std::string& yaml) = 0;
   virtual void Say(const std::string& line) = 0;
 };

@@ -222,6 +222,9 @@ void ImproveSequence::Load(const ModelConfig& model, const std::string& then) {
   const bool before = std::exchange(loaded_, true);
   try {
     machine_.LoadModel(TextOf(model));
+  } catch (const NotIdle& e) {
+    loaded_ = before;
+    throw std::runtime_error(e.what());
   } catch (const ModelRefused&) {
     loaded_ = before;
     throw;

@@ -66,7 +66,7 @@ class FakeMachine final : public ImproveMachine {
     EXPECT_FALSE(enabled) << "nothing is loaded while there is torque";
     if (!refuse_text.empty() && yaml.find(refuse_text) != std::string::npos)
       throw ModelRefused("contourd does not take it: no");
-    if (faulted) throw ModelRefused("contourd begins anew while the machine is Idle, and it is Faulted");
+    if (faulted) throw NotIdle("the new model was not loaded: the machine is Faulted");
     loaded.push_back(yaml);
     new_model = !yaml.empty();
     for (const auto& [text, um] : error_with_um)
@@ -121,6 +121,7 @@ class ImproveSequenceTest : public ::testing::Test {
                            [this](const auto& log, const auto& stated) {
                              lengths_.push_back(log.rows);
                              EXPECT_GT(stated.motor_inertia, 0.0);
+                             machine_.faulted = machine_.faulted || fault_in_diagnosis_;
                              return lengths_.size() <= opens_ ? first_ : last_;
                            })
         .Run();
@@ -159,6 +160,7 @@ class ImproveSequenceTest : public ::testing::Test {
   ImproveRequest request_;
   diagnosis::Diagnosis first_ = Cogging(), last_ = Cogging();
   std::size_t opens_ = 1;  ///< diagnoses that are first_
+  bool fault_in_diagnosis_ = false;
   std::vector<std::size_t> lengths_;
 };
 
@@ -303,6 +305,21 @@ TEST_F(ImproveSequenceTest, AFaultInAnyProgramLeavesTheOldModelWithoutTorque) {
 }
 
 // A fault waits for its reset, and contourd takes a model in Idle alone.
+// Before: every model was "left out", and improve ended well.
+TEST_F(ImproveSequenceTest, AFaultWhileItDiagnosesEndsIt) {
+  fault_in_diagnosis_ = true;
+  try {
+    Run();
+    ADD_FAILURE() << "a fault is no refused model";
+  } catch (const ModelRefused& e) {
+    ADD_FAILURE() << e.what();
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(e.what(), "the new model was not loaded: the machine is Faulted");
+  }
+  EXPECT_TRUE(machine_.loaded.empty());
+  EXPECT_FALSE(machine_.enabled);
+}
+
 TEST_F(ImproveSequenceTest, AFaultWithTheNewModelLoadedWaitsForTheResetAndThenLoadsTheOldOne) {
   Run();
   const std::size_t last = machine_.ran.size();
