@@ -85,9 +85,9 @@ double JumpSeen_m(const Axis& a, double feed_m_s) {
   return a.t.Jump_m(feed_m_s, a.limits.force_N, a.period_s, 1.0, 1.0);
 }
 
-// What changes between two samples shows in both readings that follow, mostly in the first where it was
-// early, and in the second where it was late: three halves of a period later at most.
-double AtOnce_s(const Axis& a) { return 1.5 * a.period_s; }
+// What changes between two samples changes two steps of the readings, each by a share. Where the share of the
+// first is just too little to show, it is told by the second: up to two periods later.
+double AtOnce_s(const Axis& a) { return 2.0 * a.period_s; }
 // A drive's own loop answers what changes before we have a sample of it.
 double AnswersBefore_s(const Axis& a) { return a.monitored.in_cascade ? AtOnce_s(a) : 0.0; }
 
