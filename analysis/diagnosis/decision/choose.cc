@@ -47,8 +47,10 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     if (cause.heldout_gain_high < 0.0) return false;
     gains_unseen = as_asked && GainsBeyondChance(cause, threshold.rate);
     // Nor is a shape that nobody knows beyond doubt where it foresees nothing; nor on a scale, which wanders,
-    // any shape over the stroke.
-    if ((Outside(r.effect().kind) || definition.judged_at_scale) && !gains_unseen) return false;
+    // any shape over the stroke, where it could foresee something.
+    const bool has_to_foresee =
+        Outside(r.effect().kind) || (definition.judged_at_scale && FoldsShareTheStroke(problem));
+    if (has_to_foresee && !gains_unseen) return false;
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;

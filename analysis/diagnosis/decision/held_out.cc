@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <span>
@@ -375,6 +376,25 @@ bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
   cause.heldout_gain_high = white.heldout_gain_high;
   blocks = std::move(of_white);
   return false;
+}
+
+bool FoldsShareTheStroke(const Problem& problem) {
+  const Signal& position = problem.signals->position;
+  const auto [low, high] = std::minmax_element(position.begin(), position.end());
+  if (!(*high > *low)) return false;
+  std::array<std::array<bool, kHeldOutBlocks>, 2> seen{};
+  const std::size_t n = problem.rows();
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b)
+    for (std::size_t k = n * b / kHeldOutBlocks; k < n * (b + 1) / kHeldOutBlocks; ++k) {
+      const auto place = static_cast<std::size_t>(kHeldOutBlocks * (position[k] - *low) / (*high - *low));
+      seen[FoldOf(b, Seen::kScale)][std::min(place, kHeldOutBlocks - 1)] = true;
+    }
+  std::size_t both = 0, any = 0;
+  for (std::size_t i = 0; i < kHeldOutBlocks; ++i) {
+    if (seen[0][i] && seen[1][i]) ++both;
+    if (seen[0][i] || seen[1][i]) ++any;
+  }
+  return 2 * both > any;
 }
 
 }  // namespace contour::diagnosis

@@ -23,6 +23,10 @@ double Consistency(const Problem& problem, const Fit& without, const Fit& with, 
 bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bool scale, Cause& cause,
                  std::vector<BlockGain>& blocks);
 
+/// Whether most places that the log comes to are seen in both folds by which a cause on the scale is judged.
+/// Of a log that goes along the stroke once, one fold foresees nothing of where the other is.
+bool FoldsShareTheStroke(const Problem& problem);
+
 /// Whether more than half of them gain.
 inline bool MostGain(const std::vector<BlockGain>& blocks) {
   const auto gain =

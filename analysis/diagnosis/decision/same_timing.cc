@@ -1,5 +1,6 @@
 #include "analysis/diagnosis/decision/same_timing.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -39,7 +40,8 @@ bool SameTiming(const Problem& problem, const Hypothesis& best, const Hypothesis
   const CauseDefinition& cause = CauseNamed(best.effect().kind);
   if (!CauseNamed(r.effect().kind).about_timing || !(cause.about_timing || AddsCoupling(problem, best)))
     return false;
-  return ScoreWithACoupling(problem, r) > best.score - alike;
+  // Where the best pays for such an exchange as well, it is not held against it either.
+  return ScoreWithACoupling(problem, r) > std::max(best.score, ScoreWithACoupling(problem, best)) - alike;
 }
 
 }  // namespace contour::diagnosis

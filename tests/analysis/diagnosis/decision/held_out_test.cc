@@ -12,6 +12,7 @@
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "tests/analysis/support/fitted_axis.h"
+#include "tests/analysis/support/hidden_axis.h"
 #include "tests/analysis/support/known_axis.h"
 
 namespace contour::diagnosis {
@@ -253,6 +254,16 @@ TEST(HeldOutGain, AStepThatEndsWorseOnItsOwnRowsGoesBack) {
   with.jacobian *= 0.002;  // steps of hundreds of times the length
   HeldOutGain(axis.problem, axis.base, with, false, far, blocks);
   EXPECT_NEAR(far.heldout_gain, right.heldout_gain, 0.05);
+}
+
+// Before: a pitch error of 5 um was "nothing found" in a log that goes along the stroke once.
+TEST(FoldsShareTheStroke, WhereItIsGoneAlongTimeAndAgain) {
+  test::HiddenAxis made = test::HiddenAxisFor(30.0);
+  EXPECT_TRUE(FoldsShareTheStroke(Problem(made.log, made.stated, 1)));
+  const double rows = static_cast<double>(made.log.size());
+  for (std::size_t k = 0; k < made.log.size(); ++k)
+    made.log.position[k] = 200.0 * static_cast<double>(k) / rows;
+  EXPECT_FALSE(FoldsShareTheStroke(Problem(made.log, made.stated, 1)));
 }
 
 }  // namespace

@@ -59,6 +59,16 @@ TEST_F(SameTimingTest, ADelayMayDoWhatALagDoesWhereACouplingIsNotHeldAgainstIt) 
   EXPECT_FALSE(SameTiming(axis_.problem, lag, delay, 12.0));
 }
 
+TEST_F(SameTimingTest, WhatBothPayForPartsThem) {
+  Hypothesis lag = Of(axis_, "current_lag", 100.0), delay = Of(axis_, "input_delay", 0.0);
+  Exchange(lag, 100e-6, 0.25);
+  Exchange(delay, 100e-6, 0.25);
+  delay.score = 100.0 - 12.0 - 0.1;
+  EXPECT_FALSE(SameTiming(axis_.problem, lag, delay, 12.0));
+  delay.score += 0.2;
+  EXPECT_TRUE(SameTiming(axis_.problem, lag, delay, 12.0));
+}
+
 TEST_F(SameTimingTest, NoCouplingThatTheRowsShowOrThatLeadsIsMeant) {
   const Hypothesis lag = Of(axis_, "current_lag", 100.0);
   Hypothesis delay = Of(axis_, "input_delay", 87.0);
