@@ -85,10 +85,9 @@ fs::path LedTo(const fs::path& file) {
   Fail(file, ELOOP);
 }
 
-/// Of a file that is there: whether another may take its place.
-bool MayBeReplaced(const fs::path& target) {
-  struct stat old {};
-  return !OfTheSystem(target) && stat(target.c_str(), &old) == 0 && S_ISREG(old.st_mode) && old.st_nlink == 1;
+/// Whether another file may take the place of the one that is there.
+bool MayBeReplaced(const fs::path& target, const struct stat& old) {
+  return !OfTheSystem(target) && S_ISREG(old.st_mode) && old.st_nlink == 1;
 }
 
 /// The new name must outlive a power failure, too.
@@ -107,7 +106,7 @@ void WriteWholeFile(const fs::path& file, std::string_view text) {
   const bool there = stat(target.c_str(), &old) == 0;
   // A file that nobody may write to stays as it is, whatever its directory takes.
   if (there && faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0) Fail(file, errno);
-  if (there && !MayBeReplaced(target)) return WriteInPlace(target, text);
+  if (there && !MayBeReplaced(target, old)) return WriteInPlace(target, text);
   std::string beside;
   const int fd = OpenBeside(target, beside);
   if (fd < 0 && there && TakesNoOther(errno)) return WriteInPlace(target, text);

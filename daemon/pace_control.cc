@@ -14,12 +14,6 @@ namespace {
 
 constexpr double kLargestFeed_percent = 100.0 * PathWalk::kLargestScale;
 
-/// Such a program is refused, too. At 0 percent it rests, which is said.
-std::string YearsText(double feed_percent, const std::string& what) {
-  return "at " + NumberText(feed_percent) + " percent of its feed " + what +
-         " would take more than three years";
-}
-
 }  // namespace
 
 Answer PaceControl::Change(const PaceRequest& request, const CycleRecord& now) {

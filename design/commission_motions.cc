@@ -86,10 +86,15 @@ class Motions {
   }
 
   void BreakAway() {
+    // Of a sine of 1 Hz, the speed is 2 pi times as much.
+    const double most_mm = top_mm_s_ / (2.0 * std::numbers::pi);
+    std::string amplitudes;
+    for (const double mm :
+         {0.002, 0.005, 0.015, 0.05, 0.2, std::clamp(std::min(up_mm_, -down_mm_), 0.05, 1.0)})
+      amplitudes += (amplitudes.empty() ? "" : ", ") + FormatText("%g", std::min(mm, most_mm));
     Add("reversals, from sticking to sliding",
-        FormatText("shape: reversals\naxis: %s\namplitudes_mm: [0.002, 0.005, "
-                   "0.015, 0.05, 0.2, %g]\nfrequency_hz: 1\ncycles: 2\n",
-                   name_.c_str(), std::clamp(std::min(up_mm_, -down_mm_), 0.05, 1.0)));
+        FormatText("shape: reversals\naxis: %s\namplitudes_mm: [%s]\nfrequency_hz: 1\ncycles: 2\n",
+                   name_.c_str(), amplitudes.c_str()));
     const double level_Nm = mechanics_.radius_m_rad * 0.5 * (friction_.Fs_plus_N + friction_.Fs_minus_N);
     const double travel_mm = std::min(0.3, 0.6 * axis_.limits.following_error_mm);
     Add("steps of torque at rest",

@@ -18,6 +18,7 @@ constexpr double kSpeed_mm_s = 100.0;
 constexpr double kShareOfTorque = 0.6;
 /// Two turns of the motor to average over, one at the least.
 constexpr double kFewestTurns = 1.0;
+/// The least top speed of the strokes; of a lead of 10 mm both are the same.
 constexpr double kSlowestTop_mm_s = 20.0, kSlowestTop_turns_s = 2.0;
 /// What the model may be wrong by.
 constexpr double kDoubt = 1.5;
@@ -74,8 +75,9 @@ CommissionLimits DefaultCommissionLimits(const AxisConfig& axis) {
   // A steep screw needs more than the usual way for the turn that is asked of it.
   const double travel_mm =
       std::max(std::min(kTravel_mm, kShareOfStroke * stroke_mm), kFewestTurns * axis.model.mechanics.lead_mm);
-  const double speed_mm_s =
-      std::max(std::min(kSpeed_mm_s, kShareOfSpeed * l.velocity_mm_s), SlowestTop_mm_s(axis));
+  // A slow axis needs what it has: near the Stribeck velocity levels and slopes are hardly told apart.
+  const double speed_mm_s = std::max(std::min(kSpeed_mm_s, kShareOfSpeed * l.velocity_mm_s),
+                                     std::min(kSlowestTop_mm_s, l.velocity_mm_s));
   return {std::min(travel_mm, stroke_mm), speed_mm_s, kShareOfTorque * l.torque_Nm};
 }
 

@@ -108,6 +108,9 @@ class MotionPlan {
   return feed > 0.0 && program_s > kLongestProgram_s * feed;
 }
 
+/// That `what` does, for people.
+std::string YearsText(double feed_percent, const std::string& what);
+
 /// Places a program where the machine stands and checks it against the limits: position range, velocity,
 /// acceleration, run-up, torque. Throws ProgramError naming axis, value and limit.
 std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAxis<double>& start_m,

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "config/number_text.h"
 #include "daemon/program/combined_plans.h"
 #include "daemon/program/gcode/program_halts.h"
 #include "daemon/program/motion_plan.h"
@@ -327,6 +328,11 @@ std::shared_ptr<const MotionPlan> Plan(const GcodeMoves& program, const Place& p
 }
 
 }  // namespace
+
+std::string YearsText(double feed_percent, const std::string& what) {
+  return "at " + NumberText(feed_percent) + " percent of its feed " + what +
+         " would take more than three years";
+}
 
 std::shared_ptr<const MotionPlan> PlanMotion(const Program& program, const PerAxis<double>& start_m,
                                              const PerAxis<PlanLimits>& limits) {

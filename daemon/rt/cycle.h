@@ -141,7 +141,7 @@ class Cycle {
   [[nodiscard]] std::uint8_t NotReferenced() const noexcept;
   [[nodiscard]] std::uint8_t MovingAxis() const noexcept;
   void TellWhere(const Request& request) noexcept;
-  void DoubtPosition() noexcept;
+  void DoubtPosition(const Orders& orders) noexcept;
   /// Nothing was sent at the skipped grid points, so the newest feedback is that much older, and the last
   /// torque has acted on since.
   [[nodiscard]] const ReferencePoint& AtSample(std::size_t axis) noexcept {

@@ -7,10 +7,7 @@
 namespace contour {
 
 void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
-  DoubtPosition();
-  // What takes the voltage away as a swing may be counts that are lost, too.
-  if (transitions_.reason() == Reason::kOscillation && orders.voltage_off < axes_.size())
-    master_.DoubtPosition(orders.voltage_off);
+  DoubtPosition(orders);
   if (orders.reference) TellWhere(request);
   if (orders.start_bring_up) master_.StartBringUp();
   if (orders.fall_silent) master_.FallSilent();
@@ -31,7 +28,7 @@ void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
 }
 
 // An incremental encoder that was not believed, or seemed faster than its axis can be, may have lost counts.
-void Cycle::DoubtPosition() noexcept {
+void Cycle::DoubtPosition(const Orders& orders) noexcept {
   if (transitions_.state() != MachineState::kFaulted) return;
   const std::uint8_t axis = transitions_.reason_where();
   if (axis >= axes_.size()) return;
@@ -42,6 +39,9 @@ void Cycle::DoubtPosition() noexcept {
     case Reason::kTorqueWithoutMotion:  // of a standing reading under a torque that was not reported yet, too
     case Reason::kVelocityLimit:
       master_.DoubtPosition(axis);
+      return;
+    case Reason::kOscillation:  // what takes the voltage away as a swing may be counts that are lost, too
+      if (orders.voltage_off < axes_.size()) master_.DoubtPosition(orders.voltage_off);
       return;
     default:
       return;

@@ -124,8 +124,8 @@ struct DriveConfig {
                "by error code (0x4210) or class of codes (0x42xx, 0x4xxx): what an emergency message of the "
                "enabled drive leads to; only stronger than docs/canopen.md has it");
     v.Optional("follows_target_bit", follows_target_bit,
-               "the enabled drive sets bit 12 of the statusword while it follows its target; false where the "
-               "drive has no such bit, which is then not watched");
+               "the enabled drive sets bit 12 of the statusword while it follows its target, and bit 9, once "
+               "shown, while it obeys; false where its bits say something else, then neither is watched");
 
     v.Optional("quick_stop_deceleration_rad_s2", quick_stop_deceleration_rad_s2, kNotNegative,
                "deceleration of the drive's quick stop (0x6085); 0 leaves the drive's own");

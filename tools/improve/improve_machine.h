@@ -21,7 +21,8 @@ class ModelRefused : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Nor has it here, where the machine is not Idle: a fault has come, which says nothing of the model.
+/// The machine is not Idle: a fault has come, which says nothing of the model. Nothing has changed here
+/// either.
 class NotIdle : public ModelRefused {
  public:
   using ModelRefused::ModelRefused;

@@ -8,7 +8,6 @@
 
 #include "analysis/metrics/metrics_json.h"
 #include "analysis/metrics/run_metrics.h"
-#include "config/number_text.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program/path_walk.h"
 #include "daemon/telemetry/cycle_csv.h"
@@ -176,8 +175,7 @@ class FeedSchedule {
 void RefuseFeedForYears(const std::vector<FeedFrom>& feeds, const MotionPlan& plan, const std::string& name) {
   const double left_s = EstimatedDuration_s(plan) - PathWalk::kLargestScale * feeds.back().time_s;
   if (TakesYears(left_s, feeds.back().feed))
-    throw ProgramError(name + ": at " + NumberText(100.0 * feeds.back().feed) +
-                       " percent of its feed the program would take more than three years");
+    throw ProgramError(name + ": " + YearsText(100.0 * feeds.back().feed, "the program"));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 
 #include "analysis/diagnosis/causes/cause_definition.h"
 #include "analysis/diagnosis/causes/effect_parts.h"
@@ -10,8 +9,6 @@ namespace contour::diagnosis::causes {
 namespace {
 
 constexpr std::string_view kName = "current_lag";
-
-constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 constexpr std::string_view kFrees[] = {"lag"};
 

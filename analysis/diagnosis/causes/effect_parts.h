@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,9 @@
 
 // What effects are made of.
 namespace contour::diagnosis {
+
+/// Of an amplitude, to that side.
+inline constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
 /// One of the model's inputs, which a signal scaled by an amplitude enters.
 enum class Input { kMotorForce, kLoadForce, kLevel, kViscous, kReading, kScale };

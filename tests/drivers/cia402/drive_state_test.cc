@@ -20,7 +20,8 @@ TEST(Statusword, DecodesTheTableOfCia402) {
   EXPECT_EQ(DecodeStatusword(0x021F), kFaultReactionActive);
   EXPECT_EQ(DecodeStatusword(0x0218), kFault);
   EXPECT_EQ(DecodeStatusword(0x0022), kUnknown);
-  EXPECT_EQ(statusword::kFollowsTarget | statusword::kRemote, 0x1237 & ~0x0037);
+  for (const int others : {0, statusword::kRemote + 0, statusword::kFollowsTarget + 0})
+    EXPECT_EQ(DecodeStatusword(static_cast<std::uint16_t>(0x0037 | others)), kOperationEnabled) << others;
 }
 
 /// A drive that obeys at once, for walking.
