@@ -11,8 +11,6 @@ constexpr double kTick_s = 1e-9 * static_cast<double>(EmulatedAxis::kTick_ns);
 constexpr std::int64_t kNsPerMs = 1'000'000;
 /// Far from the streams that the axes count up.
 constexpr std::uint64_t kTorqueNoiseStream = 1'000'000;
-constexpr std::int8_t kModeCsp = 8;
-constexpr std::int8_t kModeCst = 10;
 /// Below this the drive takes the axis for standing, once its ramp has ended.
 constexpr double kStandstill_m_s = 1e-3;
 /// The axis stands, held against what friction has wound up: so long the drive only damps, then it lets go.
@@ -31,123 +29,19 @@ EmulatedAxis::EmulatedAxis(const AxisParameters& parameters, const EmulatedAxisP
       plant_(parameters),
       current_(parameters.lag_s),
       encoder_(parameters, seed, stream),
+      objects_(parameters, placement, encoder_.counts_per_rad()),
       scale_noise_(seed, stream + 1),
       torque_noise_(seed, stream + kTorqueNoiseStream),
       // A mean over a cycle is one over so many ticks.
       tick_noise_Nm_(parameters.torque_noise_Nm * std::sqrt(1e-6 * cycle_us / kTick_s)),
       cascade_(parameters.cascade, kTick_s, TravelPerCount_m()),
-      slave_((AddObjects(placement), objects_), *this, placement.node_id) {
-  FindObjects();
+      slave_(objects_.dictionary, *this, placement.node_id) {
   slave_.DelayAnswers(parameters.answer_delay_ns, parameters.answer_delay_every);
   Sense();
   past_counts_.fill(counts_);
   latched_counts_ = counts_;
   if (p_.incremental_encoder) zero_counts_ = counts_;
   UpdateActualValues();
-}
-
-void EmulatedAxis::AddObjects(const EmulatedAxisPlacement& placement) {
-  using enum ObjectType;
-  using enum ObjectAccess;
-  using enum ObjectMapping;
-  CanopenSlave::AddObjects(
-      objects_, placement.node_id,
-      {placement.vendor_id, placement.product_code, placement.revision, placement.serial});
-  ObjectDictionary& o = objects_;
-  const auto peak =
-      std::min<std::int64_t>(32767, std::llround(1000.0 * p_.peak_torque_Nm / p_.rated_torque_Nm));
-  const double counts_per_m = encoder_.counts_per_rad() / p_.radius_m_rad;
-  const auto acceleration = [&](double m_s2) {
-    return std::clamp<std::int64_t>(std::llround(m_s2 * counts_per_m), 1, 4294967295);
-  };
-  o.Add(0x6007, 0, kI16, kReadWrite, 1);
-  o.Limit(0x6007, 0, 0, 3);
-  o.Add(0x603F, 0, kU16, kReadOnly, 0, kTpdo);
-  o.Add(0x6040, 0, kU16, kReadWrite, 0, kRpdo);
-  o.Add(0x6041, 0, kU16, kReadOnly, 0, kTpdo);
-  o.Add(0x605A, 0, kI16, kReadWrite, 2);
-  o.Add(0x605B, 0, kI16, kReadWrite, 0);
-  o.Limit(0x605B, 0, 0, 1);
-  o.Add(0x605C, 0, kI16, kReadWrite, 1);
-  o.Limit(0x605C, 0, 0, 1);
-  o.Add(0x605D, 0, kI16, kReadWrite, 1);
-  o.Limit(0x605D, 0, 1, 1);
-  o.Add(0x605E, 0, kI16, kReadWrite, 2);
-  o.Limit(0x605E, 0, 0, 2);
-  o.Add(0x6060, 0, kI8, kReadWrite, 0, kRpdo);
-  o.Add(0x6061, 0, kI8, kReadOnly, 0, kTpdo);
-  o.Add(0x6064, 0, kI32, kReadOnly, 0, kTpdo);
-  o.Add(0x6065, 0, kU32, kReadWrite, 4294967295);
-  o.Add(0x6066, 0, kU16, kReadWrite, 0);
-  o.Add(0x606C, 0, kI32, kReadOnly, 0, kTpdo);
-  o.Add(0x6071, 0, kI16, kReadWrite, 0, kRpdo);
-  o.Add(0x6072, 0, kU16, kReadWrite, peak, kRpdo);
-  o.Limit(0x6072, 0, 0, peak);
-  o.Add(0x6074, 0, kI16, kReadOnly, 0, kTpdo);
-  o.Add(0x6076, 0, kU32, kReadOnly, std::llround(1000.0 * p_.rated_torque_Nm));
-  o.Add(0x6077, 0, kI16, kReadOnly, 0, kTpdo);
-  o.Add(0x607A, 0, kI32, kReadWrite, 0, kRpdo);
-  o.Add(0x607E, 0, kU8, kReadWrite, 0);
-  o.Limit(0x607E, 0, 0, 0);  // this drive cannot turn its axis round
-  o.Add(0x6084, 0, kU32, kReadWrite, acceleration(2.0));
-  o.Limit(0x6084, 0, 1, 4294967295);
-  o.Add(0x6085, 0, kU32, kReadWrite, acceleration(5.0));
-  o.Limit(0x6085, 0, 1, 4294967295);
-  o.Add(0x608F, 0, kU8, kReadOnly, 2);
-  o.Add(0x608F, 1, kU32, kReadOnly, std::llround(p_.encoder_counts_per_rev));
-  o.Add(0x608F, 2, kU32, kReadOnly, 1);
-  o.Add(0x6091, 0, kU8, kReadOnly, 2);
-  o.Add(0x6091, 1, kU32, kReadOnly, 1);
-  o.Add(0x6091, 2, kU32, kReadOnly, 1);
-  o.Add(0x60B1, 0, kI32, kReadWrite, 0, kRpdo);
-  o.Add(0x60B2, 0, kI16, kReadWrite, 0, kRpdo);
-  o.Add(0x60C2, 0, kU8, kReadOnly, 2);
-  o.Add(0x60C2, 1, kU8, kReadWrite, 1);
-  o.Add(0x60C2, 2, kI8, kReadWrite, -3);
-  o.Limit(0x60C2, 2, -6, 0);
-  o.Add(0x60E0, 0, kU16, kReadWrite, peak, kRpdo);
-  o.Limit(0x60E0, 0, 0, peak);
-  o.Add(0x60E1, 0, kU16, kReadWrite, peak, kRpdo);
-  o.Limit(0x60E1, 0, 0, peak);
-  if (p_.scale_counts_per_m > 0.0) {
-    o.Add(0x60E4, 0, kU8, kReadOnly, 1);
-    o.Add(0x60E4, 1, kI32, kReadOnly, 0, kTpdo);
-  }
-  o.Add(0x60F4, 0, kI32, kReadOnly, 0, kTpdo);
-  o.Add(0x6502, 0, kU32, kReadOnly, 1 << (kModeCsp - 1) | (p_.torque_mode ? 1 << (kModeCst - 1) : 0));
-  o.Seal();
-}
-
-void EmulatedAxis::FindObjects() {
-  controlword_ = &objects_.At(0x6040);
-  statusword_ = &objects_.At(0x6041);
-  error_code_ = &objects_.At(0x603F);
-  quick_stop_option_ = &objects_.At(0x605A);
-  shutdown_option_ = &objects_.At(0x605B);
-  disable_option_ = &objects_.At(0x605C);
-  fault_option_ = &objects_.At(0x605E);
-  abort_option_ = &objects_.At(0x6007);
-  mode_ = &objects_.At(0x6060);
-  mode_display_ = &objects_.At(0x6061);
-  position_ = &objects_.At(0x6064);
-  velocity_ = &objects_.At(0x606C);
-  torque_ = &objects_.At(0x6077);
-  torque_demand_ = &objects_.At(0x6074);
-  target_torque_ = &objects_.At(0x6071);
-  torque_offset_ = &objects_.At(0x60B2);
-  velocity_offset_ = &objects_.At(0x60B1);
-  target_position_ = &objects_.At(0x607A);
-  max_torque_ = &objects_.At(0x6072);
-  max_torque_plus_ = &objects_.At(0x60E0);
-  max_torque_minus_ = &objects_.At(0x60E1);
-  window_ = &objects_.At(0x6065);
-  window_timeout_ = &objects_.At(0x6066);
-  following_error_ = &objects_.At(0x60F4);
-  deceleration_ = &objects_.At(0x6084);
-  quick_stop_deceleration_ = &objects_.At(0x6085);
-  interpolation_value_ = &objects_.At(0x60C2, 1);
-  interpolation_exponent_ = &objects_.At(0x60C2, 2);
-  scale_ = objects_.Find(0x60E4, 1);
 }
 
 // --- Objects
@@ -172,15 +66,15 @@ void EmulatedAxis::OnWritten(const ObjectEntry& entry) noexcept {
   if (entry.index < 0x2000) slave_.OnWritten(entry);
   // Over SDO, and in an RPDO that acts at once, a controlword takes effect now; at a SYNC, StepPowerState
   // runs anyway.
-  if (&entry == controlword_) StepPowerState();
-  if (&entry == mode_) mode_display_->value = mode_->value;
+  if (&entry == &objects_.controlword) StepPowerState();
+  if (&entry == &objects_.mode) objects_.mode_display.value = objects_.mode.value;
 }
 
 std::uint16_t EmulatedAxis::Statusword() const noexcept {
   std::uint16_t word = power_.StatusBits() | 0x0010U | 0x0200U;  // voltage enabled, remote
   if (limited_) word |= 0x0800U;
   if (power_.state() == DriveState::kOperationEnabled && braking_ == Braking::kNone &&
-      (mode_display_->value == kModeCst || mode_display_->value == kModeCsp))
+      (objects_.mode_display.value == kModeCst || objects_.mode_display.value == kModeCsp))
     word |= 0x1000U;  // follows the target
   if (following_error_seen_) word |= 0x2000U;
   return word;
@@ -191,24 +85,24 @@ void EmulatedAxis::UpdateActualValues() noexcept {
     return static_cast<std::int64_t>(
         static_cast<std::int32_t>(static_cast<std::uint32_t>(static_cast<std::uint64_t>(v))));
   };
-  position_->value = wrap(latched_counts_ - zero_counts_);
-  velocity_->value = wrap(std::llround(cascade_.velocity_m_s() / TravelPerCount_m()));
+  objects_.position.value = wrap(latched_counts_ - zero_counts_);
+  objects_.velocity.value = wrap(std::llround(cascade_.velocity_m_s() / TravelPerCount_m()));
   const auto per_mille = [&](double torque_Nm) {
     return std::clamp<std::int64_t>(std::llround(1000.0 * torque_Nm / p_.rated_torque_Nm), -32768, 32767);
   };
-  torque_->value = per_mille(tampering_.reported_share() * current_.torque_Nm());
-  torque_demand_->value = per_mille(current_.command_Nm());
-  if (scale_ != nullptr) scale_->value = wrap(ReadScale());
-  statusword_->value = Statusword();
+  objects_.torque.value = per_mille(tampering_.reported_share() * current_.torque_Nm());
+  objects_.torque_demand.value = per_mille(current_.command_Nm());
+  if (objects_.scale != nullptr) objects_.scale->value = wrap(ReadScale());
+  objects_.statusword.value = Statusword();
 }
 
 // --- Bus
 // -----------------------------------------------------------------------------------------------------------
 
 void EmulatedAxis::OnFrame(const CanFrame& frame, std::int64_t bus_ns, PendingFrames& out) noexcept {
-  statusword_->value = Statusword();  // as an SDO may ask for it
+  objects_.statusword.value = Statusword();  // as an SDO may ask for it
   slave_.OnFrame(frame, bus_ns, now_ns_, out);
-  statusword_->value = Statusword();
+  objects_.statusword.value = Statusword();
 }
 
 void EmulatedAxis::OnSync(std::int64_t bus_ns, PendingFrames& out) noexcept {
@@ -220,14 +114,14 @@ void EmulatedAxis::OnSync(std::int64_t bus_ns, PendingFrames& out) noexcept {
   slave_.OnSync(bus_ns, out);
   StepPowerState();
   ApplyTarget();
-  statusword_->value = Statusword();
+  objects_.statusword.value = Statusword();
 }
 
 void EmulatedAxis::OnTimer(std::int64_t bus_ns, PendingFrames& out) noexcept { slave_.OnTimer(bus_ns, out); }
 
 void EmulatedAxis::OnConnectionLost(ConnectionLoss /*loss*/) noexcept {
   if (power_.state() != DriveState::kOperationEnabled) return;
-  switch (abort_option_->value) {
+  switch (objects_.abort_option.value) {
     case 1:
       Fault(kEmergencyConnection, 0x10);
       return;
@@ -237,7 +131,7 @@ void EmulatedAxis::OnConnectionLost(ConnectionLoss /*loss*/) noexcept {
       return;
     case 3:
       power_.QuickStop();
-      BeginBraking(Braking::kQuickStop, quick_stop_option_->value);
+      BeginBraking(Braking::kQuickStop, objects_.quick_stop_option.value);
       return;
     default:
       return;
@@ -245,10 +139,10 @@ void EmulatedAxis::OnConnectionLost(ConnectionLoss /*loss*/) noexcept {
 }
 
 void EmulatedAxis::OnPowerCycle() noexcept {
-  objects_.Restore(0x6000, 0x60FF);
+  objects_.dictionary.Restore(0x6000, 0x60FF);
   power_.PowerOn();
   TorqueOff();
-  error_code_->value = 0;
+  objects_.error_code.value = 0;
   slave_.ClearErrors();
   if (p_.incremental_encoder) zero_counts_ = latched_counts_ = counts_;
   UpdateActualValues();
@@ -273,13 +167,8 @@ void EmulatedAxis::AdvanceTo(std::int64_t drive_ns) noexcept {
       Tick();
       next_tick_ns_ = now_ns_ + kTick_ns;
     }
-    while (on_the_way_count_ > 0 && on_the_way_[first_on_the_way_].at_ns <= now_ns_) {
-      current_.SetCommand(on_the_way_[first_on_the_way_].torque_Nm);
-      first_on_the_way_ = (first_on_the_way_ + 1) % on_the_way_.size();
-      --on_the_way_count_;
-    }
-    std::int64_t until = std::min(drive_ns, next_tick_ns_);
-    if (on_the_way_count_ > 0) until = std::min(until, on_the_way_[first_on_the_way_].at_ns);
+    while (on_the_way_.next_ns() <= now_ns_) current_.SetCommand(on_the_way_.Take_Nm());
+    const std::int64_t until = std::min({drive_ns, next_tick_ns_, on_the_way_.next_ns()});
     Integrate(until - now_ns_);
     now_ns_ = until;
   }
@@ -311,7 +200,7 @@ std::int64_t EmulatedAxis::ReadScale() noexcept {
 
 void EmulatedAxis::Tick() noexcept {
   Sense();
-  if (p_.cascade.dual_loop_Hz > 0.0 && mode_display_->value == kModeCsp)
+  if (p_.cascade.dual_loop_Hz > 0.0 && objects_.mode_display.value == kModeCsp)
     cascade_.SenseScale(static_cast<double>(ReadScale()) / p_.scale_counts_per_m);
   if (p_.torque_noise_Nm > 0.0) {
     const bool changed = plant_.time_s() >= p_.torque_noise_change_s;
@@ -321,7 +210,7 @@ void EmulatedAxis::Tick() noexcept {
   StepPowerState();
   if (braking_ != Braking::kNone)
     Brake();
-  else if (power_.state() == DriveState::kOperationEnabled && mode_display_->value == kModeCsp)
+  else if (power_.state() == DriveState::kOperationEnabled && objects_.mode_display.value == kModeCsp)
     FollowPosition();
 }
 
@@ -336,12 +225,12 @@ bool EmulatedAxis::alive() const noexcept {
 void EmulatedAxis::StepPowerState() noexcept {
   if (braking_ == Braking::kDisableOperation || braking_ == Braking::kShutdown) {
     // On a ramp that was asked for, only taking the voltage away counts.
-    if ((controlword_->value & 0x02) != 0) return;
+    if ((objects_.controlword.value & 0x02) != 0) return;
     power_.Disable();
     TorqueOff();
     return;
   }
-  switch (power_.Step(static_cast<std::uint16_t>(controlword_->value))) {
+  switch (power_.Step(static_cast<std::uint16_t>(objects_.controlword.value))) {
     case DrivePowerState::Action::kNone:
       return;
     case DrivePowerState::Action::kStarted:
@@ -349,7 +238,7 @@ void EmulatedAxis::StepPowerState() noexcept {
       target_.Reset(cascade_.position_m());
       delayed_targets_.fill(0.0);
       delayed_positions_.fill(counts_);
-      target_position_->value = position_->value;
+      objects_.target_position.value = objects_.position.value;
       following_error_seen_ = false;
       beyond_window_since_ns_ = -1;
       return;
@@ -357,16 +246,16 @@ void EmulatedAxis::StepPowerState() noexcept {
       TorqueOff();
       return;
     case DrivePowerState::Action::kQuickStop:
-      BeginBraking(Braking::kQuickStop, quick_stop_option_->value);
+      BeginBraking(Braking::kQuickStop, objects_.quick_stop_option.value);
       return;
     case DrivePowerState::Action::kDisableOperation:
-      BeginBraking(Braking::kDisableOperation, disable_option_->value);
+      BeginBraking(Braking::kDisableOperation, objects_.disable_option.value);
       return;
     case DrivePowerState::Action::kShutdown:
-      BeginBraking(Braking::kShutdown, shutdown_option_->value);
+      BeginBraking(Braking::kShutdown, objects_.shutdown_option.value);
       return;
     case DrivePowerState::Action::kFaultReset:
-      error_code_->value = 0;
+      objects_.error_code.value = 0;
       following_error_seen_ = false;
       slave_.ClearErrors();
       return;
@@ -376,17 +265,17 @@ void EmulatedAxis::StepPowerState() noexcept {
 void EmulatedAxis::Fault(std::uint16_t error_code, std::uint8_t register_bits) noexcept {
   const DriveState before = power_.state();
   if (before == DriveState::kFault || before == DriveState::kFaultReactionActive) return;
-  error_code_->value = error_code;
+  objects_.error_code.value = error_code;
   slave_.Emergency(error_code, register_bits);
   if (power_.Fault())
-    BeginBraking(Braking::kFaultReaction, fault_option_->value);
+    BeginBraking(Braking::kFaultReaction, objects_.fault_option.value);
   else
     TorqueOff();
 }
 
 void EmulatedAxis::TorqueOff() noexcept {
   braking_ = Braking::kNone;
-  on_the_way_count_ = 0;
+  on_the_way_.Clear();
   delayed_targets_.fill(0.0);
   limited_ = false;
   current_.SetCommand(0.0);
@@ -394,14 +283,14 @@ void EmulatedAxis::TorqueOff() noexcept {
 
 void EmulatedAxis::BeginBraking(Braking why, std::int64_t option) noexcept {
   braking_ = why;
-  on_the_way_count_ = 0;
+  on_the_way_.Clear();
   delayed_targets_.fill(0.0);
   coasting_ = option == 0;
   // Options 2 and 6 brake by 0x6085, 1 and 5 by 0x6084, 3 and 7 as hard as the torque limit lets.
   const bool quick = option == 2 || option == 6;
   const bool hardest = option == 3 || option == 7;
-  ramp_rate_m_s2_ = TravelPerCount_m() *
-                    static_cast<double>(quick ? quick_stop_deceleration_->value : deceleration_->value);
+  ramp_rate_m_s2_ = TravelPerCount_m() * static_cast<double>(quick ? objects_.quick_stop_deceleration.value
+                                                                   : objects_.deceleration.value);
   ramp_m_s_ = hardest ? 0.0 : cascade_.velocity_m_s();
   ramp_end_ns_ = -1;
   release_end_ns_ = -1;
@@ -424,7 +313,7 @@ void EmulatedAxis::Brake() noexcept {
   const double moved_m = TravelPerCount_m() * static_cast<double>(std::abs(counts_ - oldest));
   const bool slow = moved_m <= std::max(kStandstill_m_s * window_s, 2.0 * TravelPerCount_m());
   const bool settled = now_ns_ - ramp_end_ns_ >= 2 * kNsPerMs;
-  const bool holds = braking_ == Braking::kQuickStop && quick_stop_option_->value >= 5;
+  const bool holds = braking_ == Braking::kQuickStop && objects_.quick_stop_option.value >= 5;
   if (slow && settled && release_end_ns_ < 0 && !holds) release_end_ns_ = now_ns_ + kRelease_ns;
   const bool released = release_end_ns_ >= 0 && now_ns_ >= release_end_ns_;
   if (released || now_ns_ - ramp_end_ns_ >= kBrakeTimeout_ns) BrakingDone();
@@ -432,7 +321,7 @@ void EmulatedAxis::Brake() noexcept {
 
 void EmulatedAxis::BrakingDone() noexcept {
   const Braking why = braking_;
-  const bool stays = why == Braking::kQuickStop && quick_stop_option_->value >= 5;
+  const bool stays = why == Braking::kQuickStop && objects_.quick_stop_option.value >= 5;
   if (stays) return;  // Quick Stop Active, holding zero speed until the voltage is disabled
   TorqueOff();
   switch (why) {
@@ -463,25 +352,20 @@ double EmulatedAxis::InertiaForce_Nm(double acceleration_m_s2) const noexcept {
 }
 
 double EmulatedAxis::InterpolationPeriod_s() const noexcept {
-  double period_s = static_cast<double>(interpolation_value_->value);
-  for (std::int64_t e = interpolation_exponent_->value; e < 0; ++e) period_s *= 0.1;
+  double period_s = static_cast<double>(objects_.interpolation_value.value);
+  for (std::int64_t e = objects_.interpolation_exponent.value; e < 0; ++e) period_s *= 0.1;
   return period_s;
 }
 
 double EmulatedAxis::TorqueLimit_Nm(bool positive) const noexcept {
-  const std::int64_t side = (positive ? max_torque_plus_ : max_torque_minus_)->value;
-  return 1e-3 * static_cast<double>(std::min(max_torque_->value, side)) * p_.rated_torque_Nm;
+  const std::int64_t side = (positive ? objects_.max_torque_plus : objects_.max_torque_minus).value;
+  return 1e-3 * static_cast<double>(std::min(objects_.max_torque.value, side)) * p_.rated_torque_Nm;
 }
 
 void EmulatedAxis::Command_Nm(double torque_Nm) noexcept {
   const double held = std::clamp(torque_Nm, -TorqueLimit_Nm(false), TorqueLimit_Nm(true));
   limited_ = held != torque_Nm;
-  if (p_.delay_ns == 0 || on_the_way_count_ == on_the_way_.size()) {
-    current_.SetCommand(held);
-    return;
-  }
-  on_the_way_[(first_on_the_way_ + on_the_way_count_) % on_the_way_.size()] = {held, now_ns_ + p_.delay_ns};
-  ++on_the_way_count_;
+  if (p_.delay_ns == 0 || !on_the_way_.Add(held, now_ns_ + p_.delay_ns)) current_.SetCommand(held);
 }
 
 void EmulatedAxis::ApplyTarget() noexcept {
@@ -491,19 +375,19 @@ void EmulatedAxis::ApplyTarget() noexcept {
     delayed_targets_[i] = delayed_targets_[i - 1];
     delayed_positions_[i] = delayed_positions_[i - 1];
   }
-  const double per_mille = static_cast<double>(target_torque_->value + torque_offset_->value);
+  const double per_mille = static_cast<double>(objects_.target_torque.value + objects_.torque_offset.value);
   delayed_targets_[0] = 1e-3 * per_mille * p_.rated_torque_Nm + tampering_.pushed_Nm();
-  if (mode_display_->value == kModeCst) {
+  if (objects_.mode_display.value == kModeCst) {
     Command_Nm(delayed_targets_[cycles]);
     return;
   }
-  if (mode_display_->value != kModeCsp) {
+  if (objects_.mode_display.value != kModeCsp) {
     Command_Nm(0.0);
     return;
   }
   // The target is a wrapped count: the one nearest to where the axis is.
   const auto step = static_cast<std::int32_t>(
-      static_cast<std::uint32_t>(target_position_->value) -
+      static_cast<std::uint32_t>(objects_.target_position.value) -
       static_cast<std::uint32_t>(static_cast<std::uint64_t>(counts_ - zero_counts_)));
   delayed_positions_[0] = counts_ + step;
   target_.Push(static_cast<double>(delayed_positions_[cycles]) * TravelPerCount_m());
@@ -513,24 +397,24 @@ void EmulatedAxis::FollowPosition() noexcept {
   const double period_s = InterpolationPeriod_s();
   const double u = 1e-9 * static_cast<double>(now_ns_ - last_sync_ns_) / period_s;
   CascadeTarget target = target_.At(u, period_s);
-  target.velocity_m_s += static_cast<double>(velocity_offset_->value) * TravelPerCount_m();
-  const double offset_Nm = 1e-3 * static_cast<double>(torque_offset_->value) * p_.rated_torque_Nm;
+  target.velocity_m_s += static_cast<double>(objects_.velocity_offset.value) * TravelPerCount_m();
+  const double offset_Nm = 1e-3 * static_cast<double>(objects_.torque_offset.value) * p_.rated_torque_Nm;
   const double limit = TorqueLimit_Nm(true) / InertiaForce_Nm(1.0);
   Command_Nm(InertiaForce_Nm(cascade_.PositionLoop_m_s2(target, limit)) + offset_Nm);
   const double error_m = target.position_m - cascade_.controlled_position_m();
-  following_error_->value =
+  objects_.following_error.value =
       std::clamp<std::int64_t>(std::llround(error_m / TravelPerCount_m()), -2147483648LL, 2147483647LL);
   WatchFollowingError(error_m);
 }
 
 void EmulatedAxis::WatchFollowingError(double error_m) noexcept {
-  const double window_m = static_cast<double>(window_->value) * TravelPerCount_m();
-  if (window_->value == 4294967295 || std::fabs(error_m) <= window_m) {
+  const double window_m = static_cast<double>(objects_.window.value) * TravelPerCount_m();
+  if (objects_.window.value == 4294967295 || std::fabs(error_m) <= window_m) {
     beyond_window_since_ns_ = -1;
     return;
   }
   if (beyond_window_since_ns_ < 0) beyond_window_since_ns_ = now_ns_;
-  if (now_ns_ - beyond_window_since_ns_ < window_timeout_->value * kNsPerMs) return;
+  if (now_ns_ - beyond_window_since_ns_ < objects_.window_timeout.value * kNsPerMs) return;
   following_error_seen_ = true;
   Fault(kEmergencyFollowingError, 0x20);
 }

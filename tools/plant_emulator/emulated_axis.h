@@ -6,8 +6,10 @@
 #include "drivers/can/bus_node.h"
 #include "tools/plant_emulator/axis_plant.h"
 #include "tools/plant_emulator/canopen_slave.h"
+#include "tools/plant_emulator/commands_on_the_way.h"
 #include "tools/plant_emulator/current_loop.h"
 #include "tools/plant_emulator/drive_cascade.h"
+#include "tools/plant_emulator/drive_objects.h"
 #include "tools/plant_emulator/drive_power_state.h"
 #include "tools/plant_emulator/encoder.h"
 #include "tools/plant_emulator/tampering.h"
@@ -56,7 +58,7 @@ class EmulatedAxis final : private SlaveDevice {
     slave_.Emergency(code, register_bits);
   }
   /// 0x6061 and what the drive does change; 0x6060 does not.
-  void ChangeMode(std::int8_t mode) noexcept { mode_display_->value = mode; }
+  void ChangeMode(std::int8_t mode) noexcept { objects_.mode_display.value = mode; }
   /// Operation Enabled is left for Switch On Disabled, the motor coasts.
   void DropOut() noexcept;
   void LeaveOperational() noexcept { slave_.LeaveOperational(); }
@@ -81,8 +83,6 @@ class EmulatedAxis final : private SlaveDevice {
   void OnConnectionLost(ConnectionLoss loss) noexcept override;
   void OnPowerCycle() noexcept override;
 
-  void AddObjects(const EmulatedAxisPlacement& placement);
-  void FindObjects();
   void Integrate(std::int64_t duration_ns) noexcept;
   void Sense() noexcept;
   [[nodiscard]] std::int64_t ReadScale() noexcept;
@@ -108,10 +108,10 @@ class EmulatedAxis final : private SlaveDevice {
 
   AxisParameters p_;
   std::uint8_t node_id_;
-  ObjectDictionary objects_;
   AxisPlant plant_;
   CurrentLoop current_;
   Encoder encoder_;
+  DriveObjects objects_;
   Tampering tampering_;
   Tampering scale_tampering_;
   Random scale_noise_;
@@ -122,38 +122,7 @@ class EmulatedAxis final : private SlaveDevice {
   TargetInterpolator target_;
   DrivePowerState power_;
 
-  // Objects looked at every tick.
-  ObjectEntry* controlword_ = nullptr;
-  ObjectEntry* statusword_ = nullptr;
-  ObjectEntry* error_code_ = nullptr;
-  ObjectEntry* quick_stop_option_ = nullptr;
-  ObjectEntry* shutdown_option_ = nullptr;
-  ObjectEntry* disable_option_ = nullptr;
-  ObjectEntry* fault_option_ = nullptr;
-  ObjectEntry* abort_option_ = nullptr;
-  ObjectEntry* mode_ = nullptr;
-  ObjectEntry* mode_display_ = nullptr;
-  ObjectEntry* position_ = nullptr;
-  ObjectEntry* velocity_ = nullptr;
-  ObjectEntry* torque_ = nullptr;
-  ObjectEntry* torque_demand_ = nullptr;
-  ObjectEntry* target_torque_ = nullptr;
-  ObjectEntry* torque_offset_ = nullptr;
-  ObjectEntry* velocity_offset_ = nullptr;
-  ObjectEntry* target_position_ = nullptr;
-  ObjectEntry* max_torque_ = nullptr;
-  ObjectEntry* max_torque_plus_ = nullptr;
-  ObjectEntry* max_torque_minus_ = nullptr;
-  ObjectEntry* window_ = nullptr;
-  ObjectEntry* window_timeout_ = nullptr;
-  ObjectEntry* following_error_ = nullptr;
-  ObjectEntry* deceleration_ = nullptr;
-  ObjectEntry* quick_stop_deceleration_ = nullptr;
-  ObjectEntry* interpolation_value_ = nullptr;
-  ObjectEntry* interpolation_exponent_ = nullptr;
-  ObjectEntry* scale_ = nullptr;  ///< null without a linear scale
-
-  CanopenSlave slave_;  // after objects_ is filled
+  CanopenSlave slave_;
 
   std::int64_t now_ns_ = 0;
   std::int64_t next_tick_ns_ = 0;
@@ -164,14 +133,8 @@ class EmulatedAxis final : private SlaveDevice {
   std::array<std::int64_t, 17> past_counts_{};  ///< of the last 2 ms
   std::size_t past_ = 0;
 
-  // Commands on their way: applied at a SYNC, acting after delay_cycles - 1 more and the input delay.
-  struct Command {
-    double torque_Nm = 0.0;
-    std::int64_t at_ns = 0;
-  };
-  std::array<Command, 64> on_the_way_{};
-  std::size_t first_on_the_way_ = 0;
-  std::size_t on_the_way_count_ = 0;
+  // Applied at a SYNC, acting after delay_cycles - 1 more and the input delay.
+  CommandsOnTheWay on_the_way_;
   std::array<double, 8> delayed_targets_{};  ///< newest first
   std::array<std::int64_t, 8> delayed_positions_{};
 
