@@ -2,7 +2,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "config/number_text.h"
 #include "daemon/program/motion_plan.h"
@@ -16,8 +18,10 @@ constexpr double kLargestFeed_percent = 100.0 * PathWalk::kLargestScale;
 
 }  // namespace
 
-Answer PaceControl::Change(const PaceRequest& request, const CycleRecord& now) {
-  const bool running = now.state == MachineState::kRunning;
+Answer PaceControl::Change(const PaceRequest& request, const std::function<CycleRecord()>& newest) {
+  const std::lock_guard lock(mutex_);
+  const CycleRecord now = newest();
+  const bool running = now.state == MachineState::kRunning || begins_;
   if (request.paused && !running)
     return {false, "the machine is " + std::string(Name(now.state)) + "; there is no program to " +
                        (*request.paused ? "pause" : "go on with")};
@@ -26,9 +30,8 @@ Answer PaceControl::Change(const PaceRequest& request, const CycleRecord& now) {
     return {false, "found " + RoundedText(*request.feed_percent) + " percent, expected 0 to " +
                        RoundedText(kLargestFeed_percent)};
   if (running && request.feed_percent &&
-      TakesYears(pump_.program_duration().duration_s - now.path_time_s, 0.01 * *request.feed_percent))
+      TakesYears(Left_s(now), 0.01 * *request.feed_percent))
     return {false, YearsText(*request.feed_percent, "the rest of the program") + "; 0 percent holds it"};
-  const std::lock_guard lock(mutex_);
   if (request.feed_percent) {
     feed_percent_ = *request.feed_percent;
     spdlog::info("feed {} %", RoundedText(feed_percent_));
@@ -41,15 +44,36 @@ Answer PaceControl::Change(const PaceRequest& request, const CycleRecord& now) {
   return {true, running && request.feed_percent ? NoteNow() : std::string()};
 }
 
-double PaceControl::Begin(bool may_exceed) {
+// Where the program has only begun, the pump may not have got to it yet and still tell of the one before.
+double PaceControl::Left_s(const CycleRecord& now) const {
+  if (begins_) return program_s_;
+  return std::max(program_s_, pump_.program_duration().duration_s) - now.path_time_s;
+}
+
+void PaceControl::Begin(const std::string& program, std::unique_ptr<PathGenerator> generator,
+                        PacedPath::Options options, std::vector<ProgramHalt> halts) {
+  const double program_s = EstimatedDuration_s(*generator->plan());
   const std::lock_guard lock(mutex_);
+  RefuseYearsNow(program, program_s);
   paused_ = false;
-  may_exceed_ = may_exceed;
-  return 0.01 * feed_percent_;
+  may_exceed_ = generator->feed_may_exceed();
+  program_s_ = program_s;
+  begins_ = true;
+  options.feed = 0.01 * feed_percent_;
+  pump_.Supply(std::move(generator), options, std::move(halts));
+}
+
+void PaceControl::Begun() {
+  const std::lock_guard lock(mutex_);
+  begins_ = false;
 }
 
 void PaceControl::RefuseYears(const std::string& program, double program_s) const {
   const std::lock_guard lock(mutex_);
+  RefuseYearsNow(program, program_s);
+}
+
+void PaceControl::RefuseYearsNow(const std::string& program, double program_s) const {
   if (!TakesYears(program_s, 0.01 * feed_percent_)) return;
   throw ProgramError(program + ": " + YearsText(feed_percent_, "the program") +
                      "; contour feed sets another, 0 percent holds it");

@@ -321,16 +321,16 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     parts_.pump.AwaitShown(now.cycle, kPumpTimeout);
     const LearningReport learnt = Learn(upload, *found.place, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
-    const double feed = pace_.Begin(generator->feed_may_exceed());
     // The points wait in the queue until the cycle has taken the request and expects them.
     // In lock-step time waits for the points, so nothing needs to slow down.
     const auto planning = clock_ == "lockstep" ? PacedPath::Options::Planning::kAhead
                                                : PacedPath::Options::Planning::kAheadOrSlower;
     const auto* gcode = std::get_if<GcodeMoves>(&program.shape);
-    parts_.pump.Supply(std::move(generator),
-                       PacedPath::Options{feed, upload.part.single_block, false, planning},
-                       gcode != nullptr ? HaltsOf(*gcode) : std::vector<ProgramHalt>());
+    pace_.Begin(upload.name, std::move(generator),
+                PacedPath::Options{.single_block = upload.part.single_block, .planning = planning},
+                gcode != nullptr ? HaltsOf(*gcode) : std::vector<ProgramHalt>());
     Answer answer = Ask(RequestKind::kRun, unwanted, program_id_);
+    pace_.Begun();
     answer.program_id = program_id_;
     answer.start_m = found.place->start_m;
     answer.zero_m = found.place->zero_m;

@@ -68,7 +68,9 @@ class Supervisor final : public OperatorDesk {
                     const std::map<std::string, std::string>& models) override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   Answer Zero() override;
-  Answer Pace(const PaceRequest& request) override { return pace_.Change(request, answers_.record()); }
+  Answer Pace(const PaceRequest& request) override {
+    return pace_.Change(request, [this] { return answers_.record(); });
+  }
   MachineStatus Status() override;
   std::string MachineFile() override;
   void Attach(std::shared_ptr<RowFeed> feed) override;
