@@ -55,7 +55,7 @@ std::vector<std::string> RequireLoops(const DaemonOptions& options,
 StartLoops LoopsOfStart(const DaemonOptions& options, const std::vector<std::string>& overrides,
                         const std::function<void()>& begins) {
   StartLoops loops;
-  loops.chosen = LoopsThatAreMissing(LoadMachine(options.config, overrides), begins);
+  loops.chosen = LoopsThatAreMissing(LoadMachine(options.config, overrides), options.config, begins);
   std::vector<std::string> with_chosen = overrides;
   with_chosen.insert(with_chosen.end(), loops.chosen.begin(), loops.chosen.end());
   loops.warned = RequireLoops(options, with_chosen);

@@ -120,7 +120,7 @@ bool MayUseFilter(const MachineConfig& machine) {
   return !machine.control.friction_stated && FilterServes(machine);
 }
 
-std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine,
+std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine, const std::string& file,
                                              const std::function<void()>& begins) {
   std::vector<std::string> assignments, errors;
   if (!KnowsTwoInertias(machine.machine.controller, machine.control.friction)) return assignments;
@@ -133,7 +133,7 @@ std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine,
     } else if (MayUseFilter(machine)) {
       return {kUseFilter};
     } else {
-      errors.push_back(WhyNoLoop(name, {kDriveCloses, kWhoTries}));
+      errors.push_back(file + ": " + WhyNoLoop(name, {kDriveCloses, kWhoTries}));
     }
   }
   if (errors.empty()) return assignments;

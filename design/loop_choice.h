@@ -31,9 +31,9 @@ bool MayUseFilter(const MachineConfig& machine);
 
 /// A loop for every axis that needs one and has none, as assignments `axes.<name>.loop={...}` to put on top
 /// of the machine file. When there is none for an axis, kUseFilter alone if that is a way out; or else throws
-/// ConfigError, with the reason. What would help is not tried: a start waits for this. `begins`: called
-/// before each axis, which takes some tenths of a second of one processor.
-std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine,
+/// ConfigError, with `file`, where the machine stands, and the reason. What would help is not tried: a start
+/// waits for this. `begins`: called before each axis, which takes some tenths of a second of one processor.
+std::vector<std::string> LoopsThatAreMissing(const MachineConfig& machine, const std::string& file,
                                              const std::function<void()>& begins = nullptr);
 
 }  // namespace contour

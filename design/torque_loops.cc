@@ -3,9 +3,20 @@
 #include <utility>
 
 #include "config/loop_axis.h"
+#include "config/machine_checks.h"
 #include "design/start_loop.h"
 
 namespace contour {
+namespace {
+
+/// What the axis has not in torque mode with this loop that a machine must have; empty: nothing.
+std::string WhatItLacks(const MachineConfig& machine, const std::string& name, const LoopTuning& loop) {
+  for (const ConfigProblem& p : Check(InTorqueMode(machine, {{name, loop}})))
+    if (p.key.starts_with("axes." + name + ".")) return p.key + " does not do there: " + p.message;
+  return {};
+}
+
+}  // namespace
 
 TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads,
                             std::map<std::string, LoopTuning> known) {
@@ -22,16 +33,20 @@ TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads,
     }
   const double period_s = 1e-6 * machine.machine.cycle_us;
   for (const auto& [name, axis] : machine.axes) {
-    if (found.loops.contains(name)) continue;
-    const StartLoop start = FindStartLoop(LoopAxisOf(axis), period_s, threads, DoubtOf(axis.model));
-    if (start.wrong.empty()) {
+    if (!found.loops.contains(name)) {
+      const StartLoop start = FindStartLoop(LoopAxisOf(axis), period_s, threads, DoubtOf(axis.model));
+      if (!start.wrong.empty()) {
+        found.lacking.push_back(name);
+        if (found.why_not.empty())
+          found.why_not =
+              "no loop of axis " + name + " is stable for all that its model leaves open: " + start.wrong;
+        continue;
+      }
       found.loops[name] = start.found.tuning;
-      continue;
     }
-    found.lacking.push_back(name);
-    if (found.why_not.empty())
-      found.why_not =
-          "no loop of axis " + name + " is stable for all that its model leaves open: " + start.wrong;
+    // A record in csp, and a better model by it, would not help.
+    if (const std::string lacks = WhatItLacks(machine, name, found.loops.at(name)); !lacks.empty())
+      return {{}, {}, lacks};
   }
   return found;
 }

@@ -19,8 +19,9 @@ struct TorqueLoops {
 };
 
 /// Loops that are stable for all that the models leave open (FindStartLoop). All axes are enabled together,
-/// so all of them must have one. Axes of which one is known already are not searched again. Some ten seconds
-/// of processor time for each of the others.
+/// so all of them must have one, and a machine file that holds for it: where the limits of an axis do not do
+/// in torque mode, that is said and no further axis is searched. Axes of which one is known already are not
+/// searched again. Some ten seconds of processor time for each of the others.
 TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads,
                             std::map<std::string, LoopTuning> known = {});
 

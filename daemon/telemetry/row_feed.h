@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -12,7 +14,8 @@
 namespace contour {
 
 /// Cycle records on their way to one client of the control socket. The pump pushes, the socket server pops;
-/// neither is the cycle. Bounded: when the client is too slow the newest rows are lost and counted.
+/// neither is the cycle. Bounded: when the client is too slow the newest rows are lost and counted. Where time
+/// waits, in lock-step, it waits for the client first.
 class RowFeed {
  public:
   /// Half a minute at 1 kHz, some 20 MB: in lock-step a machine runs a program in a second, and a client on a
@@ -23,8 +26,11 @@ class RowFeed {
 
   /// Keeps the record and the timing of the cycle, not its frames and path points. A row is an encoded
   /// contour_lcm::cycle_entry (see drivers/lcm/cycle_messages.h).
-  void Push(const CycleEntry& entry);
+  /// `patience`: how long it waits for room while the client takes nothing; then not again until that does.
+  void Push(const CycleEntry& entry, std::chrono::milliseconds patience = std::chrono::milliseconds(0));
   std::optional<std::string> Pop();
+  /// Nobody pops any more: Push() waits for nothing.
+  void End();
 
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] std::uint64_t lost() const;
@@ -32,7 +38,11 @@ class RowFeed {
  private:
   const std::size_t capacity_;
   mutable std::mutex mutex_;
+  std::condition_variable popped_;
   std::deque<std::string> rows_;
+  std::uint64_t pops_ = 0;
+  bool ended_ = false;
+  bool out_of_patience_ = false;
   std::uint64_t lost_ = 0;
 };
 

@@ -13,6 +13,7 @@ TelemetryHub::TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vec
                            const std::optional<LogTarget>& log, std::chrono::milliseconds patience)
     : encoder_(config, cycle_us, axis_names),
       axis_names_(axis_names),
+      patience_(patience),
       health_(axis_names),
       emergencies_(axis_names.size()) {
   if (config.publish) {
@@ -84,7 +85,7 @@ void TelemetryHub::Observe(const CycleEntry& entry) {
     foreign_.Add(entry.input);
     feeds = feeds_;
   }
-  for (const auto& feed : feeds) feed->Push(entry);
+  for (const auto& feed : feeds) feed->Push(entry, patience_);
 }
 
 void TelemetryHub::Attach(std::shared_ptr<RowFeed> feed) {
@@ -93,6 +94,7 @@ void TelemetryHub::Attach(std::shared_ptr<RowFeed> feed) {
 }
 
 void TelemetryHub::Detach(const std::shared_ptr<RowFeed>& feed) {
+  feed->End();
   const std::lock_guard lock(mutex_);
   std::erase(feeds_, feed);
 }

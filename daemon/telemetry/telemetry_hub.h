@@ -32,8 +32,8 @@ class TelemetryHub {
   };
 
   /// Throws std::runtime_error when the log cannot be made. Whether LCM works shows later, in stats.
-  /// `patience`: how long Consume() waits for a disk or a network that has fallen behind (see SlowLane); 0
-  /// where time does not wait.
+  /// `patience`: how long Consume() waits for a disk, a network or a client that has fallen behind (see
+  /// SlowLane); 0 where time does not wait.
   TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
                const std::optional<LogTarget>& log,
                std::chrono::milliseconds patience = std::chrono::milliseconds(0));
@@ -89,6 +89,7 @@ class TelemetryHub {
 
   TelemetryEncoder encoder_;
   const std::vector<std::string> axis_names_;
+  const std::chrono::milliseconds patience_;
   std::unique_ptr<BackgroundPublisher> publisher_;
   std::unique_ptr<BackgroundLog> log_;
   std::unique_ptr<FlightRecorder> flight_;

@@ -50,9 +50,11 @@ TEST(LoopChoice, LeavesWhatWouldHelpToWhoeverAsksForIt) {
   for (auto& [name, axis] : machine.axes) axis.drive.mode = DriveMode::kCst;
   std::size_t begun = 0;
   try {
-    LoopsThatAreMissing(machine, [&begun] { ++begun; });
+    LoopsThatAreMissing(machine, "belt.yaml", [&begun] { ++begun; });
     ADD_FAILURE() << "a loop for a belt";
   } catch (const ConfigError& e) {
+    for (const std::string& message : e.messages())
+      EXPECT_TRUE(message.starts_with("belt.yaml: axes.")) << message;
     EXPECT_NE(std::string(e.what()).find("in which the drive closes the loop; contour check tries other"),
               std::string::npos)
         << e.what();
@@ -71,7 +73,7 @@ TEST(LoopChoice, EndsAtTheFirstAxisWhereTheFilterIsAWayOut) {
   machine.control.friction_stated = false;
   machine.machine.cycle_us = 4000.0;
   std::size_t begun = 0;
-  const std::vector<std::string> found = LoopsThatAreMissing(machine, [&begun] { ++begun; });
+  const std::vector<std::string> found = LoopsThatAreMissing(machine, "xy.yaml", [&begun] { ++begun; });
   EXPECT_EQ(found, std::vector<std::string>{kUseFilter});
   EXPECT_EQ(begun, 1u);
 }
@@ -81,22 +83,22 @@ TEST(LoopChoice, CompletesAMachineFileAndNothingElse) {
   MachineConfig machine = LoadMachine(example);
   machine.axes.at("x").loop.reset();
   machine.control.friction = FrictionKind::kLinear;
-  const std::vector<std::string> found = LoopsThatAreMissing(machine);
+  const std::vector<std::string> found = LoopsThatAreMissing(machine, example);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_TRUE(found.front().starts_with("axes.x.loop={regulator_Hz: ")) << found.front();
-  EXPECT_EQ(LoopsThatAreMissing(machine), found);
+  EXPECT_EQ(LoopsThatAreMissing(machine, example), found);
   const MachineConfig completed = LoadMachine(example, found);
   EXPECT_TRUE(completed.axes.at("x").loop);
-  EXPECT_TRUE(LoopsThatAreMissing(completed).empty());
+  EXPECT_TRUE(LoopsThatAreMissing(completed, example).empty());
   MachineConfig other = machine;
   other.control.friction = FrictionKind::kSrukf;
-  EXPECT_TRUE(LoopsThatAreMissing(other).empty());
+  EXPECT_TRUE(LoopsThatAreMissing(other, example).empty());
   other = machine;
   other.machine.controller = ControllerName::kPid;
-  EXPECT_TRUE(LoopsThatAreMissing(other).empty());
+  EXPECT_TRUE(LoopsThatAreMissing(other, example).empty());
   other = machine;
   other.axes.at("x").drive.mode = DriveMode::kCsp;
-  EXPECT_TRUE(LoopsThatAreMissing(other).empty());
+  EXPECT_TRUE(LoopsThatAreMissing(other, example).empty());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ const std::string kFamily = std::string(CONTOUR_CONFIG_DIR) + "/family";
 
 double Following_mm(const std::string& name, std::vector<std::string> set = {}) {
   const std::string file = kFamily + "/" + name + ".yaml";
-  const std::vector<std::string> loops = LoopsThatAreMissing(LoadMachine(file, set));
+  const std::vector<std::string> loops = LoopsThatAreMissing(LoadMachine(file, set), file);
   set.insert(set.end(), loops.begin(), loops.end());
   return ExpectedFollowing_mm(LoadMachine(file, set));
 }
@@ -53,7 +53,7 @@ TEST(PathFollowing, WhatTheFileStatesStays) {
 
 PerAxis<PlanLimits> LimitsOf(const std::string& name, std::vector<std::string> set = {}) {
   const std::string file = kFamily + "/" + name + ".yaml";
-  for (const std::string& loop : LoopsThatAreMissing(LoadMachine(file, set))) set.push_back(loop);
+  for (const std::string& loop : LoopsThatAreMissing(LoadMachine(file, set), file)) set.push_back(loop);
   for (const std::string& following : PathFollowingIfMissing(LoadMachine(file, set)))
     set.push_back(following);
   return ProgramLimits(LoadMachine(file, set));

@@ -48,11 +48,26 @@ TEST(TorqueLoops, AnAxisThatNoLoopHoldsStaysWithItsDrive) {
   EXPECT_EQ(as_it_is.control.friction, FrictionKind::kSrukf);
 }
 
+// contourd refuses such a machine file in torque mode: after the search, and after the operator's yes.
+TEST(TorqueLoops, LimitsThatDoNotDoInTorqueModeAreSaidInPlaceOfALoop) {
+  MachineConfig machine = OneAxisOf("m300");
+  AxisConfig& axis = machine.axes.at("x");
+  axis.limits.following_error_mm = axis.limits.safe_travel_mm = 0.02;
+  machine.axes["y"] = axis;
+  const TorqueLoops found = FindTorqueLoops(machine, kThreads, {{"x", *axis.loop}});
+  EXPECT_FALSE(found.complete());
+  EXPECT_TRUE(found.lacking.empty()) << "a record in csp would not help";
+  EXPECT_TRUE(found.why_not.starts_with("axes.x.limits.safe_travel_mm does not do there: found 0.02"))
+      << found.why_not;
+}
+
 TEST(TorqueLoops, WhatIsKnownIsNotSearchedAgain) {
-  const MachineConfig machine = OneAxisOf("belt");
-  const TorqueLoops found = FindTorqueLoops(machine, kThreads, {{"x", LoopTuning{}}});
-  EXPECT_TRUE(found.complete());
-  EXPECT_EQ(found.loops.at("x").regulator_Hz, LoopTuning{}.regulator_Hz);
+  const MachineConfig machine = OneAxisOf("t30");
+  LoopTuning known = *machine.axes.at("x").loop;
+  known.regulator_Hz *= 0.9;
+  const TorqueLoops found = FindTorqueLoops(machine, kThreads, {{"x", known}});
+  EXPECT_TRUE(found.complete()) << found.why_not;
+  EXPECT_EQ(found.loops.at("x").regulator_Hz, known.regulator_Hz);
 }
 
 TEST(TorqueLoops, NoneForOtherControllersNorBesideALoopWithTheScale) {

@@ -36,6 +36,7 @@
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/ends_at_once.h"
 #include "tools/contour/identification_report.h"
+#include "tools/contour/new_daemon.h"
 #include "tools/contour/torque_mode_stay.h"
 
 namespace contour {
@@ -58,6 +59,8 @@ struct Options {
 constexpr std::chrono::milliseconds kLookEvery{100};
 constexpr std::chrono::seconds kEnableLimit{60};
 constexpr std::chrono::seconds kLastRows{5};
+constexpr const char* kCspInstead =
+    "; contour commission --mode csp records it there, held by the drive's own loop";
 constexpr const char* kStays =
     "note: recorded in csp, where the drive's reports are what is known of its torque: ";
 
@@ -274,7 +277,7 @@ TorqueLoops LoopsToRecordWith(const MachineConfig& machine, const json& status, 
     found = FindTorqueLoops(machine, ThreadsOf(0));
   }
   if (!found.complete() && found.lacking.empty()) {
-    if (options.mode == "cst") throw ConfigError({"--mode: found cst, but " + found.why_not});
+    if (options.mode == "cst") throw ConfigError({"--mode: found cst, but " + found.why_not + kCspInstead});
     std::cout << kStays << found.why_not << "\n";
   }
   return found;
@@ -411,6 +414,17 @@ std::string InCspInstead(const MachineConfig& own, const std::string& axis) {
          set + ", then contour commission --mode csp";
 }
 
+/// Where the machine stays in csp, `torque` says why.
+void EnterTorqueMode(TorqueModeStay& stay, const std::map<std::string, ModelConfig>& models,
+                     TorqueLoops& torque) {
+  try {
+    if (!stay.Enter(torque.loops, models))
+      torque.why_not = "the drives do not come up in torque mode (0x6502)";
+  } catch (const BeginRefused& refused) {
+    torque.why_not = std::string("contourd does not take torque mode: ") + refused.what();
+  }
+}
+
 std::string DescribeAll(const MachineConfig& own, const MachineConfig& recorded, const json& status,
                         const TorqueLoops& torque, const Options& options) {
   std::string text;
@@ -448,10 +462,9 @@ int RunCommission(const Options& options) {
     if (torque.complete()) machine = InTorqueMode(known, torque.loops);
   }
   TorqueModeStay stay(client, options.socket);
-  if (torque.complete() && !stay.Enter(torque.loops, models))
-    torque.why_not = "the drives do not come up in torque mode (0x6502)";
+  if (torque.complete()) EnterTorqueMode(stay, models, torque);
   if (!torque.complete() && !(torque.loops.empty() && torque.lacking.empty())) {
-    if (options.mode == "cst") throw std::runtime_error("no record in torque mode: " + torque.why_not);
+    if (options.mode == "cst") throw std::runtime_error("no record in torque mode: " + torque.why_not + kCspInstead);
     std::cout << kStays << torque.why_not << "\n";
     machine = own;
   }

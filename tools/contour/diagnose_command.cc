@@ -99,7 +99,7 @@ MachineConfig WithLoops(const Options& options) {
   const MachineConfig machine = LoadMachine(options.model, options.set);
   try {
     std::vector<std::string> set = options.set;
-    for (const std::string& loop : LoopsThatAreMissing(machine)) set.push_back(loop);
+    for (const std::string& loop : LoopsThatAreMissing(machine, options.model)) set.push_back(loop);
     return LoadMachine(options.model, set);
   } catch (const ConfigError&) {
     return machine;

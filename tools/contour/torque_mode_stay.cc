@@ -35,7 +35,12 @@ bool TorqueModeStay::Enter(const std::map<std::string, LoopTuning>& loops,
     WaitForStatus(*client_, IsIdle, kIdleLimit);
   }
   entered_ = true;  // also where it does not answer any more
-  Begin(Texts(loops), Texts(models));
+  try {
+    Begin(Texts(loops), Texts(models));
+  } catch (const BeginRefused&) {
+    entered_ = false;
+    throw;
+  }
   entered_ = AskForMachine(*client_).axes.begin()->second.drive.mode == DriveMode::kCst;
   return entered_;
 }

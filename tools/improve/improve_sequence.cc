@@ -8,6 +8,7 @@
 #include "analysis/diagnosis/report/diagnosis_text.h"
 #include "analysis/recording/read_log.h"
 #include "analysis/text/format_text.h"
+#include "config/config_error.h"
 #include "config/yaml_writer.h"
 #include "tools/improve/experiments.h"
 #include "tools/improve/fitted_model.h"
@@ -38,6 +39,11 @@ bool Better(const Trial& a, const Trial& b) {
   return a.check.after_um < b.check.after_um;
 }
 
+/// Both programs, every pass.
+double SeriesOf_s(const ImproveRequest& request) {
+  return static_cast<double>(request.passes + 1) * (request.path.duration_s + request.check.duration_s);
+}
+
 }  // namespace
 
 ImproveSequence::ImproveSequence(ImproveMachine& machine, ImproveRequest request, DiagnoseAxis diagnose)
@@ -63,9 +69,15 @@ ImproveResult ImproveSequence::Run() {
 
 void ImproveSequence::RunSteps() {
   result_.machine = machine_.Machine();
+  RefuseTooLittleTime();
   machine_.Ask("The axes will be enabled and will move: " + request_.path.program.name + ", and " +
                request_.check.program.name + ".");
-  result_.before = DrawAll("before");
+  std::optional<Series> before = DrawAll("before");
+  if (!before)
+    throw std::runtime_error(
+        "cycles never arrived, and --max_minutes leaves no time to draw that once more: this computer is "
+        "too slow or too busy");
+  result_.before = *std::move(before);
   series_s_ = result_.machine_time_s;
   Find();
   machine_.Disable();
@@ -80,15 +92,34 @@ void ImproveSequence::RunSteps() {
   KeepBest();
 }
 
+void ImproveSequence::RefuseTooLittleTime() const {
+  const double both_s = 2.0 * SeriesOf_s(request_);
+  if (both_s <= request_.machine_time_s) return;
+  throw ConfigError(
+      {FormatText("--max_minutes: found %.3g, but drawing both programs before and after takes %.3g minutes; "
+                  "expected more, or fewer --passes, or shorter programs",
+                  request_.machine_time_s / 60.0, both_s / 60.0)});
+}
+
+/// The ways to its start, and the program.
+std::vector<Placed> ImproveSequence::WithWay(const Placed& program) {
+  const PerAxis<double> here_m = machine_.Position_m();
+  std::vector<Placed> all;
+  for (const ProgramText& way : WayTo(here_m, program.start_m, request_.space))
+    all.push_back(Place(way, request_.space, request_.limits, here_m));
+  all.push_back(program);
+  return all;
+}
+
 /// A record with holes says less of the axis, and not how large the largest error was: then once more.
-Drawing ImproveSequence::Draw(const Placed& program) {
+std::optional<Drawing> ImproveSequence::Draw(const Placed& program, double reserved_s) {
   for (int attempt = 1;; ++attempt) {
-    const PerAxis<double> here_m = machine_.Position_m();
-    for (const ProgramText& way : WayTo(here_m, program.start_m, request_.space)) {
-      result_.machine_time_s += Place(way, request_.space, request_.limits, here_m).duration_s;
-      machine_.Run(way);
-    }
-    result_.machine_time_s += program.duration_s;
+    const std::vector<Placed> all = WithWay(program);
+    double takes_s = 0.0;
+    for (const Placed& p : all) takes_s += p.duration_s;
+    if (attempt > 1 && takes_s > Left_s(reserved_s)) return std::nullopt;
+    result_.machine_time_s += takes_s;
+    for (std::size_t i = 0; i + 1 < all.size(); ++i) machine_.Run(all[i].program);
     Drawing drawing = machine_.Run(program.program);
     const double lost = static_cast<double>(drawing.lost);
     if (lost <= kMostLost * static_cast<double>(drawing.cycles.size())) return drawing;
@@ -96,18 +127,24 @@ Drawing ImproveSequence::Draw(const Placed& program) {
       throw std::runtime_error(
           FormatText("%s: %.0f of its cycles never arrived: this computer is too slow or too busy",
                      program.program.name.c_str(), lost));
-    machine_.Say(
-        FormatText("%s: %.0f of its cycles never arrived; once more", program.program.name.c_str(), lost));
+    machine_.Say(FormatText("%s: %.0f of its cycles never arrived", program.program.name.c_str(), lost));
   }
 }
 
-Series ImproveSequence::DrawAll(const std::string& when) {
+std::optional<Series> ImproveSequence::DrawAll(const std::string& when) {
   machine_.Enable();
   enabled_ = true;
   Series series;
+  // What is drawn later has to fit, too: the rest of this series, and before there is a model, another one.
+  double later_s = SeriesOf_s(request_) + (loaded_ ? 0.0 : SeriesOf_s(request_));
+  const auto draw = [&](const Placed& program, std::vector<Drawing>& drawings) {
+    later_s -= program.duration_s;
+    std::optional<Drawing> drawing = Draw(program, later_s);
+    if (drawing) drawings.push_back(*std::move(drawing));
+    return drawing.has_value();
+  };
   for (std::size_t pass = 0; pass <= request_.passes; ++pass) {
-    series.path.push_back(Draw(request_.path));
-    series.check.push_back(Draw(request_.check));
+    if (!draw(request_.path, series.path) || !draw(request_.check, series.check)) return std::nullopt;
     const auto peak_um = [&](const Drawing& d, const Placed& p) {
       return ErrorsOf(d, p.program, request_.limits, result_.machine, nullptr).encoder.peak_um;
     };
@@ -136,21 +173,35 @@ void ImproveSequence::Find() {
 
 void ImproveSequence::Experiment(const std::vector<ProgramText>& programs, const std::string& why,
                                  const std::string& on) {
-  const double left_s = request_.machine_time_s - result_.machine_time_s - series_s_;
   const std::vector<Placed> runnable =
-      Runnable(programs, request_.space, request_.limits, Middle(request_.space), left_s, result_.left_out);
+      Runnable(programs, request_.space, request_.limits, Middle(request_.space), Left_s(series_s_),
+               result_.left_out);
   run_.insert(run_.end(), programs.begin(), programs.end());
   if (runnable.empty()) return;
-  double takes_s = 0.0;
-  for (const Placed& p : runnable) takes_s += p.duration_s;
+  double all_s = 0.0;
+  for (const Placed& p : runnable) all_s += p.duration_s;
   machine_.Ask(
-      FormatText("%s: %zu experiments of %.0f s would decide.", why.c_str(), runnable.size(), takes_s));
+      FormatText("%s: %zu experiments of %.0f s would decide.", why.c_str(), runnable.size(), all_s));
+  const std::size_t before = logs_.size();
   for (const Placed& p : runnable) {
+    double takes_s = 0.0;
+    for (const Placed& part : WithWay(p)) takes_s += part.duration_s;
+    if (takes_s > Left_s(series_s_)) {
+      result_.left_out.push_back(FormatText("%s: takes %.0f s with the way there, and %.0f s are left",
+                                            p.program.name.c_str(), takes_s, Left_s(series_s_)));
+      continue;
+    }
     machine_.Say("experiment: " + p.program.name);
-    logs_.push_back(Draw(p).log);
+    std::optional<Drawing> drawing = Draw(p, series_s_);
+    if (!drawing) {
+      result_.left_out.push_back(p.program.name +
+                                 ": cycles never arrived, and there is no time to run it once more");
+      continue;
+    }
+    logs_.push_back(std::move(drawing->log));
     result_.experiments.push_back(p.program.name);
   }
-  Diagnose(on);
+  if (logs_.size() > before) Diagnose(on);
 }
 
 void ImproveSequence::Diagnose(const std::string& on) {
@@ -207,10 +258,15 @@ void ImproveSequence::TryAll(const std::vector<Candidate>& candidates) {
       result_.left_out.push_back("the model by " + c.from + ": " + e.what());
       continue;
     }
-    Series drawn = DrawAll("with the model by " + c.from);
+    std::optional<Series> drawn = DrawAll("with the model by " + c.from);
     machine_.Disable();
     enabled_ = false;
-    result_.tried.push_back(Judged(c, std::move(drawn), candidates.size()));
+    if (!drawn) {
+      result_.left_out.push_back("the model by " + c.from +
+                                 ": cycles never arrived, and there is no time to draw once more");
+      continue;
+    }
+    result_.tried.push_back(Judged(c, *std::move(drawn), candidates.size()));
     const Judgement& judgement = result_.tried.back().judgement;
     machine_.Say((judgement.keep ? "better: " : "not better: ") + judgement.why);
     if (judgement.keep && c.decided) return;
@@ -222,6 +278,7 @@ void ImproveSequence::Load(const ModelConfig& model, const std::string& then) {
   const bool before = std::exchange(loaded_, true);
   try {
     machine_.LoadModel(TextOf(model));
+    newest_ = TextOf(model);
   } catch (const NotIdle& e) {
     loaded_ = before;
     throw std::runtime_error(e.what());
@@ -258,13 +315,14 @@ void ImproveSequence::KeepBest() {
   if (!result_.best) {
     result_.judgement = {false, result_.left_out.empty() ? "there was no time to draw with another model"
                                                          : result_.left_out.back()};
+    if (loaded_) Restore();
     return;
   }
   const Trial& best = result_.tried[*result_.best];
   result_.judgement = best.judgement;
   if (!best.judgement.keep)
     Restore();
-  else if (*result_.best + 1 < result_.tried.size())
+  else if (TextOf(best.model) != newest_)
     Load(best.model, ", the best of those that were drawn with.");
 }
 

@@ -71,7 +71,7 @@ using DiagnoseAxis =
     std::function<diagnosis::Diagnosis(const diagnosis::AxisLog&, const diagnosis::StatedAxis&)>;
 
 /// Draws, diagnoses, has the experiments run that decide, loads the models that come of it, draws again and
-/// keeps the best. Whatever ends it early, an operator's no, an interrupt or a fault, the torque is off and
+/// keeps the best. Throws ConfigError where there is no time for that, before anything moves. Whatever ends it early, an operator's no, an interrupt or a fault, the torque is off and
 /// the old model loaded when it throws; after a fault it waits until the machine has been reset for that.
 /// What it throws says so where the old model is not back.
 class ImproveSequence {
@@ -82,8 +82,14 @@ class ImproveSequence {
 
  private:
   void RunSteps();
-  Series DrawAll(const std::string& when);
-  Drawing Draw(const Placed& program);
+  void RefuseTooLittleTime() const;
+  /// Nothing: cycles were lost, and there is no time to run it once more.
+  std::optional<Series> DrawAll(const std::string& when);
+  std::optional<Drawing> Draw(const Placed& program, double reserved_s);
+  [[nodiscard]] std::vector<Placed> WithWay(const Placed& program);
+  [[nodiscard]] double Left_s(double reserved_s) const {
+    return request_.machine_time_s - result_.machine_time_s - reserved_s;
+  }
   void Find();
   void Experiment(const std::vector<ProgramText>& programs, const std::string& why, const std::string& on);
   void Diagnose(const std::string& on);
@@ -104,6 +110,7 @@ class ImproveSequence {
   std::vector<ProgramText> run_;  ///< experiments, so that none is run again
   double series_s_ = 0.0;         ///< that drawing all of it took, ways and repeats included
   bool enabled_ = false, loaded_ = false;
+  std::string newest_;  ///< model that was loaded last
 };
 
 /// Largest error of each pass that counts, by the place that knows most: the scale, else what is believed of

@@ -46,7 +46,7 @@ EmulatedMachineFile LoadEmulatedMachine(const std::string& path, const std::vect
   MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(path, overrides);
   MachineConfig run = file.machine;
   run.machine.controller = runs.value_or(file.machine.machine.controller);
-  std::vector<std::string> with_loops = LoopsThatAreMissing(run);
+  std::vector<std::string> with_loops = LoopsThatAreMissing(run, path);
   if (!with_loops.empty()) {
     with_loops.insert(with_loops.begin(), overrides.begin(), overrides.end());
     file = LoadMaybeEmulatedMachine(path, with_loops);

@@ -165,7 +165,7 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
   MachineSource source = SourceOf(log.header());
   source.overrides.insert(source.overrides.end(), options.set.begin(), options.set.end());
   // Of another controller than the one that ran.
-  for (std::string& loop : LoopsThatAreMissing(LoadMachine(source)))
+  for (std::string& loop : LoopsThatAreMissing(LoadMachine(source), source.name))
     source.overrides.push_back(std::move(loop));
   const MachineConfig machine = LoadMachine(source);
   CycleConfig config = MakeCycleConfig(machine, machine.machine.controller);

@@ -1,9 +1,8 @@
 #include "analysis/diagnosis/report/report_data.h"
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -96,7 +95,7 @@ Json BlocksJson(const Diagnosis& d) {
 
 /// Signals into the binary file; their names and lengths in order.
 Json WriteTraces(const std::filesystem::path& file, const Traces& t) {
-  std::ofstream out(file, std::ios::binary);
+  std::string bytes;
   Json list = Json::array();
   const std::pair<const char*, const std::vector<double>*> signals[] = {
       {"time_s", &t.time_s},
@@ -113,11 +112,9 @@ Json WriteTraces(const std::filesystem::path& file, const Traces& t) {
       {"temperature_degC", &t.temperature_degC}};
   for (const auto& [name, signal] : signals) {
     list.push_back({name, signal->size()});
-    out.write(reinterpret_cast<const char*>(signal->data()),
-              static_cast<std::streamsize>(signal->size() * sizeof(double)));
+    bytes.append(reinterpret_cast<const char*>(signal->data()), signal->size() * sizeof(double));
   }
-  out.close();
-  if (!out) throw std::runtime_error("cannot write " + file.string());
+  WriteWholeFile(file, bytes);
   return list;
 }
 

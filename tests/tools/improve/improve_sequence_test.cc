@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/axis_model/read_stated_axis.h"
+#include "config/config_error.h"
 #include "config/load_machine.h"
 #include "config/yaml_writer.h"
 #include "daemon/program_limits.h"
@@ -125,6 +126,10 @@ class ImproveSequenceTest : public ::testing::Test {
                              return lengths_.size() <= opens_ ? first_ : last_;
                            })
         .Run();
+  }
+  [[nodiscard]] double Drawings_s() const {
+    return 2.0 * static_cast<double>(request_.passes + 1) *
+           (request_.path.duration_s + request_.check.duration_s);
   }
   static diagnosis::Diagnosis Cogging(double amplitude_Nm = 0.02) {
     static const diagnosis::StatedAxis stated =
@@ -358,10 +363,45 @@ TEST_F(ImproveSequenceTest, ARecordWithHolesIsDrawnOnceMoreAndNotForEver) {
 
 TEST_F(ImproveSequenceTest, ExperimentsKeepToTheMachineTime) {
   first_ = last_ = Nothing();
-  request_.machine_time_s = 10.0;
+  request_.machine_time_s = Drawings_s() + 0.5;
   const ImproveResult result = Run();
   EXPECT_FALSE(Ran("a stroke"));
   ASSERT_EQ(result.left_out.size(), 2u);
+  EXPECT_LE(result.machine_time_s, request_.machine_time_s);
+}
+
+TEST_F(ImproveSequenceTest, TooLittleTimeForTheDrawingsIsRefusedBeforeAnythingMoves) {
+  request_.machine_time_s = Drawings_s() - 0.5;
+  EXPECT_THROW(Run(), ConfigError);
+  EXPECT_TRUE(machine_.asked.empty());
+  EXPECT_TRUE(machine_.ran.empty());
+}
+
+// Before: what had lost cycles was run up to four times, whatever the time.
+TEST_F(ImproveSequenceTest, NothingIsRunOnceMoreBeyondTheMachineTime) {
+  request_.machine_time_s = Run().machine_time_s + 0.5;
+  const std::vector<std::string> all = machine_.ran;
+  const auto chirp = std::find(all.begin(), all.end(), "a chirp");
+  ASSERT_NE(chirp, all.end());
+  const auto lose = [&](std::size_t at) {
+    machine_ = FakeMachine(config_);
+    machine_.lose_at = at;
+    lengths_.clear();
+    return Run();
+  };
+  const ImproveResult without_chirp = lose(static_cast<std::size_t>(chirp - all.begin()) + 1);
+  EXPECT_EQ(machine_.ran, all) << "each once";
+  ASSERT_EQ(without_chirp.left_out.size(), 1u);
+  EXPECT_TRUE(without_chirp.left_out[0].starts_with("a chirp: cycles never arrived"));
+  EXPECT_LE(without_chirp.machine_time_s, request_.machine_time_s);
+  EXPECT_TRUE(without_chirp.judgement.keep);
+  const ImproveResult undecided = lose(all.size());
+  EXPECT_EQ(machine_.ran, all);
+  EXPECT_FALSE(undecided.judgement.keep);
+  EXPECT_FALSE(machine_.new_model) << "nothing says that it is better";
+  request_.machine_time_s = Drawings_s() + 0.5;
+  EXPECT_THROW(lose(2), std::runtime_error) << "the drawing before";
+  EXPECT_FALSE(machine_.enabled);
 }
 
 }  // namespace

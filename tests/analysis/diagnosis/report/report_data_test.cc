@@ -82,6 +82,21 @@ TEST_F(ReportDataTest, CandidatesNumbersBlocksAndShapesAreTold) {
   EXPECT_EQ(json["causes"][0]["shapes"][0]["y"], nlohmann::json::array({0.1, 0.2}));
 }
 
+// A file that others have open, or that is half written when the process ends, is never the report's.
+TEST_F(ReportDataTest, TheSignalsTakeTheOldFilesPlaceWhenTheyAreWhole) {
+  Diagnosis d = test::Example();
+  d.traces.time_s = {0.0, 1.0};
+  Written(d);
+  const auto file = folder_.path() / "report_traces.bin";
+  std::ifstream old(file, std::ios::binary);
+  const auto bytes = std::filesystem::file_size(file);
+  d.traces.time_s.assign(1000, 0.0);
+  Written(d);
+  EXPECT_GT(std::filesystem::file_size(file), bytes);
+  old.seekg(0, std::ios::end);
+  EXPECT_EQ(static_cast<std::uintmax_t>(old.tellg()), bytes) << "it was written over";
+}
+
 TEST_F(ReportDataTest, AFileThatCannotBeWrittenIsNamed) {
   try {
     WriteReportData(folder_.path() / "not_there", log_, stated_, test::Example(), "", {});
