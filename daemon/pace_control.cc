@@ -29,8 +29,7 @@ Answer PaceControl::Change(const PaceRequest& request, const std::function<Cycle
       !(*request.feed_percent >= 0.0 && *request.feed_percent <= kLargestFeed_percent))
     return {false, "found " + RoundedText(*request.feed_percent) + " percent, expected 0 to " +
                        RoundedText(kLargestFeed_percent)};
-  if (running && request.feed_percent &&
-      TakesYears(Left_s(now), 0.01 * *request.feed_percent))
+  if (running && request.feed_percent && TakesYears(Left_s(now), 0.01 * *request.feed_percent))
     return {false, YearsText(*request.feed_percent, "the rest of the program") + "; 0 percent holds it"};
   if (request.feed_percent) {
     feed_percent_ = *request.feed_percent;

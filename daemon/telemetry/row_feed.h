@@ -14,8 +14,8 @@
 namespace contour {
 
 /// Cycle records on their way to one client of the control socket. The pump pushes, the socket server pops;
-/// neither is the cycle. Bounded: when the client is too slow the newest rows are lost and counted. Where time
-/// waits, in lock-step, it waits for the client first.
+/// neither is the cycle. Bounded: when the client is too slow the newest rows are lost and counted. Where
+/// time waits, in lock-step, it waits for the client first.
 class RowFeed {
  public:
   /// Half a minute at 1 kHz, some 20 MB: in lock-step a machine runs a program in a second, and a client on a

@@ -1,5 +1,5 @@
-// Between the plan of a program and its first cycle an operator may set another feed. The test plays the cycle:
-// it says which state the machine is in and takes the points.
+// Between the plan of a program and its first cycle an operator may set another feed. The test plays the
+// cycle: it says which state the machine is in and takes the points.
 #include "daemon/pace_control.h"
 
 #include <gtest/gtest.h>

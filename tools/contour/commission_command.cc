@@ -464,7 +464,8 @@ int RunCommission(const Options& options) {
   TorqueModeStay stay(client, options.socket);
   if (torque.complete()) EnterTorqueMode(stay, models, torque);
   if (!torque.complete() && !(torque.loops.empty() && torque.lacking.empty())) {
-    if (options.mode == "cst") throw std::runtime_error("no record in torque mode: " + torque.why_not + kCspInstead);
+    if (options.mode == "cst")
+      throw std::runtime_error("no record in torque mode: " + torque.why_not + kCspInstead);
     std::cout << kStays << torque.why_not << "\n";
     machine = own;
   }

@@ -173,9 +173,8 @@ void ImproveSequence::Find() {
 
 void ImproveSequence::Experiment(const std::vector<ProgramText>& programs, const std::string& why,
                                  const std::string& on) {
-  const std::vector<Placed> runnable =
-      Runnable(programs, request_.space, request_.limits, Middle(request_.space), Left_s(series_s_),
-               result_.left_out);
+  const std::vector<Placed> runnable = Runnable(programs, request_.space, request_.limits,
+                                                Middle(request_.space), Left_s(series_s_), result_.left_out);
   run_.insert(run_.end(), programs.begin(), programs.end());
   if (runnable.empty()) return;
   double all_s = 0.0;

@@ -71,9 +71,10 @@ using DiagnoseAxis =
     std::function<diagnosis::Diagnosis(const diagnosis::AxisLog&, const diagnosis::StatedAxis&)>;
 
 /// Draws, diagnoses, has the experiments run that decide, loads the models that come of it, draws again and
-/// keeps the best. Throws ConfigError where there is no time for that, before anything moves. Whatever ends it early, an operator's no, an interrupt or a fault, the torque is off and
-/// the old model loaded when it throws; after a fault it waits until the machine has been reset for that.
-/// What it throws says so where the old model is not back.
+/// keeps the best. Throws ConfigError where there is no time for that, before anything moves. Whatever ends
+/// it early, an operator's no, an interrupt or a fault, the torque is off and the old model loaded when it
+/// throws; after a fault it waits until the machine has been reset for that. What it throws says so where the
+/// old model is not back.
 class ImproveSequence {
  public:
   ImproveSequence(ImproveMachine& machine, ImproveRequest request, DiagnoseAxis diagnose);
