@@ -9,6 +9,7 @@
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/decision/choose.h"
 #include "analysis/diagnosis/decision/held_out.h"
+#include "analysis/diagnosis/decision/same_levels.h"
 #include "analysis/diagnosis/decision/same_timing.h"
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
@@ -22,13 +23,14 @@ bool BristleShows(const Problem& problem, const Fit& fit) {
   return f.Fc_plus > 2.0 * problem.stated.position_step * f.s0;
 }
 
-/// Kinds that do the same to an axis whose bristle does not show.
-void AddSameInSliding(const Problem& problem, const Fit& fit, Cause& cause) {
-  if (BristleShows(problem, fit)) return;
+/// Kinds that do the same to an axis whose bristle does not show, or whose starts from rest do not tell.
+void AddSameInSliding(const Problem& problem, const Fit& fit, double rate, Cause& cause) {
+  const bool shows = BristleShows(problem, fit);
   std::vector<std::string>& others = cause.indistinguishable_from;
   for (const CauseDefinition* c : AllCauses())
     if (SameInSliding(cause.kind, *c->name) &&
-        std::find(others.begin(), others.end(), *c->name) == others.end())
+        std::find(others.begin(), others.end(), *c->name) == others.end() &&
+        (!shows || SameLevels(problem, fit, *c->name, rate)))
       others.emplace_back(*c->name);
 }
 
@@ -60,7 +62,7 @@ void NoteHypotheses(const Problem& problem, const std::vector<Hypothesis>& hypot
                       !ExplainsSomethingElse(problem, r.fit, best);
     if (same || SameTiming(problem, best, r, less)) cause.indistinguishable_from.push_back(kind);
   }
-  AddSameInSliding(problem, best.fit, cause);
+  AddSameInSliding(problem, best.fit, threshold.rate, cause);
 }
 
 }  // namespace

@@ -17,12 +17,22 @@
 namespace contour::diagnosis {
 namespace {
 
-/// Whether the gain on halves that the fit has not seen is above zero beyond chance, at the asked rate over
-/// the number of kinds.
+/// Beyond chance, in deviations, at the asked rate over the number of kinds.
+double BeyondChance(double rate) {
+  return std::sqrt(ChiSquareQuantile(1, 2.0 * rate / static_cast<double>(AllCauses().size())));
+}
+
+/// Whether the gain on halves that the fit has not seen is above zero beyond chance.
 bool GainsBeyondChance(const Cause& cause, double rate) {
-  const double of_kind = rate / static_cast<double>(AllCauses().size());
-  const double deviations = std::sqrt(ChiSquareQuantile(1, 2.0 * of_kind));
-  return cause.heldout_gain > deviations / kNormal95 * (cause.heldout_gain - cause.heldout_gain_low);
+  return cause.heldout_gain > BeyondChance(rate) / kNormal95 * (cause.heldout_gain - cause.heldout_gain_low);
+}
+
+/// Whether a cause on the scale foresees it where it comes to the same places. A scale wanders by more than
+/// many an error of a lead: what it reads may say so, or the rows as multiples of the noise that they have.
+bool ForeseesTheScale(const Problem& problem, const Fit& current, const Hypothesis& r, bool gains_unseen,
+                      double rate) {
+  return gains_unseen || !FoldsShareTheStroke(problem) ||
+         Consistency(problem, current, r.fit, LeftOut::kNeighbours) > BeyondChance(rate);
 }
 
 bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, double tested,
@@ -48,18 +58,33 @@ bool Holds(const Problem& problem, const Fit& current, const Hypothesis& r, doub
     gains_unseen = as_asked && GainsBeyondChance(cause, threshold.rate);
     // Nor is a shape that nobody knows beyond doubt where it foresees nothing; nor on a scale, which wanders,
     // any shape over the stroke, where it could foresee something.
-    const bool has_to_foresee =
-        Outside(r.effect().kind) || (definition.judged_at_scale && FoldsShareTheStroke(problem));
-    if (has_to_foresee && !gains_unseen) return false;
+    if (Outside(r.effect().kind) && !gains_unseen) return false;
+    if (definition.judged_at_scale && !ForeseesTheScale(problem, current, r, gains_unseen, threshold.rate))
+      return false;
   }
   // What a base parameter does already shows in the priors.
   if (InBase(problem, r.effect().kind)) return true;
-  if (Consistency(problem, current, r.fit, true) > kAcceptance.consistency) return true;
+  if (Consistency(problem, current, r.fit, LeftOut::kBlock) > kAcceptance.consistency) return true;
   // Left out, the only stroke that shows a base parameter may take it far, to first order. Where chance is
   // out of the question, by the score or by the gain on the halves that were not fitted on, it is enough that
   // the drop does not come from one event.
   return (gains_unseen || tested > kAcceptance.no_chance_score) &&
-         Consistency(problem, current, r.fit, false) > std::numbers::sqrt2;
+         Consistency(problem, current, r.fit, LeftOut::kNothing) > std::numbers::sqrt2;
+}
+
+/// Whether a shape that nobody knows foresees more than the first known hypothesis that holds. A force of
+/// time has a constant in it, and a friction of time what grows with the speed on the average.
+bool ForeseesMore(const Problem& problem, const Fit& current, const std::vector<Hypothesis>& hypotheses,
+                  const Hypothesis& shape, const ScoreThreshold& threshold) {
+  for (const Hypothesis& r : hypotheses) {
+    if (r.given_up || Outside(r.effect().kind)) continue;
+    if (!Holds(problem, current, r, TestedScore(problem, current, r), threshold)) continue;
+    Cause cause;
+    std::vector<BlockGain> blocks;
+    HeldOutGain(problem, r.fit, shape.fit, false, cause, blocks);
+    return GainsBeyondChance(cause, threshold.rate);
+  }
+  return true;
 }
 
 /// The hypothesis itself, or a number of the base behind it that the log says more about, where that is not
@@ -107,6 +132,8 @@ Choice ChooseFirst(const Problem& problem, const Fit& current, const ScoreThresh
     const double score = TestedScore(problem, current, hypotheses[i]);
     if (i == 0) choice.tested = score;
     hypotheses[i].refused = !Holds(problem, current, hypotheses[i], score, threshold);
+    if (!hypotheses[i].refused && Outside(hypotheses[i].effect().kind))
+      hypotheses[i].refused = !ForeseesMore(problem, current, hypotheses, hypotheses[i], threshold);
     if (hypotheses[i].refused) continue;
     choice.found = true;
     choice.tested = score;

@@ -45,7 +45,7 @@ void TellEvidence(const Problem& problem, const Accepted& accepted, const std::v
       e.refitted = r.score + e.penalty;
       e.asked = Asked(problem, r, threshold);
       e.tested = TestedScore(problem, accepted.fit, r);
-      e.unseen = Consistency(problem, accepted.fit, r.fit, true);
+      e.unseen = Consistency(problem, accepted.fit, r.fit, LeftOut::kBlock);
     }
     options.evidence(e);
   }

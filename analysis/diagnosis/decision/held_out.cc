@@ -21,7 +21,6 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr std::size_t kHeldOutBlocks = kBlocks;
-constexpr std::size_t kUnseenBlocks = kBlocks;
 // Factors on a diagonal: one holds a parameter, one keeps a solver away from zero.
 constexpr double kHeld = 1e12, kRidge = 1.0 + 1e-12;
 constexpr unsigned kSeed = 77;
@@ -193,11 +192,11 @@ struct BlockProducts {
 std::vector<BlockProducts> ProductsOfBlocks(const Problem& problem, const Fit& fit) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
   const Eigen::Index p = fit.jacobian.cols();
-  std::vector<BlockProducts> blocks(kUnseenBlocks, {Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p)});
-  for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
+  std::vector<BlockProducts> blocks(kHeldOutBlocks, {Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p)});
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
     for (std::size_t part = 0; part < parts; ++part) {
-      const auto from = static_cast<Eigen::Index>(part * n + n * b / kUnseenBlocks);
-      const auto rows = static_cast<Eigen::Index>(n * (b + 1) / kUnseenBlocks - n * b / kUnseenBlocks);
+      const auto from = static_cast<Eigen::Index>(part * n + n * b / kHeldOutBlocks);
+      const auto rows = static_cast<Eigen::Index>(n * (b + 1) / kHeldOutBlocks - n * b / kHeldOutBlocks);
       const auto j = fit.jacobian.middleRows(from, rows);
       const Eigen::Map<const Eigen::VectorXd> r(fit.residual.data() + from, rows);
       blocks[b].normal.selfadjointView<Eigen::Lower>().rankUpdate(j.transpose());
@@ -211,18 +210,19 @@ std::vector<BlockProducts> ProductsOfBlocks(const Problem& problem, const Fit& f
 // Sum of squares of a white residual in every block.
 std::vector<double> WhiteSquares(const Problem& problem, const std::vector<double>& residual) {
   const std::size_t n = problem.rows(), parts = problem.data_size() / n;
-  std::vector<double> squares(kUnseenBlocks, 0.0);
-  for (std::size_t b = 0; b < kUnseenBlocks; ++b)
+  std::vector<double> squares(kHeldOutBlocks, 0.0);
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b)
     for (std::size_t part = 0; part < parts; ++part)
-      for (std::size_t k = n * b / kUnseenBlocks; k < n * (b + 1) / kUnseenBlocks; ++k)
+      for (std::size_t k = n * b / kHeldOutBlocks; k < n * (b + 1) / kHeldOutBlocks; ++k)
         squares[b] += std::pow(residual[part * n + k], 2);
   return squares;
 }
 
 // The same, to first order, with the last effect as all other blocks ask for it. The rest follows it as in
 // the whole log and is not asked for anew: what one block alone says about the base takes either model as far
-// when that block is left out, and says nothing about the effect.
-std::vector<double> UnseenSquares(const Problem& problem, const Fit& fit) {
+// when that block is left out, and says nothing about the effect. `together`: blocks that are left out at
+// once.
+std::vector<double> UnseenSquares(const Problem& problem, const Fit& fit, std::size_t together) {
   std::vector<double> squares = WhiteSquares(problem, fit.residual);
   const Eigen::Index p = fit.jacobian.cols();
   const auto own = static_cast<Eigen::Index>(fit.point.amplitudes.back().size());
@@ -246,13 +246,19 @@ std::vector<double> UnseenSquares(const Problem& problem, const Fit& fit) {
     information += projected.back().normal;
     gradient += projected.back().gradient;
   }
-  for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
-    Eigen::MatrixXd left = information - projected[b].normal;
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
+    Eigen::MatrixXd left = information;
+    Eigen::VectorXd rest = gradient;
+    const std::size_t from = b / together * together;
+    for (std::size_t o = from; o < std::min(kHeldOutBlocks, from + together); ++o) {
+      left -= projected[o].normal;
+      rest -= projected[o].gradient;
+    }
     left.diagonal() *= kRidge;
     for (std::size_t i = 0; i < static_cast<std::size_t>(own); ++i)
       if (Stays(*fit.point.effects.back(), fit.point.amplitudes.back(), i))
         left(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) *= kHeld;
-    const Eigen::VectorXd step = -left.ldlt().solve(gradient - projected[b].gradient);
+    const Eigen::VectorXd step = -left.ldlt().solve(rest);
     squares[b] += 2.0 * step.dot(projected[b].gradient) + step.dot(projected[b].normal * step);
   }
   return squares;
@@ -273,12 +279,14 @@ std::vector<double> ResidualWithStated(const Problem& problem, const Fit& fit,
 
 }  // namespace
 
-double Consistency(const Problem& problem, const Fit& without, const Fit& with, bool unseen) {
+double Consistency(const Problem& problem, const Fit& without, const Fit& with, LeftOut left_out) {
   const std::vector<double> before = WhiteSquares(problem, without.residual);
   const std::vector<double> after =
-      unseen ? UnseenSquares(problem, with) : WhiteSquares(problem, with.residual);
+      left_out == LeftOut::kNothing
+          ? WhiteSquares(problem, with.residual)
+          : UnseenSquares(problem, with, left_out == LeftOut::kBlock ? 1 : Together(Seen::kScale));
   double sum = 0.0, squares = 0.0;
-  for (std::size_t b = 0; b < kUnseenBlocks; ++b) {
+  for (std::size_t b = 0; b < kHeldOutBlocks; ++b) {
     sum += before[b] - after[b];
     squares += std::pow(before[b] - after[b], 2);
   }
@@ -295,7 +303,7 @@ Squares SquaresOf(const Problem& problem, const Fit& without, const Fit& with, S
                   const std::vector<std::size_t>& stated) {
   if (seen == Seen::kWhite)
     return {WhiteSquares(problem, ResidualWithStated(problem, without, stated)),
-            UnseenSquares(problem, with)};
+            UnseenSquares(problem, with, 1)};
   const double inertia = InertiaAt(problem, without.point);
   std::vector<Point> points = PointsWithout(problem, without, seen, stated);
   for (Point& p : PointsWithout(problem, with, seen, {})) points.push_back(std::move(p));
@@ -366,15 +374,10 @@ bool HeldOutGain(const Problem& problem, const Fit& without, const Fit& with, bo
   if (!IsPlay(with) && !MostGain(blocks)) return true;
   Cause white;
   std::vector<BlockGain> of_white;
-  TellGain(problem, SquaresOf(problem, without, with, Seen::kWhite, stated), Seen::kWhite, white, of_white);
+  const Squares rows = SquaresOf(problem, without, with, Seen::kWhite, stated);
+  TellGain(problem, rows, Seen::kWhite, white, of_white);
   if (!(white.heldout_gain_low > 0.0)) return true;
-  cause.unit = white.unit;
-  cause.heldout_rms_before = white.heldout_rms_before;
-  cause.heldout_rms_after = white.heldout_rms_after;
-  cause.heldout_gain = white.heldout_gain;
-  cause.heldout_gain_low = white.heldout_gain_low;
-  cause.heldout_gain_high = white.heldout_gain_high;
-  blocks = std::move(of_white);
+  TellGain(problem, rows, Seen::kWhite, cause, blocks);
   return false;
 }
 
@@ -382,19 +385,15 @@ bool FoldsShareTheStroke(const Problem& problem) {
   const Signal& position = problem.signals->position;
   const auto [low, high] = std::minmax_element(position.begin(), position.end());
   if (!(*high > *low)) return false;
-  std::array<std::array<bool, kHeldOutBlocks>, 2> seen{};
+  std::array<unsigned, kHeldOutBlocks> folds{};
   const std::size_t n = problem.rows();
   for (std::size_t b = 0; b < kHeldOutBlocks; ++b)
     for (std::size_t k = n * b / kHeldOutBlocks; k < n * (b + 1) / kHeldOutBlocks; ++k) {
       const auto place = static_cast<std::size_t>(kHeldOutBlocks * (position[k] - *low) / (*high - *low));
-      seen[FoldOf(b, Seen::kScale)][std::min(place, kHeldOutBlocks - 1)] = true;
+      folds[std::min(place, kHeldOutBlocks - 1)] |= 1U << FoldOf(b, Seen::kScale);
     }
-  std::size_t both = 0, any = 0;
-  for (std::size_t i = 0; i < kHeldOutBlocks; ++i) {
-    if (seen[0][i] && seen[1][i]) ++both;
-    if (seen[0][i] || seen[1][i]) ++any;
-  }
-  return 2 * both > any;
+  const auto both = std::count(folds.begin(), folds.end(), 1U | 2U);
+  return 2 * both > std::count_if(folds.begin(), folds.end(), [](unsigned in) { return in != 0; });
 }
 
 }  // namespace contour::diagnosis

@@ -9,10 +9,14 @@
 
 namespace contour::diagnosis {
 
+/// What the fit of a block has not seen: nothing is left out, the block, or the block with those next to it,
+/// as many as a scale wanders for.
+enum class LeftOut { kNothing, kBlock, kNeighbours };
+
 /// What the white residual loses in blocks of time, over the root of the sum of squares per block: 1 where a
-/// single block carries it. Unseen: in blocks that the fit has not seen (to first order); then about standard
-/// normal, or less, where there is no effect.
-double Consistency(const Problem& problem, const Fit& without, const Fit& with, bool unseen);
+/// single block carries it. In blocks that the fit has not seen (to first order) about standard normal, or
+/// less, where there is no effect.
+double Consistency(const Problem& problem, const Fit& without, const Fit& with, LeftOut left_out);
 
 /// Gain of `with` over `without` on blocks that the fit did not see (two interleaved folds; parameters of
 /// each fold by one Gauss-Newton step from the whole fit, then run anew), 95 % interval by a bootstrap of the

@@ -117,14 +117,28 @@ TEST_F(ChooseTest, AShapeThatForeseesNothingIsNotBeyondDoubt) {
   shape.score = 1e4;
   Fit current = there.fit;
   for (double& r : current.residual) r *= 1.1;
-  ASSERT_GT(Consistency(axis_.problem, current, shape.fit, true), 1.5);
+  ASSERT_GT(Consistency(axis_.problem, current, shape.fit, LeftOut::kBlock), 1.5);
   std::vector<Hypothesis> hypotheses = {shape};
   EXPECT_FALSE(ChooseFirst(axis_.problem, current, threshold_, hypotheses).found);
 }
 
+// Before: a force of time, which has the constant in it, made a constant torque something unexplained.
+TEST_F(ChooseTest, AShapeOfTheTimeTakesNoPlaceOfACauseThatForeseesAsMuch) {
+  const Hypothesis there = Of("constant_torque");
+  Hypothesis shape = Of("outside:force of time");
+  shape.score = 2.0 * there.score;
+  std::vector<Hypothesis> hypotheses = {shape};
+  EXPECT_TRUE(ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses).found) << "alone it holds";
+  hypotheses = {shape, there};
+  ASSERT_TRUE(ChooseFirst(axis_.problem, axis_.base, threshold_, hypotheses).found);
+  EXPECT_EQ(hypotheses[0].effect().kind, "constant_torque");
+  EXPECT_TRUE(hypotheses[1].refused);
+}
+
 /// Whether a pitch error that moves no reading of the scale holds, in a log of this length. Made up: whatever
-/// its score.
-bool HoldsWhereItForeseesNothing(double duration_s, bool places_come_again, const ScoreThreshold& threshold) {
+/// its score, and that the rows of this share of the log are smaller with it.
+bool HoldsWhereItMovesNothing(double duration_s, bool places_come_again, double share,
+                              const ScoreThreshold& threshold) {
   test::HiddenOptions options = test::FittedAxis::Short({{"constant_torque", 0.3, 0.0, 0.0, 0.0}});
   options.scale = true;
   options.duration_s = duration_s;
@@ -141,15 +155,19 @@ bool HoldsWhereItForeseesNothing(double duration_s, bool places_come_again, cons
   shape.fit = FitPoint(axis.problem, with, FitEffort{});
   shape.score = 1e4;
   Fit current = there;
-  for (double& r : current.residual) r *= 1.1;
+  for (std::size_t k = 0; k < current.residual.size(); ++k)
+    if (static_cast<double>(k % axis.problem.rows()) < share * static_cast<double>(axis.problem.rows()))
+      current.residual[k] *= 1.1;
   std::vector<Hypothesis> hypotheses = {shape};
   return ChooseFirst(axis.problem, current, threshold, hypotheses).found;
 }
 
 TEST_F(ChooseTest, NorIsAShapeOnTheScaleThatForeseesNothingWherePlacesComeAgain) {
-  EXPECT_FALSE(HoldsWhereItForeseesNothing(30.0, true, threshold_)) << "a scale wanders";
+  EXPECT_FALSE(HoldsWhereItMovesNothing(30.0, true, 0.1, threshold_)) << "a scale wanders";
   // Of a log that comes nowhere twice nothing can be foreseen: its score decides.
-  EXPECT_TRUE(HoldsWhereItForeseesNothing(8.0, false, threshold_));
+  EXPECT_TRUE(HoldsWhereItMovesNothing(8.0, false, 0.1, threshold_));
+  // Before: an error smaller than what the scale wanders by was nothing.
+  EXPECT_TRUE(HoldsWhereItMovesNothing(30.0, true, 1.0, threshold_)) << "foreseen by rows all over the log";
 }
 
 TEST_F(ChooseTest, APitchErrorThatIsThereHolds) {

@@ -51,13 +51,13 @@ TEST_F(ConsistencyTest, IsTheRootOfThePiecesWhereAllOfThemLoseTheSame) {
   // As much in every piece: n equal differences over the root of the sum of their squares.
   without_.residual.assign(Rows(), 2.0);
   with_.residual.assign(Rows(), 1.0);
-  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, false), std::sqrt(static_cast<double>(kPieces)),
-              0.02);
+  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, LeftOut::kNothing),
+              std::sqrt(static_cast<double>(kPieces)), 0.02);
 }
 
 TEST_F(ConsistencyTest, IsOneWhereASinglePieceCarriesIt) {
   for (std::size_t k = Begin(20); k < Begin(21); ++k) without_.residual[k] += 5.0;
-  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, false), 1.0, 1e-9);
+  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, LeftOut::kNothing), 1.0, 1e-9);
 }
 
 TEST_F(ConsistencyTest, UnseenPiecesAreJudgedByWhatAllOthersSay) {
@@ -82,7 +82,7 @@ TEST_F(ConsistencyTest, UnseenPiecesAreJudgedByWhatAllOthersSay) {
     sum += before - after;
     squares += std::pow(before - after, 2);
   }
-  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, true), sum / std::sqrt(squares), 1e-6);
+  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, LeftOut::kBlock), sum / std::sqrt(squares), 1e-6);
   EXPECT_GT(sum / std::sqrt(squares), 3.0);
 }
 
@@ -99,8 +99,8 @@ TEST_F(ConsistencyTest, WhatOnePieceAloneTellsIsNotConfirmedByTheOthers) {
   with_.jacobian(0, 0) = 1e-3;
   for (std::size_t k = Begin(30); k < Begin(31); ++k)
     with_.residual[k] = without_.residual[k] - product / square;
-  EXPECT_LT(Consistency(axis_.problem, without_, with_, true),
-            Consistency(axis_.problem, without_, with_, false));
+  EXPECT_LT(Consistency(axis_.problem, without_, with_, LeftOut::kBlock),
+            Consistency(axis_.problem, without_, with_, LeftOut::kNothing));
 }
 
 TEST_F(ConsistencyTest, WhatOnePieceAloneTellsOfTheBaseTakesNothingFromAnEffectThatAllPiecesShow) {
@@ -118,9 +118,9 @@ TEST_F(ConsistencyTest, WhatOnePieceAloneTellsOfTheBaseTakesNothingFromAnEffectT
   without_.jacobian = columns.leftCols(1);
   with_.jacobian = columns;
   // The other pieces alone would take the base far off in that one.
-  EXPECT_GT(Consistency(axis_.problem, without_, with_, true), 3.0);
-  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, true),
-              Consistency(axis_.problem, without_, with_, false), 0.5);
+  EXPECT_GT(Consistency(axis_.problem, without_, with_, LeftOut::kBlock), 3.0);
+  EXPECT_NEAR(Consistency(axis_.problem, without_, with_, LeftOut::kBlock),
+              Consistency(axis_.problem, without_, with_, LeftOut::kNothing), 0.5);
 }
 
 class HeldOutTest : public testing::Test {
