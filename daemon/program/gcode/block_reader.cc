@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <string_view>
 
 #include "daemon/program/gcode/value_reader.h"
 
@@ -23,6 +24,38 @@ std::string Shown(char c) {
 constexpr double kNearlyTenth = 1e-3;
 constexpr double kLargestCode = 1000.0;
 
+// What lines of O words and other controls' macros begin with. None of it begins a word with a value.
+constexpr std::string_view kFlow[] = {"while",  "if[", "goto", "then",   "else",  "end",     "do",
+                                      "repeat", "sub", "call", "return", "break", "continue"};
+
+bool IsLetter(char c) { return c >= 'a' && c <= 'z'; }
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+void RefuseFlow(std::string_view rest, const SourcePlace& place) {
+  if (rest.size() < 2 || !IsLetter(rest[1])) return;
+  for (const std::string_view word : kFlow) {
+    if (!rest.starts_with(word)) continue;
+    std::string name;
+    for (const char c : word)
+      if (IsLetter(c)) name += static_cast<char>(c - 'a' + 'A');
+    Refuse(place, name +
+                      " needs an O word before it, as in: o1 while [#1 lt 5] ... o1 endwhile; macros of "
+                      "Fanuc (IF GOTO, WHILE DO END) are not supported");
+  }
+}
+
+/// LinuxCNC's "$1" and "$[..]" choose a spindle; "$H", "$$", "$110=200" are commands of GRBL.
+void RefuseDollar(std::string_view rest, const SourcePlace& place) {
+  std::size_t digits = 0;
+  while (digits < rest.size() && IsDigit(rest[digits])) ++digits;
+  const char next = digits < rest.size() ? rest[digits] : ' ';
+  const bool spindle = digits > 0 ? next != '=' : next == '[' || next == '#';
+  if (spindle) Refuse(place, "a choice of spindles is not supported");
+  Refuse(
+      place,
+      "a command of GRBL is no G-code: leave the line out; 'contour reference' tells axes where they stand");
+}
+
 class BlockReader {
  public:
   BlockReader(LineText& text, const Parameters& parameters, Block& block)
@@ -30,6 +63,7 @@ class BlockReader {
 
   void Item() {
     const SourcePlace place = text_.place();
+    RefuseFlow(text_.Rest(), place);
     const char letter = text_.Take();
     if (letter == '(') return;
     block_.sets_something = true;
@@ -71,7 +105,12 @@ class BlockReader {
     if (value < 0.0 || value >= kLargestCode || std::abs(tenfold - std::round(tenfold)) > kNearlyTenth)
       Refuse(place, "expected a G code with at most one decimal");
     const int code = static_cast<int>(std::lround(tenfold));
-    Put(GroupOfG(code), NameOfG(code), code, place, block_.g);
+    // As with LinuxCNC, G80 gives way to the motion of its block.
+    Block::Code& motion = block_.g[kMotion];
+    if (code == kNoMotion && motion.code != kNoCode) return;
+    const CodeGroup group = GroupOfG(code);
+    if (group.known && group.group == kMotion && motion.code == kNoMotion) motion = {};
+    Put(group, NameOfG(code), code, place, block_.g);
   }
 
   void CodeM(const SourcePlace& place) {
@@ -98,7 +137,7 @@ class BlockReader {
     if (letter == 'a' || letter == 'b' || letter == 'c')
       Refuse(place, name + ": rotary axes are not supported");
     if (letter == 'e') Refuse(place, "E words are not supported; a number has no exponent");
-    if (letter == '$') Refuse(place, "a choice of spindles is not supported");
+    if (letter == '$') RefuseDollar(text_.Rest(), place);
     if (kLetters.find(letter) == std::string_view::npos)
       Refuse(place, "found " + Shown(letter) + ", expected a word such as X10");
     Put(block_.words[static_cast<std::size_t>(letter - 'a')], name, letter, place);

@@ -25,28 +25,33 @@ void CheckPolar(const Block& block, const RuleContext& context) {
   if (context.plane != 170) block.FailAt(column, "polar coordinates need the plane G17");
   if (block.HasAny("xy")) block.FailAt(column, "polar coordinates beside X or Y");
   if (block.G(kNonModal) == 530) block.FailAt(column, "polar coordinates with G53");
-  if (block.motion == kNoCode || block.motion == 800 || TakesAxes(block.G(kNonModal)))
+  if (block.motion == kNoCode || block.motion == kNoMotion || TakesAxes(block.G(kNonModal)))
     block.FailAt(column, "polar coordinates belong to motion");
+}
+
+[[noreturn]] void FailWithoutMotion(const Block& block, int modal_motion) {
+  const std::string what = std::string("a position without G0, G1, G2 or G3 ") +
+                           (modal_motion == kNoMotion ? "since G80" : "before it") +
+                           ": write one of them in this block";
+  for (const char letter : kGcodeAxes)
+    if (block.Has(letter)) block.FailAtWord(letter, what);
+  block.FailAt(1, what);
 }
 
 void FindMotion(Block& block, int modal_motion) {
   const bool axes = block.HasAny(kGcodeAxes) || block.IsPolar();
   const int nonmodal = block.G(kNonModal);
   const int own = block.G(kMotion);
-  if (!axes && NeedsAxes(nonmodal) && (own == kNoCode || own == 800))
+  if (!axes && NeedsAxes(nonmodal) && (own == kNoCode || own == kNoMotion))
     block.FailAtG(kNonModal, NameOfG(nonmodal) + ": expected axis words");
-  if (own == 800 && axes && !TakesAxes(nonmodal)) block.FailAtG(kMotion, "G80 takes no axis words");
-  if (own != kNoCode && own != 800 && TakesAxes(nonmodal)) {
+  if (own == kNoMotion && axes && !TakesAxes(nonmodal)) block.FailAtG(kMotion, "G80 takes no axis words");
+  if (own != kNoCode && own != kNoMotion && TakesAxes(nonmodal)) {
     block.FailAtG(kMotion, NameOfG(own) + " and " + NameOfG(nonmodal) + " would both use the axis words");
   }
   block.motion = own;
   if (own != kNoCode || TakesAxes(nonmodal)) return;
   if (axes) {
-    if (modal_motion == kNoCode || modal_motion == 800) {
-      for (const char letter : kGcodeAxes)
-        if (block.Has(letter)) block.FailAtWord(letter, "a position without G0, G1, G2 or G3 before it");
-      block.FailAt(1, "a position without G0, G1, G2 or G3 before it");
-    }
+    if (modal_motion == kNoCode || modal_motion == kNoMotion) FailWithoutMotion(block, modal_motion);
     block.motion = modal_motion;
   } else if (block.HasAny("ijk") && IsArc(modal_motion)) {
     block.motion = modal_motion;
@@ -71,11 +76,8 @@ void CheckG10(const Block& block) {
 
 void CheckNonModal(const Block& block, const RuleContext& context) {
   const int code = block.G(kNonModal);
-  if (code == 40) {
-    if (!block.Has('p') || block.Get('p')->value < 0.0)
-      block.FailAtG(kNonModal, "G4: expected P with a time in seconds");
-    if (IsArc(block.G(kMotion))) block.FailAtG(kMotion, "G4 and an arc in the same block both use P");
-  }
+  if (code == 40 && IsArc(block.G(kMotion)))
+    block.FailAtG(kMotion, "G4 and an arc in the same block both use P");
   if (code == 100) CheckG10(block);
   if (code == 530) {
     if (block.motion != 0 && block.motion != 10) block.FailAtG(kNonModal, "G53 needs G0 or G1");
@@ -88,6 +90,22 @@ void CheckNonModal(const Block& block, const RuleContext& context) {
     block.FailAtG(kNonModal,
                   NameOfG(code) + " counts from the machine's own zero, and the machine is not referenced");
   }
+}
+
+/// What is wrong with a code itself, whatever its axis words would do.
+void CheckWordsOfCodes(const Block& block) {
+  if (block.G(kNonModal) == 40 && (!block.Has('p') || block.Get('p')->value < 0.0)) {
+    block.FailAtG(kNonModal, std::string("G4: expected P with a time in seconds") +
+                                 (block.HasAny("xu") ? "; X and U are positions here" : ""));
+  }
+  if (block.G(kToolLength) != 430) return;
+  if (block.Has('h') && block.Get('h')->value != 0.0) {
+    block.FailAtWord(
+        'h',
+        "G43: expected H0, as there is no table of tools: put the tool's length into the zero of Z "
+        "(G10 L20, G92 or 'contour zero')");
+  }
+  if (!block.Has('h')) block.FailAtG(kToolLength, "G43: expected H0");
 }
 
 void CheckWords(const Block& block) {
@@ -112,6 +130,7 @@ void CheckWords(const Block& block) {
 }  // namespace
 
 void CheckBlock(Block& block, const RuleContext& context) {
+  CheckWordsOfCodes(block);
   FindMotion(block, context.modal_motion);
   CheckPolar(block, context);
   CheckNonModal(block, context);

@@ -13,7 +13,7 @@ constexpr Row kGCodes[] = {
     {10, 10, kMotion},
     {20, 20, kMotion},
     {30, 30, kMotion},
-    {800, 800, kMotion},
+    {kNoMotion, kNoMotion, kMotion},
     {40, 40, kNonModal},
     {100, 100, kNonModal},
     {280, 280, kNonModal},
@@ -75,10 +75,17 @@ constexpr Refusal kRefusedG[] = {
     {950, 950, "feed per revolution"},
     {960, 960, "constant surface speed"},
 };
+constexpr char kM100[] =
+    "M100 to M199 are programs of LinuxCNC's user, or a printer's heaters and fans; leave it out";
 constexpr Refusal kRefusedM[] = {
-    {19, 19, "orienting the spindle"}, {49, 53, "switching overrides"},    {60, 60, "pallets"},
-    {61, 61, "tool numbers"},          {62, 68, "inputs and outputs"},     {70, 73, "saving modal state"},
-    {98, 99, "subprograms by M98"},    {100, 199, "programs of the user"},
+    {19, 19, "orienting the spindle"},
+    {49, 53, "switching overrides"},
+    {60, 60, "pallets"},
+    {61, 61, "tool numbers"},
+    {62, 68, "inputs and outputs"},
+    {70, 73, "saving modal state"},
+    {98, 99, "subprograms by M98"},
+    {100, 199, kM100},
 };
 
 template <std::size_t n, std::size_t m>

@@ -26,6 +26,7 @@ enum GGroup : std::size_t {
 enum MGroup : std::size_t { kStopping, kToolChange, kSpindle, kCoolant, kOverride, kMGroups };
 
 inline constexpr int kNoCode = -1;
+inline constexpr int kNoMotion = 800;  ///< G80, of the group of motions, tenfold
 
 /// A code as it may stand in a program; tenfold, so that G61.1 is 611.
 struct CodeGroup {

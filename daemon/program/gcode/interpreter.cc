@@ -81,9 +81,6 @@ void GcodeInterpreter::Event(const Block& block, char letter, int code, double v
 void GcodeInterpreter::Modes(const Block& block) {
   if (block.G(kPlane) != kNoCode) plane_ = block.G(kPlane);
   if (block.G(kUnits) != kNoCode) unit_m_ = block.G(kUnits) == 200 ? kInch_m : kMillimetre_m;
-  if (block.G(kToolLength) == 430 && block.Has('h') && block.Get('h')->value != 0.0)
-    block.FailAtWord('h', "G43: expected H0, as there is no table of tools");
-  if (block.G(kToolLength) == 430 && !block.Has('h')) block.FailAtG(kToolLength, "G43: expected H0");
   if (block.G(kCoordinateSystem) != kNoCode) offsets_.Select(block.G(kCoordinateSystem));
   PathControl(block);
   if (block.G(kDistance) != kNoCode) absolute_ = block.G(kDistance) == 900;

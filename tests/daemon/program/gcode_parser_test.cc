@@ -110,6 +110,19 @@ TEST(GcodeParser, ErrorsNameLineAndColumn) {
       {"G93 G1 X1 F2\nX2\n", "part.ngc:2:1: a feed (F) is missing: G93 needs it"},
       {"X1\n", "part.ngc:1:1: a position without"},
       {"G80 X1\n", "part.ngc:1:1: G80 takes no axis words"},
+      {"G0 X1\nG80\nX2\n", "part.ngc:3:1: a position without G0, G1, G2 or G3 since G80"},
+      {"G80 G0 G1 X1 F100\n", "part.ngc:1:8: G1: a second code of the same modal group"},
+      {"G80 G0 G92 X1\n", "part.ngc:1:5: G0 and G92 would both use the axis words"},
+      {"G4 X2\n", "part.ngc:1:1: G4: expected P with a time in seconds; X and U are positions here"},
+      {"G43 H1 Z5\n", "part.ngc:1:5: G43: expected H0, as there is no table of tools: put"},
+      {"WHILE [#1 LT 5] DO1\n", "part.ngc:1:1: WHILE needs an O word before it"},
+      {"N5 IF [#1 EQ 0] GOTO 10\n", "part.ngc:1:4: IF needs an O word before it"},
+      {"G0 X1\nGOTO 10\n", "part.ngc:2:1: GOTO needs an O word"},
+      {"END1\n", "part.ngc:1:1: END needs an O word"},
+      {"$H\n", "part.ngc:1:1: a command of GRBL is no G-code"},
+      {"$110=200\n", "part.ngc:1:1: a command of GRBL is no G-code"},
+      {"$1 M3 S100\n", "part.ngc:1:1: a choice of spindles is not supported"},
+      {"M104 S200\n", "part.ngc:1:1: M104 is not supported: M100 to M199 are programs of LinuxCNC's user"},
       {"G1 X F100\n", "part.ngc:1:6: expected a number"},
       {"G1 X1 X2 F100\n", "part.ngc:1:7: word X is given twice"},
       {"G0 G1 X1 F100\n", "part.ngc:1:4: G1: a second code of the same modal group"},
@@ -170,6 +183,18 @@ TEST(GcodeParser, ErrorsNameLineAndColumn) {
     const std::string error = testing::ErrorOf([&] { Parse(w.text); });
     EXPECT_EQ(error.rfind(w.message, 0), 0u) << w.text << "gave: " << error;
   }
+}
+
+// As LinuxCNC's interpreter does: the safe line of many posts has G80 and G0 in one block.
+TEST(GcodeParser, G80GivesWayToTheMotionOfItsBlock) {
+  for (const char* text : {"G00 G17 G40 G49 G80 G90 X5\nX6\n", "G80 G0 X5\nX6\n", "G80 G0 G80 X5\nX6\n"}) {
+    const GcodeMoves p = Parse(text);
+    ASSERT_EQ(p.moves.size(), 2u) << text;
+    EXPECT_EQ(p.moves[0].kind, Kind::kRapid) << text;
+    EXPECT_EQ(EndOf_mm(p, 1), (std::vector<double>{6})) << text;
+  }
+  EXPECT_NEAR(Parse("G80 G3 X0 Y20 J10 F100\n").moves[0].sweep_rad, kPi, 1e-12);
+  EXPECT_EQ(EndOf_mm(Parse("G80 G80\nG80 G92 X3\nG0 X1\n"), 0), (std::vector<double>{-2}));
 }
 
 TEST(GcodeParser, HelicesAndPlanes) {

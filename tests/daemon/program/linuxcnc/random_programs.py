@@ -4,7 +4,8 @@ import random
 
 WRONG = [
     "G1 X1 X2", "G0 G1 X1", "G61 G64", "G17 G18", "G90 G91", "G20 G21", "M3 M5", "M7 M8", "G4", "G4 P-1", "G4 P1 G2 X1 I0.5",
-    "G80 X1", "G92", "G52", "G92 X1 G0", "G10 L2 P10 X1", "G10 P1 X1", "G2 X1", "G3 X3 I1 R5", "G2 X1 Y1 R0", "G2 R5", "G2 X7 I1 P0",
+    "G80 X1", "G80 G80 X1", "G80 G0 G1 X1", "G1 G80 G0 X1", "G80 G0 G92 X1", "G0 G80 G28 X1", "G80 G53 X1", "G91 G53 G0 X1", "G0 G0 X1", "G80\nX1",
+    "WHILE [#1 LT 5]", "IF [#1 EQ 0] GOTO 10", "GOTO 10", "G4 X2", "G92", "G52", "G92 X1 G0", "G10 L2 P10 X1", "G10 P1 X1", "G2 X1", "G3 X3 I1 R5", "G2 X1 Y1 R0", "G2 R5", "G2 X7 I1 P0",
     "G2 X7 I1 P1.5", "G17 G2 I1 K1", "G18 G2 I1 J1", "G90.1 G3 X1 I1", "G2 X300 R2", "G91 G2 X10 I5.1", "G2 I0 J0 X5", "G1 P1", "G0 X1 Q1", "G0 X1 K1",
     "G0 X1 H1", "G0 X1 D1", "G0 X1 L1", "G0 X1 R1", "G0 X1.2.3", "G0 X.", "G0 X1-2", "G0 X", "G0 X1e3", "G0 X1 N5", "N5 /G0 X1", "N5N6 G0",
     "G0 (a (b) X1", "G0 X1 (open", "G0 X1)", "G0 X(a)1", "%", "G1.04 X1", "G1.001", "G100", "G1000", "G-1", "M3.5", "M200", "M31", "S-1", "T-1",
@@ -64,6 +65,7 @@ class RandomProgram:
         block = self.words() + self.feed()
         if self.r.random() < 0.5:
             block.append(self.r.choice(["G0", "G1", "G01", "G1", "g00"]))
+            block += self.r.choice([["G80"], ["G80", "G80"]] + [[]] * 8)
         else:
             self.lines.append("G1" + (" F100" if self.inverse else ""))
         self.r.shuffle(block)
@@ -96,7 +98,7 @@ class RandomProgram:
                  "R" + self.number(150, 900) if self.r.random() < 0.7 else "R-" + self.number(150, 900).lstrip("+")]
         if self.r.random() < 0.3:
             block.append("P2")
-        return block + self.feed()
+        return self.r.choice([["G80"], []]) + block + self.feed()
 
     def full_circle(self):
         return ["G17", self.r.choice(["G2", "G3"]), "I" + self.number(1, 20), "J" + self.number(-20, 20)] + self.feed() + self.r.choice([[], ["Z" + self.number()]])
@@ -106,8 +108,17 @@ class RandomProgram:
         self.lines.append("G17")
         return [self.r.choice(["G0", "G1"])] + words + self.feed() + self.r.choice([[], ["Z" + self.number()]])
 
+    def home(self):
+        """Positions of the machine, whose zero is program zero for both readers."""
+        if self.r.random() < 0.5:
+            return [self.r.choice(["G28", "G30"])] + self.r.choice([[], self.words()])
+        self.incremental = False
+        return ["G90", "G53", "G0"] + self.words()
+
     def mode(self):
-        kind = self.r.randint(0, 11)
+        kind = self.r.randint(0, 12)
+        if kind == 12:
+            return self.home()
         if kind == 0:
             return [self.r.choice(["G20", "G21", "G21"])]
         if kind == 1:
@@ -131,7 +142,7 @@ class RandomProgram:
         if kind == 9:
             return [self.r.choice(["M3 S1000", "M5", "M8", "M9", "M7", "S500", "M0", "M1", "M4", "M48"])]
         if kind == 10:
-            return [self.r.choice(["G40", "G49", "G80 G40", "G17 G21 G40 G49", "G98", "G8 G97"])]
+            return [self.r.choice(["G40", "G49", "G80 G40", "G17 G21 G40 G49", "G98", "G8 G97", "G00 G17 G40 G49 G80 G90"])]
         return ["F" + self.number(1, 3000)] if not self.inverse else ["G52 X" + self.number()]
 
     def parameters(self):
