@@ -46,14 +46,20 @@ class Finding:
         return 1e3 * self.data["table_per_q"] * self["position"]
 
     @property
-    def velocity_mm_s(self):
-        return 1e3 * self.data["table_per_q"] * self["velocity"]
+    def motion(self):
+        """Label and values of position, velocity and acceleration: of the table, or of the axis where it only turns."""
+        if not self.linear and self.data["lead_m"] == 0:
+            return [("position (rad)", self["position"]), ("velocity (rad/s)", self["velocity"]),
+                    ("acceleration (rad/s²)", self["acceleration"])]
+        per_q = self.data["table_per_q"]
+        return [("position (mm)", self.position_mm), ("velocity (mm/s)", 1e3 * per_q * self["velocity"]),
+                ("acceleration (m/s²)", per_q * self["acceleration"])]
 
     @property
     def turns(self):
         """Motor turns, or None where no lead is known."""
         if not self.linear:
-            return self["position"] / (2 * np.pi)
+            return self["position"] * self.data["gear_ratio"] / (2 * np.pi)
         return self["position"] / self.data["lead_m"] if self.data["lead_m"] > 0 else None
 
     def moving(self):

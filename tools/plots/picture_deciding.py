@@ -21,8 +21,7 @@ def orders(f):
 
 def quantities(f):
     """Label and values of what a deviation may depend on."""
-    out = [("position (mm)", f.position_mm), ("velocity (mm/s)", f.velocity_mm_s), ("time (s)", f["time_s"]),
-           ("acceleration (m/s²)", f.data["table_per_q"] * f["acceleration"])]
+    out = [*f.motion, ("time (s)", f["time_s"])]
     if f.turns is not None:
         out.append(("motor angle (turns)", np.mod(f.turns, 1.0)))
         out += [(f"motor angle (periods of order {n:g})", np.mod(n * f.turns, 1.0)) for n in orders(f) if n != 1.0]

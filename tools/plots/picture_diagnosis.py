@@ -104,8 +104,8 @@ def against(pyplot, f):
     columns = []
     if f.turns is not None:
         columns.append(("motor angle (turns)", np.mod(f.turns, 1.0)))
-    columns += [("position (mm)", f.position_mm), ("velocity (mm/s)", f.velocity_mm_s), ("time (s)", f["time_s"])]
-    columns.append(("acceleration (m/s²)", f.data["table_per_q"] * f["acceleration"]))
+    position, velocity, acceleration = f.motion
+    columns += [position, velocity, ("time (s)", f["time_s"]), acceleration]
     if f.has("temperature_degC"):
         columns.append(("temperature (°C)", f["temperature_degC"]))
     direction = f.moving()

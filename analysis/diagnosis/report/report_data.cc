@@ -134,6 +134,7 @@ void WriteReportData(const std::filesystem::path& dir, const AxisLog& log, const
                      {"linear", log.linear},
                      {"table_per_q", stated.table_per_q},
                      {"lead_m", stated.lead_m},
+                     {"gear_ratio", stated.gear_ratio},
                      {"rated", stated.rated},
                      {"Fc", 0.5 * (stated.friction.Fc_plus + stated.friction.Fc_minus)},
                      {"verdict", VerdictName(found.verdict)},

@@ -13,6 +13,8 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(sys.argv[1]).resolve()
+sys.path.insert(0, str(ROOT / "tools/plots"))
+from diagnosis_data import Finding  # noqa: E402
 
 
 def write_finding(directory, temperature=True, causes=True, of_time=False):
@@ -37,8 +39,8 @@ def write_finding(directory, temperature=True, causes=True, of_time=False):
              "parameters": [{"name": "amplitude", "value": "0.01 Nm", "low": "0.009 Nm", "high": "0.011 Nm"}],
              "evidence": 1234.5, "before": 0.0073, "after": 0.002, "gain": 0.72, "gain_low": 0.7, "gain_high": None, "unit": "Nm",
              "indistinguishable_from": ["friction_ripple"], "experiment": "Sweep.", "program": "shape: sweep", "shapes": [shape]}
-    data = {"log": "log.csv", "model": "model.yaml", "linear": False, "table_per_q": 7.96e-4, "lead_m": 5e-3, "rated": 0.6,
-            "Fc": 0.03, "verdict": "cause_found" if causes else "nothing_found",
+    data = {"log": "log.csv", "model": "model.yaml", "linear": False, "table_per_q": 7.96e-4, "lead_m": 5e-3, "gear_ratio": 1.0,
+            "rated": 0.6, "Fc": 0.03, "verdict": "cause_found" if causes else "nothing_found",
             "verdict_text": "One cause was found." if causes else "Nothing was found.", "causes": [cause] if causes else [],
             "contour_gain": {"program": "a circle", "before_um": 13.0, "after_um": 0.65} if causes else None,
             "extended_model": "out/extended_model.yaml", "false_alarm_rate": 0.05, "gate": 25.0, "not_excited": ["backlash"],
@@ -54,6 +56,27 @@ def write_finding(directory, temperature=True, causes=True, of_time=False):
 
 def draw(directory):
     return subprocess.run([sys.executable, "-W", "error::UserWarning", ROOT / "tools/plots/plot_diagnosis.py", directory], capture_output=True, text=True)
+
+
+class Units(unittest.TestCase):
+    def finding(self, **data):
+        with tempfile.TemporaryDirectory() as name:
+            write_finding(Path(name))
+            file = Path(name) / "report_data.json"
+            file.write_text(json.dumps(json.loads(file.read_text(encoding="utf-8")) | data), encoding="utf-8")
+            return Finding(name)
+
+    def test_a_table_moves_in_millimetres(self):
+        labels = [label for label, _ in self.finding().motion]
+        self.assertEqual(labels, ["position (mm)", "velocity (mm/s)", "acceleration (m/s²)"])
+
+    def test_an_axis_that_only_turns_has_radians(self):
+        # Before: 2 rad/s of a joint were drawn as 2000 mm/s.
+        f = self.finding(lead_m=0.0, table_per_q=1.0, gear_ratio=50.0)
+        self.assertEqual([label for label, _ in f.motion], ["position (rad)", "velocity (rad/s)", "acceleration (rad/s²)"])
+        np.testing.assert_array_equal(f.motion[1][1], f["velocity"])
+        # Orders are told per turn of the motor.
+        np.testing.assert_allclose(f.turns, f["position"] * 50.0 / (2 * np.pi))
 
 
 class Report(unittest.TestCase):
