@@ -77,6 +77,7 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   report_seen_ = scale_seen_ = tells_none_ = false;
   doubt_ = Reason::kNone;
   doubt_lasts_ = false;
+  doubt_hidden_ = 0;
   astray_m_ = 0.0;
   scale_apart_ = 0;
   swing_.Restart();
@@ -343,6 +344,10 @@ void MotionMonitor::KeepDoubt(const MotionSample& s, double velocity_m_s, double
     doubt_ =
         unexplained_N_ * force_N_ > 0.0 && !gains ? Reason::kTorqueWithoutMotion : Reason::kFeedbackReversed;
     doubt_lasts_ = doubt_lasts_ || !believed_;
+    // While the screw swings back, it may hide for as long what it has not made.
+    doubt_hidden_ = t_.swing_periods;
+  } else if (doubt_hidden_ > waited_periods_) {
+    doubt_hidden_ -= waited_periods_;
   } else if (!doubt_lasts_ || astray_m <= astray_m_) {
     doubt_ = Reason::kNone;
     doubt_lasts_ = false;

@@ -68,7 +68,7 @@ class MotionMonitor {
          near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_, pushed_periods_,
          on_its_way_N_, ringing_N_, swing_, swing_ahead_, force_N_, unexplained_N_, jitter_N_, beyond_,
          beyond_rigid_, contradiction_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_, doubt_,
-         doubt_lasts_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
+         doubt_lasts_, doubt_hidden_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -161,6 +161,7 @@ class MotionMonitor {
   bool report_seen_ = false;                     ///< the report has been seen to be one, in this enabling
   bool tells_none_ = false;                      ///< a report that has been seen shows no torque
   Reason doubt_ = Reason::kNone;                 ///< see Doubt()
+  std::uint32_t doubt_hidden_ = 0;               ///< periods that a swing of the screw may still hide why
   bool doubt_lasts_ = false;                     ///< until the axis strays no further
   double astray_m_ = 0.0;                        ///< from the reference, at the reading before
   std::uint32_t undelivered_ = 0;                ///< periods in a row

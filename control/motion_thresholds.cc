@@ -161,6 +161,7 @@ MotionThresholds ThresholdsOf(const MonitoredAxis& a, const MonitorConfig& c, do
   t.swing_filter = 1.0 - std::exp(-period_s * mode_rad_s / std::numbers::pi);
   // A first-order filter passes f / |z - (1 - f)| and takes out (1 - f) |z - 1| / |z - (1 - f)|.
   const double least_mode_rad_s = mode_rad_s / std::sqrt(kSofterScrew * (1.0 + c.mass_error_rel));
+  t.swing_periods = Periods(2.0 * std::numbers::pi / least_mode_rad_s, period_s);
   const double turned_rad = std::min(least_mode_rad_s * period_s, std::numbers::pi);
   t.swing_left = t.filter / ((1.0 - t.filter) * 2.0 * std::sin(0.5 * turned_rad));
   // A swing that fades within that many periods grows to pi times as many strokes of what stirs it.

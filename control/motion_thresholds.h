@@ -64,6 +64,7 @@ struct MotionThresholds {
   double swing_ahead_slow = 1.0;     ///< cosine of what motor and table turn in a period, at their slowest
   double swing_ahead_fast = 1.0;     ///< at their fastest
   double swing_ahead_kept = 0.0;     ///< per period, of what they swung by
+  std::uint32_t swing_periods = 0;   ///< that a swing of motor and table takes at most, to and fro
   double swing_filter = 0.0;         ///< of the square of what motor and table swing by
   double swing_left = 0.0;           ///< of a swing that the filter takes out, what it leaves at most
   double swing_gain = 0.0;           ///< of a torque, what its swing may make of m a at the mode

@@ -1,9 +1,11 @@
 #include "tools/contour/tune_loops.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <stdexcept>
+#include <vector>
 
 #include "analysis/parallel/parallel_for.h"
 #include "config/axis_block.h"
@@ -15,6 +17,7 @@
 #include "config/yaml_writer.h"
 #include "core/exit_status.h"
 #include "design/find_loop.h"
+#include "design/loop_choice.h"
 #include "design/loop_report.h"
 #include "design/loop_search.h"
 #include "design/start_loop.h"
@@ -117,6 +120,20 @@ bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneL
   return !with || TuneLoop(machine, {name, "scale_loop", *with}, asked, text);
 }
 
+/// Where one axis without a loop is enough for nothing to be written, those come first of which a brief look
+/// finds none.
+std::vector<std::string> InOrder(const MachineConfig& machine, const TuneLoopsOptions& options) {
+  std::vector<std::string> names;
+  for (const auto& [name, axis] : machine.axes)
+    if (options.axis.empty() || name == options.axis) names.push_back(name);
+  if (options.out.empty() || names.size() == 1) return names;
+  const double period_s = 1e-6 * machine.machine.cycle_us;
+  std::stable_partition(names.begin(), names.end(), [&](const std::string& name) {
+    return !ChooseLoop(LoopAxisOf(machine.axes.at(name)), period_s);
+  });
+  return names;
+}
+
 }  // namespace
 
 int TuneLoops(const TuneLoopsOptions& options) {
@@ -126,14 +143,13 @@ int TuneLoops(const TuneLoopsOptions& options) {
         {options.machine + ": axes." + options.axis + ": missing, expected an axis of this name (--axis)"});
   std::string text = options.out.empty() ? "" : ReadTextFile(options.machine);
   bool all = true;
-  for (const auto& [name, axis] : machine.axes) {
-    if (!options.axis.empty() && name != options.axis) continue;
+  for (const std::string& name : InOrder(machine, options)) {
     all = TuneAxis(machine, name, options, text) && all;
-  }
-  if (!all) {
-    std::cout << "nothing was written: an axis has no loop that keeps its limits\n";
+    if (all || options.out.empty()) continue;
+    std::cout << "nothing was written: axis " << name << " has no loop that keeps its limits\n";
     return kExitFailed;
   }
+  if (!all) return kExitFailed;
   if (options.out.empty()) return kExitDone;
   WriteWholeFile(options.out, text);
   std::cout << "wrote " << options.out << "\n";

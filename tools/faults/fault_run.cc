@@ -461,8 +461,11 @@ class Run {
     TickFor(kSettle_s);
     if (state() != MachineState::kIdle) return Violated("after reset: " + Now());
     AskForEnable();
-    TickUntil(kStartPatience_s,
-              [&] { return state() == MachineState::kReady || state() == MachineState::kFaulted; });
+    TickUntil(kStartPatience_s, [&] {
+      // A reading that has come back from far away is fast for a while; who is told so asks once more.
+      if (state() == MachineState::kIdle && record().reason == Reason::kAxisMoves) AskForEnable();
+      return state() == MachineState::kReady || state() == MachineState::kFaulted;
+    });
     TickFor(kSettle_s);
     if (state() != MachineState::kReady) Violated("enable after reset: " + Now());
   }

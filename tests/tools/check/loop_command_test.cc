@@ -127,6 +127,20 @@ TEST(Simulate, TakesAnEmptyFileForTheProgramThatItIs) {
   ExpectHas(o, "empty.ngc: the program does not move");
 }
 
+// Before, after the search for every axis.
+TEST(TuneFromModel, TellsOfAnAxisWithoutALoopBeforeItSearchesTheOthers) {
+  std::string text = ReadText(ExampleMachine("family/t30.yaml"));
+  const std::string key = "screw_stiffness_N_um: ";
+  const std::size_t at = text.find(key, text.find("\n  y:")) + key.size();
+  text.replace(at, text.find('\n', at) - at, "1");
+  const std::string machine = WriteTestFile("soft_y.yaml", text);
+  const Outcome tune =
+      Contour("tune --from-model " + machine + " --evaluations 20 --out " + machine + ".tuned.yaml");
+  EXPECT_EQ(tune.status, 1) << tune.out;
+  ExpectHas(tune, "nothing was written: axis y has no loop that keeps its limits");
+  EXPECT_EQ(tune.out.find("axis x: "), std::string::npos) << tune.out;
+}
+
 TEST(TuneFromModel, RefusesABeltAndSaysWhatWouldHelp) {
   const std::string machine = WriteTestFile("belt.yaml", ReadText(ExampleMachine("family/belt.yaml")));
   const std::string tuned = machine + ".tuned.yaml";
