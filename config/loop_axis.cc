@@ -1,8 +1,11 @@
 #include "config/loop_axis.h"
 
 #include <algorithm>
+#include <limits>
+#include <stdexcept>
 
 #include "config/extended_model.h"
+#include "core/spring_loop.h"
 
 namespace contour {
 
@@ -50,6 +53,21 @@ std::optional<LoopAxis> ScaleLoopAxisOf(const AxisConfig& axis) {
   LoopAxis out = LoopAxisOf(axis);
   out.scale_step_m = 1e-3 / axis.drive.linear_scale->counts_per_mm;
   return out;
+}
+
+double StiffestSpring_N_m(const AxisConfig& axis, double period_s) {
+  double stiffest_N_m = std::numeric_limits<double>::infinity();
+  if (!axis.loop) return stiffest_N_m;
+  try {
+    const TwoInertiaAxis two = TwoInertiaAxisOf(axis);
+    stiffest_N_m = StiffestSpring_N_m(DesignLoop(two, *axis.loop, period_s, false));
+    if (axis.drive.linear_scale && axis.scale_loop)
+      stiffest_N_m =
+          std::min(stiffest_N_m, StiffestSpring_N_m(DesignLoop(two, *axis.scale_loop, period_s, true)));
+  } catch (const std::invalid_argument&) {
+    // Whoever makes the cycle says what is wrong with the loop.
+  }
+  return stiffest_N_m;
 }
 
 double WindUpUnderForceStep_m(const AxisConfig& axis) {

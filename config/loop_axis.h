@@ -38,6 +38,10 @@ LoopAxis LoopAxisOf(const AxisConfig& axis);
 /// The same for the loop that goes by the linear scale as well; none where the drive has none.
 std::optional<LoopAxis> ScaleLoopAxisOf(const AxisConfig& axis);
 
+/// The stiffest spring by which an experiment can hold the axis, where the file has its loop: what holds with
+/// and without its scale. Infinite without a loop, and of one that cannot be.
+double StiffestSpring_N_m(const AxisConfig& axis, double period_s);
+
 /// By how much its screw gives under the force step of `loop_limits`.
 double WindUpUnderForceStep_m(const AxisConfig& axis);
 /// Of the axis whose screw gives most.

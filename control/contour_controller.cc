@@ -117,7 +117,7 @@ void ContourController::Step(const ControlInput& input, ControlOutput& output) n
   output.limit.resize(axes);
   law_->Step(input, output);
   for (std::size_t axis = 0; axis < axes; ++axis) {
-    if (!HoldsBySpring(input, axis)) continue;
+    if (!HoldsBySpring(input, axis) || law_->holds_springs()) continue;
     springs_->Step(axis, input, output);
     law_->Release(axis);
   }

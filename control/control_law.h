@@ -16,6 +16,8 @@ class ControlLaw {
   /// Part of the state that Keep keeps; Reset leaves it.
   virtual void Soften(Softness softness) noexcept CONTOUR_NONBLOCKING = 0;
   virtual void Step(const ControlInput& input, ControlOutput& output) noexcept CONTOUR_NONBLOCKING = 0;
+  /// It holds axes by an experiment's spring itself: SpringLaw is not to take its place.
+  [[nodiscard]] virtual bool holds_springs() const noexcept CONTOUR_NONBLOCKING { return false; }
   [[nodiscard]] virtual int horizon_points() const noexcept CONTOUR_NONBLOCKING = 0;
   /// What changes from Step to Step; gains and all that follows from them stay as constructed.
   virtual void Keep(StateKeeper& keep) noexcept CONTOUR_NONBLOCKING = 0;

@@ -56,6 +56,7 @@ void OscillationDetector::Reset() noexcept {
   now_ = {};
   before_ = {};
   highest_m_s2_ = lowest_m_s2_ = before_highest_m_s2_ = before_lowest_m_s2_ = 0.0;
+  pushed_N_ = before_pushed_N_ = 0.0;
   moved_ago_ = kLongAgo;
   run_ = violent_run_ = growing_ = 0;
   violent_ = false;
@@ -63,10 +64,6 @@ void OscillationDetector::Reset() noexcept {
 
 Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
   if (bounds_.half_waves == 0) return Oscillation::kNone;
-  if (!now.watched) {
-    if (started_) Reset();
-    return Oscillation::kNone;
-  }
   if (!started_) {
     started_ = true;
     mean_m_ = now.following_error_m;
@@ -94,6 +91,8 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
       before_highest_m_s2_ = highest_m_s2_;
       before_lowest_m_s2_ = lowest_m_s2_;
       highest_m_s2_ = lowest_m_s2_ = reference_m_s2;
+      before_pushed_N_ = pushed_N_;
+      pushed_N_ = 0.0;
     }
   }
   ++now_.cycles;
@@ -101,16 +100,24 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
   now_.peak_N = std::max(now_.peak_N, std::abs(now.force_N - mean_N_));
   highest_m_s2_ = std::max(highest_m_s2_, reference_m_s2);
   lowest_m_s2_ = std::min(lowest_m_s2_, reference_m_s2);
-  if (Chatters(now.force_N) && found == Oscillation::kNone) found = Oscillation::kLasting;
+  if (now.pushed_N != 0.0) pushed_N_ = std::max(pushed_N_, std::abs(now.pushed_N));
+  if (Chatters(now.force_N, now.pushed_N != 0.0) && found == Oscillation::kNone)
+    found = Oscillation::kLasting;
   return found;
 }
 
-// A step of the force, in a corner at full feed, is one change among many.
-bool OscillationDetector::Chatters(double force_N) noexcept {
+// A step of the force, in a corner at full feed, is one change among many; an experiment may change it from
+// cycle to cycle.
+bool OscillationDetector::Chatters(double force_N, bool pushed) noexcept {
   if (!(bounds_.chatter_N > 0.0)) return false;
   Chatter& c = chatter_;
   const double change_N = std::abs(force_N - before_N_);
   before_N_ = force_N;
+  if (pushed) {
+    c = {};
+    lasting_ = {};
+    return false;
+  }
   c.mean_N += std::min(1.0, bounds_.period_s / kChatter_s) * (change_N - c.mean_N);
   // Near half the sampling rate every other change is small.
   const double two_N = change_N + c.change_N;
@@ -161,6 +168,8 @@ bool OscillationDetector::GoesOn(const HalfWave& before) const noexcept {
   const double swing_N = now_.peak_N + before_[0].peak_N;
   if (swing_m < bounds_.swing_m) return false;
   if (swing_N < (moving ? bounds_.swing_moving_N : bounds_.swing_N)) return false;
+  const double pushed_N = std::max(pushed_N_, before_pushed_N_);
+  if (pushed_N > 0.0 && swing_N < bounds_.violent_N + 2.0 * bounds_.answered * pushed_N) return false;
   const double reference_N = bounds_.mass_kg * (std::max(highest_m_s2_, before_highest_m_s2_) -
                                                 std::min(lowest_m_s2_, before_lowest_m_s2_));
   if (reference_N > kExplained * swing_N) return false;

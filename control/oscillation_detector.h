@@ -21,6 +21,7 @@ struct OscillationBounds {
   /// be told apart; 0: not watched.
   double chatter_N = 0.0;
   double violent_N = 1e9;  ///< peak to peak: beyond it a swing is no nuisance but a danger
+  double answered = 4.0;   ///< times what an experiment pushes with, a loop in order swings at most
 };
 
 struct OscillationSample {
@@ -28,7 +29,8 @@ struct OscillationSample {
   double force_N = 0.0;  ///< as the drive reports it, at the table
   double reference_velocity_m_s = 0.0;
   double reference_acceleration_m_s2 = 0.0;
-  bool watched = true;  ///< false: not held by the controller, or pushed by an experiment
+  /// Of an experiment: it explains what the loop answers to it, and more than that must be violent.
+  double pushed_N = 0.0;
 };
 
 enum class Oscillation : std::uint8_t { kNone, kLasting, kGrowing };
@@ -66,7 +68,7 @@ class OscillationDetector {
     double moment_N = 0.0;  ///< each times its time in cycles
     std::uint32_t cycles = 0;
   };
-  [[nodiscard]] bool Chatters(double force_N) noexcept;
+  [[nodiscard]] bool Chatters(double force_N, bool pushed) noexcept;
   /// Of a swing from cycle to cycle that is told again and again: its mean change, span by span.
   struct Lasting {
     double sum_N = 0.0;
@@ -95,6 +97,8 @@ class OscillationDetector {
   std::array<HalfWave, 2> before_{};  ///< newest first
   double highest_m_s2_ = 0.0;         ///< of the reference, in this half wave and the one before
   double lowest_m_s2_ = 0.0;
+  double pushed_N_ = 0.0;  ///< most of it, likewise
+  double before_pushed_N_ = 0.0;
   double before_highest_m_s2_ = 0.0;
   double before_lowest_m_s2_ = 0.0;
   std::uint32_t moved_ago_ = 0;  ///< cycles since the reference last moved

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "control/spring_law.h"
+
 namespace contour {
 namespace {
 
@@ -23,6 +25,18 @@ FrictionAhead Ahead(const FrictionPreview& friction, std::size_t index) noexcept
 /// Of a force, by the drive's lag, over a share of the period.
 double Kept(const ControlledAxis& axis, double share, double period_s) {
   return axis.lag_s > 0.0 ? std::exp(-share * period_s / axis.lag_s) : 0.0;
+}
+
+/// The torque filter, begun at rest.
+double Filtered_N(const Biquad& b, double force_N, bool begins, std::array<double, 4>& state) noexcept {
+  auto& [x1, x2, y1, y2] = state;
+  if (begins) x1 = x2 = y1 = y2 = force_N;
+  const double filtered_N = b.b0 * force_N + b.b1 * x1 + b.b2 * x2 - b.a1 * y1 - b.a2 * y2;
+  x2 = x1;
+  x1 = force_N;
+  y2 = y1;
+  y1 = filtered_N;
+  return filtered_N;
 }
 
 const TwoInertiaLoop& Required(const std::optional<TwoInertiaLoop>& loop) {
@@ -61,12 +75,25 @@ TwoInertiaLaw::TwoInertiaLaw(const PerAxis<ControlledAxis>& axes, const Controll
   horizon_points_ = static_cast<int>(queued) + 4;
 }
 
+double TwoInertiaLaw::Axis::Deviation_N(const TwoInertiaLoop& loop, const LoopMotion& motion,
+                                        const LoopMotion& wanted, const SpringShares& share) const noexcept {
+  double deviation_N = 0.0;
+  for (std::size_t i = 0; i < kLoopMotion; ++i)
+    deviation_N += (i == 0 || i == 2 ? share.position : share.velocity) * loop.regulator_motion[i] *
+                   (motion[i] - wanted[i]);
+  for (std::size_t i = 0; i < loop.queued; ++i) {
+    const std::size_t age = loop.queued - 1 - i;
+    deviation_N += share.velocity * loop.regulator_queue[i] * (sent_N[age] - planned_N[age]);
+  }
+  return deviation_N;
+}
+
 void TwoInertiaLaw::Axis::Forget() noexcept {
   planned_N = grid_N = sent_N = {};
   led_N = wound_m = lead_m = slow_N = 0.0;
   standstill.Forget();
   left_N = 0.0;
-  by_scale = false;
+  by_scale = sprung = false;
   filter = {};
   steps = 0;
 }
@@ -150,26 +177,33 @@ double TwoInertiaLaw::Feedback_N(Axis& a, const LoopMotion& wanted, const AxisEs
                                  bool begins) const noexcept {
   const TwoInertiaLoop& loop = a.Loop(estimate.by_scale, softer_);
   a.slow_N += a.slow_share * (estimate.disturbance_N - a.slow_N);
-  double deviation_N = 0.0;
-  for (std::size_t i = 0; i < kLoopMotion; ++i)
-    deviation_N += loop.regulator_motion[i] * (estimate.motion[i] - wanted[i]);
-  for (std::size_t i = 0; i < loop.queued; ++i) {
-    const std::size_t age = loop.queued - 1 - i;
-    deviation_N += loop.regulator_queue[i] * (a.sent_N[age] - a.planned_N[age]);
-  }
+  const double deviation_N = a.Deviation_N(loop, estimate.motion, wanted, {});
   // A command that lasts for several periods pushes for as many.
   const double share = 1.0 / lasts_periods_;
   const double quick_N = softer_ ? 0.0 : share * (estimate.disturbance_N - a.slow_N);
   const double force_N = loop.disturbance_to_command * (a.slow_N + quick_N) - share * deviation_N;
-  const Biquad& b = loop.filter;
-  auto& [x1, x2, y1, y2] = a.filter;
-  if (begins) x1 = x2 = y1 = y2 = force_N;
-  const double filtered_N = b.b0 * force_N + b.b1 * x1 + b.b2 * x2 - b.a1 * y1 - b.a2 * y2;
-  x2 = x1;
-  x1 = force_N;
-  y2 = y1;
-  y1 = filtered_N;
-  return filtered_N;
+  return Filtered_N(loop.filter, force_N, begins, a.filter);
+}
+
+void TwoInertiaLaw::Spring(std::size_t axis, const ControlInput& input, ControlOutput& output) noexcept {
+  Axis& a = axes_[axis];
+  if (!a.sprung) a.Forget();
+  a.sprung = true;
+  Advance(a, input.previous_force_N[axis]);
+  const AxisHorizon& reference = input.reference[axis];
+  const ReferencePoint &r = PointAt(reference, 0), &ahead = PointAt(reference, 1);
+  const TwoInertiaLoop& loop = a.Loop(input.estimate[axis].by_scale, softer_);
+  const SpringShares share = SharesOfSpring(loop, ahead.spring_N_m);
+  const LoopMotion wanted{r.position_m, r.velocity_m_s, r.position_m, r.velocity_m_s, a.led_N};
+  const double deviation_N = a.Deviation_N(loop, input.estimate[axis].motion, wanted, share);
+  const double force_N = Filtered_N(loop.filter, -deviation_N / lasts_periods_, a.steps == 0, a.filter);
+  std::shift_right(a.planned_N.begin(), a.planned_N.end(), 1);
+  a.planned_N[0] = ahead.extra_torque_Nm / a.mechanics.radius_m_rad;
+  a.steps = 1;
+  output.target_position_m[axis] = ahead.position_m;
+  output.feedforward_N[axis] = 0.0;
+  output.force_N[axis] = std::clamp(force_N, -a.force_limit_N, a.force_limit_N);
+  output.limit[axis] = std::abs(force_N) > a.force_limit_N ? Reason::kTorqueLimit : Reason::kNone;
 }
 
 void TwoInertiaLaw::LeaveScale(Axis& a, double force_N) const noexcept {
@@ -192,6 +226,11 @@ void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexc
   for (const AxisHorizon& reference : Reference(input)) any_moves = any_moves || Moves(reference);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& a = axes_[i];
+    if (SpringLaw::Holds(input, i)) {
+      Spring(i, input, output);
+      continue;
+    }
+    if (a.sprung) a.Forget();
     const AxisHorizon& reference = Reference(input)[i];
     const FrictionPreview& friction = input.friction[i];
     Advance(a, input.previous_force_N[i]);

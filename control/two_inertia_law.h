@@ -8,13 +8,15 @@
 #include "control/control_law.h"
 #include "control/flat_feedforward.h"
 #include "control/standstill.h"
+#include "core/spring_loop.h"
 #include "core/two_inertia_loop.h"
 
 namespace contour {
 
 /// `full` with a loop that knows two inertias: the flat feed-forward of motor and table, and the regulator of
 /// TwoInertiaLoop on what the axis is off by from where it leads. The regulator acts on deviations, so
-/// friction along the reference is no part of it; what the observer finds beyond is answered at once.
+/// friction along the reference is no part of it; what the observer finds beyond is answered at once. An
+/// experiment's spring is this loop, weaker (core/spring_loop.h).
 /// Each axis on its own.
 class TwoInertiaLaw final : public ControlLaw {
  public:
@@ -24,6 +26,7 @@ class TwoInertiaLaw final : public ControlLaw {
   void Release(std::size_t axis) noexcept override { axes_[axis].Forget(); }
   void Soften(Softness softness) noexcept override { softer_ = softness != Softness::kNone; }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
+  [[nodiscard]] bool holds_springs() const noexcept override { return true; }
   [[nodiscard]] int horizon_points() const noexcept override { return horizon_points_; }
   void Keep(StateKeeper& keep) noexcept override { keep(axes_, softer_, lasts_periods_); }
 
@@ -35,8 +38,12 @@ class TwoInertiaLaw final : public ControlLaw {
     void Forget() noexcept;
     void Keep(StateKeeper& keep) noexcept {
       keep(planned_N, grid_N, sent_N, led_N, wound_m, lead_m, slow_N, filter, standstill, steps, by_scale,
-           left_N);
+           left_N, sprung);
     }
+
+    /// What the regulator makes of where motion and commands under way are off what was planned.
+    [[nodiscard]] double Deviation_N(const TwoInertiaLoop& loop, const LoopMotion& motion,
+                                     const LoopMotion& wanted, const SpringShares& share) const noexcept;
 
     [[nodiscard]] const TwoInertiaLoop& Loop(bool scaled, bool soft) const noexcept {
       if (scaled && scale) return soft ? *softer_scale : *scale;
@@ -65,6 +72,7 @@ class TwoInertiaLaw final : public ControlLaw {
     int steps = 0;          ///< since it was forgotten, as far as they matter
     bool by_scale = false;  ///< at the sample before
     double left_N = 0.0;    ///< what leaving the scale must not make of the force, fading away
+    bool sprung = false;    ///< held by a spring at the sample before
   };
 
   void Advance(Axis& axis, double sent_N) const noexcept;
@@ -78,6 +86,9 @@ class TwoInertiaLaw final : public ControlLaw {
   void LeaveScale(Axis& axis, double force_N) const noexcept;
   double Feedback_N(Axis& axis, const LoopMotion& wanted, const AxisEstimate& estimate,
                     bool begins) const noexcept;
+  /// An axis that an experiment's spring holds: against what it is off by, and what is put on is no
+  /// deviation.
+  void Spring(std::size_t axis, const ControlInput& input, ControlOutput& output) noexcept;
 
   std::vector<Axis> axes_;
   double period_s_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "config/loop_axis.h"
+#include "drivers/cia402/mode_for.h"
 
 namespace contour {
 
@@ -49,6 +50,9 @@ PerAxis<PlanLimits> ProgramLimits(const MachineConfig& machine) {
                       l.following_error_mm * 1e-3, mechanics.radius_m_rad, mechanics.mass_kg, tolerance_m,
                       following_m});
     limits.back().cycle_s = 1e-6 * machine.machine.cycle_us;
+    if (KnowsTwoInertias(machine.machine.controller, machine.control.friction) &&
+        ModeFor(machine.machine.controller, axis.drive) == DriveMode::kCst)
+      limits.back().stiffest_spring_N_m = StiffestSpring_N_m(axis, limits.back().cycle_s);
     // A loop on the scale sees the table itself.
     if (!machine.machine.slow_for_tolerance || (axis.scale_loop && axis.drive.linear_scale)) continue;
     const ScrewDoubt doubt = DoubtOf(axis);

@@ -1,6 +1,7 @@
 #include "design/commission_motions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -38,10 +39,19 @@ constexpr double kLeastOfDamping = 0.5;
 /// A sweep's oscillation overshoots what it leaves by that much.
 constexpr double kSweepOvershoot = 1.17;
 
-/// Torques in steps up to beyond break-away, both ways: shares of the stated level.
+/// Shares of the stated level that steps of torque have.
+constexpr std::array<double, 5> kTorqueSteps{0.3, 0.6, 0.9, 1.3, 1.8};
+/// The spring of these steps lets the axis go so far; further where the axis's loop is no spring as stiff as
+/// that, up to this share of its following error.
+constexpr double kStepTravel_mm = 0.3;
+constexpr double kStepsOfFollowingError = 0.6;
+/// Numbers are rounded on their way.
+constexpr double kSpringMargin = 1.01;
+
+/// Torques in steps up to beyond break-away, both ways.
 std::string TorqueSteps(double level_Nm, double most_Nm) {
   std::string list;
-  for (const double share : {0.3, 0.6, 0.9, 1.3, 1.8})
+  for (const double share : kTorqueSteps)
     for (const double sign : {1.0, -1.0})
       list += (list.empty() ? "" : ", ") + FormatText("%.5f", sign * std::min(share * level_Nm, most_Nm));
   return list;
@@ -96,11 +106,17 @@ class Motions {
         FormatText("shape: reversals\naxis: %s\namplitudes_mm: [%s]\nfrequency_hz: 1\ncycles: 2\n",
                    name_.c_str(), amplitudes.c_str()));
     const double level_Nm = mechanics_.radius_m_rad * 0.5 * (friction_.Fs_plus_N + friction_.Fs_minus_N);
-    const double travel_mm = std::min(0.3, 0.6 * axis_.limits.following_error_mm);
+    const double furthest_mm = kStepsOfFollowingError * axis_.limits.following_error_mm;
+    // Infinite where no loop holds it.
+    const double held_Nm_mm = 1e-3 * mechanics_.radius_m_rad * StiffestSpring_N_m(axis_, 1e-6 * cycle_us_);
+    const double largest_Nm = std::min(kTorqueSteps.back() * level_Nm, limits_.max_torque_Nm);
+    const double travel_mm =
+        std::min(std::max(kStepTravel_mm, kSpringMargin * largest_Nm / held_Nm_mm), furthest_mm);
+    const double most_Nm = std::min(limits_.max_torque_Nm, held_Nm_mm * travel_mm / kSpringMargin);
     Add("steps of torque at rest",
         FormatText(
             "shape: torque_steps\naxis: %s\ntravel_mm: %g\ntorques_Nm: [%s]\nhold_s: 0.1\nrest_s: 0.1\n",
-            name_.c_str(), travel_mm, TorqueSteps(level_Nm, limits_.max_torque_Nm).c_str()));
+            name_.c_str(), travel_mm, TorqueSteps(level_Nm, most_Nm).c_str()));
   }
 
   void Shake() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,6 +38,8 @@ struct PlanLimits {
   /// And by what is not known of friction, whatever the acceleration.
   double friction_doubt_m = 0.0;
   double cycle_s = 0.0;  ///< a torque is set once in it; 0: not known
+  /// The stiffest spring that the axis's loop can be; infinite: it has no such loop.
+  double stiffest_spring_N_m = std::numeric_limits<double>::infinity();
 };
 
 /// The commanded circle of a circle program.

@@ -43,7 +43,7 @@ TorqueStepsPlan::TorqueStepsPlan(const TorqueStepsShape& shape, std::size_t axis
     Refuse(origin, l.axis, "position", 1e3 * (start_m[axis] + travel_m), 1e3 * l.position_max_m, "mm");
   spring_N_m_ = largest_Nm / l.radius_m_rad / travel_m;
   const double rate = 2.0 * std::numbers::pi * kStiffest_Hz;
-  stiffer_N_m_ = l.mass_kg * rate * rate;
+  stiffer_N_m_ = std::min(l.mass_kg * rate * rate, l.stiffest_spring_N_m);
   if (spring_N_m_ > stiffer_N_m_) {
     char text[220];
     std::snprintf(

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "control/loop_bandwidth.h"
+#include "core/loop_limits.h"
 #include "daemon/rt/cycle_parts.h"
 
 namespace contour {
@@ -69,6 +70,7 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
   b.swing_moving_N = 2.0 * std::max(f.Fs_plus_N, f.Fs_minus_N);
   const double limits_N = 2.0 * a.limits.torque_Nm / m.radius_m_rad;
   b.violent_N = std::max(b.swing_moving_N, kViolentShare * limits_N);
+  b.answered = LoopLimits{}.peak_late;
   b.mass_kg = m.mass_kg;
   b.growing_m = kDangerousShare * a.limits.following_error_mm * 1e-3;
   b.half_waves = config.control.supervision.half_waves;
@@ -117,10 +119,9 @@ void SelfWatch::Look(std::size_t axis, const Seen& seen) noexcept {
   if (capped_[axis].Step(seen.capped)) Raise(Reason::kSolverCapLasting, axis);
   if (!seen.feedback.fresh) return;
   const ReferencePoint& r = seen.reference;
-  const bool watched = r.extra_torque_Nm == 0.0 && !(r.spring_N_m > 0.0);
   switch (
       oscillation_[axis].Step({r.position_m - seen.position_m, seen.feedback.torque_Nm / seen.radius_m_rad,
-                               r.velocity_m_s, r.acceleration_m_s2, watched})) {
+                               r.velocity_m_s, r.acceleration_m_s2, r.extra_torque_Nm / seen.radius_m_rad})) {
     case Oscillation::kGrowing:
       growing_ = {Reason::kOscillation, static_cast<std::uint8_t>(axis)};
       break;

@@ -47,7 +47,7 @@ double Wave(double t, double frequency_Hz) { return std::sin(2.0 * std::numbers:
 // The case found on the product: 16 Hz at rest, 1.6 um and 6 N peak to peak.
 TEST(OscillationDetector, ALimitCycleAtRestIsFoundWithinTwelveHalfWaves) {
   const Found f = Watch(2.0, [](double t) {
-    return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, true};
+    return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0};
   });
   EXPECT_GE(f.lasting, 4);
   EXPECT_EQ(f.growing, 0);
@@ -57,13 +57,13 @@ TEST(OscillationDetector, ALimitCycleAtRestIsFoundWithinTwelveHalfWaves) {
 TEST(OscillationDetector, WhatCountsAndTorqueStepsExplainIsNone) {
   EXPECT_EQ(Watch(5.0,
                   [](double t) {
-                    return OscillationSample{0.15e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, true};
+                    return OscillationSample{0.15e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0};
                   })
                 .lasting,
             0);
   EXPECT_EQ(Watch(5.0,
                   [](double t) {
-                    return OscillationSample{0.8e-6 * Wave(t, 16.0), 0.6 * Wave(t, 16.0), 0.0, 0.0, true};
+                    return OscillationSample{0.8e-6 * Wave(t, 16.0), 0.6 * Wave(t, 16.0), 0.0, 0.0};
                   })
                 .lasting,
             0);
@@ -76,28 +76,28 @@ TEST(OscillationDetector, NoiseHasNoPeriod) {
   EXPECT_EQ(Watch(60.0,
                   [&](double) {
                     slow += 0.05 * (normal(random) - slow);
-                    return OscillationSample{3e-6 * slow, 20.0 * slow, 0.0, 0.0, true};
+                    return OscillationSample{3e-6 * slow, 20.0 * slow, 0.0, 0.0};
                   })
                 .lasting,
             0);
 }
 
 TEST(OscillationDetector, WhatDiesOutByItselfIsNone) {
-  EXPECT_EQ(Watch(3.0,
-                  [](double t) {
-                    const double left = std::exp(-4.0 * t);  // 22 % per period
-                    return OscillationSample{40e-6 * left * Wave(t, 16.0), 200.0 * left * Wave(t, 16.0), 0.0,
-                                             0.0, true};
-                  })
-                .lasting,
-            0);
+  EXPECT_EQ(
+      Watch(3.0,
+            [](double t) {
+              const double left = std::exp(-4.0 * t);  // 22 % per period
+              return OscillationSample{40e-6 * left * Wave(t, 16.0), 200.0 * left * Wave(t, 16.0), 0.0, 0.0};
+            })
+          .lasting,
+      0);
 }
 
 TEST(OscillationDetector, InMotionFrictionAndThePathExplainMore) {
   const auto moving = [](double force_N, double acceleration_m_s2, double frequency_Hz) {
     return Watch(3.0, [=](double t) {
       return OscillationSample{5e-6 * Wave(t, frequency_Hz), force_N * Wave(t, frequency_Hz), 0.05,
-                               acceleration_m_s2 * Wave(t, frequency_Hz), true};
+                               acceleration_m_s2 * Wave(t, frequency_Hz)};
     });
   };
   EXPECT_EQ(moving(40.0, 0.0, 30.0).lasting, 0) << "cogging";
@@ -109,26 +109,38 @@ TEST(OscillationDetector, InMotionFrictionAndThePathExplainMore) {
 TEST(OscillationDetector, GrowthIsToldBeforeItIsAFollowingError) {
   const Found f = Watch(2.0, [](double t) {
     const double grown = std::exp(6.0 * t);
-    return OscillationSample{5e-6 * grown * Wave(t, 20.0), 100.0 * grown * Wave(t, 20.0), 0.05, 0.0, true};
+    return OscillationSample{5e-6 * grown * Wave(t, 20.0), 100.0 * grown * Wave(t, 20.0), 0.05, 0.0};
   });
   EXPECT_GE(f.growing, 1);
 }
 
-TEST(OscillationDetector, ExperimentsAreNotWatchedAndZeroSwitchesOff) {
-  const auto sample = [](double t) {
-    return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, false};
+TEST(OscillationDetector, AnExperimentExplainsWhatItPushesAndNoViolentSwing) {
+  const auto watch = [](double swing_N, double pushed_N) {
+    OscillationBounds bounds = Bounds();
+    bounds.violent_N = 500.0;
+    bounds.answered = 4.0;
+    return Watch(
+               2.0,
+               [=](double t) {
+                 return OscillationSample{20e-6 * Wave(t, 100.0), 0.5 * swing_N * Wave(t, 100.0), 0.0, 0.0,
+                                          pushed_N * Wave(t, 30.0)};
+               },
+               bounds)
+        .lasting;
   };
-  EXPECT_EQ(Watch(2.0, sample).lasting, 0);
+  EXPECT_GT(watch(100.0, 0.0), 0) << "no torque acts, a spring or a loop holds";
+  EXPECT_EQ(watch(100.0, 50.0), 0);
+  EXPECT_EQ(watch(880.0, 50.0), 0) << "the loop's answer";
+  EXPECT_GT(watch(1000.0, 50.0), 0);
+}
+
+TEST(OscillationDetector, ZeroSwitchesOff) {
   OscillationBounds off = Bounds();
   off.half_waves = 0;
-  EXPECT_EQ(Watch(
-                2.0,
-                [](double t) {
-                  return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0, true};
-                },
-                off)
-                .lasting,
-            0);
+  const auto sample = [](double t) {
+    return OscillationSample{0.8e-6 * Wave(t, 16.0), 3.0 * Wave(t, 16.0), 0.0, 0.0};
+  };
+  EXPECT_EQ(Watch(2.0, sample, off).lasting, 0);
 }
 
 // To and fro from cycle to cycle there are no half waves to be told apart; a step of the force is none.
@@ -152,7 +164,7 @@ TEST(OscillationDetector, ViolentIsWhatTakesMuchOfTheTorque) {
     OscillationDetector detector(bounds);
     bool violent = false, found = false;
     for (double t = 0.0; t < 1.0; t += kPeriod_s)
-      if (detector.Step({20e-6 * Wave(t, 60.0), force_N * Wave(t, 60.0), 0.0, 0.0, true}) ==
+      if (detector.Step({20e-6 * Wave(t, 60.0), force_N * Wave(t, 60.0), 0.0, 0.0}) ==
           Oscillation::kLasting) {
         found = true;
         violent = violent || detector.violent();

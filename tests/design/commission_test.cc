@@ -8,6 +8,7 @@
 #include "analysis/identification/result_files.h"
 #include "config/config_error.h"
 #include "config/load_machine.h"
+#include "config/loop_axis.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program_limits.h"
 #include "tools/validation/commissioning/virtual_commissioning.h"
@@ -70,6 +71,35 @@ TEST(CommissionPlanTest, ShakesMoreWhereTheDriveLeads) {
   EXPECT_GT(torque_mode_Nm, 0.0);
   axis.drive.mode = DriveMode::kCsp;
   EXPECT_NEAR(chirp_Nm(), 2.0 * torque_mode_Nm, 1e-6);
+}
+
+// The steps' spring is the axis's loop, weaker: one that is too weak for 0.3 mm gets more way, and in the end
+// less torque.
+TEST(CommissionPlanTest, StepsOfTorqueAreWhatTheLoopCanHold) {
+  MachineConfig machine = Example();
+  AxisConfig& axis = machine.axes.at("x");
+  axis.loop = LoopTuning{.regulator_Hz = 12.0,
+                         .windup_weight = 0.2,
+                         .velocity_weight = 0.35,
+                         .disturbance_Hz = 100.0,
+                         .motor_force_Hz = 400.0,
+                         .table_force_Hz = 60.0,
+                         .notch_ratio = 0.7,
+                         .notch_pole_damping = 0.7,
+                         .notch_zero_damping = 0.2};
+  PerAxis<double> start_m;
+  start_m.resize(machine.axes.size());
+  for (const double regulator_Hz : {12.0, 3.0, 1.0}) {
+    axis.loop->regulator_Hz = regulator_Hz;
+    const CommissionPlan plan = PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis));
+    PerAxis<PlanLimits> limits = ProgramLimits(machine);
+    limits[0].stiffest_spring_N_m = StiffestSpring_N_m(axis, 1e-3);
+    for (const CommissionMotion& motion : plan.motions) {
+      if (motion.yaml.find("torque_steps") == std::string::npos) continue;
+      EXPECT_NO_THROW(PlanMotion(ParseProgram(motion.yaml, "steps", ProgramFormat::kYaml), start_m, limits))
+          << regulator_Hz << motion.yaml;
+    }
+  }
 }
 
 double NumberOf(const std::string& yaml, const std::string& key) {

@@ -139,6 +139,20 @@ TEST(TorqueStepsPlan, RefusesWhatIsNotSafe) {
   EXPECT_NE(error("0.25", "0.02").find("travel_mm 0.02 is too short"), std::string::npos);
 }
 
+// A loop that knows two inertias is the spring itself, and no stiffer than it can be.
+TEST(TorqueStepsPlan, IsNoStifferThanTheAxissLoopCanBe) {
+  PerAxis<PlanLimits> limits = testing::TableLimits();
+  const double needed_N_m = 75.0 / 0.25e-3;
+  limits[0].stiffest_spring_N_m = 1.5 * needed_N_m;
+  const auto plan = PlanMotion(Yaml(kSteps), testing::Point(0.0, 0.0), limits);
+  EXPECT_NEAR(At(*plan, 1e-6).spring_N_m, 1.5 * needed_N_m, 1e-3 * needed_N_m);
+  limits[0].stiffest_spring_N_m = 0.5 * needed_N_m;
+  EXPECT_NE(ErrorOf([&] {
+              PlanMotion(Yaml(kSteps), testing::Point(0.0, 0.0), limits);
+            }).find("travel_mm 0.25 is too short to hold 0.06 Nm by a spring, expected at least 0.5"),
+            std::string::npos);
+}
+
 TEST(CombinedPlans, ASequenceGoesOnWhereTheLastPartEnded) {
   const auto plan = PlanOf(Yaml(
       "sequence:\n  - {shape: line, dx_mm: 10, dy_mm: 2, feed_mm_min: 600}\n  - {shape: hold, seconds: 1}\n"
