@@ -186,6 +186,12 @@ void CheckDrive(const std::string& key, const DriveConfig& d, double period_ms, 
   if (d.notice_ms < 2.0 * period_ms)
     problems.Add(key + ".notice_ms", "found " + Say(d.notice_ms) + ", expected at least two cycles, " +
                                          Say(2.0 * period_ms) + " ms, or one lost frame stops the machine");
+  // Bit 7 turns positions round, bit 6 velocities; the others are reserved. Both go to and from the drive.
+  constexpr int kBoth = 0xC0;
+  if (d.polarity != 0 && d.polarity != kBoth)
+    problems.Add(key + ".polarity",
+                 "found " + std::to_string(d.polarity) +
+                     ", expected 0, or 192: bits 7 (position) and 6 (velocity) of 0x607E together, no other");
   if (d.abort_connection_option != 3)
     problems.Add(
         key + ".abort_connection_option",

@@ -36,6 +36,8 @@ class TruthReader {
     free_running_ = Column("free_running");
     for (const std::string& axis : axes) {
       table_.push_back(Column(axis + "_table_position_m"));
+      // Files of before it was written have none, and an absolute encoder.
+      if (Has(axis + "_encoder_zero_m")) zero_.push_back(Column(axis + "_encoder_zero_m"));
       friction_.push_back(Column(axis + "_friction_N"));
       reported_.push_back(Column(axis + "_reported_position_rad"));
     }
@@ -68,12 +70,18 @@ class TruthReader {
       for (std::size_t i = 0; i < columns.size(); ++i) read(columns[i], values[i]);
     };
     read_axes(table_, sample.table_m);
+    PerAxis<double> zero_m;
+    read_axes(zero_, zero_m);
+    for (std::size_t i = 0; i < zero_m.size(); ++i) sample.table_m[i] -= zero_m[i];
     read_axes(friction_, sample.friction_N);
     read_axes(reported_, sample.reported_rad);
     return sample;
   }
 
  private:
+  [[nodiscard]] bool Has(std::string_view name) const {
+    return std::find(header_.begin(), header_.end(), name) != header_.end();
+  }
   std::size_t Column(const std::string& name) const {
     const auto found = std::find(header_.begin(), header_.end(), name);
     if (found == header_.end()) throw std::runtime_error(file_ + ":1: column " + name + " is missing");
@@ -86,6 +94,7 @@ class TruthReader {
   std::size_t sync_ = 0;
   std::size_t free_running_ = 0;
   std::vector<std::size_t> table_;
+  std::vector<std::size_t> zero_;
   std::vector<std::size_t> friction_;
   std::vector<std::size_t> reported_;
 };

@@ -14,7 +14,7 @@ namespace contour {
 /// What an emulated machine wrote of one SYNC, as far as scoring needs it.
 struct TruthSample {
   std::uint64_t sync_number = 0;
-  PerAxis<double> table_m;
+  PerAxis<double> table_m;  ///< as the encoder counts: from where an incremental one began to
   PerAxis<double> friction_N;
   PerAxis<double> reported_rad;  ///< encoder
 };

@@ -135,6 +135,19 @@ TEST(MachineChecks, Timing) {
   EXPECT_EQ(Only(c).substr(0, 16), "machine.cycle_us");
 }
 
+// Torque is not turned round by 0x607E: position or velocity alone against it is positive feedback.
+TEST(MachineChecks, PolarityOfPositionAndVelocityIsOne) {
+  MachineConfig c = Good();
+  for (const int polarity : {1, 64, 128, 193}) {
+    c.axes.at("x").drive.polarity = polarity;
+    EXPECT_EQ(Only(c), "axes.x.drive.polarity: found " + std::to_string(polarity) +
+                           ", expected 0, or 192: bits 7 (position) and 6 (velocity) of 0x607E together, "
+                           "no other");
+  }
+  c.axes.at("x").drive.polarity = 192;
+  EXPECT_TRUE(Check(c).empty());
+}
+
 TEST(MachineChecks, Torques) {
   MachineConfig c = Good();
   c.axes.at("x").limits.torque_Nm = 1.95;

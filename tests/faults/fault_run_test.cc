@@ -105,6 +105,8 @@ TEST(FaultRun, DrivesAndResetOnceFailed) {
       {Fault::kSetpointsLost, kAcceleration, kCsp, 338.0, "z", "light_axis"},
       // Nobody looked at the age of feedback before the torque was allowed.
       {Fault::kFeedbackFramesLate, kEnabling, kCst, 1.78, "x", "heavy_table"},
+      // Enabled again before the axis was reported to be at rest: refused.
+      {Fault::kEncoderJumpLarge, kConstant, kCst, 10.0, "x", "ton_table"},
   };
   for (const OnceFailed& once : cases) {
     const EmulatedMachineFile file = Machine(once.machine);

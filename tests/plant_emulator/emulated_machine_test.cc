@@ -139,6 +139,18 @@ TEST(EmulatedMachine, EncoderShowsTheMotorWithinNoiseAndQuantisation) {
   EXPECT_NEAR(std::sqrt(squares / kCycles), std::sqrt(0.3 * 0.3 + 1.0 / 12.0), 0.03);
 }
 
+TEST(EmulatedMachine, TruthSaysWhereAnIncrementalEncoderBeganToCount) {
+  EmulatorConfig c = NominalMachine();
+  c.axes["x"].incremental_encoder = true;
+  c.axes["x"].start_position_mm = 7.0;
+  DriveHarness h(c, {Place("x", 1)});
+  h.BringUp();
+  const AxisTruth& a = h.machine.truth().axes[0];
+  EXPECT_NEAR(a.reported_position_rad, 0.0, 1e-4);
+  EXPECT_GT(a.encoder_zero_m, 1e-3);
+  EXPECT_NEAR(a.motor_position_m - a.encoder_zero_m, 0.0, 1e-7);
+}
+
 TEST(EmulatedMachine, FrictionVariesOverTheTurn) {
   const auto spread = [](double ripple) {
     EmulatorConfig c = NominalMachine();

@@ -149,7 +149,7 @@ void AddContestCommand(CLI::App& app, Action& action) {
   sub->add_option("--controllers", options->choice.controllers, "Only these controllers");
   sub->add_option("--programs", options->choice.programs, "Only these programs");
   sub->add_option("--machines", options->choice.machines, "Only these machines");
-  sub->add_option("--seeds", options->choice.seeds, "These seeds");
+  sub->add_option("--seeds", options->choice.seeds, "These seeds")->check(CLI::NonNegativeNumber);
   sub->add_option("--set", options->set,
                   "KEY=VALUE: override a key of the machine file in every run; repeatable")
       ->expected(1)

@@ -236,7 +236,8 @@ void AddDiagnoseCommand(CLI::App& app, Action& action) {
   sub->add_option("--bootstrap", options->bootstrap_runs,
                   "Refits with every stroke at random, for the intervals; 0: none, else 50 or more")
       ->check(CLI::Range(0, 0) | CLI::Range(50, 100000));
-  sub->add_option("--seed", options->seed, "Of everything drawn; the same seed gives the same answer");
+  sub->add_option("--seed", options->seed, "Of everything drawn; the same seed gives the same answer")
+      ->check(CLI::NonNegativeNumber);
   sub->add_option("--threads", options->threads, "Cores to use; 0: all")->check(CLI::Range(0, 256));
   sub->add_option("--set", options->set, "KEY=VALUE: override a key of the model file; repeatable")
       ->expected(1)

@@ -104,6 +104,7 @@ void AddEmulateCommand(CLI::App& app, Action& action) {
                   "Write true positions, velocities and friction to this file, a row per SYNC")
       ->type_name("FILE");
   sub->add_option("--seed", options->seed, "Vary noise, ripple phases, start and parameters by this number")
+      ->check(CLI::NonNegativeNumber)
       ->type_name("N");
   sub->add_option("--set", options->set, "Override a key of the machine file, any number of times")
       ->type_name("KEY=VALUE");

@@ -37,6 +37,12 @@ void AddVersionFlags(CLI::App& app) {
   for (CLI::App* sub : app.get_subcommands([](CLI::App*) { return true; })) AddVersionFlags(*sub);
 }
 
+/// The library would only say that a subcommand is missing.
+bool NamesNoCommand(const CLI::App& app, const std::string& name) {
+  if (name.empty() || name.front() == '-') return false;
+  return app.get_subcommands([&](const CLI::App* sub) { return sub->check_name(name); }).empty();
+}
+
 int Run(const contour::Action& action) {
   try {
     return action();
@@ -85,6 +91,10 @@ int main(int argc, char** argv) {
   contour::AddReplayCommand(app, action);
 
   AddVersionFlags(app);
+  if (argc > 1 && NamesNoCommand(app, argv[1])) {
+    std::cerr << "contour: '" << argv[1] << "' is no command; contour --help lists them\n";
+    return contour::kExitBadUsage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

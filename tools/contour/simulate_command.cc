@@ -155,7 +155,7 @@ void AddSimulateCommand(CLI::App& app, Action& action) {
   sub->add_option("--set", options->set, "KEY=VALUE: override a key of the machine file; repeatable")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  sub->add_option("--seed", options->seed, "Seed of the emulated machine");
+  sub->add_option("--seed", options->seed, "Seed of the emulated machine")->check(CLI::NonNegativeNumber);
   sub->add_option("--passes", options->passes,
                   "Run the program so many times, one after the other; metrics and cycles are of the last")
       ->check(CLI::Range(1, 10000));

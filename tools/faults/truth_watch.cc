@@ -38,20 +38,22 @@ void TruthWatch::Follow(const CycleRecord& record, const TruthRow& newest, bool 
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& a = axes_[i];
     const AxisTruth& truth = newest.axes[i];
+    // A drive that restarts counts anew; the path stays where it was.
+    if (!begun_) a.zero_m = truth.encoder_zero_m;
+    const double motor_m = truth.motor_position_m - a.zero_m;
     if (holds) {
       const ReferencePoint& r = record.axes[i].reference;
       const double commanded_m = r.position_m + r.velocity_m_s * (newest.time_s - reference_s);
       // Broken before anything was commanded: what is held is where the axis stands, whatever its encoder
       // calls that.
-      if (begun_ && !a.has_command) a.stands_m = truth.motor_position_m - commanded_m;
+      if (begun_ && !a.has_command) a.stands_m = motor_m - commanded_m;
       a.commanded_m = commanded_m + a.stands_m;
       a.has_command = true;
     }
     // Without torque it is off at once, but its departure counts as long as it is commanded.
     const bool torque = UnderTorque(truth) && (holds || !a.powerless);
     if (!begun_ || !torque) continue;
-    if (a.has_command)
-      a.departure_m = std::max(a.departure_m, std::abs(truth.motor_position_m - a.commanded_m));
+    if (a.has_command) a.departure_m = std::max(a.departure_m, std::abs(motor_m - a.commanded_m));
     if (!AtRest(truth)) a.moving_until_s = since_fault_s();
   }
 }

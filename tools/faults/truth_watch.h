@@ -42,6 +42,7 @@ class TruthWatch {
     double commanded_m = 0.0;
     bool has_command = false;
     bool powerless = false;
+    double zero_m = 0.0;    ///< where the encoder began to count, before the fault
     double stands_m = 0.0;  ///< true position less commanded, of a fault that came first
     double departure_m = 0.0;
     double moving_until_s = 0.0;

@@ -429,6 +429,7 @@ void EmulatedAxis::FillTruth(AxisTruth& truth) const noexcept {
   truth.torque_Nm = plant_.DeliveredTorque_Nm(tampering_.torque_share() * current_.torque_Nm());
   truth.command_Nm = current_.command_Nm();
   truth.reported_position_rad = encoder_.ToRad(latched_counts_ - zero_counts_);
+  truth.encoder_zero_m = static_cast<double>(zero_counts_) * TravelPerCount_m();
   truth.temperature_degC = plant_.temperature_degC();
   truth.drive_state = power_.state();
 }

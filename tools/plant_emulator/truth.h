@@ -19,8 +19,12 @@ struct AxisTruth {
   double torque_Nm = 0.0;   ///< torque acting on the motor from this instant's drive current
   double command_Nm = 0.0;  ///< torque the drive's current loop is heading for
   double reported_position_rad = 0.0;  ///< what the encoder said when last latched
+  double encoder_zero_m = 0.0;         ///< where an incremental encoder began to count; 0 for an absolute one
   double temperature_degC = 0.0;       ///< of the screw
   DriveState drive_state = DriveState::kUnknown;
+
+  /// As the encoder counts: comparable with what the daemon knows of an axis that was told nothing.
+  [[nodiscard]] double TableByEncoder_m() const noexcept { return table_position_m - encoder_zero_m; }
 };
 
 /// One row per SYNC, all axes at that SYNC's instant; while the machine runs free (no SYNC), one per

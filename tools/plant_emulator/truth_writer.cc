@@ -16,11 +16,10 @@ constexpr std::array kNumbers{
     &AxisTruth::motor_position_m,   &AxisTruth::motor_velocity_m_s, &AxisTruth::table_position_m,
     &AxisTruth::table_velocity_m_s, &AxisTruth::friction_N,         &AxisTruth::bristle_N,
     &AxisTruth::torque_Nm,          &AxisTruth::command_Nm,         &AxisTruth::reported_position_rad,
-    &AxisTruth::temperature_degC};
+    &AxisTruth::encoder_zero_m,     &AxisTruth::temperature_degC};
 constexpr std::array<std::string_view, kNumbers.size()> kNames{
-    "motor_position_m",   "motor_velocity_m_s", "table_position_m",
-    "table_velocity_m_s", "friction_N",         "bristle_N",
-    "torque_Nm",          "command_Nm",         "reported_position_rad",
+    "motor_position_m", "motor_velocity_m_s", "table_position_m", "table_velocity_m_s",    "friction_N",
+    "bristle_N",        "torque_Nm",          "command_Nm",       "reported_position_rad", "encoder_zero_m",
     "temperature_degC"};
 
 }  // namespace

@@ -41,7 +41,7 @@ class CyclesFile {
     row_.pop_back();
     for (std::size_t i = 0; i < entry.output.record.axes.size(); ++i) {
       row_ += ',';
-      if (truth != nullptr) AppendNumber(truth->axes[i].table_position_m, row_);
+      if (truth != nullptr) AppendNumber(truth->axes[i].TableByEncoder_m(), row_);
       row_ += ',';
       if (truth != nullptr) AppendNumber(truth->axes[i].friction_N, row_);
     }
@@ -88,7 +88,7 @@ class Scoring {
     stale_ = record.stale_cycles - stale_before_;
     ScoredRow row = RowOf(record, estimates_);
     for (std::size_t i = 0; truth != nullptr && i < row.axes.size(); ++i) {
-      row.axes[i].table_m = truth->axes[i].table_position_m;
+      row.axes[i].table_m = truth->axes[i].TableByEncoder_m();
       row.axes[i].friction_truth_N = truth->axes[i].friction_N;
     }
     scorer_->Add(row);

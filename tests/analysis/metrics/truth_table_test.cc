@@ -109,6 +109,16 @@ TEST_F(TruthFile, ColumnsAreFoundByName) {
   EXPECT_EQ(row.axes[1].friction_truth_N, -40.0);
 }
 
+TEST_F(TruthFile, TheTableCountsFromWhereTheEncoderBeganTo) {
+  const TruthTable truth = Load(
+      "sync_number,free_running,x_table_position_m,x_friction_N,x_reported_position_rad,x_encoder_zero_m,"
+      "y_table_position_m,y_friction_N,y_reported_position_rad,y_encoder_zero_m\n"
+      "7,0,0.75,0,0,0.5,0.25,0,0,-0.5\n");
+  ASSERT_NE(truth.Find(7), nullptr);
+  EXPECT_EQ(truth.Find(7)->table_m[0], 0.25);
+  EXPECT_EQ(truth.Find(7)->table_m[1], 0.75);
+}
+
 TEST_F(TruthFile, ErrorsNameFileAndLine) {
   EXPECT_NE(ErrorOf("sync_number,free_running\n").find(":1: column x_table_position_m is missing"),
             std::string::npos);

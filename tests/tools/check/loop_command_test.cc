@@ -143,6 +143,34 @@ TEST(TuneFromModel, TellsOfAnAxisWithoutALoopBeforeItSearchesTheOthers) {
   EXPECT_EQ(tune.out.find("axis x: "), std::string::npos) << tune.out;
 }
 
+// Wherever the table stands, an incremental encoder calls that 0.
+TEST(Simulate, TellsTheTableFromWhereAnIncrementalEncoderBeganToCount) {
+  const std::string program =
+      WriteTestFile("small.yaml", "shape: circle\nradius_mm: 2\nfeed_mm_min: 600\nturns: 2\n");
+  std::string simulate = "simulate --config " + ExampleMachine("xy_emulated.yaml") + " --program " + program +
+                         " --out " + program + ".out --set emulator.axes.x.start_position_mm=1.5";
+  for (const std::string axis : {"x", "y"}) {
+    simulate += " --set emulator.axes." + axis + ".incremental_encoder=true --set axes." + axis +
+                ".drive.absolute_encoder=false --set axes." + axis + ".limits.unreferenced_travel_mm=20";
+  }
+  const Outcome o = Contour(simulate);
+  ASSERT_EQ(o.status, 0) << o.out;
+  const std::size_t table = o.out.find("(table ");
+  ASSERT_NE(table, std::string::npos) << o.out;
+  EXPECT_LT(std::stod(o.out.substr(table + 7)), 20.0) << o.out;
+}
+
+TEST(Contour, NamesWhatIsNoCommandAndRefusesASeedBelowZero) {
+  const Outcome home = Contour("home --axis x");
+  EXPECT_EQ(home.status, 2);
+  ExpectHas(home, "'home' is no command; contour --help lists them");
+  const std::string program = WriteTestFile("seeded.yaml", "shape: hold\nseconds: 0.2\n");
+  const Outcome seed = Contour(SimulateCommand(program) + " --seed -1");
+  EXPECT_EQ(seed.status, 2) << seed.out;
+  ExpectHas(seed, "--seed");
+  EXPECT_EQ(Contour("emulate --seed -1").status, 2);
+}
+
 TEST(TuneFromModel, RefusesABeltAndSaysWhatWouldHelp) {
   const std::string machine = WriteTestFile("belt.yaml", ReadText(ExampleMachine("family/belt.yaml")));
   const std::string tuned = machine + ".tuned.yaml";
