@@ -101,19 +101,18 @@ Oscillation OscillationDetector::Step(const OscillationSample& now) noexcept {
   highest_m_s2_ = std::max(highest_m_s2_, reference_m_s2);
   lowest_m_s2_ = std::min(lowest_m_s2_, reference_m_s2);
   if (now.pushed_N != 0.0) pushed_N_ = std::max(pushed_N_, std::abs(now.pushed_N));
-  if (Chatters(now.force_N, now.pushed_N != 0.0) && found == Oscillation::kNone)
-    found = Oscillation::kLasting;
+  if (Chatters(now.force_N, now.pushed_N) && found == Oscillation::kNone) found = Oscillation::kLasting;
   return found;
 }
 
 // A step of the force, in a corner at full feed, is one change among many; an experiment may change it from
 // cycle to cycle.
-bool OscillationDetector::Chatters(double force_N, bool pushed) noexcept {
+bool OscillationDetector::Chatters(double force_N, double pushed_N) noexcept {
   if (!(bounds_.chatter_N > 0.0)) return false;
   Chatter& c = chatter_;
   const double change_N = std::abs(force_N - before_N_);
   before_N_ = force_N;
-  if (pushed) {
+  if (pushed_N != 0.0) {
     c = {};
     lasting_ = {};
     return false;

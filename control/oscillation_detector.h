@@ -68,7 +68,7 @@ class OscillationDetector {
     double moment_N = 0.0;  ///< each times its time in cycles
     std::uint32_t cycles = 0;
   };
-  [[nodiscard]] bool Chatters(double force_N, bool pushed) noexcept;
+  [[nodiscard]] bool Chatters(double force_N, double pushed_N) noexcept;
   /// Of a swing from cycle to cycle that is told again and again: its mean change, span by span.
   struct Lasting {
     double sum_N = 0.0;
