@@ -35,7 +35,6 @@ const RoughFit& Demanded(const RoughFit& fit, const AxisLog& log, const std::str
 }
 
 void AmpereToUnit(AxisLog& log, StatedAxis& stated, std::vector<std::string>& notes) {
-  const std::string unit = log.linear ? "N/A" : "Nm/A";
   const std::string key = log.linear ? "force_constant_N_A" : "torque_constant_Nm_A";
   double constant = stated.torque_constant;
   if (constant <= 0.0) {
@@ -51,10 +50,8 @@ void AmpereToUnit(AxisLog& log, StatedAxis& stated, std::vector<std::string>& no
     stated.open.insert("ampere");
     double& sigma = stated.sigma["inertia"];
     sigma = std::hypot(sigma > 0.0 ? sigma : kLevelSigma * 0.1, fit.inertia_sigma_rel);
-    notes.push_back("The log holds a current: " + RoundedText(constant) + " " + unit +
-                    " makes the stated inertia that of the log (to " +
-                    RoundedText(100.0 * fit.inertia_sigma_rel) +
-                    " %). All forces stand on that; their ratios to each other do not.");
+    stated.torque_constant = constant;
+    SayAmpere(stated, log.linear, notes);
   }
   for (double& u : log.command) u *= constant;
   stated.torque_constant = constant;
@@ -83,6 +80,14 @@ void Friction(const RoughFit& fit, const AxisLog& log, StatedAxis& stated) {
 }
 
 }  // namespace
+
+void SayAmpere(const StatedAxis& axis, bool linear, std::vector<std::string>& notes) {
+  const std::string begin = "The log holds a current: ";
+  std::erase_if(notes, [&](const std::string& note) { return note.starts_with(begin); });
+  notes.push_back(begin + RoundedText(axis.torque_constant) + (linear ? " N/A" : " Nm/A") +
+                  " makes the stated inertia that of the log. All forces stand on that; their ratios to each "
+                  "other do not.");
+}
 
 std::vector<std::string> CompleteFromLog(AxisLog& log, StatedAxis& stated) {
   std::vector<std::string> notes;

@@ -13,4 +13,7 @@ namespace contour::diagnosis {
 /// Gives what was assumed, in plain words. Throws ConfigError where the log does not say it.
 std::vector<std::string> CompleteFromLog(AxisLog& log, StatedAxis& stated);
 
+/// Which constant an axis's forces stand on, in place of what the notes said of it.
+void SayAmpere(const StatedAxis& axis, bool linear, std::vector<std::string>& notes);
+
 }  // namespace contour::diagnosis

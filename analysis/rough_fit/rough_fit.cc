@@ -17,6 +17,8 @@ constexpr double kSlides = 0.03;
 /// [deviations of the smoothing] From one independent row to the next.
 constexpr double kPerIndependentRow = 5.0;
 constexpr std::size_t kFewestRows = 100;
+/// Of the log, for deviations: many enough to tell them to a sixth.
+constexpr std::size_t kParts = 20;
 
 /// The command in the middle of each row as it acts there.
 Signal Acting(const AxisLog& log, const StatedAxis& stated) {
@@ -60,8 +62,50 @@ Motion MotionOf(const AxisLog& log, const Signals& s, const StatedAxis& stated, 
   return m;
 }
 
-/// Columns: acceleration, Coulomb friction up and down, viscous friction, and the position where asked for. A
-/// direction that the log has not gets none.
+bool Slides(const Motion& m, std::size_t k, const RoughFit& out) {
+  return m.counts[k] != 0 && std::fabs(m.velocity[k]) >= kSlides * out.max_speed;
+}
+
+/// Acceleration, Coulomb friction up and down, viscous friction, and the position where asked for.
+template <int kColumns>
+Eigen::Vector<double, kColumns> RowOf(const Motion& m, const Signal& position, std::size_t k,
+                                      const RoughFit& out) {
+  const double v = m.velocity[k];
+  Eigen::Vector<double, kColumns> x;
+  x.template head<4>() << m.acceleration[k], v > 0.0 ? 1.0 : 0.0, v < 0.0 ? -1.0 : 0.0, v;
+  if constexpr (kColumns > 4) x(4) = position[k] - out.middle;
+  return x;
+}
+
+/// Deviations by the sums of the parts (White, Econometrica 48(4), 1980, over clusters).
+template <int kColumns>
+void ByParts(const Motion& m, const Signal& position, const Eigen::Vector<double, kColumns>& x,
+             const Eigen::Matrix<double, kColumns, kColumns>& inverse, RoughFit& out) {
+  using Matrix = Eigen::Matrix<double, kColumns, kColumns>;
+  Matrix sums = Matrix::Zero();
+  const std::size_t n = m.counts.size();
+  for (std::size_t part = 0; part < kParts; ++part) {
+    Eigen::Vector<double, kColumns> sum = Eigen::Vector<double, kColumns>::Zero();
+    for (std::size_t k = n * part / kParts; k < n * (part + 1) / kParts; ++k) {
+      if (!Slides(m, k, out)) continue;
+      const auto row = RowOf<kColumns>(m, position, k, out);
+      sum += row * (m.command[k] - row.dot(x));
+    }
+    sums += sum * sum.transpose();
+  }
+  const double of_freedom = static_cast<double>(kParts) / static_cast<double>(kParts - kColumns);
+  const Matrix covariance = of_freedom * inverse * sums * inverse;
+  const auto relative = [&](double variance, double value) {
+    return std::sqrt(std::max(0.0, variance)) / std::max(std::fabs(value), 1e-300);
+  };
+  const double directions = out.one_direction ? 1.0 : 0.5;
+  out.inertia_by_parts = relative(covariance(0, 0), x(0));
+  out.coulomb_by_parts =
+      relative(directions * directions * covariance.template block<2, 2>(1, 1).sum(), out.coulomb);
+  out.viscous_by_parts = relative(covariance(3, 3), x(3));
+}
+
+/// A direction that the log has not gets no friction.
 template <int kColumns>
 void Solve(const Motion& m, const Signal& position, double independent_rows, RoughFit& out) {
   using Matrix = Eigen::Matrix<double, kColumns, kColumns>;
@@ -70,11 +114,8 @@ void Solve(const Motion& m, const Signal& position, double independent_rows, Rou
   Vector right = Vector::Zero();
   double squares = 0.0, rows = 0.0;
   for (std::size_t k = 0; k < m.counts.size(); ++k) {
-    const double v = m.velocity[k];
-    if (m.counts[k] == 0 || std::fabs(v) < kSlides * out.max_speed) continue;
-    Vector x;
-    x.template head<4>() << m.acceleration[k], v > 0.0 ? 1.0 : 0.0, v < 0.0 ? -1.0 : 0.0, v;
-    if constexpr (kColumns > 4) x(4) = position[k] - out.middle;
+    if (!Slides(m, k, out)) continue;
+    const Vector x = RowOf<kColumns>(m, position, k, out);
     normal += x * x.transpose();
     right += x * m.command[k];
     squares += m.command[k] * m.command[k];
@@ -105,6 +146,7 @@ void Solve(const Motion& m, const Signal& position, double independent_rows, Rou
   out.viscous = x(3);
   out.unexplained = left * rows / squares;
   out.typical = std::sqrt(squares / rows);
+  ByParts<kColumns>(m, position, x, unit.asDiagonal() * inverse * unit.asDiagonal(), out);
 }
 
 }  // namespace

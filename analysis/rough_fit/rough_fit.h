@@ -17,6 +17,9 @@ struct RoughFit {
   double coulomb = 0.0, viscous = 0.0;
   double coulomb_forth = 0.0, coulomb_back = 0.0;  ///< of each direction; 0 where it never slides so
   double coulomb_sigma = 0.0;
+  /// The same relative deviations by what the parts of the log say: what the axis does beyond the equation
+  /// goes on for longer than a row, and differs from part to part.
+  double inertia_by_parts = 0.0, coulomb_by_parts = 0.0, viscous_by_parts = 0.0;
   double unexplained = 1.0;    ///< share of the command's square
   bool one_direction = false;  ///< it never slides in the other
   double max_speed = 0.0;      ///< of q

@@ -37,6 +37,20 @@ TEST(FitNumbers, FindsThemFromAModelThatIsFarOff) {
   EXPECT_LT(found.axis.sigma.at("inertia"), 0.05);
 }
 
+// Before: the constant made the stated inertia that of the log, and the file had another inertia.
+TEST(FitNumbers, ALogInAmpereKeepsTheStatedInertia) {
+  test::HiddenAxis axis = Made();
+  constexpr double kConstant = 0.5;
+  for (double& u : axis.log.command) u /= kConstant;
+  axis.log.in_ampere = true;
+  const double inertia = axis.stated.motor_inertia + axis.stated.load_inertia;
+  const FittedNumbers found = FitNumbers(axis.log, axis.stated, 1);
+  EXPECT_EQ(found.unusable, "");
+  EXPECT_NEAR((found.axis.motor_inertia + found.axis.load_inertia) / inertia, 1.0, 1e-9);
+  EXPECT_NEAR(found.axis.torque_constant / kConstant, 1.0, 0.03);
+  EXPECT_NEAR(found.axis.friction.Fc_plus / axis.stated.friction.Fc_plus, 1.0, 0.1);
+}
+
 // Before: a level for both directions, stated to 0.1 %, and no word; later the word, and still 0.1 %.
 TEST(FitNumbers, SaysWhereDirectionsAreNotAsStated) {
   test::HiddenAxis axis = Made();
