@@ -192,6 +192,12 @@ void CheckDrive(const std::string& key, const DriveConfig& d, double period_ms, 
     problems.Add(key + ".polarity",
                  "found " + std::to_string(d.polarity) +
                      ", expected 0, or 192: bits 7 (position) and 6 (velocity) of 0x607E together, no other");
+  if (d.polarity == kBoth && d.mode == DriveMode::kCst)
+    problems.Add(
+        key + ".polarity",
+        "found 192 in torque mode (cst), expected 0: 0x607E turns positions and velocities and not the "
+        "torque, so that the loop would run away. Turn the axis round in the drive's own setting "
+        "or in the wiring, or use drive.mode: csp");
   if (d.abort_connection_option != 3)
     problems.Add(
         key + ".abort_connection_option",

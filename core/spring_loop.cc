@@ -27,7 +27,7 @@ double HoldingStiffness_N_m(const TwoInertiaLoop& loop) noexcept {
 }
 
 double StiffestSpring_N_m(const TwoInertiaLoop& loop) noexcept {
-  return kStiffestShare * HoldingStiffness_N_m(loop);
+  return kStiffestShare * std::max(0.0, HoldingStiffness_N_m(loop));
 }
 
 // k = s^2 P / (1 + s G), P the gain of positions and G that of forces.

@@ -242,6 +242,7 @@ class Daemon {
     LastResort last_resort(kEndingTime, status);
     const auto closed_by = std::chrono::steady_clock::now() + kClosingTime;
     last_resort.Now("emptying the telemetry queue");
+    hub_.EndFeeds();
     pump_.Finish();
     last_resort.Now("closing the log");
     const bool all = hub_.Close(closed_by);

@@ -329,8 +329,14 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     pace_.Begin(upload.name, std::move(generator),
                 PacedPath::Options{.single_block = upload.part.single_block, .planning = planning},
                 gcode != nullptr ? HaltsOf(*gcode) : std::vector<ProgramHalt>());
-    Answer answer = Ask(RequestKind::kRun, unwanted, program_id_);
-    pace_.Begun();
+    Answer answer = [&] {
+      // Whatever becomes of the request, what is set from then on is no longer for a program that begins.
+      const struct End {
+        PaceControl& pace;
+        ~End() { pace.Begun(); }
+      } end{pace_};
+      return Ask(RequestKind::kRun, unwanted, program_id_);
+    }();
     answer.program_id = program_id_;
     answer.start_m = found.place->start_m;
     answer.zero_m = found.place->zero_m;

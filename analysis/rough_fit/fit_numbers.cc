@@ -239,7 +239,10 @@ void Settle(const AxisLog& log, const StatedAxis& stated, const RoughFit& rough,
   const std::vector<Pair> pairs = TwoEstimates(of.axis, rough);
   if (of.rigid && !pairs.empty() && Disagree(pairs.front(), of.axis)) {
     const Pair p = pairs.front();
-    of = Estimated(log, WithInertiaOfLeastSquares(stated, rough), rough, threads);
+    Estimate again = Estimated(log, WithInertiaOfLeastSquares(stated, rough), rough, threads);
+    out.unusable = WhyUnusable(again, rough);
+    if (!out.unusable.empty()) return;
+    of = std::move(again);
     of.axis.sigma["inertia"] = std::fabs(p.fitted - p.by_least_squares) / p.by_least_squares;
     out.notes.push_back("Two estimates of the inertia disagree beyond their deviations: " +
                         RoundedText(p.fitted) + " by prediction errors, " + RoundedText(p.by_least_squares) +
@@ -265,6 +268,7 @@ FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
   out.unusable = WhyUnusable(of, rough);
   if (!out.unusable.empty()) return out;
   Settle(log, stated, rough, threads, out, std::move(of));
+  if (!out.unusable.empty()) return out;
   WidenAndSay(rough, out);
   SayOneDirection(rough, out);
   SayUnlikeDirections(rough, stated, log, out);

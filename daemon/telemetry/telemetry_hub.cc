@@ -99,6 +99,11 @@ void TelemetryHub::Detach(const std::shared_ptr<RowFeed>& feed) {
   std::erase(feeds_, feed);
 }
 
+void TelemetryHub::EndFeeds() {
+  const std::lock_guard lock(mutex_);
+  for (const auto& feed : feeds_) feed->End();
+}
+
 void TelemetryHub::WatchFeedback(std::vector<FeedbackSource> sources) {
   const std::lock_guard lock(mutex_);
   emergencies_.Watch(sources);

@@ -48,6 +48,8 @@ class TelemetryHub {
 
   void Attach(std::shared_ptr<RowFeed> feed);
   void Detach(const std::shared_ptr<RowFeed>& feed);
+  /// At the end of the daemon: no row is waited for any more.
+  void EndFeeds();
 
   /// Before the first cycle: whose feedback to watch, and a recorder of the last seconds.
   void WatchFeedback(std::vector<FeedbackSource> sources);

@@ -145,6 +145,9 @@ TEST(MachineChecks, PolarityOfPositionAndVelocityIsOne) {
                            "no other");
   }
   c.axes.at("x").drive.polarity = 192;
+  c.axes.at("x").drive.mode = DriveMode::kCst;
+  EXPECT_EQ(Only(c).substr(0, 65), "axes.x.drive.polarity: found 192 in torque mode (cst), expected 0");
+  c.axes.at("x").drive.mode = DriveMode::kCsp;
   EXPECT_TRUE(Check(c).empty());
 }
 

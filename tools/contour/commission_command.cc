@@ -443,6 +443,7 @@ int RunCommission(const Options& options) {
   MachineConfig own = AskForMachine(*client);
   CheckBeforehand(own, StatusOnceStarted(*client), options);
   TorqueLoops torque = LoopsToRecordWith(own, Status(*client), options);
+  const bool stays_told = torque.loops.empty() && torque.lacking.empty();
   MachineConfig machine = torque.complete() ? InTorqueMode(own, torque.loops) : own;
   std::cout << DescribeAll(own, machine, Status(*client), torque, options);
   if (!options.drive) Advise(machine);
@@ -463,7 +464,7 @@ int RunCommission(const Options& options) {
   }
   TorqueModeStay stay(client, options.socket);
   if (torque.complete()) EnterTorqueMode(stay, models, torque);
-  if (!torque.complete() && !(torque.loops.empty() && torque.lacking.empty())) {
+  if (!torque.complete() && !stays_told) {
     if (options.mode == "cst")
       throw std::runtime_error("no record in torque mode: " + torque.why_not + kCspInstead);
     std::cout << kStays << torque.why_not << "\n";

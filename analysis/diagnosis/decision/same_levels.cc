@@ -50,11 +50,11 @@ bool SameLevels(const Problem& problem, const Fit& fit, std::string_view other, 
   Fit exchanged;
   exchanged.point = Exchanged(problem, fit.point, effects[0]);
   exchanged.residual = std::move(problem.Residuals(std::span(&exchanged.point, 1))[0]);
-  if (!(SquaresOf(exchanged) - SquaresOf(fit) > AlikeScore())) return true;
+  if (SquaresOf(exchanged) - SquaresOf(fit) <= AlikeScore()) return true;
   const double gained = Consistency(problem, exchanged, fit, LeftOut::kNothing);
   // Over the root of the sum of squares about the mean, in place of the sum of squares.
-  const double about_mean = 1.0 - gained * gained / static_cast<double>(kBlocks);
-  return !(gained > std::sqrt(ChiSquareQuantile(1, rate) * about_mean));
+  const double about_mean = std::max(0.0, 1.0 - gained * gained / static_cast<double>(kBlocks));
+  return gained <= std::sqrt(ChiSquareQuantile(1, rate) * about_mean);
 }
 
 }  // namespace contour::diagnosis

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <contour_lcm/cycle_entry.hpp>
 #include <filesystem>
 #include <memory>
@@ -49,6 +50,18 @@ TEST(TelemetryHubTest, StatusSeesTheNewestCycleAndTheCounts) {
   test::ExpectSame(entry.output.record, hub.record());
   EXPECT_FALSE(s.publisher.enabled);
   EXPECT_EQ(s.log.file, "");
+}
+
+// Else a client that takes nothing holds up the end of the daemon, before the log is closed.
+TEST(TelemetryHubTest, OnceFeedsHaveEndedNoClientIsWaitedFor) {
+  TelemetryHub hub(Silent(), 1000, kAxes, std::nullopt, std::chrono::hours(1));
+  test::RandomCycleEntry random(4);
+  const auto feed = std::make_shared<RowFeed>(1);
+  hub.Attach(feed);
+  hub.Consume(random.Next(1, 2));
+  hub.EndFeeds();
+  hub.Consume(random.Next(2, 2));
+  EXPECT_EQ(feed->lost(), 1u);
 }
 
 TEST(TelemetryHubTest, ClientsGetRowsWhileAttached) {
