@@ -148,7 +148,7 @@ TEST(MachineChecks, PolarityOfPositionAndVelocityIsOne) {
   c.axes.at("x").drive.mode = DriveMode::kCst;
   EXPECT_EQ(Only(c).substr(0, 65), "axes.x.drive.polarity: found 192 in torque mode (cst), expected 0");
   c.axes.at("x").drive.mode = DriveMode::kCsp;
-  EXPECT_TRUE(Check(c).empty());
+  for (const ConfigProblem& p : Check(c)) EXPECT_NE(p.key, "axes.x.drive.polarity");
 }
 
 TEST(MachineChecks, Torques) {
