@@ -118,8 +118,8 @@ class ContourController {
 
   /// Forgets integrators, warm starts and the last command. To be called when the axes are enabled.
   void Reset() noexcept;
-  /// In this cycle an experiment's spring holds the axis, and not the law. In CSP the drive itself holds it,
-  /// and goes on doing so.
+  /// In this cycle an experiment's spring holds the axis: SpringLaw, or the law itself where it can
+  /// (ControlLaw::holds_springs). In CSP the drive itself holds it, and goes on doing so.
   [[nodiscard]] bool HoldsBySpring(const ControlInput& input, std::size_t axis) const noexcept;
   /// From the next Step on. The force may jump by what the gains differ: the caller blends it.
   void Soften(Softness softness) noexcept;

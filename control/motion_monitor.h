@@ -26,7 +26,7 @@ struct MotionSample {
   double reported_force_N = 0.0;  ///< 0x6077 of this sample
   double reference_m = 0.0;       ///< of this sample
   double lead_m = 0.0;            ///< csp: by which the drive was told to be ahead of it
-  double spring_N_m = 0.0;        ///< above 0: an experiment holds the axis by a spring instead of the loop
+  double spring_N_m = 0.0;        ///< above 0: an experiment holds the axis by this stiffness
   bool has_scale = false;
   double table_position_m = 0.0;
 };

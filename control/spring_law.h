@@ -6,8 +6,9 @@
 
 namespace contour {
 
-/// Where an experiment asks for it, a damped spring towards the reference takes the law's place: weak enough
-/// to let friction be felt, and no compensation answers the torque that is put on. Has no state.
+/// Where an experiment asks for it, a damped spring towards the reference takes the place of a law that holds
+/// no springs itself: weak enough to let friction be felt, and no compensation answers the torque that is put
+/// on. Has no state.
 class SpringLaw {
  public:
   explicit SpringLaw(const PerAxis<ControlledAxis>& axes) noexcept;

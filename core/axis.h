@@ -56,7 +56,7 @@ struct ReferencePoint {
   double velocity_m_s = 0.0;
   double acceleration_m_s2 = 0.0;
   double extra_torque_Nm = 0.0;  ///< added to the controller's torque over the period that begins here
-  double spring_N_m = 0.0;       ///< above 0: the controller lets go, a damped spring holds the axis instead
+  double spring_N_m = 0.0;       ///< above 0: an experiment holds the axis by no more than this stiffness
 };
 
 /// What an estimator believes of one axis. Table units: position is R theta (the motor seen at the table).

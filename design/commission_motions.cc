@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -107,8 +108,10 @@ class Motions {
                    name_.c_str(), amplitudes.c_str()));
     const double level_Nm = mechanics_.radius_m_rad * 0.5 * (friction_.Fs_plus_N + friction_.Fs_minus_N);
     const double furthest_mm = kStepsOfFollowingError * axis_.limits.following_error_mm;
-    // Infinite where no loop holds it.
-    const double held_Nm_mm = 1e-3 * mechanics_.radius_m_rad * StiffestSpring_N_m(axis_, 1e-6 * cycle_us_);
+    // No spring acts where the drive holds the axis, and one of any stiffness where no loop does.
+    const double stiffest_N_m = LedByDrive(axis_) ? std::numeric_limits<double>::infinity()
+                                                  : StiffestSpring_N_m(axis_, 1e-6 * cycle_us_);
+    const double held_Nm_mm = 1e-3 * mechanics_.radius_m_rad * stiffest_N_m;
     const double largest_Nm = std::min(kTorqueSteps.back() * level_Nm, limits_.max_torque_Nm);
     const double travel_mm =
         std::min(std::max(kStepTravel_mm, kSpringMargin * largest_Nm / held_Nm_mm), furthest_mm);

@@ -17,8 +17,6 @@ constexpr double kSlides = 0.03;
 /// [deviations of the smoothing] From one independent row to the next.
 constexpr double kPerIndependentRow = 5.0;
 constexpr std::size_t kFewestRows = 100;
-/// Of the log, for deviations: many enough to tell them to a sixth.
-constexpr std::size_t kParts = 20;
 
 /// The command in the middle of each row as it acts there.
 Signal Acting(const AxisLog& log, const StatedAxis& stated) {
@@ -84,16 +82,16 @@ void ByParts(const Motion& m, const Signal& position, const Eigen::Vector<double
   using Matrix = Eigen::Matrix<double, kColumns, kColumns>;
   Matrix sums = Matrix::Zero();
   const std::size_t n = m.counts.size();
-  for (std::size_t part = 0; part < kParts; ++part) {
+  for (std::size_t part = 0; part < kPartsOfLog; ++part) {
     Eigen::Vector<double, kColumns> sum = Eigen::Vector<double, kColumns>::Zero();
-    for (std::size_t k = n * part / kParts; k < n * (part + 1) / kParts; ++k) {
+    for (std::size_t k = n * part / kPartsOfLog; k < n * (part + 1) / kPartsOfLog; ++k) {
       if (!Slides(m, k, out)) continue;
       const auto row = RowOf<kColumns>(m, position, k, out);
       sum += row * (m.command[k] - row.dot(x));
     }
     sums += sum * sum.transpose();
   }
-  const double of_freedom = static_cast<double>(kParts) / static_cast<double>(kParts - kColumns);
+  const double of_freedom = static_cast<double>(kPartsOfLog) / static_cast<double>(kPartsOfLog - kColumns);
   const Matrix covariance = of_freedom * inverse * sums * inverse;
   const auto relative = [&](double variance, double value) {
     return std::sqrt(std::max(0.0, variance)) / std::max(std::fabs(value), 1e-300);

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "analysis/axis_model/stated_axis.h"
 #include "analysis/recording/axis_log.h"
 
 namespace contour::diagnosis {
+
+/// Of a log, for deviations by what its parts say: many enough to tell them to a sixth.
+inline constexpr std::size_t kPartsOfLog = 20;
 
 /// What a rigid axis with Coulomb and viscous friction would be by least squares on the smoothed log: good
 /// enough to begin with.

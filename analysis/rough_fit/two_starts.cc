@@ -12,7 +12,6 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr FitEffort kThorough = {.most_steps = 40, .most_refreshes = 12, .close_enough = 0.1};
-constexpr std::size_t kParts = 20;
 /// Break-away over Coulomb level from where friction falls.
 constexpr double kFalls = 1.01;
 
@@ -79,16 +78,16 @@ std::vector<double> DeviationsByParts(const Problem& problem, const Fit& fit) {
   Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(fit.covariance.rows(), fit.covariance.cols());
   const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(),
                                                    static_cast<Eigen::Index>(fit.residual.size()));
-  for (std::size_t part = 0; part < kParts; ++part) {
-    const auto from = static_cast<Eigen::Index>(n * part / kParts);
-    const auto rows = static_cast<Eigen::Index>(n * (part + 1) / kParts) - from;
+  for (std::size_t part = 0; part < kPartsOfLog; ++part) {
+    const auto from = static_cast<Eigen::Index>(n * part / kPartsOfLog);
+    const auto rows = static_cast<Eigen::Index>(n * (part + 1) / kPartsOfLog) - from;
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(sums.rows());
     for (Eigen::Index channel = 0; channel < residual.size(); channel += static_cast<Eigen::Index>(n))
       sum +=
           fit.jacobian.middleRows(channel + from, rows).transpose() * residual.segment(channel + from, rows);
     sums += sum * sum.transpose();
   }
-  const double of_freedom = static_cast<double>(kParts) / (static_cast<double>(kParts) - 1.0);
+  const double of_freedom = static_cast<double>(kPartsOfLog) / (static_cast<double>(kPartsOfLog) - 1.0);
   const Eigen::MatrixXd covariance = of_freedom * fit.covariance * sums * fit.covariance;
   std::vector<double> out;
   for (std::size_t i = 0; i < terms; ++i) {

@@ -3,8 +3,8 @@
 
     unit_tests.py ROOT
 
-The test must be there, hold a TEST and be named in the CMakeLists.txt of its folder. Prints every unit without one and ends with 1
-if there is one. WITHOUT has those that have none yet, as files or as folders (with a / at the end): what has got its tests, or is
+The test must be there and hold a TEST, and every test of the tree must be named in the CMakeLists.txt of its folder or of the one above. Prints
+what is not so and ends with 1 if there is anything. WITHOUT has those that have none yet, as files or as folders (with a / at the end): what has got its tests, or is
 gone, must leave the list.
 """
 import re
@@ -29,11 +29,12 @@ def why_untested(root, test):
         return f"has no test {test}"
     if not re.search(r"^TEST(_[FP])?\(", (root / test).read_text(encoding="utf-8"), re.MULTILINE):
         return f"has a test without TEST: {test}"
-    for folder in (test.parent, test.parent.parent):
-        listing = root / folder / "CMakeLists.txt"
-        if listing.is_file() and test.stem in listing.read_text(encoding="utf-8"):
-            return ""
-    return f"has a test that no CMakeLists.txt builds: {test}"
+    return ""
+
+
+def built(root, test):
+    return any(test.stem in (root / folder / "CMakeLists.txt").read_text(encoding="utf-8")
+               for folder in (test.parent, test.parent.parent) if (root / folder / "CMakeLists.txt").is_file())
 
 
 def check(root, without=None, shared=None):
@@ -51,6 +52,8 @@ def check(root, without=None, shared=None):
         untested |= listed
         if not listed:
             offences.append(f"{unit}: {why}")
+    offences += [f"{test.relative_to(root)}: no CMakeLists.txt builds it" for test in sorted((root / "tests").rglob("*_test.cc"))
+                 if not built(root, test.relative_to(root))]
     offences += [f"{name}: has its tests or is gone, and must leave WITHOUT" for name in sorted(without - untested)]
     return offences, len(units)
 

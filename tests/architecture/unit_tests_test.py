@@ -34,6 +34,9 @@ class UnitTests(unittest.TestCase):
         self.assert_one(offences({**GOOD, TEST: "// TEST(\n"}), "without TEST")
         self.assert_one(offences({**GOOD, LIST: ""}), "no CMakeLists.txt builds")
 
+    def test_a_test_of_nothing_that_is_there_is_found_where_nothing_builds_it(self):
+        self.assert_one(offences({**GOOD, "tests/analysis/a/gone_test.cc": "TEST(Gone, Is) {}\n"}), "gone_test.cc: no CMakeLists.txt builds")
+
     def test_the_list_of_exceptions_shrinks(self):
         self.assertEqual(offences({UNIT: ""}, without=[UNIT]), [])
         self.assert_one(offences(GOOD, without=[UNIT]), "must leave WITHOUT")

@@ -73,6 +73,17 @@ TEST(CommissionPlanTest, ShakesMoreWhereTheDriveLeads) {
   EXPECT_NEAR(chirp_Nm(), 2.0 * torque_mode_Nm, 1e-6);
 }
 
+double NumberOf(const std::string& yaml, const std::string& key) {
+  return std::stod(yaml.substr(yaml.find(key) + key.size()));
+}
+
+std::string StepsOfTorque(const CommissionPlan& plan) {
+  for (const CommissionMotion& motion : plan.motions)
+    if (motion.yaml.find("torque_steps") != std::string::npos) return motion.yaml;
+  ADD_FAILURE() << "no steps of torque";
+  return {};
+}
+
 // The steps' spring is the axis's loop, weaker: one that is too weak for 0.3 mm gets more way, and in the end
 // less torque.
 TEST(CommissionPlanTest, StepsOfTorqueAreWhatTheLoopCanHold) {
@@ -94,16 +105,19 @@ TEST(CommissionPlanTest, StepsOfTorqueAreWhatTheLoopCanHold) {
     const CommissionPlan plan = PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis));
     PerAxis<PlanLimits> limits = ProgramLimits(machine);
     limits[0].stiffest_spring_N_m = StiffestSpring_N_m(axis, 1e-3);
-    for (const CommissionMotion& motion : plan.motions) {
-      if (motion.yaml.find("torque_steps") == std::string::npos) continue;
-      EXPECT_NO_THROW(PlanMotion(ParseProgram(motion.yaml, "steps", ProgramFormat::kYaml), start_m, limits))
-          << regulator_Hz << motion.yaml;
-    }
+    const std::string steps = StepsOfTorque(plan);
+    EXPECT_NO_THROW(PlanMotion(ParseProgram(steps, "steps", ProgramFormat::kYaml), start_m, limits))
+        << regulator_Hz << steps;
   }
-}
-
-double NumberOf(const std::string& yaml, const std::string& key) {
-  return std::stod(yaml.substr(yaml.find(key) + key.size()));
+  axis.limits.following_error_mm = 1.0;
+  // Where the drive holds the axis no spring acts, and none gives it more way.
+  EXPECT_GT(NumberOf(StepsOfTorque(PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis))),
+                     "travel_mm: "),
+            0.3);
+  axis.drive.mode = DriveMode::kCsp;
+  EXPECT_EQ(NumberOf(StepsOfTorque(PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis))),
+                     "travel_mm: "),
+            0.3);
 }
 
 /// The least speed of the motor in its slowest stroke, as a share of it, while the chirp of the plan goes

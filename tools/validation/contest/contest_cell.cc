@@ -35,7 +35,7 @@ class CellScore {
     if (truth == nullptr) return;
     PerAxis<double> table(row.axes.size());
     for (std::size_t i = 0; i < row.axes.size(); ++i)
-      table[i] = row.axes[i].table_m = truth->axes[i].table_position_m;
+      table[i] = row.axes[i].table_m = truth->axes[i].TableByEncoder_m();
     scorer_.Add(row);
     if (row.path_time_s < 0.0 || !plan_.Scored(row.path_time_s)) return;
     const double window = std::floor(WindowAt(row.path_time_s));

@@ -30,7 +30,7 @@ class PathScore {
     Point reference{}, table{};
     for (std::size_t i = 0; i < kPlane; ++i) {
       reference[i] = record.axes[i].reference.position_m;
-      table[i] = truth.axes[i].table_position_m;
+      table[i] = truth.axes[i].TableByEncoder_m();
     }
     references_.push_back(reference);
     tables_.push_back(table);
@@ -143,8 +143,8 @@ class HoldScore {
     lowest_.resize(truth.axes.size(), std::numeric_limits<double>::infinity());
     highest_.resize(truth.axes.size(), -std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < truth.axes.size(); ++i) {
-      lowest_[i] = std::min(lowest_[i], truth.axes[i].table_position_m);
-      highest_[i] = std::max(highest_[i], truth.axes[i].table_position_m);
+      lowest_[i] = std::min(lowest_[i], truth.axes[i].TableByEncoder_m());
+      highest_[i] = std::max(highest_[i], truth.axes[i].TableByEncoder_m());
     }
   }
   [[nodiscard]] double Range_um() const {

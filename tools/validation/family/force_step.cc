@@ -61,7 +61,7 @@ Drawn Draw(const EmulatedMachineFile& file) {
         return std::array<double, 2>{x_m - circle.centre_m[0], y_m - circle.centre_m[1]};
       };
       const auto wanted = from_centre(r.axes[0].reference.position_m, r.axes[1].reference.position_m);
-      const auto table = from_centre(truth->axes[0].table_position_m, truth->axes[1].table_position_m);
+      const auto table = from_centre(truth->axes[0].TableByEncoder_m(), truth->axes[1].TableByEncoder_m());
       drawn.instants.push_back({truth->time_s, turning.Add(std::atan2(wanted[1], wanted[0])),
                                 std::hypot(table[0], table[1]) - circle.radius_m});
     });

@@ -38,7 +38,7 @@ Recorded Draw(const EmulatedMachineFile& file, const std::array<CircleAxis, kCir
       row.motor_m[i] = a.position_m;
       row.force_N[i] = a.feedback.torque_Nm * 2.0 * std::numbers::pi / axes[i].lead_m;
       speed2 += a.reference.velocity_m_s * a.reference.velocity_m_s;
-      table_m[i] = truth->axes[i].table_position_m;
+      table_m[i] = truth->axes[i].TableByEncoder_m();
     }
     row.speed_m_s = std::sqrt(speed2);
     recorded.rows.push_back(row);
