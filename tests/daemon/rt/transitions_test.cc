@@ -1,58 +1,11 @@
-#include "daemon/rt/transitions.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
+#include "tests/daemon/rt/transitions_fixture.h"
+
 namespace contour {
 namespace {
-
-/// Drives the state machine with drives that obey at once.
-class TransitionsTest : public ::testing::Test {
- protected:
-  TransitionsTest() : machine_({10, 20, 30}) {
-    now_.operational = true;
-    now_.drives.resize(2);
-    SetDrives(DriveState::kSwitchedOn);
-    now_.io = {true, true, true, true, 20.0};
-    now_.path_at_rest = true;
-  }
-
-  void SetDrives(DriveState s) {
-    for (DriveState& d : now_.drives) d = s;
-  }
-  Orders Step(RequestKind kind = RequestKind::kNone, std::uint32_t program = 0) {
-    now_.request = {kind, kind == RequestKind::kNone ? 0 : ++sequence_, program};
-    const Orders orders = machine_.Step(now_);
-    if (orders.goal == DriveGoal::kEnabled) SetDrives(DriveState::kOperationEnabled);
-    if (orders.goal == DriveGoal::kQuickStop) SetDrives(DriveState::kSwitchOnDisabled);
-    if (orders.goal == DriveGoal::kSwitchedOn) SetDrives(DriveState::kSwitchedOn);
-    return orders;
-  }
-  void ToIdle() {
-    Step();
-    Step();
-    ASSERT_EQ(machine_.state(), MachineState::kIdle);
-  }
-  void ToReady() {
-    ToIdle();
-    Step(RequestKind::kEnable);
-    for (int i = 0; i < 5; ++i) Step();
-    ASSERT_EQ(machine_.state(), MachineState::kReady);
-  }
-  void ToRunning() {
-    ToReady();
-    EXPECT_TRUE(Step(RequestKind::kRun, 3).expect_path);
-    now_.path_prefetched = now_.path_begins_here = true;
-    now_.path_at_rest = false;
-    EXPECT_TRUE(Step().start_path);
-    ASSERT_EQ(machine_.state(), MachineState::kRunning);
-  }
-
-  Situation now_;
-  Transitions machine_;
-  std::uint32_t sequence_ = 0;
-};
 
 TEST_F(TransitionsTest, NothingEnablesItself) {
   EXPECT_TRUE(Step().start_bring_up);
@@ -350,125 +303,6 @@ TEST_F(TransitionsTest, AnEncoderThatCannotBeBelievedTakesTheVoltageOfItsAxisAlo
   EXPECT_EQ(orders.voltage_off, 1) << "as long as the others brake";
   EXPECT_EQ(machine_.RaiseLate({Reason::kFollowingError, 0}).voltage_off, 0xFF);
   EXPECT_EQ(machine_.RaiseLate({Reason::kFeedbackFrozen, 0, true}).voltage_off, 0);
-}
-
-TEST_F(TransitionsTest, ResetBringsUpAgainAndDoesNotEnable) {
-  ToRunning();
-  now_.fault = {Reason::kDriveFault, 0};
-  Step();
-  now_.fault = {};
-  EXPECT_TRUE(Step(RequestKind::kReset).start_bring_up);
-  for (int i = 0; i < 5; ++i) {
-    const Orders orders = Step();
-    EXPECT_FALSE(orders.torque_allowed);
-    EXPECT_NE(orders.goal, DriveGoal::kEnabled);
-  }
-  EXPECT_EQ(machine_.state(), MachineState::kIdle);
-}
-
-TEST_F(TransitionsTest, AResetWhileIdleTakesTheFaultFromADrive) {
-  ToIdle();
-  SetDrives(DriveState::kFault);
-  now_.request = {RequestKind::kReset, ++sequence_, 0};
-  EXPECT_TRUE(machine_.Step(now_).start_bring_up);
-  EXPECT_TRUE(machine_.acknowledged_ok());
-  now_.request = {};
-  EXPECT_EQ(machine_.Step(now_).goal, DriveGoal::kFaultReset);
-  SetDrives(DriveState::kSwitchOnDisabled);
-  machine_.Step(now_);
-  EXPECT_EQ(machine_.state(), MachineState::kIdle);
-}
-
-TEST_F(TransitionsTest, AResetWaitsForTheEndOfTheQuickStop) {
-  ToRunning();
-  now_.io.emergency_stop_ok = false;
-  machine_.Step(now_);
-  now_.io.emergency_stop_ok = true;
-  SetDrives(DriveState::kQuickStopActive);
-  now_.request = {RequestKind::kReset, ++sequence_, 0};
-  Orders orders = machine_.Step(now_);
-  now_.request = {};
-  for (int i = 0; i < 5; ++i) {
-    EXPECT_FALSE(orders.start_bring_up);
-    EXPECT_NE(machine_.acknowledged(), sequence_);
-    EXPECT_EQ(orders.goal, DriveGoal::kQuickStop) << "the voltage stays until the ramp has ended";
-    orders = machine_.Step(now_);
-  }
-  SetDrives(DriveState::kSwitchOnDisabled);
-  EXPECT_TRUE(machine_.Step(now_).start_bring_up);
-  EXPECT_TRUE(machine_.acknowledged_ok());
-  EXPECT_EQ(machine_.acknowledged(), sequence_);
-  EXPECT_EQ(machine_.state(), MachineState::kStarting);
-}
-
-TEST_F(TransitionsTest, AResetDoesNotWaitForeverForADriveOutOfReach) {
-  ToRunning();
-  now_.lost = {Reason::kBusDown, 0};
-  machine_.Step(now_);  // the drives were last seen enabled, and are seen no more
-  now_.lost = {};
-  now_.request = {RequestKind::kReset, ++sequence_, 0};
-  machine_.Step(now_);
-  now_.request = {};
-  bool begun = false;
-  for (int i = 0; i < 25 && !begun; ++i) begun = machine_.Step(now_).start_bring_up;
-  EXPECT_TRUE(begun);
-}
-
-TEST_F(TransitionsTest, ADriveLostWhileStartingIsAFaultNotAWait) {
-  SetDrives(DriveState::kFault);
-  Step();
-  Step();
-  Step(RequestKind::kReset);
-  now_.operational = false;  // restarted, with its fault not yet reset
-  now_.lost = {Reason::kHeartbeatLost, 1};
-  Step();
-  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
-  EXPECT_EQ(machine_.reason(), Reason::kHeartbeatLost);
-  EXPECT_TRUE(Step(RequestKind::kReset).start_bring_up);
-}
-
-TEST_F(TransitionsTest, ResetClearsDriveFaultsTheFirstStartDoesNot) {
-  SetDrives(DriveState::kFault);
-  EXPECT_NE(Step().goal, DriveGoal::kFaultReset);
-  EXPECT_NE(Step().goal, DriveGoal::kFaultReset);
-  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
-  EXPECT_EQ(machine_.reason(), Reason::kDriveFault);
-  SetDrives(DriveState::kFault);
-  EXPECT_EQ(Step(RequestKind::kReset).goal, DriveGoal::kFaultReset);
-  EXPECT_EQ(Step().goal, DriveGoal::kFaultReset);
-  EXPECT_EQ(machine_.state(), MachineState::kStarting);
-  SetDrives(DriveState::kSwitchOnDisabled);
-  Step();
-  EXPECT_EQ(machine_.state(), MachineState::kIdle);
-}
-
-TEST_F(TransitionsTest, TheTimeForADrivesFaultToGoBeginsWhenItIsFound) {
-  ToIdle();
-  SetDrives(DriveState::kFault);
-  Step(RequestKind::kReset);
-  now_.operational = false;
-  now_.bring_up_active = true;
-  for (int i = 0; i < 1000; ++i) Step();  // listening, booting: far longer than a stop may take
-  now_.operational = true;
-  now_.bring_up_active = false;
-  SetDrives(DriveState::kUnknown);
-  for (int i = 0; i < 3; ++i) Step();
-  EXPECT_EQ(machine_.state(), MachineState::kStarting) << "no statusword yet";
-  SetDrives(DriveState::kFault);
-  Step();
-  EXPECT_EQ(machine_.state(), MachineState::kStarting) << "its reset is under way";
-  SetDrives(DriveState::kSwitchOnDisabled);
-  Step();
-  EXPECT_EQ(machine_.state(), MachineState::kIdle);
-}
-
-TEST_F(TransitionsTest, ADriveThatNeverShowsItsStateIsNotMadeIdle) {
-  SetDrives(DriveState::kSwitchedOn);
-  now_.drives[1] = DriveState::kUnknown;
-  for (int i = 0; i < 100; ++i) Step();
-  EXPECT_EQ(machine_.state(), MachineState::kFaulted);
-  EXPECT_EQ(machine_.reason(), Reason::kStaleFeedback);
-  EXPECT_EQ(machine_.reason_where(), 1);
 }
 
 TEST_F(TransitionsTest, ADriveThatLaterSaysThatItLostItsMasterExplainsWhatWasSeenOfIt) {
