@@ -12,12 +12,15 @@
 #include "config/key_table.h"
 #include "config/load_machine.h"
 #include "config/yaml_tree.h"
+#include "core/friction_kind.h"
 #include "daemon/program/gcode_parser.h"
 #include "daemon/program/program.h"
+#include "drivers/cia402/mode_for.h"
 #include "tools/contour/check_report.h"
 #include "tools/contour/loop_section.h"
 #include "tools/contour/path_section.h"
 #include "tools/machine/load_emulated_machine.h"
+#include "tools/simulate/controller_trial.h"
 
 namespace contour {
 namespace {
@@ -41,6 +44,23 @@ std::vector<KeyRow> AllKeys() {
   std::vector<KeyRow> rows = DescribeKeys<MachineConfig>();
   for (KeyRow& row : DescribeKeys<EmulatorConfig>("emulator")) rows.push_back(std::move(row));
   return rows;
+}
+
+/// Loops with margins have been judged by them, and drives hold their axes by their own.
+std::string WhyControllerRefused(const MachineConfig& machine) {
+  const ControllerName controller = machine.machine.controller;
+  if (KnowsTwoInertias(controller, machine.control.friction)) return {};
+  for (const auto& [name, axis] : machine.axes)
+    if (ModeFor(controller, axis.drive) != DriveMode::kCst) return {};
+  const std::string lost = HowControllerIsLost(machine);
+  if (lost.empty()) return {};
+  const bool full = controller == ControllerName::kFull;
+  const std::string found = full ? "control.friction: found " + std::string(Name(machine.control.friction))
+                                 : "machine.controller: found " + std::string(Name(controller));
+  return found + ", which does not hold this machine in torque mode (" + lost +
+         "); expected one that does; what would help: machine.controller: full with control.friction: linear "
+         "and loops of `contour tune --from-model`, which are judged by their margins; the drive's own loop "
+         "(drive.mode: csp)";
 }
 
 /// A virtual CAN interface is made by software, perhaps after this check; that any other is missing is a
@@ -89,6 +109,8 @@ int RunCheck(const Options& options) {
   std::vector<std::string> with_loops = options.set;
   with_loops.insert(with_loops.end(), loops.chosen.begin(), loops.chosen.end());
   const MachineConfig whole = LoadMaybeEmulatedMachine(options.file, with_loops).machine;
+  if (const std::string lost = WhyControllerRefused(whole); !lost.empty())
+    throw ConfigError(WithPlaces(OpenMachineFile(options.file, options.set), {lost}));
   std::cout << PathSection(whole) << IdleSection(options, whole) << std::flush;
   return CheckInterfaces(file.machine);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "tests/config/test_files.h"
 
@@ -76,6 +77,29 @@ TEST(CheckCommand, SaysWhatIsLeftOfATolerance) {
 
   const Outcome unstated = Check(machine);
   EXPECT_NE(unstated.out.find("expected of loops and screws: "), std::string::npos) << unstated.out;
+}
+
+// A controller without a loop whose margins could be judged is tried in virtual time: on a heavy gantry these
+// are lost when they are enabled. Loops with margins and drives with loops of their own are not tried.
+TEST(CheckCommand, RefusesAControllerThatIsLostOnTheMachine) {
+  const std::string heavy = ExampleMachine("family/slow40.yaml");
+  for (const auto& [set, key] :
+       {std::pair{"machine.controller=mpc_observer", "machine.controller: found mpc_observer"},
+        std::pair{"control.friction=srukf", "control.friction: found srukf"}}) {
+    const Outcome lost = Check(heavy + " --set " + set);
+    EXPECT_EQ(lost.status, 2) << set;
+    EXPECT_NE(lost.errors.find(key), std::string::npos) << lost.errors;
+    EXPECT_NE(lost.errors.find("lost when it is enabled: axis x left the reference"), std::string::npos)
+        << lost.errors;
+    const Outcome in_csp = Check(
+        heavy + " --set control.friction=srukf --set axes.x.drive.mode=csp --set axes.y.drive.mode=csp");
+    EXPECT_EQ(in_csp.status, 0) << in_csp.errors;
+  }
+  EXPECT_EQ(Check(heavy).status, 0);
+  for (const char* set : {"machine.controller=pid", "control.friction=srukf"}) {
+    const Outcome held = Check(ExampleMachine("family/base.yaml") + " --set " + set);
+    EXPECT_EQ(held.status, 0) << set << ": " << held.errors;
+  }
 }
 
 // Ten ways to get a machine file wrong.

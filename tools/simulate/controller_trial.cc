@@ -1,0 +1,116 @@
+#include "tools/simulate/controller_trial.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "config/loop_axis.h"
+#include "config/number_text.h"
+#include "daemon/program/program.h"
+#include "daemon/reason_text.h"
+#include "tools/machine/stated_machine.h"
+#include "tools/simulate/virtual_machine.h"
+
+namespace contour {
+namespace {
+
+// As long as the supervisor needs to notice a swing, to soften it, and to see whether that helped.
+constexpr double kRests_s = 2.0;
+constexpr double kLongest_s = 20.0;
+constexpr double kStroke_mm = 10.0;
+constexpr double kSpeed_mm_s = 20.0;
+
+struct Member {
+  const char* name;
+  OffStated off;
+};
+
+/// One standard deviation of the axis that is known worst.
+std::vector<Member> Members(const MachineConfig& machine) {
+  double inertia = 0.0, stiffness = 0.0;
+  for (const auto& [name, config] : machine.axes) {
+    const LoopAxis axis = LoopAxisOf(config);
+    inertia = std::max({inertia, axis.motor_mass_std, axis.table_mass_std});
+    stiffness = std::max(stiffness, axis.stiffness_std);
+  }
+  return {{"as stated", {}},
+          {"with its inertias larger by what is not known of them", {1.0 + inertia, 1.0}},
+          {"with its inertias smaller by what is not known of them", {1.0 / (1.0 + inertia), 1.0}},
+          {"with its screws stiffer by what is not known of them", {1.0, 1.0 + stiffness}},
+          {"with its screws softer by what is not known of them", {1.0, 1.0 / (1.0 + stiffness)}}};
+}
+
+Program Stroke(const std::string& name, const AxisConfig& axis) {
+  const double room_mm = 0.25 * (axis.limits.position_mm[1] - axis.limits.position_mm[0]);
+  return ParseProgram(
+      "{shape: creep, axis: " + name + ", stroke_mm: " + RoundedText(std::min(kStroke_mm, room_mm)) +
+          ", velocities_mm_s: [" + RoundedText(std::min(kSpeed_mm_s, 0.5 * axis.limits.velocity_mm_s)) + "]}",
+      "a stroke", ProgramFormat::kYaml);
+}
+
+class Trial {
+ public:
+  Trial(const MachineConfig& machine, const OffStated& off)
+      : config_(machine),
+        machine_({machine, StatedMachine(machine, off)}, machine.machine.controller),
+        bus_names_(BusNames(machine)) {}
+
+  std::string Run() {
+    machine_.BringUp();
+    machine_.mailbox().Post(RequestKind::kEnable);
+    if (!Goes(kRests_s)) return "when it is enabled: " + lost_;
+    for (const auto& [name, axis] : config_.axes) {
+      machine_.Start(Stroke(name, axis));
+      if (!Goes(kLongest_s, true)) return "in a slow stroke of axis " + name + ": " + lost_;
+    }
+    return {};
+  }
+
+ private:
+  /// Until the time is over, or a program has ended.
+  bool Goes(double most_s, bool program = false) {
+    const auto cycles = static_cast<int>(1e6 * most_s / config_.machine.cycle_us);
+    for (int i = 0; i < cycles && lost_.empty(); ++i) {
+      machine_.Tick();
+      Look();
+      if (program && machine_.record().reason == Reason::kProgramEnd) break;
+    }
+    return lost_.empty();
+  }
+
+  void Look() {
+    const CycleRecord& r = machine_.record();
+    const bool stopped = r.reason != Reason::kNone && r.reason != Reason::kProgramEnd;
+    if (r.state == MachineState::kFaulted || stopped) {
+      lost_ = ReasonText(r, machine_.axis_names(), bus_names_);
+      return;
+    }
+    for (std::size_t i = 0; i < r.axes.size(); ++i)
+      if (r.axes[i].limit == Reason::kSoftened || r.axes[i].limit == Reason::kFallenBack)
+        lost_ = "axis " + machine_.axis_names()[i] + " swings, and its supervision softens the loop";
+  }
+
+  MachineConfig config_;
+  VirtualMachine machine_;
+  std::vector<std::string> bus_names_;
+  std::string lost_;
+};
+
+/// What the trial is not about.
+MachineConfig Referenced(MachineConfig machine) {
+  for (auto& [name, axis] : machine.axes) axis.drive.absolute_encoder = true;
+  machine.io.modbus.reset();
+  machine.learning.enabled = false;
+  return machine;
+}
+
+}  // namespace
+
+std::string HowControllerIsLost(const MachineConfig& stated) {
+  const MachineConfig machine = Referenced(stated);
+  for (const Member& member : Members(machine))
+    if (const std::string lost = Trial(machine, member.off).Run(); !lost.empty())
+      return std::string("the machine ") + member.name + " is lost " + lost;
+  return {};
+}
+
+}  // namespace contour
