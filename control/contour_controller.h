@@ -77,12 +77,19 @@ struct ControlledAxis {
   StandstillBounds standstill{};  ///< how it is held at rest
 };
 
+/// Forces that act on an axis whatever it does, positive towards positive position: a weight, a cable.
+struct StatedForces {
+  double motor_N = 0.0;  ///< before the screw
+  double table_N = 0.0;  ///< behind it, which winds it up
+};
+
 /// Everything the controller sees of one cycle; see core/horizon.h for the time indices.
 struct ControlInput {
   PerAxis<AxisEstimate> estimate;
   PerAxis<AxisHorizon> reference;
   PerAxis<AxisHorizon> planned;       ///< what Plan() made of it; empty: the reference itself is followed
   PerAxis<FrictionPreview> friction;  ///< total friction along what is followed; empty: none known
+  PerAxis<StatedForces> stated;       ///< as the model has them, of axes that a spring holds
   PerAxis<double> previous_force_N;   ///< u(k-1), the command that acts now, after the guard
   std::uint32_t skipped = 0;          ///< periods just before this one in which nothing was sent
 };

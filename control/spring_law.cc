@@ -23,13 +23,18 @@ bool SpringLaw::Holds(const ControlInput& input, std::size_t axis) noexcept {
   return PointAt(input.reference[axis], kAhead).spring_N_m > 0.0;
 }
 
+double SpringLaw::AgainstStated_N(const ControlInput& input, std::size_t axis) noexcept {
+  return axis < input.stated.size() ? -input.stated[axis].motor_N - input.stated[axis].table_N : 0.0;
+}
+
 void SpringLaw::Step(std::size_t axis, const ControlInput& input, ControlOutput& output) const noexcept {
   const ReferencePoint& ahead = PointAt(input.reference[axis], kAhead);
   const AxisEstimate& now = input.estimate[axis];
   const double damping_Ns_m = 2.0 * kDamping * std::sqrt(ahead.spring_N_m * mass_kg_[axis]);
-  output.force_N[axis] = ahead.spring_N_m * (ahead.position_m - now.predicted_position_m) +
+  const double against_N = AgainstStated_N(input, axis);
+  output.force_N[axis] = against_N + ahead.spring_N_m * (ahead.position_m - now.predicted_position_m) +
                          damping_Ns_m * (ahead.velocity_m_s - now.predicted_velocity_m_s);
-  output.feedforward_N[axis] = 0.0;
+  output.feedforward_N[axis] = against_N;
   output.limit[axis] = Reason::kNone;
 }
 

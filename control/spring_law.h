@@ -15,6 +15,8 @@ class SpringLaw {
 
   /// The experiment asks for it, on this axis and in this cycle.
   [[nodiscard]] static bool Holds(const ControlInput& input, std::size_t axis) noexcept;
+  /// What holds a weight that the model states, without which the spring would give way under it.
+  [[nodiscard]] static double AgainstStated_N(const ControlInput& input, std::size_t axis) noexcept;
   /// Writes the output of one axis that it holds.
   void Step(std::size_t axis, const ControlInput& input, ControlOutput& output) const noexcept;
 

@@ -194,14 +194,18 @@ void TwoInertiaLaw::Spring(std::size_t axis, const ControlInput& input, ControlO
   const ReferencePoint &r = PointAt(reference, 0), &ahead = PointAt(reference, 1);
   const TwoInertiaLoop& loop = a.Loop(input.estimate[axis].by_scale, softer_);
   const SpringShares share = SharesOfSpring(loop, ahead.spring_N_m);
-  const LoopMotion wanted{r.position_m, r.velocity_m_s, r.position_m, r.velocity_m_s, a.led_N};
+  const double against_N = SpringLaw::AgainstStated_N(input, axis);
+  const double table_N = axis < input.stated.size() ? input.stated[axis].table_N : 0.0;
+  const double motor_m = r.position_m - table_N / a.mechanics.stiffness_N_m;
+  const LoopMotion wanted{motor_m, r.velocity_m_s, r.position_m, r.velocity_m_s, a.led_N};
   const double deviation_N = a.Deviation_N(loop, input.estimate[axis].motion, wanted, share);
-  const double force_N = Filtered_N(loop.filter, -deviation_N / lasts_periods_, a.steps == 0, a.filter);
+  const double force_N =
+      against_N + Filtered_N(loop.filter, -deviation_N / lasts_periods_, a.steps == 0, a.filter);
   std::shift_right(a.planned_N.begin(), a.planned_N.end(), 1);
-  a.planned_N[0] = ahead.extra_torque_Nm / a.mechanics.radius_m_rad;
+  a.planned_N[0] = against_N + ahead.extra_torque_Nm / a.mechanics.radius_m_rad;
   a.steps = 1;
   output.target_position_m[axis] = ahead.position_m;
-  output.feedforward_N[axis] = 0.0;
+  output.feedforward_N[axis] = against_N;
   output.force_N[axis] = std::clamp(force_N, -a.force_limit_N, a.force_limit_N);
   output.limit[axis] = std::abs(force_N) > a.force_limit_N ? Reason::kTorqueLimit : Reason::kNone;
 }

@@ -55,6 +55,7 @@ Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAx
     : radius_m_rad(cycle.axes[index].mechanics.radius_m_rad),
       estimator(MakeEstimator(cycle, index)),
       observer(MakeObserver(cycle, index)),
+      known(cycle.axes[index].known),
       monitor(monitored, cycle.control.monitor, cycle.cycle_us * 1e-6, cycle.off),
       in_period(cycle.cycle_us * 1e-6, cycle.axes[index].lag_s),
       acts_after(std::min<std::size_t>(
@@ -107,6 +108,7 @@ Cycle::Cycle(const CycleConfig& config)
   control_in_.estimate.resize(n);
   control_in_.reference.resize(n);
   control_in_.friction.resize(n);
+  control_in_.stated.resize(n);
   control_in_.previous_force_N = Zeros(n);
   control_out_.force_N = Zeros(n);
   control_out_.feedforward_N = Zeros(n);

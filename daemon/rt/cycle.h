@@ -81,6 +81,7 @@ class Cycle {
     double radius_m_rad;
     AxisEstimator estimator;
     AxisEstimator observer;  ///< to fall back to
+    KnownEffects known;
     MotionMonitor monitor;
     std::array<double, 3> sent_force_N{};  ///< newest first
     double reported_N = 0.0;               ///< torque at the sample before, as the drive told it
@@ -151,6 +152,7 @@ class Cycle {
   void CatchUp(Axis& axis, std::size_t index, AxisEstimatorInput input) noexcept;
   void HoldHere() noexcept;
   void FollowFeedback() noexcept;
+  void TellStatedForces() noexcept;
   void Blend() noexcept;
   void TellLoop() noexcept;
   [[nodiscard]] bool fallen_back() const noexcept {

@@ -20,11 +20,22 @@ void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
   // Where nothing is held, the reference is where the axes are: nothing jumps when they are enabled.
   if (!orders.torque_allowed) FollowFeedback();
   if (orders.expect_path) follower_.Expect(transitions_.program_id());
-  if (orders.start_path) follower_.Start();
+  if (orders.start_path) {
+    TellStatedForces();
+    follower_.Start();
+  }
   if (orders.stop_path)
     follower_.BeginStop(orders.within_limits ? PathFollower::StopKind::kWithinLimits
                                              : PathFollower::StopKind::kShortest);
   if (orders.shorten_stop) follower_.BeginStop(PathFollower::StopKind::kShortest);
+}
+
+// An experiment's spring, which would give way under a weight, holds an axis where its program began.
+[[gnu::cold, gnu::noinline]] void Cycle::TellStatedForces() noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    const double at_m = control_in_.reference[i][0].position_m;
+    control_in_.stated[i] = {axes_[i].known.Constant_N(), axes_[i].known.TableForce_N(at_m)};
+  }
 }
 
 // An incremental encoder that was not believed, or seemed faster than its axis can be, may have lost counts.

@@ -78,6 +78,42 @@ TEST(TorqueExperiments, SmallStepsDoNotBreakAway) {
   EXPECT_LT(seen.furthest_m, 8e-6);
 }
 
+/// How far the x axis goes from its place while steps of torque hold it by a spring, with a force of 60 N on
+/// its table that came when it was enabled: without a brake it would not wait for that.
+double GivesWay_m(ControllerName controller, const std::vector<std::string>& stated) {
+  std::vector<std::string> set{"emulator.axes.x.effects.cutting_force={force_N: 60, start_s: 2, lag_ms: 50}"};
+  set.insert(set.end(), stated.begin(), stated.end());
+  VirtualMachine machine(ExampleMachine(set), controller);
+  machine.BringUp();
+  machine.Enable();
+  while (machine.record().cycle < 3500) machine.Tick();
+  double furthest_m = 0.0;
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) {
+    const CycleRecord& r = entry.output.record;
+    if (r.state == MachineState::kRunning && r.axes[0].reference.spring_N_m > 0.0)
+      furthest_m = std::max(furthest_m, std::abs(r.axes[0].following_error_m));
+  });
+  machine.Run(Text("{shape: torque_steps, axis: x, travel_mm: 0.3, torques_Nm: [0.03, -0.03]}"));
+  return furthest_m;
+}
+
+// The spring is of 1.3e5 N/m, friction of 42 N: with the largest step a weight that is not known takes the
+// axis 0.4 mm away.
+TEST(TorqueExperiments, AStatedWeightIsLedWhileTheSpringHolds) {
+  const double radius_m = ToSi(ExampleMachine().machine.axes.at("x").model.mechanics).radius_m_rad;
+  const std::string torque = std::to_string(60.0 * radius_m);
+  const std::string spring =
+      "axes.x.model.extensions.cable_spring={position_mm: [-1000, 1000], torque_Nm: [" + torque + ", " +
+      torque + "]}";
+  const std::string constant = "axes.x.model.extensions.constant_torque={torque_Nm: " + torque + "}";
+  for (const ControllerName name : {ControllerName::kPid, ControllerName::kFull}) {
+    const double unstated_m = GivesWay_m(name, {});
+    EXPECT_GT(unstated_m, 0.2e-3) << Name(name) << ": it matters";
+    for (const std::string& stated : {spring, constant})
+      EXPECT_LT(GivesWay_m(name, {stated}), 0.2 * unstated_m) << Name(name) << " " << stated;
+  }
+}
+
 TEST(TorqueExperiments, PulsesAreSentAndTheEstimatorKnowsThem) {
   const std::string pulses =
       "{shape: creep, axis: x, stroke_mm: 20, velocities_mm_s: [20], "

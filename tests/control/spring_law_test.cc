@@ -91,6 +91,34 @@ TEST(SpringLaw, OfALoopThatKnowsTwoInertiasIsThatLoopWeaker) {
   EXPECT_NEAR(out.force_N[1], -kSpring_N_m * 1e-5, 0.02 * kSpring_N_m * 1e-5);
 }
 
+// Else the axis gives way under it by weight over stiffness when the spring takes over.
+TEST(SpringLaw, AStatedWeightIsLed) {
+  const PerAxis<ControlledAxis> axes = AxesWithLoops();
+  ControlInput in = OneAxisSprung();
+  for (AxisEstimate& e : in.estimate) e.predicted_position_m = e.predicted_velocity_m_s = 0.0;
+  in.stated.resize(2);
+  in.stated[1] = {-30.0, -170.0};
+  for (const ControllerName name : {ControllerName::kPid, ControllerName::kMpc}) {
+    ContourController controller(name, ControllerConfig{}, axes, test::kPeriod_s);
+    ControlOutput out;
+    controller.Step(in, out);
+    EXPECT_NEAR(out.force_N[1], 200.0, 1e-9) << Name(name);
+    EXPECT_EQ(out.feedforward_N[1], 200.0);
+  }
+  // Where the table stands at its reference, wound up against the weight, nothing is amiss.
+  ControllerConfig config;
+  config.friction = FrictionKind::kLinear;
+  ContourController controller(ControllerName::kFull, config, axes, test::kPeriod_s);
+  in.previous_force_N[1] = 200.0;
+  in.estimate[1].motion = {170.0 / axes[1].mechanics.stiffness_N_m, 0.0, 0.0, 0.0, 200.0};
+  for (int cycle = 0; cycle < 50; ++cycle) {
+    ControlOutput out;
+    controller.Step(in, out);
+    EXPECT_NEAR(out.force_N[1], 200.0, 1e-6) << cycle;
+    in.previous_force_N[1] = out.force_N[1];
+  }
+}
+
 TEST(SpringLaw, ADriveThatClosesItsOwnLoopIsNotReplaced) {
   ContourController controller(ControllerName::kFull, ControllerConfig{}, test::NominalAxes(2), 1e-3, true);
   EXPECT_FALSE(controller.HoldsBySpring(OneAxisSprung(), 1));
