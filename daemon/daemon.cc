@@ -4,8 +4,10 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <memory>
 #include <optional>
@@ -52,8 +54,10 @@ constexpr std::size_t kPathPoints = 4096;
 constexpr std::chrono::milliseconds kWatchPeriod{50};
 /// How often the cycle's state is copied: a flight record is longer than asked for by this at most.
 constexpr double kSnapshotPeriod_s = 2.0;
-/// In lock-step time waits for a disk that has fallen behind, but not for one that is dead.
+/// In lock-step time waits for a disk, a network or clients that have fallen behind, but not for dead ones.
 constexpr std::chrono::milliseconds kLockstepPatience{1000};
+/// Of the time after which outputs go off: disk, network and, twice as long, clients may hold one cycle up.
+constexpr double kPatienceOfSilence = 0.2;
 
 // How long the end may take once the axes have stopped; systemd/contourd.service allows for all of it.
 constexpr std::chrono::seconds kClosingTime{3};  ///< for the disk to take the rest of the log
@@ -84,6 +88,13 @@ std::vector<BusParties> Parties(const MachineConfig& machine) {
         parties.back().nodes.push_back(static_cast<std::uint8_t>(axis.drive.node_id));
   }
   return parties;
+}
+
+std::chrono::milliseconds PatienceFor(const std::string& clock, const MachineConfig& machine) {
+  if (clock != "lockstep") return std::chrono::milliseconds(0);
+  if (!machine.io.modbus || !machine.io.modbus->outputs.program) return kLockstepPatience;
+  const double silence_ms = 1e3 * machine.io.modbus->outputs.program->silence_s;
+  return std::min(kLockstepPatience, std::chrono::milliseconds(std::lround(kPatienceOfSilence * silence_ms)));
 }
 
 /// SIGTERM, SIGINT and SIGHUP are taken by the main thread alone.
@@ -119,7 +130,7 @@ class Daemon {
         mailbox_(kRequests, kPathPoints),
         queue_(kTelemetryEntries),
         hub_(machine_.telemetry, machine_.machine.cycle_us, AxisNames(machine_), LogTarget(),
-             options.clock == "lockstep" ? kLockstepPatience : std::chrono::milliseconds(0)),
+             PatienceFor(options.clock, machine_)),
         pump_(queue_, mailbox_, hub_, machine_.machine.cycle_us * 1e-6, AxisNames(machine_),
               BusNames(machine_)),
         learning_(machine_),

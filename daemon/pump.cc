@@ -124,6 +124,7 @@ void Pump::Drain() {
   for (const std::string& line : hub_.TakeEmergencyLines()) spdlog::warn("drive of {}", line);
   if (const auto message = hub_.TakeHealthMessage()) spdlog::warn("{}", *message);
   if (const auto message = hub_.TakeForeignMessage()) spdlog::warn("{}", *message);
+  if (const auto message = hub_.TakeRowsMessage()) spdlog::warn("{}", *message);
   ReportFlight();
   ReportLog();
   if (report_motion_) report_motion_(travel_m_, static_cast<double>(moving_cycles_) * period_s_);

@@ -1,12 +1,13 @@
 #include "daemon/telemetry/row_feed.h"
 
+#include <chrono>
 #include <utility>
 
 #include "drivers/lcm/cycle_messages.h"
 
 namespace contour {
 
-void RowFeed::Push(const CycleEntry& entry, std::chrono::milliseconds patience) {
+void RowFeed::Push(const CycleEntry& entry, Patience& patience) {
   contour_lcm::cycle_entry message;
   ToMessage(entry, message);
   message.num_sent = message.input.num_frames = message.input.num_path_points = 0;
@@ -15,11 +16,14 @@ void RowFeed::Push(const CycleEntry& entry, std::chrono::milliseconds patience) 
   message.input.path.clear();
   std::string row = Encode(message);
   std::unique_lock lock(mutex_);
-  while (rows_.size() >= capacity_ && !ended_ && !out_of_patience_ && patience.count() > 0) {
-    const std::uint64_t before = pops_;
-    out_of_patience_ = !popped_.wait_for(lock, patience, [&] { return pops_ != before || ended_; });
+  const auto room = [&] { return rows_.size() < capacity_ || ended_; };
+  if (!behind_ && !room() && patience.ForOne() > Patience::Duration::zero()) {
+    const auto began = std::chrono::steady_clock::now();
+    popped_.wait_for(lock, patience.ForOne(), room);
+    patience.Use(std::chrono::steady_clock::now() - began);
   }
-  if (rows_.size() >= capacity_) {
+  if (behind_ || rows_.size() >= capacity_) {
+    behind_ = true;
     ++lost_;
     return;
   }
@@ -31,8 +35,7 @@ std::optional<std::string> RowFeed::Pop() {
   if (rows_.empty()) return std::nullopt;
   std::string row = std::move(rows_.front());
   rows_.pop_front();
-  ++pops_;
-  out_of_patience_ = false;
+  behind_ = behind_ && rows_.size() > capacity_ / 2;
   popped_.notify_one();
   return row;
 }
@@ -51,6 +54,11 @@ std::size_t RowFeed::size() const {
 std::uint64_t RowFeed::lost() const {
   const std::lock_guard lock(mutex_);
   return lost_;
+}
+
+bool RowFeed::behind() const {
+  const std::lock_guard lock(mutex_);
+  return behind_;
 }
 
 }  // namespace contour

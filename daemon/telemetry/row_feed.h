@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -10,6 +9,7 @@
 #include <string>
 
 #include "core/cycle_record.h"
+#include "daemon/telemetry/patience.h"
 
 namespace contour {
 
@@ -26,23 +26,29 @@ class RowFeed {
 
   /// Keeps the record and the timing of the cycle, not its frames and path points. A row is an encoded
   /// contour_lcm::cycle_entry (see drivers/lcm/cycle_messages.h).
-  /// `patience`: how long it waits for room while the client takes nothing; then not again until that does.
-  void Push(const CycleEntry& entry, std::chrono::milliseconds patience = std::chrono::milliseconds(0));
+  /// It waits for room as long as there is patience; then not again until the client has taken half of what
+  /// waits for it: one that takes a row now and then would hold the machine for good.
+  void Push(const CycleEntry& entry, Patience& patience);
+  void Push(const CycleEntry& entry) {
+    Patience none;
+    Push(entry, none);
+  }
   std::optional<std::string> Pop();
   /// Nobody pops any more: Push() waits for nothing.
   void End();
 
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] std::uint64_t lost() const;
+  /// Rows are lost, and go on being lost until the client has caught up.
+  [[nodiscard]] bool behind() const;
 
  private:
   const std::size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable popped_;
   std::deque<std::string> rows_;
-  std::uint64_t pops_ = 0;
   bool ended_ = false;
-  bool out_of_patience_ = false;
+  bool behind_ = false;
   std::uint64_t lost_ = 0;
 };
 

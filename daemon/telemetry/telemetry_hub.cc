@@ -13,7 +13,7 @@ TelemetryHub::TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vec
                            const std::optional<LogTarget>& log, std::chrono::milliseconds patience)
     : encoder_(config, cycle_us, axis_names),
       axis_names_(axis_names),
-      patience_(patience),
+      patience_(2 * patience, std::chrono::microseconds(cycle_us)),
       health_(axis_names),
       emergencies_(axis_names.size()) {
   if (config.publish) {
@@ -73,7 +73,6 @@ bool TelemetryHub::Close(std::chrono::steady_clock::time_point deadline) {
 }
 
 void TelemetryHub::Observe(const CycleEntry& entry) {
-  std::vector<std::shared_ptr<RowFeed>> feeds;
   {
     const std::lock_guard lock(mutex_);
     ++cycles_;
@@ -83,25 +82,50 @@ void TelemetryHub::Observe(const CycleEntry& entry) {
     health_.Add(entry);
     emergencies_.Add(entry);
     foreign_.Add(entry.input);
-    feeds = feeds_;
+  }
+  FeedClients(entry);
+}
+
+void TelemetryHub::FeedClients(const CycleEntry& entry) {
+  std::vector<std::shared_ptr<RowFeed>> feeds;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const Client& client : clients_) feeds.push_back(client.feed);
   }
   for (const auto& feed : feeds) feed->Push(entry, patience_);
+  patience_.EndCycle();
+  const std::lock_guard lock(mutex_);
+  for (Client& client : clients_) {
+    const bool behind = client.feed->behind();
+    if (behind && !client.behind)
+      rows_message_ =
+          "a client that collects rows does not keep up: rows are dropped, and counted for it, until it has";
+    client.behind = behind;
+  }
+}
+
+std::optional<std::string> TelemetryHub::TakeRowsMessage() {
+  const std::lock_guard lock(mutex_);
+  if (rows_message_.empty()) return std::nullopt;
+  return std::exchange(rows_message_, {});
 }
 
 void TelemetryHub::Attach(std::shared_ptr<RowFeed> feed) {
   const std::lock_guard lock(mutex_);
-  feeds_.push_back(std::move(feed));
+  clients_.push_back({std::move(feed)});
 }
 
 void TelemetryHub::Detach(const std::shared_ptr<RowFeed>& feed) {
   feed->End();
   const std::lock_guard lock(mutex_);
-  std::erase(feeds_, feed);
+  std::erase_if(clients_, [&](const Client& client) { return client.feed == feed; });
+  if (const std::uint64_t lost = feed->lost(); lost != 0)
+    rows_message_ = "a client that collected rows has ended; " + std::to_string(lost) + " were dropped";
 }
 
 void TelemetryHub::EndFeeds() {
   const std::lock_guard lock(mutex_);
-  for (const auto& feed : feeds_) feed->End();
+  for (const Client& client : clients_) client.feed->End();
 }
 
 void TelemetryHub::WatchFeedback(std::vector<FeedbackSource> sources) {

@@ -32,8 +32,9 @@ class TelemetryHub {
   };
 
   /// Throws std::runtime_error when the log cannot be made. Whether LCM works shows later, in stats.
-  /// `patience`: how long Consume() waits for a disk, a network or a client that has fallen behind (see
-  /// SlowLane); 0 where time does not wait.
+  /// `patience`: how long Consume() waits for a disk or a network that has fallen behind (see SlowLane), and
+  /// twice that for all clients together (see Patience), so for the first as long; 0 where time does not
+  /// wait.
   TelemetryHub(const TelemetryConfig& config, int cycle_us, std::vector<std::string> axis_names,
                const std::optional<LogTarget>& log,
                std::chrono::milliseconds patience = std::chrono::milliseconds(0));
@@ -61,6 +62,8 @@ class TelemetryHub {
   std::optional<std::string> TakeHealthMessage();
   /// A line for each emergency message of a drive since the last call.
   std::vector<std::string> TakeEmergencyLines();
+  /// A line on a client that does not keep up, or has ended, with the rows that it lost.
+  std::optional<std::string> TakeRowsMessage();
   /// A line on others who send on the buses.
   std::optional<std::string> TakeForeignMessage();
 
@@ -87,18 +90,24 @@ class TelemetryHub {
 
  private:
   void Observe(const CycleEntry& entry);
+  void FeedClients(const CycleEntry& entry);
   void TellEmergencies();
 
   TelemetryEncoder encoder_;
   const std::vector<std::string> axis_names_;
-  const std::chrono::milliseconds patience_;
+  Patience patience_;  ///< with clients
   std::unique_ptr<BackgroundPublisher> publisher_;
   std::unique_ptr<BackgroundLog> log_;
   std::unique_ptr<FlightRecorder> flight_;
   std::vector<TelemetrySink*> sinks_;
 
   mutable std::mutex mutex_;  // guards all below
-  std::vector<std::shared_ptr<RowFeed>> feeds_;
+  struct Client {
+    std::shared_ptr<RowFeed> feed;
+    bool behind = false;  ///< as was said
+  };
+  std::vector<Client> clients_;
+  std::string rows_message_;
   std::uint64_t cycles_ = 0;
   std::uint64_t skipped_grid_points_ = 0;
   CycleRecord record_;

@@ -64,6 +64,21 @@ TEST(TelemetryHubTest, OnceFeedsHaveEndedNoClientIsWaitedFor) {
   EXPECT_EQ(feed->lost(), 1u);
 }
 
+TEST(TelemetryHubTest, AClientThatDoesNotKeepUpIsTold) {
+  TelemetryHub hub(Silent(), 1000, kAxes, std::nullopt);
+  test::RandomCycleEntry random(6);
+  const auto feed = std::make_shared<RowFeed>(1);
+  hub.Attach(feed);
+  hub.Consume(random.Next(1, 2));
+  EXPECT_EQ(hub.TakeRowsMessage(), std::nullopt);
+  hub.Consume(random.Next(2, 2));
+  hub.Consume(random.Next(3, 2));
+  ASSERT_TRUE(hub.TakeRowsMessage());
+  EXPECT_EQ(hub.TakeRowsMessage(), std::nullopt) << "once";
+  hub.Detach(feed);
+  EXPECT_EQ(hub.TakeRowsMessage(), "a client that collected rows has ended; 2 were dropped");
+}
+
 TEST(TelemetryHubTest, ClientsGetRowsWhileAttached) {
   TelemetryHub hub(Silent(), 1000, kAxes, std::nullopt);
   test::RandomCycleEntry random(2);
