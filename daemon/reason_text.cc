@@ -27,6 +27,15 @@ std::string DriveText(const ReasonDetail& detail) {
 
 std::string Milliseconds(std::uint64_t time_us) { return std::to_string((time_us + 500) / 1000) + " ms"; }
 
+/// A drive that heard nobody stopped by itself, and says so.
+std::string SaidByDrives(const CycleRecord& record, std::span<const std::string> axis_names) {
+  std::string text;
+  for (std::size_t i = 0; i < record.axes.size() && i < axis_names.size(); ++i)
+    if (record.axes[i].emergency_code != 0)
+      text += "; axis " + axis_names[i] + " sent " + EmergencyOf(record.axes[i].emergency_code);
+  return text;
+}
+
 /// Of the axis that the reason is about.
 bool VoltageIsOff(const CycleRecord& record) {
   return record.state == MachineState::kFaulted && record.reason_axis < record.axes.size() &&
@@ -115,9 +124,11 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
     case Reason::kEstimatorDiverged:
       return axis + ": the friction estimate diverged; quick stop. Please report this with the log";
     case Reason::kGridPointsSkipped:
-      return "the cycle was held up for too many periods while the axes moved; quick stop. The host is "
-             "overloaded "
-             "or gives no real time; then reset";
+      return "no cycle ran" +
+             (detail.waited_us == 0 ? std::string() : " for " + Milliseconds(detail.waited_us)) +
+             " while the axes moved; quick stop. contourd was stopped (SIGSTOP, a debugger), or the host is "
+             "overloaded or gives no real time: `contour status --json` counts why, late.causes" +
+             SaidByDrives(record, axis_names) + "; then reset";
     case Reason::kDriveNotFollowing:
       return axis +
              ": the enabled drive does not say that it follows its target (bit 12 of the statusword), or "

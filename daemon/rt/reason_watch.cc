@@ -18,6 +18,7 @@ void ReasonWatch::Arose(const DriveMaster& master, std::uint32_t stayed_cycles) 
   detail_ = {};
   age_ = 0;
   std::uint64_t waited_cycles = reason_ == Reason::kStopTimeout ? stayed_cycles : 0;
+  if (reason_ == Reason::kGridPointsSkipped) waited_cycles = master.elapsed_cycles();
   if (OfDrive(master)) {
     const AxisDriveStatus& s = master.status()[where_];
     detail_.drive_state = master.feedback()[where_].drive_state;
@@ -34,7 +35,9 @@ void ReasonWatch::LookForSlowStops(const DriveMaster& master) noexcept {
     const DriveState state = master.feedback()[i].drive_state;
     const bool stops = state == DriveState::kOperationEnabled || state == DriveState::kQuickStopActive ||
                        state == DriveState::kFaultReactionActive;
-    if (!s.transition_late || !stops || s.goal != DriveGoal::kQuickStop) continue;
+    // Of a drive that is silent, nobody knows.
+    if (!s.transition_late || !stops || s.goal != DriveGoal::kQuickStop || !master.feedback()[i].fresh)
+      continue;
     detail_.slow_quick_stop = static_cast<std::uint8_t>(i);
     detail_.slow_quick_stop_us = s.in_state_cycles * cycle_us_;
   }

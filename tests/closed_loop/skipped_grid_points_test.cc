@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <string>
+
+#include "daemon/reason_text.h"
 #include "tests/closed_loop/test_machine.h"
 
 namespace contour::test {
@@ -52,6 +56,20 @@ TEST_F(SkippedGridPoints, AsManyAsFeedbackMayBeOldAreAFault) {
   EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
   EXPECT_EQ(machine_.record().reason, Reason::kGridPointsSkipped);
   for (const AxisRecord& a : machine_.record().axes) EXPECT_EQ(a.torque_Nm, 0.0);
+}
+
+// As after SIGSTOP and SIGCONT. The drives lost their master, stopped by themselves and are silent: that they
+// did not end their quick stops, nobody has seen.
+TEST_F(SkippedGridPoints, AProcessThatWasStoppedBlamesNoDrive) {
+  machine_.SkipGridPoints(500);
+  for (int i = 0; i < 1500; ++i) machine_.Tick();
+  EXPECT_EQ(machine_.record().reason, Reason::kGridPointsSkipped);
+  const std::string text =
+      ReasonText(machine_.record(), machine_.axis_names(), std::array<std::string, 1>{"main"});
+  EXPECT_NE(text.find("no cycle ran for 501 ms"), std::string::npos) << text;
+  EXPECT_NE(text.find("SIGSTOP"), std::string::npos) << text;
+  EXPECT_NE(text.find("axis x sent emergency code 0x8130"), std::string::npos) << text;
+  EXPECT_EQ(text.find("did not end its quick stop"), std::string::npos) << text;
 }
 
 // Before: the observer of two inertias took what came after four periods for what one had brought, and swung.
