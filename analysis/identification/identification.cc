@@ -101,6 +101,21 @@ void SetMass(TableAxis& axis, double mass_kg) {
   axis.load_inertia *= factor;
 }
 
+/// Amplitude of a rigid axis under a force that shakes it as this stretch was shaken.
+double RigidlyShaken_m(const Measured& r, double mass_kg, double frequency_Hz) {
+  double sum_N = 0.0, square_N2 = 0.0, rows = 0.0;
+  for (std::size_t k = r.run_up; k < r.size(); ++k) {
+    if (r.present[k] == 0 || !std::isfinite(r.force_N[k])) continue;
+    sum_N += r.force_N[k];
+    square_N2 += r.force_N[k] * r.force_N[k];
+    rows += 1.0;
+  }
+  if (rows == 0.0) return 0.0;
+  const double variance_N2 = square_N2 / rows - std::pow(sum_N / rows, 2);
+  const double amplitude_N = std::numbers::sqrt2 * std::sqrt(std::max(0.0, variance_N2));
+  return amplitude_N / (mass_kg * std::pow(2.0 * std::numbers::pi * frequency_Hz, 2));
+}
+
 /// The screw, from shaking while sliding and from a linear scale.
 void TakeScrew(Identification& id, const std::vector<Measured>& records, int threads) {
   TableAxis& axis = id.stepwise;
@@ -117,6 +132,10 @@ void TakeScrew(Identification& id, const std::vector<Measured>& records, int thr
     axis.answer = s.axis.answer;
     // The bristle, too: sliding and shaken, it is a spring and a relaxation of some 100 Hz.
     axis.friction.s0 = s.axis.friction.s0;
+    // Strokes go up and down, so each has a mean of its own.
+    for (const Measured& stretch : ShakenStretches(records, axis))
+      id.shaken.moves_m =
+          std::max(id.shaken.moves_m, RigidlyShaken_m(stretch, axis.mass_kg(), id.shaken.antiresonance_Hz));
   }
   id.wind_up = FitWindUp(records, axis);
   if (s.verdict == ShakenScrew::Verdict::kRigid && !id.wind_up.found) {

@@ -30,6 +30,7 @@ struct ShakenScrew {
   double highest_Hz = 0.0;
   double antiresonance_Hz = 0.0,
          resonance_Hz = 0.0;  ///< kFound: K = Mt (2 pi f_ar)^2, (f_r / f_ar)^2 = m / m_motor
+  double moves_m = 0.0;  ///< kFound: by how much a rigid axis would have been shaken at the antiresonance
   std::vector<ResponsePoint> response;
   std::vector<FittedParameter> parameters;  ///< as the shaken segments alone say
 };

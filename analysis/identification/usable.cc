@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/text/format_text.h"
 
@@ -18,6 +19,8 @@ constexpr double kMostUnexplained = 0.05;
 /// Standard deviation of the stiffness; a catalogue has 0.4. What feeds the wind-up forward by a stiffness
 /// that is less sure is no better with it.
 constexpr double kLeastKnownStiffness = 0.15;
+/// Of the motion by which the screw is seen, what an encoder's rounding may be.
+constexpr double kMostRounding = 0.1;
 /// Of a mass: what is known to a factor of two has as much, and needs no commissioning.
 constexpr double kLeastKnownMass = 0.4;
 
@@ -55,6 +58,20 @@ std::string UnknownScrew(const Identification& id) {
       "all "
       "that acts",
       100.0 * sigma);
+}
+
+/// Rounding is no white noise: what it hides of a small motion the intervals do not know.
+std::string HiddenByEncoder(const Identification& id) {
+  const ShakenScrew& s = id.shaken;
+  if (s.verdict != ShakenScrew::Verdict::kFound || !(s.moves_m > 0.0)) return {};
+  // Root mean squares of the rounding and of the motion.
+  if (id.encoder.step_m / std::sqrt(12.0) <= kMostRounding * s.moves_m / std::numbers::sqrt2) return {};
+  return FormatText(
+      "shaken at the screw's antiresonance (%.0f Hz) the motor moves by %.2f um, of which steps of its "
+      "encoder of %.2f um show too little: what that tells of screw, table and bristle would be surer than "
+      "it is; take an encoder, or a setting of the drive (0x608F, drive.encoder_counts_per_rev), with more "
+      "counts a turn, or keep to the drive's own loop (drive.mode: csp) with the model as stated",
+      s.antiresonance_Hz, 1e6 * s.moves_m, 1e6 * id.encoder.step_m);
 }
 
 /// A motion that does not tell the axis's masses says nothing that was not known before it.
@@ -102,8 +119,8 @@ std::string Antiresonance(const Identification& id) {
 }  // namespace
 
 std::string WhyUnusable(const Identification& id) {
-  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), UnknownScrew(id), UnknownMasses(id),
-                          Misfit(id), Unsettled(id)})
+  for (const auto& why : {Numbers(id), Holes(id), Antiresonance(id), HiddenByEncoder(id), UnknownScrew(id),
+                          UnknownMasses(id), Misfit(id), Unsettled(id)})
     if (!why.empty()) return why;
   return {};
 }

@@ -105,6 +105,19 @@ TEST(WhyUnusable, RefusesAScrewThatIsHardlyKnown) {
   EXPECT_TRUE(Says(id, "a standard deviation of 18 %"));
 }
 
+// With a tenth of a turn's counts that fits usually see, intervals came out a tenth as wide as they should
+// be.
+TEST(WhyUnusable, RefusesAScrewThatIsShakenByLessThanTheEncoderShows) {
+  Identification id = Good();
+  id.encoder.step_m = 0.5e-6;
+  id.shaken.antiresonance_Hz = 288.0;
+  id.shaken.moves_m = 0.2e-6;
+  EXPECT_TRUE(Says(id, "moves by 0.20 um, of which steps of its encoder of 0.50 um show too little"));
+  EXPECT_EQ(WhyNoBeginning(id), "") << "a catalogue knows less";
+  id.shaken.moves_m = 2.05e-6;
+  EXPECT_EQ(WhyUnusable(id), "");
+}
+
 TEST(WhyUnusable, RefusesMassesThatACatalogueKnowsBetter) {
   Identification id = Good();
   id.fit.parameters[0].sigma = 0.27;

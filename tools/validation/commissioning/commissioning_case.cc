@@ -64,6 +64,7 @@ std::vector<std::string> Assignments(const EmulatedMachineFile& file, const Comm
       set.push_back(key + FormatText("side_modes=[{frequency_Hz: %.6g, mass_share_rel: %g}]",
                                      kSideModeOfMode * Mode_Hz(axis, lead_mm), kSideModeMassShare));
   }
+  set.insert(set.end(), c.set.begin(), c.set.end());
   return set;
 }
 

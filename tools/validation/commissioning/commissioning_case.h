@@ -17,8 +17,9 @@ struct CommissioningCase {
   std::string effect;   ///< a name of CommissioningEffects()
   std::uint64_t seed = 1;
   std::string axis = "x";
-  std::string mode = "cst";  ///< of the drives: cst or csp
-  bool stay = false;         ///< in csp, though there may be loops for torque mode
+  std::string mode = "cst";        ///< of the drives: cst or csp
+  bool stay = false;               ///< in csp, though there may be loops for torque mode
+  std::vector<std::string> set{};  ///< on top of the machine's file, as --set has it
 };
 
 /// What the axes have besides screw and friction: none, cogging3, cogging6 (thousandths of a Nm for a motor

@@ -34,6 +34,7 @@ struct Options {
   std::vector<std::string> machines{"base", "t30", "m100"};
   std::vector<std::string> effects{"none", "cogging3", "cogging6", "wobble", "motor_friction", "side_mode"};
   std::string mode = "cst";
+  std::vector<std::string> set;
   unsigned first = 1, seeds = 2;
   int threads = 1;
   bool quiet = false;
@@ -139,6 +140,7 @@ int Run(const Options& options) {
         CommissioningCase c{machine, effect, seed};
         c.mode = options.mode;
         c.stay = options.stay;
+        c.set = options.set;
         tallies.of_case = {};
         std::printf("%s %s seed %u\n", machine.c_str(), effect.c_str(), seed);
         const std::string refused = RunCase(c, options, known, for_record, tallies);
@@ -180,6 +182,8 @@ int main(int argc, char** argv) {
                  "Of the drives: cst, or csp (recorded in torque mode where there are loops for it)")
       ->capture_default_str();
   app.add_flag("--stay", options.stay, "In csp while an axis is recorded, too");
+  app.add_option("--set", options.set, "Put KEY=VALUE on top of each machine's file; any number of times")
+      ->allow_extra_args(false);
   app.add_option("--seeds", options.seeds, "How many");
   app.add_option("--first", options.first, "The first of them");
   app.add_option("--threads", options.threads, "Of identification");
