@@ -30,6 +30,7 @@ CycleAxisConfig MakeAxis(const std::string& name, const AxisConfig& axis, const 
   out.two_inertia = TwoInertiaAxisOf(axis);
   out.encoder_counts_per_rev = static_cast<double>(axis.drive.encoder_counts_per_rev);
   out.loop = axis.loop;
+  out.peak_late = axis.loop_limits.peak_late;
   out.has_scale = axis.drive.linear_scale.has_value();
   if (out.has_scale) out.scale_loop = axis.scale_loop;
   return out;

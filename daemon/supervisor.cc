@@ -37,8 +37,9 @@ constexpr std::chrono::seconds kLockstepAnswerTimeout{25};
 constexpr std::chrono::milliseconds kAnswerPoll{1};
 /// What the cycle has taken it answers in that cycle, a reset at the end of the drives' quick stops.
 constexpr std::chrono::seconds kTakenTimeout{10};
-/// A pass that has just ended is with those who learn from it in some milliseconds.
-constexpr std::chrono::seconds kPumpTimeout{1};
+/// A pass that has just ended is with those who learn from it in some milliseconds, or once disk, network and
+/// clients that are waited for in lock-step have gone on.
+constexpr std::chrono::seconds kPumpTimeout{10};
 constexpr const char* kUnwanted =
     "the cycle has not been handed it: whoever asked is gone, or a stop came first";
 constexpr const char* kEnding = "contourd is ending";
@@ -318,7 +319,12 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     pace_.RefuseYears(upload.name, EstimatedDuration_s(*generator->plan()));
     // Planning takes its time; nothing is learnt, noted or supplied for nobody.
     if (unwanted.stop_requested()) return {false, kUnwanted};
-    parts_.pump.AwaitShown(now.cycle, kPumpTimeout);
+    if (parts_.learning.learns() && !parts_.pump.AwaitShown(now.cycle, kPumpTimeout))
+      return {
+          false,
+          "the end of the last pass has not reached those who learn from it within " +
+              std::to_string(kPumpTimeout.count()) +
+              " s: the host is overloaded, or disk, network or a client holds telemetry up. Run it again"};
     const LearningReport learnt = Learn(upload, *found.place, *generator);
     parts_.hub.Note("program " + std::to_string(program_id_) + " " + upload.name, upload.text);
     // The points wait in the queue until the cycle has taken the request and expects them.

@@ -35,6 +35,7 @@ class ProgramLearning {
  public:
   explicit ProgramLearning(const MachineConfig& machine);
 
+  [[nodiscard]] bool learns() const { return config_.enabled; }
   /// A program is about to be handed out: shifted by what its last pass taught. `text` tells programs apart;
   /// it is asked for where something may be learnt. The arithmetic of a pass is done here. One thread at a
   /// time, and not the cycle's; gives what there is to say of the passes so far.

@@ -8,6 +8,7 @@
 #include "control/control_config.h"
 #include "core/axis.h"
 #include "core/controller_name.h"
+#include "core/loop_limits.h"
 #include "core/loop_tuning.h"
 #include "core/mechanics.h"
 #include "core/side_mode.h"
@@ -33,7 +34,8 @@ struct CycleAxisConfig {
   double lag_s = 0.0;
   TwoInertiaAxis two_inertia;  ///< for what knows two
   double encoder_counts_per_rev = 0.0;
-  std::optional<LoopTuning> loop;  ///< of the two-inertia loop, where the file has one
+  std::optional<LoopTuning> loop;             ///< of the two-inertia loop, where the file has one
+  double peak_late = LoopLimits{}.peak_late;  ///< that this loop was allowed
   bool has_scale = false;
   std::optional<LoopTuning> scale_loop;  ///< of the one that goes by the linear scale
 };

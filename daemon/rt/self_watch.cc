@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "control/loop_bandwidth.h"
-#include "core/loop_limits.h"
 #include "daemon/rt/cycle_parts.h"
 
 namespace contour {
@@ -70,7 +69,7 @@ OscillationBounds OscillationBoundsFor(const CycleConfig& config, std::size_t ax
   b.swing_moving_N = 2.0 * std::max(f.Fs_plus_N, f.Fs_minus_N);
   const double limits_N = 2.0 * a.limits.torque_Nm / m.radius_m_rad;
   b.violent_N = std::max(b.swing_moving_N, kViolentShare * limits_N);
-  b.answered = LoopLimits{}.peak_late;
+  b.answered = a.peak_late;
   b.mass_kg = m.mass_kg;
   b.growing_m = kDangerousShare * a.limits.following_error_mm * 1e-3;
   b.half_waves = config.control.supervision.half_waves;

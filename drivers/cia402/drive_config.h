@@ -132,7 +132,8 @@ struct DriveConfig {
     v.Optional("quick_stop_option", quick_stop_option, Range{0, 8}, "what a quick stop does (0x605A)");
     v.Optional("abort_connection_option", abort_connection_option, Range{0, 3},
                "what the drive does when the master is gone (0x6007); 3 is quick stop");
-    v.Optional("polarity", polarity, Range{0, 255}, "expected 0x607E");
+    v.Optional("polarity", polarity, Range{0, 255},
+               "0x607E, to be found in the drive: 0, or in csp 192, positions and velocities turned round");
     v.Optional("csp_torque_offset", csp_torque_offset,
                "send a torque offset (0x60B2) with the target position in csp");
     v.Optional(

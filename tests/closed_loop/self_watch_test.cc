@@ -70,6 +70,14 @@ Program SquareAndHold() {
       "{shape: hold, seconds: 4}]}");
 }
 
+// Of an experiment's push, each axis's loop answers by what it was judged with.
+TEST(SelfWatch, AnExperimentIsAnsweredByTheAxissOwnPeak) {
+  const MachineConfig machine = ExampleMachine({"axes.x.loop_limits={peak_late: 6}"}).machine;
+  const CycleConfig config = MakeCycleConfig(machine, ControllerName::kFull);
+  EXPECT_EQ(config.axes[0].peak_late, 6.0);
+  EXPECT_EQ(config.axes[1].peak_late, LoopLimits{}.peak_late);
+}
+
 // Before: y swung by 1.6 um at 16 Hz until it was softened, on the bristle's stiffness that the corners had
 // left. One step of the drive's torque moves its bristles by 0.16 um.
 TEST(SelfWatch, AfterASquareTheAxesStandByThemselves) {

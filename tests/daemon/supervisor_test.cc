@@ -173,6 +173,33 @@ TEST_F(SupervisorTest, ACheckThatTakesLongKeepsNobodyFromAskingWhatIsWanted) {
   EXPECT_FALSE(slow.wanted().has_value());
 }
 
+// Else the pass that ended last would teach nothing.
+TEST_F(SupervisorTest, AProgramThatIsLearntWaitsForTheEndOfItsLastPass) {
+  const MachineConfig machine = LoadMachine(
+      ReadSource(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml",
+                 {"learning={enabled: true}", "axes.x.drive.linear_scale={counts_per_mm: 1000}"}));
+  ProgramLearning learning{machine};
+  Supervisor learns{
+      machine, ControllerName::kPid, "wall", {}, {mailbox_, queue_, hub_, pump_, loop_, learning}, {}};
+  Publish(0, false, MachineState::kReady);
+  auto running = std::async(std::launch::async, [&] {
+    ProgramUpload upload;
+    upload.name = "line.yaml";
+    upload.format = "yaml";
+    upload.text = "{shape: creep, axis: x, stroke_mm: 5, velocities_mm_s: [5]}";
+    upload.from_here = true;
+    return learns.Run(upload, unwanted_.get_token());
+  });
+  EXPECT_EQ(running.wait_for(std::chrono::milliseconds(1500)), std::future_status::timeout);
+  EXPECT_FALSE(mailbox_.request_waiting()) << "the pump has shown nothing yet";
+  pump_.Start();
+  const Request request = TakeWhenItComes();
+  EXPECT_EQ(request.kind, RequestKind::kRun);
+  Publish(request.sequence, true, MachineState::kRunning);
+  EXPECT_TRUE(running.get().accepted);
+  pump_.Finish();
+}
+
 TEST_F(SupervisorTest, AStopMakesVoidWhatTheCycleHasNotTaken) {
   auto enabling = Enable();
   while (!mailbox_.request_waiting()) std::this_thread::yield();

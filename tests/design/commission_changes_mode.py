@@ -96,14 +96,37 @@ def stops_in_torque_mode(contourd, contour, machine_file):
         assert status == 0, (status, Path(daemon.messages).read_text(encoding="utf-8"))
 
 
+SOFT = {"table_mass_kg": 60, "screw_stiffness_N_um": 15}
+
+
+def softly_stated(axis):
+    """Stated half as stiff, and else as a catalogue has it."""
+    x = f"axes.{axis}."
+    return [f"{x}model.table_mass_kg=60", f"{x}model.screw_stiffness_N_um=7.5", f"{x}model.screw_damping_Ns_m=700",
+            f"{x}model.uncertainty={{}}",
+            # What the motor can do with such a table.
+            f"{x}limits.acceleration_mm_s2=2000", f"{x}drive.quick_stop_deceleration_rad_s2=6000", f"{x}limits.safe_travel_mm=10"]
+
+
+def moves_no_other_axis(contourd, contour, machine_file):
+    """Who asks for torque mode is not to see another axis move in csp."""
+    overrides = [f"emulator.axes.y.{key}={value}" for key, value in SOFT.items()]
+    overrides += ["emulator.parameter_variation_rel=0", "axes.y.drive.mode=csp", *softly_stated("y")]
+    with tempfile.TemporaryDirectory() as scratch:
+        daemon = Daemon(contourd, machine_file, scratch, overrides)
+        try:
+            done = subprocess.run([contour, "commission", "--axis", "x", "--mode", "cst", "--socket", daemon.path, "--yes",
+                                   "--out", f"{scratch}/model.yaml"], capture_output=True, text=True)
+            assert done.returncode == 2 and "axis y" in done.stderr and "--axis y" in done.stderr, (done.returncode, done.stderr)
+            assert daemon.ask(request="status")["status"]["state"] == "Idle"
+        finally:
+            daemon.end()
+
+
 def soft_screw(contourd, contour, machine_file):
-    own = {"table_mass_kg": 60, "screw_stiffness_N_um": 15}
-    overrides = [f"emulator.axes.x.{key}={value}" for key, value in own.items()]
-    overrides += ["emulator.parameter_variation_rel=0", "axes.x.model.table_mass_kg=60", "axes.x.model.screw_stiffness_N_um=7.5",
-                  "axes.x.model.screw_damping_Ns_m=700", "axes.x.model.uncertainty={}",
-                  # What the motor can do with such a table.
-                  "axes.x.limits.acceleration_mm_s2=2000", "axes.x.drive.quick_stop_deceleration_rad_s2=6000",
-                  "axes.x.limits.safe_travel_mm=10"]
+    moves_no_other_axis(contourd, contour, Path(machine_file).with_name("xy_emulated.yaml"))
+    overrides = [f"emulator.axes.x.{key}={value}" for key, value in SOFT.items()]
+    overrides += ["emulator.parameter_variation_rel=0", *softly_stated("x")]
     with tempfile.TemporaryDirectory() as scratch:
         daemon = Daemon(contourd, machine_file, scratch, overrides)
         try:
@@ -112,7 +135,7 @@ def soft_screw(contourd, contour, machine_file):
             status = daemon.end()
         assert status == 0, (status, Path(daemon.messages).read_text(encoding="utf-8"))
     assert "axis x, in csp first" in text and "recorded in csp" not in text, text
-    for key, is_ in own.items():
+    for key, is_ in SOFT.items():
         assert abs(float(model[key]) / is_ - 1) < 0.02, f"{key}: found {model[key]}, is {is_}"
     return 0
 

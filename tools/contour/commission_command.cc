@@ -280,6 +280,13 @@ TorqueLoops LoopsToRecordWith(const MachineConfig& machine, const json& status, 
     if (options.mode == "cst") throw ConfigError({"--mode: found cst, but " + found.why_not + kCspInstead});
     std::cout << kStays << found.why_not << "\n";
   }
+  if (options.mode != "cst") return found;
+  for (const std::string& other : found.lacking)
+    if (other != options.axis)
+      throw ConfigError({"--mode: found cst, but all axes are enabled together, and axis " + other +
+                         " is not known well enough for a loop that holds it in torque mode; commission it "
+                         "first (--axis " +
+                         other + "), or use --mode auto, which moves that axis in csp before, too"});
   return found;
 }
 

@@ -210,8 +210,9 @@ SimulationResult RunSimulation(const SimulationRequest& request) {
     const Program program = request.gcode
                                 ? machine.ReadGcode(*request.gcode, request.program.name, request.part)
                                 : request.program;
-    if (!request.feeds.empty()) RefuseFeedForYears(request.feeds, *machine.PlanOf(program), program.name);
-    machine.Run(program, feeds.Begin());
+    const auto plan = machine.PlanOf(program);
+    if (!request.feeds.empty()) RefuseFeedForYears(request.feeds, *plan, program.name);
+    machine.Run(program, plan, feeds.Begin());
     machine.SetObserver(nullptr);
     const RunMetrics metrics = scoring.Finish();
     passes.Add(pass, metrics);

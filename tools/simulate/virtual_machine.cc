@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include "daemon/make_cycle_config.h"
 #include "daemon/output_words.h"
@@ -155,18 +156,23 @@ std::shared_ptr<const MotionPlan> VirtualMachine::PlanOf(const Program& program)
 }
 
 std::uint32_t VirtualMachine::Start(const Program& program, double feed) {
-  const Placement place = PlaceNow();
-  const PerAxis<PlanLimits> limits = LimitsNow(limits_, record());
-  plan_ = PlanPlaced(program, place, limits);
-  auto generator =
-      std::make_unique<PathGenerator>(plan_, limits, static_cast<double>(period_ns_) * 1e-9, ++program_id_);
-  learning_.Prepare([&] { return program.name; }, place.start_m, program_id_, *generator);
+  return Start(program, PlanOf(program), feed);
+}
+
+std::uint32_t VirtualMachine::Start(const Program& program, std::shared_ptr<const MotionPlan> plan,
+                                    double feed) {
+  plan_ = std::move(plan);
+  auto generator = std::make_unique<PathGenerator>(plan_, LimitsNow(limits_, record()),
+                                                   static_cast<double>(period_ns_) * 1e-9, ++program_id_);
+  learning_.Prepare([&] { return program.name; }, PlaceNow().start_m, program_id_, *generator);
   feeder_.Begin(std::move(generator), {feed, false, false});
   return mailbox_.Post(RequestKind::kRun, program_id_);
 }
 
-void VirtualMachine::Run(const Program& program, double feed) {
-  const std::uint32_t sequence = Start(program, feed);
+void VirtualMachine::Run(const Program& program, double feed) { Run(program, PlanOf(program), feed); }
+
+void VirtualMachine::Run(const Program& program, std::shared_ptr<const MotionPlan> plan, double feed) {
+  const std::uint32_t sequence = Start(program, std::move(plan), feed);
   const auto acknowledged = [&] { return record().acknowledged >= sequence; };
   bool ran = false;
   for (;;) {

@@ -70,6 +70,8 @@ class VirtualMachine {
   /// Runs a program to its end, learning as the machine file says: by its name and place a program is known.
   /// Throws std::runtime_error with the reason when the machine stops otherwise.
   void Run(const Program& program, double feed = 1.0);
+  /// The same of a plan that PlanOf() has given, with the machine where it stood then.
+  void Run(const Program& program, std::shared_ptr<const MotionPlan> plan, double feed);
   /// The feed that the program shall go to; 1 as programmed, 0 a pause, 2 at most.
   void SetPace(double feed) { feeder_.SetPace(feed); }
   /// One more cycle, whatever the state.
@@ -96,6 +98,7 @@ class VirtualMachine {
 
   [[nodiscard]] PerAxis<double> StandsAt_m() const;
   [[nodiscard]] Placement PlaceNow() const;
+  std::uint32_t Start(const Program& program, std::shared_ptr<const MotionPlan> plan, double feed);
   void TickUntilSettled(MachineState wanted, const char* doing);
   [[noreturn]] void Fail(const std::string& doing) const;
 
