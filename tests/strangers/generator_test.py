@@ -8,8 +8,9 @@ import numpy as np
 
 from draw_axis import TICK_S, draw_axis, stated_of
 from effects import HIDE, NEEDS, Limits, hidden
+from evidence import evidence
 from motion import Motion, stroke
-from share import foreseen, left_after_refit, of_scale
+from share import foreseen, friction_moved, left_after_refit, of_scale
 from simulate import STEP_S, Batch
 from sizing import SHARES, TURNS, Case, shares, simulate
 from write_case import model_text, write_case
@@ -150,6 +151,17 @@ class Strangers(unittest.TestCase):
         left = Batch([axis], [{"offset": push}], [strokes(axis)], "lugre", [axis]).run()["unexplained_torque"][:, 0]
         # It pulls forward: the motor arrives with too little.
         self.assertAlmostEqual(left[-200:].mean() / -push, 1.0, delta=0.02)
+
+    def test_evidence_is_the_square_of_an_effect_in_deviations_of_the_noise(self):
+        axis = {**draw_axis(21, ("two_inertia",)), "white": 0.0, "coloured": 0.0}
+        noisy = {**axis, "white": 1e-3 * axis["rated"]}
+        for rel in (0.02, 0.04):
+            columns = Batch([axis], [{"offset": rel * axis["Fc"]}], [strokes(axis)], "lugre", [axis]).run()
+            log = {name: values[:, 0] for name, values in columns.items()}
+            friction = friction_moved([axis], "lugre", columns["true_q"])[:, :, 0]
+            most = len(log["q"]) * (rel * axis["Fc"] / noisy["white"]) ** 2
+            # Less what the encoder hides, what numbers of the model make up for, and rows that nobody foresees.
+            self.assertAlmostEqual(evidence(noisy, log, friction) / most, 0.75, delta=0.25)
 
     def test_a_refit_takes_what_is_stated_and_no_more(self):
         column = np.random.default_rng(1).normal(size=4000)

@@ -16,9 +16,9 @@ AT_SCALE = ("backlash", "compliance")
 FRICTION = ("Fc", "Fs", "vs", "sigma0", "sigma1", "sigma2")
 
 
-def spectrum(x):
+def spectrum(x, band_Hz=BAND_HZ):
     """Up to the band, one signal a column."""
-    return np.fft.rfft(x, axis=0)[: int(BAND_HZ * len(x) * TICK_S) + 1]
+    return np.fft.rfft(x, axis=0)[: int(band_Hz * len(x) * TICK_S) + 1]
 
 
 def in_band(amplitudes, rows, kept):
@@ -56,20 +56,20 @@ def friction_moved(axes, law, q):
     return out
 
 
-def sensitivities(axis, log, friction):
+def sensitivities(axis, log, friction, band_Hz=BAND_HZ, stated=STATED):
     """What the torque residual does when a number is off by what is stated of it. Spectra, a column a number."""
     q = log["true_q"]
-    f = np.arange(int(BAND_HZ * len(q) * TICK_S) + 1) / (len(q) * TICK_S)
+    f = np.arange(int(band_Hz * len(q) * TICK_S) + 1) / (len(q) * TICK_S)
     now, passed = dynamic_stiffness(axis, f)
-    angle, command = spectrum(q - q[0]), spectrum(log["torque"])
+    angle, command = spectrum(q - q[0], band_Hz), spectrum(log["torque"], band_Hz)
     lag = 1.0 / (1.0 + 1j * TURN * f * axis["lag_s"])
     arriving = command * np.exp(-1j * TURN * f * (axis["delay_s"] + 0.5 * TICK_S)) * lag
-    out = [dynamic_stiffness({**axis, k: axis[k] * (1.0 + STATED[k])}, f)[0] * angle - now * angle
+    out = [dynamic_stiffness({**axis, k: axis[k] * (1.0 + stated[k])}, f)[0] * angle - now * angle
            for k in ("motor_inertia", "load_inertia", "stiffness")]
-    out.append(STATED["torque_constant"] * arriving)
-    out.append(STATED["delay_s"] * axis["delay_s"] * 1j * TURN * f * arriving)
-    out.append(STATED["lag_s"] * axis["lag_s"] * 1j * TURN * f * arriving * lag)
-    moved = spectrum(friction)
+    out.append(stated["torque_constant"] * arriving)
+    out.append(stated["delay_s"] * axis["delay_s"] * 1j * TURN * f * arriving)
+    out.append(stated["lag_s"] * axis["lag_s"] * 1j * TURN * f * arriving * lag)
+    moved = spectrum(friction, band_Hz)
     return np.column_stack(out + [moved * (passed if axis["friction_on_load"] else np.ones_like(passed))[:, None]])
 
 
