@@ -1,24 +1,15 @@
 #include "analysis/diagnosis/decision/same_timing.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/tested_score.h"
-#include "analysis/diagnosis/screening/score.h"
+#include "analysis/diagnosis/screening/lag_for_delay.h"
 
 namespace contour::diagnosis {
 namespace {
-
-/// The most lag, in exchange for delay, that a coupling is which is no fault of an axis stated as rigid:
-/// 1 / w^2 is half of what the square of the lag has more.
-double MostLagForDelay(const Problem& problem, const Point& point) {
-  const double w = 2.0 * std::numbers::pi * NoFault_Hz(problem), lag_s = problem.Build(point).lag_s;
-  return std::sqrt(lag_s * lag_s + 2.0 / (w * w)) - lag_s;
-}
 
 /// The score that a hypothesis has where such a coupling is not held against it; none where the model has
 /// one.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
+#include "analysis/diagnosis/screening/lag_for_delay.h"
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/diagnosis/tuning/screening_tuning.h"
 #include "analysis/prediction_error/refit.h"
@@ -28,6 +29,7 @@ Nominal FitNominal(Problem& problem) {
   }
   // A resonance may have been taken for another one.
   FitFromStated(problem, nominal.fit, FitEffort{});
+  if (AdmitCouplings(problem, nominal.fit)) nominal.fit = FitPoint(problem, nominal.fit.point, FitEffort{});
   // Not before: what the stated numbers are off by would pass for a torque that wanders.
   problem.slow_torque = Plausible(problem, nominal.fit.point);
   if (problem.slow_torque) {

@@ -172,7 +172,12 @@ class Scorer {
       : problem_(problem),
         fit_(fit),
         base_columns_(ColumnsOf(fit.jacobian)),
-        base_blocks_(InBlocks(problem, fit, {}, base_columns_).with_r) {}
+        base_blocks_(InBlocks(problem, fit, {}, base_columns_).with_r),
+        base_gradient_(base_blocks_.rowwise().sum()) {
+    for (std::size_t i = 0; i < fit.point.base.size(); ++i)
+      base_gradient_(static_cast<Eigen::Index>(i)) +=
+          std::pow(problem.terms[i].sigma, -2) * fit.point.base[i];
+  }
 
   /// Every effect with all its columns, then as much shorter as it may be.
   void Score(std::span<const SharedEffect> effects, std::span<const std::vector<double>> columns,
@@ -238,16 +243,17 @@ class Scorer {
   Scored ScoreOne(const SharedEffect& effect, const Eigen::MatrixXd& cross, const Eigen::MatrixXd& square,
                   const Eigen::MatrixXd& blocks) const {
     Scored s;
-    const Eigen::VectorXd gradient = blocks.rowwise().sum();
     s.effect = effect;
     const Eigen::Index n = square.rows();
     const Eigen::MatrixXd onto = fit_.covariance * cross;
+    // What the base's fit has not gone down yet is no evidence (C(alpha); Neyman, 1959): of a column that the
+    // base nearly does itself it would be most.
+    const Eigen::VectorXd gradient = blocks.rowwise().sum() - onto.transpose() * base_gradient_;
     Eigen::MatrixXd information = square - cross.transpose() * onto;
     s.per_block = blocks - onto.transpose() * base_blocks_;
     // Directions that the base explains already, to rounding, carry nothing.
     const bool nearly_base = n == 1 && information(0, 0) < kScreening.negligible_share * square(0, 0);
     for (Eigen::Index i = 0; i < n; ++i) information(i, i) += kRidge * square(i, i) + 1e-300;
-    // The gradient of the prior belongs to the base; at its optimum both parts cancel.
     const Eigen::LDLT<Eigen::MatrixXd> solver(information);
     s.covariance = solver.solve(Eigen::MatrixXd::Identity(n, n));
     s.amplitude = -solver.solve(gradient);
@@ -273,6 +279,7 @@ class Scorer {
   const Fit& fit_;
   std::vector<const double*> base_columns_;
   Eigen::MatrixXd base_blocks_;
+  Eigen::VectorXd base_gradient_;  ///< prior included; nothing at the base's end
 };
 
 }  // namespace
