@@ -71,10 +71,7 @@ class Descent {
 
   /// None: at the end. `room`: as many points cost no more than one.
   std::vector<Point> Ask(std::size_t room) {
-    if (fit_.raw.empty()) {
-      stage_ = Stage::kBegin;
-      return {fit_.point};
-    }
+    if (fit_.raw.empty()) return AskBegin();
     if (stage_ == Stage::kBegin) {
       stage_ = Stage::kStep;
       if (!stale_ && known_ < static_cast<Eigen::Index>(count_)) return AskColumns(known_);
@@ -88,16 +85,18 @@ class Descent {
     return tried_;
   }
 
-  void Take(std::size_t i, std::vector<double> raw, std::vector<double> white) {
+  /// What it does not keep stays with the caller.
+  void Take(std::size_t i, std::vector<double>& raw, std::vector<double>& white) {
+    if (begins_ && i == 0) {
+      fit_.prior = PriorOf(problem_, fit_.point);
+      fit_.cost = ColumnOf(white).squaredNorm() + fit_.prior;
+      fit_.raw = std::move(raw);
+      fit_.residual = std::move(white);
+      return;
+    }
     switch (stage_) {
-      case Stage::kBegin:
-        fit_.prior = PriorOf(problem_, fit_.point);
-        fit_.cost = ColumnOf(white).squaredNorm() + fit_.prior;
-        fit_.raw = std::move(raw);
-        fit_.residual = std::move(white);
-        break;
       case Stage::kColumns: {
-        const std::size_t at = static_cast<std::size_t>(from_) + i;
+        const std::size_t at = static_cast<std::size_t>(from_) + i - (begins_ ? 1 : 0);
         const double step = StepOf(problem_, fit_.point, at);
         const auto column = static_cast<Eigen::Index>(at);
         fit_.raw_jacobian.col(column) = (ColumnOf(raw) - ColumnOf(fit_.raw)) / step;
@@ -111,10 +110,11 @@ class Descent {
         chosen_ = i;
         fit_.cost = cost;
         fit_.prior = prior;
-        chosen_raw_ = std::move(raw);
-        chosen_white_ = std::move(white);
+        std::swap(chosen_raw_, raw);
+        std::swap(chosen_white_, white);
         break;
       }
+      case Stage::kBegin:
       case Stage::kEnd:
         break;
     }
@@ -122,6 +122,7 @@ class Descent {
 
   /// All that was asked for has come.
   void Proceed() {
+    begins_ = false;
     switch (stage_) {
       case Stage::kColumns:
         MakeConsistent(problem_, fit_.point, fit_.jacobian);
@@ -157,6 +158,19 @@ class Descent {
     normal.diagonal() += weight_;
     normal.diagonal().array() += 1e-18 * normal.diagonal().maxCoeff();
     return normal;
+  }
+
+  /// The point; the sensitivities that are asked for next whatever its cost ride along.
+  std::vector<Point> AskBegin() {
+    begins_ = true;
+    stage_ = Stage::kBegin;
+    std::vector<Point> asked = {fit_.point}, around;
+    if (!stale_ && known_ < static_cast<Eigen::Index>(count_))
+      around = AskColumns(known_);
+    else if (stale_ && effort_.most_refreshes > 0 && effort_.most_steps > 0)
+      around = AskColumns(0);
+    std::move(around.begin(), around.end(), std::back_inserter(asked));
+    return asked;
   }
 
   std::vector<Point> AskColumns(Eigen::Index from) {
@@ -248,8 +262,8 @@ class Descent {
     if (chosen_ < tried_.size()) {
       if (gained < kFits.stale_share * promised_ || chosen_ > 0) stale_ = true;
       fit_.point = std::move(tried_[chosen_]);
-      fit_.raw = std::move(chosen_raw_);
-      fit_.residual = std::move(chosen_white_);
+      std::swap(fit_.raw, chosen_raw_);
+      std::swap(fit_.residual, chosen_white_);
       // A cost that is rough, or sensitivities that serve no more: small steps lead nowhere either.
       if (small_ && last_chance_ && gained < kFits.kept_share * promised_) {
         fit_.converged = true;
@@ -283,6 +297,7 @@ class Descent {
   Eigen::Index known_ = 0, from_ = 0;
   Eigen::VectorXd weight_, by_, gradient_;
   Stage stage_ = Stage::kBegin;
+  bool begins_ = false;  // the point itself is asked for first
   bool stale_ = true, fresh_ = false, last_chance_ = false, closing_ = false;
   int steps_ = 0, refreshes_ = 0;
   double promised_ = 0.0, before_ = 0.0;
@@ -343,7 +358,7 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<InitialGuess> gue
       std::move(asked.begin(), asked.end(), std::back_inserter(points));
     }
     if (points.empty()) break;
-    constexpr std::size_t kAtOnce = 3 * kLanes;  // bounds the memory
+    constexpr std::size_t kAtOnce = 4 * kLanes;  // bounds the memory
     for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, points.size() - first);
       std::vector<AxisModel> models;
@@ -356,7 +371,9 @@ std::vector<Fit> FitPoints(const Problem& problem, std::vector<InitialGuess> gue
             seen_by(from)->White(std::span(raw).subspan(from, to - from), extent);
         for (std::size_t i = from; i < to; ++i) {
           const auto [owner, place] = owners[first + i];
-          descents[owner].Take(place, std::move(raw[i]), std::move(white[i - from]));
+          descents[owner].Take(place, raw[i], white[i - from]);
+          for (std::vector<double>* unused : {&raw[i], &white[i - from]})
+            problem.setup.spare->Give(std::move(*unused));
         }
       }
     }

@@ -16,12 +16,12 @@
 namespace contour::diagnosis {
 namespace {
 
-constexpr std::size_t kMostKept = 4;  // the rest would take more memory than it is worth
+// The rest would take more memory than it is worth.
+constexpr std::size_t kMostKept = kLanes, kMostSpare = 6 * kLanes;
 
-using MeansKey = std::tuple<double, double, int>;
-using MeansCache = std::map<MeansKey, Delivered>;
+using MeansCache = std::map<DeliveredKey, Delivered>;
 
-MeansKey KeyOf(const FilterSetup& setup, const AxisModel& m) {
+DeliveredKey KeyOf(const FilterSetup& setup, const AxisModel& m) {
   return {m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, SubstepsOf(setup, m)};
 }
 
@@ -69,15 +69,15 @@ Lanes Prepare(const Inputs& in, const Bundle& bundle, std::vector<double>& spare
   Lanes m = MakeLanes(in.setup, bundle.models, delivered, in.measured.data(), in.zeros.data());
   for (std::size_t i = 0; i < kLanes; ++i) {
     if (i >= bundle.models.size()) {
-      spare.resize(rows);
+      if (spare.empty()) spare = in.setup.spare->Take(rows);
       m.innovation[i] = m.table[i] = m.velocity[i] = m.friction[i] = spare.data();
       continue;
     }
     FilterRun& r = *bundle.out[i];
-    r.innovation.resize(rows);
+    r.innovation = in.setup.spare->Take(rows);
     m.innovation[i] = r.innovation.data();
     if (m.full) {
-      r.table_position.resize(rows);
+      r.table_position = in.setup.spare->Take(rows);
       m.table[i] = r.table_position.data();
     }
     if (m.trace) {
@@ -90,6 +90,19 @@ Lanes Prepare(const Inputs& in, const Bundle& bundle, std::vector<double>& spare
   return m;
 }
 
+/// Of every key; those that are left from runs before first, or what others are made into could be theirs.
+void MakeMeans(const FilterSetup& setup, MeansCache& means) {
+  std::vector<MeansCache::iterator> rest;
+  const bool whole = setup.segments.empty();
+  for (auto at = means.begin(); at != means.end(); ++at)
+    if (!setup.store->Find(at->first, whole, at->second)) rest.push_back(at);
+  for (const MeansCache::iterator& at : rest) {
+    const auto& [delay_s, lag_s, substeps] = at->first;
+    at->second = setup.store->Take();
+    DeliveredMeans(*setup.log, delay_s, lag_s, substeps, PartsOf(setup), at->second);
+  }
+}
+
 /// One bundle, or two of the same shape.
 void RunBundles(const Inputs& in, std::span<const Bundle> some) {
   std::vector<double> spare;
@@ -100,7 +113,7 @@ void RunBundles(const Inputs& in, std::span<const Bundle> some) {
   std::optional<Lanes> second;
   if (some.size() > 1) second = Prepare(in, some[1], spare);
   const std::span<const Segment> parts = PartsOf(in.setup);
-  if (parts.empty()) return run(first, second ? &*second : nullptr);
+  if (parts.empty()) run(first, second ? &*second : nullptr);
   for (const Segment& s : parts) {
     const Lanes a = Over(first, s);
     if (!second) {
@@ -110,21 +123,51 @@ void RunBundles(const Inputs& in, std::span<const Bundle> some) {
     const Lanes b = Over(*second, s);
     run(a, &b);
   }
+  in.setup.spare->Give(std::move(spare));
 }
 
 }  // namespace
 
+bool DeliveredStore::Find(const DeliveredKey& key, bool whole, Delivered& out) {
+  const std::scoped_lock lock(mutex_);
+  const auto at = std::find_if(left_.begin(), left_.end(),
+                               [&](const Left& l) { return whole && l.whole && l.key == key; });
+  if (at == left_.end()) return false;
+  out = std::move(at->means);
+  left_.erase(at);
+  return true;
+}
+
 Delivered DeliveredStore::Take() {
   const std::scoped_lock lock(mutex_);
-  if (free_.empty()) return {};
-  Delivered out = std::move(free_.back());
-  free_.pop_back();
+  if (left_.empty()) return {};
+  Delivered out = std::move(left_.front().means);
+  left_.pop_front();
   return out;
 }
 
-void DeliveredStore::Give(Delivered used) {
+void DeliveredStore::Give(const DeliveredKey& key, bool whole, Delivered used) {
   const std::scoped_lock lock(mutex_);
-  if (free_.size() < kMostKept) free_.push_back(std::move(used));
+  if (left_.size() == kMostKept) left_.pop_front();
+  left_.push_back({key, whole, std::move(used)});
+}
+
+std::vector<double> RowStore::Take(std::size_t size) {
+  std::vector<double> out;
+  {
+    const std::scoped_lock lock(mutex_);
+    if (!left_.empty()) {
+      out = std::move(left_.back());
+      left_.pop_back();
+    }
+  }
+  out.resize(size);
+  return out;
+}
+
+void RowStore::Give(std::vector<double> used) {
+  const std::scoped_lock lock(mutex_);
+  if (!used.empty() && left_.size() < kMostSpare) left_.push_back(std::move(used));
 }
 
 std::span<const Segment> PartsOf(const FilterSetup& setup) {
@@ -151,23 +194,19 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
       if (setup.trace) runs[i].velocity = runs[i].friction = none;
       continue;
     }
-    const MeansKey key = KeyOf(setup, m);
-    if (!in.means.contains(key)) {
-      Delivered means = setup.store->Take();
-      DeliveredMeans(*setup.log, std::get<0>(key), std::get<1>(key), std::get<2>(key), PartsOf(setup), means);
-      in.means[key] = std::move(means);
-    }
+    in.means[KeyOf(setup, m)];
     std::vector<Bundle>& alike = bundles[ShapeOf(m)];
     if (alike.empty() || alike.back().models.size() == kLanes) alike.emplace_back();
     alike.back().models.push_back(&m);
     alike.back().out.push_back(&runs[i]);
   }
+  MakeMeans(setup, in.means);
   std::vector<std::span<const Bundle>> work;
   for (const auto& [shape, alike] : bundles)
     for (std::size_t i = 0; i < alike.size(); i += 2)
       work.push_back(std::span(alike).subspan(i, std::min<std::size_t>(2, alike.size() - i)));
   ParallelFor(work.size(), threads, [&](std::size_t i) { RunBundles(in, work[i]); });
-  for (auto& [key, means] : in.means) setup.store->Give(std::move(means));
+  for (auto& [key, means] : in.means) setup.store->Give(key, setup.segments.empty(), std::move(means));
   return runs;
 }
 

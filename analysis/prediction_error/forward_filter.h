@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "analysis/axis_model/axis_model.h"
@@ -37,15 +39,43 @@ struct Delivered {
   std::vector<double> late;
 };
 
-/// Arrays that runs need and leave again: fresh memory costs as much as filling it does.
+/// What the means are of: delay and lag in seconds, sub-steps a row.
+using DeliveredKey = std::tuple<double, double, int>;
+
+/// Arrays that runs need and leave again: fresh memory costs as much as filling it does, and the next runs
+/// often need what the last ones left.
 class DeliveredStore {
  public:
+  /// What is left of this key; `whole`: of the whole log, else it is not kept for that.
+  bool Find(const DeliveredKey& key, bool whole, Delivered& out);
+  /// What has been of no use for longest, to be filled.
   Delivered Take();
-  void Give(Delivered used);
+  void Give(const DeliveredKey& key, bool whole, Delivered used);
+
+ private:
+  struct Left {
+    DeliveredKey key;
+    bool whole;
+    Delivered means;
+  };
+  std::mutex mutex_;
+  std::deque<Left> left_;  // last given last
+};
+
+/// Vectors of rows for runs and what is made of them, for the same reason: nothing is filled with zeros
+/// first.
+class RowStore {
+ public:
+  /// Of any content.
+  std::vector<double> Take(std::size_t size);
+  void Give(std::vector<double> used);
+  void Give(std::vector<std::vector<double>> used) {
+    for (std::vector<double>& one : used) Give(std::move(one));
+  }
 
  private:
   std::mutex mutex_;
-  std::vector<Delivered> free_;
+  std::vector<std::vector<double>> left_;
 };
 
 /// Everything that the runs of one diagnosis share.
@@ -62,6 +92,7 @@ struct FilterSetup {
   /// The whole log, one after the other, where it has gaps: after each, motion begins anew. Empty: none.
   std::vector<Segment> pieces;
   std::shared_ptr<DeliveredStore> store = std::make_shared<DeliveredStore>();
+  std::shared_ptr<RowStore> spare = std::make_shared<RowStore>();
 };
 
 /// What a run goes over; empty: the whole log at once.

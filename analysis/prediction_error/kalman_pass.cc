@@ -151,6 +151,17 @@ void KalmanPass(const PassRows& rows, const NoiseVariances& noise, LikelihoodSum
   }
 }
 
+std::vector<float> StatesAlone(const LinearModel& model) {
+  const auto own = static_cast<std::size_t>(model.states), stride = own * (own + 1);
+  std::vector<float> out;
+  out.reserve((model.rows - 1) * stride);
+  for (std::size_t k = 0; k + 1 < model.rows; ++k) {
+    const float* at = &model.step[k * model.stride];
+    out.insert(out.end(), at, at + stride);
+  }
+  return out;
+}
+
 std::vector<float> WithSlowTorque(const LinearModel& model, double keep) {
   const auto own = static_cast<std::size_t>(model.states), n = own + 1, stride = n * (n + 1);
   const auto kept = static_cast<float>(keep);

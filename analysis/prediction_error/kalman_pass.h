@@ -40,8 +40,10 @@ int FilterStates(const LinearModel& model, const NoiseVariances& noise);
 /// sqrt(S)), unless null.
 void KalmanPass(const PassRows& rows, const NoiseVariances& noise, LikelihoodSums& sums, float* gains);
 
-/// A and c of every transition with the slow torque as the last state, as LaneWhiten reads them; stride is
+/// A and c of every transition and nothing else, as LaneWhiten reads them, which waits for memory; stride is
 /// states * (states + 1).
+std::vector<float> StatesAlone(const LinearModel& model);
+/// The same with the slow torque as the last state.
 std::vector<float> WithSlowTorque(const LinearModel& model, double keep);
 
 }  // namespace contour::diagnosis

@@ -58,7 +58,8 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
                             before != nullptr ? &before->levels_ : nullptr);
   const NoiseVariances noise = VariancesOf(levels_, reading, unit);
   states_ = FilterStates(m, noise);
-  if (levels_.slow_there) with_slow_ = WithSlowTorque(m, noise.keep);
+  step_ = std::make_shared<const std::vector<float>>(levels_.slow_there ? WithSlowTorque(m, noise.keep)
+                                                                        : StatesAlone(m));
   gain_.resize((n - 1) * (static_cast<std::size_t>(states_) + 1));
   LikelihoodSums sums;
   KalmanPass({m, counted, setup.period_s, 0, n}, noise, sums, gain_.data());
@@ -73,11 +74,9 @@ NoiseFilter::NoiseFilter(std::shared_ptr<const LinearModel> linear, const std::v
   std::copy(taps.begin(), taps.end(), taps_.begin());
 }
 
-const float* NoiseFilter::Step() const { return (levels_.slow_there ? with_slow_ : linear_->step).data(); }
-
 std::size_t NoiseFilter::Stride() const {
   const auto n = static_cast<std::size_t>(states_);
-  return levels_.slow_there ? n * (n + 1) : linear_->stride;
+  return n * (n + 1);
 }
 
 double NoiseFilter::LogVariances(const std::vector<std::uint8_t>& counted) const {
@@ -101,7 +100,7 @@ void NoiseFilter::Apply(std::span<const double* const> in, std::span<double* con
   m.rows = linear_->rows;
   m.stride = Stride();
   m.states = states_;
-  m.step = Step();
+  m.step = step_->data();
   m.gain = gain_.data();
   m.taps = taps_.data();
   m.counted = counted.data();
@@ -159,7 +158,7 @@ NoiseFilter::Gradient NoiseFilter::Back(const std::vector<double>& white,
   // nu = -c q - d u + r.
   double eta[kMostStates] = {}, next[kMostStates] = {};
   for (std::size_t k = rows - 1; k-- > 0;) {
-    const float* p = Step() + k * Stride();
+    const float* p = step_->data() + k * Stride();
     const float* c = p + n * n;
     const float* g = &m.step[k * m.stride + own * (own + 1)];
     const float* in = g + own;

@@ -61,14 +61,13 @@ class NoiseFilter {
   double ObserverBandwidth_Hz(double period_s) const;
 
  private:
-  [[nodiscard]] const float* Step() const;
   [[nodiscard]] std::size_t Stride() const;
 
   std::shared_ptr<const LinearModel> linear_;
   NoiseLevels levels_;
-  int states_ = 0;                ///< the linearised model's, and the slow torque where there is any
-  std::vector<float> with_slow_;  ///< transitions with it; empty: those of the linearised model
-  std::vector<float> gain_;       ///< per transition: kappa, 1 / sqrt(S)
+  int states_ = 0;  ///< the linearised model's, and the slow torque where there is any
+  std::shared_ptr<const std::vector<float>> step_;  ///< their transitions: A and c
+  std::vector<float> gain_;                         ///< per transition: kappa, 1 / sqrt(S)
   std::vector<double> taps_;
   double torque_noise_ = 0.0;
 };

@@ -10,7 +10,6 @@
 #include "analysis/diagnosis/tuning/prediction_tuning.h"
 #include "analysis/prediction_error/extras.h"
 #include "analysis/prediction_error/fit.h"
-#include "analysis/prediction_error/scale_noise.h"
 #include "analysis/prediction_error/simd/lane_run.h"
 
 namespace contour::diagnosis {
@@ -19,6 +18,8 @@ namespace {
 constexpr std::size_t kSlowRows = kRows.slow_rows;
 /// Over which the speed is taken that a run begins with; the observer does the rest.
 constexpr double kStart_s = 0.01;
+
+const double* DataOf(const SharedSignal& s) { return s ? s->data() : nullptr; }
 
 }  // namespace
 
@@ -147,9 +148,9 @@ std::vector<std::vector<double>> Problem::Raw(std::span<const AxisModel> models,
   for (std::size_t i = 0; i < models.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
     if (!has_scale()) continue;
-    AddScale(runs[i].table_position, models[i].two_inertia,
-             models[i].scale_error_m ? models[i].scale_error_m->data() : nullptr, log.table_position_m.data(),
-             raw[i], extent);
+    AddScale(runs[i].table_position, models[i].two_inertia, DataOf(models[i].scale_error_m),
+             log.table_position_m.data(), raw[i], extent);
+    setup.spare->Give(std::move(runs[i].table_position));
   }
   return raw;
 }
@@ -168,35 +169,13 @@ double Problem::ExplainedByExtras(const Point& point) const {
   return squares(white[1]) - squares(white[0]);
 }
 
-void Problem::AddScale(const std::vector<double>& table, bool two, const double* error,
-                       const double* measured, std::vector<double>& raw, Extent extent) const {
-  const std::size_t n = table.size();
-  // The correction goes only part of the distance to the encoder's reading.
-  const double rest = 1.0 - (two ? setup.gain_two : setup.gain)[0];
-  raw.resize(2 * n);
-  const auto row = [&](std::size_t i) { return extent == Extent::kWhole ? i : excerpt.row[i]; };
-  double sum = 0.0, count = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t k = row(i);
-    const double e = (measured != nullptr ? measured[k] : 0.0) -
-                     stated.table_per_q * (table[i] + rest * raw[i]) - (error != nullptr ? error[k] : 0.0);
-    raw[n + i] = e;
-    if (ScaleCounts(k)) {
-      sum += e;
-      count += 1.0;
-    }
-  }
-  const double mean = sum / std::max(1.0, count);
-  for (std::size_t i = 0; i < n; ++i) raw[n + i] = ScaleCounts(row(i)) ? raw[n + i] - mean : 0.0;
-}
-
 std::vector<std::vector<double>> Problem::White(std::span<const std::vector<double>> raw,
                                                 Extent extent) const {
   std::vector<std::vector<double>> white(raw.size());
   std::vector<std::span<const double>> in;
   std::vector<std::span<double>> out;
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    white[i].resize(raw[i].size());
+    white[i] = setup.spare->Take(raw[i].size());
     in.emplace_back(raw[i]);
     out.emplace_back(white[i]);
   }
@@ -229,7 +208,9 @@ void Problem::WhitenInto(std::span<const std::span<const double>> raw,
 }
 
 std::vector<std::vector<double>> Problem::Residuals(std::span<const Point> points, Extent extent) const {
-  return White(Raw(points, extent), extent);
+  std::vector<std::vector<double>> raw = Raw(points, extent), white = White(raw, extent);
+  setup.spare->Give(std::move(raw));
+  return white;
 }
 
 std::vector<std::vector<double>> Problem::LinearResponses(const Point& point,
@@ -256,8 +237,7 @@ std::vector<std::vector<double>> Problem::LinearResponses(const Point& point,
   for (std::size_t i = 0; i < runs.size(); ++i) {
     raw[i] = std::move(runs[i].innovation);
     if (has_scale())
-      AddScale(runs[i].table_position, without.two_inertia, errors[i] ? errors[i]->data() : nullptr, nullptr,
-               raw[i]);
+      AddScale(runs[i].table_position, without.two_inertia, DataOf(errors[i]), nullptr, raw[i]);
   }
   return White(raw);
 }
@@ -296,8 +276,8 @@ void Problem::LearnNoise(const Point& point) {
                       noise.learnt() ? &noise : nullptr);
   std::vector<double> raw = noise.linear().innovation;
   if (has_scale())
-    AddScale(noise.linear().table, model.two_inertia,
-             model.scale_error_m ? model.scale_error_m->data() : nullptr, log.table_position_m.data(), raw);
+    AddScale(noise.linear().table, model.two_inertia, DataOf(model.scale_error_m),
+             log.table_position_m.data(), raw);
   root_weight.assign(data_size(), 1.0);
   if (has_scale()) LearnScaleNoise(raw);
   const std::vector<double> white = White(std::span(&raw, 1))[0];
@@ -319,20 +299,6 @@ void Problem::LearnNoise(const Point& point) {
   }
   for (std::size_t k = 0; k < data_size(); ++k) root_weight[k] *= counted[k % n] != 0 ? weights[k] : 0.0;
   WeighExcerpt();
-}
-
-void Problem::LearnScaleNoise(std::vector<double>& raw) {
-  const std::size_t n = rows();
-  const std::vector<double> shapeless = WithoutShape(std::span(raw).subspan(n), counted, *signals);
-  std::copy(shapeless.begin(), shapeless.end(), raw.begin() + static_cast<std::ptrdiff_t>(n));
-  scale_noise = Whitener(std::span(raw).subspan(n), counted);
-  scale_wander = {};
-  const std::vector<double> white = White(std::span(&raw, 1))[0];
-  LowerWhereScaleRests(&root_weight[n]);
-  for (std::size_t k = 0; k < n; ++k)
-    if (!ScaleCounts(k)) root_weight[n + k] = 0.0;
-  scale_wander =
-      LearnSlowWander(std::span(white).subspan(n), std::span(root_weight).subspan(n), signals->begins);
 }
 
 void Problem::Take(LearntNoise learnt) {
@@ -360,17 +326,6 @@ void Problem::WeighExcerpt() {
   const double root = std::sqrt(excerpt.per_row);
   for (std::size_t i = 0; i < excerpt_weight_.size(); ++i)
     if (excerpt.counts[i % m] != 0) excerpt_weight_[i] = root * root_weight[i / m * n + excerpt.row[i % m]];
-}
-
-void Problem::LowerWhereScaleRests(double* w) const {
-  // Within one count of the scale its rounding error is the same from row to row: no more is known than after
-  // the first.
-  const double step = CountOf(log.table_position_m);
-  if (!std::isfinite(step)) return;
-  for (std::size_t k = 0; k < rows(); ++k) {
-    const double counts_per_row = std::fabs(signals->velocity[k]) * log.period_s * stated.table_per_q / step;
-    w[k] *= std::sqrt(std::clamp(counts_per_row, kRows.least_counts_per_row, 1.0));
-  }
 }
 
 void Problem::LearnSignals(const Point& point) {

@@ -16,6 +16,29 @@ using Column = Eigen::Map<const Eigen::VectorXd>;
 
 Column ColumnOf(const std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
 
+/// Of a residual that is new.
+void TakeCost(const Problem& problem, Fit& fit) {
+  fit.prior = PriorOf(problem, fit.point);
+  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
+}
+
+/// Sensitivities, and the residual in a lane that may be empty otherwise.
+void RewhitenTogether(const Problem& problem, Fit& fit, bool residual) {
+  const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
+  std::vector<std::span<const double>> in;
+  std::vector<std::span<double>> out;
+  for (Eigen::Index i = 0; i < fit.raw_jacobian.cols(); ++i) {
+    in.emplace_back(fit.raw_jacobian.col(i).data(), size);
+    out.emplace_back(fit.jacobian.col(i).data(), size);
+  }
+  if (residual) {
+    in.emplace_back(fit.raw);
+    out.emplace_back(fit.residual);
+  }
+  problem.WhitenInto(in, out);
+  AddProducts(fit.jacobian, 0, fit.normal);
+}
+
 }  // namespace
 
 bool FitFromStated(const Problem& problem, Fit& fit, const FitEffort& effort, double worth) {
@@ -48,25 +71,14 @@ void RewhitenResidual(const Problem& problem, Fit& fit) {
   const std::span<const double> in(fit.raw);
   const std::span<double> out(fit.residual);
   problem.WhitenInto(std::span(&in, 1), std::span(&out, 1));
-  fit.prior = PriorOf(problem, fit.point);
-  fit.cost = ColumnOf(fit.residual).squaredNorm() + fit.prior;
+  TakeCost(problem, fit);
 }
 
-void RewhitenSensitivities(const Problem& problem, Fit& fit) {
-  const auto size = static_cast<std::size_t>(fit.raw_jacobian.rows());
-  std::vector<std::span<const double>> in;
-  std::vector<std::span<double>> out;
-  for (Eigen::Index i = 0; i < fit.raw_jacobian.cols(); ++i) {
-    in.emplace_back(fit.raw_jacobian.col(i).data(), size);
-    out.emplace_back(fit.jacobian.col(i).data(), size);
-  }
-  problem.WhitenInto(in, out);
-  AddProducts(fit.jacobian, 0, fit.normal);
-}
+void RewhitenSensitivities(const Problem& problem, Fit& fit) { RewhitenTogether(problem, fit, false); }
 
 void Rewhiten(const Problem& problem, Fit& fit) {
-  RewhitenResidual(problem, fit);
-  RewhitenSensitivities(problem, fit);
+  RewhitenTogether(problem, fit, true);
+  TakeCost(problem, fit);
 }
 
 Fit FitFrom(const Problem& problem, Fit fit, const FitEffort& effort) {

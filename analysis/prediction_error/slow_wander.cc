@@ -97,7 +97,7 @@ void AlongRows(const SlowWander& wander, std::span<const double> root_weight,
 }
 
 /// Each row waits for the one before it; columns next to each other do not wait for each other.
-constexpr std::size_t kAbreast = 4;
+constexpr std::size_t kAbreast = 8;
 
 struct Innovations {
   double keep;
@@ -117,6 +117,13 @@ struct Innovations {
         state[i] = keep * (state[i] + gain[k] * x[i][k]);
       }
     }
+  }
+
+  /// As many as there are, which are no more than so many.
+  template <std::size_t kColumns>
+  void OfAll(std::span<double* const> columns) const {
+    if (columns.size() == kColumns) return Of<kColumns>(columns.data());
+    if constexpr (kColumns > 1) OfAll<kColumns - 1>(columns);
   }
 };
 
@@ -158,8 +165,8 @@ void TakeOutWander(const SlowWander& wander, std::span<const double> root_weight
               to.gain[k] = unknown * root_weight[k] / per_row * to.narrow[k];
               to.begin[k] = anew ? 1 : 0;
             });
-  for (; columns.size() >= kAbreast; columns = columns.subspan(kAbreast)) to.Of<kAbreast>(columns.data());
-  for (double* const& column : columns) to.Of<1>(&column);
+  for (; columns.size() > kAbreast; columns = columns.subspan(kAbreast)) to.Of<kAbreast>(columns.data());
+  to.OfAll<kAbreast>(columns);
 }
 
 double LogVariances(const SlowWander& wander, std::span<const double> root_weight,

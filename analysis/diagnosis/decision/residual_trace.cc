@@ -27,15 +27,13 @@ Signal TorqueResidual(const Problem& problem, const Point& point) {
   return TorqueResidualFrom(problem, point, problem.Raw(std::span(&point, 1))[0]);
 }
 
-Traces MakeTraces(const Problem& problem, const Point& before, const Point& after) {
+Traces MakeTraces(const Problem& problem, const Fit& before, const Fit& after) {
   Traces t;
   const std::size_t n = problem.rows();
   const Signals& s = *problem.signals;
-  const Point points[] = {before, after};
-  const auto raw = problem.Raw(points);
-  t.residual_before = TorqueResidualFrom(problem, before, raw[0]);
-  t.residual_after = TorqueResidualFrom(problem, after, raw[1]);
-  const AxisModel m = problem.Build(after);
+  t.residual_before = TorqueResidualFrom(problem, before.point, before.raw);
+  t.residual_after = TorqueResidualFrom(problem, after.point, after.raw);
+  const AxisModel m = problem.Build(after.point);
   const Delivered delivered =
       DeliveredMeans(problem.log, m.delay_s - m.lag_for_delay_s, m.lag_s + m.lag_for_delay_s, 1);
   t.measured = Smooth(delivered.mean, ResidualSmoothing(problem.log.period_s));
@@ -52,8 +50,8 @@ Traces MakeTraces(const Problem& problem, const Point& before, const Point& afte
     t.simulated_after[k] = t.measured[k] - t.residual_after[k];
   }
   if (problem.has_scale()) {
-    t.scale_before.assign(raw[0].begin() + static_cast<std::ptrdiff_t>(n), raw[0].end());
-    t.scale_after.assign(raw[1].begin() + static_cast<std::ptrdiff_t>(n), raw[1].end());
+    t.scale_before.assign(before.raw.begin() + static_cast<std::ptrdiff_t>(n), before.raw.end());
+    t.scale_after.assign(after.raw.begin() + static_cast<std::ptrdiff_t>(n), after.raw.end());
   }
   return t;
 }

@@ -14,7 +14,8 @@ Signal TorqueResidual(const Problem& problem, const Point& point);
 /// The same, of what Problem::Raw gives for the point.
 Signal TorqueResidualFrom(const Problem& problem, const Point& point, const std::vector<double>& raw);
 
-Traces MakeTraces(const Problem& problem, const Point& before, const Point& after);
+/// Of two fits under the problem's setup, whose runs serve.
+Traces MakeTraces(const Problem& problem, const Fit& before, const Fit& after);
 
 /// A wave that is mostly faster than what the torque's smoothing leaves: it shows in the rows only.
 bool FasterThanTheTorque(const Problem& problem, const Effect& effect);

@@ -98,7 +98,7 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
   }
   out.data_quality = problem.quality;
   DescribeBase(problem, fit, out);
-  out.traces = MakeTraces(problem, nominal.point, fit.point);
+  out.traces = MakeTraces(problem, nominal, fit);
   return fit;
 }
 

@@ -46,8 +46,9 @@ std::vector<Point> GridPointsOf(const Problem& problem, const Fit& current, cons
 std::vector<GridPoint> Costs(const Problem& problem, const Fit& around, std::vector<Point> points,
                              Extent extent) {
   std::vector<GridPoint> out;
-  for (std::size_t first = 0; first < points.size(); first += kLanes) {
-    const std::size_t count = std::min<std::size_t>(kLanes, points.size() - first);
+  constexpr std::size_t kAtOnce = 2 * kLanes;  // two runs of all lanes side by side
+  for (std::size_t first = 0; first < points.size(); first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, points.size() - first);
     const auto residuals = problem.Residuals(std::span(points).subspan(first, count), extent);
     for (std::size_t i = 0; i < count; ++i) {
       Eigen::VectorXd gradient = GradientOf(around.jacobian, residuals[i]);

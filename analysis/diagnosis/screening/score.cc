@@ -16,8 +16,9 @@ namespace {
 
 // Keep solvers away from zero.
 constexpr double kRidge = 1e-6, kLeastLeft = 1e-9;
-// For the memory: columns of two runs of all lanes.
-constexpr std::size_t kColumnsAtOnce = 2 * kLanes;
+// For the memory: columns of some runs of all lanes. Models of several shapes share no run, so that the more
+// there are at once the fewer lanes stay empty.
+constexpr std::size_t kColumnsAtOnce = 2 * kLanes, kRunsAtOnce = 2 * kColumnsAtOnce;
 
 // Products of columns with each other and, in blocks of time, with the residual.
 ProductsInBlocks InBlocks(const Problem& problem, const Fit& fit, std::span<const double* const> a,
@@ -292,9 +293,10 @@ std::vector<Scored> ScoreEffects(const Problem& problem, const Fit& fit, std::ve
   // So many columns at a time bound the memory.
   for (std::size_t at = 0; at < effects.size();) {
     const Means means = MeansOf(*effects[at]);
+    const std::size_t most = means == Means::kRuns ? kRunsAtOnce : kColumnsAtOnce;
     std::size_t end = at, count = 0;
     while (end < effects.size() && MeansOf(*effects[end]) == means &&
-           (count == 0 || count + effects[end]->tested <= kColumnsAtOnce)) {
+           (count == 0 || count + effects[end]->tested <= most)) {
       count += effects[end]->tested;
       ++end;
     }

@@ -70,6 +70,39 @@ TEST(ForwardFilter, LanesAndThreadsDoNotChangeARun) {
   }
 }
 
+TEST(DeliveredStore, WhatIsLeftOfAKeyServesIt) {
+  DeliveredStore store;
+  const DeliveredKey key{1e-4, 2e-4, 4}, other{1e-4, 3e-4, 4};
+  Delivered found;
+  EXPECT_FALSE(store.Find(key, true, found));
+  store.Give(key, true, {{1.0}, {2.0}});
+  store.Give(other, false, {{3.0}, {4.0}});
+  EXPECT_FALSE(store.Find(other, true, found)) << "of some segments only";
+  EXPECT_FALSE(store.Find(other, false, found)) << "of which nobody knows";
+  ASSERT_TRUE(store.Find(key, true, found));
+  EXPECT_EQ(found.mean, std::vector<double>{1.0});
+  EXPECT_FALSE(store.Find(key, true, found)) << "it is the caller's now";
+  EXPECT_EQ(store.Take().mean, std::vector<double>{3.0}) << "to be filled";
+  EXPECT_TRUE(store.Take().mean.empty());
+}
+
+// Fits come back to the delay that they stood at, after some others.
+TEST(ForwardFilter, MeansThatAreKeptChangeNoRun) {
+  test::HiddenOptions o;
+  o.duration_s = 5.0;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  const Problem problem(axis.log, axis.stated, 1);
+  AxisModel model = problem.Build(Stated(problem));
+  const auto first = RunFilter(problem.setup, std::span(&model, 1), 1);
+  for (int i = 1; i < 20; ++i) {
+    AxisModel late = model;
+    late.delay_s += 1e-5 * i;
+    RunFilter(problem.setup, std::span(&late, 1), 1);
+    if (i % 4 != 0) continue;
+    EXPECT_EQ(RunFilter(problem.setup, std::span(&model, 1), 1)[0].innovation, first[0].innovation);
+  }
+}
+
 // What a fit's step may end in leaves the runs next to it alone, whose delivered means have another length.
 TEST(ForwardFilter, WhatIsNoMachineHasNoResidualAndDisturbsNone) {
   test::HiddenOptions o;

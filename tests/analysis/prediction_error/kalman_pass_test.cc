@@ -58,6 +58,16 @@ TEST(KalmanPass, ASlowTorqueThatIsNearlyNoneChangesNoGain) {
   }
 }
 
+TEST(StatesAlone, AreTheTransitionsWithoutInputs) {
+  const LinearModel& model = test::SlidingAndStuck().problem.noise.linear();
+  const auto n = static_cast<std::size_t>(model.states);
+  const std::vector<float> alone = StatesAlone(model);
+  ASSERT_EQ(alone.size(), (model.rows - 1) * n * (n + 1));
+  for (std::size_t k = 0; k + 1 < model.rows; k += 97)
+    for (std::size_t i = 0; i < n * (n + 1); ++i)
+      ASSERT_EQ(alone[k * n * (n + 1) + i], model.step[k * model.stride + i]) << k;
+}
+
 TEST(WithSlowTorque, ActsAsTheMotorsForceDoes) {
   const LinearModel& model = test::SlidingAndStuck().problem.noise.linear();
   const auto own = static_cast<std::size_t>(model.states), n = own + 1;

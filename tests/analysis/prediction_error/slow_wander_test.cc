@@ -55,6 +55,26 @@ TEST(SlowWander, WithoutItSecondsAreWhite) {
   EXPECT_NEAR(ScatterOfBlocks(noise, 1), 1.0, 0.05);
 }
 
+TEST(SlowWander, HowManyColumnsThereAreChangesNone) {
+  const SlowWander wander{100.0, 0.2};
+  std::vector<double> weight;
+  for (int k = 0; k < 300; ++k) weight.push_back(k % 7 == 0 ? 0.0 : 1.0 + 0.01 * k);
+  for (std::size_t count = 1; count < 20; ++count) {
+    std::vector<std::vector<double>> together, alone;
+    for (std::size_t i = 0; i < count; ++i)
+      together.push_back(Noise(weight.size(), wander, static_cast<unsigned>(i)));
+    alone = together;
+    std::vector<double*> columns;
+    for (std::vector<double>& column : together) columns.push_back(column.data());
+    TakeOutWander(wander, weight, kFromTheFirst, 1.0, columns);
+    for (std::vector<double>& column : alone) {
+      double* const one = column.data();
+      TakeOutWander(wander, weight, kFromTheFirst, 1.0, std::span(&one, 1));
+    }
+    EXPECT_EQ(together, alone) << count;
+  }
+}
+
 TEST(SlowWander, WhiteNoiseHasNearlyNone) {
   const std::vector<double> noise = Noise(50000, {1.0, 0.0}, 5);
   const std::vector<double> weight(noise.size(), 1.0);

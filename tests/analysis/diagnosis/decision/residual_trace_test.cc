@@ -40,7 +40,7 @@ TEST_F(TraceTest, RowsThatDoNotCountHaveNone) {
 }
 
 TEST_F(TraceTest, TracesAreMeasuredLessResidual) {
-  const Traces t = MakeTraces(axis_.problem, axis_.base.point, with_.point);
+  const Traces t = MakeTraces(axis_.problem, axis_.base, with_);
   const std::size_t n = axis_.problem.rows();
   ASSERT_EQ(t.time_s.size(), n);
   EXPECT_NEAR(t.time_s[4321], 4.321, 1e-9);

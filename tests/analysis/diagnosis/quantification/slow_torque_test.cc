@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@
 namespace contour::diagnosis {
 namespace {
 
+Traces TracesAt(const test::LearntProblem& learnt) {
+  Fit fit;
+  fit.point = learnt.point;
+  fit.raw = learnt.problem.Raw(std::span(&learnt.point, 1))[0];
+  return MakeTraces(learnt.problem, fit, fit);
+}
+
 /// What is noted of an axis whose log says that it was given so much more [Nm] for three seconds.
 std::vector<std::string> NotesWith(double torque_Nm) {
   test::HiddenAxis made = test::HiddenAxisFor(30.0);
@@ -22,7 +30,7 @@ std::vector<std::string> NotesWith(double torque_Nm) {
   const test::LearntProblem learnt(made);
   Diagnosis out;
   out.free_run_s = 1.0;
-  out.traces = MakeTraces(learnt.problem, learnt.point, learnt.point);
+  out.traces = TracesAt(learnt);
   TellSlowTorque(learnt.problem, out);
   return out.notes;
 }
@@ -49,7 +57,7 @@ TEST(SlowTorque, NothingIsSaidOfALogThatIsTooShort) {
   const test::LearntProblem learnt(test::HiddenAxisFor(30.0));
   Diagnosis out;
   out.free_run_s = 20.0;
-  out.traces = MakeTraces(learnt.problem, learnt.point, learnt.point);
+  out.traces = TracesAt(learnt);
   TellSlowTorque(learnt.problem, out);
   EXPECT_TRUE(out.notes.empty());
 }
