@@ -47,9 +47,11 @@ std::size_t RowsThere(const AxisLog& log) {
 }
 
 /// What goes with a stroke is no cause where there is none. Nor is a torque constant off that nobody stated:
-/// it was taken from this log, by the stated inertia.
+/// it was taken from this log, by the stated inertia; nor where the inertia alone is stated, and nothing says
+/// whether it is the one that is off.
 DiagnoseOptions WithoutWhatCannotBe(const StatedAxis& stated, DiagnoseOptions options) {
-  const bool any_constant = stated.open.contains("ampere");
+  const bool inertia_alone = stated.open.contains("Fc") && stated.open.contains("s2");
+  const bool any_constant = stated.open.contains("ampere") || inertia_alone;
   for (const CauseDefinition* c : AllCauses())
     if ((stated.endless && c->shape != nullptr) || (any_constant && c->common_factor))
       options.exclude.emplace_back(*c->name);

@@ -143,7 +143,7 @@ Next TryOthers(const Seen& seen, Rounds& r) {
 /// little of a large one.
 void EraseNotExcited(const Diagnosis& out, std::vector<Hypothesis>& hypotheses) {
   std::erase_if(hypotheses, [&](const Hypothesis& h) {
-    return !Outside(h.effect().kind) && h.effect().start.empty() &&
+    return !h.gross && !Outside(h.effect().kind) && h.effect().start.empty() &&
            !out.smallest_detectable.contains(h.effect().kind);
   });
 }

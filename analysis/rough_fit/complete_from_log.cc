@@ -27,6 +27,17 @@ constexpr double kBristleCounts = 2.0;
 /// Constants from inertias that are worse known than this say nothing.
 constexpr double kMostInertiaSigma = 0.3;
 constexpr double kEndlessTurns = 2.0;
+/// One stroke there and one back: a place that is come to more often is one of an axis that goes to and fro.
+constexpr double kThereAndBack = 2.0;
+
+/// Where nobody says whether the axis has a stroke. Turns that it comes back over say as much about what goes
+/// with a stroke as strokes do, whether it could go on or not.
+bool LooksEndless(const RoughFit& fit, const AxisLog& log, const StatedAxis& stated) {
+  if (log.linear || stated.lead_m != 0.0 || stated.gear_ratio != 1.0 || !stated.open.contains("stroke") ||
+      stated.endless || stated.to_and_fro)
+    return false;
+  return fit.travel > kEndlessTurns * 2.0 * std::numbers::pi && fit.visits <= kThereAndBack;
+}
 
 const RoughFit& Demanded(const RoughFit& fit, const AxisLog& log, const std::string& for_what) {
   if (fit.why_not.empty()) return fit;
@@ -112,13 +123,13 @@ std::vector<std::string> CompleteFromLog(AxisLog& log, StatedAxis& stated) {
     stated.open.insert("s0");
   }
   if (fit.why_not.empty()) Friction(fit, log, stated);
-  if (!log.linear && stated.lead_m == 0.0 && stated.gear_ratio == 1.0 && stated.open.contains("stroke") &&
-      fit.travel > kEndlessTurns * 2.0 * std::numbers::pi && !stated.endless && !stated.to_and_fro) {
+  if (LooksEndless(fit, log, stated)) {
     stated.endless = true;
     notes.push_back(
         "The axis makes " + RoundedText(fit.travel / (2.0 * std::numbers::pi)) +
-        " turns, and no lead, gear or stroke is stated: it is taken to turn for ever, and no cause "
-        "is looked for that goes with a stroke. Of an axis that goes to and fro state drive.endless: false, "
+        " turns, does not come back over most of them more than once, and no lead, gear or stroke is "
+        "stated: it is taken to turn for ever, and no cause is looked for that goes with a stroke. Of an "
+        "axis that goes to and fro state drive.endless: false, "
         "or its drive.stroke_mm.");
   }
   if (fit.why_not.empty() && stated.open.contains("Fc") && stated.open.contains("vs"))

@@ -17,6 +17,8 @@ constexpr double kSlides = 0.03;
 /// [deviations of the smoothing] From one independent row to the next.
 constexpr double kPerIndependentRow = 5.0;
 constexpr std::size_t kFewestRows = 100;
+/// [places] Of the travel, at which visits are counted.
+constexpr std::size_t kPlaces = 48;
 
 /// The command in the middle of each row as it acts there.
 Signal Acting(const AxisLog& log, const StatedAxis& stated) {
@@ -58,6 +60,21 @@ Motion MotionOf(const AxisLog& log, const Signals& s, const StatedAxis& stated, 
     for (std::size_t i = k > reach ? k - reach : 0; i < std::min(log.size(), k + reach); ++i) m.counts[i] = 0;
   }
   return m;
+}
+
+/// The median over the places of the travel: an axis that rests between two of them comes to these often.
+double VisitsOf(const Signal& position, double low, double travel) {
+  std::vector<double> visits(kPlaces, 0.0);
+  std::size_t before = kPlaces;
+  for (const double q : position) {
+    const auto place = static_cast<std::size_t>((q - low) / travel * static_cast<double>(kPlaces));
+    const std::size_t at = std::min(place, kPlaces - 1);
+    if (at != before) ++visits[at];
+    before = at;
+  }
+  const auto middle = visits.begin() + static_cast<std::ptrdiff_t>(kPlaces / 2);
+  std::nth_element(visits.begin(), middle, visits.end());
+  return *middle;
 }
 
 bool Slides(const Motion& m, std::size_t k, const RoughFit& out) {
@@ -163,6 +180,7 @@ RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape sha
     out.why_not = "the axis does not move in it";
     return out;
   }
+  out.visits = VisitsOf(s.position, *low, out.travel);
   const double independent_rows = kPerIndependentRow * sigma;
   if (shape == RoughShape::kFriction)
     Solve<4>(m, s.position, independent_rows, out);

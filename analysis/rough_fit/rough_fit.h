@@ -29,6 +29,7 @@ struct RoughFit {
   double max_speed = 0.0;      ///< of q
   double travel = 0.0;         ///< between the extremes of q
   double middle = 0.0;         ///< of them
+  double visits = 0.0;         ///< so often the axis comes to half of the places between them, or more often
   double typical = 0.0;        ///< root mean square of the command
 };
 

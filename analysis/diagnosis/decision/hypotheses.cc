@@ -3,12 +3,14 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
 
 #include "analysis/diagnosis/causes/catalogue.h"
 #include "analysis/diagnosis/decision/base_there.h"
+#include "analysis/diagnosis/decision/gross_causes.h"
 #include "analysis/diagnosis/decision/guesses.h"
 #include "analysis/diagnosis/decision/instants.h"
 #include "analysis/diagnosis/decision/long_delays.h"
@@ -119,6 +121,27 @@ void GiveUpFarBehind(const Problem& problem, double share, std::vector<Hypothesi
   Sort(hypotheses);
 }
 
+/// Those behind `before` were begun by least squares: of each kind the better fit stays, and one that had
+/// none has to exceed its threshold.
+void JoinGross(const Problem& problem, const ScoreThreshold& threshold, std::size_t before,
+               std::vector<Hypothesis>& out) {
+  std::vector<Hypothesis> gross(std::make_move_iterator(out.begin() + static_cast<std::ptrdiff_t>(before)),
+                                std::make_move_iterator(out.end()));
+  out.resize(before);
+  for (Hypothesis& r : gross) {
+    r.gross = true;
+    const auto same = std::find_if(out.begin(), out.end(), [&](const Hypothesis& o) {
+      return FamilyOf(o.effect()) == FamilyOf(r.effect());
+    });
+    if (same == out.end()) {
+      if (r.score > Threshold(problem, threshold)) out.push_back(std::move(r));
+      continue;
+    }
+    if (r.score > same->score) *same = std::move(r);
+    same->gross = true;
+  }
+}
+
 /// The worst of too many go, for the memory; sorted before.
 void KeepBest(const Problem& problem, std::vector<Hypothesis>& hypotheses) {
   std::size_t kept = 0;
@@ -155,6 +178,11 @@ std::vector<Hypothesis> FitHypotheses(const Problem& problem, const Fit& current
     fit_all(NextGuesses(problem, current, scored, threshold, tried, most));
     fit_all(OtherPlaces(problem, current, scored, std::span(out).subspan(from)));
     fit_all(OtherInstants(problem, current, std::span(out).subspan(from)));
+    if (first && turn == 0) {
+      const std::size_t before = out.size();
+      fit_all(FromLeastSquares(problem, current, scored));
+      JoinGross(problem, threshold, before, out);
+    }
     if (first && turn == 0 && !out.empty()) fit_all(LongDelays(problem, current, scored, threshold, out));
     for (Fit& fit : FitPoints(problem, Mirrored(problem, current, scored, std::span(out).subspan(from)))) {
       Hypothesis mirrored{std::move(fit)};

@@ -16,6 +16,9 @@ struct Hypothesis {
   bool given_up = false;
   /// A coupling that every screw has, no cause of a deviation: it belongs to the base.
   bool no_fault = false;
+  /// By least squares it explains most of what moves the sliding axis: excited, whatever the noise of a base
+  /// that lies far off lets the score test see.
+  bool gross = false;
   bool implausible = false;  ///< the fit ended where the cause is not what its name says
 
   [[nodiscard]] const Effect& effect() const { return *fit.point.effects.back(); }

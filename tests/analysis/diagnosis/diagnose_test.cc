@@ -100,6 +100,9 @@ TEST(Diagnose, ATorqueConstantThatNobodyStatedIsNotOff) {
   EXPECT_TRUE(Diagnose(axis.log, axis.stated).smallest_detectable.contains("torque_constant"));
   axis.stated.open.insert("ampere");
   EXPECT_FALSE(Diagnose(axis.log, axis.stated).smallest_detectable.contains("torque_constant"));
+  // Of an inertia alone, nothing says whether it is the one that is off.
+  axis.stated.open = {"Fc", "s2"};
+  EXPECT_FALSE(Diagnose(axis.log, axis.stated).smallest_detectable.contains("torque_constant"));
 }
 
 // What one diagnosis found and the model then states is part of the base of the next.

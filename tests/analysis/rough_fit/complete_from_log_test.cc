@@ -105,6 +105,8 @@ TEST(CompleteFromLog, ManyTurnsWithoutAStrokeAreEndless) {
   test::HiddenAxis axis = Made();
   axis.stated.lead_m = 0.0;
   axis.stated.open = {"stroke"};
+  double ahead = 0.0;
+  for (double& q : axis.log.position) q += ahead += 0.1;
   CompleteFromLog(axis.log, axis.stated);
   EXPECT_TRUE(axis.stated.endless);
   axis.stated.endless = false;
@@ -113,6 +115,16 @@ TEST(CompleteFromLog, ManyTurnsWithoutAStrokeAreEndless) {
   EXPECT_FALSE(axis.stated.endless) << "it is stated";
   axis.stated.to_and_fro = false;
   axis.stated.gear_ratio = 50.0;
+  CompleteFromLog(axis.log, axis.stated);
+  EXPECT_FALSE(axis.stated.endless);
+}
+
+/// Before: an axis without a lead that makes strokes of some turns was taken to turn for ever, and a spring
+/// over its stroke was not looked for.
+TEST(CompleteFromLog, ManyTurnsToAndFroAreAStroke) {
+  test::HiddenAxis axis = Made();
+  axis.stated.lead_m = 0.0;
+  axis.stated.open = {"stroke"};
   CompleteFromLog(axis.log, axis.stated);
   EXPECT_FALSE(axis.stated.endless);
 }

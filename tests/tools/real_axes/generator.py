@@ -16,6 +16,8 @@ class Axis:
     cogging: list = field(default_factory=list)  # amplitude, order, phase
     counts: int = 65536
     noise: tuple = (4e-4, 8.0)  # deviation, Hz
+    weight: float = 0.0  # pulls always
+    spring: float = 0.0  # pulls back to zero, per rad
 
     def friction(self, w, time):
         level = self.Fc_plus if w > 0 else self.Fc_minus
@@ -23,7 +25,7 @@ class Axis:
         return warm * (math.copysign(level, w) + self.viscous * w + self.drag * w * abs(w))
 
     def pull(self, q):
-        return sum(a * math.sin(n * q + p) for a, n, p in self.cogging)
+        return self.weight - self.spring * q + sum(a * math.sin(n * q + p) for a, n, p in self.cogging)
 
 
 def acceleration(axis, q, w, torque, time):
@@ -80,6 +82,20 @@ def strokes(top, seed, lift=0.35, hold=1.6, sign=None):
     def speed_of(time):
         number, t = int(time / period), time % period
         return heights[number] * max(0.0, min(1.0, t / lift, (2 * lift + hold - t) / lift))
+    return speed_of
+
+
+def places(top, angles, lift=0.2, rest=0.3):
+    """From one angle to the next and the first again, at one speed."""
+    moves, at = [], 0.0
+    for here, there in zip(angles, (*angles[1:], angles[0])):
+        moves.append((at, abs(there - here) / top + lift, math.copysign(top, there - here)))
+        at += moves[-1][1] + rest
+
+    def speed_of(time):
+        t = time % at
+        start, length, speed = max(m for m in moves if m[0] <= t)
+        return speed * max(0.0, min(1.0, (t - start) / lift, (start + length - t) / lift))
     return speed_of
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy
 from axis_model import AxisModel, butterworth, central_difference, rms
-from generator import Axis, run, strokes, write
+from generator import Axis, places, run, strokes, write
 
 MODEL = """model:
   motor_inertia_kgm2: {inertia:g}
@@ -99,6 +99,18 @@ class Endless(Case):
         self.model = model_text(axis, axis.Fc_plus)
 
 
+class Hanging(Case):
+    """A vertical axis without a lead, whose weight is three times its friction, on a spring: the same few places, again and again."""
+    right = {"constant_torque"}
+
+    def make(self):
+        axis = Axis(weight=-0.09, spring=2e-4, viscous=3e-4)
+        self.add(run(axis, places(60.0, (-70.0, -30.0, 80.0, 20.0, -40.0)), 60.0, self.rate_Hz, seed=8, start=-70.0))
+        self.unseen = run(axis, places(50.0, (-60.0, 60.0, 0.0)), 20.0, self.rate_Hz, seed=9, start=-60.0)
+        self.model = f"model: {{motor_inertia_kgm2: {1.15 * axis.inertia:g}}}\ndrive: {{encoder_counts_per_rev: 65536}}\n"
+        self.stated = model_text(axis, axis.Fc_plus)
+
+
 class SlowRate(Case):
     """50 Hz: a row is twenty of those that most logs have."""
     right, rate_Hz, halves = {"cogging"}, 50.0, False
@@ -138,7 +150,7 @@ class Uneven(Case):
         self.model = model_text(axis, axis.Fc_plus)
 
 
-CASES = {"asymmetry": Asymmetry, "asymmetry_backwards": AsymmetryBackwards, "warm_up": WarmUp, "endless": Endless, "slow_rate": SlowRate, "fast_rate": FastRate, "uneven": Uneven}
+CASES = {"asymmetry": Asymmetry, "asymmetry_backwards": AsymmetryBackwards, "warm_up": WarmUp, "endless": Endless, "hanging": Hanging, "slow_rate": SlowRate, "fast_rate": FastRate, "uneven": Uneven}
 
 
 def main():
@@ -171,8 +183,9 @@ def main():
 
 def model_with_rest(model, case):
     """What the stated model leaves open, as docs/diagnosis_files.md assumes it."""
-    text = case.model.replace("sigma2_Nms_rad:", "Fs_plus_Nm: {0}, Fs_minus_Nm: {0}, vs_rad_s: 2.5, sigma0_Nm_rad: 40, sigma2_Nms_rad:", 1)
-    level = case.model.split("Fc_plus_Nm: ")[1].split(",")[0]
+    stated = getattr(case, "stated", case.model)
+    text = stated.replace("sigma2_Nms_rad:", "Fs_plus_Nm: {0}, Fs_minus_Nm: {0}, vs_rad_s: 2.5, sigma0_Nm_rad: 40, sigma2_Nms_rad:", 1)
+    level = stated.split("Fc_plus_Nm: ")[1].split(",")[0]
     path = model.with_name("stated.yaml")
     path.write_text(text.replace("{0}", level), encoding="utf-8")
     return path
