@@ -50,6 +50,8 @@ class FrictionLearner {
   void Rest() noexcept;
 
   [[nodiscard]] const FrictionTerms& parameters() const noexcept { return parameters_; }
+  /// Of a parameter, by what has been learnt so far.
+  [[nodiscard]] double variance(std::size_t term) const noexcept { return covariance_[term][term]; }
   /// Of the constant force, what is beyond any difference of friction's directions; against positive motion.
   [[nodiscard]] double Weight_N() const noexcept;
   /// Sliding friction without Stribeck and viscous parts and without weight, positive in both directions.

@@ -110,6 +110,7 @@ class TwoInertiaEstimator {
   void LearnMotor(double position_m) noexcept;
   void LearnWindUp(const AxisEstimatorInput& in) noexcept;
   void Rest() noexcept;
+  [[nodiscard]] double MassStd_kg() const noexcept;
   void Doubt(double acceleration_m_s2) noexcept;
   [[nodiscard]] ScrewStiffness Stiffness() const noexcept;
   [[nodiscard]] AxisEstimate Believed(const AxisEstimatorInput& in) const noexcept;

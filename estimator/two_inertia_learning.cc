@@ -78,6 +78,13 @@ void TwoInertiaEstimator::Rest() noexcept {
   along_.Relax(resting_.Step(along_.Carried_N(learner_.parameters()), unexplained_N_, NoiseTakes_s()));
 }
 
+// As far as it is stated, or known by now; but no better than what is never told from friction.
+double TwoInertiaEstimator::MassStd_kg() const noexcept {
+  const double mass_kg = setup_.mechanics.mass_kg;
+  const double least_kg = kInertialPart * (setup_.reported_torque ? 1.0 : kInertialByCommand) * mass_kg;
+  return std::max(least_kg, std::min(setup_.config.mass_std * mass_kg, std::sqrt(learner_.variance(kMass))));
+}
+
 // What the force has changed by since the observer could see it is what is off in between: on average, and at
 // this moment. Noise of single samples is in a difference of two of them twice; a second difference, which a
 // force that goes on changing hardly has, has six times its variance. And what accelerates the axis is off.
@@ -92,8 +99,7 @@ void TwoInertiaEstimator::Doubt(double acceleration_m_s2) noexcept {
   surprise_N2_ += surprise_share_ * (change_N * change_N - surprise_N2_);
   noise_N2_ += surprise_share_ * (bend_N * bend_N / 6.0 - noise_N2_);
   const double last_N2 = std::max(0.0, change_N * change_N - kNoiseOfChange * noise_N2_);
-  const double inertial_N = kInertialPart * (setup_.reported_torque ? 1.0 : kInertialByCommand) *
-                            setup_.mechanics.mass_kg * acceleration_m_s2;
+  const double inertial_N = MassStd_kg() * acceleration_m_s2;
   const double late_N2 = kLateByMore * std::max(0.0, surprise_N2_ - 2.0 * noise_N2_);
   variance_N2_ = late_N2 + noise_N2_ + last_N2 + inertial_N * inertial_N;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -112,6 +113,34 @@ TEST(TwoInertia, FrictionBeforeTheScrewIsTheMotors) {
     set.push_back("axes." + axis + ".model.friction.motor_share_rel=0.3");
   const double known_m = RunCircle(ExampleMachine(set), ControllerName::kFull, circle).table_peak_m;
   EXPECT_LT(known_m, 0.9 * unknown_m);
+}
+
+/// Share of the scored cycles in which friction is within two of its stated deviations.
+double FrictionInside_rel(const EmulatedMachineFile& file, const Program& program) {
+  VirtualMachine machine(file, ControllerName::kFull);
+  machine.BringUp();
+  machine.Enable();
+  double inside = 0.0, all = 0.0;
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
+    const CycleRecord& r = entry.output.record;
+    if (r.state != MachineState::kRunning || truth == nullptr || !machine.plan()) return;
+    if (!machine.plan()->Scored(r.path_time_s)) return;
+    for (std::size_t i = 0; i < r.axes.size(); ++i) {
+      const AxisEstimate& e = r.axes[i].estimate;
+      inside += std::abs(e.friction_N - truth->axes[i].friction_N) < 2.0 * e.friction_std_N ? 1.0 : 0.0;
+      all += 1.0;
+    }
+  });
+  machine.Run(program);
+  return all > 0.0 ? inside / all : 0.0;
+}
+
+// A workpiece of twice the table, two of the stated deviations: what accelerates it is no friction.
+TEST(TwoInertia, TheBandOfFrictionHoldsAMassThatIsNotAsStated) {
+  std::vector<std::string> set = Linear("cst");
+  set.push_back("estimator.mass_std=0.1");
+  for (const std::string axis : {"x", "y"}) set.push_back("emulator.axes." + axis + ".table_mass_kg=30");
+  EXPECT_GT(FrictionInside_rel(ExampleMachine(set), Circle(5.0, 4, 1.0)), 0.9);
 }
 
 TEST(TwoInertia, TheLoopThatRunsIsTheOneThatIsJudged) {
