@@ -189,10 +189,14 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     near_lead_m_ = s.lead_m;
     near_periods_ = 0;
     near_least_N_ = near_most_N_ = slow_force_N_;
+    near_braked_ = true;
     near_turns_.Restart(settled_N);
     settling_N_ = std::max(settling_N_, std::abs(slow_force_N_ - slower_force_N_));
   } else {
     near_periods_ += waited_periods_;
+    // What braked the axis into the band goes back to nothing, and pushes nothing by that.
+    near_braked_ = near_braked_ && std::abs(slow_force_N_) <= std::abs(near_most_N_);
+    if (near_braked_) near_least_N_ = near_most_N_ = slow_force_N_;
     near_least_N_ = std::min(near_least_N_, slow_force_N_);
     near_most_N_ = std::max(near_most_N_, slow_force_N_);
   }

@@ -64,11 +64,12 @@ class MotionMonitor {
          believed_, late_readings_, held_, forces_N_, report_before_N_, peak_N_, slow_force_N_,
          slower_force_N_, rest_least_N_, rest_most_N_, drive_push_, same_turns_, near_turns_, turns_N_,
          settling_N_, least_N_, most_N_, same_, same_reference_m_, same_lead_m_, near_, near_position_m_,
-         near_reference_m_, near_lead_m_, near_periods_, least_lead_m_, most_lead_m_, near_least_N_,
-         near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_, pushed_periods_,
-         on_its_way_N_, ringing_N_, swing_, swing_ahead_, force_N_, unexplained_N_, jitter_N_, beyond_,
-         beyond_rigid_, contradiction_, sent_N_, reported_N_, report_seen_, undelivered_, tells_none_, doubt_,
-         doubt_lasts_, doubt_hidden_, astray_m_, scale_seen_, scale_apart_, scale_offset_m_, scale_begin_m_);
+         near_reference_m_, near_lead_m_, near_periods_, least_lead_m_, most_lead_m_, near_braked_,
+         near_least_N_, near_most_N_, same_gone_, near_gone_, pushed_least_N_, pushed_most_N_,
+         pushed_periods_, on_its_way_N_, ringing_N_, swing_, swing_ahead_, force_N_, unexplained_N_,
+         jitter_N_, beyond_, beyond_rigid_, contradiction_, sent_N_, reported_N_, report_seen_, undelivered_,
+         tells_none_, doubt_, doubt_lasts_, doubt_hidden_, astray_m_, scale_seen_, scale_apart_,
+         scale_offset_m_, scale_begin_m_);
   }
 
   /// The newest reading lies where forces can have taken the axis. One that does not, by a little, may come
@@ -144,6 +145,7 @@ class MotionMonitor {
   std::uint32_t near_periods_ = 0;
   double least_lead_m_ = 0.0, most_lead_m_ = 0.0;  ///< reading less reference, where it moves; soon forgotten
   double near_least_N_ = 0.0, near_most_N_ = 0.0;  ///< of the force, since then
+  bool near_braked_ = false;                       ///< and since then it has only come down
   double pushed_least_N_ = 0.0, pushed_most_N_ = 0.0;  ///< the same, fading, once it has stood for a while
   std::uint32_t pushed_periods_ = 0;             ///< that it has changed by more than a standing axis bears
   std::uint32_t same_gone_ = 0, near_gone_ = 0;  ///< periods that the reference has been too far for that
