@@ -1,8 +1,10 @@
 #include "tools/machine/stated_machine.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "config/extended_model.h"
+#include "config/loop_axis.h"
 #include "core/mechanics.h"
 
 namespace contour {
@@ -11,13 +13,18 @@ namespace {
 EmulatedAxisConfig StatedAxis(const AxisConfig& axis, const OffStated& off) {
   const ExtendedModel model = Extended(axis.model);
   const Friction f = ToSi(model.friction, ToSi(model.mechanics).radius_m_rad);
+  const LoopAxis known = LoopAxisOf(axis);
+  const double inertia = std::pow(1.0 + std::max(known.motor_mass_std, known.table_mass_std), off.inertia);
   EmulatedAxisConfig e;
-  e.motor_inertia_kgm2 = off.inertia * model.mechanics.motor_inertia_kgm2;
-  e.table_mass_kg = off.inertia * model.mechanics.table_mass_kg;
-  e.screw_stiffness_N_um = off.stiffness * model.mechanics.screw_stiffness_N_um;
+  e.motor_inertia_kgm2 = inertia * model.mechanics.motor_inertia_kgm2;
+  e.table_mass_kg = inertia * model.mechanics.table_mass_kg;
+  e.screw_stiffness_N_um =
+      std::pow(1.0 + known.stiffness_std, off.stiffness) * model.mechanics.screw_stiffness_N_um;
   e.screw_damping_Ns_m = model.mechanics.screw_damping_Ns_m;
-  e.stroke_mm = axis.limits.position_mm[1] - axis.limits.position_mm[0];
-  e.start_position_mm = 0.5 * (axis.limits.position_mm[0] + axis.limits.position_mm[1]);
+  // The emulated axis has its bumpers as far below zero as above, the stated one its limits anywhere.
+  const auto [low_mm, high_mm] = axis.limits.position_mm;
+  e.stroke_mm = 2.0 * std::max(std::abs(low_mm), std::abs(high_mm));
+  e.start_position_mm = 0.5 * (low_mm + high_mm);
   e.start_variation_mm = 0.0;
   e.incremental_encoder = !axis.drive.absolute_encoder;
   e.delay_cycles = axis.drive.delay_cycles;

@@ -5,14 +5,14 @@
 
 namespace contour {
 
-/// How far an emulated axis is off what the file states, as factors.
+/// How far every emulated axis is off what the file states of it, in standard deviations of its own.
 struct OffStated {
-  double inertia = 1.0;  ///< of motor and table
-  double stiffness = 1.0;
+  double inertia = 0.0;  ///< of motor and table, by what is known worse
+  double stiffness = 0.0;
 };
 
-/// An emulated machine whose axes are what the file's models state, but for these factors; in the middle of
-/// their strokes. Of extensions it has what is another number of the model.
+/// An emulated machine whose axes are what the file's models state, but for that; in the middle of their
+/// strokes. Of extensions it has what is another number of the model.
 EmulatorConfig StatedMachine(const MachineConfig& machine, const OffStated& off = {});
 
 }  // namespace contour

@@ -102,6 +102,25 @@ TEST(CheckCommand, RefusesAControllerThatIsLostOnTheMachine) {
   }
 }
 
+// Limits need not lie about zero (the emulated axis met its bumpers), and a slow axis would take longer for a
+// stroke of 10 mm than the trial lasts (the next one began while it moved).
+TEST(CheckCommand, TriesAControllerWhereverAxesStandAndHoweverSlowTheyAre) {
+  for (const char* set : {"axes.x.limits.position_mm=[100,400]", "axes.x.limits.position_mm=[-1000,-600]",
+                          "axes.x.limits.velocity_mm_s=0.2"}) {
+    const Outcome held =
+        Check(ExampleMachine("family/base.yaml") + " --set machine.controller=pid --set " + set);
+    EXPECT_EQ(held.status, 0) << set << ": " << held.errors;
+  }
+}
+
+// All axes are softened together: named is the one that swings.
+TEST(CheckCommand, NamesTheAxisThatAControllerIsLostOn) {
+  const std::string pid = ExampleMachine("family/base.yaml") + " --set machine.controller=pid ";
+  const Outcome lost = Check(pid + "--set axes.x.drive.delay_cycles=2");
+  EXPECT_EQ(lost.status, 2);
+  EXPECT_NE(lost.errors.find("of axis x)"), std::string::npos) << lost.errors;
+}
+
 // Ten ways to get a machine file wrong.
 
 TEST(WrongConfiguration, UnknownKey) {
