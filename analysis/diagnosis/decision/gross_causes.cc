@@ -21,7 +21,7 @@ struct Sliding {
 /// The command in the middle of the row in which it acts.
 double Acting(const Problem& problem, const AxisModel& m, std::size_t k) {
   const double late = (m.delay_s + m.lag_s) / problem.log.period_s + 1.0 / 2.0;
-  const double at = std::max(0.0, static_cast<double>(k) - late);
+  const double at = std::clamp(static_cast<double>(k) - late, 0.0, static_cast<double>(problem.rows() - 1));
   const auto i = static_cast<std::size_t>(at);
   const double next = problem.log.command[std::min(i + 1, problem.rows() - 1)];
   return problem.log.command[i] + (at - static_cast<double>(i)) * (next - problem.log.command[i]);

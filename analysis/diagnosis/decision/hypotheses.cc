@@ -76,6 +76,12 @@ void FitAllFromStated(const Problem& problem, const Fit& current, const std::vec
   }
 }
 
+/// Of the same cause, begun elsewhere: what least squares said of it stays true.
+void TakeBetter(Hypothesis anew, Hypothesis& r) {
+  anew.gross = r.gross;
+  if (anew.score > r.score) r = std::move(anew);
+}
+
 /// Where the linear estimate lies across a ridge of the cost, a fit that begins there ends above the base.
 /// From where the effect is absent it cannot: once more, for those that keep little of what the score test
 /// promises.
@@ -102,7 +108,7 @@ void FitFromAbsent(const Problem& problem, const Fit& current, const std::vector
   for (std::size_t i = 0; i < again.size(); ++i) {
     Hypothesis anew{std::move(fits[i])};
     Judge(problem, current, anew);
-    if (anew.score > hypotheses[again[i]].score) hypotheses[again[i]] = std::move(anew);
+    TakeBetter(std::move(anew), hypotheses[again[i]]);
   }
 }
 
@@ -266,7 +272,7 @@ void FitAnew(const Problem& problem, const Fit& current, std::vector<Hypothesis>
   for (std::size_t i = 0; i < on.size(); ++i) {
     Hypothesis anew{std::move(fits[i])};
     Judge(problem, current, anew);
-    if (anew.score > hypotheses[on[i]].score) hypotheses[on[i]] = std::move(anew);
+    TakeBetter(std::move(anew), hypotheses[on[i]]);
   }
 }
 

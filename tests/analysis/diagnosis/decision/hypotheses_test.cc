@@ -151,5 +151,29 @@ TEST_F(HypothesesTest, UnderNewNoiseTheyAreFittedAnewAndEachKindIsThereOnce) {
   EXPECT_LE(found.size(), 2u);
 }
 
+// What least squares said of a cause stays true of a fit of it that begins elsewhere.
+TEST(Hypotheses, WhatIsFittedAnewStaysGross) {
+  test::FittedAxis axis({{"constant_torque", 0.5}, {"cable_spring", 0.5}});
+  const auto with = [&](const std::string& kind, bool gross) {
+    Hypothesis h{axis.With(axis.Of(kind))};
+    Judge(axis.problem, axis.base, h);
+    h.gross = gross;
+    return h;
+  };
+  std::vector<Hypothesis> both;
+  both.push_back(with("constant_torque", false));
+  both.push_back(with("cable_spring", true));
+  both[1].score = -both[1].score;  // as where its fit ended elsewhere
+  both[1].given_up = true;
+  Fit current = axis.base;
+  FitAgain(axis.problem, current, both);
+  ASSERT_EQ(both.size(), 2u);
+  const auto anew = std::find_if(both.begin(), both.end(),
+                                 [](const Hypothesis& h) { return h.effect().kind == "cable_spring"; });
+  ASSERT_NE(anew, both.end());
+  EXPECT_FALSE(anew->given_up) << "begun anew";
+  EXPECT_TRUE(anew->gross);
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

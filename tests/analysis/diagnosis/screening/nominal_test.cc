@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "analysis/prediction_error/refit.h"
 #include "tests/analysis/support/fitted_axis.h"
@@ -35,6 +36,24 @@ TEST(Nominal, TellsWhatTheModelsExtensionsExplain) {
   axis.stated.extras.cogging = {{0.3 * axis.stated.friction.Fc_plus, 12.0, 0.4}};
   Problem with(axis.log, axis.stated, 1);
   EXPECT_GT(FitNominal(with).by_extras, 500.0);
+}
+
+// A delay of that size goes into the exchange of lag for delay first, which then stands for a coupling that
+// no axis can have.
+TEST(Nominal, ADelayIsNotHeldForACoupling) {
+  test::HiddenOptions options = test::FittedAxis::Short({{"input_delay", 0.35}});
+  options.duration_s = 20.0;
+  const test::HiddenAxis axis = test::MakeHiddenAxis(options);
+  Problem problem(axis.log, axis.stated, 1);
+  const auto exchange = [&]() -> const BaseTerm& {
+    return *std::find_if(problem.terms.begin(), problem.terms.end(),
+                         [](const BaseTerm& t) { return t.name == "lag_for_delay"; });
+  };
+  const double sigma = exchange().sigma;
+  const Nominal nominal = FitNominal(problem);
+  EXPECT_LT(exchange().sigma, 0.01 * sigma);
+  EXPECT_NEAR(nominal.fit.point.base[static_cast<std::size_t>(&exchange() - problem.terms.data())], 0.0,
+              0.1 * sigma);
 }
 
 }  // namespace
