@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "config/extended_model.h"
 #include "config/loop_axis.h"
@@ -9,6 +10,24 @@
 
 namespace contour {
 namespace {
+
+/// Of the motor that is told of its torque by the constant that the file states.
+CoggingTerm Emulated(const CoggingWave& wave, double ratio) {
+  CoggingTerm term;
+  term.amplitude_Nm = wave.amplitude_Nm / ratio;
+  term.order_per_rev = wave.order_per_rev;
+  term.phase_rad = wave.phase_rad;
+  return term;
+}
+
+/// What a controller leads along the path would swing a machine that has it not.
+std::optional<CoggingEffect> CoggingOf(const ExtensionsConfig& c) {
+  if (!c.cogging) return std::nullopt;
+  const double ratio = c.torque_constant ? c.torque_constant->ratio : 1.0;
+  CoggingEffect out{Emulated(*c.cogging, ratio), {}};
+  for (const CoggingWave& wave : c.cogging->further) out.further.push_back(Emulated(wave, ratio));
+  return out;
+}
 
 EmulatedAxisConfig StatedAxis(const AxisConfig& axis, const OffStated& off) {
   const ExtendedModel model = Extended(axis.model);
@@ -43,6 +62,7 @@ EmulatedAxisConfig StatedAxis(const AxisConfig& axis, const OffStated& off) {
   g.motor_share_rel = f.motor_share;
   g.position_amplitude_rel = 0.0;
   g.ripple_amplitude_rel = 0.0;
+  e.effects.cogging = CoggingOf(axis.model.extensions);
   for (const SideMode& mode : axis.model.side_modes)
     e.side_modes.push_back({mode.frequency_Hz, mode.mass_share_rel, mode.damping_ratio});
   return e;

@@ -12,7 +12,7 @@ struct OffStated {
 };
 
 /// An emulated machine whose axes are what the file's models state, but for that; in the middle of their
-/// strokes. Of extensions it has what is another number of the model.
+/// strokes. Of extensions it has what is another number of the model, and cogging.
 EmulatorConfig StatedMachine(const MachineConfig& machine, const OffStated& off = {});
 
 }  // namespace contour

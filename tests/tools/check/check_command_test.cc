@@ -121,6 +121,15 @@ TEST(CheckCommand, NamesTheAxisThatAControllerIsLostOn) {
   EXPECT_NE(lost.errors.find("of axis x)"), std::string::npos) << lost.errors;
 }
 
+// What the controller leads is there; it was refused for a swing of its own making.
+TEST(CheckCommand, TriesAControllerOnAMachineThatCogsAsStated) {
+  const Outcome held =
+      Check(ExampleMachine("family/base.yaml") +
+            " --set control.friction=srukf --set 'axes.x.model.extensions={cogging: {amplitude_Nm: 0.05, "
+            "order_per_rev: 6, phase_rad: 0}}'");
+  EXPECT_EQ(held.status, 0) << held.errors;
+}
+
 // Ten ways to get a machine file wrong.
 
 TEST(WrongConfiguration, UnknownKey) {

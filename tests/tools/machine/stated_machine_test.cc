@@ -40,5 +40,22 @@ TEST(StatedMachine, StandsBetweenItsBumpers) {
   }
 }
 
+// A controller that leads a cogging swings an axis that has none.
+TEST(StatedMachine, CogsAsTheModelDoes) {
+  const MachineConfig machine =
+      Machine({"axes.x.model.extensions={cogging: {amplitude_Nm: 0.06, order_per_rev: 6, phase_rad: 0.3, "
+               "further: [{amplitude_Nm: 0.02, order_per_rev: 12, phase_rad: 0}]}, torque_constant: {ratio: "
+               "1.2}}"});
+  const EmulatorConfig stated = StatedMachine(machine);
+  EXPECT_FALSE(stated.axes.at("y").effects.cogging);
+  const auto& cogging = stated.axes.at("x").effects.cogging;
+  ASSERT_TRUE(cogging);
+  EXPECT_NEAR(cogging->amplitude_Nm, 0.05, 1e-12);
+  EXPECT_EQ(cogging->order_per_rev, 6.0);
+  EXPECT_EQ(cogging->phase_rad, 0.3);
+  ASSERT_EQ(cogging->further.size(), 1u);
+  EXPECT_EQ(cogging->further[0].order_per_rev, 12.0);
+}
+
 }  // namespace
 }  // namespace contour
