@@ -43,6 +43,22 @@ std::string HarmfulText(const std::vector<Cause>& causes) {
                              ", but parts of the log that its fit has not seen are worse with it.";
 }
 
+/// Those that ended at a bound of what is allowed are told in a note, and go.
+void TakeOutNoSize(Diagnosis& out) {
+  std::string kinds;
+  for (const Cause& c : out.causes) {
+    if (!c.no_size) continue;
+    kinds += (kinds.empty() ? "" : ", ") + c.kind;
+    for (Candidate& candidate : out.candidates)
+      if (candidate.kind == c.kind) candidate.accepted = false;
+  }
+  if (kinds.empty()) return;
+  std::erase_if(out.causes, [](const Cause& c) { return c.no_size; });
+  out.notes.push_back("Part of what is missing looks like " + kinds +
+                      ", but ends at the bound of what such a cause may be, and the log says nothing of its "
+                      "size: no name is given to it.");
+}
+
 }  // namespace
 
 void Conclude(const Problem& problem, const std::vector<RemainingStructure>& left, Diagnosis& out) {
@@ -52,7 +68,9 @@ void Conclude(const Problem& problem, const std::vector<RemainingStructure>& lef
     if (one.score > one.asked && !(one.series && !out.causes.empty()))
       beyond = std::max(beyond, one.drop - one.bins);
   // A shape that was fitted, but is none of the catalogue, is no explanation either.
-  for (const Cause& c : out.causes) (Outside(c.kind) ? beyond : named) += 2.0 * c.log_evidence_gain;
+  // Nor is what has no size.
+  for (const Cause& c : out.causes)
+    (Outside(c.kind) || c.no_size ? beyond : named) += 2.0 * c.log_evidence_gain;
   const bool scale = !out.causes.empty() && CauseNamed(out.causes[0].kind).judged_at_scale;
   const bool unexplained =
       beyond > (scale ? kHypotheses.may_matter_share : kScreening.little_share) * (named + beyond);
@@ -60,6 +78,7 @@ void Conclude(const Problem& problem, const std::vector<RemainingStructure>& lef
     if (Outside(c.kind))
       out.notes.push_back("Something is missing that none of the known causes fits; nearest: " +
                           c.kind.substr(kOutside.size()) + ".");
+  TakeOutNoSize(out);
   const std::string harmful = HarmfulText(out.causes);
   std::erase_if(out.causes, [](const Cause& c) { return Outside(c.kind) || DoesHarm(c); });
   // What explained far more than chance was something, if not that.

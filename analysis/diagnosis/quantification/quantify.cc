@@ -10,6 +10,7 @@
 #include "analysis/diagnosis/causes/parameters.h"
 #include "analysis/diagnosis/decision/residual_trace.h"
 #include "analysis/diagnosis/quantification/follow_play.h"
+#include "analysis/diagnosis/quantification/no_size.h"
 #include "analysis/diagnosis/quantification/widen.h"
 #include "analysis/diagnosis/quantification/withdraw.h"
 #include "analysis/diagnosis/tuning/fit_effort.h"
@@ -91,6 +92,7 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
         Describe(problem, accepted, fit, out);
     } while (WithdrawIdle(problem, fit, accepted, out));
     Widen(problem, accepted, fit, out);
+    MarkNoSize(problem, fit, accepted, out);
     if (accepted.play_is_bound && problem.Build(fit.point).gap > 0.0)
       out.notes.emplace_back(
           "The play is at least as wide as stated: it shows in what noise leaves of a slow observer, which "

@@ -40,6 +40,7 @@ struct Cause {
   std::vector<ShapeTable> shapes;
   /// Most of what there is to explain is something else (Verdict::kUnexplained): no name of the deviation.
   bool part_of_it = false;
+  bool no_size = false;  ///< it ended at a bound, and the log says nothing of its size
 };
 
 /// One bar of the evidence chart.

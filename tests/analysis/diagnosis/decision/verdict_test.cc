@@ -75,6 +75,26 @@ TEST_F(VerdictTest, WhatDoesHarmUnseenIsNoCauseAndNotNothing) {
   EXPECT_TRUE(named.notes.empty());
 }
 
+/// Before: a Fs/Fc of 5 (0.2 to 5.1) was the name of what a sound axis without a stated bristle left.
+TEST_F(VerdictTest, WhatHasNoSizeIsNoName) {
+  Diagnosis found = Named({{"stribeck", 1100.0}, {"input_delay", 130.0}});
+  found.causes[0].no_size = true;
+  const Diagnosis d = Concluded(found, {Of("time", 5.0)});
+  EXPECT_EQ(d.verdict, Verdict::kUnexplained);
+  ASSERT_EQ(d.causes.size(), 1u);
+  EXPECT_TRUE(d.causes[0].part_of_it);
+  ASSERT_FALSE(d.notes.empty());
+  EXPECT_NE(d.notes[0].find("stribeck"), std::string::npos);
+  // Next to a cause that explains far more it takes no name away.
+  Diagnosis little = Named({{"input_delay", 29000.0}, {"stribeck", 870.0}});
+  little.causes[1].no_size = true;
+  const Diagnosis named = Concluded(little, {Of("time", 5.0)});
+  EXPECT_EQ(named.verdict, Verdict::kCauseFound);
+  ASSERT_EQ(named.causes.size(), 1u);
+  EXPECT_TRUE(named.candidates[0].accepted);
+  EXPECT_FALSE(named.candidates[1].accepted);
+}
+
 /// Before: a motor that gives three quarters of its torque was not told at all, beside a wrong pitch error.
 TEST_F(VerdictTest, AFactorOnAllForcesHarmsNothing) {
   Diagnosis found = Named({{"torque_constant", 600.0}, {"cogging", 100.0}});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "tests/analysis/support/fitted_axis.h"
@@ -65,6 +66,18 @@ TEST_F(QuantifyTest, RefitsOfStrokesGiveAnIntervalToo) {
   EXPECT_LT(torque.low, torque.value);
   EXPECT_GT(torque.high, torque.value);
   EXPECT_LT(torque.high - torque.low, torque_Nm_);
+}
+
+TEST_F(QuantifyTest, ASizeThatEndsAtABoundWithAllThatIsAllowedInItsIntervalIsMarked) {
+  EXPECT_FALSE(Quantified(OneCause(), {}).found.causes[0].no_size);
+  Accepted bound = OneCause();
+  // Far less than what was hidden, and than its scatter.
+  auto narrow = std::make_shared<Effect>(*bound.fit.point.effects[0]);
+  narrow->low = {1e-9};
+  narrow->high = {2e-9};
+  narrow->steps = {1e-10};
+  bound.fit = axis_.With(narrow);
+  EXPECT_TRUE(Quantified(bound, {}).found.causes[0].no_size);
 }
 
 TEST_F(QuantifyTest, TheModelsNumbersAreToldAsStatedAndAsFitted) {
