@@ -46,21 +46,29 @@ std::vector<KeyRow> AllKeys() {
   return rows;
 }
 
-/// Loops with margins have been judged by them, and drives hold their axes by their own.
-std::string WhyControllerRefused(const MachineConfig& machine) {
+/// Loops with margins have been judged by them, and drives hold their axes by their own. Why the controller
+/// is refused; one whose loops are softened, but which holds, is warned of.
+std::string TriedController(const MachineConfig& machine) {
   const ControllerName controller = machine.machine.controller;
   if (KnowsTwoInertias(controller, machine.control.friction)) return {};
   for (const auto& [name, axis] : machine.axes)
     if (ModeFor(controller, axis.drive) != DriveMode::kCst) return {};
-  const std::string lost = HowControllerIsLost(machine);
-  if (lost.empty()) return {};
+  const ControllerTrial trial = TryController(machine);
   const bool full = controller == ControllerName::kFull;
   const std::string found = full ? "control.friction: found " + std::string(Name(machine.control.friction))
                                  : "machine.controller: found " + std::string(Name(controller));
-  return found + ", which does not hold this machine in torque mode (" + lost +
-         "); expected one that does; what would help: machine.controller: full with control.friction: linear "
-         "and loops of `contour tune --from-model`, which are judged by their margins; the drive's own loop "
-         "(drive.mode: csp)";
+  const std::string help =
+      "; what would help: machine.controller: full with control.friction: linear and loops of "
+      "`contour tune --from-model`, which are judged by their margins; the drive's own loop (drive.mode: "
+      "csp)";
+  if (trial.lost.empty()) {
+    if (!trial.softened.empty())
+      std::cerr << "warning: " << found << ", which swings on this machine in torque mode (" << trial.softened
+                << ")" << help << "\n";
+    return {};
+  }
+  return found + ", which does not hold this machine in torque mode (" + trial.lost +
+         "); expected one that does" + help;
 }
 
 /// A virtual CAN interface is made by software, perhaps after this check; that any other is missing is a
@@ -109,7 +117,7 @@ int RunCheck(const Options& options) {
   std::vector<std::string> with_loops = options.set;
   with_loops.insert(with_loops.end(), loops.chosen.begin(), loops.chosen.end());
   const MachineConfig whole = LoadMaybeEmulatedMachine(options.file, with_loops).machine;
-  if (const std::string lost = WhyControllerRefused(whole); !lost.empty())
+  if (const std::string lost = TriedController(whole); !lost.empty())
     throw ConfigError(WithPlaces(OpenMachineFile(options.file, options.set), {lost}));
   std::cout << PathSection(whole) << IdleSection(options, whole) << std::flush;
   return CheckInterfaces(file.machine);

@@ -49,35 +49,37 @@ class Trial {
         machine_({machine, StatedMachine(machine, off)}, machine.machine.controller),
         bus_names_(BusNames(machine)) {}
 
-  std::string Run() {
+  ControllerTrial Run() {
     machine_.BringUp();
     machine_.mailbox().Post(RequestKind::kEnable);
-    if (!Goes(kRests_s)) return "when it is enabled: " + lost_;
+    where_ = "when it is enabled: ";
+    if (!Goes(kRests_s)) return found_;
     for (const auto& [name, axis] : config_.axes) {
       machine_.Start(Stroke(name, axis));
-      if (!Goes(kLongest_s, true)) return "in a slow stroke of axis " + name + ": " + lost_;
-      if (machine_.record().reason != Reason::kProgramEnd) return {};  // held so far; no other stroke begins
+      where_ = "in a slow stroke of axis " + name + ": ";
+      if (!Goes(kLongest_s, true)) return found_;
+      if (machine_.record().reason != Reason::kProgramEnd) break;  // held so far; no other stroke begins
     }
-    return {};
+    return found_;
   }
 
  private:
   /// Until the time is over, or a program has ended.
   bool Goes(double most_s, bool program = false) {
     const auto cycles = static_cast<int>(1e6 * most_s / config_.machine.cycle_us);
-    for (int i = 0; i < cycles && lost_.empty(); ++i) {
+    for (int i = 0; i < cycles && found_.lost.empty(); ++i) {
       machine_.Tick();
       Look();
       if (program && machine_.record().reason == Reason::kProgramEnd) break;
     }
-    return lost_.empty();
+    return found_.lost.empty();
   }
 
   void Look() {
     const CycleRecord& r = machine_.record();
     const bool stopped = r.reason != Reason::kNone && r.reason != Reason::kProgramEnd;
     if (r.state == MachineState::kFaulted || stopped) {
-      lost_ = ReasonText(r, machine_.axis_names(), bus_names_);
+      found_.lost = where_ + ReasonText(r, machine_.axis_names(), bus_names_);
       return;
     }
     // All axes are softened together; the one that is why was noticed before.
@@ -85,15 +87,16 @@ class Trial {
       const Reason limit = r.axes[i].limit;
       if (limit == Reason::kOscillationNoticed || limit == Reason::kInnovationGated)
         noticed_ = ", after " + std::string(Name(limit)) + " of axis " + machine_.axis_names()[i];
-      if (limit == Reason::kSoftened || limit == Reason::kFallenBack)
-        lost_ = "the supervision of its loops softens them" + noticed_;
+      if ((limit == Reason::kSoftened || limit == Reason::kFallenBack) && found_.softened.empty())
+        found_.softened = where_ + "the supervision of its loops softens them" + noticed_;
     }
   }
 
   MachineConfig config_;
   VirtualMachine machine_;
   std::vector<std::string> bus_names_;
-  std::string lost_, noticed_;
+  ControllerTrial found_;
+  std::string where_, noticed_;
 };
 
 /// What the trial is not about.
@@ -106,12 +109,18 @@ MachineConfig Referenced(MachineConfig machine) {
 
 }  // namespace
 
-std::string HowControllerIsLost(const MachineConfig& stated) {
+ControllerTrial TryController(const MachineConfig& stated) {
   const MachineConfig machine = Referenced(stated);
-  for (const Member& member : kMembers)
-    if (const std::string lost = Trial(machine, member.off).Run(); !lost.empty())
-      return std::string("the machine ") + member.name + " is lost " + lost;
-  return {};
+  ControllerTrial found;
+  for (const Member& member : kMembers) {
+    const ControllerTrial of = Trial(machine, member.off).Run();
+    const std::string name = std::string("the machine ") + member.name;
+    if (found.softened.empty() && !of.softened.empty()) found.softened = name + " " + of.softened;
+    if (of.lost.empty()) continue;
+    found.lost = name + " is lost " + of.lost;
+    break;
+  }
+  return found;
 }
 
 }  // namespace contour
