@@ -11,7 +11,10 @@ namespace {
 
 /// What the axis has not in torque mode with this loop that a machine must have; empty: nothing.
 std::string WhatItLacks(const MachineConfig& machine, const std::string& name, const LoopTuning& loop) {
-  for (const ConfigProblem& p : Check(InTorqueMode(machine, {{name, loop}})))
+  MachineConfig there = InTorqueMode(machine, {{name, loop}});
+  // All axes change their modes together, and the others are asked for themselves.
+  for (auto& [other, axis] : there.axes) axis.drive.mode = DriveMode::kCst;
+  for (const ConfigProblem& p : Check(there))
     if (p.key.starts_with("axes." + name + ".")) return p.key + " does not do there: " + p.message;
   return {};
 }

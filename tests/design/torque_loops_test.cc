@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
 #include "config/load_machine.h"
 #include "config/loop_axis.h"
 #include "design/catalogue_doubt.h"
@@ -46,6 +49,21 @@ TEST(TorqueLoops, AnAxisThatNoLoopHoldsStaysWithItsDrive) {
   const MachineConfig as_it_is = InTorqueMode(machine, found.loops);
   EXPECT_EQ(as_it_is.axes.at("x").drive.mode, DriveMode::kCsp);
   EXPECT_EQ(as_it_is.control.friction, FrictionKind::kSrukf);
+}
+
+// All axes change their modes together: while one was looked at, the others were left with their drives, and
+// no machine of two axes was recorded in torque mode.
+TEST(TorqueLoops, AreThereForEveryAxisOfAMachine) {
+  MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/family/base.yaml");
+  std::map<std::string, LoopTuning> known;
+  for (auto& [name, axis] : machine.axes) {
+    axis.drive.mode = DriveMode::kCsp;
+    known[name] = *axis.loop;
+  }
+  machine.control.friction = FrictionKind::kSrukf;
+  const TorqueLoops found = FindTorqueLoops(machine, kThreads, known);
+  EXPECT_TRUE(found.complete()) << found.why_not;
+  EXPECT_EQ(found.loops.size(), 2u);
 }
 
 // contourd refuses such a machine file in torque mode: after the search, and after the operator's yes.
