@@ -42,24 +42,60 @@ Sliding SlidingRows(const Problem& problem, const Fit& current) {
   return out;
 }
 
-/// What the motion needs, by the model of a sliding axis.
-Eigen::VectorXd Needed(const AxisModel& m, const Signals& s, const std::vector<std::size_t>& rows) {
-  Eigen::VectorXd out(static_cast<Eigen::Index>(rows.size()));
-  const auto at = [](const SharedSignal& signal, std::size_t k) { return signal ? (*signal)[k] : 0.0; };
-  const StatedFriction& f = m.friction;
-  const double inertia = m.motor_inertia + (m.two_inertia ? m.load_inertia : 0.0);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::size_t k = rows[i];
-    const double v = s.velocity[k], sign = v > 0.0 ? 1.0 : -1.0;
-    const double coulomb = v > 0.0 ? f.Fc_plus : f.Fc_minus, rest = v > 0.0 ? f.Fs_plus : f.Fs_minus;
-    const double level = coulomb + (rest - coulomb) * std::exp(-std::pow(std::fabs(v) / f.vs, f.exponent));
-    const double moved = (inertia + (k >= m.payload_row ? m.payload : 0.0)) * s.acceleration[k];
-    const double held = (1.0 + at(m.level, k)) * level * sign + f.s2 * (1.0 + at(m.viscous, k)) * v;
-    out(static_cast<Eigen::Index>(i)) =
-        (moved + held - at(m.motor_force, k) - at(m.load_force, k) - m.offset) / m.torque_gain;
+/// What the motion needs in some rows, by the model of a sliding axis. Most numbers leave the Stribeck curve
+/// as it is, and that is what takes time.
+class NeededTorque {
+ public:
+  NeededTorque(const Signals& s, const std::vector<std::size_t>& rows) : rows_(rows) {
+    for (const std::size_t k : rows) {
+      velocity_.push_back(s.velocity[k]);
+      acceleration_.push_back(s.acceleration[k]);
+    }
   }
-  return out;
-}
+
+  Eigen::VectorXd Of(const AxisModel& m) {
+    const StatedFriction& f = m.friction;
+    const Signal& fall = Fall(f.vs, f.exponent);
+    Eigen::VectorXd out(static_cast<Eigen::Index>(rows_.size()));
+    const auto at = [](const SharedSignal& signal, std::size_t k) { return signal ? (*signal)[k] : 0.0; };
+    const double inertia = m.motor_inertia + (m.two_inertia ? m.load_inertia : 0.0);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const std::size_t k = rows_[i];
+      const double v = velocity_[i], sign = v > 0.0 ? 1.0 : -1.0;
+      const double coulomb = v > 0.0 ? f.Fc_plus : f.Fc_minus, rest = v > 0.0 ? f.Fs_plus : f.Fs_minus;
+      const double level = coulomb + (rest - coulomb) * fall[i];
+      const double moved = (inertia + (k >= m.payload_row ? m.payload : 0.0)) * acceleration_[i];
+      const double held = (1.0 + at(m.level, k)) * level * sign + f.s2 * (1.0 + at(m.viscous, k)) * v;
+      out(static_cast<Eigen::Index>(i)) =
+          (moved + held - at(m.motor_force, k) - at(m.load_force, k) - m.offset) / m.torque_gain;
+    }
+    return out;
+  }
+
+ private:
+  /// Of the level, from rest on, at each row's speed.
+  struct Curve {
+    double vs = 0.0, exponent = 0.0;
+    Signal fall = {};
+  };
+
+  const Signal& Fall(double vs, double exponent) {
+    for (const Curve& c : curves_)
+      if (c.vs == vs && c.exponent == exponent) return c.fall;
+    // The first ones, from which every cause begins, stay.
+    if (std::ssize(curves_) == 2 * kOfOne) curves_.erase(curves_.begin() + kOfOne);
+    curves_.push_back({vs, exponent, Signal(rows_.size())});
+    Curve& c = curves_.back();
+    for (std::size_t i = 0; i < c.fall.size(); ++i)
+      c.fall[i] = std::exp(-std::pow(std::fabs(velocity_[i]) / vs, exponent));
+    return c.fall;
+  }
+
+  static constexpr std::ptrdiff_t kOfOne = 2;  ///< curves that one step needs: as it is, and another speed
+  const std::vector<std::size_t>& rows_;
+  Signal velocity_, acceleration_;
+  std::vector<Curve> curves_;
+};
 
 struct LeastSquares {
   Point point;
@@ -84,21 +120,41 @@ void WithinBounds(Point& point) {
   for (std::size_t i = 0; i < a.size() && !e.low.empty(); ++i) a[i] = std::clamp(a[i], e.low[i], e.high[i]);
 }
 
-LeastSquares Solve(const Problem& problem, const Sliding& sliding, Point point, bool own) {
-  const Signals& s = *problem.signals;
+/// The model of a point of which only numbers of the base are others than in `with`: signals stay.
+AxisModel BuildBase(const Problem& problem, const Point& point, const AxisModel& with) {
+  if (point.effects.empty() || !point.effects.back()->signals) return problem.Build(point);
+  Point before = point;
+  before.effects.pop_back();
+  before.amplitudes.pop_back();
+  AxisModel m = problem.Build(before);
+  m.motor_force = with.motor_force;
+  m.load_force = with.load_force;
+  m.level = with.level;
+  m.viscous = with.viscous;
+  return m;
+}
+
+LeastSquares Solve(const Problem& problem, const Sliding& sliding, NeededTorque& needed, Point point,
+                   bool own) {
   Eigen::VectorXd acting(static_cast<Eigen::Index>(sliding.rows.size()));
   for (std::size_t i = 0; i < sliding.rows.size(); ++i)
     acting(static_cast<Eigen::Index>(i)) = sliding.acting[sliding.rows[i]];
-  const auto left = [&] { return Eigen::VectorXd(acting - Needed(problem.Build(point), s, sliding.rows)); };
-  Eigen::VectorXd residual = left();
+  const std::size_t base_numbers = Numbers(problem, point, false).size();
+  AxisModel model = problem.Build(point);
+  Eigen::VectorXd residual = acting - needed.Of(model);
   // What is no straight line is one near its end.
   for (int turn = 0; turn < kEfforts.quick.most_steps; ++turn) {
     const auto numbers = Numbers(problem, point, own);
+    const std::size_t of_own = numbers.size() - base_numbers;
     Eigen::MatrixXd columns(acting.size(), static_cast<Eigen::Index>(numbers.size()));
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       auto& [x, step] = numbers[i];
       const double was = std::exchange(*x, *x + step);
-      columns.col(static_cast<Eigen::Index>(i)) = (residual - left()) / step;
+      const bool of_base = numbers.size() - i > of_own;
+      columns.col(static_cast<Eigen::Index>(i)) =
+          (residual -
+           (acting - needed.Of(of_base ? BuildBase(problem, point, model) : problem.Build(point)))) /
+          step;
       *x = was;
     }
     Eigen::MatrixXd normal = columns.transpose() * columns;
@@ -117,7 +173,8 @@ LeastSquares Solve(const Problem& problem, const Sliding& sliding, Point point, 
     const Eigen::VectorXd step = normal.completeOrthogonalDecomposition().solve(gradient);
     for (std::size_t j = 0; j < numbers.size(); ++j) *numbers[j].first += step(static_cast<Eigen::Index>(j));
     if (own) WithinBounds(point);
-    residual = left();
+    model = problem.Build(point);
+    residual = acting - needed.Of(model);
   }
   return {std::move(point), residual.squaredNorm()};
 }
@@ -135,14 +192,15 @@ std::vector<InitialGuess> FromLeastSquares(const Problem& problem, const Fit& cu
   const Sliding sliding = SlidingRows(problem, current);
   std::vector<InitialGuess> guesses;
   if (sliding.rows.size() < static_cast<std::size_t>(kScreening.blocks)) return guesses;
-  const double without = Solve(problem, sliding, current.point, false).left;
+  NeededTorque needed(*problem.signals, sliding.rows);
+  const double without = Solve(problem, sliding, needed, current.point, false).left;
   std::vector<LeastSquares> gross;
   for (const Scored& s : scored) {
     if (!MayBeGross(problem, s)) continue;
     Point point = current.point;
     point.effects.push_back(s.effect);
     point.amplitudes.emplace_back(s.effect->steps.size(), 0.0);
-    LeastSquares with = Solve(problem, sliding, std::move(point), true);
+    LeastSquares with = Solve(problem, sliding, needed, std::move(point), true);
     if (with.left < kHypotheses.half_share * without) gross.push_back(std::move(with));
   }
   std::stable_sort(gross.begin(), gross.end(),
