@@ -11,6 +11,7 @@
 #include "analysis/rough_fit/position_jump.h"
 #include "analysis/rough_fit/rough_fit.h"
 #include "analysis/rough_fit/two_starts.h"
+#include "analysis/rough_fit/unlike_directions.h"
 #include "analysis/rough_fit/wrong_units.h"
 #include "config/number_text.h"
 
@@ -25,13 +26,14 @@ constexpr double kMostUncertain = 0.7;
 constexpr double kFarApart = 1.5;
 /// Of least squares, from where they say nothing of it.
 constexpr double kLeastSure = 0.2;
-/// [deviations; share of the level] From where two directions are not alike.
-constexpr double kSure = 4.0, kUnlike_rel = 0.1;
+/// [-2 log likelihood] From here on chance is out of the question, whatever colour the noise has.
+constexpr double kBeyondChance = 100.0;
 
 struct Estimate {
   StatedAxis axis;
   std::vector<std::string> names;       ///< of what was fitted
   std::map<std::string, double> apart;  ///< relative, of what two starts end at
+  double unlikely = 0.0;                ///< -2 log likelihood, its noise included, up to a constant
   bool converged = false, rigid = true;
 };
 
@@ -41,6 +43,7 @@ Estimate Estimated(const AxisLog& log, const StatedAxis& stated, const RoughFit&
   Estimate out;
   out.axis = FittedAxis(problem, settled.fit, FitHalves(problem, settled.fit));
   out.converged = settled.fit.converged;
+  out.unlikely = settled.fit.cost + problem.LogNoise();
   out.rigid = !problem.nominal.two_inertia;
   AxisModel model = problem.Build(settled.fit.point);
   for (std::size_t i = 0; i < problem.terms.size(); ++i) {
@@ -115,12 +118,11 @@ struct Pair {
 };
 
 /// Prediction errors follow what is quick, least squares what is slow and slides: a model that lacks nothing
-/// has the same numbers in both. A friction that falls with the speed least squares know nothing of: it moves
-/// their inertia by some tenths of a percent.
+/// has the same numbers in both. Friction that falls with the speed is taken out as it was fitted.
 std::vector<Pair> TwoEstimates(const StatedAxis& axis, const RoughFit& rough) {
   std::vector<Pair> out;
+  if (!SaysEnough(rough)) return out;
   const StatedFriction& f = axis.friction;
-  if (!SaysEnough(rough, f)) return out;
   const double level = 0.5 * (f.Fc_plus + f.Fc_minus), inertia = axis.motor_inertia + axis.load_inertia;
   const auto add = [&](const Pair& p) {
     if (axis.sigma.contains(p.name) && p.fitted > 0.0) out.push_back(p);
@@ -206,31 +208,40 @@ void SayOneDirection(const RoughFit& rough, FittedNumbers& out) {
       "strokes in both.");
 }
 
-/// The model states how the two directions' levels relate, and the fit keeps that; where the log has it
-/// otherwise, the levels are none of either.
-void SayUnlikeDirections(const RoughFit& rough, const StatedAxis& stated, const AxisLog& log,
-                         FittedNumbers& out) {
-  const StatedFriction& f = stated.friction;
-  // A force that is stated is fitted with the rest.
-  if (rough.one_direction || !(rough.coulomb > 0.0) || stated.offset != 0.0 ||
-      !(f.Fc_plus + f.Fc_minus > 0.0))
-    return;
-  const double as_stated = 0.5 * (rough.coulomb_forth + rough.coulomb_back) * (f.Fc_plus - f.Fc_minus) /
-                           (0.5 * (f.Fc_plus + f.Fc_minus));
-  const double apart = rough.coulomb_forth - rough.coulomb_back;
-  if (std::abs(apart - as_stated) < std::max(kSure * rough.coulomb_sigma, kUnlike_rel * rough.coulomb))
-    return;
-  // What is written is off by half of the difference, whatever the fit makes of it.
-  for (const char* level : {"Fc", "Fs"}) {
-    double& sigma = out.axis.sigma[level];
-    sigma = std::max(sigma, 0.5 * std::abs(apart - as_stated) / rough.coulomb);
-  }
+/// How the model was completed where the two directions are not as it says of them.
+struct Completed {
+  StatedAxis stated;
+  std::string note;
+  double by_rel = 0.0;  ///< what the levels may be off by: nothing where the log decides
+};
+
+/// The likelier of a constant force and of levels of friction of their own: a model with neither has levels
+/// that are right in no direction, and its other numbers make up for it.
+Completed Complete(const UnlikeDirections& unlike, const AxisLog& log, const RoughFit& rough, int threads,
+                   Estimate& of) {
   const std::string unit = log.linear ? " N" : " Nm";
-  out.notes.push_back(
+  std::string what = log.linear ? "constant_force_N" : "constant_torque_Nm", other = "friction";
+  Completed out{unlike.pulled, "", unlike.by_rel};
+  of = Estimated(log, unlike.pulled, rough, threads);
+  bool decided = !unlike.uneven;
+  if (unlike.uneven) {
+    Estimate uneven = Estimated(log, *unlike.uneven, rough, threads);
+    decided = std::abs(uneven.unlikely - of.unlikely) > kBeyondChance;
+    if (uneven.unlikely < of.unlikely) {
+      what = "levels of friction of their own";
+      other = log.linear ? "a constant force" : "a constant torque";
+      out.stated = *unlike.uneven;
+      of = std::move(uneven);
+    }
+  }
+  if (decided) out.by_rel = 0.0;
+  out.note =
       "Forth and back differ from what the model says of them: by least squares the axis resists by " +
-      RoundedText(rough.coulomb_forth) + unit + " forth and " + RoundedText(rough.coulomb_back) + unit +
-      " back, by friction or a constant force. The levels in the file keep the stated ratio and are "
-      "right for neither; contour diagnose says which of the two it is.");
+      RoundedText(unlike.forth) + unit + " forth and " + RoundedText(unlike.back) + unit +
+      " back. The file has " + what + " for it" +
+      (decided ? ", which the log has for much likelier than " : "; rows that slide do not tell it from ") +
+      other + (decided ? "." : ", and contour diagnose says what the rest of the log tells.");
+  return out;
 }
 
 /// Once more with the inertia of least squares, where prediction errors disagree with it.
@@ -260,18 +271,29 @@ FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
   out.notes = CompleteFromLog(log, stated);
   if (out.unusable = WrongUnits(log, stated); !out.unusable.empty()) return out;
   if (out.unusable = PositionJump(log); !out.unusable.empty()) return out;
-  const RoughFit rough = FitRoughly(log, stated);
+  RoughFit rough = FitRoughly(log, stated, RoughShape::kFriction, &stated.friction);
   for (const char* name : {"inertia", "load_inertia", "Fc", "Fs", "vs", "s0", "s1", "s2", "damping"})
     stated.sigma[name] = kFree;
-  Estimate of = Estimated(log, stated, rough, threads);
+  Estimate of;
+  double levels_rel = 0.0;
+  if (const auto unlike = FindUnlikeDirections(rough, stated)) {
+    Completed completed = Complete(*unlike, log, rough, threads, of);
+    stated = std::move(completed.stated);
+    levels_rel = completed.by_rel;
+    out.notes.push_back(std::move(completed.note));
+  } else {
+    of = Estimated(log, stated, rough, threads);
+  }
   out.axis = of.axis;
+  rough = FitRoughly(log, stated, RoughShape::kFriction, &of.axis.friction);
   out.unusable = WhyUnusable(of, rough);
   if (!out.unusable.empty()) return out;
   Settle(log, stated, rough, threads, out, std::move(of));
   if (!out.unusable.empty()) return out;
   WidenAndSay(rough, out);
   SayOneDirection(rough, out);
-  SayUnlikeDirections(rough, stated, log, out);
+  for (const char* level : {"Fc", "Fs"})
+    if (levels_rel > 0.0) out.axis.sigma[level] = std::max(out.axis.sigma[level], levels_rel);
   if (stated.open.contains("ampere")) {
     KeepStatedInertia(stated.motor_inertia + stated.load_inertia, out.axis);
     SayAmpere(out.axis, log.linear, out.notes);

@@ -62,6 +62,14 @@ Motion MotionOf(const AxisLog& log, const Signals& s, const StatedAxis& stated, 
   return m;
 }
 
+void TakeOutFalling(const StatedFriction& f, Motion& m) {
+  for (std::size_t k = 0; k < m.counts.size(); ++k) {
+    const double v = m.velocity[k];
+    const double part = v > 0.0 ? f.Fs_plus - f.Fc_plus : f.Fc_minus - f.Fs_minus;
+    m.command[k] -= part * std::exp(-std::pow(std::fabs(v) / f.vs, f.exponent));
+  }
+}
+
 /// The median over the places of the travel: an axis that rests between two of them comes to these often.
 double VisitsOf(const Signal& position, double low, double travel) {
   std::vector<double> visits(kPlaces, 0.0);
@@ -166,11 +174,13 @@ void Solve(const Motion& m, const Signal& position, double independent_rows, Rou
 
 }  // namespace
 
-RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape shape) {
+RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape shape,
+                    const StatedFriction* falling) {
   RoughFit out;
   const Signals s = MakeSignals(log, stated);
   const double sigma = std::max(kSmoothingRows, kSmoothing_s / log.period_s);
-  const Motion m = MotionOf(log, s, stated, sigma);
+  Motion m = MotionOf(log, s, stated, sigma);
+  if (falling != nullptr && falling->vs > 0.0) TakeOutFalling(*falling, m);
   for (std::size_t k = 0; k < m.counts.size(); ++k)
     if (m.counts[k] != 0) out.max_speed = std::max(out.max_speed, std::fabs(m.velocity[k]));
   const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());

@@ -40,6 +40,9 @@ enum class RoughShape { kFriction, kFrictionAndSpring };
 
 /// In the units of the log's command. With a force that grows with the position (a spring, a joint's
 /// weight) an inertia is only known as far as it is not the same: on one sine it is.
-RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape shape = RoughShape::kFriction);
+/// `falling`: friction whose break-away part, as it is there, is taken out first; the rest knows none that
+/// falls with the speed.
+RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape shape = RoughShape::kFriction,
+                    const StatedFriction* falling = nullptr);
 
 }  // namespace contour::diagnosis

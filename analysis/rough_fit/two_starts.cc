@@ -12,8 +12,6 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr FitEffort kThorough = {.most_steps = 40, .most_refreshes = 12, .close_enough = 0.1};
-/// Break-away over Coulomb level from where friction falls.
-constexpr double kFalls = 1.01;
 
 Point Stated(const Problem& problem) {
   Point out;
@@ -67,8 +65,7 @@ bool LowerThan(Problem& problem, const End& one, const End& other) {
 
 }  // namespace
 
-bool SaysEnough(const RoughFit& rough, const StatedFriction& f) {
-  if (f.Fs_plus + f.Fs_minus > kFalls * (f.Fc_plus + f.Fc_minus)) return false;
+bool SaysEnough(const RoughFit& rough) {
   return rough.why_not.empty() && rough.unexplained <= kMostUnexplained && rough.inertia > 0.0 &&
          rough.coulomb > 0.0;
 }
@@ -99,7 +96,7 @@ std::vector<double> DeviationsByParts(const Problem& problem, const Fit& fit) {
 
 TwoStarts FitFromTwoStarts(Problem& problem, const RoughFit& rough) {
   const Point stated = Stated(problem);
-  if (!SaysEnough(rough, problem.stated.friction)) {
+  if (!SaysEnough(rough)) {
     problem.LearnOutliers(stated);
     End only = FitFrom(problem, stated);
     const std::vector<double> none(stated.base.size(), 0.0);

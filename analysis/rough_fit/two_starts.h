@@ -26,7 +26,7 @@ std::vector<double> DeviationsByParts(const Problem& problem, const Fit& fit);
 /// [deviations] From where two estimates are not of one number.
 inline constexpr double kDisagree = 4.0;
 
-/// Whether least squares say anything to compare with: they know no friction that falls with the speed.
-bool SaysEnough(const RoughFit& rough, const StatedFriction& friction);
+/// Whether least squares say anything to compare with.
+bool SaysEnough(const RoughFit& rough);
 
 }  // namespace contour::diagnosis

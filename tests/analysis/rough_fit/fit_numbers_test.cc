@@ -51,23 +51,36 @@ TEST(FitNumbers, ALogInAmpereKeepsTheStatedInertia) {
   EXPECT_NEAR(found.axis.friction.Fc_plus / axis.stated.friction.Fc_plus, 1.0, 0.1);
 }
 
-// Before: a level for both directions, stated to 0.1 %, and no word; later the word, and still 0.1 %.
-TEST(FitNumbers, SaysWhereDirectionsAreNotAsStated) {
+bool Says(const FittedNumbers& found, const std::string& what) {
+  return std::any_of(found.notes.begin(), found.notes.end(),
+                     [&](const std::string& n) { return n.find(what) != std::string::npos; });
+}
+
+// Before: levels in the stated ratio, right for neither direction, and an inertia and a viscous friction that
+// made up for it, stated to a few hundredths.
+TEST(FitNumbers, AForceThatTheModelDoesNotStateIsInTheFile) {
   test::HiddenAxis axis = Made();
-  double sigma = 0.0;
-  const auto says = [&](const test::HiddenAxis& of) {
-    const FittedNumbers found = FitNumbers(of.log, of.stated, 1);
-    sigma = found.axis.sigma.at("Fc");
-    return std::any_of(found.notes.begin(), found.notes.end(), [](const std::string& n) {
-      return n.find("Forth and back differ") != std::string::npos;
-    });
-  };
-  EXPECT_FALSE(says(axis));
-  EXPECT_LT(sigma, 0.05);
-  for (double& u : axis.log.command) u += 0.3 * axis.stated.friction.Fc_plus;
-  EXPECT_TRUE(says(axis));
-  // The levels are off by as much as the force that acts in both.
-  EXPECT_NEAR(sigma, 0.3, 0.05);
+  EXPECT_FALSE(Says(FitNumbers(axis.log, axis.stated, 1), "Forth and back differ"));
+  const double weight = 1.5 * axis.stated.friction.Fc_plus;
+  for (double& u : axis.log.command) u += weight;
+  const FittedNumbers found = FitNumbers(axis.log, axis.stated, 1);
+  EXPECT_EQ(found.unusable, "");
+  EXPECT_TRUE(Says(found, "The file has constant_torque_Nm for it"));
+  EXPECT_NEAR(found.axis.offset / weight, -1.0, 0.03);
+  EXPECT_NEAR(found.axis.motor_inertia / axis.stated.motor_inertia, 1.0, 0.03);
+  EXPECT_NEAR(found.axis.friction.Fc_plus / axis.stated.friction.Fc_plus, 1.0, 0.1);
+  EXPECT_NEAR(found.axis.friction.s2 / axis.stated.friction.s2, 1.0, 0.1);
+  EXPECT_LT(found.axis.sigma.at("Fc"), 0.1);
+}
+
+TEST(FitNumbers, AStatedForceThatIsAnotherMovesThere) {
+  test::HiddenAxis axis = Made();
+  const double weight = 1.5 * axis.stated.friction.Fc_plus;
+  for (double& u : axis.log.command) u += weight;
+  axis.stated.offset = 0.2 * weight;
+  const FittedNumbers found = FitNumbers(axis.log, axis.stated, 1);
+  EXPECT_EQ(found.unusable, "");
+  EXPECT_NEAR(found.axis.offset / weight, -1.0, 0.03);
 }
 
 // An axis that hardly accelerates says nothing of its inertia, and the message is not that the model lacks

@@ -67,14 +67,5 @@ TEST(TwoStarts, TheLevelIsInsideItsIntervalFromEitherSide) {
   }
 }
 
-TEST(TwoStarts, LeastSquaresSayNothingOfFrictionThatFalls) {
-  const AxisLog log = Rippled();
-  StatedAxis stated = Stated(kLevel);
-  const RoughFit rough = FitRoughly(log, stated);
-  EXPECT_TRUE(SaysEnough(rough, stated.friction));
-  stated.friction.Fs_plus *= 1.3;
-  EXPECT_FALSE(SaysEnough(rough, stated.friction));
-}
-
 }  // namespace
 }  // namespace contour::diagnosis
