@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "config/extended_model.h"
+#include "config/stated_push.h"
 #include "config/stopping.h"
 #include "control/loop_bandwidth.h"
 #include "control/monitored_axis.h"
@@ -265,11 +266,22 @@ WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& a
   return worst;
 }
 
-double CoastTravel_mm(const AxisConfig& axis) {
+namespace {
+
+/// Downwards the minus level holds against what pushes down, and the other way round.
+double Coast_mm(const AxisConfig& axis, const StatedPush& pushed) {
   const Mechanics m = ToSi(axis.model.mechanics);
   const Friction f = ToSi(axis.model.friction, m.radius_m_rad);
+  const double held_N = std::min(f.Fc_plus_N - pushed.most_N, f.Fc_minus_N + pushed.least_N);
+  if (held_N <= 0.0) return std::numeric_limits<double>::infinity();
   const double speed_m_s = 1e-3 * axis.limits.velocity_mm_s;
-  return 1e3 * 0.5 * m.mass_kg * speed_m_s * speed_m_s / std::min(f.Fc_plus_N, f.Fc_minus_N);
+  return 1e3 * 0.5 * m.mass_kg * speed_m_s * speed_m_s / held_N;
 }
+
+}  // namespace
+
+double CoastTravel_mm(const AxisConfig& axis) { return Coast_mm(axis, {}); }
+
+double PushedCoastTravel_mm(const AxisConfig& axis) { return Coast_mm(axis, StatedPushOf(axis.model)); }
 
 }  // namespace contour

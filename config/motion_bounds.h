@@ -62,4 +62,8 @@ WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& a
 /// Drives that close a holding brake then stop sooner.
 double CoastTravel_mm(const AxisConfig& axis);
 
+/// The same with what the model says pushes the table besides friction; infinite where that is more than
+/// Coulomb friction: the axis then falls, from rest as well, until something else stops it.
+double PushedCoastTravel_mm(const AxisConfig& axis);
+
 }  // namespace contour

@@ -6,6 +6,7 @@
 
 #include "config/load_machine.h"
 #include "control/motion_thresholds.h"
+#include "core/mechanics.h"
 
 namespace contour {
 namespace {
@@ -55,6 +56,24 @@ TEST(MotionBounds, AJumpInMotionCountsFromTheLastCommandedPoint) {
     const double at_rest_mm = Departure_mm(machine, MotionFault::kJump, 0.0);
     EXPECT_NEAR(Departure_mm(machine, MotionFault::kJump, 500.0) - at_rest_mm, 500.0 * until_off_s, 1e-6);
   }
+}
+
+// Downwards the minus level holds; what pushes down is taken off it, and where nothing is left the axis
+// falls.
+TEST(MotionBounds, AnAxisWithoutVoltageCoastsAgainstItsWeightOrFalls) {
+  MachineConfig machine = Machine(DriveMode::kCst);
+  AxisConfig& axis = machine.axes.begin()->second;
+  const double free_mm = PushedCoastTravel_mm(axis);
+  EXPECT_DOUBLE_EQ(free_mm, CoastTravel_mm(axis));
+  const double radius_m_rad = ToSi(axis.model.mechanics).radius_m_rad;
+  FrictionConfig& f = axis.model.friction;
+  ASSERT_EQ(f.acts_on, FrictionSide::kTable);
+  f.Fc_plus_N = 2.0 * f.Fc_minus_N;
+  axis.model.extensions.constant_torque = ConstantTorqueExtension{-0.5 * f.Fc_minus_N * radius_m_rad};
+  EXPECT_NEAR(PushedCoastTravel_mm(axis), 2.0 * CoastTravel_mm(axis), 1e-9 * free_mm);
+  axis.model.extensions.constant_torque->torque_Nm *= 2.1;
+  EXPECT_EQ(PushedCoastTravel_mm(axis), std::numeric_limits<double>::infinity());
+  EXPECT_LT(CoastTravel_mm(axis), 2.0 * free_mm);
 }
 
 // A sign that changes right after a sample shows in the second one that follows.

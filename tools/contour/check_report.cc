@@ -12,6 +12,7 @@
 #include "config/motion_bounds.h"
 #include "config/number_text.h"
 #include "config/screw_advice.h"
+#include "config/stated_push.h"
 #include "config/stopping.h"
 #include "core/mechanics.h"
 #include "drivers/cia402/mode_for.h"
@@ -112,6 +113,24 @@ std::string Stops(const MachineConfig& c) {
          "Safe travel\n" + safe;
 }
 
+// What becomes of an axis whose drive gives no torque any more.
+std::string Coasting(const AxisConfig& axis) {
+  const double coast_mm = PushedCoastTravel_mm(axis);
+  const double pushed_N = StatedPushOf(axis.model).size_N();
+  const std::string against =
+      pushed_N > 0.0 ? " against the " + Fixed(pushed_N, 0, "N") + " that the model states besides it" : "";
+  if (std::isfinite(coast_mm))
+    return "with the voltage off the axis then coasts: from its highest speed up to " +
+           Fixed(coast_mm, 1, "mm") + " by friction alone" + against +
+           ", less where the drive closes a brake";
+  return "WITH THE VOLTAGE OFF THE AXIS FALLS, from rest as well: the model states " +
+         Fixed(pushed_N, 0, "N") +
+         " besides friction (constant_torque, cable_spring), more than friction bears. Only a brake that the "
+         "drive closes by itself, or a counterbalance, holds it after a fault, a stop of the drives and in "
+         "Idle; "
+         "bounds above that end with \"torque off\" are up to there";
+}
+
 // How far the table can be from the commanded path, and how long that takes, until the torque is off.
 std::string Departures(const MachineConfig& c) {
   std::string text =
@@ -138,10 +157,7 @@ std::string Departures(const MachineConfig& c) {
     const WorstDeparture worst = WorstDepartureOf(c, axis);
     text += table.Text() + "  worst: " + Fixed(worst.bound.departure_mm, 2, "mm") + " (" +
             std::string(Name(worst.fault)) + " at " + Number(worst.feed_mm_s, "mm/s") + "), safe travel " +
-            Number(axis.limits.safe_travel_mm, "mm") +
-            "; with the voltage off the axis then coasts: from its highest speed up to " +
-            Fixed(CoastTravel_mm(axis), 1, "mm") +
-            " by friction alone, less where the drive closes a brake\n";
+            Number(axis.limits.safe_travel_mm, "mm") + "; " + Coasting(axis) + "\n";
   }
   for (const auto& [name, axis] : c.axes)
     if (const double feed = PromisedFeed_mm_s(c, axis); feed > kSlowestFeed_mm_s)

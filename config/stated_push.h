@@ -1,0 +1,19 @@
+#pragma once
+
+#include "config/model_config.h"
+
+namespace contour {
+
+/// What a model says pushes the table besides friction, wherever it stands and whatever moves it: the weight
+/// of a vertical axis, a spring along the stroke (extensions constant_torque and cable_spring), N, both
+/// signs.
+struct StatedPush {
+  double least_N = 0.0;
+  double most_N = 0.0;
+
+  /// The larger, without its sign.
+  [[nodiscard]] double size_N() const;
+};
+StatedPush StatedPushOf(const ModelConfig& model);
+
+}  // namespace contour
