@@ -429,9 +429,9 @@ int RunDaemon(const DaemonOptions& options) {
   std::optional<NewStart> again;
   const int status = RunOnce(options, again);
   if (again && status == kExitDone) StartAgain(WithNewStart(options, *again));
-  // Drives that have no torque mode, say: the machine file's own mode did come up.
-  if (status == kExitFailed && !options.torque_loops.empty())
-    StartAgain(WithNewStart(options, {{}, TorqueMode{}}));
+  // Drives that have no such mode, say: the machine file's own did come up.
+  if (status == kExitFailed && !(options.torque_loops.empty() && options.csp_axes.empty()))
+    StartAgain(WithNewStart(options, {{}, RecordingMode{}}));
   return status;
 }
 

@@ -36,6 +36,12 @@ ParseResult ParseOptions(int argc, char** argv, DaemonOptions& o) {
                  "AXIS=KEYS: the model that such a loop was found for, in place of the axis's own")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option(
+         "--csp-axis", o.csp_axes,
+         "AXIS: in csp, whatever the machine file says; contourd gives it to itself when commissioning "
+         "asks for it on the control socket; each axis")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--log", o.log, "Record every cycle, inputs and outputs, in this LCM log");
   app.add_option("--truth", o.truth,
                  "Write what the emulated machine really did to this CSV (loopback only)");

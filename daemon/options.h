@@ -18,6 +18,7 @@ struct DaemonOptions {
   std::vector<std::string>
       torque_loops;  ///< AXIS=YAML of all axes: torque mode with these; empty: as the file
   std::vector<std::string> torque_models;  ///< AXIS=YAML, in torque mode in place of the axis's own
+  std::vector<std::string> csp_axes;       ///< all axes: csp; empty: as the file
   std::string log;                         ///< empty: none
   std::string truth;                       ///< empty: none; loopback only
   std::string socket;                      ///< empty: the default place

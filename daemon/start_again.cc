@@ -30,9 +30,10 @@ DaemonOptions WithModel(DaemonOptions options, const std::string& model) {
 
 DaemonOptions WithNewStart(DaemonOptions options, const NewStart& start) {
   if (start.model) options = WithModel(std::move(options), *start.model);
-  if (start.torque_mode) {
-    options.torque_loops = start.torque_mode->loops;
-    options.torque_models = start.torque_mode->models;
+  if (start.recording_mode) {
+    options.torque_loops = start.recording_mode->loops;
+    options.torque_models = start.recording_mode->models;
+    options.csp_axes = start.recording_mode->csp_axes;
   }
   options.log = NextFile(options.log);
   options.truth = NextFile(options.truth);
@@ -41,8 +42,9 @@ DaemonOptions WithNewStart(DaemonOptions options, const NewStart& start) {
 
 std::string Describe(const NewStart& start) {
   if (start.model) return "with another model of axis " + start.model->substr(0, start.model->find('='));
-  return start.torque_mode && !start.torque_mode->loops.empty() ? "in torque mode for commissioning"
-                                                                : "in the machine file's own mode";
+  if (start.recording_mode && !start.recording_mode->loops.empty()) return "in torque mode for commissioning";
+  if (start.recording_mode && !start.recording_mode->csp_axes.empty()) return "in csp for commissioning";
+  return "in the machine file's own mode";
 }
 
 std::string NextFile(const std::string& file) {
@@ -76,6 +78,7 @@ std::vector<std::string> ArgumentsOf(const DaemonOptions& o) {
   for (const std::string& model : o.models) out.push_back("--model=" + model);
   for (const std::string& loop : o.torque_loops) out.push_back("--torque-loop=" + loop);
   for (const std::string& model : o.torque_models) out.push_back("--torque-model=" + model);
+  for (const std::string& axis : o.csp_axes) out.push_back("--csp-axis=" + axis);
   return out;
 }
 

@@ -3,7 +3,7 @@
 #include "config/config_error.h"
 #include "config/load_machine.h"
 #include "daemon/loaded_model.h"
-#include "daemon/torque_mode.h"
+#include "daemon/recording_mode.h"
 #include "design/loop_choice.h"
 #include "design/loop_judgement.h"
 
@@ -32,7 +32,8 @@ std::vector<std::string> OverridesOf(const DaemonOptions& options) {
       set.push_back("buses." + names[i] + ".interface=" + options.buses[i]);
   }
   for (const std::string& model : options.models) set.push_back(ModelOverride(model));
-  for (const std::string& assignment : TorqueModeOverrides({options.torque_loops, options.torque_models}))
+  for (const std::string& assignment :
+       RecordingOverrides({options.torque_loops, options.torque_models, options.csp_axes}))
     set.push_back(assignment);
   return set;
 }

@@ -22,9 +22,9 @@
 #include "daemon/program/program.h"
 #include "daemon/program_limits.h"
 #include "daemon/reason_text.h"
+#include "daemon/recording_mode.h"
 #include "daemon/rt/cycle_parts.h"
 #include "daemon/telemetry/tuning_note.h"
-#include "daemon/torque_mode.h"
 #include "drivers/cia301/bring_up_text.h"
 
 namespace contour {
@@ -250,16 +250,32 @@ Answer Supervisor::ChangeMode(const std::map<std::string, std::string>& loops,
     return {false, "in torque mode only the controller full goes by loops, and this is " +
                        std::string(Name(controller_))};
   try {
-    NewStart start{{}, TorqueMode{}};
-    for (const auto& [axis, yaml] : loops) start.torque_mode->loops.push_back(axis + "=" + yaml);
-    for (const auto& [axis, yaml] : models) start.torque_mode->models.push_back(axis + "=" + yaml);
-    std::vector<std::string> overrides = WithoutTorqueMode(axis_names_, source_.overrides);
-    for (const std::string& assignment : TorqueModeOverrides(*start.torque_mode))
-      overrides.push_back(assignment);
-    return BeginAnew(overrides, std::move(start));
+    RecordingMode mode;
+    for (const auto& [axis, yaml] : loops) mode.loops.push_back(axis + "=" + yaml);
+    for (const auto& [axis, yaml] : models) mode.models.push_back(axis + "=" + yaml);
+    return BeginAnewIn(std::move(mode));
   } catch (const std::exception& e) {
     return {false, e.what()};
   }
+}
+
+Answer Supervisor::LeaveToDrives() {
+  const std::lock_guard lock(reload_);
+  if (controller_ != ControllerName::kFull)
+    return {false, "only the controller full works in csp and in torque mode, and this is " +
+                       std::string(Name(controller_))};
+  try {
+    return BeginAnewIn({{}, {}, axis_names_});
+  } catch (const std::exception& e) {
+    return {false, e.what()};
+  }
+}
+
+/// Holding reload_.
+Answer Supervisor::BeginAnewIn(RecordingMode mode) {
+  std::vector<std::string> overrides = WithoutRecordingMode(axis_names_, source_.overrides);
+  for (const std::string& assignment : RecordingOverrides(mode)) overrides.push_back(assignment);
+  return BeginAnew(overrides, {{}, std::move(mode)});
 }
 
 /// Holding reload_.

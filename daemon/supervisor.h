@@ -66,6 +66,7 @@ class Supervisor final : public OperatorDesk {
   Answer LoadModel(const std::string& axis, const std::string& yaml) override;
   Answer ChangeMode(const std::map<std::string, std::string>& loops,
                     const std::map<std::string, std::string>& models) override;
+  Answer LeaveToDrives() override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   Answer Zero() override;
   Answer Pace(const PaceRequest& request) override {
@@ -76,7 +77,8 @@ class Supervisor final : public OperatorDesk {
   void Attach(std::shared_ptr<RowFeed> feed) override;
   void Detach(const std::shared_ptr<RowFeed>& feed) override;
 
-  /// Asked by LoadModel() or ChangeMode() and not yet carried out. Waits for no file and for no check.
+  /// Asked by LoadModel(), ChangeMode() or LeaveToDrives() and not yet carried out. Waits for no file and for
+  /// no check.
   [[nodiscard]] std::optional<NewStart> wanted();
 
   /// The newest record.
@@ -90,6 +92,7 @@ class Supervisor final : public OperatorDesk {
   [[nodiscard]] std::optional<Answer> Look(RequestKind kind, std::uint32_t sequence);
   std::uint32_t Post(RequestKind kind, std::uint32_t program_id = 0);
   void TakeBack(RequestKind kind);
+  [[nodiscard]] Answer BeginAnewIn(RecordingMode mode);
   [[nodiscard]] Answer BeginAnew(const std::vector<std::string>& overrides, NewStart start);
   [[nodiscard]] LearningReport Learn(const ProgramUpload& upload, const Placement& place,
                                      PathGenerator& generator);

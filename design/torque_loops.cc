@@ -54,6 +54,12 @@ TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads,
   return found;
 }
 
+MachineConfig InCsp(MachineConfig machine) {
+  machine.control.friction = FrictionKind::kLinear;
+  for (auto& [name, axis] : machine.axes) axis.drive.mode = DriveMode::kCsp;
+  return machine;
+}
+
 MachineConfig InTorqueMode(MachineConfig machine, const std::map<std::string, LoopTuning>& loops) {
   if (!loops.empty()) machine.control.friction = FrictionKind::kLinear;
   for (const auto& [name, loop] : loops) {

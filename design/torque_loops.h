@@ -25,6 +25,9 @@ struct TorqueLoops {
 TorqueLoops FindTorqueLoops(const MachineConfig& machine, int threads,
                             std::map<std::string, LoopTuning> known = {});
 
+/// The machine with all axes in csp, held by the loops of their drives; friction as with loops from here.
+MachineConfig InCsp(MachineConfig machine);
+
 /// The machine in torque mode with these loops; as it is without any.
 MachineConfig InTorqueMode(MachineConfig machine, const std::map<std::string, LoopTuning>& loops);
 

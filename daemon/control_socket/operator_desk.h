@@ -77,6 +77,8 @@ class OperatorDesk {
   /// anew as with a model. Where the drives do not come up so, in the machine file's own mode.
   virtual Answer ChangeMode(const std::map<std::string, std::string>& loops,
                             const std::map<std::string, std::string>& models) = 0;
+  /// csp for all axes, whatever the machine file says, and back by ChangeMode() with none; as that otherwise.
+  virtual Answer LeaveToDrives() = 0;
   virtual Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) = 0;
   /// Programs count from where the machine stands from now on. As the next.
   virtual Answer Zero() = 0;

@@ -165,6 +165,7 @@ const std::map<std::string, std::set<std::string>>& KeysOfRequests() {
       {"reload", {}},
       {"load_model", {"axis", "model"}},
       {"torque_mode", {"loops", "models"}},
+      {"csp_mode", {}},
       {"run",
        {"name", "format", "text", "uploaded", "controller", "forget", "from_here", "single_block",
         "optional_stop", "block_delete", "go_there", "from_line"}},
@@ -208,15 +209,17 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
   }
   if (kind == "load_model") return LoadModel(request, desk);
   if (kind == "torque_mode") return ChangeMode(request, desk);
+  if (kind == "csp_mode") return Reply(desk.LeaveToDrives());
   if (kind == "run") return Run(request, desk, unwanted, uploaded);
   if (kind == "watch") return Watch(request, subscriptions);
   if (kind == "rows") {
     subscriptions.rows = Flag(request, "on");
     return {{"ok", true}};
   }
-  throw BadRequest("unknown request \"" + kind +
-                   "\"; there are status, machine_file, enable, disable, stop, pause, resume, feed, "
-                   "zero, reset, reference, reload, load_model, torque_mode, upload, run, watch, rows");
+  throw BadRequest(
+      "unknown request \"" + kind +
+      "\"; there are status, machine_file, enable, disable, stop, pause, resume, feed, "
+      "zero, reset, reference, reload, load_model, torque_mode, csp_mode, upload, run, watch, rows");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }

@@ -37,21 +37,26 @@ TEST(WithNewStart, LogAndTruthGoOnInFilesOfTheirOwn) {
   options.models = {"x=a"};
   options.torque_loops = {"x=old"};
   options.torque_models = {"x=older"};
+  options.csp_axes = {"x"};
   const DaemonOptions modelled = WithNewStart(options, {"x={lead_mm: 5}", {}});
   EXPECT_EQ(modelled.log, options.log + ".1");
   EXPECT_EQ(modelled.truth, "");
   EXPECT_EQ(modelled.models, (std::vector<std::string>{"x={lead_mm: 5}"}));
   EXPECT_EQ(modelled.torque_loops, options.torque_loops) << "a model is loaded in the mode that runs";
-  const DaemonOptions back = WithNewStart(modelled, {{}, TorqueMode{}});
+  const DaemonOptions back = WithNewStart(modelled, {{}, RecordingMode{}});
   EXPECT_TRUE(back.torque_loops.empty());
   EXPECT_TRUE(back.torque_models.empty());
+  EXPECT_TRUE(back.csp_axes.empty());
+  EXPECT_EQ(WithNewStart(back, {{}, RecordingMode{{}, {}, {"x", "y"}}}).csp_axes,
+            (std::vector<std::string>{"x", "y"}));
   EXPECT_EQ(back.models, modelled.models);
 }
 
 TEST(Describe, SaysWhatBeginsAnew) {
   EXPECT_EQ(Describe({"x={lead_mm: 5}", {}}), "with another model of axis x");
-  EXPECT_EQ(Describe({{}, TorqueMode{{"x=a"}, {}}}), "in torque mode for commissioning");
-  EXPECT_EQ(Describe({{}, TorqueMode{}}), "in the machine file's own mode");
+  EXPECT_EQ(Describe({{}, RecordingMode{{"x=a"}, {}}}), "in torque mode for commissioning");
+  EXPECT_EQ(Describe({{}, RecordingMode{{}, {}, {"x"}}}), "in csp for commissioning");
+  EXPECT_EQ(Describe({{}, RecordingMode{}}), "in the machine file's own mode");
 }
 
 TEST(ArgumentsOf, AreReadAsTheSameOptions) {
@@ -64,6 +69,7 @@ TEST(ArgumentsOf, AreReadAsTheSameOptions) {
   options.models = {"x=lead_mm: 5\nfriction: {a: 1}\n"};
   options.torque_loops = {"x=regulator_Hz: 20\n", "y={regulator_Hz: 10}"};
   options.torque_models = {"x={lead_mm: 5}"};
+  options.csp_axes = {"x", "y"};
   options.log = "l";
   options.truth = "t";
   options.socket = "/s";
@@ -76,6 +82,7 @@ TEST(ArgumentsOf, AreReadAsTheSameOptions) {
   EXPECT_EQ(read.models, options.models);
   EXPECT_EQ(read.torque_loops, options.torque_loops);
   EXPECT_EQ(read.torque_models, options.torque_models);
+  EXPECT_EQ(read.csp_axes, options.csp_axes);
   EXPECT_EQ(read.set, options.set);
   EXPECT_EQ(read.buses, options.buses);
 }

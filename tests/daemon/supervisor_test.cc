@@ -141,6 +141,9 @@ TEST_F(SupervisorTest, TorqueModeIsRefusedBeforeAnythingEnds) {
   const Answer pid = supervisor_.ChangeMode({{"x", "regulator_Hz: 20"}}, {});
   EXPECT_FALSE(pid.accepted) << "pid goes by no loop";
   EXPECT_NE(pid.reason.find("full"), std::string::npos) << pid.reason;
+  const Answer csp = supervisor_.LeaveToDrives();
+  EXPECT_FALSE(csp.accepted) << "pid has no drive that leads";
+  EXPECT_NE(csp.reason.find("full"), std::string::npos) << csp.reason;
   EXPECT_FALSE(supervisor_.wanted().has_value());
 }
 

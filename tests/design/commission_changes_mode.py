@@ -20,6 +20,8 @@ from free_port import free_port  # noqa: E402
 
 
 class Daemon(ControlSocket):
+    OWN_MODE = "csp"
+
     def __init__(self, contourd, machine_file, scratch, overrides):
         super().__init__(f"{scratch}/control.sock")
         self.messages = f"{scratch}/daemon.txt"
@@ -68,7 +70,7 @@ def commission_once(daemon, scratch, contour):
     for _ in range(5):
         done = subprocess.run(command, capture_output=True, text=True)
         print(done.stdout)
-        assert daemon.mode() == "csp", "back in the machine file's own mode, whatever came of it"
+        assert daemon.mode() == daemon.OWN_MODE, "back in the machine file's own mode, whatever came of it"
         if "cycles are missing" not in done.stderr:
             break
     assert done.returncode == 0, (done.returncode, done.stderr, done.stdout)

@@ -51,6 +51,14 @@ TEST(TorqueLoops, AnAxisThatNoLoopHoldsStaysWithItsDrive) {
   EXPECT_EQ(as_it_is.control.friction, FrictionKind::kSrukf);
 }
 
+TEST(TorqueLoops, WithoutThemAllDrivesHoldTheirAxes) {
+  MachineConfig machine = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/family/t30.yaml");
+  machine.control.friction = FrictionKind::kSrukf;
+  const MachineConfig in_csp = InCsp(machine);
+  for (const auto& [name, axis] : in_csp.axes) EXPECT_EQ(axis.drive.mode, DriveMode::kCsp) << name;
+  EXPECT_EQ(in_csp.control.friction, FrictionKind::kLinear);
+}
+
 // All axes change their modes together: while one was looked at, the others were left with their drives, and
 // no machine of two axes was recorded in torque mode.
 TEST(TorqueLoops, AreThereForEveryAxisOfAMachine) {

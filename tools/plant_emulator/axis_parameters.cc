@@ -140,6 +140,7 @@ AxisParameters MakeAxisParameters(const EmulatedAxisConfig& config, const Emulat
   p.encoder_noise_lsb = config.encoder_noise_lsb;
   p.incremental_encoder = config.incremental_encoder;
   p.torque_mode = config.torque_mode;
+  p.csp_mode = config.csp_mode;
   p.torque_noise_Nm = config.torque_noise_Nm;
   p.torque_noise_change = config.torque_noise_change;
   p.torque_noise_change_s = config.torque_noise_change_s;

@@ -59,6 +59,7 @@ struct AxisParameters {
   double encoder_noise_lsb = 0.0;
   bool incremental_encoder = false;
   bool torque_mode = true;
+  bool csp_mode = true;
   double torque_noise_Nm = 0.0;  ///< of the mean over one cycle
   double torque_noise_change = 1.0;
   double torque_noise_change_s = 0.0;

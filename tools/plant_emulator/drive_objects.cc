@@ -38,7 +38,8 @@ void AddModes(ObjectDictionary& o, const AxisParameters& p) {
   o.Add(0x60C2, 1, kU8, kReadWrite, 1);
   o.Add(0x60C2, 2, kI8, kReadWrite, -3);
   o.Limit(0x60C2, 2, -6, 0);
-  o.Add(0x6502, 0, kU32, kReadOnly, 1 << (kModeCsp - 1) | (p.torque_mode ? 1 << (kModeCst - 1) : 0));
+  o.Add(0x6502, 0, kU32, kReadOnly,
+        (p.csp_mode ? 1 << (kModeCsp - 1) : 0) | (p.torque_mode ? 1 << (kModeCst - 1) : 0));
 }
 
 void AddPosition(ObjectDictionary& o, const AxisParameters& p, double counts_per_rad) {

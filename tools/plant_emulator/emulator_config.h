@@ -193,6 +193,7 @@ struct EmulatedAxisConfig {
   double encoder_noise_lsb = 0.3;
   bool incremental_encoder = false;
   bool torque_mode = true;
+  bool csp_mode = true;
   double stroke_mm = 400.0;
   double start_position_mm = 0.0;
   double start_variation_mm = 2.5;
@@ -230,6 +231,7 @@ struct EmulatedAxisConfig {
     v.Optional("incremental_encoder", incremental_encoder,
                "the drive counts from where the axis stands at power-up; NMT reset node is one, too");
     v.Optional("torque_mode", torque_mode, "0x6502 has cst; without, csp alone");
+    v.Optional("csp_mode", csp_mode, "0x6502 has csp; without, cst alone");
     v.Optional("encoder_noise_lsb", encoder_noise_lsb, Range{0.0, 1000.0},
                "standard deviation of a reading, counts");
     v.Optional("stroke_mm", stroke_mm, kPositive, "travel over which friction varies");

@@ -43,6 +43,7 @@ class FakeDesk final : public OperatorDesk {
     torque_models = models;
     return Do("torque_mode");
   }
+  Answer LeaveToDrives() override { return Do("csp_mode"); }
   Answer Run(const ProgramUpload& program, const std::stop_token& /*unwanted*/) override {
     Answer answer = Do("run");
     const std::lock_guard lock(mutex_);

@@ -153,6 +153,12 @@ TEST_F(RequestHandlerTest, TorqueModeHasALoopForEachAxisAndModelsWhereTheyAreOth
   EXPECT_TRUE(desk_.torque_models.empty());
 }
 
+TEST_F(RequestHandlerTest, CspNeedsNothingElse) {
+  EXPECT_EQ(Ask(R"({"request": "csp_mode"})")["ok"], true);
+  EXPECT_EQ(Ask(R"({"request": "csp_mode", "loops": {}})")["ok"], false);
+  EXPECT_EQ(desk_.asked(), (std::vector<std::string>{"csp_mode"}));
+}
+
 TEST_F(RequestHandlerTest, SurvivesNoise) {
   std::mt19937 random(1);
   const std::string seed = R"({"id": 1, "request": "run", "name": "a", "format": "yaml", "text": "b"})";
@@ -184,7 +190,8 @@ TEST_F(RequestHandlerTest, ALineSaysWhoAnswersIt) {
   for (const char* at_once : {"pause", "resume", "feed", "zero"})
     EXPECT_EQ(HeadOf(std::string(R"({"request": ")") + at_once + "\"}").kind, RequestClass::kAtOnce)
         << at_once;
-  for (const char* waits : {"enable", "reset", "reload", "run", "machine_file", "load_model", "torque_mode"})
+  for (const char* waits :
+       {"enable", "reset", "reload", "run", "machine_file", "load_model", "torque_mode", "csp_mode"})
     EXPECT_EQ(kind(waits), RequestClass::kWaits) << waits;
   EXPECT_EQ(kind("stop"), RequestClass::kStop);
   EXPECT_EQ(kind("disable"), RequestClass::kDisable);

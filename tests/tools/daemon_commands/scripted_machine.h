@@ -32,6 +32,7 @@ class ScriptedMachine final : public OperatorDesk {
                     const std::map<std::string, std::string>& /*models*/) override {
     return {true, ""};
   }
+  Answer LeaveToDrives() override { return {true, ""}; }
   Answer Reset(const std::stop_token&) override { return Go(MachineState::kIdle, Reason::kNone); }
   Answer Run(const ProgramUpload& upload, const std::stop_token&) override;
   Answer Zero() override { return Go(MachineState::kReady, Reason::kNone); }

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "design/start_loop.h"
 #include "tools/machine/load_emulated_machine.h"
 
 namespace contour {
@@ -14,9 +15,9 @@ namespace contour {
 ModelConfig CatalogueModel(const EmulatedAxisConfig& is, ModelConfig model, std::uint64_t seed);
 
 /// An axis's loop and file as they are when commissioning begins: catalogue data and StartLoop for every
-/// axis, `full` with linear friction.
-/// Loops that `known` has, by machine and seed, are not searched again: the axes of these machines are alike.
-using KnownLoops = std::map<std::string, LoopTuning>;
+/// axis, none where no loop holds it, `full` with linear friction.
+/// What `known` has, by machine and seed, is not searched again: the axes of these machines are alike.
+using KnownLoops = std::map<std::string, StartLoop>;
 void StateCatalogue(EmulatedMachineFile& file, std::uint64_t seed, KnownLoops& known);
 
 }  // namespace contour

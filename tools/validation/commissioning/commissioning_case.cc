@@ -88,21 +88,44 @@ EmulatedMachineFile MachineOf(const CommissioningCase& c, KnownLoops& known) {
   return file;
 }
 
-Recorded AsRecorded(const EmulatedMachineFile& file, const CommissioningCase& c, KnownTorqueLoops& known) {
-  Recorded recorded{file, c.mode};
-  if (c.stay || c.mode != "csp") return recorded;
+namespace {
+
+/// What a machine in torque mode begins with: what it lacks was searched when its file was made.
+TorqueLoops LoopsOf(const MachineConfig& machine) {
+  TorqueLoops own;
+  for (const auto& [name, axis] : machine.axes) {
+    if (axis.loop) own.loops[name] = *axis.loop;
+    if (!axis.loop) own.lacking.push_back(name);
+  }
+  return own;
+}
+
+TorqueLoops LoopsFromCatalogue(const EmulatedMachineFile& file, const CommissioningCase& c,
+                               KnownTorqueLoops& known) {
+  if (c.mode == "cst") return LoopsOf(file.machine);
   const EmulatedAxisConfig& axis = file.emulator.axes.at(c.axis);
   const double moving_kg = axis.counterbalance ? axis.counterbalance->moving_mass_kg : 0.0;
   const std::string key = FormatText("%s %llu %g", file.machine.machine.name.c_str(),
                                      static_cast<unsigned long long>(c.seed), moving_kg);
   if (!known.contains(key)) known[key] = FindTorqueLoops(file.machine, 1);
-  TorqueLoops torque = known.at(key);
+  return known.at(key);
+}
+
+}  // namespace
+
+Recorded AsRecorded(const EmulatedMachineFile& file, const CommissioningCase& c, KnownTorqueLoops& known) {
+  Recorded recorded{file, c.stay ? "csp" : c.mode};
+  recorded.file.machine = InCsp(file.machine);
+  const EmulatedMachineFile in_csp = recorded.file;
+  if (c.stay) return recorded;
+  TorqueLoops torque = LoopsFromCatalogue(file, c, known);
+  if (c.mode == "cst" && torque.lacking.empty()) return {file, c.mode};
   MachineConfig better = file.machine;
   for (const std::string& name : torque.lacking) {
-    recorded.how += ", " + name + " first";
-    const VirtualCommissioning run = Commission(file, name, "full");
+    recorded.how += ", " + name + " first" + (c.mode == "csp" ? "" : " in csp");
+    const VirtualCommissioning run = Commission(in_csp, name, "full");
     const identify::Identification id =
-        identify::Identify(diagnosis::ToStatedAxis(file.machine, name), {run.log}, {});
+        identify::Identify(diagnosis::ToStatedAxis(in_csp.machine, name), {run.log}, {});
     const std::string why = identify::WhyNoBeginning(id);
     if (why.empty()) better.axes.at(name).model = identify::ToModel(id, better.axes.at(name).model);
     if (!why.empty()) recorded.how += " (in vain: " + why + ")";
@@ -112,7 +135,7 @@ Recorded AsRecorded(const EmulatedMachineFile& file, const CommissioningCase& c,
     recorded.file.machine = InTorqueMode(better, torque.loops);
     recorded.how += ", then cst";
   } else {
-    recorded.how += ": " + torque.why_not;
+    recorded.how += ", then csp: " + torque.why_not;
   }
   return recorded;
 }

@@ -18,7 +18,7 @@ struct CommissioningCase {
   std::uint64_t seed = 1;
   std::string axis = "x";
   std::string mode = "cst";        ///< of the drives: cst or csp
-  bool stay = false;               ///< in csp, though there may be loops for torque mode
+  bool stay = false;               ///< recorded in csp, though there may be loops for torque mode
   std::vector<std::string> set{};  ///< on top of the machine's file, as --set has it
 };
 
@@ -29,7 +29,8 @@ const std::vector<std::string>& CommissioningEffects();
 /// Loops found from catalogue data before, by machine, seed and mass.
 using KnownTorqueLoops = std::map<std::string, TorqueLoops>;
 /// The machine as it is while an axis is recorded for good, as `contour commission` has it: where drives
-/// lead, in torque mode where there are loops for it, from the catalogue or from what records in csp tell.
+/// lead, or no loop holds all that a catalogue leaves open, in torque mode where there are loops for it, from
+/// the catalogue or from what records in csp tell.
 struct Recorded {
   EmulatedMachineFile file;
   std::string how;  ///< for people

@@ -80,7 +80,7 @@ void RunAxis(const EmulatedMachineFile& file, const CommissioningCase& c, const 
              const Options& options, KnownTorqueLoops& known, EmulatedMachineFile& after, Tallies& tallies) {
   const Recorded as = AsRecorded(file, c, known);
   const EmulatedMachineFile& recorded = as.file;
-  if (c.mode == "csp") std::printf("  recorded in %s\n", as.how.c_str());
+  if (c.mode == "csp" || as.how != c.mode) std::printf("  recorded in %s\n", as.how.c_str());
   const VirtualCommissioning run = Commission(recorded, axis, "full");
   identify::IdentifyOptions how;
   how.threads = options.threads;
@@ -181,7 +181,7 @@ int main(int argc, char** argv) {
   app.add_option("--mode", options.mode,
                  "Of the drives: cst, or csp (recorded in torque mode where there are loops for it)")
       ->capture_default_str();
-  app.add_flag("--stay", options.stay, "In csp while an axis is recorded, too");
+  app.add_flag("--stay", options.stay, "In csp while an axis is recorded, whatever there is");
   app.add_option("--set", options.set, "Put KEY=VALUE on top of each machine's file; any number of times")
       ->allow_extra_args(false);
   app.add_option("--seeds", options.seeds, "How many");

@@ -1,8 +1,8 @@
-#include "tools/contour/torque_mode_stay.h"
+#include "tools/contour/mode_stay.h"
 
 #include <chrono>
 #include <iostream>
-#include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <vector>
 
 #include "config/config_error.h"
@@ -28,44 +28,54 @@ std::map<std::string, std::string> Texts(const std::map<std::string, T>& by_axis
 
 }  // namespace
 
-bool TorqueModeStay::Enter(const std::map<std::string, LoopTuning>& loops,
-                           const std::map<std::string, ModelConfig>& models) {
+bool ModeStay::EnterTorqueMode(const std::map<std::string, LoopTuning>& loops,
+                               const std::map<std::string, ModelConfig>& models) {
+  return Enter({{"request", "torque_mode"}, {"loops", Texts(loops)}, {"models", Texts(models)}},
+               DriveMode::kCst);
+}
+
+bool ModeStay::EnterCsp() { return Enter({{"request", "csp_mode"}}, DriveMode::kCsp); }
+
+bool ModeStay::Enter(const nlohmann::json& request, DriveMode mode) {
   if (!IsIdle(Status(*client_))) {
     AskOrThrow(*client_, {{"request", "disable"}});
     WaitForStatus(*client_, IsIdle, kIdleLimit);
   }
+  const bool was = entered_;
   entered_ = true;  // also where it does not answer any more
   try {
-    Begin(Texts(loops), Texts(models));
+    Begin(request);
   } catch (const BeginRefused&) {
-    entered_ = false;
+    entered_ = was;
     throw;
   }
-  entered_ = AskForMachine(*client_).axes.begin()->second.drive.mode == DriveMode::kCst;
+  entered_ = AskForMachine(*client_).axes.begin()->second.drive.mode == mode;
   return entered_;
 }
 
-void TorqueModeStay::Leave() {
+void ModeStay::Leave() {
   if (!entered_) return;
-  WaitForStatus(*client_, IsIdle, kIdleLimit);
-  Begin({}, {});
+  const nlohmann::json status = WaitForStatus(
+      *client_, [](const nlohmann::json& s) { return IsIdle(s) || s.at("state") == "Faulted"; }, kIdleLimit);
+  // For whoever looks at the fault.
+  if (!IsIdle(status)) throw std::runtime_error(StateSentence(status));
+  Begin({{"request", "torque_mode"}, {"loops", nlohmann::json::object()}});
   entered_ = false;
 }
 
-void TorqueModeStay::LeaveOrSay() {
+void ModeStay::LeaveOrSay() {
   try {
     Leave();
   } catch (const std::exception& e) {
-    std::cerr << "contourd is still in torque mode, for commissioning alone (" << e.what()
+    std::cerr << "contourd is still in another mode, for commissioning alone (" << e.what()
               << "): restart it for the machine file's own\n";
   }
 }
 
-void TorqueModeStay::Begin(const std::map<std::string, std::string>& loops,
-                           const std::map<std::string, std::string>& models) {
+void ModeStay::Begin(const nlohmann::json& request) {
   BeginAnew(
-      client_, {{"request", "torque_mode"}, {"loops", loops}, {"models", models}},
-      [this] { return ConnectToDaemon(socket_); }, std::chrono::steady_clock::now() + kBeginAnew);
+      client_, request, [this] { return ConnectToDaemon(socket_); },
+      std::chrono::steady_clock::now() + kBeginAnew);
 }
 
 MachineConfig AskForMachine(ControlClient& client) {

@@ -1,0 +1,50 @@
+#include "daemon/recording_mode.h"
+
+#include <algorithm>
+
+#include "config/config_error.h"
+#include "daemon/loaded_model.h"
+
+namespace contour {
+namespace {
+
+/// The loops know no other; nor is there one in csp that a catalogue could lead astray.
+constexpr const char* kFriction = "control.friction=linear";
+
+std::string Mode(const std::string& axis) { return "axes." + axis + ".drive.mode="; }
+std::string Loop(const std::string& axis) { return "axes." + axis + ".loop="; }
+
+}  // namespace
+
+std::vector<std::string> RecordingOverrides(const RecordingMode& mode) {
+  std::vector<std::string> set;
+  if (mode.loops.empty() && mode.csp_axes.empty()) return set;
+  for (const std::string& axis : mode.csp_axes) set.push_back(Mode(axis) + "csp");
+  for (const std::string& loop : mode.loops) {
+    const std::size_t equals = loop.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == loop.size())
+      throw ConfigError({"--torque-loop " + loop +
+                         ": expected an axis and its loop, as in --torque-loop x={regulator_Hz: 20, ...}"});
+    const std::string axis = loop.substr(0, equals);
+    set.push_back(Mode(axis) + "cst");
+    set.push_back(Loop(axis) + loop.substr(equals + 1));
+  }
+  for (const std::string& model : mode.models) set.push_back(ModelOverride(model));
+  set.emplace_back(kFriction);
+  return set;
+}
+
+std::vector<std::string> WithoutRecordingMode(const std::vector<std::string>& axes,
+                                              std::vector<std::string> overrides) {
+  for (const std::string& axis : axes) {
+    std::erase_if(overrides, [&](const std::string& o) { return o.starts_with(Loop(axis)); });
+    // What was there before is the operator's own.
+    const auto last = std::find_if(overrides.rbegin(), overrides.rend(),
+                                   [&](const std::string& o) { return o.starts_with(Mode(axis)); });
+    if (last != overrides.rend()) overrides.erase(std::next(last).base());
+  }
+  std::erase(overrides, kFriction);
+  return overrides;
+}
+
+}  // namespace contour

@@ -1,0 +1,45 @@
+#include "daemon/recording_mode.h"
+
+#include <gtest/gtest.h>
+
+#include "config/config_error.h"
+
+namespace contour {
+namespace {
+
+using List = std::vector<std::string>;
+
+TEST(RecordingOverrides, PutsEveryAxisIntoTorqueModeWithItsLoop) {
+  EXPECT_EQ(RecordingOverrides({{"x={a: 1}", "y={a: 2}"}, {"y={b: 3}"}}),
+            (List{"axes.x.drive.mode=cst", "axes.x.loop={a: 1}", "axes.y.drive.mode=cst",
+                  "axes.y.loop={a: 2}", "axes.y.model={b: 3}", "control.friction=linear"}));
+  EXPECT_EQ(RecordingOverrides({{}, {"y={b: 3}"}}), List{}) << "the machine file's own mode";
+}
+
+TEST(RecordingOverrides, LeavesEveryAxisToItsDrive) {
+  EXPECT_EQ(RecordingOverrides({{}, {}, {"x", "y"}}),
+            (List{"axes.x.drive.mode=csp", "axes.y.drive.mode=csp", "control.friction=linear"}));
+}
+
+TEST(RecordingOverrides, RefusesWhatIsNotAnAxisAndItsLoop) {
+  for (const char* wrong : {"x", "={a: 1}", "x="})
+    EXPECT_THROW(RecordingOverrides({{wrong}, {}}), ConfigError) << wrong;
+}
+
+TEST(WithoutRecordingMode, TakesAwayModeAndLoopsAndNothingElse) {
+  List overrides{"machine.name=a", "axes.x.limits.torque_Nm=1"};
+  const List own = overrides;
+  for (const std::string& o : RecordingOverrides({{"x={a: 1}", "y={a: 2}"}, {}})) overrides.push_back(o);
+  EXPECT_EQ(WithoutRecordingMode({"x", "y"}, overrides), own);
+}
+
+// Else the check of a machine that goes back would be of another one.
+TEST(WithoutRecordingMode, LeavesTheOperatorsOwnMode) {
+  List overrides{"axes.x.drive.mode=cst", "axes.y.drive.mode=cst"};
+  const List own = overrides;
+  for (const std::string& o : RecordingOverrides({{}, {}, {"x", "y"}})) overrides.push_back(o);
+  EXPECT_EQ(WithoutRecordingMode({"x", "y"}, overrides), own);
+}
+
+}  // namespace
+}  // namespace contour
