@@ -44,6 +44,16 @@ def drive_is_measured(contour, daemon, scratch):
     assert "in csp for commissioning" in Path(daemon.messages).read_text(encoding="utf-8")
 
 
+def loops_to_begin_with_are_found(contour, daemon, scratch):
+    """The file's own is sharper than what the model leaves open bears; nothing moves without a yes."""
+    asked = [word for word in commission(contour, daemon, scratch) if word != "--yes"]
+    done = subprocess.run(asked, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    assert done.returncode == 2 and "--yes" in done.stderr, (done.returncode, done.stdout, done.stderr)
+    assert "axis x: its loop is not stable for all that the model leaves open" in done.stdout, done.stdout
+    assert "in torque mode, held by loops from here, and back to the machine file's loops" in done.stdout, done.stdout
+    assert daemon.is_as_before()
+
+
 def interrupt_gives_the_mode_back(contour, daemon, scratch):
     Path(f"{scratch}/out").unlink()
     with subprocess.Popen(commission(contour, daemon, scratch, "--mode", "csp"), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -60,6 +70,7 @@ def quick(contourd, contour, machine_file):
     with tempfile.TemporaryDirectory() as scratch:
         daemon = TorqueMode(contourd, machine_file, scratch, ["emulator.parameter_variation_rel=0"])
         try:
+            loops_to_begin_with_are_found(contour, daemon, scratch)
             drive_is_measured(contour, daemon, scratch)
             interrupt_gives_the_mode_back(contour, daemon, scratch)
         finally:
