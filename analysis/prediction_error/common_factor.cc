@@ -8,8 +8,10 @@
 namespace contour::diagnosis {
 namespace {
 
+bool IsTorqueConstant(const BaseTerm& t) { return t.name == "torque_constant"; }
+
 bool IsForce(const BaseTerm& t) {
-  return !t.nuisance && !t.additive && t.name != "vs" && t.name != "torque_constant";
+  return !t.nuisance && !t.additive && t.name != "vs" && !IsTorqueConstant(t);
 }
 
 bool StatesForces(const AxisModel& m) { return m.motor_force || m.load_force || m.offset != 0.0; }
@@ -18,19 +20,30 @@ bool StatesForces(const AxisModel& m) { return m.motor_force || m.load_force || 
 
 CommonFactor FindCommonFactor(const Problem& problem, const Point& point) {
   double sum = 0.0, weight = 0.0;
+  CommonFactor out;
   for (std::size_t i = 0; i < point.base.size(); ++i) {
     const BaseTerm& t = problem.terms[i];
+    if (IsTorqueConstant(t)) {
+      out.log_ratio = point.base[i];
+      out.drop = std::pow(point.base[i] / t.sigma, 2);
+    }
     if (!IsForce(t)) continue;
     const double w = std::pow(t.sigma, -2);
     sum += w * point.base[i];
     weight += w;
   }
-  return {-sum / weight, sum * sum / weight, std::sqrt(1.0 / weight)};
+  out.log_ratio -= sum / weight;
+  out.drop += sum * sum / weight;
+  out.sigma = std::sqrt(1.0 / weight);
+  return out;
 }
 
-void ShiftForces(const Problem& problem, double log_ratio, Point& point) {
+void TakeOver(const Problem& problem, double log_ratio, Point& point) {
+  double own = 0.0;
   for (std::size_t i = 0; i < point.base.size(); ++i)
-    if (IsForce(problem.terms[i])) point.base[i] += log_ratio;
+    if (IsTorqueConstant(problem.terms[i])) own += std::exchange(point.base[i], 0.0);
+  for (std::size_t i = 0; i < point.base.size(); ++i)
+    if (IsForce(problem.terms[i])) point.base[i] += log_ratio - own;
 }
 
 void MakeConsistent(const Problem& problem, const Point& point, Eigen::MatrixXd& jacobian) {
@@ -39,7 +52,7 @@ void MakeConsistent(const Problem& problem, const Point& point, Eigen::MatrixXd&
   Eigen::Index column = 0;
   Eigen::Index term = -1;
   for (const BaseTerm& t : problem.terms) {
-    if (t.name == "torque_constant") term = column;
+    if (IsTorqueConstant(t)) term = column;
     if (IsForce(t)) all -= jacobian.col(column);
     ++column;
   }

@@ -32,7 +32,7 @@ InitialGuess Near(const Problem& problem, const Fit& current, const Scored& s) {
   const std::vector<std::size_t> freed = FreedTerms(problem, s.effect->kind);
   for (std::size_t i = 0; i < freed.size() && i < a.size(); ++i) start.base[freed[i]] -= a[i];
   start.amplitudes.push_back(std::move(a));
-  if (s.effect->common_factor) ShiftForces(problem, std::log1p(start.amplitudes.back()[0]), start);
+  if (s.effect->common_factor) TakeOver(problem, std::log1p(start.amplitudes.back()[0]), start);
   return {std::move(start), WorthFrom(current, kEfforts.quick, kScreening.negligible_share), &current};
 }
 

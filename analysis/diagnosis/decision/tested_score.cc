@@ -16,11 +16,20 @@ namespace {
 // Of a fit that is none.
 constexpr double kNoScore = -1e300;
 
+/// Whether the stated numbers are plausible. A bristle behind a coupling that nobody stated is in series with
+/// it: softer than it is, and less damped.
+bool PlausibleBehindACoupling(const Problem& problem, Point point) {
+  for (std::size_t i = 0; i < point.base.size() && !problem.nominal.two_inertia; ++i)
+    if (problem.terms[i].name == "s0" || problem.terms[i].name == "s1")
+      point.base[i] = std::max(0.0, point.base[i]);
+  return Plausible(problem, point);
+}
+
 /// Where the fit has gone the cause is not what its name says.
 bool Implausible(const Problem& problem, const Hypothesis& r) {
   const CauseDefinition& cause = CauseNamed(r.effect().kind);
   // What only the stated numbers tell has to make them right: one number that is wrong is no factor on all.
-  if (cause.common_factor && !Plausible(problem, r.fit.point)) return true;
+  if (cause.common_factor && !PlausibleBehindACoupling(problem, r.fit.point)) return true;
   return cause.implausible != nullptr &&
          (*cause.implausible)(problem, r.effect(), r.fit.point.amplitudes.back());
 }

@@ -77,5 +77,30 @@ TEST(CommonFactor, OfAllForcesAndTheTorqueConstantMovesNoResidual) {
   EXPECT_LT(all.norm(), 1e-12 * size);
 }
 
+// Within what is stated of it the fit moves the constant itself, too: that is no force that stays.
+TEST(CommonFactor, WhatTheStatedConstantWasMovedByIsPartOfIt) {
+  const test::LearntProblem l(Made(false));
+  Point off = l.point;
+  off.base.assign(off.base.size(), 0.0);
+  for (std::size_t i = 0; i < off.base.size(); ++i) {
+    if (l.problem.terms[i].nuisance) continue;
+    if (l.problem.terms[i].name == "torque_constant") off.base[i] = -0.03;
+    if (IsForce(l.problem.terms[i])) off.base[i] = 0.1;
+  }
+  const CommonFactor factor = FindCommonFactor(l.problem, off);
+  EXPECT_NEAR(factor.log_ratio, -0.13, 1e-12);
+  EXPECT_NEAR(factor.drop, PriorOf(l.problem, off), 1e-9);
+  Point taken = off;
+  TakeOver(l.problem, factor.log_ratio, taken);
+  EXPECT_NEAR(PriorOf(l.problem, taken), 0.0, 1e-9);
+  const std::vector<SharedEffect> all = CatalogueEffects(l.problem);
+  taken.effects = {
+      *std::find_if(all.begin(), all.end(), [](const auto& e) { return e->kind == "torque_constant"; })};
+  taken.amplitudes = {{std::expm1(factor.log_ratio)}};
+  const std::vector<Point> points = {l.point, off, taken};
+  const std::vector<std::vector<double>> raw = l.problem.Raw(points);
+  EXPECT_LT(test::Distance(raw[1], raw[2]), 1e-5 * test::Distance(raw[0], raw[1]));
+}
+
 }  // namespace
 }  // namespace contour::diagnosis

@@ -98,6 +98,26 @@ TEST_F(TestedScoreTest, ACouplingThatEveryScrewHasIsNoFault) {
   EXPECT_LT(h.score, -1e100);
 }
 
+// A bristle in series with a coupling that nobody stated is softer and less damped, whatever the torque is.
+TEST_F(TestedScoreTest, ABristleBehindACouplingLeavesTheTorqueConstantPlausible) {
+  const std::vector<SharedEffect> all = CatalogueEffects(problem_);
+  Hypothesis h{.fit = base_};
+  h.fit.point.effects.push_back(
+      *std::find_if(all.begin(), all.end(), [](const auto& e) { return e->kind == "torque_constant"; }));
+  h.fit.point.amplitudes.push_back({0.1});
+  const auto plausible_with = [&](const std::vector<std::string>& names, double deviations) {
+    h.fit.point.base.assign(problem_.terms.size(), 0.0);
+    for (std::size_t i = 0; i < problem_.terms.size(); ++i)
+      if (std::find(names.begin(), names.end(), problem_.terms[i].name) != names.end())
+        h.fit.point.base[i] = deviations * problem_.terms[i].sigma;
+    Judge(problem_, base_, h);
+    return !h.implausible;
+  };
+  EXPECT_TRUE(plausible_with({"s0", "s1"}, -6.0));
+  EXPECT_FALSE(plausible_with({"s0", "s1"}, 6.0));
+  EXPECT_FALSE(plausible_with({"inertia"}, -6.0));
+}
+
 TEST_F(TestedScoreTest, ANumberOfTheBaseIsOffAsFarAsItIsFromWhatIsStated) {
   const std::vector<SharedEffect> all = CatalogueEffects(problem_);
   const auto lag =
