@@ -35,6 +35,7 @@
 #include "daemon/modbus_outputs.h"
 #include "daemon/pump.h"
 #include "daemon/realtime_thread.h"
+#include "daemon/recording_mode.h"
 #include "daemon/rt/loop.h"
 #include "daemon/service_notifier.h"
 #include "daemon/start_again.h"
@@ -191,6 +192,11 @@ class Daemon {
     for (const std::string& loaded : LoadedModelTexts(options_.models)) {
       spdlog::warn(loaded);
       warnings.push_back(loaded);
+    }
+    if (const auto mode =
+            RecordingModeText({options_.torque_loops, options_.torque_models, options_.csp_axes})) {
+      spdlog::warn(*mode);
+      warnings.push_back(*mode);
     }
     if (const std::optional<std::string> wider = WiderToleranceText(machine_)) {
       spdlog::warn(*wider);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ namespace contour {
 /// Assignments that put every axis into the mode; none for the machine file's own. Throws ConfigError at what
 /// is not an axis and its keys.
 std::vector<std::string> RecordingOverrides(const RecordingMode& mode);
+
+/// What an operator is told for as long as it lasts; nothing in the machine file's own mode. Who asked for it
+/// may be gone without having given it back.
+std::optional<std::string> RecordingModeText(const RecordingMode& mode);
 
 /// Assignments less mode and loops of RecordingOverrides() for these axes.
 std::vector<std::string> WithoutRecordingMode(const std::vector<std::string>& axes,

@@ -26,6 +26,13 @@ TEST(RecordingOverrides, RefusesWhatIsNotAnAxisAndItsLoop) {
     EXPECT_THROW(RecordingOverrides({{wrong}, {}}), ConfigError) << wrong;
 }
 
+// Who asked for it may be killed before it is given back.
+TEST(RecordingModeText, IsToldWhileItLasts) {
+  EXPECT_FALSE(RecordingModeText({}).has_value());
+  EXPECT_NE(RecordingModeText({{}, {}, {"x"}}).value_or("").find("csp"), std::string::npos);
+  EXPECT_NE(RecordingModeText({{"x={a: 1}"}, {}}).value_or("").find("torque mode"), std::string::npos);
+}
+
 TEST(WithoutRecordingMode, TakesAwayModeAndLoopsAndNothingElse) {
   List overrides{"machine.name=a", "axes.x.limits.torque_Nm=1"};
   const List own = overrides;

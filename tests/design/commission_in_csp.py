@@ -40,6 +40,7 @@ def drive_is_measured(contour, daemon, scratch):
     done = subprocess.run(commission(contour, daemon, scratch, "--drive"), capture_output=True, text=True)
     assert done.returncode == 0, (done.returncode, done.stdout, done.stderr)
     assert "held by its drive, and back to torque mode" in done.stdout, done.stdout
+    assert "the position loops of all drives act" in done.stdout, done.stdout
     assert Path(f"{scratch}/out").exists() and daemon.is_as_before()
     assert "in csp for commissioning" in Path(daemon.messages).read_text(encoding="utf-8")
 
@@ -54,16 +55,22 @@ def loops_to_begin_with_are_found(contour, daemon, scratch):
     assert daemon.is_as_before()
 
 
-def interrupt_gives_the_mode_back(contour, daemon, scratch):
-    Path(f"{scratch}/out").unlink()
+def for_commissioning(daemon):
+    return any("for commissioning" in warning for warning in daemon.ask(request="status")["status"]["warnings"])
+
+
+def interrupt_gives_the_mode_back(contour, daemon, scratch, interrupt):
+    Path(f"{scratch}/out").unlink(missing_ok=True)
+    assert not for_commissioning(daemon)
     with subprocess.Popen(commission(contour, daemon, scratch, "--mode", "csp"), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True) as running:
         daemon.wait_for("Running")
-        assert daemon.mode() == "csp"
-        running.send_signal(signal.SIGINT)
+        assert daemon.mode() == "csp" and for_commissioning(daemon), "told, for whoever does not know of the command"
+        running.send_signal(interrupt)
         text, error = running.communicate()
         assert running.returncode == 1 and "did not end by itself" in error, (running.returncode, text, error)
     assert daemon.is_as_before() and not Path(f"{scratch}/out").exists()
+    assert not for_commissioning(daemon)
 
 
 def quick(contourd, contour, machine_file):
@@ -72,7 +79,9 @@ def quick(contourd, contour, machine_file):
         try:
             loops_to_begin_with_are_found(contour, daemon, scratch)
             drive_is_measured(contour, daemon, scratch)
-            interrupt_gives_the_mode_back(contour, daemon, scratch)
+            # The second one: a terminal that is gone.
+            for interrupt in (signal.SIGINT, signal.SIGHUP):
+                interrupt_gives_the_mode_back(contour, daemon, scratch, interrupt)
         finally:
             status = daemon.end()
         assert status == 0, (status, Path(daemon.messages).read_text(encoding="utf-8"))

@@ -18,6 +18,11 @@ namespace {
 
 using nlohmann::json;
 
+/// Of a machine that has run in torque mode alone.
+constexpr const char* kDrivesOwnLoops =
+    "note: in csp the position loops of all drives act, as they are tuned in the drives, which torque mode "
+    "never used: tune them with the drives' own software first\n";
+
 /// An axis that was told where it is would have to be told again.
 std::string WhyNotBeginAnew(const json& status) {
   for (const json& axis : status.at("axes")) {
@@ -114,7 +119,9 @@ std::string Describe(const MachineConfig& own, const RecordingModes& modes, cons
   if (modes.to_csp)
     text +=
         "in csp, held by its drive, and back to torque mode at the end (contourd begins anew each time), ";
-  return text + Describe(PlanFor(AsRecorded(own, modes), status, options.axis, options));
+  text += Describe(PlanFor(AsRecorded(own, modes), status, options.axis, options));
+  if (!leads && (modes.to_csp || !modes.torque.lacking.empty())) text += kDrivesOwnLoops;
+  return text;
 }
 
 void EnterCsp(ModeStay& stay) {

@@ -184,6 +184,9 @@ void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& p
 void StopOnSignals() {
   std::signal(SIGINT, OnSignal);
   std::signal(SIGTERM, OnSignal);
+  // A terminal that is gone is one, unless nohup says that it may be; nobody who reads on is none.
+  if (std::signal(SIGHUP, OnSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 void ThrowIfInterrupted(const std::string& what) {

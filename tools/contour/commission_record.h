@@ -15,7 +15,8 @@
 
 namespace contour {
 
-/// From now on SIGINT and SIGTERM stop the axis that is recorded, and nothing new is begun.
+/// From now on SIGINT, SIGTERM and SIGHUP stop the axis that is recorded, and nothing new is begun.
+/// Output that nobody reads any more ends nothing.
 void StopOnSignals();
 /// Throws std::runtime_error where one has come: interrupted, and `what` of it.
 void ThrowIfInterrupted(const std::string& what = "nothing was written");

@@ -1,5 +1,6 @@
 #include "tools/contour/mode_stay.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <stdexcept>
@@ -28,15 +29,29 @@ std::map<std::string, std::string> Texts(const std::map<std::string, T>& by_axis
 
 }  // namespace
 
+bool HasLoops(const MachineConfig& machine, const std::map<std::string, LoopTuning>& loops) {
+  return std::ranges::all_of(machine.axes, [&](const auto& named) {
+    const auto& [name, axis] = named;
+    const auto wanted = loops.find(name);
+    return axis.drive.mode == DriveMode::kCst && axis.loop && wanted != loops.end() &&
+           WriteYaml(*axis.loop) == WriteYaml(wanted->second);
+  });
+}
+
 bool ModeStay::EnterTorqueMode(const std::map<std::string, LoopTuning>& loops,
                                const std::map<std::string, ModelConfig>& models) {
   return Enter({{"request", "torque_mode"}, {"loops", Texts(loops)}, {"models", Texts(models)}},
-               DriveMode::kCst);
+               [&](const MachineConfig& now) { return HasLoops(now, loops); });
 }
 
-bool ModeStay::EnterCsp() { return Enter({{"request", "csp_mode"}}, DriveMode::kCsp); }
+bool ModeStay::EnterCsp() {
+  return Enter({{"request", "csp_mode"}}, [](const MachineConfig& now) {
+    return std::ranges::all_of(now.axes,
+                               [](const auto& axis) { return axis.second.drive.mode == DriveMode::kCsp; });
+  });
+}
 
-bool ModeStay::Enter(const nlohmann::json& request, DriveMode mode) {
+bool ModeStay::Enter(const nlohmann::json& request, const std::function<bool(const MachineConfig&)>& is_so) {
   if (!IsIdle(Status(*client_))) {
     AskOrThrow(*client_, {{"request", "disable"}});
     WaitForStatus(*client_, IsIdle, kIdleLimit);
@@ -49,7 +64,7 @@ bool ModeStay::Enter(const nlohmann::json& request, DriveMode mode) {
     entered_ = was;
     throw;
   }
-  entered_ = AskForMachine(*client_).axes.begin()->second.drive.mode == mode;
+  entered_ = is_so(AskForMachine(*client_));
   return entered_;
 }
 

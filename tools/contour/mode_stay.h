@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -31,13 +32,17 @@ class ModeStay {
   void LeaveOrSay();
 
  private:
-  [[nodiscard]] bool Enter(const nlohmann::json& request, DriveMode mode);
+  [[nodiscard]] bool Enter(const nlohmann::json& request,
+                           const std::function<bool(const MachineConfig&)>& is_so);
   void Begin(const nlohmann::json& request);
 
   std::unique_ptr<ControlClient>& client_;
   std::string socket_;
   bool entered_ = false;
 };
+
+/// Whether all axes are in torque mode with these loops: a machine file may have torque mode with others.
+[[nodiscard]] bool HasLoops(const MachineConfig& machine, const std::map<std::string, LoopTuning>& loops);
 
 /// The daemon's machine as it runs now, overrides and defaults in it.
 MachineConfig AskForMachine(ControlClient& client);
