@@ -22,6 +22,8 @@ double Peak_um(const EmulatedMachineFile& file, const std::string& program, cons
     RunSimulation(request);
   } catch (const std::runtime_error&) {
     return std::numeric_limits<double>::quiet_NaN();
+  } catch (const std::invalid_argument&) {  // an axis in torque mode that no loop holds as catalogued
+    return std::numeric_limits<double>::quiet_NaN();
   }
   const auto metrics = nlohmann::json::parse(std::ifstream(request.out / "metrics.json"));
   return metrics.at("contour").at("table").at("peak_um").get<double>();
