@@ -1,6 +1,8 @@
 #include "analysis/axis_model/read_stated_axis.h"
 
 #include <numbers>
+#include <string_view>
+#include <utility>
 
 #include "analysis/axis_model/apply_extensions.h"
 #include "analysis/axis_model/extension_keys.h"
@@ -48,6 +50,21 @@ void SayActsOn(YamlValue& model) {
   }
 }
 
+/// What a spring between two masses is called on a linear axis, whatever unit was thought of.
+void DemandKeysOfLinearAxes(YamlValue& model, std::vector<std::string>& errors) {
+  static constexpr std::pair<std::string_view, std::string_view> kKeys[] = {
+      {"stiffness_", "screw_stiffness_N_um, in N/um"}, {"damping_", "screw_damping_Ns_m, in N s/m"}};
+  std::erase_if(model.entries, [&](const YamlEntry& e) {
+    for (const auto& [begin, expected] : kKeys) {
+      if (!e.key.starts_with(begin)) continue;
+      errors.push_back(e.where + ": " + e.key + ": found on a linear axis, expected " +
+                       std::string(expected));
+      return true;
+    }
+    return false;
+  });
+}
+
 StatedAxis ReadLoose(YamlValue tree) {
   LooseAxisFile content = ReadLooseFile(tree);
   std::vector<std::string> errors;
@@ -65,6 +82,7 @@ LooseAxisFile ReadLooseFile(YamlValue& tree) {
   YamlValue& model = has_model_key ? tree.Find("model")->value : tree;
   const ExtensionUnits units = UnitsOf(model);
   SayActsOn(model);
+  if (units == ExtensionUnits::kOfLinearAxis) DemandKeysOfLinearAxes(model, errors);
   if (YamlEntry* extensions = model.Find("extensions")) RenameFromFile(units, extensions->value);
   if (has_model_key)
     ReadYaml(tree, content, "", errors);

@@ -26,6 +26,23 @@ std::string Lower(std::string_view text) {
   return out;
 }
 
+/// "Motor angle [rad]" and "torque (N m)" as our own columns have them: motor_angle_rad, torque_Nm.
+std::string WithUnitBehind(std::string_view header) {
+  const std::size_t open = header.find_last_of("[(");
+  if (open == std::string_view::npos || open == 0 || !(header.ends_with(header[open] == '[' ? ']' : ')')))
+    return std::string(header);
+  std::string name(header.substr(0, open)), unit;
+  while (!name.empty() && name.back() == ' ') name.pop_back();
+  std::replace(name.begin(), name.end(), ' ', '_');
+  for (const char c : header.substr(open + 1, header.size() - open - 2))
+    if (c == '/')
+      unit += '_';
+    else if (c != ' ')
+      unit += c;
+  if (unit.empty() || name.ends_with("_" + unit)) return name;
+  return name + "_" + unit;
+}
+
 std::string Joined(const std::vector<std::string>& names) {
   std::string out;
   for (std::size_t i = 0; i < names.size() && i < 40; ++i) out += (i == 0 ? "" : ", ") + names[i];
@@ -45,7 +62,7 @@ class Finder {
   Finder(const std::string& file, const std::vector<std::string>& header, const std::string& axis,
          const ColumnNames& names)
       : file_(file), header_(header), names_(names), axis_(axis) {
-    for (const std::string& name : header) lower_.push_back(Lower(name));
+    for (const std::string& name : header) lower_.push_back(Lower(WithUnitBehind(name)));
     if (axis_.empty()) ChooseAxis();
   }
 

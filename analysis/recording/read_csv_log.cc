@@ -62,9 +62,40 @@ std::vector<double> IntegralOf(const std::vector<double>& velocity, const Grid& 
   return q;
 }
 
+/// [share] A column that is further off another one is none of the same motion.
+constexpr double kFar = 0.2;
+
+/// What a scale reads has to be the position, but for its zero. Of less than a turn of a screw a gap may take
+/// more than that: it is not judged.
+void CheckScale(const std::string& file, const TableRows& rows, double table_per_q, double turn_m) {
+  double n = 0.0, q = 0.0, x = 0.0, qq = 0.0, qx = 0.0;
+  double q0 = kNone, x0 = kNone, low = 0.0, high = 0.0;
+  for (std::size_t i = 0; i < rows.position.size(); ++i) {
+    if (std::isnan(rows.position[i]) || std::isnan(rows.table_position[i])) continue;
+    if (std::isnan(q0)) {
+      q0 = rows.position[i];
+      x0 = rows.table_position[i];
+    }
+    const double at = (rows.position[i] - q0) * table_per_q, read = rows.table_position[i] - x0;
+    low = std::min(low, at);
+    high = std::max(high, at);
+    n += 1.0;
+    q += at;
+    x += read;
+    qq += at * at;
+    qx += at * read;
+  }
+  const double moved = qq - q * q / n, ratio = (qx - q * x / n) / moved;
+  if (!(moved > 0.0) || high - low < turn_m || std::abs(ratio - 1.0) < kFar) return;
+  throw ConfigError(
+      {file + ": the scale (table_position_m) reads " + RoundedText(ratio) +
+       " times what the position says, expected 1: is one of them in another unit, of another sign or of "
+       "another axis, or the lead another one? --columns NAME=HEADER*FACTOR takes a factor; a column by "
+       "another name is not read"});
+}
+
 /// A velocity has to be that of the position: where it is not, a unit, a sign or an axis is another one.
 void CheckVelocity(const std::string& file, const TableRows& rows, const Grid& grid) {
-  constexpr double kFar = 0.2;
   const std::size_t reach = std::max<std::size_t>(1, static_cast<std::size_t>(0.01 / grid.period_s));
   double squares = 0.0, product = 0.0, recorded = 0.0;
   for (std::size_t i = reach; i + reach < rows.position.size(); ++i) {
@@ -143,6 +174,10 @@ AxisLog ReadCsvLog(const std::string& file, const ReadOptions& options) {
     rows.position = IntegralOf(rows.velocity, grid);
   else if (!rows.velocity.empty())
     CheckVelocity(file, rows, grid);
+  const bool screw = !columns.linear && options.table_per_q != 1.0;
+  if (!rows.table_position.empty() && (columns.linear || columns.position_in_m || screw))
+    CheckScale(file, rows, screw ? options.table_per_q : 1.0,
+               screw ? kTurn * std::abs(options.table_per_q) : 0.0);
 
   log.source = file;
   log.axis = options.axis;

@@ -51,6 +51,24 @@ TEST(ReadStatedAxis, AnAxisThatTheMachineHasNotIsRefusedByName) {
   }
 }
 
+// Before: "stiffness_N_m: unknown key, wrong unit: expected stiffness_N_m, in Nm/rad".
+TEST(ReadStatedAxis, SaysWhatASpringIsCalledOnALinearAxis) {
+  try {
+    ReadStatedAxis(WriteTestFile("model.yaml",
+                                 "mass_kg: 40\nload_mass_kg: 85\nstiffness_N_m: 2e7\ndamping_Nms_rad: 6\n"),
+                   "");
+    FAIL();
+  } catch (const ConfigError& e) {
+    const std::string said = e.what();
+    EXPECT_NE(said.find("stiffness_N_m: found on a linear axis, expected screw_stiffness_N_um"),
+              std::string::npos)
+        << said;
+    EXPECT_NE(said.find("damping_Nms_rad: found on a linear axis, expected screw_damping_Ns_m"),
+              std::string::npos)
+        << said;
+  }
+}
+
 TEST(ReadStatedAxis, TellsMachineFilesFromModels) {
   EXPECT_TRUE(IsMachineFile(ExampleMachine("single_axis.yaml")));
   EXPECT_FALSE(IsMachineFile(WriteTestFile("model.yaml", "mass_kg: 95\n")));

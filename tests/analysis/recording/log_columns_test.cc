@@ -37,6 +37,19 @@ TEST(LogColumns, ForceAndPositionAreALinearAxis) {
   EXPECT_TRUE(c.reference_in_m);
 }
 
+TEST(LogColumns, AUnitInBracketsIsPartOfTheName) {
+  const LogColumns c =
+      FindColumns("f", {"Time [s]", "torque_Nm [Nm]", "Motor angle (rad)", "Velocity [rad/s]"}, "", {});
+  EXPECT_EQ(c.time, 0U);
+  EXPECT_EQ(c.command, 1U);
+  EXPECT_EQ(c.position, 2U);
+  EXPECT_EQ(c.velocity, 3U);
+  EXPECT_EQ(FindColumns("f", {"time_s", "Torque [N m]", "position [rad]"}, "", {}).command, 1U);
+  // Another unit is not the same column.
+  EXPECT_NE(Error({"Time [ms]", "Force [N]", "Position [m]"}).find("no column time_s; there are Time [ms]"),
+            std::string::npos);
+}
+
 TEST(LogColumns, OneAxisOfSeveralAndTheOtherAsItsNeighbour) {
   const Names header = {"time_s",       "x_torque_Nm",   "x_motor_angle_rad",
                         "x_position_m", "y_torque_Nm",   "y_motor_angle_rad",

@@ -156,6 +156,30 @@ TEST(ReadCsvLog, AVelocityOfAnotherUnitOrSignIsRefused) {
   EXPECT_NE(Error(table(-1.0)).find("-1"), std::string::npos);
 }
 
+// Before: a scale that stood still, or read in mm, was a pitch error of the whole stroke.
+TEST(ReadCsvLog, AScaleOfAnotherUnitSignOrAxisIsRefused) {
+  const auto error = [](double factor, double lead_m = 0.0, double reach = 4.0) {
+    const double per_rad = lead_m / (2.0 * M_PI);
+    std::string text = lead_m > 0.0 ? "time_s,torque_Nm,position_rad,table_position_m\n"
+                                    : "time_s,force_N,position_m,table_position_m\n";
+    for (int i = 0; i < 100; ++i) {
+      const double q = 0.5 + reach * std::sin(0.1 * i);
+      text += std::to_string(1e-3 * i) + ",0," + (i == 0 ? "" : std::to_string(q)) + "," +
+              std::to_string(7.0 + factor * (lead_m > 0.0 ? 1e3 * per_rad * q : q)) + "\n";
+    }
+    return Error(WriteTestFile("log.csv", text), {.table_per_q = lead_m > 0.0 ? 1e3 * per_rad : 1.0});
+  };
+  EXPECT_EQ(error(1.0), "");
+  EXPECT_EQ(error(1.01), "");
+  EXPECT_EQ(error(1.0, 5e-3), "");
+  EXPECT_NE(error(0.0).find("reads 0 times"), std::string::npos);
+  EXPECT_NE(error(1e3).find("reads 1000 times"), std::string::npos);
+  EXPECT_NE(error(-1.0).find("another sign"), std::string::npos);
+  EXPECT_NE(error(2.0, 5e-3).find("the lead another one"), std::string::npos);
+  // Of half a turn a gap may take a lot.
+  EXPECT_EQ(error(0.7, 5e-3, 1.5), "");
+}
+
 TEST(ReadCsvLog, AVelocityAloneIsIntegrated) {
   const std::string file = WriteTestFile("log.csv", "torque_Nm,velocity_rad_s\n0,2\n0,4\n0,4\n");
   const AxisLog log = ReadLog(file, {.sample_rate_Hz = 100.0});
