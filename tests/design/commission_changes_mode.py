@@ -111,15 +111,17 @@ def softly_stated(axis):
 
 
 def moves_no_other_axis(contourd, contour, machine_file):
-    """Who asks for torque mode is not to see another axis move in csp."""
+    """Who asks for torque mode, or answers for one axis alone, is not to see another axis move in csp."""
     overrides = [f"emulator.axes.y.{key}={value}" for key, value in SOFT.items()]
     overrides += ["emulator.parameter_variation_rel=0", "axes.y.drive.mode=csp", *softly_stated("y")]
     with tempfile.TemporaryDirectory() as scratch:
         daemon = Daemon(contourd, machine_file, scratch, overrides)
         try:
-            done = subprocess.run([contour, "commission", "--axis", "x", "--mode", "cst", "--socket", daemon.path, "--yes",
-                                   "--out", f"{scratch}/model.yaml"], capture_output=True, text=True)
-            assert done.returncode == 2 and "axis y" in done.stderr and "--axis y" in done.stderr, (done.returncode, done.stderr)
+            commission = [contour, "commission", "--axis", "x", "--socket", daemon.path, "--yes", "--out", f"{scratch}/model.yaml"]
+            for mode, way_out in (("cst", "--mode auto"), ("auto", "--other_axes")):
+                done = subprocess.run([*commission, "--mode", mode], capture_output=True, text=True)
+                assert done.returncode == 2 and "axis y" in done.stderr and "--axis y" in done.stderr, (done.returncode, done.stderr)
+                assert way_out in done.stderr, done.stderr
             assert daemon.ask(request="status")["status"]["state"] == "Idle"
         finally:
             daemon.end()

@@ -203,12 +203,24 @@ int Commission(std::unique_ptr<ControlClient>& client, ModeStay& stay, const Mac
   return kExitDone;
 }
 
+/// --yes answers for the axis that was named: who is asked reads which others move.
+void RequireThatOthersMayMove(const RecordingModes& modes, const CommissionOptions& options) {
+  if (!options.yes || options.other_axes) return;
+  for (const std::string& other : modes.torque.lacking)
+    if (other != options.axis)
+      throw ConfigError({"--yes: before axis " + options.axis + " is recorded in torque mode, axis " + other +
+                         " would move, too (in csp, for a loop that holds it); grant it with --other_axes, "
+                         "commission that axis first (--axis " +
+                         other + "), or record in csp alone (--mode csp)"});
+}
+
 int RunCommission(const CommissionOptions& options) {
   auto client = std::make_unique<ControlClient>(ConnectToDaemon(options.socket));
   MachineConfig own = AskForMachine(*client);
   CheckBeforehand(own, StatusOnceStarted(*client), options);
   const RecordingModes modes = ChooseModes(own, Status(*client), options);
   std::cout << Describe(own, modes, Status(*client), options);
+  RequireThatOthersMayMove(modes, options);
   if (!options.drive) Advise(AsRecorded(own, modes));
   if (!Confirmed(options)) {
     std::cout << "nothing was moved\n";
@@ -252,6 +264,8 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
       "Measure the loop that the drive closes (csp), and what it can do, instead of the axis; --out "
       "is then NAME_drive.json");
   sub->add_flag("--yes", options->yes, "Do not ask before the axis is enabled and moves");
+  sub->add_flag("--other_axes", options->other_axes,
+                "With --yes: other axes may move, too, where they have to be recorded before");
   sub->footer(
       "Enables the machine, runs its motions one after the other, and takes the torque off at the end. An "
       "interrupt (Ctrl-C) stops the axis, takes the torque off and ends with status 1; while it identifies, "

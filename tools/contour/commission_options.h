@@ -16,6 +16,8 @@ struct CommissionOptions {
   std::string mode = "auto";
   bool drive = false;
   bool yes = false;
+  /// With `yes`: axes other than `axis` may move, too.
+  bool other_axes = false;
 };
 
 }  // namespace contour
