@@ -110,10 +110,10 @@ std::string WhyNoLoop(const std::string& name, const std::vector<std::string>& h
   return text;
 }
 
-std::string LoopAssignment(const std::string& name, LoopTuning tuning) {
+std::string LoopAssignment(const std::string& name, LoopTuning tuning, const std::string& key) {
   Writer writer;
   tuning.Visit(writer);
-  return "axes." + name + ".loop={" + writer.text() + "}";
+  return "axes." + name + "." + key + "={" + writer.text() + "}";
 }
 
 bool MayUseFilter(const MachineConfig& machine) {

@@ -19,8 +19,8 @@ std::optional<LoopTuning> ChooseLoop(const LoopAxis& axis, double period_s);
 /// That there is none, and what would help (WhatWouldHelp, or who tries it).
 std::string WhyNoLoop(const std::string& name, const std::vector<std::string>& help);
 
-/// `axes.<name>.loop={...}`, with three digits, to put on top of a machine file.
-std::string LoopAssignment(const std::string& name, LoopTuning tuning);
+/// `axes.<name>.<key>={...}`, with three digits, to put on top of a machine file.
+std::string LoopAssignment(const std::string& name, LoopTuning tuning, const std::string& key = "loop");
 
 /// What to put on top of a machine file for kSrukf.
 inline constexpr const char* kUseFilter = "control.friction=srukf";

@@ -111,12 +111,15 @@ int RunCheck(const Options& options) {
   }
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
   const LoopSection loops = JudgeLoops(file.machine);
-  std::cout << CheckReport(file.machine) << loops.text << std::flush;
-  if (!loops.refused.empty())
+  if (!loops.refused.empty()) {
+    std::cout << CheckReport(file.machine) << loops.text << std::flush;
     throw ConfigError(WithPlaces(OpenMachineFile(options.file, options.set), loops.refused));
+  }
   std::vector<std::string> with_loops = options.set;
   with_loops.insert(with_loops.end(), loops.chosen.begin(), loops.chosen.end());
+  // Bounds go by the loop that runs, also where it was chosen just now.
   const MachineConfig whole = LoadMaybeEmulatedMachine(options.file, with_loops).machine;
+  std::cout << CheckReport(whole) << loops.text << std::flush;
   if (const std::string lost = TriedController(whole); !lost.empty())
     throw ConfigError(WithPlaces(OpenMachineFile(options.file, options.set), {lost}));
   std::cout << PathSection(whole) << IdleSection(options, whole) << std::flush;

@@ -74,6 +74,14 @@ void Judge(const StatedLoop& loop, const std::string& title, double period_s, bo
   }
 }
 
+/// A scale that is there and moves nothing.
+std::string IdleScale(const std::string& name, const AxisConfig& config) {
+  if (!config.drive.linear_scale || config.scale_loop) return {};
+  return "  axis " + name +
+         ": its linear scale is not in the loop, there is no scale_loop: tuning; contour tune "
+         "--from-model finds it\n";
+}
+
 }  // namespace
 
 LoopSection JudgeLoops(const MachineConfig& machine) {
@@ -96,6 +104,7 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
     if (ModeFor(machine.machine.controller, config.drive) != DriveMode::kCst) continue;
     if (!config.loop && used) {
       Chosen(machine, name, found.at(name), section);
+      section.text += IdleScale(name, config);
       continue;
     }
     if (!config.loop) {
@@ -107,10 +116,7 @@ LoopSection JudgeLoops(const MachineConfig& machine) {
       const std::string title = "  axis " + name + (loop.scale ? ", with its linear scale" : "");
       Judge(loop, title, period_s, used, section, has_scale ? nullptr : &axis);
     }
-    if (has_scale && !config.scale_loop)
-      section.text += "  axis " + name +
-                      ": its linear scale is not in the loop, there is no scale_loop: tuning; contour tune "
-                      "--from-model finds it\n";
+    section.text += IdleScale(name, config);
   }
   if (!section.text.empty()) section.text = "\nLoops in torque mode\n" + section.text;
   return section;

@@ -63,9 +63,14 @@ struct Asked {
   LoopAxis axis;
 };
 
+/// What has been found so far.
+struct Tuned {
+  std::string text;                      ///< of the machine file with it; empty: none is written
+  std::vector<std::string> assignments;  ///< to put on top of the machine file
+};
+
 /// False when there is no such loop.
-bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOptions& asked,
-              std::string& text) {
+bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOptions& asked, Tuned& tuned) {
   const auto& [name, key, axis] = loop;
   const ModelConfig& model = machine.axes.at(name).model;
   const double period_s = 1e-6 * machine.machine.cycle_us;
@@ -107,17 +112,18 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
     std::cout << line;
     line.clear();
   }
-  if (!text.empty()) text = WithAxisBlock(text, asked.machine, name, key, block);
+  if (!tuned.text.empty()) tuned.text = WithAxisBlock(tuned.text, asked.machine, name, key, block);
+  tuned.assignments.push_back(LoopAssignment(name, found.tuning, key));
   return true;
 }
 
 /// With a linear scale also for the loop that goes by it.
 bool TuneAxis(const MachineConfig& machine, const std::string& name, const TuneLoopsOptions& asked,
-              std::string& text) {
+              Tuned& tuned) {
   const AxisConfig& config = machine.axes.at(name);
-  if (!TuneLoop(machine, {name, "loop", LoopAxisOf(config)}, asked, text)) return false;
+  if (!TuneLoop(machine, {name, "loop", LoopAxisOf(config)}, asked, tuned)) return false;
   const std::optional<LoopAxis> with = ScaleLoopAxisOf(config);
-  return !with || TuneLoop(machine, {name, "scale_loop", *with}, asked, text);
+  return !with || TuneLoop(machine, {name, "scale_loop", *with}, asked, tuned);
 }
 
 /// Where one axis without a loop is enough for nothing to be written, those come first of which a brief look
@@ -134,6 +140,17 @@ std::vector<std::string> InOrder(const MachineConfig& machine, const TuneLoopsOp
   return names;
 }
 
+/// Bounds of check go by the loop that runs: a machine file that was right may have a limit that is too
+/// narrow for the one that was found.
+void WarnWhereRefused(const TuneLoopsOptions& options, const Tuned& tuned) {
+  try {
+    LoadMaybeEmulatedMachine(options.machine, tuned.assignments);
+  } catch (const ConfigError& e) {
+    std::cerr << "warning: with what was found contourd refuses the machine file until this is put right:\n"
+              << e.what() << "\n";
+  }
+}
+
 }  // namespace
 
 int TuneLoops(const TuneLoopsOptions& options) {
@@ -141,17 +158,19 @@ int TuneLoops(const TuneLoopsOptions& options) {
   if (!options.axis.empty() && !machine.axes.contains(options.axis))
     throw ConfigError(
         {options.machine + ": axes." + options.axis + ": missing, expected an axis of this name (--axis)"});
-  std::string text = options.out.empty() ? "" : ReadTextFile(options.machine);
+  Tuned tuned;
+  if (!options.out.empty()) tuned.text = ReadTextFile(options.machine);
   bool all = true;
   for (const std::string& name : InOrder(machine, options)) {
-    all = TuneAxis(machine, name, options, text) && all;
+    all = TuneAxis(machine, name, options, tuned) && all;
     if (all || options.out.empty()) continue;
     std::cout << "nothing was written: axis " << name << " has no loop that keeps its limits\n";
     return kExitFailed;
   }
   if (!all) return kExitFailed;
+  WarnWhereRefused(options, tuned);
   if (options.out.empty()) return kExitDone;
-  WriteWholeFile(options.out, text);
+  WriteWholeFile(options.out, tuned.text);
   std::cout << "wrote " << options.out << "\n";
   return kExitDone;
 }

@@ -114,6 +114,8 @@ void VirtualMachine::TickUntilSettled(MachineState wanted, const char* doing) {
     Tick();
     if (record().state == wanted && entry_->output.quiescent) return;
     if (record().state == MachineState::kFaulted) break;
+    // Refused: nobody asks again.
+    if (record().state == MachineState::kIdle && record().reason == Reason::kAxisMoves) break;
   }
   Fail(doing);
 }

@@ -196,5 +196,62 @@ TEST(TuneFromModel, IsNotMeantByTuneWithoutOut) {
   ExpectHas(o, "--out: missing");
 }
 
+std::string LineWith(const std::string& text, const std::string& what) {
+  const std::size_t at = text.find(what);
+  return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+}
+
+/// The example without its `loop:`.
+std::string WithoutLoop(const std::string& name) {
+  std::string text = ReadText(ExampleMachine("single_axis.yaml"));
+  const std::size_t at = text.find("    loop:\n");
+  text.erase(at, text.find("\n\n", at) - at);
+  return WriteTestFile(name, text);
+}
+
+// How stiff `full` would be with another law of friction says nothing of the loop that is chosen.
+TEST(CheckLoops, BoundsAreThoseOfTheLoopThatIsChosen) {
+  const std::string check = "check " + WithoutLoop("none.yaml");
+  const Outcome o = Contour(check);
+  ASSERT_EQ(o.status, 0) << o.out;
+  ExpectHas(o, "no loop: in the file, so this one is chosen at start");
+  const std::string frozen = LineWith(o.out, "encoder frozen");
+  EXPECT_NE(frozen, "");
+  const Outcome other =
+      Contour(check + " --set control.full.contour_bandwidth_Hz=60 --set control.full.lag_bandwidth_Hz=45");
+  EXPECT_EQ(LineWith(other.out, "encoder frozen"), frozen);
+}
+
+// The limit is wide enough as long as nobody knows the loop, which a table of three times the mass makes
+// slow.
+TEST(TuneFromModel, SaysSoWhereTheFileIsRefusedWithItsLoop) {
+  const std::string machine = WithoutLoop("narrow.yaml");
+  std::string text = ReadText(machine);
+  for (const auto& [from, to] :
+       {std::pair{"table_mass_kg: 10.6", "table_mass_kg: 31.5"},
+        {"velocity_mm_s: 250", "velocity_mm_s: 100"},
+        {"acceleration_mm_s2: 5000", "acceleration_mm_s2: 2000"},
+        {"quick_stop_deceleration_rad_s2: 22600", "quick_stop_deceleration_rad_s2: 16000"},
+        {"safe_travel_mm: 2", "safe_travel_mm: 1.5"}})
+    text = Replaced(text, from, to);
+  const std::string tuned = machine + ".tuned.yaml";
+  const Outcome o = Contour("tune --from-model " + WriteTestFile("narrow.yaml", text) +
+                            " --evaluations 100 --out " + tuned);
+  ASSERT_EQ(o.status, 0) << o.out;
+  ExpectHas(o, "warning: with what was found contourd refuses the machine file until this is put right:\n");
+  ExpectHas(o, "axes.x.limits.safe_travel_mm: found 1.5, but with the fault 'encoder frozen'");
+  EXPECT_EQ(Contour("check " + tuned).status, 2);
+}
+
+// Nothing enables itself: who is refused is told, and not after a minute of the machine's time.
+TEST(Simulate, SaysWhyAnAxisThatFallsIsNotEnabled) {
+  const std::string program = WriteTestFile("hold.yaml", "shape: hold\nseconds: 1\n");
+  const Outcome o = Contour(SimulateCommand(program) +
+                            " --controller pid --set emulator.axes.x.effects.constant_torque.torque_Nm=0.3");
+  EXPECT_EQ(o.status, 1) << o.out;
+  ExpectHas(o, "enabling: the machine is Idle in cycle ");
+  ExpectHas(o, ": axis x is not at rest; it was not enabled");
+}
+
 }  // namespace
 }  // namespace contour
