@@ -38,4 +38,15 @@ CatalogueDoubt DoubtOf(const ModelConfig& model) {
   return doubt;
 }
 
+void LeaveScrewOpen(ModelConfig& found, const ModelConfig& stated, bool stiffness_seen) {
+  const CatalogueDoubt doubt = DoubtOf(stated);
+  const auto open = [&](const char* key, double two_deviations) {
+    double& deviation = found.uncertainty[key];
+    deviation = std::max(deviation, two_deviations / kDeviations);
+  };
+  if (!stiffness_seen) open("screw_stiffness_N_um", std::log(doubt.stiffness_factor));
+  open("motor_inertia_kgm2", doubt.masses_rel);
+  open("table_mass_kg", doubt.masses_rel);
+}
+
 }  // namespace contour

@@ -16,4 +16,8 @@ struct CatalogueDoubt {
 /// nothing, and no more than that.
 CatalogueDoubt DoubtOf(const ModelConfig& model);
 
+/// Of a model from a record that showed nothing of the screw: how much of the mass is the motor's, and its
+/// stiffness where nothing else showed that, are then as open as they were in the model as stated.
+void LeaveScrewOpen(ModelConfig& found, const ModelConfig& stated, bool stiffness_seen);
+
 }  // namespace contour

@@ -81,6 +81,21 @@ CommissionLimits DefaultCommissionLimits(const AxisConfig& axis) {
   return {std::min(travel_mm, stroke_mm), speed_mm_s, kShareOfTorque * l.torque_Nm};
 }
 
+std::string MoreOfTheScrew(const AxisConfig& axis, double travel_mm) {
+  const double stroke_mm = axis.limits.position_mm[1] - axis.limits.position_mm[0];
+  const double longer_mm = std::min(stroke_mm, kTravel_mm);
+  if (travel_mm < longer_mm)
+    return FormatText(
+        "commission again on a longer way, --travel_mm %g (it was %g): its strokes are quicker and bear a "
+        "stronger chirp",
+        longer_mm, travel_mm);
+  return FormatText(
+      "a larger rated torque, less friction or a way longer than %g mm would show more; without, state in "
+      "the "
+      "model what is known of the screw (uncertainty) and let contour tune --from-model find a loop for that",
+      travel_mm);
+}
+
 CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string& name, double position_mm,
                                  const CommissionLimits& limits) {
   Require(machine.axes.contains(name), "--axis: there is no axis \"" + name + "\" in this machine");

@@ -39,6 +39,10 @@ struct CommissionPlan {
 CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string& axis, double position_mm,
                                  const CommissionLimits& limits);
 
+/// What shows more of a screw that the chirp of such a plan did not show: the strokes' speed goes by their
+/// way, and by that the force that may shake them without turning them back.
+std::string MoreOfTheScrew(const AxisConfig& axis, double travel_mm);
+
 /// For people: the motions, the way, the largest speed and torque.
 std::string Describe(const CommissionPlan& plan);
 

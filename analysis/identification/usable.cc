@@ -125,6 +125,15 @@ std::string WhyUnusable(const Identification& id) {
   return {};
 }
 
+std::string WhyNoScrew(const Identification& id) {
+  if (id.shaken.verdict != ShakenScrew::Verdict::kNotSeen) return {};
+  const std::string stiffness = id.wind_up.found ? "" : "the screw's stiffness, and ";
+  return "the axis was shaken, and nothing of its screw showed: the chirp was too little for the friction, "
+         "or turned the axis back; " +
+         stiffness + "how much of the mass is the motor's, " + (id.wind_up.found ? "is" : "are") +
+         " as open as before";
+}
+
 std::string WhyNoBeginning(const Identification& id) {
   if (id.shaken.verdict != ShakenScrew::Verdict::kFound) return "shaken, it showed no screw";
   for (const auto& why : {Numbers(id), Holes(id), Unsettled(id)})

@@ -11,6 +11,7 @@
 #include "config/loop_axis.h"
 #include "daemon/program/motion_plan.h"
 #include "daemon/program_limits.h"
+#include "design/catalogue_doubt.h"
 #include "tools/validation/commissioning/commissioning_case.h"
 #include "tools/validation/commissioning/virtual_commissioning.h"
 
@@ -210,6 +211,38 @@ TEST(CommissionPlanTest, ASlowAxisOfAFineLeadIsCommissionedAtItsOwnSpeeds) {
     }
     EXPECT_GT(instants, 1000U);
   }
+}
+
+TEST(CommissionPlanTest, NamesAWayThatShowsMoreOfTheScrewWhereThereIsOne) {
+  AxisConfig axis = Example().axes.at("x");
+  axis.limits.position_mm = {-15.0, 15.0};
+  EXPECT_NE(MoreOfTheScrew(axis, 3.0).find("--travel_mm 20 (it was 3)"), std::string::npos);
+  axis.limits.position_mm = {-5.0, 5.0};
+  EXPECT_NE(MoreOfTheScrew(axis, 3.0).find("--travel_mm 10 (it was 3)"), std::string::npos);
+  EXPECT_EQ(MoreOfTheScrew(axis, 10.0).find("--travel_mm"), std::string::npos);
+}
+
+// What nothing showed is as unsure as before, however well the sum of the masses is known.
+TEST(CommissionPlanTest, AScrewThatDidNotShowIsAsOpenAsItWas) {
+  ModelConfig stated = Example().axes.at("x").model;
+  stated.uncertainty.clear();
+  ModelConfig found = stated;
+  found.uncertainty = {{"motor_inertia_kgm2", 0.007}, {"table_mass_kg", 0.007}, {"Fc_plus_N", 0.01}};
+  LeaveScrewOpen(found, stated, false);
+  EXPECT_NEAR(found.uncertainty.at("screw_stiffness_N_um"), 0.5 * std::log(2.0), 1e-12);
+  EXPECT_NEAR(found.uncertainty.at("motor_inertia_kgm2"), 0.15, 1e-12);
+  EXPECT_NEAR(found.uncertainty.at("table_mass_kg"), 0.15, 1e-12);
+  EXPECT_EQ(found.uncertainty.at("Fc_plus_N"), 0.01);
+  // Doubt that the model states itself is smaller.
+  stated.uncertainty["screw_stiffness_N_um"] = 0.1;
+  found.uncertainty.erase("screw_stiffness_N_um");
+  LeaveScrewOpen(found, stated, false);
+  EXPECT_NEAR(found.uncertainty.at("screw_stiffness_N_um"), 0.1, 1e-12);
+  // Stiffness that a linear scale showed is known.
+  found.uncertainty = {{"screw_stiffness_N_um", 0.02}};
+  LeaveScrewOpen(found, stated, true);
+  EXPECT_EQ(found.uncertainty.at("screw_stiffness_N_um"), 0.02);
+  EXPECT_NEAR(found.uncertainty.at("table_mass_kg"), 0.15, 1e-12);
 }
 
 TEST(CommissionPlanTest, RefusesWhatDoesNotFitAndSaysWhatDoes) {

@@ -197,14 +197,20 @@ bool DriveLeads(const MachineConfig& machine, const std::string& axis) {
   return ModeFor(machine.machine.controller, machine.axes.at(axis).drive) == DriveMode::kCsp;
 }
 
-CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const std::string& name,
-                       const CommissionOptions& options) {
+CommissionLimits LimitsFor(const MachineConfig& machine, const std::string& name,
+                           const CommissionOptions& options) {
   CommissionLimits limits = DefaultCommissionLimits(machine.axes.at(name));
   if (name == options.axis) {
     if (options.travel_mm) limits.travel_mm = *options.travel_mm;
     if (options.max_speed_mm_s) limits.max_speed_mm_s = *options.max_speed_mm_s;
     if (options.max_torque_Nm) limits.max_torque_Nm = *options.max_torque_Nm;
   }
+  return limits;
+}
+
+CommissionPlan PlanFor(const MachineConfig& machine, const json& status, const std::string& name,
+                       const CommissionOptions& options) {
+  const CommissionLimits limits = LimitsFor(machine, name, options);
   const json& axis = status.at("axes").at(NumberOf(status, name));
   const double position_mm = 1e3 * axis.at("position_m").get<double>();
   CommissionPlan plan = PlanCommissioning(machine, name, position_mm, limits);

@@ -30,7 +30,11 @@ class MachineStopped : public std::runtime_error {
 /// Whether the axis's drive closes its loop.
 bool DriveLeads(const MachineConfig& machine, const std::string& axis);
 
-/// The motions from where the axis stands. What the operator allowed goes for the axis that was asked for.
+/// What the operator allowed goes for the axis that was asked for.
+CommissionLimits LimitsFor(const MachineConfig& machine, const std::string& axis,
+                           const CommissionOptions& options);
+
+/// The motions from where the axis stands, within those limits.
 CommissionPlan PlanFor(const MachineConfig& machine, const nlohmann::json& status, const std::string& axis,
                        const CommissionOptions& options);
 

@@ -11,6 +11,7 @@
 #include "analysis/identification/result_files.h"
 #include "analysis/identification/usable.h"
 #include "analysis/parallel/parallel_for.h"
+#include "design/catalogue_doubt.h"
 #include "tools/contour/draw_pictures.h"
 
 namespace contour {
@@ -31,9 +32,13 @@ identify::Identification IdentifyWithProgress(const IdentificationJob& job) {
 ModelConfig Report(const IdentificationJob& job, const identify::Identification& id) {
   if (const std::string why = identify::WhyUnusable(id); !why.empty())
     throw std::runtime_error("no model was written: " + why + (job.to_try.empty() ? "" : "; " + job.to_try));
-  const ModelConfig model = identify::ToModel(id, job.model);
+  ModelConfig model = identify::ToModel(id, job.model);
+  const std::string no_screw = job.for_screw.empty() ? "" : identify::WhyNoScrew(id);
+  if (!no_screw.empty()) LeaveScrewOpen(model, job.model, id.wind_up.found);
   identify::WriteModelFile(job.out, model, id, job.sources);
-  std::cout << identify::ResultTable(id, job.model, model) << "wrote " << job.out.string() << "\n";
+  std::cout << identify::ResultTable(id, job.model, model);
+  if (!no_screw.empty()) std::cout << "warning: " << no_screw << "; " << job.for_screw << "\n";
+  std::cout << "wrote " << job.out.string() << "\n";
   if (job.report.empty()) return model;
   std::error_code error;
   std::filesystem::create_directories(job.report, error);

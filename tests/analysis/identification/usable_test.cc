@@ -12,6 +12,7 @@ using identify::Identification;
 using identify::ResponsePoint;
 using identify::ShakenScrew;
 using identify::WhyNoBeginning;
+using identify::WhyNoScrew;
 using identify::WhyUnusable;
 
 Identification Good() {
@@ -50,6 +51,23 @@ TEST(WhyUnusable, RefusesWhatIsNoNumber) {
     id.fit.parameters[1].value = value;
     EXPECT_TRUE(Says(id, "no number"));
   }
+}
+
+// Friction and the whole mass may be used all the same.
+TEST(WhyNoScrew, TellsAScrewThatDidNotShowFromOneThatIsNone) {
+  Identification id = Good();
+  for (const auto verdict : {ShakenScrew::Verdict::kFound, ShakenScrew::Verdict::kRigid}) {
+    id.shaken.verdict = verdict;
+    EXPECT_EQ(WhyNoScrew(id), "");
+  }
+  id.shaken.verdict = ShakenScrew::Verdict::kNotSeen;
+  EXPECT_NE(WhyNoScrew(id).find("nothing of its screw showed"), std::string::npos);
+  EXPECT_NE(WhyNoScrew(id).find("the screw's stiffness, and"), std::string::npos);
+  EXPECT_EQ(WhyUnusable(id), "");
+  // A linear scale shows how the screw winds up, not where the mass is.
+  id.wind_up.found = true;
+  EXPECT_EQ(WhyNoScrew(id).find("the screw's stiffness, and"), std::string::npos);
+  EXPECT_NE(WhyNoScrew(id).find("how much of the mass"), std::string::npos);
 }
 
 TEST(WhyNoBeginning, TakesWhatIsUnsureButNotWhatIsNoModel) {
