@@ -38,9 +38,8 @@ std::optional<std::string> RecordingModeText(const RecordingMode& mode) {
   if (mode.loops.empty() && mode.csp_axes.empty()) return std::nullopt;
   return std::string("all axes are in ") +
          (mode.loops.empty() ? "csp, held by their drives," : "torque mode, with loops") +
-         " for commissioning, and control.friction is linear, whatever the machine file says; contourd "
-         "started "
-         "anew has the machine file's own";
+         " for commissioning, and control.friction is linear, whatever the machine file says; "
+         "contourd started anew has the machine file's own";
 }
 
 std::vector<std::string> WithoutRecordingMode(const std::vector<std::string>& axes,

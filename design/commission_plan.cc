@@ -91,8 +91,8 @@ std::string MoreOfTheScrew(const AxisConfig& axis, double travel_mm) {
         longer_mm, travel_mm);
   return FormatText(
       "a larger rated torque, less friction or a way longer than %g mm would show more; without, state in "
-      "the "
-      "model what is known of the screw (uncertainty) and let contour tune --from-model find a loop for that",
+      "the model what is known of the screw (uncertainty) and let contour tune --from-model find a loop for "
+      "that",
       travel_mm);
 }
 

@@ -19,7 +19,6 @@
 #include "config/config_error.h"
 #include "core/exit_status.h"
 #include "design/torque_loops.h"
-#include "drivers/cia402/mode_for.h"
 #include "tools/contour/commission_drive.h"
 #include "tools/contour/commission_loop.h"
 #include "tools/contour/commission_modes.h"

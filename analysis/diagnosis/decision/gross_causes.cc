@@ -83,7 +83,7 @@ class NeededTorque {
     for (const Curve& c : curves_)
       if (c.vs == vs && c.exponent == exponent) return c.fall;
     // The first ones, from which every cause begins, stay.
-    if (std::ssize(curves_) == 2 * kOfOne) curves_.erase(curves_.begin() + kOfOne);
+    if (std::ssize(curves_) == 2 * kCurvesOfAStep) curves_.erase(curves_.begin() + kCurvesOfAStep);
     curves_.push_back({vs, exponent, Signal(rows_.size())});
     Curve& c = curves_.back();
     for (std::size_t i = 0; i < c.fall.size(); ++i)
@@ -91,7 +91,7 @@ class NeededTorque {
     return c.fall;
   }
 
-  static constexpr std::ptrdiff_t kOfOne = 2;  ///< curves that one step needs: as it is, and another speed
+  static constexpr std::ptrdiff_t kCurvesOfAStep = 2;  ///< at vs as it is, and moved
   const std::vector<std::size_t>& rows_;
   Signal velocity_, acceleration_;
   std::vector<Curve> curves_;
