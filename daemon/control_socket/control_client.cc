@@ -2,6 +2,8 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -44,6 +46,13 @@ nlohmann::json ControlClient::Ask(nlohmann::json request) {
 void ControlClient::Listen(std::chrono::milliseconds time) {
   const auto message = Next(Clock::now() + time);
   if (message && on_message_) on_message_(*message);
+}
+
+Descriptor ControlClient::Daemon() const {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (::getsockopt(socket_.get(), SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0 || peer.pid <= 0) return {};
+  return Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, peer.pid, 0)));
 }
 
 std::optional<nlohmann::json> ControlClient::Next(Clock::time_point deadline) {

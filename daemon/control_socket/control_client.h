@@ -31,6 +31,10 @@ class ControlClient {
   /// Receives what has been subscribed to, until a message has been handled or the time is over.
   void Listen(std::chrono::milliseconds time);
 
+  /// The process that answers, to be polled: readable once it has ended. -1 in get() where the kernel does
+  /// not tell of it.
+  [[nodiscard]] Descriptor Daemon() const;
+
   void OnMessage(std::function<void(const nlohmann::json&)> function) { on_message_ = std::move(function); }
 
  private:

@@ -12,8 +12,10 @@ namespace contour {
 
 /// A connection to the daemon that begins anew where another has ended, and answers. While the old one
 /// closes, its socket may still take a connection that nobody serves. `connect` throws EnvironmentError when
-/// nobody listens; throws std::runtime_error at the deadline.
+/// nobody listens; throws std::runtime_error at the deadline, and once the old one's process, in which the
+/// new one begins, has ended.
 std::unique_ptr<ControlClient> ConnectToNewDaemon(const std::function<ControlClient()>& connect,
+                                                  const Descriptor& process,
                                                   std::chrono::steady_clock::time_point deadline);
 
 /// The daemon refuses to begin anew, and why; it goes on as it is.

@@ -1,13 +1,17 @@
 #include "tools/contour/new_daemon.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <memory>
 #include <stdexcept>
 #include <string_view>
 
 #include "core/exit_status.h"
+#include "tests/support/eventually.h"
 #include "tests/support/scratch_directory.h"
 
 namespace contour {
@@ -44,13 +48,49 @@ TEST_F(NewDaemonTest, AConnectionThatTheOldOneStillTookIsMadeAgain) {
     if (calls == 3) Answer();
     return client;
   };
-  EXPECT_NE(ConnectToNewDaemon(connect, Clock::now() + std::chrono::minutes(5)), nullptr);
+  EXPECT_NE(ConnectToNewDaemon(connect, {}, Clock::now() + std::chrono::minutes(5)), nullptr);
   EXPECT_EQ(calls, 3);
 }
 
 TEST_F(NewDaemonTest, NobodyComesBack) {
   const auto connect = []() -> ControlClient { throw EnvironmentError("nobody listens"); };
-  EXPECT_THROW(ConnectToNewDaemon(connect, Clock::now()), std::runtime_error);
+  EXPECT_THROW(ConnectToNewDaemon(connect, {}, Clock::now()), std::runtime_error);
+}
+
+// Drives that come up neither in the mode that was asked for nor in the machine file's own, say.
+TEST_F(NewDaemonTest, AProcessThatHasEndedIsNotWaitedFor) {
+  const std::filesystem::path path = scratch_.path() / "process.sock";
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    // Ends when it is asked for something.
+    const UnixListener listener(path, 0600);
+    pollfd polled{listener.get(), POLLIN, 0};
+    ::poll(&polled, 1, -1);
+    const Descriptor client = listener.Accept();
+    polled.fd = client.get();
+    ::poll(&polled, 1, -1);
+    ::_exit(1);
+  }
+  std::unique_ptr<ControlClient> client;
+  ASSERT_TRUE(test::Eventually([&] {
+    try {
+      client = std::make_unique<ControlClient>(path);
+    } catch (const EnvironmentError&) {
+      return false;
+    }
+    return true;
+  }));
+  try {
+    BeginAnew(
+        client, {{"request", "torque_mode"}},
+        []() -> ControlClient { throw EnvironmentError("nobody listens"); },
+        Clock::now() + std::chrono::minutes(2));
+    FAIL() << "nobody came back";
+  } catch (const std::runtime_error& e) {
+    EXPECT_NE(std::string_view(e.what()).find("contourd ended"), std::string_view::npos) << e.what();
+  }
+  EXPECT_EQ(::waitpid(child, nullptr, 0), child);
 }
 
 TEST_F(NewDaemonTest, WhatItRefusesItGoesOnWithout) {
