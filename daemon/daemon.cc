@@ -193,10 +193,10 @@ class Daemon {
       spdlog::warn(loaded);
       warnings.push_back(loaded);
     }
-    if (const auto mode =
-            RecordingModeText({options_.torque_loops, options_.torque_models, options_.csp_axes})) {
-      spdlog::warn(*mode);
-      warnings.push_back(*mode);
+    const RecordingMode mode{options_.torque_loops, options_.torque_models, options_.csp_axes};
+    if (const auto told = RecordingModeText(mode)) {
+      spdlog::warn(*told);
+      warnings.push_back(*told);
     }
     if (const std::optional<std::string> wider = WiderToleranceText(machine_)) {
       spdlog::warn(*wider);
@@ -204,7 +204,7 @@ class Daemon {
     }
     Supervisor supervisor(
         machine_, machine_.machine.controller, options_.clock, warnings,
-        {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_, Checks()}, source_);
+        {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_, Checks(), mode}, source_);
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);

@@ -40,6 +40,8 @@ constexpr std::chrono::seconds kTakenTimeout{10};
 /// A pass that has just ended is with those who learn from it in some milliseconds, or once disk, network and
 /// clients that are waited for in lock-step have gone on.
 constexpr std::chrono::seconds kPumpTimeout{10};
+/// Axes stop within their drives' and the machine's own limits of time, which are shorter.
+constexpr std::chrono::seconds kRestTimeout{60};
 constexpr const char* kUnwanted =
     "the cycle has not been handed it: whoever asked is gone, or a stop came first";
 constexpr const char* kEnding = "contourd is ending";
@@ -269,6 +271,24 @@ Answer Supervisor::LeaveToDrives() {
   } catch (const std::exception& e) {
     return {false, e.what()};
   }
+}
+
+void Supervisor::Abandoned() {
+  spdlog::warn("who attended the machine is gone: its torque goes off, after a stop on the path");
+  if (!RecordingModeText(parts_.recording_mode)) return;
+  const auto deadline = Clock::now() + kRestTimeout;
+  MachineState state = answers_.record().state;
+  for (; state != MachineState::kIdle; state = answers_.record().state) {
+    if (loop_ended_) return;
+    if (state == MachineState::kFaulted || Clock::now() >= deadline) break;
+    std::this_thread::sleep_for(kAnswerPoll);
+  }
+  // A fault is for whoever looks at it, in the mode that it came in.
+  const Answer answer = state == MachineState::kIdle
+                            ? ChangeMode({}, {})
+                            : Answer{false, "the machine is " + std::string(Name(state))};
+  if (!answer.accepted)
+    spdlog::warn("the mode for commissioning stays until contourd is started anew: {}", answer.reason);
 }
 
 /// Holding reload_.

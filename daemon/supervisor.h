@@ -45,6 +45,7 @@ struct SupervisedParts {
   const IoClient* io = nullptr;                  ///< null without auxiliary I/O
   std::optional<std::uint64_t> emulator_seed{};  ///< of an emulated machine in this process
   StartChecks checks{};                          ///< those that are empty find nothing
+  RecordingMode recording_mode{};                ///< that it runs in
 };
 
 /// Carries an operator's requests to the cycle and its answers back. It asks through the mailbox and decides
@@ -67,6 +68,7 @@ class Supervisor final : public OperatorDesk {
   Answer ChangeMode(const std::map<std::string, std::string>& loops,
                     const std::map<std::string, std::string>& models) override;
   Answer LeaveToDrives() override;
+  void Abandoned() override;
   Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) override;
   Answer Zero() override;
   Answer Pace(const PaceRequest& request) override {

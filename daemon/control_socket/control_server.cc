@@ -411,10 +411,18 @@ void ControlServer::DropGoneClients() {
   for (const Client& client : clients_) {
     if (!client.gone) continue;
     requests_.Drop(client.number);
+    if (client.subscriptions.attends && !ending_) TakeTorqueOff(client.number);
     if (client.feed != nullptr) desk_.Detach(client.feed);
   }
   clients_.remove_if([](const Client& client) { return client.gone; });
   GivePlaces();
+}
+
+/// As if it had asked for a disable itself, last of all.
+void ControlServer::TakeTorqueOff(std::uint64_t client) {
+  requests_.StopCame();
+  disables_.Take({client, R"({"request": "disable"})"});
+  requests_.Take({client, {}, false, {}, true});
 }
 
 }  // namespace contour

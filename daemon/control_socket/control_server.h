@@ -31,7 +31,8 @@ namespace contour {
 /// that wait for the cycle are carried out by a worker, in the order of their arrival, disables by another
 /// and stops by a third: a stop never waits behind an unanswered request, whoever made it, and makes void
 /// what was to lead to motion and has not been handed to the cycle. So does the end of its client; a stop or
-/// disable is carried out whatever becomes of the client. Everything is bounded, for each client and for all
+/// disable is carried out whatever becomes of the client. Where a client that attends the machine ends, its
+/// torque is taken off, after a stop on the path. Everything is bounded, for each client and for all
 /// together: who does not read is not listened to, and dropped when that does not end; beyond the last place
 /// there are some where only the status, a stop and a disable are to be had.
 class ControlServer {
@@ -101,6 +102,7 @@ class ControlServer {
   void Send(Client& client, const nlohmann::json& message);
   void Flush(Client& client);
   void DropGoneClients();
+  void TakeTorqueOff(std::uint64_t client);
 
   const Options options_;
   OperatorDesk& desk_;

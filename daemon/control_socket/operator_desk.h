@@ -79,6 +79,9 @@ class OperatorDesk {
                             const std::map<std::string, std::string>& models) = 0;
   /// csp for all axes, whatever the machine file says, and back by ChangeMode() with none; as that otherwise.
   virtual Answer LeaveToDrives() = 0;
+  /// Whoever attended the machine is gone, and its disabling is asked for: once it is Idle, its own mode is
+  /// given back where it is in one for commissioning. Waits for that.
+  virtual void Abandoned() = 0;
   virtual Answer Run(const ProgramUpload& program, const std::stop_token& unwanted) = 0;
   /// Programs count from where the machine stands from now on. As the next.
   virtual Answer Zero() = 0;

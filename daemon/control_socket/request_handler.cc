@@ -170,6 +170,7 @@ const std::map<std::string, std::set<std::string>>& KeysOfRequests() {
        {"name", "format", "text", "uploaded", "controller", "forget", "from_here", "single_block",
         "optional_stop", "block_delete", "go_there", "from_line"}},
       {"watch", {"period_ms"}},
+      {"attend", {"on"}},
       {"rows", {"on"}}};
   return keys;
 }
@@ -216,10 +217,14 @@ json Dispatch(const json& request, OperatorDesk& desk, Subscriptions& subscripti
     subscriptions.rows = Flag(request, "on");
     return {{"ok", true}};
   }
+  if (kind == "attend") {
+    subscriptions.attends = Flag(request, "on");
+    return {{"ok", true}};
+  }
   throw BadRequest(
       "unknown request \"" + kind +
       "\"; there are status, machine_file, enable, disable, stop, pause, resume, feed, "
-      "zero, reset, reference, reload, load_model, torque_mode, csp_mode, upload, run, watch, rows");
+      "zero, reset, reference, reload, load_model, torque_mode, csp_mode, upload, run, watch, rows, attend");
 }
 
 json Refusal(const std::string& why) { return {{"ok", false}, {"error", why}}; }
@@ -285,7 +290,7 @@ json HandleOrThrow(std::string_view line, OperatorDesk& desk, Subscriptions& sub
 
 /// By the thread that serves the socket: nothing of it waits.
 bool AnsweredAtOnce(std::string_view kind) {
-  for (const char* at_once : {"watch", "rows", "pause", "resume", "feed", "zero"})
+  for (const char* at_once : {"watch", "rows", "attend", "pause", "resume", "feed", "zero"})
     if (kind == at_once) return true;
   return false;
 }

@@ -13,6 +13,7 @@ namespace contour {
 /// What a client has subscribed to.
 struct Subscriptions {
   bool rows = false;
+  bool attends = false;  ///< the machine is not to go on without it
   std::optional<int> watch_period_ms;
 };
 

@@ -70,6 +70,10 @@ void RequestWorker::Work() {
       unwanted_ = std::stop_source();
       unwanted = unwanted_.get_token();
     }
+    if (request.abandoned) {
+      desk_.Abandoned();
+      continue;
+    }
     std::string program = request.program ? request.program->Take() : std::string();
     const nlohmann::json reply =
         Handle(request.line, desk_, none, unwanted, request.program ? &program : nullptr);

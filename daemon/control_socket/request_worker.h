@@ -25,6 +25,7 @@ class RequestWorker {
     std::string line;
     bool leads_to_motion = false;             ///< a stop makes it void
     std::shared_ptr<UploadedText> program{};  ///< of a run whose program came in pieces
+    bool abandoned = false;                   ///< no line: the client attended the machine, and is gone
   };
   /// Called with the number that the request came with, in the worker's thread or that of StopCame().
   using Done = std::function<void(std::uint64_t client, const nlohmann::json& reply)>;

@@ -73,6 +73,17 @@ def interrupt_gives_the_mode_back(contour, daemon, scratch, interrupt):
     assert not for_commissioning(daemon)
 
 
+def killed_gives_the_mode_back(contour, daemon, scratch):
+    """Nobody is left to ask for it: contourd takes the torque off and goes back by itself."""
+    with subprocess.Popen(commission(contour, daemon, scratch, "--mode", "csp"), stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL) as running:
+        daemon.wait_for("Running")
+        assert for_commissioning(daemon)
+        running.kill()
+    daemon.await_axis(lambda axis: axis["drive"]["mode"] == daemon.OWN_MODE)
+    assert not for_commissioning(daemon)
+
+
 def quick(contourd, contour, machine_file):
     with tempfile.TemporaryDirectory() as scratch:
         daemon = TorqueMode(contourd, machine_file, scratch, ["emulator.parameter_variation_rel=0"])
@@ -82,6 +93,7 @@ def quick(contourd, contour, machine_file):
             # The second one: a terminal that is gone.
             for interrupt in (signal.SIGINT, signal.SIGHUP):
                 interrupt_gives_the_mode_back(contour, daemon, scratch, interrupt)
+            killed_gives_the_mode_back(contour, daemon, scratch)
         finally:
             status = daemon.end()
         assert status == 0, (status, Path(daemon.messages).read_text(encoding="utf-8"))

@@ -27,6 +27,7 @@
 #include "tools/contour/ends_at_once.h"
 #include "tools/contour/identification_report.h"
 #include "tools/contour/mode_stay.h"
+#include "tools/contour/stop_signals.h"
 
 namespace contour {
 namespace {

@@ -2,10 +2,8 @@
 
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <utility>
@@ -16,6 +14,7 @@
 #include "drivers/cia402/mode_for.h"
 #include "drivers/lcm/cycle_messages.h"
 #include "tools/contour/daemon_link.h"
+#include "tools/contour/stop_signals.h"
 
 namespace contour {
 namespace {
@@ -25,10 +24,6 @@ using nlohmann::json;
 constexpr std::chrono::milliseconds kLookEvery{100};
 constexpr std::chrono::seconds kEnableLimit{60};
 constexpr std::chrono::seconds kLastRows{5};
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-void OnSignal(int /*signal*/) { stop_requested.store(true); }
 
 /// Takes every cycle from the daemon and watches that the axis keeps to what the operator allowed.
 class Watchman {
@@ -127,7 +122,7 @@ void RunMotion(ControlClient& client, Watchman& watchman, const CommissionMotion
     if (terminal && program.at("time_s").is_number() && program.at("duration_s").is_number())
       std::fprintf(stderr, "\r\x1b[K%s  %s  %.1f of %.1f s", progress.c_str(), motion.what.c_str(),
                    program.at("time_s").get<double>(), program.at("duration_s").get<double>());
-    if ((stop_requested || !watchman.offence().empty()) && !stopping) {
+    if ((StopRequested() || !watchman.offence().empty()) && !stopping) {
       stopping = true;
       client.Ask({{"request", "stop"}});
       // A second one is the shortest stop there is.
@@ -148,6 +143,7 @@ std::size_t NumberOf(const json& status, const std::string& axis) {
 
 /// Enables, moves, takes the torque off; the record is the watchman's.
 void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& plan) {
+  Attend(client, true);
   AskOrThrow(client, {{"request", "enable"}});
   const json status = WaitForStatus(
       client, [](const json& s) { return s.at("state") != "Enabling" && s.at("state") != "Idle"; },
@@ -181,16 +177,8 @@ void MoveAxis(ControlClient& client, Watchman& watchman, const CommissionPlan& p
 
 }  // namespace
 
-void StopOnSignals() {
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
-  // A terminal that is gone is one, unless nohup says that it may be; nobody who reads on is none.
-  if (std::signal(SIGHUP, OnSignal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
-  std::signal(SIGPIPE, SIG_IGN);
-}
-
 void ThrowIfInterrupted(const std::string& what) {
-  if (stop_requested) throw std::runtime_error("interrupted; " + what);
+  if (StopRequested()) throw std::runtime_error("interrupted; " + what);
 }
 
 bool DriveLeads(const MachineConfig& machine, const std::string& axis) {

@@ -15,10 +15,7 @@
 
 namespace contour {
 
-/// From now on SIGINT, SIGTERM and SIGHUP stop the axis that is recorded, and nothing new is begun.
-/// Output that nobody reads any more ends nothing.
-void StopOnSignals();
-/// Throws std::runtime_error where one has come: interrupted, and `what` of it.
+/// Throws std::runtime_error where a stop is requested (stop_signals.h): interrupted, and `what` of it.
 void ThrowIfInterrupted(const std::string& what = "nothing was written");
 
 /// The machine stopped by itself, which may be its loop's doing.
@@ -45,8 +42,8 @@ struct CommissionRecord {
   std::uint64_t lost_cycles = 0;
 };
 
-/// Enables the machine, moves the axis within what the plan allows, takes the torque off. Throws, with the
-/// torque off, where something is not as it should be; MachineStopped where it ended in a fault.
+/// Attends and enables the machine, moves the axis within what the plan allows, takes the torque off. Throws,
+/// with the torque off, where something is not as it should be; MachineStopped where it ended in a fault.
 CommissionRecord Record(ControlClient& client, const MachineConfig& machine, const CommissionPlan& plan);
 
 }  // namespace contour

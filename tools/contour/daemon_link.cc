@@ -62,6 +62,8 @@ nlohmann::json Status(ControlClient& client) {
   return AskOrThrow(client, {{"request", "status"}}).at("status");
 }
 
+void Attend(ControlClient& client, bool on) { AskOrThrow(client, {{"request", "attend"}, {"on", on}}); }
+
 nlohmann::json WaitForStatus(ControlClient& client, const std::function<bool(const nlohmann::json&)>& done,
                              std::chrono::seconds limit) {
   const auto deadline = std::chrono::steady_clock::now() + limit;

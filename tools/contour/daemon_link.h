@@ -29,6 +29,10 @@ nlohmann::json RunProgram(ControlClient& client, nlohmann::json request);
 /// The status, as docs/operating.md describes it.
 nlohmann::json Status(ControlClient& client);
 
+/// From now on contourd takes the torque off, after a stop on the path, should this connection end, and gives
+/// a mode for commissioning back; or no longer.
+void Attend(ControlClient& client, bool on);
+
 /// Looks at the status until `done` says so or the time is over (then throws std::runtime_error naming the
 /// state).
 nlohmann::json WaitForStatus(ControlClient& client, const std::function<bool(const nlohmann::json&)>& done,

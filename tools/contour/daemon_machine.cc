@@ -180,6 +180,7 @@ void DaemonMachine::Ask(const std::string& what) {
 
 void DaemonMachine::Enable() {
   CheckStop();
+  Attend(*client_, true);
   AskOrThrow(*client_, {{"request", "enable"}});
   const json status = WaitForStatus(
       *client_, [](const json& s) { return s.at("state") != "Enabling" && s.at("state") != "Idle"; },
@@ -193,6 +194,7 @@ void DaemonMachine::Disable() {
   WaitForStatus(
       *client_, [](const json& s) { return s.at("state") == "Idle" || s.at("state") == "Faulted"; },
       kStateLimit);
+  Attend(*client_, false);
 }
 
 bool DaemonMachine::AwaitIdle(const std::string& what_for) {

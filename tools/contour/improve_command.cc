@@ -1,8 +1,6 @@
 #include "tools/contour/improve_command.h"
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -26,6 +24,7 @@
 #include "tools/contour/daemon_link.h"
 #include "tools/contour/daemon_machine.h"
 #include "tools/contour/draw_pictures.h"
+#include "tools/contour/stop_signals.h"
 #include "tools/contour/terminal_progress.h"
 #include "tools/improve/default_programs.h"
 #include "tools/improve/improve_report.h"
@@ -49,10 +48,6 @@ struct Options {
   int threads = 0;
   bool yes = false;
 };
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-void OnSignal(int /*signal*/) { stop_requested.store(true); }
 
 ProgramText FromFile(const std::string& file) {
   return {fs::path(file).filename().string(), ReadTextFile(file), FormatOf(file)};
@@ -161,21 +156,20 @@ void WriteResult(const improve::ImproveResult& result, const improve::ImproveReq
 
 int RunImprove(const Options& options) {
   diagnosis::KeepMemory();
-  DaemonMachine daemon({options.socket, options.axis, options.yes, &stop_requested});
+  DaemonMachine daemon({options.socket, options.axis, options.yes, &StopRequested()});
   const MachineConfig machine = daemon.Machine();
   CheckBeforehand(machine, daemon.StatusOnceStarted(), options);
   const improve::ImproveRequest request = RequestFor(machine, daemon, options);
   daemon.Watch(request.space);
   SayWhatIsPlanned(request);
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
+  StopOnSignals();
   diagnosis::DiagnoseOptions how;
   how.false_alarm_rate = options.false_alarm_rate;
   how.threads = ThreadsOf(options.threads);
   const auto diagnose = [&](const diagnosis::AxisLog& log, const diagnosis::StatedAxis& stated) {
     TerminalProgress progress;
     how.progress = [&](std::string_view doing, double share) {
-      if (stop_requested) throw improve::Refused("interrupted");
+      if (StopRequested()) throw improve::Refused("interrupted");
       progress.Show(doing, share);
     };
     return diagnosis::Diagnose(log, stated, how);

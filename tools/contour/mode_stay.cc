@@ -64,12 +64,13 @@ bool ModeStay::Enter(const nlohmann::json& request, const std::function<bool(con
     entered_ = was;
     throw;
   }
+  Attend(*client_, true);
   entered_ = is_so(AskForMachine(*client_));
   return entered_;
 }
 
 void ModeStay::Leave() {
-  if (!entered_) return;
+  if (!entered_) return Attend(*client_, false);
   const nlohmann::json status = WaitForStatus(
       *client_, [](const nlohmann::json& s) { return IsIdle(s) || s.at("state") == "Faulted"; }, kIdleLimit);
   // For whoever looks at the fault.
@@ -79,6 +80,7 @@ void ModeStay::Leave() {
 }
 
 void ModeStay::LeaveOrSay() {
+  if (!entered_) return;
   try {
     Leave();
   } catch (const std::exception& e) {

@@ -12,7 +12,8 @@
 
 namespace contour {
 
-/// A daemon in another mode for as long as an axis is recorded, whatever its machine file says.
+/// A daemon in another mode for as long as an axis is recorded, whatever its machine file says. It is
+/// attended: should this program die, it takes the torque off and goes back by itself.
 class ModeStay {
  public:
   ModeStay(std::unique_ptr<ControlClient>& client, std::string socket)
@@ -25,8 +26,8 @@ class ModeStay {
                                      const std::map<std::string, ModelConfig>& models);
   /// The same in csp, held by the drives' own loops.
   [[nodiscard]] bool EnterCsp();
-  /// Has it begin anew in its own mode, once the machine is Idle. Throws std::runtime_error where it is
-  /// Faulted.
+  /// Has it begin anew in its own mode, once the machine is Idle, and attends it no more. Throws
+  /// std::runtime_error where it is Faulted.
   void Leave();
   /// After a failure: tells rather than throws, so that the failure itself is told.
   void LeaveOrSay();

@@ -5,8 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -27,6 +25,7 @@
 #include "tools/contour/result_line.h"
 #include "tools/contour/run_record.h"
 #include "tools/contour/status_text.h"
+#include "tools/contour/stop_signals.h"
 
 namespace contour {
 namespace {
@@ -47,11 +46,6 @@ struct Options {
 constexpr std::chrono::milliseconds kLookEvery{100};
 /// How long to wait for rows that are on their way when the program is over.
 constexpr std::chrono::seconds kLastRows{5};
-
-std::atomic<bool> stop_requested{false};
-static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
-
-void OnSignal(int /*signal*/) { stop_requested.store(true); }
 
 /// Rows on their way from the daemon into a RunRecord.
 class RowCollector {
@@ -145,15 +139,15 @@ json Follow(ControlClient& client, std::uint32_t program_id) {
     json status = Status(client);
     if (Ended(status, program_id)) return status;
     progress.Show(status);
-    if (stop_requested && !asked_to_stop) {
+    if (StopRequested() && !asked_to_stop) {
       asked_to_stop = true;
       client.Ask({{"request", "stop"}});
     }
     const auto until = std::chrono::steady_clock::now() + kLookEvery;
     // A message may come at once; listening goes on until it is time to look again.
-    while (std::chrono::steady_clock::now() < until && !stop_requested)
+    while (std::chrono::steady_clock::now() < until && !StopRequested())
       client.Listen(std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()));
-    if (stop_requested) client.Listen(std::chrono::milliseconds(20));
+    if (StopRequested()) client.Listen(std::chrono::milliseconds(20));
   }
 }
 
@@ -325,8 +319,7 @@ int RunRun(const Options& options) {
   for (const json& axis : before.at("axes"))
     following_m = std::max(following_m, axis.at("facts").at("path_following_m").get<double>());
   WarnOfProgram(options.program, EventsFor(options, before), false, following_m);
-  std::signal(SIGINT, OnSignal);
-  std::signal(SIGTERM, OnSignal);
+  StopOnSignals();
   std::optional<RowCollector> rows;
   if (options.out) rows.emplace(*client, *options.out);
   const json reply = RunProgram(*client, RequestOf(options));

@@ -325,6 +325,35 @@ TEST_F(ControlServerTest, AStopOrDisableIsCarriedOutAlthoughItsClientIsGone) {
   desk_.Hold(false);
 }
 
+TEST_F(ControlServerTest, AMachineThatIsAttendedDoesNotGoOnWithoutItsClient) {
+  Serve();
+  {
+    ControlClient seen(options_.socket), over(options_.socket);
+    ASSERT_EQ(seen.Ask({{"request", "status"}})["ok"], true);
+    for (const bool on : {true, false}) ASSERT_EQ(over.Ask({{"request", "attend"}, {"on", on}})["ok"], true);
+  }
+  {
+    ControlClient attends(options_.socket);
+    ASSERT_EQ(attends.Ask({{"request", "attend"}, {"on", true}})["ok"], true);
+    ASSERT_EQ(attends.Ask({{"request", "enable"}})["ok"], true);
+  }
+  const auto both = [](const std::vector<std::string>& asked) {
+    return std::ranges::count(asked, "disable") == 1 && std::ranges::count(asked, "abandoned") == 1;
+  };
+  EXPECT_TRUE(Eventually([&] { return both(desk_.asked()); }));
+  EXPECT_EQ(desk_.asked().size(), 3u) << "and of the others nothing comes";
+  EXPECT_EQ(desk_.asked().front(), "enable");
+}
+
+// The daemon's own end is no end of a client.
+TEST_F(ControlServerTest, AnEndOfTheServerAsksForNothing) {
+  Serve();
+  ControlClient attends(options_.socket);
+  ASSERT_EQ(attends.Ask({{"request", "attend"}, {"on", true}})["ok"], true);
+  server_.reset();
+  EXPECT_TRUE(desk_.asked().empty());
+}
+
 TEST_F(ControlServerTest, AStopMakesVoidWhatWouldLeadToMotionAndHasNotBeenHandedOver) {
   Serve();
   desk_.Hold(true);

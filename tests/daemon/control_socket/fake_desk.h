@@ -44,6 +44,7 @@ class FakeDesk final : public OperatorDesk {
     return Do("torque_mode");
   }
   Answer LeaveToDrives() override { return Do("csp_mode"); }
+  void Abandoned() override { Do("abandoned"); }
   Answer Run(const ProgramUpload& program, const std::stop_token& /*unwanted*/) override {
     Answer answer = Do("run");
     const std::lock_guard lock(mutex_);

@@ -33,6 +33,7 @@ class ScriptedMachine final : public OperatorDesk {
     return {true, ""};
   }
   Answer LeaveToDrives() override { return {true, ""}; }
+  void Abandoned() override {}
   Answer Reset(const std::stop_token&) override { return Go(MachineState::kIdle, Reason::kNone); }
   Answer Run(const ProgramUpload& upload, const std::stop_token&) override;
   Answer Zero() override { return Go(MachineState::kReady, Reason::kNone); }
