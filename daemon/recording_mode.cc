@@ -42,16 +42,11 @@ std::optional<std::string> RecordingModeText(const RecordingMode& mode) {
          "contourd started anew has the machine file's own";
 }
 
-std::vector<std::string> WithoutRecordingMode(const std::vector<std::string>& axes,
-                                              std::vector<std::string> overrides) {
-  for (const std::string& axis : axes) {
-    std::erase_if(overrides, [&](const std::string& o) { return o.starts_with(Loop(axis)); });
-    // What was there before is the operator's own.
-    const auto last = std::find_if(overrides.rbegin(), overrides.rend(),
-                                   [&](const std::string& o) { return o.starts_with(Mode(axis)); });
+std::vector<std::string> WithoutRecordingMode(const RecordingMode& mode, std::vector<std::string> overrides) {
+  for (const std::string& assignment : RecordingOverrides(mode)) {
+    const auto last = std::find(overrides.rbegin(), overrides.rend(), assignment);
     if (last != overrides.rend()) overrides.erase(std::next(last).base());
   }
-  std::erase(overrides, kFriction);
   return overrides;
 }
 

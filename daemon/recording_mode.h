@@ -20,8 +20,8 @@ std::vector<std::string> RecordingOverrides(const RecordingMode& mode);
 /// may be gone without having given it back.
 std::optional<std::string> RecordingModeText(const RecordingMode& mode);
 
-/// Assignments less mode and loops of RecordingOverrides() for these axes.
-std::vector<std::string> WithoutRecordingMode(const std::vector<std::string>& axes,
-                                              std::vector<std::string> overrides);
+/// Assignments less those of RecordingOverrides(), which came last of their kind: what is left is the
+/// operator's own.
+std::vector<std::string> WithoutRecordingMode(const RecordingMode& mode, std::vector<std::string> overrides);
 
 }  // namespace contour

@@ -293,7 +293,7 @@ void Supervisor::Abandoned() {
 
 /// Holding reload_.
 Answer Supervisor::BeginAnewIn(RecordingMode mode) {
-  std::vector<std::string> overrides = WithoutRecordingMode(axis_names_, source_.overrides);
+  std::vector<std::string> overrides = WithoutRecordingMode(parts_.recording_mode, source_.overrides);
   for (const std::string& assignment : RecordingOverrides(mode)) overrides.push_back(assignment);
   return BeginAnew(overrides, {{}, std::move(mode)});
 }

@@ -33,19 +33,28 @@ TEST(RecordingModeText, IsToldWhileItLasts) {
   EXPECT_NE(RecordingModeText({{"x={a: 1}"}, {}}).value_or("").find("torque mode"), std::string::npos);
 }
 
-TEST(WithoutRecordingMode, TakesAwayModeAndLoopsAndNothingElse) {
+TEST(WithoutRecordingMode, TakesAwayWhatItMadeAndNothingElse) {
   List overrides{"machine.name=a", "axes.x.limits.torque_Nm=1"};
   const List own = overrides;
-  for (const std::string& o : RecordingOverrides({{"x={a: 1}", "y={a: 2}"}, {}})) overrides.push_back(o);
-  EXPECT_EQ(WithoutRecordingMode({"x", "y"}, overrides), own);
+  const RecordingMode mode{{"x={a: 1}", "y={a: 2}"}, {"y={b: 3}"}};
+  for (const std::string& o : RecordingOverrides(mode)) overrides.push_back(o);
+  overrides.push_back("axes.x.model.extensions={}");  // learnt
+  List left = own;
+  left.push_back(overrides.back());
+  EXPECT_EQ(WithoutRecordingMode(mode, overrides), left);
 }
 
-// Else the check of a machine that goes back would be of another one.
-TEST(WithoutRecordingMode, LeavesTheOperatorsOwnMode) {
-  List overrides{"axes.x.drive.mode=cst", "axes.y.drive.mode=cst"};
-  const List own = overrides;
-  for (const std::string& o : RecordingOverrides({{}, {}, {"x", "y"}})) overrides.push_back(o);
-  EXPECT_EQ(WithoutRecordingMode({"x", "y"}, overrides), own);
+// Else the check of a machine that changes or goes back would be of another one.
+TEST(WithoutRecordingMode, LeavesTheOperatorsOwn) {
+  const List own{"axes.x.drive.mode=csp", "axes.y.drive.mode=csp", "control.friction=linear",
+                 "axes.x.loop=x.yaml"};
+  EXPECT_EQ(WithoutRecordingMode({}, own), own);
+  for (const RecordingMode& mode :
+       {RecordingMode{{}, {}, {"x", "y"}}, RecordingMode{{"x={a: 1}", "y={a: 2}"}, {}}}) {
+    List overrides = own;
+    for (const std::string& o : RecordingOverrides(mode)) overrides.push_back(o);
+    EXPECT_EQ(WithoutRecordingMode(mode, overrides), own);
+  }
 }
 
 }  // namespace
