@@ -7,6 +7,7 @@
 #include "config/loop_axis.h"
 #include "core/two_inertia_loop.h"
 #include "drivers/cia402/mode_for.h"
+#include "estimator/coarse_encoder.h"
 
 namespace contour {
 namespace {
@@ -41,14 +42,21 @@ double OnHeldMotor_Hz(const TwoInertiaAxis& axis) {
 
 }  // namespace
 
+bool ReportsAreNoise(const AxisConfig& config, double period_s) {
+  const LoopAxis axis = LoopAxisOf(config);
+  const double mass_kg = axis.axis.motor_mass_kg + axis.axis.table_mass_kg;
+  return CountsHideFriction(axis.encoder_step_m, axis.friction, mass_kg, period_s);
+}
+
 bool FilterServes(const MachineConfig& machine) {
   const double lowest_mode_Hz = kLowestMode_Hz * std::min(1.0, kMeasuredAt_us / machine.machine.cycle_us);
+  const double period_s = 1e-6 * machine.machine.cycle_us;
   for (const auto& [name, config] : machine.axes) {
     // The filter with one mass knows of no scale.
     if (config.drive.linear_scale) return false;
     const TwoInertiaAxis axis = TwoInertiaAxisOf(config);
     const bool held = ModeFor(ControllerName::kFull, config.drive) == DriveMode::kCsp;
-    if (held ? OnHeldMotor_Hz(axis) < kLowestOnHeldMotor_Hz
+    if (held ? OnHeldMotor_Hz(axis) < kLowestOnHeldMotor_Hz || ReportsAreNoise(config, period_s)
              : ModeFrequency_Hz(axis) < lowest_mode_Hz || StepsMoveIt(config))
       return false;
   }

@@ -212,7 +212,8 @@ struct ControllerConfig {
         "goes by axes.<name>.loop). In a file that does not say it is linear in torque mode (srukf where no "
         "loop is found at once and the filter serves: modes of motor against table above 300 Hz, times 1 ms "
         "over the cycle where that is longer); in csp linear where the table on its screw, the motor held, "
-        "swings below 110 Hz, or with a linear scale, srukf elsewhere");
+        "swings below 110 Hz, with a linear scale, or where a count of the encoder is more than Coulomb "
+        "friction moves the axis by in a cycle, srukf elsewhere");
     v.Optional("planner", planner, "planning of corners");
     v.Optional("guard", guard, "torque guard");
     v.Optional("supervision", supervision, "how the machine watches its own control");

@@ -38,7 +38,10 @@ FilterSetup Check(const Mechanics& mechanics, const FrictionConfig& config_frict
   Demand(Positive(config.measurement_noise_um), "the measurement noise must be positive");
   // A rounded position is off by at most half a count, uniformly: LSB / sqrt(12).
   const double rounding_m = resolution_m / std::sqrt(12.0);
-  return {mechanics, f, config, period_s, lag_s, std::max(config.measurement_noise_um * 1e-6, rounding_m)};
+  FilterSetup setup{mechanics, f, config, period_s, lag_s};
+  setup.measurement_std_m = std::max(config.measurement_noise_um * 1e-6, rounding_m);
+  setup.encoder_step_m = resolution_m;
+  return setup;
 }
 
 /// Calls `what` with the one that is there. std::visit does the same but may throw, which the cycle cannot.

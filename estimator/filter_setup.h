@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/mechanics.h"
+#include "estimator/coarse_encoder.h"
 #include "estimator/estimator_config.h"
 #include "estimator/friction_config.h"
 
@@ -22,6 +23,12 @@ struct FilterSetup {
   double measurement_std_m = 2e-8;  ///< position noise, quantisation included
   bool looks_ahead = true;  ///< FrictionAhead_N is wanted; not where friction is rolled along the reference
   bool reported_torque = false;  ///< torque as the drive tells it, at the samples, not as it was commanded
+  double encoder_step_m = 0.0;   ///< a count; 0: not stated
+
+  /// A drive closes the loop by counts behind which friction does not show in time.
+  [[nodiscard]] bool Shaken() const noexcept {
+    return reported_torque && CountsHideFriction(encoder_step_m, friction, mechanics.mass_kg, period_s);
+  }
 
   /// So far a change of force takes an axis in one period, a T^2 / 2: friction that turns round, and as much
   /// from outside. A single reading that is further off is no motion.

@@ -177,12 +177,17 @@ double FrictionLearner::SlidingLevel_N(bool forward, double speed_m_s) const noe
 }
 
 [[gnu::always_inline]] inline void FrictionLearner::Update(const FrictionTerms& filtered,
-                                                           double unexplained_N, double moving) noexcept {
+                                                           double unexplained_N, double moving,
+                                                           double noise_N2) noexcept {
   FrictionTerms along;  // covariance times terms
+  // Noise of the readings, and what comes with it: under a drive that answers each count of a coarse encoder
+  // the axis shakes, and its friction is not what the terms say by the more, the more of it there is.
+  const double read_N2 = setup_.together * noise_N2;
+  const double sample_N2 = noise_N2_ + read_N2 * (1.0 + read_N2 / noise_N2_);
   Along(filtered, along);
   // What a force that accelerates the axis is off by is no friction.
   const double inertial_N = setup_.inertial_kg * filtered[friction_term::kMass];
-  const double per_variance = 1.0 / (noise_N2_ + inertial_N * inertial_N + Sum(filtered, along));
+  const double per_variance = 1.0 / (sample_N2 + inertial_N * inertial_N + Sum(filtered, along));
   const double gain = unexplained_N * per_variance;
   Bound(gain, along);
   // Each factor on its own, so that rounding keeps it symmetric.
@@ -206,8 +211,11 @@ void FrictionLearner::Judge(const FrictionTerms& filtered, double disturbance_N)
   without_N2_ += judge_share_ * (without_N * without_N - without_N2_);
 }
 
-bool FrictionLearner::Waits(double disturbance_N) noexcept {
-  if (std::abs(disturbance_N) > outside_N_)
+bool FrictionLearner::Waits(double disturbance_N, double noise_N2) noexcept {
+  const double outside_N = noise_N2 > 0.0
+                               ? std::sqrt(outside_N_ * outside_N_ + kOutsideStds * kOutsideStds * noise_N2)
+                               : outside_N_;
+  if (std::abs(disturbance_N) > outside_N)
     wait_cycles_ = wait_;
   else if (wait_cycles_ > 0)
     --wait_cycles_;
@@ -217,7 +225,7 @@ bool FrictionLearner::Waits(double disturbance_N) noexcept {
 
 CONTOUR_WIDE_VECTORS
 double FrictionLearner::Learn(const FrictionTerms& terms, double used_N, double disturbance_N,
-                              double speed_m_s, bool may) noexcept {
+                              double speed_m_s, bool may, double noise_N2) noexcept {
   newest_ = newest_ + 1 == kLoopTaps ? 0 : newest_ + 1;
   past_[newest_] = terms;
   past_[newest_][friction_term::kUsed] = used_N;
@@ -231,8 +239,8 @@ double FrictionLearner::Learn(const FrictionTerms& terms, double used_N, double 
     return unexplained_N;
   }
   Judge(filtered, unexplained_N);
-  if (Waits(unexplained_N)) return unexplained_N;
-  Update(filtered, unexplained_N, std::min(1.0, speed_m_s / (kFull * setup_.vs_m_s)));
+  if (Waits(unexplained_N, noise_N2)) return unexplained_N;
+  Update(filtered, unexplained_N, std::min(1.0, speed_m_s / (kFull * setup_.vs_m_s)), noise_N2);
   if (!sound_) {
     Reset();
     ++brought_back_;

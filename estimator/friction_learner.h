@@ -30,6 +30,7 @@ class FrictionLearner {
     double level_range = 2.0;  ///< factor of the level that may be learnt
     double weight_N = 0.0;     ///< that a constant force beside friction may have: of a vertical axis
     double period_s = 1e-3;
+    double together = 1.0;  ///< samples over which noise of the observer's force hangs together
     bool learns = true;
   };
 
@@ -43,9 +44,10 @@ class FrictionLearner {
 
   /// A period has passed along which the terms were these, and at its end the observer finds
   /// `disturbance_N`, positive against positive motion. Returns how much of it is explained from now on: to
-  /// be taken off the observer's. `may`: enabled, moved by nothing but the controller.
-  double Learn(const FrictionTerms& terms, double used_N, double disturbance_N, double speed_m_s,
-               bool may) noexcept;
+  /// be taken off the observer's. `may`: enabled, moved by nothing but the controller. `noise_N2`: variance
+  /// of the observer's force that is noise of its readings.
+  double Learn(const FrictionTerms& terms, double used_N, double disturbance_N, double speed_m_s, bool may,
+               double noise_N2 = 0.0) noexcept;
   /// The axis stands: parameters that explain less than the commissioned ones go back to those.
   void Rest() noexcept;
 
@@ -76,9 +78,9 @@ class FrictionLearner {
   void Along(const FrictionTerms& filtered, FrictionTerms& along) const noexcept;
   void Bound(double gain, const FrictionTerms& along) noexcept;
   void Shrink(const FrictionTerms& along) noexcept;
-  void Update(const FrictionTerms& filtered, double unexplained_N, double moving) noexcept;
+  void Update(const FrictionTerms& filtered, double unexplained_N, double moving, double noise_N2) noexcept;
   void Judge(const FrictionTerms& filtered, double disturbance_N) noexcept;
-  bool Waits(double disturbance_N) noexcept;
+  bool Waits(double disturbance_N, double noise_N2) noexcept;
 
   Setup setup_;
   FrictionMatrix initial_{};

@@ -49,7 +49,9 @@ CONTOUR_WIDE_VECTORS
 void LinearFriction::Follow(double step_m, double position_m, double velocity_m_s, double acceleration_m_s2,
                             FrictionTermsState& memory, FrictionTerms& terms) const noexcept {
   using namespace friction_term;  // NOLINT(google-build-using-namespace): names of terms only
-  const double travel_m = std::abs(step_m), speed_m_s = std::abs(velocity_m_s);
+  const double speed_m_s = std::abs(velocity_m_s);
+  const bool shaken = shake_m_ > 0.0;
+  const double travel_m = shaken ? std::sqrt(step_m * step_m + shake_m_ * shake_m_) : std::abs(step_m);
   const double fading = velocity_m_s / scale_.sigma1_decay_m_s, speed = speed_m_s / scale_.vs_m_s;
   // Eight exponentials side by side: what the bristles keep, then what speed leaves.
   std::array<double, 8> kept{-travel_m * per_dahl_1_m_[0],
@@ -61,7 +63,7 @@ void LinearFriction::Follow(double step_m, double position_m, double velocity_m_
                              -speed,
                              -fading * fading};
   for (double& k : kept) k = ExpOfNegative(k);
-  const double sign = step_m > 0.0 ? 1.0 : step_m < 0.0 ? -1.0 : 0.0;
+  const double sign = shaken ? step_m / travel_m : step_m > 0.0 ? 1.0 : step_m < 0.0 ? -1.0 : 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
     memory.dahl[i] = sign + (memory.dahl[i] - sign) * kept[i];
     memory.stop[i] = std::min(std::max(memory.stop[i] + step_m * per_stop_1_m_[i], -1.0), 1.0);

@@ -62,6 +62,9 @@ class LinearFriction {
   explicit LinearFriction(const FrictionScale& scale) noexcept;
 
   [[nodiscard]] const FrictionScale& scale() const noexcept { return scale_; }
+  /// The axis is shaken, by so much travel per step: bristles let go of what they hold, and a motion that is
+  /// slow beside it is held by less than the level.
+  void Shake(double travel_m) noexcept { shake_m_ = travel_m; }
   static constexpr double kViscousSpeeds = 25.0;
 
   /// The term is of bristles: it stays when the axis stands, and may give way then.
@@ -83,6 +86,7 @@ class LinearFriction {
   std::array<double, 4> per_dahl_1_m_{};
   std::array<double, 4> per_stop_1_m_{};
   double per_turn_1_m_ = 0.0;
+  double shake_m_ = 0.0;
 };
 
 /// Scalar product in an order that is stated.

@@ -27,6 +27,7 @@ constexpr double kViscousPart = 0.3;
 // screw many times as much and shows as such a force as far as the stiffness is off.
 constexpr double kLeadOfTable = 0.1;
 constexpr double kSurprise_s = 0.2;
+constexpr double kShakes_1_s = 200.0;
 
 /// What a standard deviation towards the other law makes of the commissioned one: bristles that give way one
 /// after the other in place of one that gives way smoothly. Their shares make them as stiff together.
@@ -61,6 +62,16 @@ std::array<double, kLoopTaps> ResponseToFriction(const TwoInertiaEstimator::Setu
   return response;
 }
 
+// Periods until a force shows by half.
+std::size_t HalfSeen(const std::array<double, kLoopTaps>& response, std::size_t most) {
+  double seen = 0.0;
+  for (std::size_t i = 0; i < response.size(); ++i) {
+    seen += response[i];
+    if (seen >= 0.5) return std::clamp<std::size_t>(i, 1, most);
+  }
+  return most;
+}
+
 FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFriction& basis) {
   const EstimatorConfig& c = s.filter.config;
   const Friction& friction = s.filter.friction;
@@ -88,14 +99,16 @@ FrictionLearner MakeLearner(const TwoInertiaEstimator::Setup& s, const LinearFri
   learner.level_range = c.level_range;
   learner.weight_N = s.external_force_N;
   learner.period_s = s.filter.period_s;
+  learner.together = static_cast<double>(HalfSeen(FirstLoop(s).disturbance_response, kLoopTaps));
   learner.learns = c.adapt;
   return FrictionLearner(learner);
 }
 
-CascadeLead::Tuning Lead(const TwoInertiaAxis& axis) {
+CascadeLead::Tuning Lead(const TwoInertiaEstimator::Setup& s) {
   CascadeLead::Tuning t;
-  const double table_Hz = std::sqrt(axis.stiffness_N_m / axis.table_mass_kg) / (2.0 * std::numbers::pi);
+  const double table_Hz = std::sqrt(s.axis.stiffness_N_m / s.axis.table_mass_kg) / (2.0 * std::numbers::pi);
   t.lead_Hz = std::min(t.lead_Hz, kLeadOfTable * table_Hz);
+  t.averages_noise = s.filter.Shaken();
   return t;
 }
 
@@ -105,14 +118,12 @@ LinearFriction MakeBasis(const TwoInertiaEstimator::Setup& s) {
                                 s.position_min_m, s.position_max_m));
 }
 
-// Periods until a force shows by half.
-std::size_t HalfSeen(const std::array<double, kLoopTaps>& response, std::size_t most) {
-  double seen = 0.0;
-  for (std::size_t i = 0; i < response.size(); ++i) {
-    seen += response[i];
-    if (seen >= 0.5) return std::clamp<std::size_t>(i, 1, most);
-  }
-  return most;
+// A drive that closes the loop answers each count of its encoder, at a speed of so many counts per second
+// (docs/laboratory/family.md); the table shakes, and its bristles let go.
+LinearFriction AlongReference(const TwoInertiaEstimator::Setup& s) {
+  LinearFriction basis = MakeBasis(s);
+  if (s.filter.Shaken()) basis.Shake(kShakes_1_s * s.filter.encoder_step_m * s.filter.period_s);
+  return basis;
 }
 
 }  // namespace
@@ -121,7 +132,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
     : setup_(s.filter),
       axis_(s.axis),
       known_(s.known),
-      along_(MakeBasis(s)),
+      along_(AlongReference(s)),
       side_(s.side_modes, s.axis.table_mass_kg, s.filter.period_s),
       observer_({s.axis,
                  s.loop,
@@ -137,7 +148,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
                 .mass_rate = s.scale_loop && s.filter.config.adapt ? s.filter.config.mass_rate : 0.0}),
       wind_up_(WindUpTuning(s.filter)),
       lag_(s.filter.period_s, s.filter.reported_torque ? 0.0 : s.filter.lag_s),
-      lead_(Lead(s.axis), s.filter.period_s),
+      lead_(Lead(s), s.filter.period_s),
       resting_(MakeBasis(s).scale().level_N, s.filter.config.lasting_force, s.filter.period_s),
       motor_share_(s.axis.motor_mass_kg / (s.axis.motor_mass_kg + s.axis.table_mass_kg)),
       before_screw_(s.filter.friction.motor_share),
@@ -148,6 +159,7 @@ TwoInertiaEstimator::TwoInertiaEstimator(const Setup& s)
       settle_(HalfSeen(FirstLoop(s).disturbance_response, (kFound - 1) / 2)) {
   const Friction& f = s.filter.friction;
   most_N_ = s.filter.config.level_range * std::max({f.Fs_plus_N, f.Fs_minus_N, f.Fc_plus_N, f.Fc_minus_N});
+  reports_are_noise_ = s.filter.Shaken();
   loop_takes_scale_ = s.has_scale && s.scale_loop;
   scale_ = MakeScale(s, MakeBasis(s).scale().level_N, most_N_);
   Reset(0.0);

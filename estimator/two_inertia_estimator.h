@@ -136,8 +136,9 @@ class TwoInertiaEstimator {
   double motor_share_ = 0.0;   ///< of the mass
   double before_screw_ = 0.0;  ///< share of the friction that acts there
   DisturbanceBand band_;
-  double surprise_share_ = 1.0;  ///< per period
-  std::size_t settle_ = 1;       ///< periods in which the observer sees half of a force
+  double surprise_share_ = 1.0;     ///< per period
+  bool reports_are_noise_ = false;  ///< of the drive's readings, as far as they scatter
+  std::size_t settle_ = 1;          ///< periods in which the observer sees half of a force
 
   std::array<double, kLoopQueue + 1> given_N_{};  ///< to the drive, newest first
   double acted_N_ = 0.0;

@@ -33,8 +33,8 @@ void TwoInertiaEstimator::Learn(const AxisEstimatorInput& in, bool may) noexcept
   for (std::size_t i = 0; i < kFrictionTerms; ++i)
     terms[i] = 0.5 * (along_.terms(period)[i] + along_.terms(period + 1)[i]);
   const double used_N = 0.5 * (At(period).learnt_N + At(period + 1).learnt_N);
-  unexplained_N_ =
-      learner_.Learn(terms, used_N, observer_.disturbance_N(), std::abs(velocity_m_s), may && !at_rest_);
+  unexplained_N_ = learner_.Learn(terms, used_N, observer_.disturbance_N(), std::abs(velocity_m_s),
+                                  may && !at_rest_, reports_are_noise_ ? noise_N2_ : 0.0);
   if (!at_rest_) band_.Step(unexplained_N_);
   Doubt(terms[kMass]);
   if (at_rest_)

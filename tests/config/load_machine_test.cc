@@ -242,6 +242,7 @@ MachineConfig Changed(std::vector<std::string> set) {
 }
 
 const std::string kCspX = "axes.x.drive.mode=csp", kCspY = "axes.y.drive.mode=csp";
+const std::string kCoarse = "axes.x.drive.encoder_counts_per_rev=10000";
 const std::string kHeavy = "axes.x.model.table_mass_kg=30", kSoft = "axes.x.model.screw_stiffness_N_um=4";
 // One step of the torque, 0.8 N, moves the bristles by 0.53 um, where friction winds the screw up by 0.87.
 const std::string kBristle = "axes.x.model.friction.sigma0_N_m=1.5e6";
@@ -260,6 +261,8 @@ TEST(LoadMachine, FrictionIsKnownByWhatTheModeAllowsUnlessTheFileSays) {
   EXPECT_EQ(friction({kSoft, kCspX, kCspY}), FrictionKind::kLinear) << "100 Hz";
   EXPECT_EQ(friction(kScale), FrictionKind::kLinear);
   EXPECT_EQ(friction({"control.friction=linear", kCspX, kCspY}), FrictionKind::kLinear);
+  EXPECT_EQ(friction({kCoarse, kCspX, kCspY}), FrictionKind::kLinear) << "500 nm";
+  EXPECT_EQ(friction({"axes.x.drive.encoder_counts_per_rev=131072", kCspX, kCspY}), FrictionKind::kSrukf);
 }
 
 TEST(LoadMachine, TheFilterServesWhereOneRigidMassIsEnough) {
@@ -271,6 +274,8 @@ TEST(LoadMachine, TheFilterServesWhereOneRigidMassIsEnough) {
   EXPECT_TRUE(serves({kBristle, kCspX, kCspY}));
   EXPECT_FALSE(serves({kSoft, kCspX, kCspY}));
   EXPECT_FALSE(serves(kScale));
+  EXPECT_FALSE(serves({kCoarse, kCspX, kCspY}));
+  EXPECT_TRUE(serves({kCoarse})) << "in torque mode it is known what a drive gives";
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace contour {
 namespace {
 
@@ -9,11 +12,12 @@ constexpr double kLevel_N = 100.0, kPeriod_s = 1e-3;
 
 struct Leading {
   CascadeLead lead{CascadeLead::Tuning{}, kPeriod_s};
-  double noise_takes_s = 5.0;
+  double noise_takes_s = 5.0;  ///< at rest; in motion here there is none
+  double moving_noise_takes_s = 0.0;
 
   void For(double time_s, double unexplained_N, bool at_rest) {
     for (int i = 0; i < static_cast<int>(time_s / kPeriod_s); ++i)
-      lead.Step(unexplained_N, kLevel_N, at_rest, noise_takes_s);
+      lead.Step(unexplained_N, kLevel_N, at_rest, at_rest ? noise_takes_s : moving_noise_takes_s);
   }
 };
 
@@ -42,6 +46,21 @@ TEST(CascadeLead, TheLongerTheRestTheLessOfASingleReportComesThrough) {
   for (Leading* l : {&soon, &late}) l->For(kPeriod_s, 400.0, true);
   EXPECT_NEAR(soon.lead.lead_N(), 400.0 * kPeriod_s * 2.5, 0.01);
   EXPECT_NEAR(late.lead.lead_N(), 400.0 * kPeriod_s, 0.01);
+}
+
+// Behind a coarse encoder, whose every count the drive answers: a third of the level went into the wind-up.
+TEST(CascadeLead, InMotionNoiseIsAveragedUntilItIsOfNoAccount) {
+  Leading l;
+  CascadeLead::Tuning averages;
+  averages.averages_noise = true;
+  l.lead = CascadeLead(averages, kPeriod_s);
+  l.moving_noise_takes_s = 20.0;
+  double most_N = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    l.For(0.012, i % 2 == 0 ? 3.0 * kLevel_N : -3.0 * kLevel_N, false);
+    most_N = std::max(most_N, std::abs(l.lead.lead_N()));
+  }
+  EXPECT_LT(most_N, 0.01 * kLevel_N);
 }
 
 TEST(CascadeLead, AfterALongRestAForceIsStillFollowedWithinSeconds) {

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <vector>
 
 #include "tests/support/allocation_guard.h"
@@ -37,7 +39,8 @@ class Bench {
   explicit Bench(double level_N) : level_N_(level_N), basis_({level_N, 9e-6, 2e-3, 2e-3, 5e-3, 0.0, 0.2}) {}
 
   /// Returns what is left unexplained. `truth`: parameters; `outside_N`: beside them.
-  double Step(FrictionLearner& learner, const FrictionTerms& truth, double outside_N, bool may = true) {
+  double Step(FrictionLearner& learner, const FrictionTerms& truth, double outside_N, bool may = true,
+              double noise_N2 = 0.0) {
     const double w = 2 * std::numbers::pi * std::numbers::pi / 4, t = 1e-3 * static_cast<double>(++cycle_);
     const double position_m = 1e-4 * std::sin(w * t), velocity_m_s = 1e-4 * w * std::cos(w * t);
     FrictionTerms terms{};
@@ -45,7 +48,7 @@ class Bench {
     before_m_ = position_m;
     const double used_N = Sum(terms, learner.parameters());
     found_N_ += 0.25 * (Sum(terms, truth) - used_N + outside_N - found_N_);
-    return learner.Learn(terms, used_N, found_N_, std::abs(velocity_m_s), may);
+    return learner.Learn(terms, used_N, found_N_, std::abs(velocity_m_s), may, noise_N2);
   }
 
  private:
@@ -95,6 +98,28 @@ TEST(FrictionLearner, WhatIsLeftIsWhatThePresentParametersWouldLeave) {
   for (int k = 0; k < 60; ++k) expected_N = other.Step(*settled, lacks, 0.0, false);
   EXPECT_NE(learner->parameters(), settled->parameters());
   EXPECT_NEAR(left_N, expected_N, 1e-3 * kLevel_N);
+}
+
+// Forces of twice the level to and fro, as a drive reports them that answers each count of a coarse encoder:
+// the friction that is known stays, and none of it is taken for a force from outside.
+TEST(FrictionLearner, NoiseThatIsKnownIsNotLearnt) {
+  FrictionLearner::Setup setup = SetupFor(kLevel_N);
+  setup.together = 3.0;
+  const auto learner = std::make_unique<FrictionLearner>(setup);
+  const FrictionTerms truth = learner->parameters();
+  Bench bench(kLevel_N);
+  std::mt19937_64 bits(1);
+  double furthest_N = 0.0;
+  int disturbed = 0;
+  for (int k = 0; k < 6000; ++k) {
+    const double outside_N = bits() % 2 == 0 ? 4.0 * kLevel_N : -4.0 * kLevel_N;
+    // Of it the observer shows 0.25 / (2 - 0.25) of the variance.
+    bench.Step(*learner, truth, outside_N, true, 16.0 * kLevel_N * kLevel_N / 7.0);
+    furthest_N = std::max(furthest_N, std::abs(learner->Level_N(true) - kLevel_N));
+    disturbed += learner->disturbed() ? 1 : 0;
+  }
+  EXPECT_LT(furthest_N, 0.1 * kLevel_N);
+  EXPECT_LT(disturbed, 3000);
 }
 
 TEST(FrictionLearner, ABlowTeachesNothing) {

@@ -167,5 +167,26 @@ TEST(LinearFriction, AStandingAxisHoldsWhatItHas) {
   for (std::size_t i = 0; i < friction_term::kTurn; ++i) EXPECT_NEAR(standing[i], moving[i], 1e-5) << i;
 }
 
+// Shaken by 0.1 um a step: smooth bristles let go, of an axis that stands as well; a stop is held by its
+// travel.
+TEST(LinearFriction, AShakenAxisLetsGoOfWhatItHas) {
+  const Friction f = Law(45.0, 9e-6, 2e-3);
+  LinearFriction basis(ScaleOf(f, kLead_m, -0.2, 0.2));
+  basis.Shake(1e-7);
+  FrictionTermsState memory;
+  FrictionTerms moving{}, standing{}, creeping{};
+  for (int k = 1; k <= 100; ++k) basis.Follow(1e-6, k * 1e-6, 1e-9, 0.0, memory, moving);
+  for (int k = 0; k < 1000; ++k) basis.Follow(0.0, 100e-6, 0.0, 0.0, memory, standing);
+  for (int k = 0; k < 1000; ++k) basis.Follow(1e-7, 100e-6, 0.0, 0.0, memory, creeping);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t dahl = friction_term::kDahl + i, stop = friction_term::kStop + i;
+    EXPECT_GT(moving[dahl], 0.9) << i;
+    EXPECT_LT(standing[dahl], 0.1) << i;
+    EXPECT_NEAR(standing[stop], moving[stop], 1e-12) << i;
+    // As fast as it is shaken: one part of two, whose squares add up.
+    EXPECT_NEAR(creeping[dahl], std::sqrt(0.5), 0.03) << i;
+  }
+}
+
 }  // namespace
 }  // namespace contour
