@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "config/friction_choice.h"
 #include "core/mechanics.h"
 
 namespace contour {
@@ -14,10 +15,12 @@ namespace {
 constexpr double kOfScrew = 0.25;
 constexpr double kOfLoop = 0.06;
 constexpr double kCounts = 7.0;
-// The same where nothing that is made from what it reports comes back to it. With it the 10 mm circles that
-// were measured on three machines of 10 000 and 16 384 counts a turn are expected to within a fifth
-// (docs/laboratory/family.md).
+// The same where nothing that is made from what it reports comes back to it, or only averaged. With it the
+// 10 mm circles that were measured on three machines of 10 000 and 16 384 counts a turn are expected to
+// within a fifth (docs/laboratory/family.md).
 constexpr double kCountsAlone = 3.0;
+// The same of a loop in torque mode that was made for the encoder, on three machines.
+constexpr double kCountsByTorque = 2.5;
 // The loops of most axes, in what the screw gives way by under all of Coulomb friction.
 constexpr double kUsual = 0.5;
 
@@ -64,8 +67,9 @@ double SwingsBeyond(const AxisConfig& axis) {
 
 }  // namespace
 
-double CircleErrorByDrive_m(const AxisConfig& axis) {
-  return kOfScrew * WindUp_m(axis) * (1.0 + SwingsBeyond(axis)) + kCounts * Count_m(axis);
+double CircleErrorByDrive_m(const AxisConfig& axis, double period_s) {
+  const double counts = ReportsAreNoise(axis, period_s) ? kCountsAlone : kCounts;
+  return kOfScrew * WindUp_m(axis) * (1.0 + SwingsBeyond(axis)) + counts * Count_m(axis);
 }
 
 double CircleErrorByDriveAlone_m(const AxisConfig& axis) {
@@ -76,6 +80,8 @@ double CircleErrorByTorque_m(const AxisConfig& axis, double compliance_m_N) {
   return kOfLoop * compliance_m_N * Coulomb_N(axis);
 }
 
-double UsualCircleErrorByTorque_m(const AxisConfig& axis) { return kUsual * WindUp_m(axis); }
+double UsualCircleErrorByTorque_m(const AxisConfig& axis) {
+  return kUsual * WindUp_m(axis) + kCountsByTorque * Count_m(axis);
+}
 
 }  // namespace contour

@@ -20,9 +20,10 @@ std::string Micrometres(double error_m) {
 std::vector<std::string> ModeAdvice(const MachineConfig& machine) {
   std::vector<std::string> advice;
   if (machine.machine.controller != ControllerName::kFull) return advice;
+  const double period_s = 1e-6 * machine.machine.cycle_us;
   for (const auto& [name, axis] : machine.axes) {
     if (ModeFor(machine.machine.controller, axis.drive) != DriveMode::kCsp) continue;
-    const double here_m = CircleErrorByDrive_m(axis), there_m = UsualCircleErrorByTorque_m(axis);
+    const double here_m = CircleErrorByDrive_m(axis, period_s), there_m = UsualCircleErrorByTorque_m(axis);
     if (here_m <= kModesDiffer * there_m) continue;
     std::string text = "axes." + name + ".drive.mode: csp with an encoder of " +
                        std::to_string(static_cast<long long>(axis.drive.encoder_counts_per_rev)) +
@@ -36,8 +37,9 @@ std::vector<std::string> ModeAdvice(const MachineConfig& machine) {
 }
 
 std::optional<std::string> AdviceForDrive(const std::string& axis_name, const AxisConfig& axis,
-                                          double compliance_m_N) {
-  const double here_m = CircleErrorByTorque_m(axis, compliance_m_N), there_m = CircleErrorByDrive_m(axis);
+                                          double compliance_m_N, double period_s) {
+  const double here_m = CircleErrorByTorque_m(axis, compliance_m_N);
+  const double there_m = CircleErrorByDrive_m(axis, period_s);
   if (here_m <= kModesDiffer * there_m) return std::nullopt;
   return "axes." + axis_name + ".drive.mode: csp is expected to draw better circles, off by some " +
          Micrometres(there_m) + " instead of " + Micrometres(here_m) +

@@ -30,8 +30,9 @@ Found FindMissing(const MachineConfig& machine) {
 }
 
 /// A line where the drive is expected to draw better circles.
-std::string DriveAdvice(const std::string& name, const AxisConfig& config, const LoopReport& report) {
-  const auto advice = AdviceForDrive(name, config, Compliance_m_N(LoopAxisOf(config), report));
+std::string DriveAdvice(const std::string& name, const AxisConfig& config, const LoopReport& report,
+                        double period_s) {
+  const auto advice = AdviceForDrive(name, config, Compliance_m_N(LoopAxisOf(config), report), period_s);
   return advice ? "  advice: " + *advice + "\n" : "";
 }
 
@@ -48,7 +49,7 @@ void Chosen(const MachineConfig& machine, const std::string& name, const std::op
   section.text += "  axis " + name +
                   ": no loop: in the file, so this one is chosen at start; contour tune --from-model "
                   "finds a better one\n" +
-                  Describe(report) + DriveAdvice(name, machine.axes.at(name), report);
+                  Describe(report) + DriveAdvice(name, machine.axes.at(name), report, period_s);
   section.chosen.push_back(LoopAssignment(name, *tuning));
 }
 
@@ -60,7 +61,7 @@ void Judge(const StatedLoop& loop, const std::string& title, double period_s, bo
     section.text += title + "\n" + Describe(report);
     const std::string wrong = WhatIsWrong(report);
     if (wrong.empty()) {
-      if (advised != nullptr) section.text += DriveAdvice(advised->first, advised->second, report);
+      if (advised != nullptr) section.text += DriveAdvice(advised->first, advised->second, report, period_s);
       return;
     }
     // A loop that nothing uses is no danger.

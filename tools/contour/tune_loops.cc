@@ -99,7 +99,7 @@ bool TuneLoop(const MachineConfig& machine, const Asked& loop, const TuneLoopsOp
       std::cout << "  what would help: " << help << "\n";
     return false;
   }
-  if (const auto advice = AdviceForDrive(name, machine.axes.at(name), Compliance_m_N(axis, report));
+  if (const auto advice = AdviceForDrive(name, machine.axes.at(name), Compliance_m_N(axis, report), period_s);
       advice && !ScaleLoopAxisOf(machine.axes.at(name)) && !asked.catalogue)
     std::cout << "  advice: " << *advice << "\n";
   const std::string block = WriteYaml(found.tuning);
