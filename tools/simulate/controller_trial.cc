@@ -16,9 +16,10 @@ namespace {
 // As long as the supervisor needs to notice a swing, to soften it, and to see whether that helped.
 constexpr double kRests_s = 2.0;
 constexpr double kLongest_s = 20.0;
-// A slow axis does not go all of it, but for so long.
-constexpr double kStroke_mm = 10.0, kGoes_s = 2.0;
-constexpr double kSpeed_mm_s = 20.0;
+// In turns of the motor, by which its ripples come and friction's speeds go. A slow axis does not go all of
+// it, but for so long.
+constexpr double kStroke_turns = 2.0, kGoes_s = 2.0;
+constexpr double kSpeed_turns_s = 4.0;
 
 struct Member {
   const char* name;
@@ -35,8 +36,9 @@ constexpr std::array<Member, 5> kMembers{
 
 Program Stroke(const std::string& name, const AxisConfig& axis) {
   const double room_mm = 0.25 * (axis.limits.position_mm[1] - axis.limits.position_mm[0]);
-  const double speed_mm_s = std::min(kSpeed_mm_s, 0.5 * axis.limits.velocity_mm_s);
-  const double stroke_mm = std::min({kStroke_mm, room_mm, kGoes_s * speed_mm_s});
+  const double lead_mm = axis.model.mechanics.lead_mm;
+  const double speed_mm_s = std::min(kSpeed_turns_s * lead_mm, 0.5 * axis.limits.velocity_mm_s);
+  const double stroke_mm = std::min({kStroke_turns * lead_mm, room_mm, kGoes_s * speed_mm_s});
   return ParseProgram("{shape: creep, axis: " + name + ", stroke_mm: " + RoundedText(stroke_mm) +
                           ", velocities_mm_s: [" + RoundedText(speed_mm_s) + "]}",
                       "a stroke", ProgramFormat::kYaml);
