@@ -68,10 +68,11 @@ void Pump::Abandon() {
   abandon_ = true;
 }
 
-bool Pump::AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time) const {
+bool Pump::AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time,
+                      const std::stop_token& unwanted) const {
   const auto deadline = std::chrono::steady_clock::now() + time;
   while (shown_cycle_.load(std::memory_order_acquire) < cycle) {
-    if (std::chrono::steady_clock::now() >= deadline) return false;
+    if (unwanted.stop_requested() || std::chrono::steady_clock::now() >= deadline) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;

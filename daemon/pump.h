@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <utility>
@@ -46,8 +47,8 @@ class Pump {
   /// Empties what is left and ends the thread.
   void Finish();
 
-  /// Waits until this cycle, or a later one, has been shown; false when it took longer.
-  bool AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time) const;
+  /// Waits until this cycle, or a later one, has been shown; false when it took longer, or is unwanted.
+  bool AwaitShown(std::uint64_t cycle, std::chrono::milliseconds time, const std::stop_token& unwanted) const;
 
   /// Supply this program's points until they are all handed over or the program is abandoned.
   /// `halts`: where it waits.

@@ -353,9 +353,10 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     auto generator = std::make_unique<PathGenerator>(PlanPlaced(program, *found.place, limits), limits,
                                                      cycle_us_ * 1e-6, ++program_id_);
     pace_.RefuseYears(upload.name, EstimatedDuration_s(*generator->plan()));
-    // Planning takes its time; nothing is learnt, noted or supplied for nobody.
+    const bool shown = !parts_.learning.learns() || parts_.pump.AwaitShown(now.cycle, kPumpTimeout, unwanted);
+    // Planning and the wait take their time; nothing is learnt, noted or supplied for nobody.
     if (unwanted.stop_requested()) return {false, kUnwanted};
-    if (parts_.learning.learns() && !parts_.pump.AwaitShown(now.cycle, kPumpTimeout))
+    if (!shown)
       return {
           false,
           "the end of the last pass has not reached those who learn from it within " +

@@ -49,6 +49,16 @@ class SupervisorTest : public ::testing::Test {
     return std::async(std::launch::async, [this] { return supervisor_.Enable(unwanted_.get_token()); });
   }
 
+  std::future<Answer> RunOfOneThatLearns() {
+    ProgramUpload upload;
+    upload.name = "line.yaml";
+    upload.format = "yaml";
+    upload.text = "{shape: creep, axis: x, stroke_mm: 5, velocities_mm_s: [5]}";
+    upload.from_here = true;
+    return std::async(std::launch::async,
+                      [this, upload] { return learns_.Run(upload, unwanted_.get_token()); });
+  }
+
   const MachineConfig machine_ = LoadMachine(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml");
   CommandMailbox mailbox_{16, 16};
   TelemetryQueue queue_{4};
@@ -60,6 +70,16 @@ class SupervisorTest : public ::testing::Test {
   Loop loop_{{}, cycle_, {}, mailbox_, io_, queue_};
   Supervisor supervisor_{
       machine_, ControllerName::kPid, "wall", {}, {mailbox_, queue_, hub_, pump_, loop_, learning_}, {}};
+  const MachineConfig learning_machine_ = LoadMachine(
+      ReadSource(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml",
+                 {"learning={enabled: true}", "axes.x.drive.linear_scale={counts_per_mm: 1000}"}));
+  ProgramLearning learns_programs_{learning_machine_};
+  Supervisor learns_{learning_machine_,
+                     ControllerName::kPid,
+                     "wall",
+                     {},
+                     {mailbox_, queue_, hub_, pump_, loop_, learns_programs_},
+                     {}};
   std::stop_source unwanted_;
   std::uint64_t cycles_ = 0;
 };
@@ -178,21 +198,8 @@ TEST_F(SupervisorTest, ACheckThatTakesLongKeepsNobodyFromAskingWhatIsWanted) {
 
 // Else the pass that ended last would teach nothing.
 TEST_F(SupervisorTest, AProgramThatIsLearntWaitsForTheEndOfItsLastPass) {
-  const MachineConfig machine = LoadMachine(
-      ReadSource(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml",
-                 {"learning={enabled: true}", "axes.x.drive.linear_scale={counts_per_mm: 1000}"}));
-  ProgramLearning learning{machine};
-  Supervisor learns{
-      machine, ControllerName::kPid, "wall", {}, {mailbox_, queue_, hub_, pump_, loop_, learning}, {}};
   Publish(0, false, MachineState::kReady);
-  auto running = std::async(std::launch::async, [&] {
-    ProgramUpload upload;
-    upload.name = "line.yaml";
-    upload.format = "yaml";
-    upload.text = "{shape: creep, axis: x, stroke_mm: 5, velocities_mm_s: [5]}";
-    upload.from_here = true;
-    return learns.Run(upload, unwanted_.get_token());
-  });
+  auto running = RunOfOneThatLearns();
   EXPECT_EQ(running.wait_for(std::chrono::milliseconds(1500)), std::future_status::timeout);
   EXPECT_FALSE(mailbox_.request_waiting()) << "the pump has shown nothing yet";
   pump_.Start();
@@ -201,6 +208,18 @@ TEST_F(SupervisorTest, AProgramThatIsLearntWaitsForTheEndOfItsLastPass) {
   Publish(request.sequence, true, MachineState::kRunning);
   EXPECT_TRUE(running.get().accepted);
   pump_.Finish();
+}
+
+TEST_F(SupervisorTest, AStopEndsTheWaitForTheEndOfALastPass) {
+  Publish(0, false, MachineState::kReady);
+  auto running = RunOfOneThatLearns();
+  ASSERT_EQ(running.wait_for(std::chrono::milliseconds(500)), std::future_status::timeout);
+  unwanted_.request_stop();
+  ASSERT_EQ(running.wait_for(std::chrono::seconds(5)), std::future_status::ready);
+  const Answer answer = running.get();
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_NE(answer.reason.find("a stop came first"), std::string::npos) << answer.reason;
+  EXPECT_FALSE(mailbox_.request_waiting());
 }
 
 TEST_F(SupervisorTest, AStopMakesVoidWhatTheCycleHasNotTaken) {
