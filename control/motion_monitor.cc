@@ -66,8 +66,10 @@ void MotionMonitor::Restart(const MotionSample& s) noexcept {
   settling_N_ = 0.0;
   rest_least_N_ = rest_most_N_ = slow_force_N_;
   drive_push_.Restart(s.reference_m);
-  same_turns_.Restart(s.reported_force_N);
-  near_turns_.Restart(s.reported_force_N);
+  // From no torque: a drive may answer the counts that flicker when it is enabled by a kick before its first
+  // report.
+  same_turns_.Restart(0.0);
+  near_turns_.Restart(0.0);
   pushed_least_N_ = pushed_most_N_ = slow_force_N_;
   same_reference_m_ = s.reference_m;
   same_lead_m_ = s.lead_m;
@@ -167,7 +169,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     same_reference_m_ = s.reference_m;
     same_lead_m_ = s.lead_m;
     same_ = 0;
-    same_turns_.Restart(settled_N);
+    if (turns_N_ > 0.0) same_turns_.Restart(settled_N);
   } else {
     same_ += waited_periods_;
     least_N_ = std::min(least_N_, slow_force_N_);
@@ -190,7 +192,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     near_periods_ = 0;
     near_least_N_ = near_most_N_ = slow_force_N_;
     near_braked_ = true;
-    near_turns_.Restart(settled_N);
+    if (turns_N_ > 0.0) near_turns_.Restart(settled_N);
     settling_N_ = std::max(settling_N_, std::abs(slow_force_N_ - slower_force_N_));
   } else {
     near_periods_ += waited_periods_;

@@ -28,6 +28,12 @@ class AtRest {
           << left_s << " s before rest";
     }
   }
+  /// Stands without torque; the next step enables it.
+  void Disabled() {
+    s_.fresh = true;
+    for (int k = 0; k < 5; ++k) ASSERT_EQ(Step(0.0), Reason::kNone);
+    s_.enabled = true;
+  }
   /// What friction leaves on the drive.
   static double Held_N() { return 0.8 * InCascade().Fc_N; }
   Reason Step(double reported_N) {
@@ -150,6 +156,36 @@ TEST(PushAtRest, IsNotWhatCountsThatFlickerBetweenReadingsMakeOfTheReport) {
             << "share " << share << ", seed " << seed << ", period " << k;
       }
     }
+}
+
+// As a drive with a table of 300 kg behind 10 000 counts a turn said in its first four cycles: the kick that
+// answers a count was over before anything of it had come back.
+TEST(PushAtRest, IsNotWhatADriveAnswersToTheCountsThatFlickerWhenItIsEnabled) {
+  const double rated_N = AtRest::InCascade().rated_force_N;
+  for (const int moves_at : {-1, 0, 1}) {
+    AtRest axis;
+    axis.Disabled();
+    int k = 0;
+    for (const double share : {0.81, 0.34, 0.17, -0.40, 0.03, 0.0}) {
+      if (k == moves_at) axis.Read(1);
+      ASSERT_EQ(axis.Step(share * rated_N), Reason::kNone) << "moves at " << moves_at << ", cycle " << k;
+      ++k;
+    }
+  }
+}
+
+// Nor does that hide a push under an encoder that is frozen when its axis is enabled.
+TEST(PushAtRest, IsSeenRightAfterEnabling) {
+  AtRest axis;
+  axis.Disabled();
+  double pushed_N = 0.0;
+  Reason found = Reason::kNone;
+  while (found == Reason::kNone && pushed_N < 400.0) {
+    pushed_N += 200.0 * kPeriod_s;
+    found = axis.Step(PerMille(pushed_N));
+  }
+  EXPECT_EQ(found, Reason::kFeedbackFrozen);
+  EXPECT_LT(pushed_N, 0.2 * AtRest::InCascade().Fc_N + 0.03 * 200.0);
 }
 
 }  // namespace
