@@ -246,12 +246,17 @@ std::string ResultTable(const Identification& id, const ModelConfig& before, con
   std::string text = FormatText("%-22s %12s %12s   95 %% interval\n", "", "stated", "identified");
   for (const Row& row : rows) {
     text += FormatText("%-22s %12.5g %12.5g", row.key, row.before, row.after);
-    if (const FittedParameter* p = Find(id, row.key))
-      text += FormatText("   %.5g to %.5g", row.after * std::exp(-1.96 * p->sigma),
-                         row.after * std::exp(1.96 * p->sigma));
-    else
+    if (const FittedParameter* p = Find(id, row.key)) {
+      // The model may leave open what the fit holds for known: how the mass is split.
+      const auto left_open = after.uncertainty.find(row.key);
+      const double sigma =
+          left_open == after.uncertainty.end() ? p->sigma : std::max(p->sigma, left_open->second);
+      text += FormatText("   %.5g to %.5g", row.after * std::exp(-1.96 * sigma),
+                         row.after * std::exp(1.96 * sigma));
+    } else {
       text += row.before == row.after ? "   not identified, as stated"
                                       : "   with the motor's, in the stated ratio";
+    }
     text += "\n";
   }
   for (const std::string& n : id.notes) text += "note: " + n + "\n";

@@ -125,12 +125,13 @@ std::string WhyUnusable(const Identification& id) {
   return {};
 }
 
-std::string WhyNoScrew(const Identification& id) {
+std::string WhyNoScrew(const Identification& id, bool shaken) {
   if (id.shaken.verdict != ShakenScrew::Verdict::kNotSeen) return {};
   const std::string stiffness = id.wind_up.found ? "" : "the screw's stiffness, and ";
-  return "the axis was shaken, and nothing of its screw showed: the chirp was too little for the friction, "
-         "or turned the axis back; " +
-         stiffness + "how much of the mass is the motor's, " + (id.wind_up.found ? "is" : "are") +
+  const std::string why = shaken ? "the axis was shaken, and nothing of its screw showed: the chirp was too "
+                                   "little for the friction, or turned the axis back; "
+                                 : "nothing of the screw showed: " + id.shaken.why_not + "; ";
+  return why + stiffness + "how much of the mass is the motor's, " + (id.wind_up.found ? "is" : "are") +
          " as open as before";
 }
 

@@ -11,9 +11,9 @@ namespace contour::identify {
 /// above the encoder's noise, an axis called rigid whose shaking shows an antiresonance.
 std::string WhyUnusable(const Identification& id);
 
-/// Why a record in which the axis was shaken for its screw says nothing of it; empty: it does. The share of
-/// the table then is as stated, and without a linear scale so is stiffness, which no interval says.
-std::string WhyNoScrew(const Identification& id);
+/// Why a record says nothing of the screw; empty: it does. The share of the table then is as stated, and
+/// without a linear scale so is stiffness, which no interval says. `shaken`: it was shaken for its screw.
+std::string WhyNoScrew(const Identification& id, bool shaken);
 
 /// Why not even to begin again from a result, with its intervals as what is left open; empty: it is nearer
 /// than a catalogue. It may be too unsure to be used, or lack something that the axis has.

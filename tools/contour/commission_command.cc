@@ -78,6 +78,7 @@ IdentificationJob JobOf(const MachineConfig& machine, const std::string& name, C
         "in csp the torque is what the drive reports, which does not show all of it: where the drive can, "
         "commission in torque mode (--mode cst); a model that states what is known (uncertainty:) makes a "
         "loop for it more likely";
+  job.shaken = true;
   job.for_screw = MoreOfTheScrew(machine.axes.at(name), LimitsFor(machine, name, options).travel_mm);
   job.stated = diagnosis::ToStatedAxis(machine, name);
   job.model = machine.axes.at(name).model;

@@ -33,7 +33,7 @@ ModelConfig Report(const IdentificationJob& job, const identify::Identification&
   if (const std::string why = identify::WhyUnusable(id); !why.empty())
     throw std::runtime_error("no model was written: " + why + (job.to_try.empty() ? "" : "; " + job.to_try));
   ModelConfig model = identify::ToModel(id, job.model);
-  const std::string no_screw = job.for_screw.empty() ? "" : identify::WhyNoScrew(id);
+  const std::string no_screw = identify::WhyNoScrew(id, job.shaken);
   if (!no_screw.empty()) LeaveScrewOpen(model, job.model, id.wind_up.found);
   identify::WriteModelFile(job.out, model, id, job.sources);
   std::cout << identify::ResultTable(id, job.model, model);

@@ -23,7 +23,8 @@ struct IdentificationJob {
   int threads = 0;                   ///< 0: one per processor
   std::uint64_t lost_cycles = 0;     ///< that a record should have and has not
   std::string to_try;                ///< told with a refusal: what else may help
-  std::string for_screw;  ///< the axis was shaken for its screw: what shows more of it; empty: it was not
+  bool shaken = false;               ///< for its screw
+  std::string for_screw;             ///< what shows more of it
 };
 
 /// Identifies, with progress on a terminal.

@@ -109,6 +109,7 @@ int RunIdentify(const Options& options) {
   job.out = options.out;
   job.report = options.report;
   job.threads = options.threads;
+  job.for_screw = "contour commission records a chirp that shows it";
   const diagnosis::SoundLogs sound = diagnosis::MakeSound(job.logs, job.stated);
   if (!sound.unusable.empty()) throw std::runtime_error("no model was written: " + sound.unusable);
   identify::Identification found = IdentifyWithProgress(job);

@@ -58,16 +58,19 @@ TEST(WhyNoScrew, TellsAScrewThatDidNotShowFromOneThatIsNone) {
   Identification id = Good();
   for (const auto verdict : {ShakenScrew::Verdict::kFound, ShakenScrew::Verdict::kRigid}) {
     id.shaken.verdict = verdict;
-    EXPECT_EQ(WhyNoScrew(id), "");
+    EXPECT_EQ(WhyNoScrew(id, true), "");
   }
   id.shaken.verdict = ShakenScrew::Verdict::kNotSeen;
-  EXPECT_NE(WhyNoScrew(id).find("nothing of its screw showed"), std::string::npos);
-  EXPECT_NE(WhyNoScrew(id).find("the screw's stiffness, and"), std::string::npos);
+  EXPECT_NE(WhyNoScrew(id, true).find("nothing of its screw showed"), std::string::npos);
+  EXPECT_NE(WhyNoScrew(id, true).find("the screw's stiffness, and"), std::string::npos);
+  id.shaken.why_not = "it stood still";
+  EXPECT_NE(WhyNoScrew(id, false).find("nothing of the screw showed: it stood still; the screw's"),
+            std::string::npos);
   EXPECT_EQ(WhyUnusable(id), "");
   // A linear scale shows how the screw winds up, not where the mass is.
   id.wind_up.found = true;
-  EXPECT_EQ(WhyNoScrew(id).find("the screw's stiffness, and"), std::string::npos);
-  EXPECT_NE(WhyNoScrew(id).find("how much of the mass"), std::string::npos);
+  EXPECT_EQ(WhyNoScrew(id, true).find("the screw's stiffness, and"), std::string::npos);
+  EXPECT_NE(WhyNoScrew(id, true).find("how much of the mass"), std::string::npos);
 }
 
 TEST(WhyNoBeginning, TakesWhatIsUnsureButNotWhatIsNoModel) {
