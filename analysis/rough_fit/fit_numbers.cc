@@ -8,8 +8,11 @@
 #include "analysis/prediction_error/fitted_half.h"
 #include "analysis/prediction_error/problem.h"
 #include "analysis/rough_fit/complete_from_log.h"
+#include "analysis/rough_fit/lacking.h"
+#include "analysis/rough_fit/likelier.h"
 #include "analysis/rough_fit/position_jump.h"
 #include "analysis/rough_fit/rough_fit.h"
+#include "analysis/rough_fit/second_estimates.h"
 #include "analysis/rough_fit/two_starts.h"
 #include "analysis/rough_fit/unlike_directions.h"
 #include "analysis/rough_fit/wrong_units.h"
@@ -22,29 +25,28 @@ namespace {
 constexpr double kFree = 1.0;
 /// A number that is known no better is not known.
 constexpr double kMostUncertain = 0.7;
-/// Two estimates of one inertia.
-constexpr double kFarApart = 1.5;
-/// Of least squares, from where they say nothing of it.
-constexpr double kLeastSure = 0.2;
-/// [-2 log likelihood] From here on chance is out of the question, whatever colour the noise has.
-constexpr double kBeyondChance = 100.0;
 
 struct Estimate {
   StatedAxis axis;
   std::vector<std::string> names;       ///< of what was fitted
   std::map<std::string, double> apart;  ///< relative, of what two starts end at
-  double unlikely = 0.0;                ///< -2 log likelihood, its noise included, up to a constant
+  std::vector<double> raw;              ///< prediction errors; the problem holds their noise
   bool converged = false, rigid = true;
+  std::vector<Lacking> lacking;
 };
 
-Estimate Estimated(const AxisLog& log, const StatedAxis& stated, const RoughFit& rough, int threads) {
-  Problem problem(log, stated, threads);
-  const TwoStarts settled = FitFromTwoStarts(problem, rough);
+Estimate Estimated(Problem& problem, const RoughFit& rough) {
+  TwoStarts settled = FitFromTwoStarts(problem, rough);
   Estimate out;
   out.axis = FittedAxis(problem, settled.fit, FitHalves(problem, settled.fit));
   out.converged = settled.fit.converged;
-  out.unlikely = settled.fit.cost + problem.LogNoise();
   out.rigid = !problem.nominal.two_inertia;
+  problem.LearnSignals(settled.fit.point);
+  const FittedRun run{out.axis, problem.stated.friction, *problem.signals};
+  out.lacking = out.rigid ? TryLacking(problem.log, run)
+                          : TryLacking(WithCentreOfMass(problem.log, out.axis,
+                                                        problem.Trace(settled.fit.point).table_position),
+                                       run);
   AxisModel model = problem.Build(settled.fit.point);
   for (std::size_t i = 0; i < problem.terms.size(); ++i) {
     const BaseTerm& t = problem.terms[i];
@@ -55,7 +57,13 @@ Estimate Estimated(const AxisLog& log, const StatedAxis& stated, const RoughFit&
       at->second = std::max(at->second, std::max(settled.sigma[i], settled.apart[i]) / unit);
     if (settled.apart[i] > 0.0 && unit > 0.0) out.apart[t.name] = settled.apart[i] / unit;
   }
+  out.raw = std::move(settled.fit.raw);
   return out;
+}
+
+Estimate Estimated(const AxisLog& log, const StatedAxis& stated, const RoughFit& rough, int threads) {
+  Problem problem(log, stated, threads);
+  return Estimated(problem, rough);
 }
 
 std::string Numbers(const Estimate& of) {
@@ -104,62 +112,17 @@ std::string WhyUnusable(const Estimate& of, const RoughFit& rough) {
   if (rough.unexplained > kMostUnexplained)
     return "motion explains no more than " + RoundedText(100.0 * (1.0 - rough.unexplained)) +
            " % of the force's square: are force and position of one axis, and their signs and units right?";
+  const double level_sigma = std::max(rough.coulomb_sigma, rough.coulomb_by_parts * std::fabs(rough.coulomb));
+  if (rough.coulomb < -kDisagree * level_sigma)
+    return "by least squares friction pushes the axis on (" + RoundedText(rough.coulomb) + " to " +
+           RoundedText(level_sigma) +
+           "): the model lacks something large (a coupling that swings, a drive at its "
+           "limit); contour diagnose looks for it";
   if (const std::string why = Numbers(of); !why.empty()) return why;
   if (const std::string why = Inertia(of.axis, rough); !why.empty()) return why;
   if (!of.converged)
     return "the fit did not settle: begin with a model that is nearer, or record more of what it is to say";
   return {};
-}
-
-struct Pair {
-  const char* name;
-  const char* text;
-  double fitted, by_least_squares, by_parts;
-};
-
-/// Prediction errors follow what is quick, least squares what is slow and slides: a model that lacks nothing
-/// has the same numbers in both. Friction that falls with the speed is taken out as it was fitted.
-std::vector<Pair> TwoEstimates(const StatedAxis& axis, const RoughFit& rough) {
-  std::vector<Pair> out;
-  if (!SaysEnough(rough)) return out;
-  const StatedFriction& f = axis.friction;
-  const double level = 0.5 * (f.Fc_plus + f.Fc_minus), inertia = axis.motor_inertia + axis.load_inertia;
-  const auto add = [&](const Pair& p) {
-    if (axis.sigma.contains(p.name) && p.fitted > 0.0) out.push_back(p);
-  };
-  add({"inertia", "the inertia", inertia, rough.inertia,
-       std::max(rough.inertia_by_parts, rough.inertia_sigma_rel)});
-  if (rough.one_direction) return out;
-  add({"Fc", "the Coulomb level", level, rough.coulomb,
-       std::max(rough.coulomb_by_parts, rough.coulomb_sigma / rough.coulomb)});
-  add({"s2", "the viscous friction", f.s2, rough.viscous, rough.viscous_by_parts});
-  return out;
-}
-
-bool Disagree(const Pair& p, const StatedAxis& axis) {
-  const double own = axis.sigma.at(p.name) * p.fitted, theirs = p.by_parts * p.by_least_squares;
-  return std::fabs(p.fitted - p.by_least_squares) > kDisagree * std::hypot(own, theirs);
-}
-
-/// A deviation grows by what two estimates differ by beyond their own (as that of means of groups does,
-/// DerSimonian and Laird, Controlled Clinical Trials 7, 1986).
-void Widen(const Pair& p, double& sigma) {
-  const double own = sigma * p.fitted, theirs = p.by_parts * p.by_least_squares;
-  const double beyond = std::pow(p.fitted - p.by_least_squares, 2) - own * own - theirs * theirs;
-  if (beyond > 0.0) sigma = std::sqrt(own * own + beyond) / p.fitted;
-}
-
-void WidenAndSay(const RoughFit& rough, FittedNumbers& out) {
-  for (const Pair& p : TwoEstimates(out.axis, rough)) {
-    const bool say = Disagree(p, out.axis);
-    Widen(p, out.axis.sigma[p.name]);
-    if (!say) continue;
-    out.notes.push_back(
-        std::string("Two estimates of ") + p.text + " disagree beyond their deviations: " +
-        RoundedText(p.fitted) + " by prediction errors, " + RoundedText(p.by_least_squares) +
-        " by least squares. The deviation holds both; the model lacks something, which contour "
-        "diagnose looks for.");
-  }
 }
 
 void SayApart(const std::map<std::string, double>& apart, FittedNumbers& out) {
@@ -222,12 +185,15 @@ Completed Complete(const UnlikeDirections& unlike, const AxisLog& log, const Rou
   const std::string unit = log.linear ? " N" : " Nm";
   std::string what = log.linear ? "constant_force_N" : "constant_torque_Nm", other = "friction";
   Completed out{unlike.pulled, "", unlike.by_rel};
-  of = Estimated(log, unlike.pulled, rough, threads);
+  Problem with_force(log, unlike.pulled, threads);
+  of = Estimated(with_force, rough);
   bool decided = !unlike.uneven;
   if (unlike.uneven) {
-    Estimate uneven = Estimated(log, *unlike.uneven, rough, threads);
-    decided = std::abs(uneven.unlikely - of.unlikely) > kBeyondChance;
-    if (uneven.unlikely < of.unlikely) {
+    Problem with_levels(log, *unlike.uneven, threads);
+    Estimate uneven = Estimated(with_levels, rough);
+    const double levels_better_by = FirstIsBetterBy({with_levels, uneven.raw}, {with_force, of.raw});
+    decided = std::fabs(levels_better_by) > kDisagree;
+    if (levels_better_by > 0.0) {
       what = "levels of friction of their own";
       other = log.linear ? "a constant force" : "a constant torque";
       out.stated = *unlike.uneven;
@@ -286,11 +252,20 @@ FittedNumbers FitNumbers(AxisLog log, StatedAxis stated, int threads) {
   }
   out.axis = of.axis;
   rough = FitRoughly(log, stated, RoughShape::kFriction, &of.axis.friction);
+  std::vector<Lacking> lacking = of.lacking;
   out.unusable = WhyUnusable(of, rough);
-  if (!out.unusable.empty()) return out;
-  Settle(log, stated, rough, threads, out, std::move(of));
-  if (!out.unusable.empty()) return out;
-  WidenAndSay(rough, out);
+  if (out.unusable.empty()) Settle(log, stated, rough, threads, out, std::move(of));
+  if (!out.unusable.empty()) {
+    out.unusable += WhatSaysMore(lacking, log);
+    return out;
+  }
+  if (out.unusable = FarApart(out.axis, lacking, log); !out.unusable.empty()) return out;
+  WidenAndSay(TwoEstimates(out.axis, rough), out.axis, out.notes);
+  WidenByLacking(lacking, log, out.axis, out.notes);
+  if (out.axis.sigma.at("inertia") > kMostUncertain) {
+    out.unusable = UnknownInertia(out.axis, rough) + WhatSaysMore(lacking, log);
+    return out;
+  }
   SayOneDirection(rough, out);
   for (const char* level : {"Fc", "Fs"})
     if (levels_rel > 0.0) out.axis.sigma[level] = std::max(out.axis.sigma[level], levels_rel);

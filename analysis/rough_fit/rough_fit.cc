@@ -5,70 +5,14 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/prediction_error/signals.h"
+#include "analysis/rough_fit/smoothed_motion.h"
 
 namespace contour::diagnosis {
 namespace {
 
-/// [s, rows] Deviation of the Gaussian behind each derivative, whichever is longer.
-constexpr double kSmoothing_s = 3e-3, kSmoothingRows = 2.0;
-/// [share of the largest speed] Below it the axis does not slide for certain.
-constexpr double kSlides = 0.03;
-/// [deviations of the smoothing] From one independent row to the next.
-constexpr double kPerIndependentRow = 5.0;
 constexpr std::size_t kFewestRows = 100;
 /// [places] Of the travel, at which visits are counted.
 constexpr std::size_t kPlaces = 48;
-
-/// The command in the middle of each row as it acts there.
-Signal Acting(const AxisLog& log, const StatedAxis& stated) {
-  const double rows = (stated.delay_s + stated.lag_s) / log.period_s + 0.5;
-  Signal out(log.size());
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const double at = std::max(0.0, static_cast<double>(k) - rows);
-    const auto i = static_cast<std::size_t>(at);
-    const std::size_t next = std::min(i + 1, log.size() - 1);
-    out[k] = log.command[i] + (at - static_cast<double>(i)) * (log.command[next] - log.command[i]);
-  }
-  return out;
-}
-
-struct Motion {
-  Signal velocity, acceleration, command;
-  std::vector<std::uint8_t> counts;
-};
-
-/// Stretch by stretch, all smoothed alike.
-Motion MotionOf(const AxisLog& log, const Signals& s, const StatedAxis& stated, double sigma) {
-  Motion m;
-  const Signal acting = Acting(log, stated);
-  const auto reach = static_cast<std::size_t>(8.0 * sigma) + 1;
-  for (std::size_t b = 0; b < s.begins.size(); ++b) {
-    const auto from = static_cast<std::ptrdiff_t>(s.begins[b]);
-    const auto to = static_cast<std::ptrdiff_t>(b + 1 < s.begins.size() ? s.begins[b + 1] : log.size());
-    const Signal q(s.position.begin() + from, s.position.begin() + to);
-    const Signal w = Derivative(q, sigma, log.period_s);
-    const Signal a = Derivative(w, sigma, log.period_s), v = Smooth(w, sigma);
-    const Signal u = Smooth(Smooth(Signal(acting.begin() + from, acting.begin() + to), sigma), sigma);
-    m.velocity.insert(m.velocity.end(), v.begin(), v.end());
-    m.acceleration.insert(m.acceleration.end(), a.begin(), a.end());
-    m.command.insert(m.command.end(), u.begin(), u.end());
-    for (std::size_t k = 0; k < q.size(); ++k) m.counts.push_back(k >= reach && k + reach < q.size() ? 1 : 0);
-  }
-  for (std::size_t k = 0; k < log.size(); ++k) {
-    if (log.present[k] != 0) continue;
-    for (std::size_t i = k > reach ? k - reach : 0; i < std::min(log.size(), k + reach); ++i) m.counts[i] = 0;
-  }
-  return m;
-}
-
-void TakeOutFalling(const StatedFriction& f, Motion& m) {
-  for (std::size_t k = 0; k < m.counts.size(); ++k) {
-    const double v = m.velocity[k];
-    const double part = v > 0.0 ? f.Fs_plus - f.Fc_plus : f.Fc_minus - f.Fs_minus;
-    m.command[k] -= part * std::exp(-std::pow(std::fabs(v) / f.vs, f.exponent));
-  }
-}
 
 /// The median over the places of the travel: an axis that rests between two of them comes to these often.
 double VisitsOf(const Signal& position, double low, double travel) {
@@ -85,24 +29,19 @@ double VisitsOf(const Signal& position, double low, double travel) {
   return *middle;
 }
 
-bool Slides(const Motion& m, std::size_t k, const RoughFit& out) {
-  return m.counts[k] != 0 && std::fabs(m.velocity[k]) >= kSlides * out.max_speed;
-}
-
 /// Acceleration, Coulomb friction up and down, viscous friction, and the position where asked for.
 template <int kColumns>
-Eigen::Vector<double, kColumns> RowOf(const Motion& m, const Signal& position, std::size_t k,
-                                      const RoughFit& out) {
+Eigen::Vector<double, kColumns> RowOf(const SmoothedMotion& m, std::size_t k, const RoughFit& out) {
   const double v = m.velocity[k];
   Eigen::Vector<double, kColumns> x;
   x.template head<4>() << m.acceleration[k], v > 0.0 ? 1.0 : 0.0, v < 0.0 ? -1.0 : 0.0, v;
-  if constexpr (kColumns > 4) x(4) = position[k] - out.middle;
+  if constexpr (kColumns > 4) x(4) = m.position[k] - out.middle;
   return x;
 }
 
 /// Deviations by the sums of the parts (White, Econometrica 48(4), 1980, over clusters).
 template <int kColumns>
-void ByParts(const Motion& m, const Signal& position, const Eigen::Vector<double, kColumns>& x,
+void ByParts(const SmoothedMotion& m, const Eigen::Vector<double, kColumns>& x,
              const Eigen::Matrix<double, kColumns, kColumns>& inverse, RoughFit& out) {
   using Matrix = Eigen::Matrix<double, kColumns, kColumns>;
   Matrix sums = Matrix::Zero();
@@ -110,8 +49,8 @@ void ByParts(const Motion& m, const Signal& position, const Eigen::Vector<double
   for (std::size_t part = 0; part < kPartsOfLog; ++part) {
     Eigen::Vector<double, kColumns> sum = Eigen::Vector<double, kColumns>::Zero();
     for (std::size_t k = n * part / kPartsOfLog; k < n * (part + 1) / kPartsOfLog; ++k) {
-      if (!Slides(m, k, out)) continue;
-      const auto row = RowOf<kColumns>(m, position, k, out);
+      if (!m.Slides(k)) continue;
+      const auto row = RowOf<kColumns>(m, k, out);
       sum += row * (m.command[k] - row.dot(x));
     }
     sums += sum * sum.transpose();
@@ -130,15 +69,15 @@ void ByParts(const Motion& m, const Signal& position, const Eigen::Vector<double
 
 /// A direction that the log has not gets no friction.
 template <int kColumns>
-void Solve(const Motion& m, const Signal& position, double independent_rows, RoughFit& out) {
+void Solve(const SmoothedMotion& m, RoughFit& out) {
   using Matrix = Eigen::Matrix<double, kColumns, kColumns>;
   using Vector = Eigen::Vector<double, kColumns>;
   Matrix normal = Matrix::Zero();
   Vector right = Vector::Zero();
   double squares = 0.0, rows = 0.0;
   for (std::size_t k = 0; k < m.counts.size(); ++k) {
-    if (!Slides(m, k, out)) continue;
-    const Vector x = RowOf<kColumns>(m, position, k, out);
+    if (!m.Slides(k)) continue;
+    const Vector x = RowOf<kColumns>(m, k, out);
     normal += x * x.transpose();
     right += x * m.command[k];
     squares += m.command[k] * m.command[k];
@@ -158,7 +97,7 @@ void Solve(const Motion& m, const Signal& position, double independent_rows, Rou
   const Matrix inverse = (scaled + 1e-9 * Matrix::Identity()).inverse();
   const Vector x = unit.cwiseProduct(inverse * unit.cwiseProduct(right));
   const double left = std::max(0.0, squares - x.dot(right)) / rows;
-  const auto sigma = [&](int i) { return std::sqrt(left * inverse(i, i) * independent_rows) * unit(i); };
+  const auto sigma = [&](int i) { return std::sqrt(left * inverse(i, i) * m.independent_rows) * unit(i); };
   out.inertia = x(0);
   out.inflation = inverse(0, 0);
   out.inertia_sigma_rel = sigma(0) / std::max(std::fabs(x(0)), 1e-300);
@@ -169,7 +108,7 @@ void Solve(const Motion& m, const Signal& position, double independent_rows, Rou
   out.viscous = x(3);
   out.unexplained = left * rows / squares;
   out.typical = std::sqrt(squares / rows);
-  ByParts<kColumns>(m, position, x, unit.asDiagonal() * inverse * unit.asDiagonal(), out);
+  ByParts<kColumns>(m, x, unit.asDiagonal() * inverse * unit.asDiagonal(), out);
 }
 
 }  // namespace
@@ -177,25 +116,20 @@ void Solve(const Motion& m, const Signal& position, double independent_rows, Rou
 RoughFit FitRoughly(const AxisLog& log, const StatedAxis& stated, RoughShape shape,
                     const StatedFriction* falling) {
   RoughFit out;
-  const Signals s = MakeSignals(log, stated);
-  const double sigma = std::max(kSmoothingRows, kSmoothing_s / log.period_s);
-  Motion m = MotionOf(log, s, stated, sigma);
-  if (falling != nullptr && falling->vs > 0.0) TakeOutFalling(*falling, m);
-  for (std::size_t k = 0; k < m.counts.size(); ++k)
-    if (m.counts[k] != 0) out.max_speed = std::max(out.max_speed, std::fabs(m.velocity[k]));
-  const auto [low, high] = std::minmax_element(s.position.begin(), s.position.end());
+  const SmoothedMotion m = SmoothMotion(log, stated, falling);
+  out.max_speed = m.max_speed;
+  const auto [low, high] = std::minmax_element(m.position.begin(), m.position.end());
   out.travel = *high - *low;
   out.middle = 0.5 * (*high + *low);
   if (!(out.travel > 0.0 && out.max_speed > 0.0)) {
     out.why_not = "the axis does not move in it";
     return out;
   }
-  out.visits = VisitsOf(s.position, *low, out.travel);
-  const double independent_rows = kPerIndependentRow * sigma;
+  out.visits = VisitsOf(m.position, *low, out.travel);
   if (shape == RoughShape::kFriction)
-    Solve<4>(m, s.position, independent_rows, out);
+    Solve<4>(m, out);
   else
-    Solve<5>(m, s.position, independent_rows, out);
+    Solve<5>(m, out);
   return out;
 }
 

@@ -73,6 +73,20 @@ TEST(FitNumbers, AForceThatTheModelDoesNotStateIsInTheFile) {
   EXPECT_LT(found.axis.sigma.at("Fc"), 0.1);
 }
 
+// Before: each of two models was judged by the noise that was learnt of it, and one of them was much
+// likelier: levels 10 % off, stated to 3 %.
+TEST(FitNumbers, AForceAndUnevenLevelsAtOnceAreNoneOfTheTwo) {
+  test::HiddenOptions o = Thirty();
+  o.effects = {{.kind = "asymmetric_coulomb", .size = 0.2}, {.kind = "constant_torque", .size = -0.1}};
+  const test::HiddenAxis axis = MakeHiddenAxis(o);
+  const FittedNumbers found = FitNumbers(axis.log, axis.stated, 1);
+  EXPECT_EQ(found.unusable, "");
+  EXPECT_TRUE(Says(found, "do not tell it from"));
+  const StatedFriction &fitted = found.axis.friction, &stated = axis.stated.friction;
+  EXPECT_NEAR(fitted.Fc_plus, 1.1 * stated.Fc_plus, found.axis.sigma.at("Fc") * fitted.Fc_plus);
+  EXPECT_NEAR(fitted.Fc_minus, 0.9 * stated.Fc_minus, found.axis.sigma.at("Fc") * fitted.Fc_minus);
+}
+
 TEST(FitNumbers, AStatedForceThatIsAnotherMovesThere) {
   test::HiddenAxis axis = Made();
   const double weight = 1.5 * axis.stated.friction.Fc_plus;
