@@ -43,6 +43,19 @@ std::string Advice(const std::vector<double>& time_s, double period_s) {
          NumberText(rate_Hz) + " puts them on a grid";
 }
 
+/// Of times that stand still, as those do that are written in too few digits.
+std::string WhyStill(const std::vector<double>& time_s) {
+  const std::vector<double> steps = StepsOf(time_s);
+  const auto still = std::count(steps.begin(), steps.end(), 0.0);
+  const double all_s = time_s.back() - time_s.front();
+  std::string text = " (" + std::to_string(still) + " of " + std::to_string(steps.size()) +
+                     " times are those of the row before: written in too few digits, or of a clock coarser "
+                     "than the rows). Where rows come at a fixed rate, take the column out and state it by "
+                     "--sample-rate HZ";
+  if (all_s > 0.0) text += ", on the mean " + RoundedText(static_cast<double>(steps.size()) / all_s) + " Hz";
+  return text;
+}
+
 }  // namespace
 
 void DemandRisingTime(const std::string& file, const std::vector<double>& time_s,
@@ -51,7 +64,8 @@ void DemandRisingTime(const std::string& file, const std::vector<double>& time_s
   for (std::size_t i = 1; i < time_s.size(); ++i)
     if (!(time_s[i] > time_s[i - 1]))
       throw ConfigError({file + ":" + std::to_string(line[i]) + ": time_s: found " + NumberText(time_s[i]) +
-                         " after " + NumberText(time_s[i - 1]) + ", expected time to go on"});
+                         " after " + NumberText(time_s[i - 1]) + ", expected time to go on" +
+                         (time_s[i] == time_s[i - 1] ? WhyStill(time_s) : std::string())});
 }
 
 Grid FindGrid(const std::string& file, const std::vector<double>& time_s,

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "config/config_error.h"
 
@@ -10,6 +12,16 @@ namespace contour::diagnosis {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// A date or a time of day, as many loggers write it.
+void DemandSeconds(const CsvTable& table, std::string_view field, std::size_t line) {
+  if (field.find(':') == std::string_view::npos) return;
+  throw ConfigError(
+      {table.file() + ":" + std::to_string(line) + ": time_s: found '" + std::string(field) +
+       "', a date or a time of day, expected seconds as a number: write seconds since the first "
+       "row, or, where rows come at a fixed rate, take the column out and state it by "
+       "--sample-rate HZ"});
+}
 
 }  // namespace
 
@@ -20,6 +32,7 @@ TableRows ReadTableRows(const CsvTable& table, const LogColumns& columns, double
     return column.factor * table.Number(fields[column.at], line, column.at);
   };
   table.ForEachRow([&](std::size_t line, const Fields& fields) {
+    if (columns.time) DemandSeconds(table, fields[columns.time->at], line);
     const auto add = [&](std::vector<double>& to, const std::optional<LogColumn>& column) {
       if (column) to.push_back(number(fields, line, *column));
     };

@@ -50,6 +50,14 @@ TEST(Grid, TimeThatStandsGoesBackOrIsOffTheGridIsNamedWithItsLine) {
   EXPECT_NE(Error({0.0, 1e-3}).find("fewer than three rows"), std::string::npos);
 }
 
+TEST(Grid, TimesOfTooFewDigitsAreToldFromAClockThatGoesBack) {
+  const std::string still = Error({0.0, 0.0, 0.01, 0.01, 0.02});
+  EXPECT_NE(still.find("2 of 4 times are those of the row before"), std::string::npos) << still;
+  EXPECT_NE(still.find("--sample-rate HZ, on the mean 200 Hz"), std::string::npos) << still;
+  EXPECT_EQ(Error({0.0, 2e-3, 1e-3}).find("--sample-rate"), std::string::npos);
+  EXPECT_NE(Error({1.0, 1.0, 1.0}).find("--sample-rate HZ"), std::string::npos);
+}
+
 TEST(Grid, AfterAGapTheGridBeginsAnew) {
   std::vector<double> time_s;
   for (int i = 0; i < 50; ++i) time_s.push_back(1e-3 * i);
