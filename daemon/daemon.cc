@@ -36,6 +36,7 @@
 #include "daemon/pump.h"
 #include "daemon/realtime_thread.h"
 #include "daemon/recording_mode.h"
+#include "daemon/rest_swing.h"
 #include "daemon/rt/loop.h"
 #include "daemon/service_notifier.h"
 #include "daemon/start_again.h"
@@ -135,7 +136,8 @@ class Daemon {
         pump_(queue_, mailbox_, hub_, machine_.machine.cycle_us * 1e-6, AxisNames(machine_),
               BusNames(machine_)),
         learning_(machine_),
-        cycle_(MakeCycleConfig(machine_, machine_.machine.controller)) {
+        cycle_(MakeCycleConfig(machine_, machine_.machine.controller)),
+        rest_swing_(MakeCycleConfig(machine_, machine_.machine.controller)) {
     if (machine_.io.modbus) {
       io_client_ = std::make_unique<IoClient>(*machine_.io.modbus);
       io_ = std::make_unique<IoAdapter>(*io_client_);
@@ -152,8 +154,12 @@ class Daemon {
     pump_.ShowCyclesTo([this](const CycleRecord& record) {
       memory_.Consume(record);
       learning_.Consume(record);
+      rest_swing_.Consume(record);
     });
-    pump_.AlsoDrain([this] { buses_.DrainTruth(); });
+    pump_.AlsoDrain([this] {
+      buses_.DrainTruth();
+      for (const std::string& swing : rest_swing_.TakeNew()) spdlog::warn(swing);
+    });
     hub_.WatchFeedback(FeedbackSources(machine_));
     hub_.WatchForeign(Parties(machine_));
     SetUpFlightRecorder();
@@ -202,9 +208,10 @@ class Daemon {
       spdlog::warn(*wider);
       warnings.push_back(*wider);
     }
-    Supervisor supervisor(
-        machine_, machine_.machine.controller, options_.clock, warnings,
-        {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_, Checks(), mode}, source_);
+    Supervisor supervisor(machine_, machine_.machine.controller, options_.clock, warnings,
+                          {mailbox_, queue_, hub_, pump_, *loop_, learning_, io_client_.get(), seed_,
+                           Checks(), mode, &rest_swing_},
+                          source_);
     ControlServer::Options socket;
     socket.socket = options_.socket.empty() ? DefaultSocketPath() : std::filesystem::path(options_.socket);
     ControlServer server(socket, supervisor);
@@ -361,6 +368,7 @@ class Daemon {
   Pump pump_;
   ProgramLearning learning_;
   Cycle cycle_;
+  RestSwing rest_swing_;
   std::unique_ptr<IoClient> io_client_;
   std::unique_ptr<ModbusOutputs> outputs_;
   std::unique_ptr<IoSource> io_;

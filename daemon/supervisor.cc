@@ -445,6 +445,8 @@ MachineStatus Supervisor::Status() {
     out.axis_facts.push_back({limits[a], encoder_counts_m_[a]});
   out.foreign = s.foreign;
   out.warnings = warnings_;
+  if (parts_.rest_swing != nullptr)
+    for (std::string& warning : parts_.rest_swing->warnings()) out.warnings.push_back(std::move(warning));
   out.record = answers_.record();
   out.bring_up = BringUpText(out.record.bring_up, axis_names_);
   out.reason_text = out.record.reason == Reason::kBringUpFailed

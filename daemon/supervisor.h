@@ -20,6 +20,7 @@
 #include "daemon/program/motion_plan.h"
 #include "daemon/program_zero.h"
 #include "daemon/pump.h"
+#include "daemon/rest_swing.h"
 #include "daemon/rt/command_mailbox.h"
 #include "daemon/rt/loop.h"
 #include "daemon/telemetry/cycle_answers.h"
@@ -46,6 +47,7 @@ struct SupervisedParts {
   std::optional<std::uint64_t> emulator_seed{};  ///< of an emulated machine in this process
   StartChecks checks{};                          ///< those that are empty find nothing
   RecordingMode recording_mode{};                ///< that it runs in
+  const RestSwing* rest_swing = nullptr;         ///< null: nobody watches for swings at rest
 };
 
 /// Carries an operator's requests to the cycle and its answers back. It asks through the mailbox and decides
