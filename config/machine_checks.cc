@@ -18,6 +18,7 @@
 #include "config/name_checks.h"
 #include "config/number_text.h"
 #include "config/plausible_limits.h"
+#include "config/stated_push.h"
 #include "config/stopping.h"
 #include "core/cycle_input.h"
 #include "core/mechanics.h"
@@ -227,16 +228,26 @@ void CheckLimits(const std::string& key, const AxisConfig& axis, Problems& probl
                      ", the most a target torque (0x6071) can carry at this rated torque");
 }
 
+std::string AndThePush(double pushed_N) {
+  return pushed_N > 0.0 ? " and the " + Say(pushed_N) + " N that model.extensions states" : "";
+}
+
 void CheckReserve(const std::string& key, const AxisConfig& axis, Problems& problems) {
   const AxisReserve r = Reserve(axis);
-  const std::string available = "the torque limit of " + Say(axis.limits.torque_Nm) + " Nm leaves " +
-                                Say(1e3 * r.available_m_s2) + " mm/s^2";
-  if (r.needed_Nm > axis.limits.torque_Nm)
+  const double radius_m_rad = r.radius_m_rad;
+  if (radius_m_rad * r.pushed_N >= axis.limits.torque_Nm)
+    problems.Add(key + ".limits.torque_Nm",
+                 "found " + Say(axis.limits.torque_Nm) + ", expected more than " +
+                     Say(radius_m_rad * r.pushed_N) +
+                     ": that much model.extensions (constant_torque, cable_spring) states to push the table "
+                     "besides friction, and the axis could neither be held nor stopped");
+  else if (r.needed_Nm > axis.limits.torque_Nm)
     problems.Add(key + ".limits.acceleration_mm_s2",
                  "impossible limit: found " + Say(axis.limits.acceleration_mm_s2) + ", which takes " +
                      Say(r.needed_Nm) + " Nm at " + Say(axis.limits.velocity_mm_s) +
-                     " mm/s against friction; " + available);
-  const double jerk_rate_Nm_s = r.radius_m_rad * r.mass_kg * 1e-3 * axis.limits.jerk_mm_s3;
+                     " mm/s against friction" + AndThePush(r.pushed_N) + "; the torque limit of " +
+                     Say(axis.limits.torque_Nm) + " Nm leaves " + Say(1e3 * r.available_m_s2) + " mm/s^2");
+  const double jerk_rate_Nm_s = radius_m_rad * r.mass_kg * 1e-3 * axis.limits.jerk_mm_s3;
   if (axis.limits.torque_rate_Nm_s > 0.0 && jerk_rate_Nm_s > axis.limits.torque_rate_Nm_s)
     problems.Add(key + ".limits.jerk_mm_s3",
                  "impossible limit: found " + Say(axis.limits.jerk_mm_s3) + ", which takes " +
@@ -252,20 +263,23 @@ void CheckStopping(const MachineConfig& c, const std::string& key, const AxisCon
         "found 0 (the drive's own), expected a deceleration: no stopping distance can be promised otherwise");
     return;
   }
-  if (s.ramp_m_s2 > s.torque_acceleration_m_s2) {
+  // A push that takes its share of it is counted in the bounds, and warned of.
+  const AxisReserve r = Reserve(axis);
+  const double most_rad_s2 = axis.limits.torque_Nm / (r.radius_m_rad * r.radius_m_rad * r.mass_kg);
+  if (axis.drive.quick_stop_deceleration_rad_s2 > most_rad_s2) {
     problems.Add(key + ".drive.quick_stop_deceleration_rad_s2",
                  "impossible limit: found " + Say(axis.drive.quick_stop_deceleration_rad_s2) +
-                     ", the torque limit of " + Say(axis.limits.torque_Nm) + " Nm gives " +
-                     Say(s.torque_acceleration_m_s2 / ToSi(axis.model.mechanics).radius_m_rad));
+                     ", the torque limit of " + Say(axis.limits.torque_Nm) + " Nm gives " + Say(most_rad_s2));
     return;
   }
+  if (s.Deceleration_m_s2() <= 0.0) return;  // it cannot be held either
   const double travel_mm = SilentMaster(s, 0.0).travel_mm;
   if (travel_mm > axis.limits.safe_travel_mm)
-    problems.Add(key + ".limits.safe_travel_mm", "found " + Say(axis.limits.safe_travel_mm) +
-                                                     ", but from rest at the torque limit the axis goes " +
-                                                     Say(travel_mm) +
-                                                     " mm until the drive notices a dead master (notice_ms " +
-                                                     Say(axis.drive.notice_ms) + ") and has stopped");
+    problems.Add(key + ".limits.safe_travel_mm",
+                 "found " + Say(axis.limits.safe_travel_mm) + ", but from rest at the torque limit" +
+                     AndThePush(r.pushed_N) + " the axis goes " + Say(travel_mm) +
+                     " mm until the drive notices a dead master (notice_ms " + Say(axis.drive.notice_ms) +
+                     ") and has stopped");
 }
 
 // The same thresholds that watch the axis in the cycle say how far it can get before they act.
@@ -361,8 +375,10 @@ AxisReserve Reserve(const AxisConfig& axis) {
   r.radius_m_rad = m.radius_m_rad;
   r.mass_kg = m.mass_kg;
   r.friction_N = std::max(f.Fc_plus_N, f.Fc_minus_N) + f.sigma2_Ns_m * 1e-3 * axis.limits.velocity_mm_s;
-  r.needed_Nm = m.radius_m_rad * (m.mass_kg * 1e-3 * axis.limits.acceleration_mm_s2 + r.friction_N);
-  r.available_m_s2 = std::max(0.0, (axis.limits.torque_Nm / m.radius_m_rad - r.friction_N) / m.mass_kg);
+  r.pushed_N = StatedPushOf(axis.model).size_N();
+  const double against_N = r.friction_N + r.pushed_N;
+  r.needed_Nm = m.radius_m_rad * (m.mass_kg * 1e-3 * axis.limits.acceleration_mm_s2 + against_N);
+  r.available_m_s2 = std::max(0.0, (axis.limits.torque_Nm / m.radius_m_rad - against_N) / m.mass_kg);
   return r;
 }
 

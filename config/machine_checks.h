@@ -19,7 +19,8 @@ struct AxisReserve {
   double radius_m_rad = 0.0;
   double mass_kg = 0.0;         ///< effective: Jm / R^2 + Mt
   double friction_N = 0.0;      ///< the larger Coulomb level, and viscous friction at the velocity limit
-  double needed_Nm = 0.0;       ///< R (m a + friction) at the limits of acceleration and velocity
+  double pushed_N = 0.0;        ///< weight or spring that the model states
+  double needed_Nm = 0.0;       ///< R (m a + friction + pushed) at the limits of acceleration and velocity
   double available_m_s2 = 0.0;  ///< what the torque limit allows there
 };
 AxisReserve Reserve(const AxisConfig& axis);

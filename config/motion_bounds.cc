@@ -32,6 +32,7 @@ struct Axis {
   double period_s = 0.0;
   double lag_s = 0.0;
   double friction_drop_N = 0.0;
+  double unborne_N = 0.0;  ///< of what the model says pushes, beyond Coulomb friction: acts with the drive
 };
 
 // As stiff as the cycle tells its monitors that the loops in use are.
@@ -62,6 +63,7 @@ Axis Known(const MachineConfig& config, const AxisConfig& axis) {
   a.t = ThresholdsOf(a.monitored, config.control.monitor, a.period_s);
   a.lag_s = 1e-3 * axis.drive.lag_ms;
   a.friction_drop_N = a.monitored.Fs_N - a.monitored.Fc_N;
+  a.unborne_N = std::max(0.0, UnbornePushOf(axis.model).sliding_N);
   return a;
 }
 
@@ -74,11 +76,14 @@ double Off_s(const Axis& a) {
 // is off.
 double GoesOn_m(const Axis& a, double feed_m_s) { return feed_m_s * (a.period_s + Off_s(a)); }
 
+// By the torque limit and what pushes along with it.
+double Hardest_m_s2(const Axis& a) { return (a.limits.force_N + a.unborne_N) / a.t.light_kg; }
+
 // What the torque limit can do while a force that is on its way has not been judged yet, and for so long
 // before.
 double Slam_m(const Axis& a, double speed_m_s, double before_s = 0.0) {
   const double open_s = before_s + a.period_s + Off_s(a);
-  return speed_m_s * open_s + 0.5 * a.limits.force_N / a.t.light_kg * open_s * open_s;
+  return speed_m_s * open_s + 0.5 * Hardest_m_s2(a) * open_s * open_s;
 }
 
 double JumpSeen_m(const Axis& a, double feed_m_s) {
@@ -160,26 +165,32 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
           seen_s + a.period_s + Off_s(a)};
 }
 
-// Feedback that tells the truth, or its mirror image: the following error ends it.
-FaultBound ByFollowingError(const Axis& a, double feed_m_s, bool runs_away) {
+// Without torque the axis stays behind its path, and where friction does not bear what pushes, it falls
+// besides: from a path upwards the sooner away, along one downwards, or from rest, the later.
+FaultBound TorqueLost(const Axis& a, double feed_m_s) {
+  const double fe_m = a.limits.following_error_m, fall_m_s2 = a.unborne_N / a.t.light_kg;
+  const double away_m_s = std::sqrt(feed_m_s * feed_m_s + 2.0 * fall_m_s2 * fe_m);
+  const double open_s = a.period_s + Off_s(a);
+  double seen_s = feed_m_s > 0.0 ? fe_m / feed_m_s : 0.0;
+  if (fall_m_s2 > 0.0) seen_s = std::sqrt(2.0 * fe_m * a.t.heavy_kg / a.unborne_N);
+  return {1e3 * (fe_m + away_m_s * open_s + 0.5 * fall_m_s2 * open_s * open_s), seen_s + open_s};
+}
+
+// Feedback that tells the mirror image of the truth: the following error ends it.
+FaultBound RunsAway(const Axis& a, double feed_m_s) {
   // A sign that changes in motion shows in the reading that changes: by twice the way of a period.
-  if (runs_away && 2.0 * feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s))
+  if (2.0 * feed_m_s * a.period_s > JumpSeen_m(a, feed_m_s))
     return {1e3 * (Slam_m(a, 0.0, AnswersBefore_s(a)) + GoesOn_m(a, feed_m_s)),
             AtOnce_s(a) + a.period_s + Off_s(a)};
   const double fe_m = a.limits.following_error_m;
-  const double gain_m_s = runs_away ? std::sqrt(2.0 * a.limits.force_N / a.t.light_kg * fe_m) : 0.0;
-  const double open_m = runs_away ? Slam_m(a, gain_m_s + 2.0 * feed_m_s) : feed_m_s * (a.period_s + Off_s(a));
-  double seen_s = 0.0;
-  if (feed_m_s > 0.0) seen_s = fe_m / feed_m_s;
-  if (runs_away) {
-    // Nothing moves before the loop's force breaks the axis away, along the path; then an unstable loop
-    // leaves its first count by e^(w t).
-    const double rate_1_s = std::sqrt(a.t.loop_N_m / (a.t.mass_kg * 2.0));
-    const double break_away_s = feed_m_s > 0.0 ? a.monitored.Fs_N / (a.t.loop_N_m * feed_m_s) : 0.0;
-    seen_s = std::min(feed_m_s > 0.0 ? seen_s + 1.0 / rate_1_s : 1e9,
-                      break_away_s + std::log(1.0 + fe_m / a.monitored.count_m) / rate_1_s);
-  }
-  return {1e3 * (fe_m + open_m), seen_s + a.period_s + Off_s(a)};
+  const double gain_m_s = std::sqrt(2.0 * Hardest_m_s2(a) * fe_m);
+  // Nothing moves before the loop's force breaks the axis away, along the path; then an unstable loop
+  // leaves its first count by e^(w t).
+  const double rate_1_s = std::sqrt(a.t.loop_N_m / (a.t.mass_kg * 2.0));
+  const double break_away_s = feed_m_s > 0.0 ? a.monitored.Fs_N / (a.t.loop_N_m * feed_m_s) : 0.0;
+  const double seen_s = std::min(feed_m_s > 0.0 ? fe_m / feed_m_s + 1.0 / rate_1_s : 1e9,
+                                 break_away_s + std::log(1.0 + fe_m / a.monitored.count_m) / rate_1_s);
+  return {1e3 * (fe_m + Slam_m(a, gain_m_s + 2.0 * feed_m_s)), seen_s + a.period_s + Off_s(a)};
 }
 
 }  // namespace
@@ -218,9 +229,9 @@ FaultBound BoundOf(const MachineConfig& config, const AxisConfig& axis, MotionFa
     case MotionFault::kSmallJump:
       return {1e3 * JumpSeen_m(a, feed_m_s), 0.0};
     case MotionFault::kReversed:
-      return ByFollowingError(a, feed_m_s, true);
+      return RunsAway(a, feed_m_s);
     case MotionFault::kTorqueLost:
-      return ByFollowingError(a, feed_m_s, false);
+      return TorqueLost(a, feed_m_s);
     case MotionFault::kNotFollowing:
       // Some statuswords without the bit, then the drive's own ramp.
       return {1e3 * (a.limits.following_error_m + Slam_m(a, 0.0) + GoesOn_m(a, feed_m_s)),
@@ -266,22 +277,11 @@ WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& a
   return worst;
 }
 
-namespace {
-
-/// Downwards the minus level holds against what pushes down, and the other way round.
-double Coast_mm(const AxisConfig& axis, const StatedPush& pushed) {
-  const Mechanics m = ToSi(axis.model.mechanics);
-  const Friction f = ToSi(axis.model.friction, m.radius_m_rad);
-  const double held_N = std::min(f.Fc_plus_N - pushed.most_N, f.Fc_minus_N + pushed.least_N);
+double CoastTravel_mm(const AxisConfig& axis) {
+  const double held_N = -UnbornePushOf(axis.model).sliding_N;
   if (held_N <= 0.0) return std::numeric_limits<double>::infinity();
   const double speed_m_s = 1e-3 * axis.limits.velocity_mm_s;
-  return 1e3 * 0.5 * m.mass_kg * speed_m_s * speed_m_s / held_N;
+  return 1e3 * 0.5 * ToSi(axis.model.mechanics).mass_kg * speed_m_s * speed_m_s / held_N;
 }
-
-}  // namespace
-
-double CoastTravel_mm(const AxisConfig& axis) { return Coast_mm(axis, {}); }
-
-double PushedCoastTravel_mm(const AxisConfig& axis) { return Coast_mm(axis, StatedPushOf(axis.model)); }
 
 }  // namespace contour

@@ -58,12 +58,9 @@ struct WorstDeparture {
 };
 WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& axis);
 
-/// How far the axis coasts from its highest speed once the voltage is off, by Coulomb friction alone, mm.
-/// Drives that close a holding brake then stop sooner.
+/// How far the axis coasts from its highest speed once the voltage is off, mm, by what Coulomb friction does
+/// not bear of a stated push anyway; infinite where it does not bear it all: once it moves, the axis goes on
+/// until something else stops it. Drives that close a holding brake then stop sooner.
 double CoastTravel_mm(const AxisConfig& axis);
-
-/// The same with what the model says pushes the table besides friction; infinite where that is more than
-/// Coulomb friction: the axis then falls, from rest as well, until something else stops it.
-double PushedCoastTravel_mm(const AxisConfig& axis);
 
 }  // namespace contour

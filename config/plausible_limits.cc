@@ -58,13 +58,14 @@ void Counts(const std::string& key, const AxisConfig& axis, Problems& problems) 
                             Say(least_mm) + ", ten counts of the encoder: below, standing still is a fault"});
 }
 
+// `quick_stop_ms`: 0 where nothing stops the axis, which is refused elsewhere.
 void Deadlines(const std::string& key, const DriveConfig& d, double quick_stop_ms, Problems& problems) {
   if (d.heartbeat_timeout_ms > kMostMissedHeartbeats * d.heartbeat_ms)
     problems.push_back({key + ".drive.heartbeat_timeout_ms",
                         "found " + Say(d.heartbeat_timeout_ms) + ", expected at most " +
                             Say(kMostMissedHeartbeats * d.heartbeat_ms) +
                             ", ten times heartbeat_ms: a drive that is gone is to be noticed"});
-  if (d.quick_stop_deceleration_rad_s2 <= 0.0) return;  // refused elsewhere
+  if (quick_stop_ms <= 0.0) return;
   const double most_ms = kQuickStopAlwaysAllowed_ms + kQuickStopPatience * quick_stop_ms;
   if (d.quick_stop_ms > most_ms)
     problems.push_back({key + ".drive.quick_stop_ms",
@@ -82,7 +83,7 @@ void BlindTravel(const std::string& axis, const ModbusConfig& modbus, const Stop
                  Problems& problems) {
   const double blind_ms = modbus.poll_ms + modbus.timeout_ms;
   const double travel_mm =
-      s.speed_m_s * blind_ms + (s.ramp_m_s2 > 0.0 ? QuickStop(s, s.speed_m_s, 0.0).travel_mm : 0.0);
+      s.speed_m_s * blind_ms + (s.Deceleration_m_s2() > 0.0 ? QuickStop(s, s.speed_m_s, 0.0).travel_mm : 0.0);
   if (travel_mm > kBlindTravelOfStroke * stroke_mm)
     problems.push_back({"io.modbus.timeout_ms",
                         "found " + Say(modbus.timeout_ms) + " with poll_ms " + Say(modbus.poll_ms) +
@@ -144,7 +145,7 @@ std::vector<ConfigProblem> ImplausibleLimits(const MachineConfig& machine, const
   Counts(key, config, problems);
   PathStops(key, limits, s.period_s, problems);
   Deadlines(key, config.drive,
-            s.ramp_m_s2 > 0.0
+            s.Deceleration_m_s2() > 0.0
                 ? 1e3 * QuickStop(s, machine.control.guard.overspeed_factor * s.speed_m_s, 0.0).time_s
                 : 0.0,
             problems);

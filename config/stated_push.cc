@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/extended_model.h"
 #include "core/mechanics.h"
 
 namespace contour {
@@ -21,6 +22,16 @@ StatedPush StatedPushOf(const ModelConfig& model) {
   }
   const double radius_m_rad = ToSi(model.mechanics).radius_m_rad;
   return {least_Nm / radius_m_rad, most_Nm / radius_m_rad};
+}
+
+UnbornePush UnbornePushOf(const ModelConfig& model) {
+  const StatedPush pushed = StatedPushOf(model);
+  const Friction f = ToSi(Extended(model).friction, ToSi(model.mechanics).radius_m_rad);
+  // Downwards the minus level holds against what pushes down, and the other way round.
+  const auto left_N = [&](double plus_N, double minus_N) {
+    return std::max(pushed.most_N - plus_N, -pushed.least_N - minus_N);
+  };
+  return {left_N(f.Fs_plus_N, f.Fs_minus_N), left_N(f.Fc_plus_N, f.Fc_minus_N)};
 }
 
 }  // namespace contour

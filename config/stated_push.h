@@ -16,4 +16,12 @@ struct StatedPush {
 };
 StatedPush StatedPushOf(const ModelConfig& model);
 
+/// What is left of the push once friction bears what it can of it, in the direction that is worse; below 0:
+/// what friction could bear besides.
+struct UnbornePush {
+  double at_rest_N = 0.0;  ///< by break-away friction
+  double sliding_N = 0.0;  ///< by Coulomb friction
+};
+UnbornePush UnbornePushOf(const ModelConfig& model);
+
 }  // namespace contour

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "config/stated_push.h"
 #include "core/mechanics.h"
 #include "core/stop_on_path.h"
 
@@ -80,6 +81,8 @@ std::vector<StopWay> IoStops(const ModbusConfig& modbus, const std::vector<Stopp
 
 }  // namespace
 
+double StoppingAxis::Deceleration_m_s2() const { return std::max(0.0, std::min(ramp_m_s2, braking_m_s2)); }
+
 StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis) {
   const Mechanics m = ToSi(axis.model.mechanics);
   const AxisLimitsSi limits = ToSi(axis.limits, m.radius_m_rad);
@@ -88,7 +91,9 @@ StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis)
   s.path_acceleration_m_s2 = limits.acceleration_m_s2;
   s.path_jerk_m_s3 = limits.jerk_m_s3;
   s.following_error_mm = axis.limits.following_error_mm;
-  s.torque_acceleration_m_s2 = limits.force_N / m.mass_kg;
+  const double unborne_N = std::max(0.0, UnbornePushOf(axis.model).sliding_N);
+  s.torque_acceleration_m_s2 = (limits.force_N + unborne_N) / m.mass_kg;
+  s.braking_m_s2 = (limits.force_N - unborne_N) / m.mass_kg;
   s.ramp_m_s2 = axis.drive.quick_stop_deceleration_rad_s2 * m.radius_m_rad;
   s.notice_s = axis.drive.notice_ms * 1e-3;
   s.period_s = config.machine.cycle_us * 1e-6;
@@ -96,7 +101,7 @@ StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis)
 }
 
 StopBound QuickStop(const StoppingAxis& axis, double speed_m_s, double delay_s) {
-  const double ramp_s = speed_m_s / axis.ramp_m_s2;
+  const double ramp_s = speed_m_s / axis.Deceleration_m_s2();
   const double travel_m = speed_m_s * (delay_s + 0.5 * ramp_s + kRampFollowing_s);
   return {delay_s + ramp_s + kSwitchOff_s, 1e3 * travel_m};
 }

@@ -21,11 +21,16 @@ struct StoppingAxis {
   double path_acceleration_m_s2 = 0.0;
   double path_jerk_m_s3 = 0.0;
   double following_error_mm = 0.0;  ///< by which the axis may be away from the path
-  double torque_acceleration_m_s2 =
-      0.0;                 ///< torque limit over effective mass; friction, which helps, left out
+  /// Torque limit over effective mass, with what the model says pushes besides friction, as far as friction
+  /// does not bear it: along with the torque, and against it. Friction that helps is left out.
+  double torque_acceleration_m_s2 = 0.0;
+  double braking_m_s2 = 0.0;
   double ramp_m_s2 = 0.0;  ///< the drive's quick-stop ramp
   double notice_s = 0.0;   ///< until the drive notices that the master is silent
   double period_s = 0.0;
+
+  /// By which it stops: the ramp, or what the torque limit can do of it; 0 where nothing stops it.
+  [[nodiscard]] double Deceleration_m_s2() const;
 };
 StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis);
 
@@ -36,8 +41,8 @@ inline constexpr double kRampFollowing_s = 0.003;
 /// leaves its state.
 inline constexpr double kSwitchOff_s = 0.040;
 
-/// The axis keeps `speed` for `delay_s`, then the drive's quick-stop ramp brings it to rest:
-/// x = v t + v^2 / (2 d) + v t_following; torque is off after t + v / d + t_off.
+/// The axis keeps `speed` for `delay_s`, then the drive's quick-stop ramp, or what the torque limit can do of
+/// it, brings it to rest: x = v t + v^2 / (2 d) + v t_following; torque is off after t + v / d + t_off.
 StopBound QuickStop(const StoppingAxis& axis, double speed_m_s, double delay_s);
 
 /// Drives count their watchdogs in steps of a millisecond.

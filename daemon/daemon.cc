@@ -18,6 +18,7 @@
 #include "config/idle_keys.h"
 #include "config/load_machine.h"
 #include "config/mode_advice.h"
+#include "config/push_advice.h"
 #include "core/exit_status.h"
 #include "core/version.h"
 #include "daemon/control_socket/control_server.h"
@@ -192,6 +193,10 @@ class Daemon {
       warnings.push_back(warning);
     }
     for (const std::string& advice : ModeAdvice(machine_)) {
+      spdlog::warn(advice);
+      warnings.push_back(advice);
+    }
+    for (const std::string& advice : PushAdvice(machine_)) {
       spdlog::warn(advice);
       warnings.push_back(advice);
     }

@@ -1,6 +1,7 @@
 #include "daemon/make_cycle_config.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "config/extended_model.h"
 #include "config/loop_axis.h"
@@ -56,7 +57,11 @@ CycleConfig MakeCycleConfig(const MachineConfig& machine, ControllerName control
     // that is where the axis can be.
     if (axis.drive.absolute_encoder)
       drive.unseen_travel_rad += 1e-3 * (axis.limits.position_mm[1] - axis.limits.position_mm[0]) / r_m;
-    drive.coast_s2_rad = 1e-3 * CoastTravel_mm(axis) / r_m / (speed_rad_s * speed_rad_s);
+    const double coast_mm = CoastTravel_mm(axis);
+    if (std::isfinite(coast_mm))
+      drive.coast_s2_rad = 1e-3 * coast_mm / r_m / (speed_rad_s * speed_rad_s);
+    else if (axis.drive.absolute_encoder)
+      drive.unseen_travel_rad = 0.0;  // it falls as far as the machine lets it, and its encoder knows how far
     drive.drive.mode = ModeFor(controller, axis.drive);
     out.master.axes.push_back(drive);
   }

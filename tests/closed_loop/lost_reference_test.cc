@@ -133,6 +133,24 @@ TEST_F(LostReference, AnAbsoluteEncoderThatComesBackWhereItWasIsBelieved) {
   Move(-10.0);
 }
 
+// Where it would fall nobody knows but its encoder.
+TEST_F(LostReference, AnAbsoluteEncoderIsBelievedWhereverItsAxisMayHaveFallen) {
+  EmulatedMachineFile file = ExampleMachine();
+  UseMachine(file);
+  DriveFaults::Restart(machine_->emulated(), 0);
+  DriveFaults::Displace(machine_->emulated(), 0, 100 * 1048576);
+  Reset();
+  EXPECT_EQ(reference(0), ReferenceState::kLost);
+  const double friction_Nm = file.machine.axes.at("x").model.friction.Fc_minus_N *
+                             ToSi(file.machine.axes.at("x").model.mechanics).radius_m_rad;
+  file.machine.axes.at("x").model.extensions.constant_torque = ConstantTorqueExtension{-1.1 * friction_Nm};
+  UseMachine(file);
+  DriveFaults::Restart(machine_->emulated(), 0);
+  DriveFaults::Displace(machine_->emulated(), 0, 100 * 1048576);
+  Reset();
+  EXPECT_EQ(reference(0), ReferenceState::kAbsolute);
+}
+
 TEST_F(LostReference, AnAxisStandsWhereItWasToldAndGoesOnFromThere) {
   EXPECT_EQ(reference(0), ReferenceState::kNeverTold);
   TellBoth();

@@ -8,6 +8,7 @@
 #include "config/load_machine.h"
 #include "config/mode_advice.h"
 #include "config/stopping.h"
+#include "core/mechanics.h"
 #include "tests/config/test_files.h"
 
 namespace contour {
@@ -203,6 +204,70 @@ TEST(MachineChecks, TravelBeforeADeadMasterIsNoticed) {
   EXPECT_TRUE(Check(c).empty());
 }
 
+// A weight of 0.3 Nm on R = 0.796 mm pulls by 377 N, of which friction downwards bears 40.5 N.
+TEST(MachineChecks, WhatTheModelSaysPushesTakesItsShareOfTheTorque) {
+  MachineConfig c = Good();
+  AxisConfig& x = c.axes.at("x");
+  const AxisReserve without = Reserve(x);
+  const StoppingAxis free = ToStoppingAxis(c, x);
+  EXPECT_DOUBLE_EQ(free.Deceleration_m_s2(), free.ramp_m_s2);
+  x.model.extensions.constant_torque = ConstantTorqueExtension{-0.3};
+  const AxisReserve with = Reserve(x);
+  EXPECT_NEAR(with.needed_Nm - without.needed_Nm, 0.3, 1e-9);
+  EXPECT_NEAR(without.available_m_s2 - with.available_m_s2, 0.3 / (with.radius_m_rad * with.mass_kg), 1e-9);
+  StoppingAxis hung = ToStoppingAxis(c, x);
+  const double share_m_s2 =
+      (with.pushed_N - ToSi(x.model.friction, with.radius_m_rad).Fc_minus_N) / with.mass_kg;
+  EXPECT_NEAR(hung.torque_acceleration_m_s2 - free.torque_acceleration_m_s2, share_m_s2, 1e-9);
+  EXPECT_NEAR(free.braking_m_s2 - hung.braking_m_s2, share_m_s2, 1e-9);
+
+  const double travel_mm = SilentMaster(hung, 0.0).travel_mm;
+  ASSERT_GT(travel_mm, x.limits.safe_travel_mm);
+  const std::string problem = Only(c);
+  EXPECT_TRUE(
+      problem.starts_with("axes.x.limits.safe_travel_mm: found 2, but from rest at the torque limit "
+                          "and the 377 N that model.extensions states the axis goes "))
+      << problem;
+  x.limits.safe_travel_mm = 2.0 * travel_mm;
+  EXPECT_TRUE(Check(c).empty());
+  // What friction bears makes no difference.
+  x.model.extensions.constant_torque = ConstantTorqueExtension{-0.03};
+  EXPECT_DOUBLE_EQ(SilentMaster(ToStoppingAxis(c, x), 0.0).travel_mm, SilentMaster(free, 0.0).travel_mm);
+}
+
+// Without friction, which would help: 1885 N of the torque limit, 84 kg.
+TEST(MachineChecks, AnAxisThatIsPushedStopsByWhatIsLeftOfTheTorque) {
+  MachineConfig c = Good();
+  AxisConfig& x = c.axes.at("x");
+  x.model.extensions.constant_torque = ConstantTorqueExtension{0.6};
+  const StoppingAxis s = ToStoppingAxis(c, x);
+  EXPECT_LT(s.Deceleration_m_s2(), s.ramp_m_s2);
+  EXPECT_NEAR(s.Deceleration_m_s2(), (1885.0 - (754.0 - 36.5)) / 84.0, 0.05);
+  EXPECT_NEAR(QuickStop(s, 0.25, 0.0).travel_mm,
+              250.0 * (0.5 * 0.25 / s.Deceleration_m_s2() + kRampFollowing_s), 1e-9);
+}
+
+TEST(MachineChecks, AnAxisThatCannotHoldItsWeightIsRefused) {
+  MachineConfig c = Good();
+  AxisConfig& x = c.axes.at("x");
+  x.model.extensions.cable_spring = CableSpringExtension{0.0, {-200, 200}, {0.5, -1.2}};
+  x.model.extensions.constant_torque = ConstantTorqueExtension{-0.4};
+  EXPECT_TRUE(Only(c).starts_with("axes.x.limits.torque_Nm: found 1.5, expected more than 1.6: that much "))
+      << Only(c);
+}
+
+TEST(MachineChecks, AnAxisThatCannotAccelerateAgainstItsWeightIsRefused) {
+  MachineConfig c = Good();
+  AxisConfig& x = c.axes.at("x");
+  x.model.extensions.constant_torque = ConstantTorqueExtension{-1.1};
+  x.limits.safe_travel_mm = 20.0;
+  EXPECT_TRUE(Only(c).starts_with("axes.x.limits.acceleration_mm_s2: impossible limit: found 5000, "))
+      << Only(c);
+  EXPECT_NE(Only(c).find(" against friction and the 1382 N that model.extensions states; "),
+            std::string::npos)
+      << Only(c);
+}
+
 TEST(MachineChecks, StopsThatPromiseNothing) {
   MachineConfig c = Good();
   DriveConfig& drive = c.axes.at("x").drive;
@@ -338,7 +403,7 @@ TEST(MachineChecks, FullTakesAllAxesInOneMode) {
 TEST(Stopping, HeldTorqueFromRest) {
   StoppingAxis axis;
   axis.torque_acceleration_m_s2 = 8.5;
-  axis.ramp_m_s2 = 10.0;
+  axis.ramp_m_s2 = axis.braking_m_s2 = 10.0;
   axis.notice_s = 0.1 - kWatchdogStep_s;
   const StopBound b = SilentMaster(axis, 0.0);
   EXPECT_NEAR(b.travel_mm, 42.5 + 1e3 * (0.85 * 0.85 / 20.0 + 0.85 * kRampFollowing_s), 1e-9);

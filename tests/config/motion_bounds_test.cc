@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "config/load_machine.h"
+#include "config/stated_push.h"
 #include "control/motion_thresholds.h"
 #include "core/mechanics.h"
 
@@ -59,21 +61,54 @@ TEST(MotionBounds, AJumpInMotionCountsFromTheLastCommandedPoint) {
 }
 
 // Downwards the minus level holds; what pushes down is taken off it, and where nothing is left the axis
-// falls.
+// falls once it moves; beyond break-away friction it falls from rest.
 TEST(MotionBounds, AnAxisWithoutVoltageCoastsAgainstItsWeightOrFalls) {
   MachineConfig machine = Machine(DriveMode::kCst);
   AxisConfig& axis = machine.axes.begin()->second;
-  const double free_mm = PushedCoastTravel_mm(axis);
-  EXPECT_DOUBLE_EQ(free_mm, CoastTravel_mm(axis));
   const double radius_m_rad = ToSi(axis.model.mechanics).radius_m_rad;
   FrictionConfig& f = axis.model.friction;
   ASSERT_EQ(f.acts_on, FrictionSide::kTable);
+  const double free_mm = CoastTravel_mm(axis);
   f.Fc_plus_N = 2.0 * f.Fc_minus_N;
-  axis.model.extensions.constant_torque = ConstantTorqueExtension{-0.5 * f.Fc_minus_N * radius_m_rad};
-  EXPECT_NEAR(PushedCoastTravel_mm(axis), 2.0 * CoastTravel_mm(axis), 1e-9 * free_mm);
-  axis.model.extensions.constant_torque->torque_Nm *= 2.1;
-  EXPECT_EQ(PushedCoastTravel_mm(axis), std::numeric_limits<double>::infinity());
-  EXPECT_LT(CoastTravel_mm(axis), 2.0 * free_mm);
+  f.Fs_plus_N = 2.0 * f.Fc_plus_N;
+  f.Fs_minus_N = 1.5 * f.Fc_minus_N;
+  const auto weighs = [&](double of_friction) {
+    axis.model.extensions.constant_torque =
+        ConstantTorqueExtension{-of_friction * f.Fc_minus_N * radius_m_rad};
+  };
+  weighs(0.0);
+  const double level_mm = CoastTravel_mm(axis);
+  EXPECT_LT(level_mm, 2.0 * free_mm);
+  weighs(0.5);
+  EXPECT_NEAR(CoastTravel_mm(axis), 2.0 * level_mm, 1e-9 * level_mm);
+  for (const double of_friction : {1.1, 1.4, 1.6}) {
+    weighs(of_friction);
+    EXPECT_EQ(CoastTravel_mm(axis), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(UnbornePushOf(axis.model).at_rest_N > 0.0, of_friction > 1.5) << of_friction;
+  }
+}
+
+// It counts with whatever else acts until the torque is off; what friction bears does not.
+TEST(MotionBounds, AWeightBeyondFrictionTakesTheAxisFurther) {
+  MachineConfig machine = Machine(DriveMode::kCst);
+  AxisConfig& axis = machine.axes.begin()->second;
+  const double radius_m_rad = ToSi(axis.model.mechanics).radius_m_rad;
+  const double friction_N = axis.model.friction.Fc_minus_N, following_mm = axis.limits.following_error_mm;
+  const MachineConfig free = machine;
+  axis.model.extensions.constant_torque = ConstantTorqueExtension{-0.9 * friction_N * radius_m_rad};
+  for (const MotionFault fault : kMotionFaults)
+    for (const double feed_mm_s : {0.0, 1.0, 100.0})
+      EXPECT_DOUBLE_EQ(Departure_mm(machine, fault, feed_mm_s), Departure_mm(free, fault, feed_mm_s));
+  axis.model.extensions.constant_torque = ConstantTorqueExtension{-5.0 * friction_N * radius_m_rad};
+  for (const MotionFault fault :
+       {MotionFault::kJump, MotionFault::kReversed, MotionFault::kTorqueLost, MotionFault::kNotFollowing})
+    EXPECT_GT(Departure_mm(machine, fault, 0.0), Departure_mm(free, fault, 0.0)) << Name(fault);
+  // From rest it falls: by the following error, and on at the speed that it has by then.
+  const FaultBound falls = BoundOf(machine, axis, MotionFault::kTorqueLost, 0.0);
+  const double fall_m_s2 = 4.0 * friction_N / ToSi(axis.model.mechanics).mass_kg;
+  EXPECT_GT(falls.time_s, std::sqrt(2e-3 * following_mm / fall_m_s2));
+  EXPECT_GT(falls.departure_mm, following_mm);
+  EXPECT_LT(falls.departure_mm, 3.0 * following_mm);
 }
 
 // A sign that changes right after a sample shows in the second one that follows.

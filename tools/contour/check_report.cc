@@ -1,5 +1,6 @@
 #include "tools/contour/check_report.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include "config/mode_advice.h"
 #include "config/motion_bounds.h"
 #include "config/number_text.h"
+#include "config/push_advice.h"
 #include "config/screw_advice.h"
 #include "config/stated_push.h"
 #include "config/stopping.h"
@@ -75,6 +77,8 @@ std::string Axes(const MachineConfig& c) {
     return Fixed(1e-3 * a.drive.rated_torque_Nm / Reserve(a).radius_m_rad, 2, "N");
   });
   line("friction at full speed", [](const AxisConfig& a) { return Fixed(Reserve(a).friction_N, 0, "N"); });
+  if (std::ranges::any_of(c.axes, [](const auto& axis) { return Reserve(axis.second).pushed_N > 0.0; }))
+    line("weight, spring as stated", [](const AxisConfig& a) { return Fixed(Reserve(a).pushed_N, 0, "N"); });
   line("torque for the limits", [](const AxisConfig& a) { return Number(Reserve(a).needed_Nm, "Nm"); });
   line("acceleration available",
        [](const AxisConfig& a) { return Fixed(1e3 * Reserve(a).available_m_s2, 0, "mm/s^2"); });
@@ -105,8 +109,9 @@ std::string Stops(const MachineConfig& c) {
   }
   std::string safe;
   for (const auto& [name, axis] : c.axes)
-    safe += "  " + name + ": from rest at the torque limit, until the drive has noticed a dead master (" +
-            Number(axis.drive.notice_ms, "ms") +
+    safe += "  " + name + ": from rest at the torque limit" +
+            (Reserve(axis).pushed_N > 0.0 ? " and what the model states to push besides" : "") +
+            ", until the drive has noticed a dead master (" + Number(axis.drive.notice_ms, "ms") +
             ") and stopped: " + Fixed(SilentMaster(ToStoppingAxis(c, axis), 0.0).travel_mm, 2, "mm") +
             ", safe travel " + Number(axis.limits.safe_travel_mm, "mm") + "\n";
   return "\nStopping: bounds from the velocity limit to standstill\n" + table.Text() + notes +
@@ -115,20 +120,23 @@ std::string Stops(const MachineConfig& c) {
 
 // What becomes of an axis whose drive gives no torque any more.
 std::string Coasting(const AxisConfig& axis) {
-  const double coast_mm = PushedCoastTravel_mm(axis);
+  const double coast_mm = CoastTravel_mm(axis);
   const double pushed_N = StatedPushOf(axis.model).size_N();
-  const std::string against =
-      pushed_N > 0.0 ? " against the " + Fixed(pushed_N, 0, "N") + " that the model states besides it" : "";
+  const std::string stated = "the " + Fixed(pushed_N, 0, "N") + " that the model states besides friction";
   if (std::isfinite(coast_mm))
     return "with the voltage off the axis then coasts: from its highest speed up to " +
-           Fixed(coast_mm, 1, "mm") + " by friction alone" + against +
+           Fixed(coast_mm, 1, "mm") + " by friction alone" + (pushed_N > 0.0 ? " against " + stated : "") +
            ", less where the drive closes a brake";
-  return "WITH THE VOLTAGE OFF THE AXIS FALLS, from rest as well: the model states " +
-         Fixed(pushed_N, 0, "N") +
-         " besides friction (constant_torque, cable_spring), more than friction bears. Only a brake that the "
-         "drive closes by itself, or a counterbalance, holds it after a fault, a stop of the drives and in "
-         "Idle; "
-         "bounds above that end with \"torque off\" are up to there";
+  const std::string from = stated + " (constant_torque, cable_spring) are more than ";
+  const std::string brake =
+      ". Only a brake that the drive closes by itself, or a counterbalance, holds it after a fault, a stop "
+      "of "
+      "the drives and in Idle; bounds above that end with \"torque off\" are up to there";
+  if (UnbornePushOf(axis.model).at_rest_N > 0.0)
+    return "WITH THE VOLTAGE OFF THE AXIS FALLS, from rest as well: " + from + "friction bears" + brake;
+  return "WITH THE VOLTAGE OFF THE AXIS FALLS ONCE IT MOVES: " + from +
+         "Coulomb friction bears. At rest break-away friction just holds it, until something moves it" +
+         brake;
 }
 
 // How far the table can be from the commanded path, and how long that takes, until the torque is off.
@@ -224,6 +232,7 @@ std::string Advice(const MachineConfig& c) {
   std::string text;
   for (const std::string& advice : ScrewAdvice(c)) text += "  " + advice + "\n";
   for (const std::string& advice : ModeAdvice(c)) text += "  " + advice + "\n";
+  for (const std::string& advice : PushAdvice(c)) text += "  " + advice + "\n";
   for (const std::string& advice : FollowingAdvice(c)) text += "  " + advice + "\n";
   return text.empty() ? text : "\nAdvice\n" + text;
 }

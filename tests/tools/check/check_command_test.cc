@@ -59,6 +59,25 @@ TEST(CheckCommand, ExamplesAreSound) {
   }
 }
 
+// Friction downwards is 41.5 N at rest and 40.5 N in motion, 33 and 32 mNm at the motor.
+TEST(CheckCommand, SaysWhetherAStatedWeightFallsWithoutVoltage) {
+  const auto printed = [](const std::string& torque_Nm) {
+    const Outcome o =
+        Check(ExampleMachine("xy_emulated.yaml") +
+              " --set 'axes.x.model.extensions.constant_torque={torque_Nm: " + torque_Nm + "}'");
+    EXPECT_EQ(o.status, 0) << o.errors;
+    return o.out;
+  };
+  EXPECT_NE(
+      printed("-0.02").find(" by friction alone against the 25 N that the model states besides friction"),
+      std::string::npos);
+  EXPECT_NE(printed("-0.0326").find("THE AXIS FALLS ONCE IT MOVES: the 41 N "), std::string::npos);
+  const std::string falls = printed("-0.18");
+  EXPECT_NE(falls.find("THE AXIS FALLS, from rest as well: the 226 N "), std::string::npos);
+  EXPECT_NE(falls.find("weight, spring as stated"), std::string::npos);
+  EXPECT_NE(falls.find("axes.x.limits.external_force_N: missing"), std::string::npos) << "advice";
+}
+
 // A path needs room for the machine to follow it; what it takes is said, and when there is not enough.
 TEST(CheckCommand, SaysWhatIsLeftOfATolerance) {
   const std::string machine = ExampleMachine("xy_emulated.yaml");

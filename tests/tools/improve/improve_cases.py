@@ -28,6 +28,7 @@ from free_port import free_port  # noqa: E402
 
 STATED_WITHIN = 0.03  # as commissioning leaves it, one standard deviation
 PASSES = 3
+SAFE_TRAVEL_REL = 2.5  # of what the file states: a pull of 0.6 of rated torque takes an axis at the torque limit twice as far
 
 
 def flow(value):
@@ -142,6 +143,10 @@ class Case:
             if scale:
                 self.machine.append(f"axes.{name}.drive.linear_scale={{count_um: 0.01}}")
         self.machine += [f"emulator.axes.{self.axis}.{k}={flow(v)}" for k, v in hidden.items()]
+        if "extensions.cable_spring" in known:
+            # A file that states the pull is to promise how far it takes the axis.
+            travel_mm = SAFE_TRAVEL_REL * axes[self.axis]["limits"]["safe_travel_mm"]
+            self.machine.append(f"axes.{self.axis}.limits.safe_travel_mm={travel_mm}")
         for key, value in known.items():
             full = f"axes.{self.axis}.model.{key}"
             self.truth = [t for t in self.truth if not t.startswith(full + "=")] + [f"{full}={flow(value)}"]
