@@ -44,6 +44,9 @@ void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   }
 }
 
+/// No load makes friction less.
+bool Shrinks(const Problem&, const Effect&, const std::vector<double>& a) { return a[0] < 0.0; }
+
 // The lag is one of four guesses. Sizes in five logs of another generator were off by -13 to 7 %, in a sixth,
 // of an effect of 1 %, by 36 % (docs/laboratory/strangers.md).
 constexpr ModelError kErrors[] = {{"friction_per_torque_rel", 0.1}};
@@ -75,7 +78,7 @@ constexpr CauseDefinition load_friction = {
     .grid = Grid,
     .wave = nullptr,
     .family = nullptr,
-    .implausible = nullptr,
+    .implausible = Shrinks,
     .parameters =
         [](const FittedEffect& fitted) {
           return NamedValues{{"friction_per_torque_rel", fitted.amplitudes()[0]}};

@@ -9,6 +9,7 @@
 #include "analysis/diagnosis/screening/gross_sliding.h"
 #include "analysis/diagnosis/screening/stated_deviation.h"
 #include "analysis/diagnosis/tuning/decision_tuning.h"
+#include "analysis/prediction_error/common_factor.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -16,20 +17,20 @@ namespace {
 // Of a fit that is none.
 constexpr double kNoScore = -1e300;
 
-/// Whether the stated numbers are plausible. A bristle behind a coupling that nobody stated is in series with
-/// it: softer than it is, and less damped.
-bool PlausibleBehindACoupling(const Problem& problem, Point point) {
+/// A bristle behind a coupling that nobody stated is in series with it: softer than it is, and less damped.
+/// Where it looks so it is taken for what is stated.
+Point BehindACoupling(const Problem& problem, Point point) {
   for (std::size_t i = 0; i < point.base.size() && !problem.nominal.two_inertia; ++i)
     if (problem.terms[i].name == "s0" || problem.terms[i].name == "s1")
       point.base[i] = std::max(0.0, point.base[i]);
-  return Plausible(problem, point);
+  return point;
 }
 
 /// Where the fit has gone the cause is not what its name says.
 bool Implausible(const Problem& problem, const Hypothesis& r) {
   const CauseDefinition& cause = CauseNamed(r.effect().kind);
   // What only the stated numbers tell has to make them right: one number that is wrong is no factor on all.
-  if (cause.common_factor && !PlausibleBehindACoupling(problem, r.fit.point)) return true;
+  if (cause.common_factor && !Plausible(problem, BehindACoupling(problem, r.fit.point))) return true;
   return cause.implausible != nullptr &&
          (*cause.implausible)(problem, r.effect(), r.fit.point.amplitudes.back());
 }
@@ -39,6 +40,14 @@ bool NoFault(const Problem& problem, const Hypothesis& r) {
   const AxisModel m = problem.Build(r.fit.point);
   return m.two_inertia &&
          m.stiffness > m.load_inertia * std::pow(2.0 * std::numbers::pi * NoFault_Hz(problem), 2);
+}
+
+/// How far all forces together are off what is stated of them, where the fit has put them: all that there is
+/// to say of a factor on them, which moves nothing.
+double StatedTogether(const Problem& problem, const Point& with) {
+  Point point = BehindACoupling(problem, with);
+  TakeOver(problem, -std::log1p(with.amplitudes.back()[0]), point);
+  return FindCommonFactor(problem, point).drop;
 }
 
 }  // namespace
@@ -81,7 +90,9 @@ double TestedScore(const Problem& problem, const Fit& current, const Hypothesis&
   }
   // A number of the base is off as far as it is from what is stated; a base that lies elsewhere without it
   // is no evidence of that.
-  if (InBase(problem, effect->kind) && !effect->common_factor)
+  if (effect->common_factor)
+    most = StatedTogether(problem, hypothesis.fit.point);
+  else if (InBase(problem, effect->kind))
     most = StatedDeviation(problem, hypothesis.fit);
   return std::min(drop / OverdispersionOfLast(problem, hypothesis.fit), most) - Penalty(*effect);
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/diagnosis/causes/extensions_of.h"
 #include "analysis/prediction_error/fitted_half.h"
 #include "analysis/prediction_error/free_runs.h"
 #include "config/number_text.h"
@@ -44,6 +45,16 @@ std::string ErrorText(const Problem& p, const Diagnosis& d) {
   for (const ForecastError& e : d.model_errors)
     text += (&e == d.model_errors.data() ? " " : ", ") + e.model + " " + LengthText(p, e.free_run_unseen);
   return text + ".";
+}
+
+/// What runs with the causes found are worth the file is not, where it has no place for one of them.
+std::string NoPlaceText(const std::vector<Cause>& causes) {
+  std::string kinds;
+  for (const Cause& c : causes)
+    if (!CanExtend(c.kind)) kinds += (kinds.empty() ? "" : ", ") + c.kind;
+  return kinds.empty() ? ""
+                       : "No model file has a place for " + kinds +
+                             ": what extended_model.yaml foresees is not as good as `extended`.";
 }
 
 }  // namespace
@@ -115,6 +126,7 @@ void DescribeModelErrors(const Problem& problem, const Fit& without, const Fit& 
 void TellModelErrors(const Problem& problem, Diagnosis& out) {
   if (out.model_errors.empty()) return;
   out.notes.push_back(ErrorText(problem, out));
+  if (const std::string text = NoPlaceText(out.causes); !text.empty()) out.notes.push_back(text);
   const auto [low, high] =
       std::minmax_element(problem.signals->position.begin(), problem.signals->position.end());
   if (!out.causes.empty() || !(out.model_errors.back().free_run_unseen > *high - *low)) return;

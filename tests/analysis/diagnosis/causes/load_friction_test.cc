@@ -55,6 +55,15 @@ TEST(LoadFriction, NoiseOfTheCommandHasNoDirectionForALoadThatArrivesLater) {
   EXPECT_LT((*later.level)[1000], 0.2 * (*at_once.level)[1000]);
 }
 
+TEST(LoadFriction, NoLoadMakesFrictionLess) {
+  const test::KnownAxis axis;
+  const SharedEffect e = test::OnGrid(axis, kKind, "");
+  const auto implausible = *CauseNamed(kKind).implausible;
+  ASSERT_NE(implausible, nullptr);
+  EXPECT_TRUE(implausible(axis.problem, *e, {-0.013}));
+  EXPECT_FALSE(implausible(axis.problem, *e, {0.013}));
+}
+
 TEST(LoadFriction, NoModelIsExtendedByItAndPulsesDecide) {
   EXPECT_EQ(*CauseNamed(kKind).extension, nullptr);
   const test::KnownAxis axis;

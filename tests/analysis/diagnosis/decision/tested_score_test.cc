@@ -66,6 +66,35 @@ TEST_F(TestedScoreTest, IsLittleWhereOneEventMakesIt) {
   EXPECT_LT(TestedWith(20 * block, 21 * block), 0.1 * hypothesis_.score);
 }
 
+// Before: where friction sticks hard and the cost is rough, a factor on all forces, which moves nothing, was
+// named for a base that lay elsewhere without it.
+TEST_F(TestedScoreTest, AFactorOnAllForcesIsWorthWhatTheStatedNumbersSayOfIt) {
+  const std::vector<SharedEffect> all = CatalogueEffects(problem_);
+  const auto factor = *std::find_if(all.begin(), all.end(), [](const auto& e) { return e->common_factor; });
+  Point with = base_.point;
+  with.effects.push_back(factor);
+  with.amplitudes.emplace_back(factor->steps.size(), 0.0);
+  Hypothesis h{.fit = FitPoint(problem_, with)};
+  h.score = kDrop;
+  h.fit.point = with;
+  EXPECT_LT(TestedScore(problem_, base_, h), 10.0);
+  // All stated numbers are off by the same factor then.
+  h.fit.point.amplitudes.back()[0] = 2.0;
+  EXPECT_GT(TestedScore(problem_, base_, h), 20.0);
+  // A bristle that is softer in series with a coupling takes nothing from that.
+  h.score = 1e9;
+  const auto with_bristle = [&](double deviations) {
+    for (std::size_t i = 0; i < problem_.terms.size(); ++i)
+      if (problem_.terms[i].name == "s0" || problem_.terms[i].name == "s1")
+        h.fit.point.base[i] = deviations * problem_.terms[i].sigma;
+    return TestedScore(problem_, base_, h);
+  };
+  const double as_stated = with_bristle(0.0);
+  EXPECT_LT(as_stated, 1e8);
+  EXPECT_EQ(with_bristle(-6.0), as_stated);
+  EXPECT_NE(with_bristle(6.0), as_stated);
+}
+
 TEST_F(TestedScoreTest, AFitIsJudgedByWhatItLowersTheCostBy) {
   Hypothesis h{.fit = hypothesis_.fit};
   h.fit.cost = base_.cost - 40.0;

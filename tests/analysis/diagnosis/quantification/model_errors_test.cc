@@ -33,5 +33,23 @@ TEST(ModelErrors, AreOfTheHalfThatHasNotSeenThem) {
   EXPECT_EQ(both[0].one_step_used, errors.one_step_used);
 }
 
+TEST(ModelErrors, SayWhatTheFileHasNoPlaceFor) {
+  const test::LearntProblem made(test::HiddenAxisFor(5.0));
+  Diagnosis d;
+  d.model_errors = {{.model = "stated"}, {.model = "extended"}};
+  d.causes.resize(2);
+  d.causes[0].kind = "cogging";
+  d.causes[1].kind = "constant_torque";
+  const auto told = [&] {
+    d.notes.clear();
+    TellModelErrors(made.problem, d);
+    return d.notes;
+  };
+  EXPECT_EQ(told().size(), 1U);
+  d.causes[1].kind = "torque_saturation";
+  ASSERT_EQ(told().size(), 2U);
+  EXPECT_NE(told().back().find("No model file has a place for torque_saturation:"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace contour::diagnosis
