@@ -57,7 +57,7 @@ std::vector<Heat> Heats(const std::vector<ContestCell>& cells, const std::vector
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.size() % 2 != 0 ? *middle : 0.5 * (*std::max_element(values.begin(), middle) + *middle);
 }
 
 bool Unstable(const Heat& heat, ControllerName controller) {

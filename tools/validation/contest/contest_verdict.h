@@ -68,7 +68,7 @@ bool Unstable(const Heat& heat, ControllerName controller);
 Verdict Judge(const std::vector<Heat>& heats, const std::vector<ExpectedPeak>& expected,
               const std::string& nominal);
 
-/// Of a list that is not empty; the upper one of the two in the middle.
+/// Of a list that is not empty; of an even number the mean of the two in the middle.
 double Median(std::vector<double> values);
 
 }  // namespace contour

@@ -28,11 +28,6 @@ std::string Quoted(const std::string& text) {
   return out + "\"";
 }
 
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
 /// Runs of one controller on one machine, by program.
 struct Group {
   std::map<char, std::vector<const FamilyResult*>> programs;
