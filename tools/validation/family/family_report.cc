@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "tools/validation/contest/contest_verdict.h"
+
 namespace contour {
 namespace {
 
