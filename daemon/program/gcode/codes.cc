@@ -58,6 +58,8 @@ struct Refusal {
   int last;
   const char* what;
 };
+constexpr char kG70[] =
+    "turning cycles here; where G70 is meant as inches and G71 as millimetres, write G20 and G21";
 constexpr Refusal kRefusedG[] = {
     {50, 53, "splines"},
     {70, 70, "diameters"},
@@ -70,7 +72,10 @@ constexpr Refusal kRefusedG[] = {
     {380, 389, "probing"},
     {410, 429, "cutter compensation"},
     {431, 439, "tool lengths"},
-    {700, 769, "canned cycles"},
+    {700, 719, kG70},
+    {720, 729, "turning cycles"},
+    {730, 759, "canned cycles"},
+    {760, 769, "thread cutting"},
     {810, 899, "canned cycles"},
     {950, 950, "feed per revolution"},
     {960, 960, "constant surface speed"},

@@ -150,6 +150,10 @@ TEST(GcodeParser, ErrorsNameLineAndColumn) {
       {"G43 H1\n", "part.ngc:1:5: G43: expected H0"},
       {"G41 D1\n", "part.ngc:1:1: G41 is not supported: cutter compensation"},
       {"G81 X1 Z1\n", "part.ngc:1:1: G81 is not supported: canned cycles"},
+      {"G71\n",
+       "part.ngc:1:1: G71 is not supported: turning cycles here; where G70 is meant as inches and G71 as "
+       "millimetres, write G20 and G21"},
+      {"G76 P1\n", "part.ngc:1:1: G76 is not supported: thread cutting"},
       {"G95\n", "part.ngc:1:1: G95 is not supported: feed per revolution"},
       {"G10 L1 P1 X1\n", "part.ngc:1:5: G10: expected L2 or L20"},
       {"G10 L2 P1 R5\n", "part.ngc:1:1: G10: a rotation"},
