@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "config/friction_choice.h"
 #include "core/mechanics.h"
 
 namespace contour {
@@ -67,8 +66,8 @@ double SwingsBeyond(const AxisConfig& axis) {
 
 }  // namespace
 
-double CircleErrorByDrive_m(const AxisConfig& axis, double period_s) {
-  const double counts = ReportsAreNoise(axis, period_s) ? kCountsAlone : kCounts;
+double CircleErrorByDrive_m(const AxisConfig& axis, bool averaged) {
+  const double counts = averaged ? kCountsAlone : kCounts;
   return kOfScrew * WindUp_m(axis) * (1.0 + SwingsBeyond(axis)) + counts * Count_m(axis);
 }
 

@@ -10,9 +10,9 @@ namespace contour {
 /// Of the friction that turns round at a reversal, what is not foreseen gives the table this far way. Where a
 /// drive closes the loop it is the screw that gives way, and the table goes on swinging on it, damped by the
 /// screw alone, the more the less of a period of that swing the reversal takes; and the drive's velocity loop
-/// answers counts of its encoder. What is made of its reports comes on top, unless counts hide friction: then
-/// it is averaged. Of a drive that holds the motor well.
-double CircleErrorByDrive_m(const AxisConfig& axis, double period_s);
+/// answers counts of its encoder. What is made of its reports comes on top, unless it is averaged, as where
+/// counts hide friction that is learnt along the reference. Of a drive that holds the motor well.
+double CircleErrorByDrive_m(const AxisConfig& axis, bool averaged);
 
 /// The same of a drive that nothing is fed forward to, `machine.controller: csp`: all of friction winds the
 /// screw up, and its counts are only those of its own loop.

@@ -240,7 +240,7 @@ void CheckReserve(const std::string& key, const AxisConfig& axis, Problems& prob
                  "found " + Say(axis.limits.torque_Nm) + ", expected more than " +
                      Say(radius_m_rad * r.pushed_N) +
                      ": that much model.extensions (constant_torque, cable_spring) states to push the table "
-                     "besides friction, and the axis could neither be held nor stopped");
+                     "besides friction, and the axis could not be moved against it");
   else if (r.needed_Nm > axis.limits.torque_Nm)
     problems.Add(key + ".limits.acceleration_mm_s2",
                  "impossible limit: found " + Say(axis.limits.acceleration_mm_s2) + ", which takes " +
@@ -277,7 +277,8 @@ void CheckStopping(const MachineConfig& c, const std::string& key, const AxisCon
   if (travel_mm > axis.limits.safe_travel_mm)
     problems.Add(key + ".limits.safe_travel_mm",
                  "found " + Say(axis.limits.safe_travel_mm) + ", but from rest at the torque limit" +
-                     AndThePush(r.pushed_N) + " the axis goes " + Say(travel_mm) +
+                     (UnbornePushOf(axis.model).sliding_N > 0.0 ? AndThePush(r.pushed_N) + "," : "") +
+                     " the axis goes " + Say(travel_mm) +
                      " mm until the drive notices a dead master (notice_ms " + Say(axis.drive.notice_ms) +
                      ") and has stopped");
 }

@@ -33,6 +33,7 @@ struct Axis {
   double lag_s = 0.0;
   double friction_drop_N = 0.0;
   double unborne_N = 0.0;  ///< of what the model says pushes, beyond Coulomb friction: acts with the drive
+  double braked_N = 0.0;   ///< by friction without torque, less what the model says pushes
 };
 
 // As stiff as the cycle tells its monitors that the loops in use are.
@@ -63,7 +64,9 @@ Axis Known(const MachineConfig& config, const AxisConfig& axis) {
   a.t = ThresholdsOf(a.monitored, config.control.monitor, a.period_s);
   a.lag_s = 1e-3 * axis.drive.lag_ms;
   a.friction_drop_N = a.monitored.Fs_N - a.monitored.Fc_N;
-  a.unborne_N = std::max(0.0, UnbornePushOf(axis.model).sliding_N);
+  const double unborne_N = UnbornePushOf(axis.model).sliding_N;
+  a.unborne_N = std::max(0.0, unborne_N);
+  a.braked_N = std::max(0.0, -unborne_N);
   return a;
 }
 
@@ -165,14 +168,26 @@ FaultBound Frozen(const Axis& a, const Standing& standing, double begins, double
           seen_s + a.period_s + Off_s(a)};
 }
 
+// Until an axis without torque is the following error away from its path, which it leaves from rest or at the
+// path's speed.
+double LeftBehind_s(const Axis& a, double feed_m_s) {
+  const double fe_m = a.limits.following_error_m;
+  if (a.unborne_N > 0.0) return std::sqrt(2.0 * fe_m * a.t.heavy_kg / a.unborne_N);
+  if (feed_m_s <= 0.0) return 0.0;
+  // It coasts; once it stands, the path goes on.
+  const double coasts_s = a.braked_N > 0.0 ? feed_m_s * a.t.heavy_kg / a.braked_N : 0.0;
+  const double while_coasting_m = 0.5 * feed_m_s * coasts_s;
+  return fe_m < while_coasting_m ? coasts_s * std::sqrt(fe_m / while_coasting_m)
+                                 : 0.5 * coasts_s + fe_m / feed_m_s;
+}
+
 // Without torque the axis stays behind its path, and where friction does not bear what pushes, it falls
-// besides: from a path upwards the sooner away, along one downwards, or from rest, the later.
+// besides. Along a path downwards it is ahead, faster than the path by what it has fallen.
 FaultBound TorqueLost(const Axis& a, double feed_m_s) {
   const double fe_m = a.limits.following_error_m, fall_m_s2 = a.unborne_N / a.t.light_kg;
-  const double away_m_s = std::sqrt(feed_m_s * feed_m_s + 2.0 * fall_m_s2 * fe_m);
+  const double away_m_s = feed_m_s + std::sqrt(2.0 * fall_m_s2 * fe_m);
   const double open_s = a.period_s + Off_s(a);
-  double seen_s = feed_m_s > 0.0 ? fe_m / feed_m_s : 0.0;
-  if (fall_m_s2 > 0.0) seen_s = std::sqrt(2.0 * fe_m * a.t.heavy_kg / a.unborne_N);
+  const double seen_s = LeftBehind_s(a, feed_m_s);
   return {1e3 * (fe_m + away_m_s * open_s + 0.5 * fall_m_s2 * open_s * open_s), seen_s + open_s};
 }
 
@@ -281,7 +296,7 @@ double CoastTravel_mm(const AxisConfig& axis) {
   const double held_N = -UnbornePushOf(axis.model).sliding_N;
   if (held_N <= 0.0) return std::numeric_limits<double>::infinity();
   const double speed_m_s = 1e-3 * axis.limits.velocity_mm_s;
-  return 1e3 * 0.5 * ToSi(axis.model.mechanics).mass_kg * speed_m_s * speed_m_s / held_N;
+  return 1e3 * 0.5 * ToSi(Extended(axis.model).mechanics).mass_kg * speed_m_s * speed_m_s / held_N;
 }
 
 }  // namespace contour

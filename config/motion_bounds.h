@@ -58,9 +58,9 @@ struct WorstDeparture {
 };
 WorstDeparture WorstDepartureOf(const MachineConfig& config, const AxisConfig& axis);
 
-/// How far the axis coasts from its highest speed once the voltage is off, mm, by what Coulomb friction does
-/// not bear of a stated push anyway; infinite where it does not bear it all: once it moves, the axis goes on
-/// until something else stops it. Drives that close a holding brake then stop sooner.
+/// How far the axis coasts from its highest speed once the voltage is off, mm, by what a stated push leaves
+/// of Coulomb friction; infinite where it leaves nothing: once it moves, the axis goes on until something
+/// else stops it. Drives that close a holding brake then stop sooner.
 double CoastTravel_mm(const AxisConfig& axis);
 
 }  // namespace contour

@@ -22,8 +22,7 @@ std::string ForceFromOutside(const AxisConfig& axis, double pushed_N, double rad
               : "missing, which is a quarter of rated force, " + Say(allowed_N)) +
          ", less than the " + Say(pushed_N) +
          " N; expected more, with what cuts besides: an axis that is pushed by more looks as if its encoder "
-         "or "
-         "its torque lied, and is switched off";
+         "or its torque lied, and is switched off";
 }
 
 std::string Ramp(const MachineConfig& machine, const AxisConfig& axis, double radius_m_rad) {

@@ -55,13 +55,13 @@ CycleConfig MakeCycleConfig(const MachineConfig& machine, ControllerName control
                  speed_rad_s = 1e-3 * axis.limits.velocity_mm_s / r_m;
     // An absolute encoder is right wherever the axis was moved to by hand while its drive was off, as long as
     // that is where the axis can be.
-    if (axis.drive.absolute_encoder)
-      drive.unseen_travel_rad += 1e-3 * (axis.limits.position_mm[1] - axis.limits.position_mm[0]) / r_m;
+    const double stroke_rad = 1e-3 * (axis.limits.position_mm[1] - axis.limits.position_mm[0]) / r_m;
+    if (axis.drive.absolute_encoder) drive.unseen_travel_rad += stroke_rad;
     const double coast_mm = CoastTravel_mm(axis);
     if (std::isfinite(coast_mm))
       drive.coast_s2_rad = 1e-3 * coast_mm / r_m / (speed_rad_s * speed_rad_s);
     else if (axis.drive.absolute_encoder)
-      drive.unseen_travel_rad = 0.0;  // it falls as far as the machine lets it, and its encoder knows how far
+      drive.unseen_travel_rad += stroke_rad;  // it falls to the machine's own stop, wherever that is beyond
     drive.drive.mode = ModeFor(controller, axis.drive);
     out.master.axes.push_back(drive);
   }

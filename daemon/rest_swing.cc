@@ -100,8 +100,7 @@ std::string RestSwing::Sentence(const Axis& axis) {
          RoundedText(1e6 * axis.swing->position_m) + " um) at some " +
          std::to_string(std::lround(axis.swing->frequency_Hz)) +
          " Hz: in csp that is the drive's own loop. Tune it in the drive: position and velocity gains are "
-         "too "
-         "high for this axis, or its integral action hunts across friction (contour commission --axis " +
+         "too high for this axis, or its integral action hunts across friction (contour commission --axis " +
          axis.name + " --drive measures it)";
 }
 

@@ -275,6 +275,8 @@ Answer Supervisor::LeaveToDrives() {
 
 void Supervisor::Abandoned() {
   spdlog::warn("who attended the machine is gone: its torque goes off, after a stop on the path");
+  // All that it asked for has been answered by now: an enable that came behind its disable is taken back.
+  static_cast<void>(Disable());
   if (!RecordingModeText(parts_.recording_mode)) return;
   const auto deadline = Clock::now() + kRestTimeout;
   MachineState state = answers_.record().state;

@@ -115,9 +115,13 @@ std::string WhyUnusable(const Estimate& of, const RoughFit& rough) {
   const double level_sigma = std::max(rough.coulomb_sigma, rough.coulomb_by_parts * std::fabs(rough.coulomb));
   if (rough.coulomb < -kDisagree * level_sigma)
     return "by least squares friction pushes the axis on (" + RoundedText(rough.coulomb) + " to " +
-           RoundedText(level_sigma) +
-           "): the model lacks something large (a coupling that swings, a drive at its "
-           "limit); contour diagnose looks for it";
+           RoundedText(level_sigma) + "): " +
+           (rough.one_direction
+                ? "a constant force, a weight say, pushes it as well, and one direction does not tell the "
+                  "two "
+                  "apart; record strokes in both directions"
+                : "the model lacks something large (a coupling that swings, a drive at its limit); contour "
+                  "diagnose looks for it");
   if (const std::string why = Numbers(of); !why.empty()) return why;
   if (const std::string why = Inertia(of.axis, rough); !why.empty()) return why;
   if (!of.converged)

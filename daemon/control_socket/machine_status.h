@@ -65,8 +65,8 @@ struct MachineStatus {
   std::optional<std::uint64_t> emulator_seed;  ///< of an emulated machine in this process
   std::vector<std::string> axis_names;
   std::vector<AxisFacts> axis_facts;  ///< one per axis
-  std::vector<std::string>
-      warnings;  ///< what the start complained of, such as refused real time, and what lasts
+  /// What the start complained of, such as refused real time, and what lasts.
+  std::vector<std::string> warnings;
 
   CycleRecord record;               ///< of the newest cycle
   std::string bring_up;             ///< sentence on where bring-up stands or why it failed; may be empty

@@ -133,8 +133,8 @@ TEST_F(LostReference, AnAbsoluteEncoderThatComesBackWhereItWasIsBelieved) {
   Move(-10.0);
 }
 
-// Where it would fall nobody knows but its encoder.
-TEST_F(LostReference, AnAbsoluteEncoderIsBelievedWhereverItsAxisMayHaveFallen) {
+// To the machine's own stop, which is beyond the limits.
+TEST_F(LostReference, AnAbsoluteEncoderIsBelievedWhereItsAxisMayHaveFallen) {
   EmulatedMachineFile file = ExampleMachine();
   UseMachine(file);
   DriveFaults::Restart(machine_->emulated(), 0);
@@ -149,6 +149,11 @@ TEST_F(LostReference, AnAbsoluteEncoderIsBelievedWhereverItsAxisMayHaveFallen) {
   DriveFaults::Displace(machine_->emulated(), 0, 100 * 1048576);
   Reset();
   EXPECT_EQ(reference(0), ReferenceState::kAbsolute);
+  UseMachine(file);
+  DriveFaults::Restart(machine_->emulated(), 0);
+  DriveFaults::Displace(machine_->emulated(), 0, 200 * 1048576);
+  Reset();
+  EXPECT_EQ(reference(0), ReferenceState::kLost);
 }
 
 TEST_F(LostReference, AnAxisStandsWhereItWasToldAndGoesOnFromThere) {

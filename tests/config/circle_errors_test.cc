@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/friction_choice.h"
+
 namespace contour {
 namespace {
 
@@ -28,16 +30,17 @@ AxisConfig Axis() {
 
 TEST(CircleErrors, OfADriveGrowWithItsCountsAndTheScrewsGivingWay) {
   AxisConfig axis = Axis();
-  const double fine_m = CircleErrorByDrive_m(axis, kPeriod_s);
+  const double fine_m = CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s));
   EXPECT_NEAR(fine_m, 0.25e-6 + 7.0 * 5e-9, 0.02 * fine_m);
   axis.model.mechanics.screw_stiffness_N_um *= 2.0;
-  EXPECT_NEAR(CircleErrorByDrive_m(axis, kPeriod_s), 0.125e-6 + 7.0 * 5e-9, 2e-9);
+  EXPECT_NEAR(CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s)), 0.125e-6 + 7.0 * 5e-9, 2e-9);
   // 40 N on 89 kg: 0.22 um in a millisecond. Beyond, what is made of its reports is averaged.
   axis.drive.encoder_counts_per_rev = 25000;
-  EXPECT_NEAR(CircleErrorByDrive_m(axis, kPeriod_s), 0.125e-6 + 7.0 * 200e-9, 2e-9);
-  EXPECT_NEAR(CircleErrorByDrive_m(axis, 0.5 * kPeriod_s), 0.125e-6 + 3.0 * 200e-9, 2e-9);
+  EXPECT_NEAR(CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s)), 0.125e-6 + 7.0 * 200e-9, 2e-9);
+  EXPECT_NEAR(CircleErrorByDrive_m(axis, ReportsAreNoise(axis, 0.5 * kPeriod_s)), 0.125e-6 + 3.0 * 200e-9,
+              2e-9);
   axis.drive.encoder_counts_per_rev = 1e4;
-  EXPECT_NEAR(CircleErrorByDrive_m(axis, kPeriod_s), 0.125e-6 + 3.0 * 500e-9, 2e-9);
+  EXPECT_NEAR(CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s)), 0.125e-6 + 3.0 * 500e-9, 2e-9);
 }
 
 /// The farthest that a table swings on its screw, over how far it gives way in the end, when friction turns
@@ -68,12 +71,14 @@ TEST(CircleErrors, OfADriveHaveTheTablesSwingOnItsScrew) {
       AxisConfig axis = Axis();
       axis.model.mechanics.table_mass_kg = table_kg;
       axis.model.mechanics.screw_damping_Ns_m = damping_Ns_m;
-      const double gives_way = (CircleErrorByDrive_m(axis, kPeriod_s) - 7.0 * 5e-9) / 0.25e-6;
+      const double gives_way =
+          (CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s)) - 7.0 * 5e-9) / 0.25e-6;
       EXPECT_NEAR(gives_way, Farthest(axis), 0.06 * Farthest(axis)) << table_kg << ' ' << damping_Ns_m;
     }
   AxisConfig heavy = Axis();
   heavy.model.mechanics.table_mass_kg = 2500.0;
-  EXPECT_GT(CircleErrorByDrive_m(heavy, kPeriod_s), 1.7 * CircleErrorByDrive_m(Axis(), kPeriod_s));
+  EXPECT_GT(CircleErrorByDrive_m(heavy, ReportsAreNoise(heavy, kPeriod_s)),
+            1.7 * CircleErrorByDrive_m(Axis(), ReportsAreNoise(Axis(), kPeriod_s)));
 }
 
 // With 5 nm a count a quarter is left; with 0.2 um behind a stiff screw what is made from a drive's reports
@@ -81,12 +86,14 @@ TEST(CircleErrors, OfADriveHaveTheTablesSwingOnItsScrew) {
 TEST(CircleErrors, OfADriveAloneHaveAllOfTheWindUpAndFewerCounts) {
   AxisConfig axis = Axis();
   EXPECT_NEAR(CircleErrorByDriveAlone_m(axis), 1e-6 + 3.0 * 5e-9, 1e-12);
-  EXPECT_LT(CircleErrorByDrive_m(axis, kPeriod_s), 0.3 * CircleErrorByDriveAlone_m(axis));
+  EXPECT_LT(CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s)),
+            0.3 * CircleErrorByDriveAlone_m(axis));
   axis.drive.encoder_counts_per_rev = 2500;
-  EXPECT_LT(CircleErrorByDrive_m(axis, kPeriod_s), CircleErrorByDriveAlone_m(axis));
+  EXPECT_LT(CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s)), CircleErrorByDriveAlone_m(axis));
   axis.drive.encoder_counts_per_rev = 25000;
   axis.model.mechanics.screw_stiffness_N_um *= 3.0;
-  EXPECT_GT(CircleErrorByDrive_m(axis, kPeriod_s), kModesDiffer * CircleErrorByDriveAlone_m(axis));
+  EXPECT_GT(CircleErrorByDrive_m(axis, ReportsAreNoise(axis, kPeriod_s)),
+            kModesDiffer * CircleErrorByDriveAlone_m(axis));
 }
 
 TEST(CircleErrors, OfTorquesFromHereGrowWithTheLoopsGivingWayAndFriction) {

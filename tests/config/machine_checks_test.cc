@@ -226,7 +226,7 @@ TEST(MachineChecks, WhatTheModelSaysPushesTakesItsShareOfTheTorque) {
   const std::string problem = Only(c);
   EXPECT_TRUE(
       problem.starts_with("axes.x.limits.safe_travel_mm: found 2, but from rest at the torque limit "
-                          "and the 377 N that model.extensions states the axis goes "))
+                          "and the 377 N that model.extensions states, the axis goes "))
       << problem;
   x.limits.safe_travel_mm = 2.0 * travel_mm;
   EXPECT_TRUE(Check(c).empty());
@@ -335,8 +335,11 @@ TEST(ModeAdvice, CspWithACoarseEncoderIsAdvisedAgainst) {
   EXPECT_NE(ModeAdvice(c).front().find("machine.controller: csp"), std::string::npos)
       << ModeAdvice(c).front();
   EXPECT_TRUE(Check(c).empty()) << "advice refuses nothing";
-  // Behind counts that hide friction noise of the reports is averaged.
+  // Behind counts that hide friction noise of the reports is averaged, but not by the filter.
   c.axes.at("x").drive.encoder_counts_per_rev = 10000;
+  c.control.friction = FrictionKind::kSrukf;
+  EXPECT_EQ(ModeAdvice(c).size(), 1u);
+  c.control.friction = FrictionKind::kLinear;
   EXPECT_TRUE(ModeAdvice(c).empty());
   c.axes.at("x").drive.encoder_counts_per_rev = 25000;
   // A soft screw gives way by more than that anyway.

@@ -110,7 +110,7 @@ std::string Stops(const MachineConfig& c) {
   std::string safe;
   for (const auto& [name, axis] : c.axes)
     safe += "  " + name + ": from rest at the torque limit" +
-            (Reserve(axis).pushed_N > 0.0 ? " and what the model states to push besides" : "") +
+            (UnbornePushOf(axis.model).sliding_N > 0.0 ? " and what the model states to push besides" : "") +
             ", until the drive has noticed a dead master (" + Number(axis.drive.notice_ms, "ms") +
             ") and stopped: " + Fixed(SilentMaster(ToStoppingAxis(c, axis), 0.0).travel_mm, 2, "mm") +
             ", safe travel " + Number(axis.limits.safe_travel_mm, "mm") + "\n";

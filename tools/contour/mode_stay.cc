@@ -66,6 +66,7 @@ bool ModeStay::Enter(const nlohmann::json& request, const std::function<bool(con
   }
   Attend(*client_, true);
   entered_ = is_so(AskForMachine(*client_));
+  if (!entered_) Attend(*client_, false);
   return entered_;
 }
 
