@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 
 #include <array>
+#include <atomic>
 #include <stop_token>
 #include <thread>
 
@@ -26,13 +27,15 @@ class FakeDaemon {
           while (!stop.stop_requested()) Serve(stop);
         }) {}
 
+  [[nodiscard]] bool attended() const { return attended_; }
+
  private:
   static bool Readable(int fd) {
     pollfd one{fd, POLLIN, 0};
     return ::poll(&one, 1, 10) > 0;
   }
 
-  void Serve(const std::stop_token& stop) const {
+  void Serve(const std::stop_token& stop) {
     if (!Readable(listener_.get())) return;
     const Descriptor client = listener_.Accept();
     std::string text;
@@ -45,6 +48,7 @@ class FakeDaemon {
       for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
         const json request = json::parse(text.substr(0, end));
         text.erase(0, end + 1);
+        if (request.at("request") == "attend") attended_ = request.at("on").get<bool>();
         const std::string answer = Answer(request).dump() + "\n";
         ::send(client.get(), answer.data(), answer.size(), MSG_NOSIGNAL);
         if (request.at("request") == "torque_mode" || request.at("request") == "csp_mode") return;
@@ -61,6 +65,7 @@ class FakeDaemon {
 
   UnixListener listener_;
   std::string machine_;
+  std::atomic<bool> attended_ = false;
   std::jthread thread_;
 };
 
@@ -70,12 +75,16 @@ class ModeStayTest : public ::testing::Test {
   bool TorqueMode(const MachineConfig& machine, const std::map<std::string, LoopTuning>& loops) {
     const FakeDaemon daemon(path_, machine);
     auto client = std::make_unique<ControlClient>(path_);
-    return ModeStay(client, path_).EnterTorqueMode(loops, {});
+    const bool entered = ModeStay(client, path_).EnterTorqueMode(loops, {});
+    EXPECT_EQ(daemon.attended(), entered) << "in no other mode its end is nobody's loss";
+    return entered;
   }
   bool Csp(const MachineConfig& machine) {
     const FakeDaemon daemon(path_, machine);
     auto client = std::make_unique<ControlClient>(path_);
-    return ModeStay(client, path_).EnterCsp();
+    const bool entered = ModeStay(client, path_).EnterCsp();
+    EXPECT_EQ(daemon.attended(), entered);
+    return entered;
   }
 
   test::ScratchDirectory scratch_;
