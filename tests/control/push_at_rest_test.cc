@@ -188,5 +188,24 @@ TEST(PushAtRest, IsSeenRightAfterEnabling) {
   EXPECT_LT(pushed_N, 0.2 * AtRest::InCascade().Fc_N + 0.03 * 200.0);
 }
 
+// Of an axis that hangs on its drive, a weight that friction does not bear.
+TEST(PushAtRest, IsSeenWhereTheDriveHoldsAWeightFromTheFirstReport) {
+  for (const double rate_N_s : {50.0, 200.0, 1000.0})
+    for (const double sign : {-1.0, 1.0}) {
+      AtRest axis;
+      axis.Disabled();
+      const double weight_N = 3.0 * AtRest::InCascade().Fc_N;
+      for (int k = 0; k < 300; ++k) ASSERT_EQ(axis.Step(PerMille(weight_N)), Reason::kNone);
+      double pushed_N = 0.0;
+      Reason found = Reason::kNone;
+      while (found == Reason::kNone && pushed_N < 400.0) {
+        pushed_N += rate_N_s * kPeriod_s;
+        found = axis.Step(PerMille(weight_N + sign * pushed_N));
+      }
+      EXPECT_EQ(found, Reason::kFeedbackFrozen);
+      EXPECT_LT(pushed_N, 0.2 * AtRest::InCascade().Fc_N + 0.03 * rate_N_s) << rate_N_s * sign;
+    }
+}
+
 }  // namespace
 }  // namespace contour
