@@ -93,9 +93,9 @@ StoppingAxis ToStoppingAxis(const MachineConfig& config, const AxisConfig& axis)
   s.path_jerk_m_s3 = limits.jerk_m_s3;
   s.following_error_mm = axis.limits.following_error_mm;
   const double unborne_N = std::max(0.0, UnbornePushOf(axis.model).sliding_N);
-  const double mass_kg = ToSi(Extended(axis.model).mechanics).mass_kg;
-  s.torque_acceleration_m_s2 = (limits.force_N + unborne_N) / mass_kg;
-  s.braking_m_s2 = (limits.force_N - unborne_N) / mass_kg;
+  const double unborne_m_s2 = unborne_N / ToSi(Extended(axis.model).mechanics).mass_kg;
+  s.torque_acceleration_m_s2 = limits.force_N / m.mass_kg + unborne_m_s2;
+  s.braking_m_s2 = limits.force_N / m.mass_kg - unborne_m_s2;
   s.ramp_m_s2 = axis.drive.quick_stop_deceleration_rad_s2 * m.radius_m_rad;
   s.notice_s = axis.drive.notice_ms * 1e-3;
   s.period_s = config.machine.cycle_us * 1e-6;

@@ -72,7 +72,7 @@ class DrivePush {
       swing_N_ = 0.0;
       return false;
     }
-    swing_N_ = std::max(swing_N_ * (1.0 - t.push_fade), std::abs(r.swing_N));
+    swing_N_ = std::max(swing_N_ * t.push_kept, std::abs(r.swing_N));
     small_least_N_ += t.push_fade * (r.force_N - small_least_N_);
     small_most_N_ += t.push_fade * (r.force_N - small_most_N_);
     small_least_N_ = std::min(small_least_N_, r.force_N);

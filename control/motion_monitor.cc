@@ -155,10 +155,11 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   if (axis_.in_cascade) {
     same_turns_.See(settled_N);
     near_turns_.See(settled_N);
-    turns_N_ = std::max(turns_N_ * (1.0 - t_.push_fade), same_turns_.most_N());
+    turns_N_ = std::max(turns_N_ * t_.push_kept, same_turns_.most_N());
   }
   // Kicks come from either side: some of one sign in a row are no push, even where this reading has seen none
   // come back yet.
+  const bool turned = turns_N_ > 0.0;
   const double same_noise_N = std::max(t_.swing * same_turns_.most_N(), turns_N_);
   const double near_noise_N = std::max(t_.swing * near_turns_.most_N(), turns_N_);
   slow_force_N_ += t_.frozen_filter * swing_N;
@@ -169,7 +170,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     same_reference_m_ = s.reference_m;
     same_lead_m_ = s.lead_m;
     same_ = 0;
-    if (turns_N_ > 0.0) same_turns_.Restart(settled_N);
+    if (turned) same_turns_.Restart(settled_N);
   } else {
     same_ += waited_periods_;
     least_N_ = std::min(least_N_, slow_force_N_);
@@ -192,7 +193,7 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     near_periods_ = 0;
     near_least_N_ = near_most_N_ = slow_force_N_;
     near_braked_ = true;
-    if (turns_N_ > 0.0) near_turns_.Restart(settled_N);
+    if (turned) near_turns_.Restart(settled_N);
     settling_N_ = std::max(settling_N_, std::abs(slow_force_N_ - slower_force_N_));
   } else {
     near_periods_ += waited_periods_;

@@ -65,7 +65,8 @@ void UseReport(const MonitoredAxis& a, const MonitorConfig& c, double period_s,
   t.rest_force_N = t.frozen.force_N + kReportNoise * c.reported_torque_error_rel * a.rated_force_N;
   t.pushed_force_N = t.rest_force_N + t.flickering.force_N - t.frozen.force_N;
   t.rest_periods = Periods(kReportSettles * kReport_s, period_s);
-  t.push_fade = 1.0 - std::exp(-period_s / kPushForgotten_s);
+  t.push_kept = std::exp(-period_s / kPushForgotten_s);
+  t.push_fade = 1.0 - t.push_kept;
   // Its mean follows later still.
   t.tail_decay = std::exp(-period_s / (kReport_s + 0.5 * kChatter_periods * period_s));
   t.swing = std::max(kSwingNoise, kSwingTail * kReport_s / (kChatter_periods * period_s));

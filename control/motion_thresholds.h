@@ -91,6 +91,7 @@ struct MotionThresholds {
   double tail_N = 0.0;           ///< csp: by which a filtered report may still lag behind
   double tail_decay = 0.0;       ///< of it
   double push_fade = 0.0;        ///< csp: of what the force has changed and swung by
+  double push_kept = 1.0;        ///< what is left of it
   double settling_filter = 0.0;  ///< of the torque that a disturbance of before has changed
   double settling_decay = 0.0;
   double frozen_filter = 0.0;
