@@ -157,11 +157,10 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
     near_turns_.See(settled_N);
     turns_N_ = std::max(turns_N_ * t_.push_kept, same_turns_.most_N());
   }
+  const bool turned = turns_N_ > 0.0;
   // Kicks come from either side: some of one sign in a row are no push, even where this reading has seen none
   // come back yet.
-  const bool turned = turns_N_ > 0.0;
   const double same_noise_N = std::max(t_.swing * same_turns_.most_N(), turns_N_);
-  const double near_noise_N = std::max(t_.swing * near_turns_.most_N(), turns_N_);
   slow_force_N_ += t_.frozen_filter * swing_N;
   slower_force_N_ += t_.settling_filter * (slow_force_N_ - slower_force_N_);
   // A reading that is exactly the same, under another force or along a path that goes on.
@@ -215,11 +214,13 @@ Reason MotionMonitor::Frozen(const MotionSample& s) noexcept {
   }
   // Inertia may hold a reading within its band for a while, against less the longer that lasts.
   const double inertial_N = t_.Inertial_N(t_.flickering, near_periods_ * period_s_);
-  const double flickering_N =
-      t_.flickering_force_N + near_noise_N + (near_periods_ >= t_.force_periods ? 0.0 : inertial_N);
+  const auto flickering_N = [&] {
+    const double noise_N = std::max(t_.swing * near_turns_.most_N(), turns_N_);
+    return t_.flickering_force_N + noise_N + (near_periods_ >= t_.force_periods ? 0.0 : inertial_N);
+  };
   const bool by_force =
       (same_ >= kSameAtLeast_periods && most_N_ - least_N_ > t_.frozen_force_N + same_noise_N) ||
-      (near_periods_ >= kSameAtLeast_periods && near_most_N_ - near_least_N_ > flickering_N);
+      (near_periods_ >= kSameAtLeast_periods && near_most_N_ - near_least_N_ > flickering_N());
   // A reference that begins with a jump is answered after the loop's delay, which may be longer than stated.
   const auto gone = [&](std::uint32_t& periods, double from_m, double from_lead_m, double path_m) {
     const double gone_m = s.reference_m - from_m;
