@@ -192,18 +192,11 @@ class Daemon {
       spdlog::warn(warning);
       warnings.push_back(warning);
     }
-    for (const std::string& advice : ModeAdvice(machine_)) {
-      spdlog::warn(advice);
-      warnings.push_back(advice);
-    }
-    for (const std::string& advice : PushAdvice(machine_)) {
-      spdlog::warn(advice);
-      warnings.push_back(advice);
-    }
-    for (const std::string& loaded : LoadedModelTexts(options_.models)) {
-      spdlog::warn(loaded);
-      warnings.push_back(loaded);
-    }
+    for (const auto& texts : {ModeAdvice(machine_), PushAdvice(machine_), LoadedModelTexts(options_.models)})
+      for (const std::string& text : texts) {
+        spdlog::warn(text);
+        warnings.push_back(text);
+      }
     const RecordingMode mode{options_.torque_loops, options_.torque_models, options_.csp_axes};
     if (const auto told = RecordingModeText(mode)) {
       spdlog::warn(*told);

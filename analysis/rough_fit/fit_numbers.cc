@@ -118,8 +118,7 @@ std::string WhyUnusable(const Estimate& of, const RoughFit& rough) {
            RoundedText(level_sigma) + "): " +
            (rough.one_direction
                 ? "a constant force, a weight say, pushes it as well, and one direction does not tell the "
-                  "two "
-                  "apart; record strokes in both directions"
+                  "two apart; record strokes in both directions"
                 : "the model lacks something large (a coupling that swings, a drive at its limit); contour "
                   "diagnose looks for it");
   if (const std::string why = Numbers(of); !why.empty()) return why;

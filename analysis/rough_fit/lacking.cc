@@ -157,20 +157,13 @@ double Varies(const Regression& r, std::initializer_list<std::pair<Index, double
 const double kLinearRms = std::sqrt(1.0 / 12.0), kSquareRms = std::sqrt(1.0 / 180.0);
 double SquareAboutMean(double x) { return x * x - 1.0 / 12.0; }
 
-/// What friction has beyond the Coulomb level, with this Stribeck velocity.
-double Falling(const StatedFriction& f, double vs, double v) {
-  if (!(vs > 0.0)) return 0.0;
-  const double part = v > 0.0 ? f.Fs_plus - f.Fc_plus : f.Fc_minus - f.Fs_minus;
-  return part * std::exp(-std::pow(std::fabs(v) / vs, f.exponent));
-}
-
 class Trial {
  public:
   Trial(const SmoothedMotion& m, const Signal& without_friction, const FittedRun& run)
       : m_(m), rows_(m, without_friction), axis_(run.axis), falls_less_(without_friction) {
     for (std::size_t k = 0; k < m.size(); ++k)
-      falls_less_[k] += Falling(run.axis.friction, run.axis.friction.vs, m.velocity[k]) -
-                        Falling(run.axis.friction, run.stated.vs, m.velocity[k]);
+      falls_less_[k] += BeyondCoulomb(run.axis.friction, run.axis.friction.vs, m.velocity[k]) -
+                        BeyondCoulomb(run.axis.friction, run.stated.vs, m.velocity[k]);
     const auto [low, high] = std::minmax_element(m.position.begin(), m.position.end());
     middle_ = 0.5 * (*low + *high);
     travel_ = *high - *low;
@@ -280,10 +273,8 @@ const char* Words(Lacking::What what) {
   switch (what) {
     case Lacking::What::kLessForce:
       return "large forces do less than the log says of them, as where a drive is at its limit or its "
-             "constant falls "
-             "with the current (record with less acceleration, or what the drive measures of its force in "
-             "place of "
-             "what it is asked for)";
+             "constant falls with the current (record with less acceleration, or what the drive measures "
+             "of its force in place of what it is asked for)";
     case Lacking::What::kCurve:
       return "friction is no straight line over the speed";
     case Lacking::What::kFalls:

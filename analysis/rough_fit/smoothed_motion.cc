@@ -50,15 +50,13 @@ void AddStretches(const AxisLog& log, const Signals& s, const StatedAxis& stated
   }
 }
 
-void TakeOutFalling(const StatedFriction& f, SmoothedMotion& m) {
-  for (std::size_t k = 0; k < m.counts.size(); ++k) {
-    const double v = m.velocity[k];
-    const double part = v > 0.0 ? f.Fs_plus - f.Fc_plus : f.Fc_minus - f.Fs_minus;
-    m.command[k] -= part * std::exp(-std::pow(std::fabs(v) / f.vs, f.exponent));
-  }
-}
-
 }  // namespace
+
+double BeyondCoulomb(const StatedFriction& f, double vs, double velocity) {
+  if (!(vs > 0.0)) return 0.0;
+  const double part = velocity > 0.0 ? f.Fs_plus - f.Fc_plus : f.Fc_minus - f.Fs_minus;
+  return part * std::exp(-std::pow(std::fabs(velocity) / vs, f.exponent));
+}
 
 bool SmoothedMotion::Slides(std::size_t k) const {
   return counts[k] != 0 && std::fabs(velocity[k]) >= kSlides * max_speed;
@@ -69,7 +67,9 @@ SmoothedMotion SmoothMotion(const AxisLog& log, const StatedAxis& stated, const 
   const Signals s = MakeSignals(log, stated);
   const double sigma = SigmaRows(log.period_s);
   AddStretches(log, s, stated, sigma, m);
-  if (falling != nullptr && falling->vs > 0.0) TakeOutFalling(*falling, m);
+  if (falling != nullptr)
+    for (std::size_t k = 0; k < m.size(); ++k)
+      m.command[k] -= BeyondCoulomb(*falling, falling->vs, m.velocity[k]);
   for (std::size_t k = 0; k < m.counts.size(); ++k)
     if (m.counts[k] != 0) m.max_speed = std::max(m.max_speed, std::fabs(m.velocity[k]));
   m.position = s.position;

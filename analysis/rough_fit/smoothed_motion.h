@@ -26,6 +26,10 @@ struct SmoothedMotion {
 /// `falling`: friction whose break-away part is taken out of the command; null: nothing is.
 SmoothedMotion SmoothMotion(const AxisLog& log, const StatedAxis& stated, const StatedFriction* falling);
 
+/// What sliding friction has beyond the Coulomb level at this velocity, with the Stribeck velocity `vs`; 0:
+/// none.
+double BeyondCoulomb(const StatedFriction& f, double vs, double velocity);
+
 /// A force, smoothed as the motion is; gaps are not seen.
 Signal SmoothAsMotion(const Signal& force, double period_s);
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from control_socket import ControlSocket  # noqa: E402
-from free_port import free_port  # noqa: E402
+from lockstep_daemon import lockstep_daemon  # noqa: E402
 
 LONG_CIRCLE = "shape: circle\nradius_mm: 1\nfrequency_hz: 1\nturns: 100000\n"
 
@@ -77,22 +77,8 @@ def check(machine, scratch):
 
 def main():
     contourd, contour, machine_file = sys.argv[1:]
-    with tempfile.TemporaryDirectory() as scratch:
-        command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", f"{scratch}/control.sock"]
-        port = free_port()
-        for override in ("telemetry.publish=false", f"io.modbus.port={port}", f"emulator.io.port={port}"):
-            command += ["--set", override]
-        with open(f"{scratch}/daemon.txt", "w", encoding="utf-8") as messages:
-            process = subprocess.Popen(command, stdout=messages, stderr=messages)
-        try:
-            check(Machine(contour, f"{scratch}/control.sock"), scratch)
-        except Exception:
-            print(Path(f"{scratch}/daemon.txt").read_text(encoding="utf-8"))
-            raise
-        finally:
-            process.terminate()
-            status = process.wait(timeout=60)
-    assert status == 0, status
+    with tempfile.TemporaryDirectory() as scratch, lockstep_daemon(contourd, machine_file, scratch):
+        check(Machine(contour, f"{scratch}/control.sock"), scratch)
     return 0
 
 

@@ -6,7 +6,6 @@
 In lock-step on the in-process bus. The process stays the same, its log goes on in a file of its own, what cannot be loaded is
 refused before anything ends, and nothing is loaded while there is torque.
 """
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -15,7 +14,7 @@ import yaml
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from control_socket import ControlSocket  # noqa: E402
-from free_port import free_port  # noqa: E402
+from lockstep_daemon import lockstep_daemon  # noqa: E402
 
 
 class Client(ControlSocket):
@@ -62,23 +61,10 @@ def check(client, process, log):
 
 def main():
     contourd, machine_file = sys.argv[1:]
-    port = free_port()
     with tempfile.TemporaryDirectory() as scratch:
         log = f"{scratch}/run.log"
-        command = [contourd, "--config", machine_file, "--clock", "lockstep", "--socket", f"{scratch}/control.sock", "--log", log]
-        for override in ("telemetry.publish=false", f"io.modbus.port={port}", f"emulator.io.port={port}"):
-            command += ["--set", override]
-        with open(f"{scratch}/daemon.txt", "w", encoding="utf-8") as messages:
-            process = subprocess.Popen(command, stdout=messages, stderr=messages)
-        try:
+        with lockstep_daemon(contourd, machine_file, scratch, "--log", log) as process:
             check(Client(f"{scratch}/control.sock"), process, log)
-        except Exception:
-            print(Path(f"{scratch}/daemon.txt").read_text(encoding="utf-8"))
-            raise
-        finally:
-            process.terminate()
-            status = process.wait(timeout=60)
-    assert status == 0, status
     return 0
 
 

@@ -130,8 +130,7 @@ std::string Coasting(const AxisConfig& axis) {
   const std::string from = stated + " (constant_torque, cable_spring) are more than ";
   const std::string brake =
       ". Only a brake that the drive closes by itself, or a counterbalance, holds it after a fault, a stop "
-      "of "
-      "the drives and in Idle; bounds above that end with \"torque off\" are up to there";
+      "of the drives and in Idle; bounds above that end with \"torque off\" are up to there";
   if (UnbornePushOf(axis.model).at_rest_N > 0.0)
     return "WITH THE VOLTAGE OFF THE AXIS FALLS, from rest as well: " + from + "friction bears" + brake;
   return "WITH THE VOLTAGE OFF THE AXIS FALLS ONCE IT MOVES: " + from +
