@@ -229,7 +229,9 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
              ": more answers to SYNC come under this node number than SYNCs are sent; quick stop. Two drives "
              "have the same node number: give each its own, then reset";
     case Reason::kAxisMoves:
-      return axis + " is not at rest; it was not enabled. Wait until it stands, then enable again";
+      return axis +
+             " is not at rest; it was not enabled. Wait until it stands, then enable again; one that falls "
+             "or swings on needs its brake closed while the drive is off";
     case Reason::kTorqueLimit:
     case Reason::kTorqueRateLimit:
     case Reason::kSolverCap:

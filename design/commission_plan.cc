@@ -78,7 +78,11 @@ CommissionLimits DefaultCommissionLimits(const AxisConfig& axis) {
   // A slow axis needs what it has: near the Stribeck velocity levels and slopes are hardly told apart.
   const double speed_mm_s = std::max(std::min(kSpeed_mm_s, kShareOfSpeed * l.velocity_mm_s),
                                      std::min(kSlowestTop_mm_s, l.velocity_mm_s));
-  return {std::min(travel_mm, stroke_mm), speed_mm_s, kShareOfTorque * l.torque_Nm};
+  CommissionLimits limits{std::min(travel_mm, stroke_mm), speed_mm_s, kShareOfTorque * l.torque_Nm};
+  // An axis with little to spare beyond its own ramps needs more of it for them.
+  limits.max_torque_Nm =
+      std::max(limits.max_torque_Nm, std::min(l.torque_Nm, LargestTorque_Nm(axis, limits)));
+  return limits;
 }
 
 std::string MoreOfTheScrew(const AxisConfig& axis, double travel_mm) {
@@ -118,11 +122,13 @@ CommissionPlan PlanCommissioning(const MachineConfig& machine, const std::string
   plan.high_mm = plan.low_mm + travel;
   plan.largest_torque_Nm = LargestTorque_Nm(axis, limits);
   Require(plan.largest_torque_Nm <= limits.max_torque_Nm,
-          FormatText(
-              "--max_torque_Nm: found %g, but the ramps of %g mm/s^2 may take %.3g Nm (should the model be "
-              "wrong by "
-              "half): allow more, or lower axes.%s.limits.acceleration_mm_s2",
-              limits.max_torque_Nm, l.acceleration_mm_s2, plan.largest_torque_Nm, name.c_str()));
+          FormatText("--max_torque_Nm: found %g, but the ramps of %g mm/s^2 may take %.3g Nm (should the "
+                     "model be wrong by half): allow more%s, or lower axes.%s.limits.acceleration_mm_s2",
+                     limits.max_torque_Nm, l.acceleration_mm_s2, plan.largest_torque_Nm,
+                     plan.largest_torque_Nm > l.torque_Nm
+                         ? FormatText(" (axes.%s.limits.torque_Nm, too)", name.c_str()).c_str()
+                         : "",
+                     name.c_str()));
   plan.motions = CommissionMotions(plan, axis, position_mm, machine.machine.cycle_us);
   return plan;
 }

@@ -45,6 +45,7 @@ constexpr DriveState DecodeStatusword(std::uint16_t statusword) noexcept {
 }
 
 namespace statusword {
+inline constexpr std::uint16_t kWarning = 0x0080;        ///< bit 7: something that is no fault yet
 inline constexpr std::uint16_t kRemote = 0x0200;         ///< bit 9: the controlword is obeyed
 inline constexpr std::uint16_t kFollowsTarget = 0x1000;  ///< bit 12, in the cyclic synchronous modes
 }  // namespace statusword

@@ -209,6 +209,17 @@ def check_lines(operator):
     assert abs(largest[0] - 4.0) < 0.01 and abs(largest[1] - 3.0) < 0.02, largest  # less the tolerance at corners
 
 
+def check_warnings(operator):
+    """Words without an output are named, also where a program counts from the machine's zero; skipped lines are not."""
+    zero_mm = operator.status()["zero_mm"]["x"]
+    ngc = operator.scratch / "machine_zero.ngc"
+    ngc.write_text(f"G21 F3000\nG53 G0 X{zero_mm:.4f}\nM3 S100\n/M8\nG1 X1\n", encoding="utf-8")
+    for more, words in (([], "M3, S:"), (["--no-block-delete"], "M3, M8, S:")):
+        run = subprocess.run([operator.contour, "run", str(ngc), *more, "--socket", operator.socket],
+                             capture_output=True, text=True, check=False)
+        assert run.returncode == 0 and f"machine_zero.ngc:3: no output listens to {words}" in run.stderr, run.stderr
+
+
 def check_halts(operator):
     """M0 waits for the operator, M1 where that was asked for; a stop ends a program that waits."""
     ngc = operator.scratch / "halts.ngc"
@@ -265,6 +276,7 @@ def main():
             check_faster(operator)
             check_endless(operator, circle)
             check_lines(operator)
+            check_warnings(operator)
             check_halts(operator)
         finally:
             operator.daemon.terminate()

@@ -152,6 +152,23 @@ TEST_F(SupervisorTest, WhyAnAxisThatMovesIsNotEnabledIsSaid) {
   const Answer answer = enabling.get();
   EXPECT_FALSE(answer.accepted);
   EXPECT_NE(answer.reason.find("axis x is not at rest"), std::string::npos) << answer.reason;
+  // One that falls under a weight never stands: what helps is its brake.
+  EXPECT_NE(answer.reason.find("needs its brake"), std::string::npos) << answer.reason;
+}
+
+TEST_F(SupervisorTest, AWarningOfADriveIsInTheStatusWhileItLasts) {
+  const std::uint16_t enabled = 0x1237;
+  for (const std::uint16_t statusword : {enabled, static_cast<std::uint16_t>(enabled | 0x0080), enabled}) {
+    CycleRecord& record = queue_.Reserve()->output.record;
+    record = {};
+    record.cycle = ++cycles_;
+    record.axes.resize(1);
+    record.axes[0].feedback.statusword = statusword;
+    queue_.Publish();
+    std::string told;
+    for (const std::string& warning : supervisor_.Status().warnings) told += warning;
+    EXPECT_EQ(told.find("axis x: its drive warns") != std::string::npos, statusword != enabled) << told;
+  }
 }
 
 TEST_F(SupervisorTest, TorqueModeIsRefusedBeforeAnythingEnds) {

@@ -55,6 +55,25 @@ TEST(CommissionPlanTest, DefaultLimitsAreEnoughForEverySteepness) {
   }
 }
 
+// Whoever sizes a drive by its ramps has half as much again to spare, hardly three quarters.
+TEST(CommissionPlanTest, DefaultTorqueIsEnoughForTheRampsWhereTheLimitIs) {
+  MachineConfig machine = Example();
+  AxisConfig& axis = machine.axes.at("x");
+  axis.limits.torque_Nm = 20.0;
+  const double ramps_Nm =
+      PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis)).largest_torque_Nm;
+  axis.limits.torque_Nm = 1.01 * ramps_Nm;
+  EXPECT_NO_THROW(PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis)));
+  axis.limits.torque_Nm = 0.99 * ramps_Nm;
+  try {
+    PlanCommissioning(machine, "x", 0.0, DefaultCommissionLimits(axis));
+    ADD_FAILURE() << "its ramps take more than its limit";
+  } catch (const ConfigError& e) {
+    EXPECT_NE(std::string(e.what()).find("allow more (axes.x.limits.torque_Nm, too)"), std::string::npos)
+        << e.what();
+  }
+}
+
 // Reports of a drive that closes the loop have noise of that loop.
 TEST(CommissionPlanTest, ShakesMoreWhereTheDriveLeads) {
   MachineConfig machine = Example();

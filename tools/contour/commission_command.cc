@@ -252,7 +252,7 @@ void AddCommissionCommand(CLI::App& app, Action& action) {
   sub->add_option("--max_speed_mm_s", options->max_speed_mm_s,
                   "Largest speed (default: 40 % of the axis's limit, at most 100 mm/s)");
   sub->add_option("--max_torque_Nm", options->max_torque_Nm,
-                  "Torque at which it stops (default: 60 % of the axis's limit)");
+                  "Torque at which it stops (default: 60 % of the axis's limit, or what its ramps may take)");
   sub->add_option("--out", options->out, "Model file to write (default: NAME_model.yaml)");
   sub->add_option("--loop", options->loop, "Loop file to write (default: NAME_loop.yaml)");
   sub->add_option("--report", options->report, "Directory of the report (default: NAME_commissioning)");

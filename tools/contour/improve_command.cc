@@ -190,7 +190,7 @@ void AddLimits(CLI::App& sub, Options& options) {
   sub.add_option("--max_speed_mm_s", options.max_speed_mm_s,
                  "Largest speed (default: 40 % of the axis's limit, at most 100 mm/s)");
   sub.add_option("--max_torque_Nm", options.max_torque_Nm,
-                 "Torque at which it stops (default: 60 % of the axis's limit)");
+                 "Torque at which it stops (default: 60 % of the axis's limit, or what its ramps may take)");
   sub.add_option("--max_minutes", options.machine_minutes, "Machine time at most (default: 15)")
       ->check(CLI::Range(0.1, 600.0));
 }

@@ -10,11 +10,15 @@
 
 namespace contour {
 
-void WarnOfProgram(const std::filesystem::path& program, const EventUse& use, bool simulated,
-                   double following_m) {
+void WarnOfProgram(const std::filesystem::path& program, const EventUse& use, bool block_delete,
+                   bool simulated, double following_m) {
   if (FormatOf(program) != ProgramFormat::kGcode) return;
   try {
-    GcodeMoves moves = ParseGcode(ReadProgramText(program), program.string());
+    // Words and tolerances are the same wherever program zero is, so that G28, G30 and G53 may be read.
+    GcodeSettings settings;
+    settings.block_delete = block_delete;
+    settings.zero_m.emplace().fill(0.0);
+    GcodeMoves moves = ParseGcode(ReadProgramText(program), program.string(), settings);
     UseEvents(moves, program.string(), use);
     for (const std::string& warning : {IgnoredEvents(moves, program.string(), simulated),
                                        TightTolerance(moves, program.string(), following_m)})

@@ -318,7 +318,8 @@ int RunRun(const Options& options) {
   double following_m = 0.0;
   for (const json& axis : before.at("axes"))
     following_m = std::max(following_m, axis.at("facts").at("path_following_m").get<double>());
-  WarnOfProgram(options.program, EventsFor(options, before), false, following_m);
+  WarnOfProgram(options.program, EventsFor(options, before), *PartFor(options, before).block_delete, false,
+                following_m);
   StopOnSignals();
   std::optional<RowCollector> rows;
   if (options.out) rows.emplace(*client, *options.out);

@@ -123,7 +123,8 @@ int RunSimulate(const Options& options) {
   request.part = options.part;
   const MachineConfig& said = request.file.machine;
   WarnOfProgram(options.program,
-                UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)), true,
+                UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)),
+                options.part.block_delete.value_or(said.machine.block_delete), true,
                 1e-3 * said.machine.path_following_mm.value_or(0.0));
   if (const std::optional<std::string> wider = WiderToleranceText(said); wider && request.gcode)
     std::cerr << "contour: " << *wider << "\n";
