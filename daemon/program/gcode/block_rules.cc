@@ -4,11 +4,14 @@
 #include <cmath>
 #include <string>
 
+#include "daemon/program/gcode/drilling_cycle.h"
+
 namespace contour {
 namespace {
 
 constexpr int kMostMCodes = 4;
 constexpr double kMostTurns = 1e6;
+constexpr double kMostHoles = 1e6;
 constexpr double kNearlyWhole = 1e-3;
 
 bool IsArc(int motion) { return motion == 20 || motion == 30; }
@@ -45,6 +48,7 @@ void FindMotion(Block& block, int modal_motion) {
   if (!axes && NeedsAxes(nonmodal) && (own == kNoCode || own == kNoMotion))
     block.FailAtG(kNonModal, NameOfG(nonmodal) + ": expected axis words");
   if (own == kNoMotion && axes && !TakesAxes(nonmodal)) block.FailAtG(kMotion, "G80 takes no axis words");
+  if (IsDrillingCycle(own) && !axes) block.FailAtG(kMotion, NameOfG(own) + ": expected axis words");
   if (own != kNoCode && own != kNoMotion && TakesAxes(nonmodal)) {
     block.FailAtG(kMotion, NameOfG(own) + " and " + NameOfG(nonmodal) + " would both use the axis words");
   }
@@ -66,7 +70,9 @@ void CheckG10(const Block& block) {
     const int column = l ? l->column : block.g[kNonModal].column;
     block.FailAt(column, "G10: expected L2 or L20, the only ones that are supported");
   }
-  if (block.HasAny("rij")) block.FailAtG(kNonModal, "G10: a rotation of coordinates is not supported");
+  const bool turned = block.Has('r') && block.Get('r')->value != 0.0;
+  if (turned || block.HasAny("ij"))
+    block.FailAtG(kNonModal, "G10: a rotation of coordinates is not supported");
   const auto& p = block.Get('p');
   if (!p || !Whole(p->value) || p->value < -kNearlyWhole || p->value > 9.0 + kNearlyWhole) {
     const int column = p ? p->column : block.g[kNonModal].column;
@@ -108,19 +114,36 @@ void CheckWordsOfCodes(const Block& block) {
   if (!block.Has('h')) block.FailAtG(kToolLength, "G43: expected H0");
 }
 
+void CheckDrilling(const Block& block) {
+  for (const char letter : {'u', 'v', 'w'})
+    if (block.Has(letter)) block.FailAtWord(letter, "a drilling cycle moves X, Y and Z only");
+  const auto& l = block.Get('l');
+  if (l && (!Whole(l->value) || l->value < 1.0 - kNearlyWhole || l->value > kMostHoles))
+    block.FailAtWord('l', "L of a drilling cycle: expected how many holes, 1 at least");
+  if (block.Has('p') && DwellsInCycle(block.motion) && block.Get('p')->value < 0.0)
+    block.FailAtWord('p', "P of a drilling cycle: expected a time in seconds");
+  if (block.Has('q') && PecksInCycle(block.motion) && block.Get('q')->value <= 0.0)
+    block.FailAtWord('q', "Q of a drilling cycle: expected the depth of a peck, more than 0");
+}
+
 void CheckWords(const Block& block) {
   const bool arc = IsArc(block.motion);
+  const bool drills = IsDrillingCycle(block.motion);
   const bool g64 = block.G(kPathControl) == 640;
   const bool g10 = block.G(kNonModal) == 100;
-  for (const char letter : {'i', 'j', 'k', 'r'})
-    if (block.Has(letter) && !arc) block.FailAtWord(letter, "I, J, K and R belong to G2 and G3");
+  for (const char letter : {'i', 'j', 'k'})
+    if (block.Has(letter) && !arc) block.FailAtWord(letter, "I, J and K belong to G2 and G3");
+  if (block.Has('r') && !arc && !drills && !g10)
+    block.FailAtWord('r', "R belongs to G2, G3 and drilling cycles");
   if (block.Has('d')) block.FailAtWord('d', "D belongs to G41 and G42, which are not supported");
   if (block.Has('h') && block.G(kToolLength) != 430) block.FailAtWord('h', "H belongs to G43");
-  if (block.Has('l') && !g10) block.FailAtWord('l', "L belongs to G10");
-  if (block.Has('q') && !g64) block.FailAtWord('q', "Q belongs to G64");
+  if (block.Has('l') && !g10 && !drills) block.FailAtWord('l', "L belongs to G10 and drilling cycles");
+  if (block.Has('q') && !g64 && !PecksInCycle(block.motion))
+    block.FailAtWord('q', "Q belongs to G64, G73 and G83");
+  if (drills) CheckDrilling(block);
   if (!block.Has('p')) return;
-  if (!g10 && !g64 && !arc && block.G(kNonModal) != 40)
-    block.FailAtWord('p', "P belongs to G2, G3, G4, G10 and G64");
+  if (!g10 && !g64 && !arc && !DwellsInCycle(block.motion) && block.G(kNonModal) != 40)
+    block.FailAtWord('p', "P belongs to G2, G3, G4, G10, G64, G82 and G89");
   const double p = block.Get('p')->value;
   if (arc && !Whole(p)) block.FailAtWord('p', "P of an arc: expected a whole number of turns");
   if (arc && p > kMostTurns) block.FailAtWord('p', "P of an arc: more turns than an arc may have");

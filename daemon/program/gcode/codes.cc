@@ -13,6 +13,12 @@ constexpr Row kGCodes[] = {
     {10, 10, kMotion},
     {20, 20, kMotion},
     {30, 30, kMotion},
+    {730, 730, kMotion},
+    {810, 810, kMotion},
+    {820, 820, kMotion},
+    {830, 830, kMotion},
+    {850, 850, kMotion},
+    {890, 890, kMotion},
     {kNoMotion, kNoMotion, kMotion},
     {40, 40, kNonModal},
     {100, 100, kNonModal},
@@ -58,6 +64,10 @@ struct Refusal {
   int last;
   const char* what;
 };
+constexpr char kG41[] = "cutter compensation; let the CAM program write the path of the tool's centre";
+constexpr char kG84[] =
+    "a canned cycle that turns or stops the spindle; write its moves, M and S words one by one (or take G81, "
+    "G82, G83, G73, G85 or G89)";
 constexpr char kG70[] =
     "turning cycles here; where G70 is meant as inches and G71 as millimetres, write G20 and G21";
 constexpr Refusal kRefusedG[] = {
@@ -70,13 +80,14 @@ constexpr Refusal kRefusedG[] = {
     {301, 301, "stored positions"},
     {330, 331, "motion in step with the spindle"},
     {380, 389, "probing"},
-    {410, 429, "cutter compensation"},
+    {410, 429, kG41},
     {431, 439, "tool lengths"},
     {700, 719, kG70},
     {720, 729, "turning cycles"},
-    {730, 759, "canned cycles"},
+    {740, 749, kG84},
     {760, 769, "thread cutting"},
-    {810, 899, "canned cycles"},
+    {840, 849, kG84},
+    {860, 889, kG84},
     {950, 950, "feed per revolution"},
     {960, 960, "constant surface speed"},
 };

@@ -12,6 +12,7 @@ constexpr double kMillimetre_m = 1e-3;
 constexpr double kMinute_s = 60.0;
 // The slowest feed that inverse time may come to, in units per minute.
 constexpr double kSlowestInverse = 0.1;
+constexpr double kMostPecks = 1e6;
 
 double Norm(const AxisValues& a, const AxisValues& b, std::size_t from, std::size_t to) {
   double squared = 0.0;
@@ -38,6 +39,7 @@ void GcodeInterpreter::Execute(Block& block, bool in_sub) {
   line_ = block.line;
   in_sub_ = in_sub;
   CheckBlock(block, {motion_, absolute_, plane_, settings_.zero_m.has_value()});
+  CheckSeries(block);
   FeedMode(block);
   Feed(block);
   Events(block);
@@ -83,6 +85,7 @@ void GcodeInterpreter::Modes(const Block& block) {
   if (block.G(kUnits) != kNoCode) unit_m_ = block.G(kUnits) == 200 ? kInch_m : kMillimetre_m;
   if (block.G(kCoordinateSystem) != kNoCode) offsets_.Select(block.G(kCoordinateSystem));
   PathControl(block);
+  if (block.G(kRetract) != kNoCode) to_level_ = block.G(kRetract) == 980;
   if (block.G(kDistance) != kNoCode) absolute_ = block.G(kDistance) == 900;
   if (block.G(kCentreDistance) != kNoCode) absolute_centres_ = block.G(kCentreDistance) == 901;
 }
@@ -167,6 +170,11 @@ void GcodeInterpreter::Motion(const Block& block) {
   motion_ = block.motion;
   if (motion_ == 0 || motion_ == 10) Straight(block);
   if (motion_ == 20 || motion_ == 30) Arc(block);
+  if (IsDrillingCycle(motion_)) {
+    DrillHoles(block);
+  } else {
+    cycle_ = {};
+  }
 }
 
 AxisValues GcodeInterpreter::Target(const Block& block) const {
@@ -291,6 +299,106 @@ PlanePoint GcodeInterpreter::ArcCentre(const Block& block, const ArcEnds& ends) 
   wrong = WrongCentre(ends, centre, tolerance);
   if (wrong) block.FailAt(column, *wrong);
   return centre;
+}
+
+/// R and Z of a series go on from hole to hole. Controls differ in what becomes of them when what they count
+/// from changes, and some drill elsewhere: here a new series has to be begun.
+void GcodeInterpreter::CheckSeries(const Block& block) const {
+  const int own = block.G(kMotion);
+  if (cycle_.motion == 0 || (own != kNoCode && !IsDrillingCycle(own))) return;
+  const auto differs = [&](GGroup group, int now) {
+    return block.G(group) != kNoCode && block.G(group) != now;
+  };
+  const int nonmodal = block.G(kNonModal);
+  const auto fail = [&](GGroup group) {
+    block.FailAtG(group,
+                  NameOfG(block.G(group)) +
+                      " among drilling cycles: end them by G80 before it, and state R and Z anew behind it");
+  };
+  if (differs(kDistance, absolute_ ? 900 : 910)) fail(kDistance);
+  if (differs(kUnits, unit_m_ == kInch_m ? 200 : 210)) fail(kUnits);
+  if (differs(kPlane, plane_)) fail(kPlane);
+  if (differs(kCoordinateSystem, offsets_.selected())) fail(kCoordinateSystem);
+  if (nonmodal != kNoCode && nonmodal != 40) fail(kNonModal);
+}
+
+/// The series with this block's words in it. What is not stated is as for the hole before.
+DrillingCycle GcodeInterpreter::CycleOf(const Block& block) const {
+  const std::uint8_t axis = PlaneAxes()[2];
+  const char letter = kGcodeAxes[axis];
+  const std::string name = NameOfG(motion_);
+  const int column = std::max(block.g[kMotion].column, 1);
+  if (inverse_time_) block.FailAt(column, name + " needs a feed per minute (G94)");
+  DrillingCycle next = cycle_;
+  if (cycle_.motion == 0) next.level_m = position_m_[axis];
+  if (cycle_.motion != motion_) {
+    const auto need = [&](char word, const char* what) {
+      if (!block.Has(word))
+        block.FailAt(column, name + ": expected " + static_cast<char>(word - 'a' + 'A') + ", " + what);
+    };
+    need('r', "where it begins to feed");
+    need(letter, "how deep the hole is");
+    if (DwellsInCycle(motion_)) need('p', "how long it dwells at the bottom, in seconds");
+    if (PecksInCycle(motion_)) need('q', "how deep each peck is");
+  }
+  next.motion = motion_;
+  if (block.Has('r')) next.clear_m = block.Get('r')->value * unit_m_;
+  if (block.Has(letter)) next.bottom_m = block.Get(letter)->value * unit_m_;
+  if (block.Has('p') && DwellsInCycle(motion_)) next.dwell_s = block.Get('p')->value;
+  if (block.Has('q') && PecksInCycle(motion_)) next.peck_m = block.Get('q')->value * unit_m_;
+  return next;
+}
+
+Hole GcodeInterpreter::HoleOf(const Block& block) const {
+  const std::uint8_t axis = PlaneAxes()[2];
+  Hole hole;
+  // Incremental: R from where the axis stood before the series, the depth from R.
+  hole.clear_m = cycle_.clear_m + (absolute_ ? offsets_.Of(axis) : cycle_.level_m);
+  hole.bottom_m = cycle_.bottom_m + (absolute_ ? offsets_.Of(axis) : hole.clear_m);
+  hole.retract_m = to_level_ ? std::max(cycle_.level_m, hole.clear_m) : hole.clear_m;
+  if (hole.bottom_m > hole.clear_m)
+    block.FailAt(std::max(block.g[kMotion].column, 1),
+                 NameOfG(motion_) + ": R is below the bottom of the hole");
+  if (PecksInCycle(motion_) && hole.clear_m - hole.bottom_m > kMostPecks * cycle_.peck_m)
+    block.FailAt(std::max(block.g[kMotion].column, 1),
+                 NameOfG(motion_) + ": Q asks for more pecks than a hole may have");
+  return hole;
+}
+
+void GcodeInterpreter::DrillHoles(const Block& block) {
+  cycle_ = CycleOf(block);
+  const std::uint8_t axis = PlaneAxes()[2];
+  const Hole hole = HoleOf(block);
+  const double feed_m_s = FeedOf_m_s(block, 0.0);
+  const auto move = [&](CanonicalMove::Kind kind) {
+    CanonicalMove m = NewMove(kind, position_m_);
+    m.corner = GcodeMove::Corner::kExactPath;
+    m.tolerance_m = m.naive_cam_m = 0.0;
+    m.named = Named(block);
+    if (kind == CanonicalMove::Kind::kFeed) m.feed_m_s = feed_m_s;
+    if (kind == CanonicalMove::Kind::kDwell) m.dwell_s = cycle_.dwell_s;
+    sink_(m);
+  };
+  const auto along = [&](double to_m, CanonicalMove::Kind kind) {
+    position_m_[axis] = to_m;
+    move(kind);
+  };
+  // Never across from below the clearance plane. A series that began below it has this move at each hole.
+  if (std::min(position_m_[axis], cycle_.level_m) < hole.clear_m)
+    along(hole.clear_m, CanonicalMove::Kind::kTraverse);
+  const int holes = block.Has('l') ? static_cast<int>(std::lround(block.Get('l')->value)) : 1;
+  for (int n = 0; n < holes; ++n) {
+    const double above_m = to_level_ ? std::max(position_m_[axis], cycle_.level_m) : position_m_[axis];
+    position_m_ = Target(block);
+    along(above_m, CanonicalMove::Kind::kTraverse);
+    if (above_m != hole.clear_m) along(hole.clear_m, CanonicalMove::Kind::kTraverse);
+    Drill(cycle_, hole, [&](const DrillingStroke& stroke) {
+      using Kind = DrillingStroke::Kind;
+      if (stroke.kind == Kind::kDwell) return move(CanonicalMove::Kind::kDwell);
+      along(stroke.to_m,
+            stroke.kind == Kind::kFeed ? CanonicalMove::Kind::kFeed : CanonicalMove::Kind::kTraverse);
+    });
+  }
 }
 
 void GcodeInterpreter::PutPosition(std::array<double, 9>& position) const {

@@ -9,6 +9,7 @@
 #include "daemon/program/gcode/block.h"
 #include "daemon/program/gcode/block_rules.h"
 #include "daemon/program/gcode/canonical_move.h"
+#include "daemon/program/gcode/drilling_cycle.h"
 #include "daemon/program/gcode/work_offsets.h"
 #include "daemon/program/gcode_parser.h"
 
@@ -45,6 +46,10 @@ class GcodeInterpreter {
   void Motion(const Block& block);
   void Straight(const Block& block);
   void Arc(const Block& block);
+  void CheckSeries(const Block& block) const;
+  void DrillHoles(const Block& block);
+  [[nodiscard]] DrillingCycle CycleOf(const Block& block) const;
+  [[nodiscard]] Hole HoleOf(const Block& block) const;
   [[nodiscard]] PlanePoint ArcCentre(const Block& block, const ArcEnds& ends) const;
   [[nodiscard]] AxisValues Target(const Block& block) const;
   void PolarTarget(const Block& block, AxisValues& target) const;
@@ -67,6 +72,8 @@ class GcodeInterpreter {
   double feed_m_s_ = 0.0;
   int plane_ = 170;
   int motion_ = 800;
+  DrillingCycle cycle_;
+  bool to_level_ = false;  ///< G98
   GcodeMove::Corner corner_ = GcodeMove::Corner::kContinuous;
   double tolerance_m_ = 0.0;
   double naive_cam_m_ = 0.0;

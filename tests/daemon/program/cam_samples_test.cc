@@ -86,12 +86,13 @@ TEST_P(CamSamples, KeepEveryLimitAndThePath) {
 
 INSTANTIATE_TEST_SUITE_P(Machines, CamSamples, ::testing::Range(0, 3));
 
-TEST(CamSamplesRefused, CannedCyclesByTheirNames) {
-  for (const char* cycle : {"G73", "G81", "G82", "G83"}) {
-    const std::string text = "G21 G90 F100\nG0 X0 Y0\n" + std::string(cycle) + " X1 Y1 Z-1 R1 Q0.5 P0.1\n";
+TEST(CamSamplesRefused, CyclesOfTheSpindleByTheirNames) {
+  for (const char* cycle : {"G74", "G84", "G86", "G88"}) {
+    const std::string text = "G21 G90 F100\nG0 X0 Y0\n" + std::string(cycle) + " X1 Y1 Z-1 R1 P0.1\n";
     const std::string error =
         testing::ErrorOf([&] { PlanOf(text, MakeMachine("table", 0.25, 5.0, 200.0, 1.0, 1e-5)); });
     EXPECT_NE(error.find("sample.ngc:3:1: " + std::string(cycle)), std::string::npos) << error;
+    EXPECT_NE(error.find("write its moves"), std::string::npos) << error;
   }
 }
 

@@ -12,6 +12,8 @@ WRONG = [
     "F-1", "G1 F0 X1", "G94 G1 X1", "G93 G1 X1\nX2", "M3 M6 M8 M48 M0", "G0 X#<nothing>", "G0 X[1/0]", "G0 X[1+]", "G0 X[1", "G0 X[sqrt[-1]]", "G0 X[asin[2]]",
     "#0=1", "#10000=1", "#1.5=2", "#5420=1", "#=3", "G0 X[2 foo 3]", "G0 X[ln[0]]", "G0 X[[-2]**0.5]", "G0 X##9", "X", 
     "G0X1Y2Z3X4", "g", "G0 X[atan[1]]", "G0 X[foo[1]]", "M", "G0 X--", "M0 M2",
+    "G81", "G81 R2", "G81 X1 Z-1", "G81 X1 R2", "G83 X1 Z-1 R2", "G83 X1 Z-1 R2 Q0", "G82 X1 Z-1 R2", "G82 X1 Z-1 R2 P-1", "G81 X1 Z3 R2", "G81 X1 Z-1 R2 P3", "G73 X1 Z-1 R2 Q-1",
+    "G81 X1 Z-1 R2 Q1", "G81 X1 Z-1 R2 I1", "G81 X1 Z-1 R2 L0", "G81 X1 Z-1 R2 L1.5", "G93 G81 X1 Z-1 R2 F2", "G53 G81 X1 Z-1 R2", "G0 X1\nG81 X7", "G92 X1 G81",
     "G0 @1 X2", "G18 G0 X1\nG0 @1 ^2", "@1 ^30", "G92 @1", "#<_metric>=2",
 ]
 AXES = "XYZUVW"
@@ -108,6 +110,30 @@ class RandomProgram:
         self.lines.append("G17")
         return [self.r.choice(["G0", "G1"])] + words + self.feed() + self.r.choice([[], ["Z" + self.number()]])
 
+    def cycles(self):
+        """A series of holes, ended by G80: what becomes of one in another mode is refused here, and to a higher R it first goes up."""
+        plane, axes, normal = self.r.choice([("G17", "XY", "Z"), ("G17", "XY", "Z"), ("G18", "ZX", "Y"), ("G19", "YZ", "X")])
+        code = self.r.choice(["G73", "G81", "G82", "G83", "G85", "G89"])
+
+        clear = self.r.uniform(-5, 5) if self.incremental else self.r.uniform(-20, 20)
+
+        def depth():
+            return f"{normal}{(0 if self.incremental else clear) - self.r.uniform(0.5, 15):.3f}"
+
+        def place():
+            if plane == "G17" and self.r.random() < 0.1:
+                return ["@" + self.number(0.1, 40), "^" + self.number(-400, 400)]
+            return [a + self.number() for a in self.r.sample(axes, self.r.choice([1, 2]))]
+        own = {"G73": ["Q" + self.number(1, 6)], "G83": ["Q" + self.number(1, 6)], "G82": ["P" + self.number(0, 2)],
+               "G89": ["P" + self.number(0, 2)]}.get(code, [])
+        first = [code, *place(), f"R{clear:.3f}", depth(), *own] + self.r.choice([[], ["L" + str(self.r.randint(1, 3))]])
+        self.r.shuffle(first)
+        self.lines.append(" ".join([plane, *self.r.choice([["G98"], ["G99"], []]), *first]))
+        for _ in range(self.r.randint(0, 3)):
+            again = place() + self.r.choice([[], [], [], [code], [depth()], [["G98"], ["G99"]][self.r.randint(0, 1)][0:1], own, ["L2"]])
+            self.lines.append(self.dressed(again).lstrip("/"))
+        return ["G80"]
+
     def home(self):
         """Positions of the machine, whose zero is program zero for both readers."""
         if self.r.random() < 0.5:
@@ -142,7 +168,7 @@ class RandomProgram:
         if kind == 9:
             return [self.r.choice(["M3 S1000", "M5", "M8", "M9", "M7", "S500", "M0", "M1", "M4", "M48"])]
         if kind == 10:
-            return [self.r.choice(["G40", "G49", "G80 G40", "G17 G21 G40 G49", "G98", "G8 G97", "G00 G17 G40 G49 G80 G90"])]
+            return [self.r.choice(["G40", "G49", "G80 G40", "G17 G21 G40 G49", "G98", "G99", "G8 G97", "G00 G17 G40 G49 G80 G90"])]
         return ["F" + self.number(1, 3000)] if not self.inverse else ["G52 X" + self.number()]
 
     def parameters(self):
@@ -200,6 +226,8 @@ class RandomProgram:
                 block = self.full_circle()
             elif kind < 0.61:
                 block = self.polar()
+            elif kind < 0.65 and not self.inverse:
+                block = self.cycles()
             else:
                 block = self.straight()
             self.lines.append(self.dressed(block))
