@@ -108,7 +108,10 @@ bool Growing(const CellResult& result) {
   const std::vector<double>& peaks = result.window_peak_um;
   if (peaks.size() < 3) return false;
   const std::size_t last = peaks.size() - 1;
-  return peaks[last] > kGrowthMatters_um && peaks[last] > 2.0 * peaks.front() &&
+  const auto worst = std::max_element(peaks.begin(), peaks.end());
+  // A force that comes leaves a turn that is the worst, and others from then on.
+  const double after_um = worst + 1 == peaks.end() ? peaks.front() : *(worst + 1);
+  return peaks[last] > kGrowthMatters_um && peaks[last] > 2.0 * std::max(peaks.front(), after_um) &&
          peaks[last] > peaks[last - 1] && peaks[last - 1] > peaks[last - 2];
 }
 

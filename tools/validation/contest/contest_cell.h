@@ -39,8 +39,9 @@ struct CellResult {
 /// Runs the daemon's cycle on the emulated machine in virtual time, as `contour simulate` does.
 CellResult RunCell(const ContestCell& cell);
 
-/// Does the error grow from turn to turn? The last peak is more than twice the first, above half a
-/// micrometre, and larger than the one before, which is larger than the one before that.
+/// Does the error grow from turn to turn? The last peak is more than twice the first, and more than twice
+/// the one after the worst, where that is not the last itself; it is above half a micrometre, and larger than
+/// the one before, which is larger than the one before that.
 bool Growing(const CellResult& result);
 
 }  // namespace contour

@@ -44,6 +44,12 @@ TEST(Growing, IsAnErrorThatDoublesAndStillRises) {
   EXPECT_FALSE(Growing(Turns({1.0, 5.0}))) << "two turns say nothing";
 }
 
+TEST(Growing, IsNoStepOfForceWithFrictionThatRisesAfterIt) {
+  EXPECT_FALSE(Growing(Turns({0.27, 0.26, 5.36, 0.66, 0.76, 0.63, 0.80, 0.93, 0.94, 0.95})));
+  EXPECT_TRUE(Growing(Turns({0.27, 0.26, 5.36, 0.66, 0.76, 0.90, 1.10, 1.40}))) << "twice that after it";
+  EXPECT_TRUE(Growing(Turns({0.27, 0.66, 0.76, 0.93, 0.94, 0.95}))) << "nothing but growth";
+}
+
 TEST(Verdict, CountsWhereFullIsBestNearItOrBehind) {
   const std::vector<Heat> heats{Of(Peak(1.0), Peak(9.0), Peak(3.0)), Of(Peak(3.29), Peak(9.0), Peak(3.0)),
                                 Of(Peak(4.0), Peak(9.0), Peak(3.0)), Of(Peak(7.0), Peak(9.0), Peak(3.0))};
