@@ -22,10 +22,15 @@ constexpr double kFades_s = 0.05;
 // Nodes that the offset is made from.
 constexpr std::size_t kNodes = 3;
 
+bool Stands(const AxisHorizon& reference) noexcept {
+  for (std::size_t n = 0; n < std::min(kNodes, reference.size()); ++n)
+    if (reference[n].velocity_m_s != 0.0 || reference[n].acceleration_m_s2 != 0.0) return false;
+  return true;
+}
+
 bool NothingMoves(const PerAxis<AxisHorizon>& references) noexcept {
   for (const AxisHorizon& reference : references)
-    for (std::size_t n = 0; n < std::min(kNodes, reference.size()); ++n)
-      if (reference[n].velocity_m_s != 0.0 || reference[n].acceleration_m_s2 != 0.0) return false;
+    if (!Stands(reference)) return false;
   return true;
 }
 
@@ -63,13 +68,16 @@ void CascadeLaw::Reset() noexcept {
     axis.bend.Reset();
     axis.known = 0;
     axis.beyond_N = 0.0;
+    axis.rests = false;
   }
-  stands_ = false;
+  some_rest_ = false;
 }
 
-void CascadeLaw::Axis::Keep(StateKeeper& keep) noexcept { keep(bend, told, known, offset_N, beyond_N); }
+void CascadeLaw::Axis::Keep(StateKeeper& keep) noexcept {
+  keep(bend, told, known, offset_N, beyond_N, rests);
+}
 
-void CascadeLaw::Keep(StateKeeper& keep) noexcept { keep(states_, share_, stands_); }
+void CascadeLaw::Keep(StateKeeper& keep) noexcept { keep(states_, share_, some_rest_); }
 
 // The measured position belongs to t(k-1), the motor then to t(k-3/2): between the targets for t(k-2) and
 // t(k-1), which were sent at t(k-3) and t(k-2). The newest target told is the one for t(k).
@@ -86,15 +94,24 @@ void CascadeLaw::Learn(Axis& axis, double position_m) noexcept {
   axis.bend.Learn(error_m, velocity_m_s, acceleration_m_s2);
 }
 
-double CascadeLaw::Offset_N(Axis& axis, double foreseen_N, bool stands) const noexcept {
-  axis.beyond_N = stands && stands_ ? axis.offset_N - foreseen_N : fading_ * axis.beyond_N;
+bool CascadeLaw::Stays(Axis& axis, const AxisHorizon& reference, bool all_stand) noexcept {
+  const bool rested = axis.rests;
+  axis.rests = all_stand || (rested && Stands(reference));
+  some_rest_ = some_rest_ || axis.rests;
+  return rested && axis.rests;
+}
+
+double CascadeLaw::Offset_N(Axis& axis, double foreseen_N, bool stays) const noexcept {
+  axis.beyond_N = stays ? axis.offset_N - foreseen_N : fading_ * axis.beyond_N;
   axis.offset_N = foreseen_N + axis.beyond_N;
   return axis.offset_N;
 }
 
 void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   output.iterations = 0;
-  const bool stands = NothingMoves(Reference(input));
+  const bool all_stand = NothingMoves(Reference(input));
+  const bool some_rest = some_rest_ || all_stand;
+  some_rest_ = all_stand;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& axis = states_[i];
     const AxisHorizon& reference = Reference(input)[i];
@@ -115,7 +132,7 @@ void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept
     const double foreseen_N = 0.5 * (Ahead(friction, 0).mid_N + Ahead(friction, 1).mid_N) -
                               m.table_mass_kg * w_acceleration +
                               axes_[i].acceleration_share * m.mass_kg * motor_m_s2;
-    const double wanted = Offset_N(axis, foreseen_N, stands);
+    const double wanted = Offset_N(axis, foreseen_N, some_rest && Stays(axis, reference, all_stand));
     const double limit = axes_[i].limits.force_N;
     const ReferencePoint& next = PointAt(reference, 2);
     output.feedforward_N[i] = wanted;
@@ -126,7 +143,6 @@ void CascadeLaw::Step(const ControlInput& input, ControlOutput& output) noexcept
                  axis.told[1]};
     axis.known = std::min(axis.known + 1, axis.told.size());
   }
-  stands_ = stands;
 }
 
 }  // namespace contour

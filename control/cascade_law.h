@@ -40,9 +40,9 @@ class BendCorrection {
 /// mass times the acceleration of its target; of that, what belongs to the table's share of the wind-up's
 /// motion is taken back.
 ///
-/// While no axis moves the offset stays what it is: the drive's integral has made up for the rest, and would
-/// have to for every change of it; with the gains that some drives have for an axis at rest it does so in
-/// seconds, and until then the axis is pushed away.
+/// While no axis moves the offset stays what it is, and from then on that of each axis until it moves itself:
+/// the drive's integral has made up for the rest, and would have to for every change of it; with the gains
+/// that some drives have for an axis at rest it does so in seconds, and until then the axis is pushed away.
 class CascadeLaw final : public ControlLaw {
  public:
   CascadeLaw(const PerAxis<ControlledAxis>& axes, double period_s);
@@ -66,18 +66,21 @@ class CascadeLaw final : public ControlLaw {
     std::size_t known = 0;
     double offset_N = 0.0;  ///< sent, but for limits
     double beyond_N = 0.0;  ///< of it, beyond what is foreseen
+    bool rests = false;     ///< has stood since no axis moved
 
     void Keep(StateKeeper& keep) noexcept;
   };
 
   void Learn(Axis& axis, double position_m) noexcept;
-  [[nodiscard]] double Offset_N(Axis& axis, double foreseen_N, bool stands) const noexcept;
+  /// Whether an axis's offset stays: it has stood since no axis moved, in the cycle before, too.
+  [[nodiscard]] bool Stays(Axis& axis, const AxisHorizon& reference, bool all_stand) noexcept;
+  [[nodiscard]] double Offset_N(Axis& axis, double foreseen_N, bool stays) const noexcept;
 
   PerAxis<ControlledAxis> axes_;
   double period_s_;
-  double fading_;        ///< per period, of what an offset was kept beyond what is foreseen
-  double share_ = 1.0;   ///< of the torque offset
-  bool stands_ = false;  ///< no axis moves
+  double fading_;           ///< per period, of what an offset was kept beyond what is foreseen
+  double share_ = 1.0;      ///< of the torque offset
+  bool some_rest_ = false;  ///< axes that have stood since no axis moved
   std::vector<Axis> states_;
 };
 

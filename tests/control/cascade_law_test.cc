@@ -187,6 +187,17 @@ TEST(CascadeLaw, AnAxisThatWaitsForAnotherIsGivenWhatIsForeseen) {
   for (int i = 0; i < 100; ++i) EXPECT_NEAR(axis.Offset_N(38.0 - 0.3 * i, 0.0, 0.01), 38.0 - 0.3 * i, 1e-9);
 }
 
+// The second axis begins a side, or a stroke of its own, while the first one goes on standing.
+TEST(CascadeLaw, AnAxisThatHasNotMovedYetKeepsItsOffsetWhileAnotherMoves) {
+  Standing axis;
+  axis.Offset_N(38.0);
+  axis.Offset_N(38.0);
+  for (int i = 0; i < 1000; ++i) EXPECT_NEAR(axis.Offset_N(38.0 - 0.03 * i, 0.0, 0.01), 38.0, 1e-9);
+  for (int i = 0; i < 300; ++i) axis.Offset_N(8.0, 0.01, 0.01);
+  // It has moved: from now on it waits for the other.
+  for (int i = 0; i < 100; ++i) EXPECT_NEAR(axis.Offset_N(8.0 + 0.1 * i, 0.0, 0.01), 8.0 + 0.1 * i, 0.1);
+}
+
 TEST(CascadeLaw, WithMotionTheOffsetGoesOverToWhatIsForeseenWithoutAJump) {
   Standing axis;
   axis.Offset_N(38.0);
