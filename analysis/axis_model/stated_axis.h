@@ -19,6 +19,9 @@ struct StatedFriction {
   double vs = 0.0, exponent = 1.0;
   double s0 = 0.0, s1 = 0.0, vd = 0.0, s2 = 0.0;
 
+  /// Whether break-away has numbers of its own; where none are stated it equals Coulomb friction.
+  [[nodiscard]] bool BreaksAwayHigher() const { return Fs_plus + Fs_minus > Fc_plus + Fc_minus; }
+
   bool operator==(const StatedFriction&) const = default;
 };
 

@@ -12,6 +12,7 @@
 #include "analysis/diagnosis/decision/evidence.h"
 #include "analysis/diagnosis/decision/hypothesis.h"
 #include "analysis/diagnosis/decision/verdict.h"
+#include "analysis/diagnosis/quantification/column_lag.h"
 #include "analysis/diagnosis/quantification/displacements.h"
 #include "analysis/diagnosis/quantification/follow_play.h"
 #include "analysis/diagnosis/quantification/quantify.h"
@@ -48,12 +49,14 @@ std::size_t RowsThere(const AxisLog& log) {
 
 /// What goes with a stroke is no cause where there is none. Nor is a torque constant off that nobody stated:
 /// it was taken from this log, by the stated inertia; nor where the inertia alone is stated, and nothing says
-/// whether it is the one that is off.
-DiagnoseOptions WithoutWhatCannotBe(const StatedAxis& stated, DiagnoseOptions options) {
+/// whether it is the one that is off. A velocity that was filtered looks like a coupling or a play; of what
+/// the axis itself does at such frequencies a log without a position says nothing.
+DiagnoseOptions WithoutWhatCannotBe(const AxisLog& log, const StatedAxis& stated, DiagnoseOptions options) {
   const bool inertia_alone = stated.open.contains("Fc") && stated.open.contains("s2");
   const bool any_constant = stated.open.contains("ampere") || inertia_alone;
   for (const CauseDefinition* c : AllCauses())
-    if ((stated.endless && c->shape != nullptr) || (any_constant && c->common_factor))
+    if ((stated.endless && c->shape != nullptr) || (any_constant && c->common_factor) ||
+        (log.from_velocity && c->acts_at_reversals))
       options.exclude.emplace_back(*c->name);
   return options;
 }
@@ -83,7 +86,7 @@ void KeepStatedWhereBetter(const StatedAxis& stated, Diagnosis& out) {
 
 Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseOptions& asked) {
   CheckInput(log, stated);
-  const DiagnoseOptions options = WithoutWhatCannotBe(stated, asked);
+  const DiagnoseOptions options = WithoutWhatCannotBe(log, stated, asked);
   if (RowsThere(log) < FewestRowsThere()) return TooShort(log, options);
   Diagnosis out;
   out.false_alarm_rate = options.false_alarm_rate;
@@ -105,6 +108,7 @@ Diagnosis Diagnose(const AxisLog& log, const StatedAxis& stated, const DiagnoseO
   Conclude(problem, left, out);
   TellDisplacements(problem, nominal.fit.point, out);
   TellSlowTorque(problem, out);
+  TellColumnLag(problem, fit.point, out);
   KeepStatedWhereBetter(stated, out);
   if (out.verdict == Verdict::kUnexplained && out.causes.empty()) out.causes = std::move(rounds.leading);
   if (rounds.stopped && out.verdict == Verdict::kUnexplained)

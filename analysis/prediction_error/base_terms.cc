@@ -42,9 +42,8 @@ void AddNumbers(const StatedAxis& stated, AxisModel& nominal, std::vector<BaseTe
     add("damping", sigma_of("damping"), 5e-3, [](AxisModel& m) { return &m.damping; });
   }
   const StatedFriction& f = nominal.friction;
-  const bool stribeck = f.Fs_plus + f.Fs_minus > kPriors.stribeck_ratio * (f.Fc_plus + f.Fc_minus);
   add("Fc", sigma_of("Fc"), 1e-3, [](AxisModel& m) { return &m.friction.Fc_plus; });
-  if (stribeck) {
+  if (f.BreaksAwayHigher()) {
     add("Fs", sigma_of("Fs"), 2e-3, [](AxisModel& m) { return &m.friction.Fs_plus; });
     add("vs", sigma_of("vs"), 5e-3, [](AxisModel& m) { return &m.friction.vs; });
   }

@@ -19,8 +19,9 @@ struct AxisLog {
   std::string axis;    ///< its name; empty when not known
   bool linear = false;
   double period_s = 1e-3;
-  bool in_ampere = false;  ///< `command` is a current: what it is in Nm or N, the model has to say
-  std::string note;        ///< what was done to the file's rows before; empty: nothing
+  bool from_velocity = false;  ///< `position` is the integral of a velocity: nobody recorded one
+  bool in_ampere = false;      ///< `command` is a current: what it is in Nm or N, the model has to say
+  std::string note;            ///< what was done to the file's rows before; empty: nothing
 
   /// All vectors have one element per grid point from the first to the last row: a missing row has
   /// present[k] == 0 and the last known command (a drive goes on with it), position NaN.

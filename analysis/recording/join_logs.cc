@@ -47,6 +47,7 @@ AxisLog JoinLogs(std::vector<AxisLog> logs) {
     Append(all.temperature_degC, next.temperature_degC, gap, true);
     Append(all.axis2_position_m, next.axis2_position_m, gap, true);
     Append(all.reference_position, next.reference_position, gap, true);
+    all.from_velocity = all.from_velocity || next.from_velocity;
     all.rows += next.rows;
     all.missing += next.missing;
     all.source += ", " + next.source;

@@ -170,7 +170,8 @@ AxisLog ReadCsvLog(const std::string& file, const ReadOptions& options) {
     if (columns.measured) HoldMeans(rows.command, grid);
   }
   DemandRate(file, grid.period_s);
-  if (rows.position.empty())
+  log.from_velocity = rows.position.empty();
+  if (log.from_velocity)
     rows.position = IntegralOf(rows.velocity, grid);
   else if (!rows.velocity.empty())
     CheckVelocity(file, rows, grid);

@@ -95,6 +95,11 @@ def _drift(axis, unit, sign, phase, random, size, most):
     return {"drift": c}, {"change_rel": None}
 
 
+def _viscous_drift(axis, unit, sign, phase, random, size, most):
+    c = sign * most(4.0 * unit / (axis["sigma2"] * axis["fast_rad_s"]), 0.7)
+    return {"viscous_drift": c}, {"change_rel": c}
+
+
 def _constant_of_torque(axis, unit, sign, phase, random, size, most):
     k = 1.0 + sign * most(0.25 * size, 0.5)
     return {"ratio": k}, {"ratio": k}
@@ -178,4 +183,4 @@ HIDE = {"asymmetric_coulomb": _asymmetric, "asymmetric_viscous": _asymmetric_vis
         "torque_constant": _constant_of_torque, "torque_saturation": _saturation, "payload_step": _payload, "compliance": _compliance,
         "backlash": _backlash, "presliding_hysteresis": _presliding, "input_delay": _delay, "current_lag": _lag,
         "encoder_eccentricity": _eccentricity, "encoder_subdivision": _subdivision, "pitch_error": _pitch, "cross_coupling": _cross,
-        "load_friction": _load_friction, "periodic_force": _periodic, "sample_jitter": _jitter}
+        "load_friction": _load_friction, "periodic_force": _periodic, "sample_jitter": _jitter, "viscous_drift": _viscous_drift}

@@ -16,7 +16,7 @@ from tune_loop import loop_band
 SUB = 40
 STEP_S = TICK_S / SUB
 HIDDEN = ["phase", "asymmetry", "asymmetry_viscous", "offset", "along", "along_periods", "spring", "ripple", "ripple_order", "cogging",
-          "cogging_order", "square_drag", "rate_1_K", "drift", "ratio", "saturation", "payload", "payload_at", "gap", "soft_share",
+          "cogging_order", "square_drag", "rate_1_K", "drift", "viscous_drift", "ratio", "saturation", "payload", "payload_at", "gap", "soft_share",
           "soft_ratio", "more_delay_s", "more_lag_s", "reading", "reading_order", "pitch", "pitch_periods", "cross", "load_friction",
           "vibration", "vibration_Hz", "jitter_s"]
 
@@ -112,7 +112,8 @@ class Batch:
         a, e = self.a, self.e
         x = self.x[:, 2] * a["lever_m"] / a["stroke_m"]
         along = 1.0 + e["along"] * np.sin(TURN * e["along_periods"] * x + e["phase"])
-        in_time = 1.0 + e["drift"] * np.minimum(1.0, k / self.lengths)
+        done = np.minimum(1.0, k / self.lengths)
+        in_time = 1.0 + e["drift"] * done
         net = np.abs(self.total * self.acceleration)
         self.level_factor = along * in_time + e["load_friction"] * net / a["Fc"]
         # What pulls from outside pulls at the table.
@@ -120,7 +121,7 @@ class Batch:
         k = min(max(k, 1), self.ticks - 2)
         other = (self.other[k + 1] - 2.0 * self.other[k] + self.other[k - 1]) / TICK_S**2
         self.outside = self.outside - e["cross"] * other
-        self.viscous = a["sigma2"] * (1.0 + e["rate_1_K"] * (self.temperature - 21.0))
+        self.viscous = a["sigma2"] * (1.0 + e["rate_1_K"] * (self.temperature - 21.0) + e["viscous_drift"] * done)
 
     def friction(self, w, q):
         a, e = self.a, self.e

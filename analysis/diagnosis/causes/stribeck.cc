@@ -13,8 +13,7 @@ constexpr std::string_view kName = "stribeck";
 
 void Grid(const Problem& p, std::vector<SharedEffect>& out) {
   const std::string kind(kName);
-  const StatedFriction& f = p.nominal.friction;
-  if (f.Fs_plus + f.Fs_minus > 1.05 * (f.Fc_plus + f.Fc_minus)) {
+  if (p.nominal.friction.BreaksAwayHigher()) {
     out.push_back(Custom({kind, "", 1}, {.steps = {2e-3, 5e-3}, .low = {-0.4, -1.5}, .high = {1.0, 1.5}},
                          [](const auto& a, AxisModel& m) {
                            m.friction.Fs_plus *= std::exp(a[0]);

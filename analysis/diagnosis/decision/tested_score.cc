@@ -62,7 +62,9 @@ void Judge(const Problem& problem, const Fit& current, Hypothesis& r) {
   const bool ended = std::isfinite(r.fit.cost);
   r.implausible = ended && Implausible(problem, r);
   const bool out = !ended || r.implausible;
-  r.no_fault = !out && coupling && NoFault(problem, r);
+  // What filters a velocity makes it late: of a log without a position that is the column's, or the drive's.
+  const bool of_column = problem.log.from_velocity && CauseNamed(r.effect().kind).about_timing;
+  r.no_fault = !out && (of_column || (coupling && NoFault(problem, r)));
   r.score = out ? kNoScore : DropOf(problem, current, r.fit) - Penalty(r.effect());
 }
 

@@ -46,17 +46,19 @@ void TakeEndOfDrift(const Problem& problem, const Fit& fit, StatedAxis& axis,
   timed.effects.push_back(fit.point.effects[0]);
   timed.amplitudes.push_back(fit.point.amplitudes[0]);
   const AxisModel with = problem.Build(timed), without = problem.Build(base);
-  const auto end = [&](const AxisModel& m) {
+  const auto end = [&](const SharedSignal& share) {
     double sum = 0.0;
     const auto rows = std::min(problem.rows(), static_cast<std::size_t>(1.0 / problem.log.period_s));
-    for (std::size_t k = problem.rows() - rows; k < problem.rows() && m.level; ++k) sum += (*m.level)[k];
+    for (std::size_t k = problem.rows() - rows; k < problem.rows() && share; ++k) sum += (*share)[k];
     return 1.0 + sum / static_cast<double>(rows);
   };
-  const double factor = end(with) / end(without);
+  const double factor = end(with.level) / end(without.level);
+  const double viscous = end(with.viscous) / end(without.viscous);
   StatedFriction& f = axis.friction;
   for (double* level : {&f.Fc_plus, &f.Fc_minus, &f.Fs_plus, &f.Fs_minus}) *level *= factor;
+  f.s2 *= viscous;
   (axis.two_inertia ? axis.load_inertia : axis.motor_inertia) += with.payload;
-  if (factor == 1.0 && with.payload == 0.0) return;
+  if (factor == 1.0 && viscous == 1.0 && with.payload == 0.0) return;
   notes.emplace_back(
       "What changed while the log was recorded stands in the extended model as it was in the log's last "
       "second.");

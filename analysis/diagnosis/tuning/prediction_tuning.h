@@ -40,9 +40,6 @@ struct PriorTuning {
   /// [s] Of lag in exchange for delay, which is how a coupling of 1 kHz looks from below; softer ones are for
   /// `compliance` to find. Source: reasoning. 2026-11-21
   double lag_for_delay_s = 25e-6;
-  /// [ratio of levels] Break-away over Coulomb, from which the Stribeck curve has numbers of its own. Source:
-  /// reasoning. 2026-11-21
-  double stribeck_ratio = 1.05;
   /// [share of the Stribeck speed] Its square is the deviation of `rough`, a mean square of speed that no row
   /// shows. Source: archive. 2026-11-21
   double rough_speed_share = 0.05;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -91,6 +92,48 @@ TEST(Diagnose, NamesALimitOfTheTorque) {
   EXPECT_EQ(d.causes[0].kind, "torque_saturation");
   ASSERT_TRUE(d.causes[0].parameters.contains("limit_Nm"));
   EXPECT_NEAR(d.causes[0].parameters.at("limit_Nm").value, 0.32, 0.01);
+}
+
+// Before: `friction_drift`, a dry friction that changes, with the wrong size.
+TEST(Diagnose, TellsViscousFromDryFrictionThatFallsOverSeveralFiles) {
+  for (const char* kind : {"viscous_drift", "friction_drift"}) {
+    const double change = kind[0] == 'v' ? -0.6 : -0.3;
+    test::HiddenOptions o = Hidden(7, {{kind, change, 0.0, 0.0, 10.0}});
+    o.scale = o.temperature = o.axis2 = false;
+    test::HiddenAxis axis = test::MakeHiddenAxis(o);
+    const std::size_t rows = axis.log.size();
+    for (const std::size_t gap : {rows / 3, 2 * rows / 3})
+      for (std::size_t k = gap; k < gap + 500; ++k) {
+        axis.log.present[k] = 0;
+        axis.log.position[k] = std::numeric_limits<double>::quiet_NaN();
+      }
+    const Diagnosis d = Diagnose(axis.log, axis.stated);
+    ASSERT_FALSE(d.causes.empty());
+    EXPECT_EQ(d.causes[0].kind, kind);
+    EXPECT_TRUE(d.causes[0].indistinguishable_from.empty());
+    EXPECT_NEAR(d.causes[0].parameters.at("change_rel").value, change * (1.0 - std::exp(-3.0)),
+                0.15 * std::fabs(change));
+  }
+}
+
+// Before: a coupling of the axis, or a lag of its drive.
+TEST(Diagnose, AVelocityThatIsADifferenceOverSomeRowsIsNoCoupling) {
+  test::HiddenOptions o = Hidden(102, {});
+  o.duration_s = 20.0;
+  o.scale = o.temperature = o.axis2 = false;
+  test::HiddenAxis axis = test::MakeHiddenAxis(o);
+  std::vector<double>& q = axis.log.position;
+  for (std::size_t k = q.size(); k-- > 4;) q[k] = 0.2 * (q[k] + q[k - 1] + q[k - 2] + q[k - 3] + q[k - 4]);
+  axis.log.from_velocity = true;
+  const Diagnosis d = Diagnose(axis.log, axis.stated);
+  for (const char* kind : {"compliance", "current_lag", "input_delay"})
+    EXPECT_TRUE(std::none_of(d.causes.begin(), d.causes.end(), [&](const Cause& c) {
+      return c.kind == kind;
+    })) << kind;
+  const auto tells = [](const std::string& note) {
+    return note.find("The velocity comes") != std::string::npos;
+  };
+  EXPECT_TRUE(std::any_of(d.notes.begin(), d.notes.end(), tells));
 }
 
 TEST(Diagnose, ATorqueConstantThatNobodyStatedIsNotOff) {

@@ -63,6 +63,17 @@ TEST(BaseTerms, WithoutAStribeckDropItsNumbersAreNone) {
   EXPECT_EQ(Find(terms, "vs"), nullptr);
 }
 
+// Before: up to a twentieth above Coulomb friction it had none, and what it was off by within its own
+// uncertainty was a cause.
+TEST(BaseTerms, AStribeckDropHasNumbersHoweverSmallItIs) {
+  StatedAxis stated = Stated();
+  stated.friction.Fs_plus = 1.01 * stated.friction.Fc_plus;
+  stated.friction.Fs_minus = 1.01 * stated.friction.Fc_minus;
+  const std::vector<BaseTerm> terms = MakeBaseTerms(stated, ModelOf(stated));
+  EXPECT_NE(Find(terms, "Fs"), nullptr);
+  EXPECT_NE(Find(terms, "vs"), nullptr);
+}
+
 TEST(BaseTerms, NuisancesComeLastAndARigidAxisExchangesLagForDelay) {
   StatedAxis stated = Stated();
   AxisModel nominal = ModelOf(stated);

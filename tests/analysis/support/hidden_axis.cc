@@ -242,9 +242,9 @@ HiddenAxis MakeHiddenAxis(const HiddenOptions& o) {
           at_load -= std::copysign(e.size * f.Fc_plus * std::pow(y, e.extra > 0.0 ? e.extra : 2.0), vf);
         }
         if (e.kind == "temperature_viscosity") viscous += e.size * (temperature - 26.0);
-        if (e.kind == "friction_drift") {
+        if (e.kind == "friction_drift" || e.kind == "viscous_drift") {
           const double done = e.extra > 0.0 ? 1.0 - std::exp(-now / e.extra) : now / o.duration_s;
-          level += e.size * done;
+          (e.kind == "viscous_drift" ? viscous : level) += e.size * done;
         }
         if (e.kind == "torque_saturation") torque *= 1.0 - e.size * std::pow(torque / s.rated, 2);
         if (e.kind == "torque_limit") torque = std::clamp(torque, -e.size * s.rated, e.size * s.rated);

@@ -42,7 +42,8 @@ TEST(Catalogue, EveryCauseHasWordsAnExperimentAndASpecimen) {
     EXPECT_TRUE((*c->advice).ends_with('.')) << *c->name;
     EXPECT_FALSE((*c->main_parameter).empty()) << *c->name;
     EXPECT_NE(*c->experiment, nullptr) << *c->name;
-    EXPECT_NE(*c->specimen, nullptr) << *c->name;
+    // The emulated machine has no effect of this one; diagnose_test and tests/strangers hide it.
+    EXPECT_EQ(*c->specimen == nullptr, *c->name == "viscous_drift") << *c->name;
   }
 }
 
