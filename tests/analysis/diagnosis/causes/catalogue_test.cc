@@ -98,6 +98,7 @@ TEST(Catalogue, ASpecimenKnowsTheTruthOfTheMainParameter) {
                                    .other_axis = "y"};
   const LogSpan span = {1.0, 100.0, 100.0, 250.0, 300.0};
   for (const CauseDefinition* c : AllCauses()) {
+    if (*c->specimen == nullptr) continue;
     const Specimen& s = **c->specimen;
     const Drawn drawn = (*s.draw)(machine, 1.0, [] { return 0.25; });
     EXPECT_TRUE((*s.truth)(drawn, span).contains(std::string(*c->main_parameter))) << *c->name;
