@@ -15,6 +15,7 @@
 #include "config/yaml_writer.h"
 #include "core/reference.h"
 #include "core/version.h"
+#include "daemon/drive_warnings.h"
 #include "daemon/loaded_model.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/output_words.h"
@@ -26,7 +27,6 @@
 #include "daemon/rt/cycle_parts.h"
 #include "daemon/telemetry/tuning_note.h"
 #include "drivers/cia301/bring_up_text.h"
-#include "drivers/cia402/drive_state.h"
 
 namespace contour {
 namespace {
@@ -46,16 +46,6 @@ constexpr std::chrono::seconds kRestTimeout{60};
 constexpr const char* kUnwanted =
     "the cycle has not been handed it: whoever asked is gone, or a stop came first";
 constexpr const char* kEnding = "contourd is ending";
-
-/// A drive that gets too hot, for one, says so some time before it trips.
-void AddWarningsOfDrives(const CycleRecord& record, const std::vector<std::string>& axis_names,
-                         std::vector<std::string>& warnings) {
-  for (std::size_t i = 0; i < record.axes.size() && i < axis_names.size(); ++i)
-    if ((record.axes[i].feedback.statusword & statusword::kWarning) != 0)
-      warnings.push_back("axis " + axis_names[i] +
-                         ": its drive warns (bit 7 of the statusword) of what may become a fault; its own "
-                         "program or display says what it is");
-}
 
 }  // namespace
 
@@ -461,7 +451,8 @@ MachineStatus Supervisor::Status() {
   if (parts_.rest_swing != nullptr)
     for (std::string& warning : parts_.rest_swing->warnings()) out.warnings.push_back(std::move(warning));
   out.record = answers_.record();
-  AddWarningsOfDrives(out.record, axis_names_, out.warnings);
+  for (std::string& warning : DriveWarnings(out.record, axis_names_))
+    out.warnings.push_back(std::move(warning));
   out.bring_up = BringUpText(out.record.bring_up, axis_names_);
   out.reason_text = out.record.reason == Reason::kBringUpFailed
                         ? out.bring_up

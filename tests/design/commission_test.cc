@@ -55,7 +55,7 @@ TEST(CommissionPlanTest, DefaultLimitsAreEnoughForEverySteepness) {
   }
 }
 
-// Whoever sizes a drive by its ramps has half as much again to spare, hardly three quarters.
+// Of a drive sized by its ramps, 60 % of the limit may be less than the ramps take.
 TEST(CommissionPlanTest, DefaultTorqueIsEnoughForTheRampsWhereTheLimitIs) {
   MachineConfig machine = Example();
   AxisConfig& axis = machine.axes.at("x");

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kMostMCodes = 4;
 constexpr double kMostTurns = 1e6;
+// Of one line: more is a typing error, and would be unrolled for minutes.
 constexpr double kMostHoles = 1e6;
 constexpr double kNearlyWhole = 1e-3;
 

@@ -12,6 +12,7 @@ constexpr double kMillimetre_m = 1e-3;
 constexpr double kMinute_s = 60.0;
 // The slowest feed that inverse time may come to, in units per minute.
 constexpr double kSlowestInverse = 0.1;
+// Of one hole: more is a typing error, and would be unrolled for minutes.
 constexpr double kMostPecks = 1e6;
 
 double Norm(const AxisValues& a, const AxisValues& b, std::size_t from, std::size_t to) {
