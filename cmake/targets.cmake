@@ -33,10 +33,14 @@ function(contour_light_optimisation target)
 endfunction()
 
 # contour_library(NAME [SOURCES ...] [LINK ...]): a static library, or an interface library when it has headers only.
-# A folder that sets CONTOUR_PRECOMPILED has its libraries reuse those headers.
+# A folder that sets CONTOUR_PRECOMPILED has its libraries reuse those headers; one that sets CONTOUR_TOGETHER has the sources
+# of its libraries and tests compiled together (unity.cmake).
 function(contour_library name)
   cmake_parse_arguments(arg "" "" "SOURCES;LINK" ${ARGN})
   if(arg_SOURCES)
+    if(CONTOUR_TOGETHER)
+      contour_together(arg_SOURCES ${name} ${arg_SOURCES})
+    endif()
     add_library(${name} STATIC ${arg_SOURCES})
     contour_flags(${name})
     if(CONTOUR_PRECOMPILED)
@@ -67,6 +71,9 @@ endfunction()
 # definitions of its own for the libraries that are in the precompiled headers.
 function(contour_test name)
   cmake_parse_arguments(arg "OWN_HEADERS" "" "SOURCES;LINK" ${ARGN})
+  if(CONTOUR_TOGETHER AND NOT arg_OWN_HEADERS)
+    contour_together(arg_SOURCES ${name} ${arg_SOURCES})
+  endif()
   add_executable(${name} ${arg_SOURCES})
   contour_flags(${name})
   contour_light_optimisation(${name})
