@@ -35,6 +35,12 @@ struct DrillingStroke {
   double to_m = 0.0;
 };
 
+/// That a program may have: as many as the lines that its O words may run through.
+inline constexpr double kMostStrokes = 5e6;
+
+/// How many moves a hole takes, those to its clearance plane with them.
+[[nodiscard]] double StrokesOf(const DrillingCycle& cycle, const Hole& hole);
+
 /// The strokes from the clearance plane on, one after the other.
 void Drill(const DrillingCycle& cycle, const Hole& hole,
            const std::function<void(const DrillingStroke&)>& sink);

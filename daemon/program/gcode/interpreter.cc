@@ -370,6 +370,13 @@ void GcodeInterpreter::DrillHoles(const Block& block) {
   cycle_ = CycleOf(block);
   const std::uint8_t axis = PlaneAxes()[2];
   const Hole hole = HoleOf(block);
+  const int holes = block.Has('l') ? static_cast<int>(std::lround(block.Get('l')->value)) : 1;
+  strokes_ += holes * StrokesOf(cycle_, hole);
+  if (strokes_ > kMostStrokes)
+    block.FailAt(std::max(block.g[kMotion].column, 1),
+                 NameOfG(motion_) +
+                     ": with this line the drilling cycles of the program have more than 5 million strokes; "
+                     "expected fewer holes (L) or deeper pecks (Q)");
   const double feed_m_s = FeedOf_m_s(block, 0.0);
   const auto move = [&](CanonicalMove::Kind kind) {
     CanonicalMove m = NewMove(kind, position_m_);
@@ -387,7 +394,6 @@ void GcodeInterpreter::DrillHoles(const Block& block) {
   // Never across from below the clearance plane. A series that began below it has this move at each hole.
   if (std::min(position_m_[axis], cycle_.level_m) < hole.clear_m)
     along(hole.clear_m, CanonicalMove::Kind::kTraverse);
-  const int holes = block.Has('l') ? static_cast<int>(std::lround(block.Get('l')->value)) : 1;
   for (int n = 0; n < holes; ++n) {
     const double above_m = to_level_ ? std::max(position_m_[axis], cycle_.level_m) : position_m_[axis];
     position_m_ = Target(block);

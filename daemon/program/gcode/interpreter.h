@@ -73,6 +73,7 @@ class GcodeInterpreter {
   int plane_ = 170;
   int motion_ = 800;
   DrillingCycle cycle_;
+  double strokes_ = 0.0;   ///< of all drilling cycles so far
   bool to_level_ = false;  ///< G98
   GcodeMove::Corner corner_ = GcodeMove::Corner::kContinuous;
   double tolerance_m_ = 0.0;
