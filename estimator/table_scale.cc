@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "estimator/gaussian.h"
 #include "estimator/turn.h"
@@ -30,6 +32,10 @@ constexpr double kLeadError_rel = 5e-4;
 constexpr double kTurnError_rel = 1e-3;
 // A screw that warms grows within many minutes: what changes no faster is no fault of the scale.
 constexpr double kWarms_s = 600.0;
+// Swings of a screw whose damping is not known are taken to last for so many periods of its mode.
+constexpr double kRinging_periods = 5.0;
+// The shorter of the ways within which one that begins to count wrongly is looked for: of a turn.
+constexpr double kShortWay = 0.1;
 // Of the wind-up by friction: what a sample is off by that is no error of stiffness or lead.
 constexpr double kNoiseShare = 0.1;
 
@@ -43,7 +49,24 @@ TableScale::TableScale(const Setup& s) noexcept
       lost_(std::max(kLostReadings, static_cast<int>(std::lround(kLost_s / s.period_s)))),
       fit_({s.period_s, kNoiseShare * s.level_N / s.stiffness_N_m, s.stiffness_std / s.stiffness_N_m,
             kMassStd * s.motor_mass_kg / s.stiffness_N_m, s.turn_m, s.learns && s.stiffness_std > 0.0,
-            s.count_m}) {}
+            s.count_m}) {
+  windows_ = {WindowOf(kShortWay * s.turn_m), WindowOf(s.turn_m)};
+  const double masses_kg = s.motor_mass_kg + s.table_mass_kg;
+  table_share_ = s.table_mass_kg / masses_kg;
+  const double mode_rad_s = std::sqrt(s.stiffness_N_m * masses_kg / (s.motor_mass_kg * s.table_mass_kg));
+  rings_kept_ = std::exp(-s.period_s * mode_rad_s / (kRinging_periods * 2.0 * std::numbers::pi));
+}
+
+ScaleWindow TableScale::WindowOf(double way_m) const noexcept {
+  return ScaleWindow({.way_m = way_m,
+                      .turn_m = setup_.turn_m,
+                      .turn_error_rel = kTurnError_rel,
+                      .lead_error_rel = kLeadError_rel,
+                      .stiffness_N_m = setup_.stiffness_N_m,
+                      .stiffness_error_rel = kWindUpShare,
+                      .friction_N = setup_.friction_N,
+                      .steps_m = 2.0 * setup_.reading_m + setup_.count_m});
+}
 
 void TableScale::Reset() noexcept {
   LetGo();
@@ -55,6 +78,8 @@ void TableScale::LetGo() noexcept {
   lately_m_ = 0.0;
   doubt_ = missing_ < lost_ ? Reason::kNone : Reason::kScaleLost;
   filtering_ = false;
+  for (ScaleWindow& window : windows_) window.Restart();
+  rings_N_ = force_N_ = 0.0;
   center_m_ = 0.0;
   fit_.LetGo(believed() ? position_m_ - table_m_ - lead_m_ : 0.0);
 }
@@ -107,8 +132,27 @@ void TableScale::Filter(const Sample& s) noexcept {
   quick_m_s2_ += quick_[2] / setup_.period_s;
 }
 
+double TableScale::MotorsScrew_N() const noexcept { return quick_[1] - setup_.motor_mass_kg * quick_m_s2_; }
+
+bool TableScale::GoesWithMotor(const Sample& sample) noexcept {
+  const double planned_m_s2 = std::min(std::abs(quick_m_s2_), setup_.acceleration_m_s2);
+  ScaleWindow::Sample s;
+  s.apart_m = quick_[0] - low_[kLead];
+  // That of the torque is without friction: the window knows what that may change by.
+  s.screw_N = {MotorsScrew_N(), table_share_ * quick_[1]};
+  s.unsure_N = {rings_N_ + kMassShare * setup_.motor_mass_kg * planned_m_s2, rings_N_};
+  s.moved_m = sample.position_m - position_m_;
+  s.elapsed_s = periods_ * setup_.period_s;
+  bool goes = true;
+  for (ScaleWindow& window : windows_) goes = window.GoTogether(s) && goes;
+  // Inertia keeps the screw from swinging in the period in which the torque changes.
+  const double change_N = sample.force_N - std::exchange(force_N_, sample.force_N);
+  rings_N_ = std::max(rings_kept_ * rings_N_, table_share_ * std::abs(change_N));
+  return goes;
+}
+
 bool TableScale::Plausible() const noexcept {
-  const double screw_N = quick_[1] - setup_.motor_mass_kg * quick_m_s2_;
+  const double screw_N = MotorsScrew_N();
   const double off_m = quick_[0] - low_[kLead] - screw_N / setup_.stiffness_N_m - center_m_;
   // A SYNC that comes late makes a speed too high and the next too low: to the acceleration that is a push
   // and twice as large a pull.
@@ -136,6 +180,7 @@ void TableScale::Step(const Sample& s) noexcept {
     zero_samples_ = 0;
     Filter(s);
   }
+  const bool goes = !s.enabled || !seen_ || GoesWithMotor(s);
   position_m_ = s.position_m;
   table_m_ = s.scale_m - zero_m_;
   lead_m_ = s.lead_m;
@@ -144,7 +189,7 @@ void TableScale::Step(const Sample& s) noexcept {
   if (!believed()) return;
   const double screw_N = this->screw_N();
   const double beyond_m = low_[kApart] - low_[kLead] - screw_N / setup_.stiffness_N_m;
-  if (!Plausible()) {
+  if (!goes || !Plausible()) {
     doubt_ = Reason::kScaleDoubted;
     return;
   }

@@ -5,6 +5,7 @@
 
 #include "core/reason.h"
 #include "estimator/scale_fit.h"
+#include "estimator/scale_window.h"
 
 namespace contour {
 
@@ -16,11 +17,15 @@ namespace contour {
 /// and the screw winds up by no more than that. Neither knows of the scale, so nothing that the loop does
 /// about a scale that lies makes it look true. What is left may be friction at the motor, the wind-up at
 /// which the zero was taken, errors of stiffness, mass and lead; all bounds are of these.
+///
+/// Within a turn of the screw, and a part of one, far less can change than since the zero was taken
+/// (ScaleWindow): there one that begins to count wrongly is seen before the loop has followed it far.
 class TableScale {
  public:
   struct Setup {
     double period_s = 1e-3;
     double motor_mass_kg = 1.0;
+    double table_mass_kg = 1.0;
     double stiffness_N_m = 1.0;
     double stiffness_std = 0.0;       ///< relative; 0: nothing is learnt
     double friction_N = 1.0;          ///< at most
@@ -83,6 +88,9 @@ class TableScale {
   void Filter(const Sample& s) noexcept;
   [[nodiscard]] double Allowed_m(double screw_N, double acceleration_m_s2) const noexcept;
   [[nodiscard]] bool Plausible() const noexcept;
+  [[nodiscard]] ScaleWindow WindowOf(double way_m) const noexcept;
+  [[nodiscard]] double MotorsScrew_N() const noexcept;
+  [[nodiscard]] bool GoesWithMotor(const Sample& s) noexcept;
 
   Setup setup_;
   double share_ = 1.0;        // of the low-pass, per period
@@ -106,6 +114,11 @@ class TableScale {
   std::array<double, 3> quick_{};  // apart, force, velocity
   double quick_m_s2_ = 0.0;
   double center_m_ = 0.0;
+  std::array<ScaleWindow, 2> windows_{};
+  double table_share_ = 0.0;  // of the torque, through the screw
+  double rings_kept_ = 0.0;   // per period
+  double rings_N_ = 0.0;      // the screw, by what the torque changed at once
+  double force_N_ = 0.0;      // of the sample before
   ScaleFit fit_;
 };
 

@@ -26,6 +26,7 @@ std::unique_ptr<TableScale> TwoInertiaEstimator::MakeScale(const Setup& s, doubl
   TableScale::Setup scale;
   scale.period_s = s.filter.period_s;
   scale.motor_mass_kg = s.axis.motor_mass_kg;
+  scale.table_mass_kg = s.axis.table_mass_kg;
   scale.stiffness_N_m = s.axis.stiffness_N_m;
   scale.stiffness_std = std::max(c.stiffness_std, kLeastStdWithScale);
   scale.learns = c.adapt && c.stiffness_std > 0.0;

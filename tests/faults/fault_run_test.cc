@@ -140,6 +140,35 @@ TEST(FaultRun, AScaleThatFailsNeverTurnsIntoMotion) {
         }
 }
 
+// Two per cent of the travel from some instant on. Before, at speed, the loop followed such a scale to 0.67
+// mm.
+TEST(FaultRun, AScaleOrAnEncoderThatCountsLessIsSeenBeforeTheLoopHasFollowedItFar) {
+  const EmulatedMachineFile file = LoadEmulatedMachine(std::string(CONTOUR_CONFIG_DIR) + "/family/t30s.yaml");
+  for (const Fault fault : {Fault::kScaleCountsLess, Fault::kEncoderCountsLess})
+    for (const double feed_mm_s : {10.0, 50.0, 144.0, 235.0})
+      for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
+        const FaultCase c = Case(fault, Phase::kConstant, feed_mm_s, mode);
+        const RunResult r = RunFault(c, {&file, 1});
+        EXPECT_EQ(All(r), "") << Key(c) << " " << feed_mm_s;
+        EXPECT_TRUE(r.stopped) << Key(c) << " " << feed_mm_s;
+        if (fault == Fault::kScaleCountsLess) {
+          // The stop's own travel is in it. 0.23, 0.63 and 0.71 mm before.
+          EXPECT_LT(r.departure_m, feed_mm_s < 200.0 ? 0.4e-3 : 0.65e-3) << Key(c) << " " << feed_mm_s;
+        }
+      }
+}
+
+// Nothing of it may stop an axis whose scale is sound.
+TEST(FaultRun, ALostSetpointOrALateSyncIsNoFaultOfTheScale) {
+  const EmulatedMachineFile file = Machine("scaled");
+  for (const Fault fault : {Fault::kSetpointLost, Fault::kBusTraffic})
+    for (const double feed_mm_s : {17.4, 37.0, 144.0, 227.0})
+      for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
+        const FaultCase c = Case(fault, Phase::kConstant, feed_mm_s, mode);
+        EXPECT_EQ(All(RunFault(c, {&file, 3102})), "") << Key(c) << " " << feed_mm_s;
+      }
+}
+
 class WithoutSupervisor : public ::testing::TestWithParam<Supervisor> {};
 
 /// The campaign on the fault that the supervisor is there for: holds with it, fails without it.

@@ -62,6 +62,8 @@ constexpr std::array kRows{
     Expectation{F::kScaleFrozen,             kMayStop, kMayStop, {R::kScaleDoubted, R::kScaleDisagrees}},
     Expectation{F::kScaleReversed,           kMayStop, kMayStop, {R::kScaleDoubted, R::kScaleDisagrees}},
     Expectation{F::kScaleJump,               kStops,   kStops,   {R::kScaleDoubted, R::kScaleDisagrees}},
+    Expectation{F::kScaleCountsLess,         kMayStop, kMayStop, {R::kScaleDoubted, R::kScaleDisagrees}},
+    Expectation{F::kEncoderCountsLess,       kMayStop, kMayStop, {R::kScaleDoubted, R::kScaleDisagrees}},
 };
 // clang-format on
 

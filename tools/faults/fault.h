@@ -66,6 +66,8 @@ enum class Fault : std::uint8_t {
   kScaleFrozen,
   kScaleReversed,
   kScaleJump,
+  kScaleCountsLess,
+  kEncoderCountsLess,
 };
 
 struct FaultName {
@@ -137,6 +139,10 @@ inline constexpr std::array kFaults{
     FaultName{Fault::kScaleReversed, "scale_reversed", "the count of the linear scale runs the wrong way"},
     FaultName{Fault::kScaleJump, "scale_jump",
               "the count of the linear scale jumps by a tenth of the safe travel"},
+    FaultName{Fault::kScaleCountsLess, "scale_counts_less",
+              "the count of the linear scale runs by two per cent less than the table"},
+    FaultName{Fault::kEncoderCountsLess, "encoder_counts_less",
+              "a coupling slips: the count of the motor's encoder runs by two per cent less than the table"},
 };
 inline constexpr std::size_t kFaultCount = kFaults.size();
 

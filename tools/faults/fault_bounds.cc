@@ -66,6 +66,8 @@ Promise PromiseOf(Fault fault) {
     case Fault::kScaleFrozen:
     case Fault::kScaleReversed:
     case Fault::kScaleJump:
+    case Fault::kScaleCountsLess:
+    case Fault::kEncoderCountsLess:
       return Promise::kPathStop;
     case Fault::kEncoderReversed:
     case Fault::kEncoderJump:
@@ -200,10 +202,11 @@ RunBound MotionBound(const MachineConfig& machine, const FaultCase& c) {
 
 /// A scale that stands or counts backwards is seen once it is off by more than a screw can explain.
 double ScaleSeen_s(const MachineConfig& machine, const FaultCase& c) {
-  if (c.fault != Fault::kScaleFrozen && c.fault != Fault::kScaleReversed) return 0.0;
+  const bool slowly = c.fault == Fault::kScaleCountsLess || c.fault == Fault::kEncoderCountsLess;
+  if (c.fault != Fault::kScaleFrozen && c.fault != Fault::kScaleReversed && !slowly) return 0.0;
   const AxisConfig& axis = AxisOf(machine, c.axis);
   const double seen_mm = kScaleOff_rel * axis.model.mechanics.lead_mm + 4e3 * SettledError_m(axis);
-  return seen_mm / c.feed_mm_s + kScaleSeen_s;
+  return seen_mm / ((slowly ? kCountsMissing_rel : 1.0) * c.feed_mm_s) + kScaleSeen_s;
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ struct RunBound {
   double time_s = 0.0;       ///< from the fault to no torque, or rest
 };
 
+/// Of the travel, what a scale or an encoder that counts too little leaves out.
+inline constexpr double kCountsMissing_rel = 0.02;
+
 /// Encoder and motor faults, which only what the axis does can show.
 bool ShownByMotion(Fault fault);
 /// The axis stands, or moves so slowly that its torque cannot tell what stands.

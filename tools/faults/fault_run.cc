@@ -81,7 +81,7 @@ class Run {
 
  private:
   static EmulatedMachineFile Prepared(const FaultCase& c, const RunRequest& request) {
-    EmulatedMachineFile file = *request.file;
+    EmulatedMachineFile file = request.In(c.mode);
     file.emulator.seed = SeedOf(c, request.campaign_seed) & 0x7FFFFFFF;
     for (auto& [name, axis] : file.machine.axes) {
       axis.drive.mode = c.mode;

@@ -33,6 +33,12 @@ struct RunRequest {
   /// The supervisor in question: runs of its proof must give its reason. Null: none.
   const Supervisor* supervisor = nullptr;
   bool without = false;  ///< it is switched off
+  /// The same machine as its file has it in csp (MachineInMode). Null: `file` with another mode.
+  const EmulatedMachineFile* in_csp = nullptr;
+
+  [[nodiscard]] const EmulatedMachineFile& In(DriveMode mode) const noexcept {
+    return mode == DriveMode::kCsp && in_csp != nullptr ? *in_csp : *file;
+  }
 };
 
 /// Bring-up, the machine's life to the phase, the fault, what becomes of it, the fault mended, reset, enable.

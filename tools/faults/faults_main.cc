@@ -5,11 +5,13 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <stdexcept>
 
 #include "config/config_error.h"
 #include "core/exit_status.h"
 #include "tools/faults/campaign.h"
+#include "tools/faults/machine_in_mode.h"
 #include "tools/faults/options.h"
 #include "tools/faults/proof.h"
 #include "tools/faults/report.h"
@@ -55,12 +57,19 @@ int Run(const Options& o) {
   const Supervisor* supervisor = FindSupervisor(o.without);
   const bool its_own = supervisor != nullptr && o.plan.only.empty() && o.plan.feed_mm_s == 0.0;
   const std::vector<FaultCase> cases = Plan(its_own ? ProofOf(*supervisor) : o.plan, axes);
+  const auto in = [&](DriveMode mode) -> std::optional<EmulatedMachineFile> {
+    if (std::none_of(cases.begin(), cases.end(), [mode](const FaultCase& c) { return c.mode == mode; }))
+      return {};
+    return MachineInMode(o.config, file, mode);
+  };
+  const std::optional<EmulatedMachineFile> cst = in(DriveMode::kCst), csp = in(DriveMode::kCsp);
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
   const auto progress = [&](std::size_t done) {
     if (terminal) std::fprintf(stderr, "\r\x1b[K%zu of %zu runs", done, cases.size());
   };
-  const std::vector<RunResult> results =
-      RunCampaign(cases, {&file, o.plan.seed, supervisor, supervisor != nullptr}, o.threads, progress);
+  const std::vector<RunResult> results = RunCampaign(
+      cases, {cst ? &*cst : &file, o.plan.seed, supervisor, supervisor != nullptr, csp ? &*csp : nullptr},
+      o.threads, progress);
   if (terminal) std::fputs("\r\x1b[K", stderr);
 
   const std::vector<Cell> cells = Cells(results, highest_mm_s);

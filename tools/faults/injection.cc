@@ -220,6 +220,8 @@ void Injection::BreakEncoder(plant::EmulatedAxis& axis) {
   switch (c_.fault) {
     case Fault::kEncoderReversed:
       return t.Scale(-1.0);
+    case Fault::kEncoderCountsLess:
+      return t.Scale(1.0 - kCountsMissing_rel);
     case Fault::kEncoderJumpTiny:
       return t.Jump(sign * Draw(1, 3));
     case Fault::kEncoderJump:
@@ -246,6 +248,8 @@ void Injection::BreakScale(plant::Tampering& t) {
       return t.Freeze();
     case Fault::kScaleReversed:
       return t.Scale(-1.0);
+    case Fault::kScaleCountsLess:
+      return t.Scale(1.0 - kCountsMissing_rel);
     case Fault::kScaleJump:
       if (drive_.linear_scale)
         t.Jump(std::llround(JumpSize_mm(config_, c_) * drive_.linear_scale->counts_per_mm));
