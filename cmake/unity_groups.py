@@ -29,13 +29,14 @@ def code(text):
 
 
 def declared(line):
-    """The name that a line at the left margin declares, or nothing."""
+    """The names that a line at the left margin declares."""
     match = re.match(r"(?:template <.*> )?(?:struct|class|enum class|enum|union) (\w+)(?! \w+\()", line)
     if match:
-        return match[1]
+        return {match[1]}
     head = re.split(r"[=;{\[(]", line)[0]
     words = re.findall(r"(?:::)?\w+", re.sub(r"<[^()]*>", "", head))
-    return words[-1] if words and not re.match(r"::|operator$|template$|[A-Z_]+$", words[-1]) else ""
+    further = set(re.findall(r", (\w+) = ", line))  # constexpr double kA = 1.0, kB = 2.0;
+    return further | {word for word in words[-1:] if not re.match(r"::|operator$|template$|[A-Z_]+$", word)}
 
 
 class Source:
@@ -65,10 +66,9 @@ class Source:
             elif using:
                 self.usings[using[1]] = line
             elif line[:1].isalpha() and (anonymous or line.startswith(("static ", "constexpr ", "inline "))):
-                self.names.add(declared(line))
+                self.names |= declared(line)
                 if anonymous:
-                    self.renamable.add(declared(line))
-        self.names.discard("")
+                    self.renamable |= declared(line)
 
     def imposes_on(self, other):
         return self.alone or bool((self.names - self.renamable) & other.words) or self.namespaces != other.namespaces or any(

@@ -47,7 +47,7 @@ class UnityGroups(unittest.TestCase):
 
     def test_names_that_two_files_have_for_themselves_stay_two(self):
         one = "namespace {\nconstexpr int kPart = 2;\nint Part(int x) { return kPart + x; }\n}  // namespace\nint A() { return Part(0); }\n"
-        other = "namespace {\nconstexpr int kPart = 3;\nint Part(int x) { return kPart + x; }\n}  // namespace\nint B() { return Part(1); }\n"
+        other = "namespace {\nconstexpr int kNone = 0, kPart = 3;\nint Part(int x) { return kPart + x + kNone; }\n}  // namespace\nint B() { return Part(1); }\n"
         self.assertEqual(len(self.groups(one, other)), 1)
         self.assertEqual(self.status(one, other), 24)
 

@@ -11,7 +11,7 @@ namespace {
 
 // A host that does not let the cycle run for some periods: nothing is sent, the drives hold the last torque
 // and time goes on for the plant.
-class SkippedGridPoints : public testing::Test {
+class SkippedGridPoints : public ::testing::Test {
  protected:
   SkippedGridPoints() : machine_(ExampleMachine(), ControllerName::kFull, EmulatedClock::kWall) {
     machine_.BringUp();
