@@ -155,7 +155,10 @@ std::string Failure(const BringUpStatus& s) {
       return Object(s) + " does not hold what was written: " + Both(s);
     case BringUpError::kIdentity:
       return Object(s) + " differs from the configuration: " + Both(s) +
-             "; this is another drive than the machine file says";
+             (s.sub_index == 4 ? "; this is another drive of the same type: look whether the node numbers or "
+                                 "the cables of two drives are exchanged. After a drive was replaced state "
+                                 "its serial_number"
+                               : "; this is another drive than the machine file says");
     case BringUpError::kNotADrive:
       return Object(s) + " is not that of a CiA 402 drive: expected profile 402, found " +
              std::to_string(s.found);

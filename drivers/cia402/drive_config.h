@@ -33,6 +33,7 @@ struct IdentityConfig {
   std::uint32_t vendor_id = 0;
   std::uint32_t product_code = 0;
   std::optional<std::uint32_t> revision;
+  std::optional<std::uint32_t> serial_number{};
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -40,6 +41,8 @@ struct IdentityConfig {
     v.Required("vendor_id", vendor_id, kU32, "expected 0x1018:01");
     v.Required("product_code", product_code, kU32, "expected 0x1018:02");
     v.Optional("revision", revision, kU32, "expected 0x1018:03; not compared when left out");
+    v.Optional("serial_number", serial_number, kU32,
+               "expected 0x1018:04, which tells drives of one type apart; not compared when left out");
   }
 };
 

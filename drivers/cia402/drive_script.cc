@@ -182,6 +182,8 @@ void Identify(Script& script, const DriveConfig& drive) {
   script.Equal(0x1018, 1, drive.identity->vendor_id, BringUpError::kIdentity);
   script.Equal(0x1018, 2, drive.identity->product_code, BringUpError::kIdentity);
   if (drive.identity->revision) script.Equal(0x1018, 3, *drive.identity->revision, BringUpError::kIdentity);
+  if (drive.identity->serial_number)
+    script.Equal(0x1018, 4, *drive.identity->serial_number, BringUpError::kIdentity);
 }
 
 void CompareUnits(Script& script, const DriveConfig& drive) {

@@ -39,6 +39,9 @@ TEST(BringUpText, NamesObjectBothValuesAndAbortCode) {
             "axis y (node 2), check identity: identity 0x1018:02 differs from the configuration: expected 16 "
             "(0x10), "
             "found 42 (0x2A); this is another drive than the machine file says");
+  s.sub_index = 4;
+  EXPECT_NE(BringUpText(s, kAxes).find("0x1018:04 differs"), std::string::npos);
+  EXPECT_NE(BringUpText(s, kAxes).find("the cables of two drives are exchanged"), std::string::npos);
   s = Status(BringUpPhase::kPdo, BringUpError::kSdoAbort);
   s.index = 0x1A00;
   s.sub_index = 3;

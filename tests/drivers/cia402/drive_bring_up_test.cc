@@ -170,6 +170,24 @@ TEST(DriveBringUp, AnotherDriveThanConfiguredIsRefused) {
   EXPECT_EQ(m.master.bring_up().found, 0x9999u);
 }
 
+// Two of one type whose node numbers are exchanged differ in nothing else: x would move for y.
+TEST(DriveBringUp, ADriveOfTheSameTypeInItsPlaceIsRefused) {
+  MasterConfig config = TwoAxes();
+  config.axes[0].drive.identity->serial_number = 71;
+  config.axes[1].drive.identity->serial_number = 72;
+  for (const bool exchanged : {false, true}) {
+    Machine m(config);
+    m.slave[0].objects()[{0x1018, 4}] = exchanged ? 72 : 71;
+    m.slave[1].objects()[{0x1018, 4}] = exchanged ? 71 : 72;
+    m.BringUp();
+    EXPECT_EQ(m.error(), exchanged ? BringUpError::kIdentity : BringUpError::kNone);
+    if (!exchanged) continue;
+    EXPECT_EQ(m.master.bring_up().sub_index, 4);
+    EXPECT_EQ(m.master.bring_up().expected, 71u);
+    EXPECT_EQ(m.master.bring_up().found, 72u);
+  }
+}
+
 TEST(DriveBringUp, ADeviceThatIsNoDriveIsRefused) {
   Machine m;
   m.slave[0].objects()[{0x1000, 0}] = 0x000F0191;  // an I/O module
