@@ -61,10 +61,10 @@ function(contour_program name)
   target_link_libraries(${name} PRIVATE ${arg_LINK})
 endfunction()
 
-# contour_time_limit(SECONDS TEST...): after which tests that hang are ended. The longer it is, the earlier they begin.
+# contour_time_limit(SECONDS TEST...): after which tests that hang are ended.
 function(contour_time_limit seconds)
   math(EXPR seconds "${CONTOUR_SLOWDOWN} * ${seconds}")
-  set_tests_properties(${ARGN} PROPERTIES TIMEOUT ${seconds} COST ${seconds})
+  set_tests_properties(${ARGN} PROPERTIES TIMEOUT ${seconds})
 endfunction()
 
 # contour_test(NAME SOURCES ... LINK ... [OWN_HEADERS]): a GoogleTest program, each case a CTest entry. OWN_HEADERS: it has
