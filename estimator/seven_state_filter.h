@@ -116,7 +116,6 @@ class SevenStateFilter {
   DriveLag<kSubsteps> lag_;
   SuddenGate gate_;
   X noise_{};
-  double timing_noise_ = 0.0;   // of the force, share of its change from one period to the next
   double lasting_share_ = 0.0;  // shares per period
   double asymmetry_share_ = 0.0;
   double surprise_share_ = 0.0;
