@@ -20,6 +20,7 @@ FOLDERS = ["core", "drivers/can", "drivers/cia301", "drivers/cia402", "estimator
 # Files that are read together are headers to clang-tidy.
 LINES_OF_ALL = r"--header-filter=/(core|drivers|estimator|control|config|daemon|tools)/.*\.(h|cc)$"
 
+
 def translation_units(root, build):
     commands = json.loads(Path(build, "compile_commands.json").read_text(encoding="utf-8"))
     wanted = tuple(str(root / folder) + "/" for folder in FOLDERS)
@@ -30,10 +31,6 @@ def tidy(arguments):
     result = subprocess.run(["clang-tidy", "--quiet", *arguments], capture_output=True, text=True, check=False)
     # Counts of suppressed warnings of other people's headers go to stderr; findings and parse errors to stdout.
     return result.returncode, result.stdout.strip() or (result.stderr.strip() if result.returncode else "")
-
-
-def in_file_order(folder, units):
-    return [name for name in sorted(units) if str(Path(name).parent).endswith("/" + folder)]
 
 
 def read_as(source, unit, scratch, checks):
