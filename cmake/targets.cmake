@@ -67,10 +67,18 @@ function(contour_time_limit seconds)
   set_tests_properties(${ARGN} PROPERTIES TIMEOUT ${seconds})
 endfunction()
 
-# contour_test(NAME SOURCES ... LINK ... [OWN_HEADERS]): a GoogleTest program, each case a CTest entry. OWN_HEADERS: it has
-# definitions of its own for the libraries that are in the precompiled headers.
+# contour_nightly_test(NAME LABEL SECONDS COMMAND...): what CTest runs at night alone, in the part LABEL of tools/nightly.
+function(contour_nightly_test name label seconds)
+  add_test(NAME ${name} COMMAND ${ARGN} CONFIGURATIONS nightly)
+  set_tests_properties(${name} PROPERTIES LABELS nightly_${label} SKIP_RETURN_CODE 77)
+  contour_time_limit(${seconds} ${name})
+endfunction()
+
+# contour_test(NAME SOURCES ... LINK ... [NIGHTLY CASE...] [OWN_HEADERS]): a GoogleTest program, each case a CTest entry.
+# NIGHTLY: cases that take too long for every run of the tests. OWN_HEADERS: it has definitions of its own for the libraries
+# that are in the precompiled headers.
 function(contour_test name)
-  cmake_parse_arguments(arg "OWN_HEADERS" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(arg "OWN_HEADERS" "" "SOURCES;LINK;NIGHTLY" ${ARGN})
   if(CONTOUR_TOGETHER AND NOT arg_OWN_HEADERS)
     contour_together(arg_SOURCES ${name} ${arg_SOURCES})
   endif()
@@ -83,5 +91,13 @@ function(contour_test name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
   target_link_libraries(${name} PRIVATE ${arg_LINK} GTest::gtest_main)
   math(EXPR limit_s "300 * ${CONTOUR_SLOWDOWN}")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${limit_s})
+  set(every_run "")
+  if(arg_NIGHTLY)
+    list(JOIN arg_NIGHTLY ":" cases)
+    set(every_run TEST_FILTER "-${cases}")
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 ${every_run} PROPERTIES TIMEOUT ${limit_s})
+  foreach(case ${arg_NIGHTLY})
+    contour_nightly_test(nightly.${case} long 1200 ${name} --gtest_filter=${case})
+  endforeach()
 endfunction()

@@ -1,5 +1,6 @@
-// instruction_probe WHAT COUNT MACHINE_FILE: does one thing COUNT times, for instructions.py and
-// cycle_profile.py to count.
+// instruction_probe WHAT COUNT MACHINE_FILE [FROM]: does one thing COUNT times, for instructions.py and
+// cycle_profile.py to count. With FROM callgrind counts from that time on alone: what comes before takes most
+// of the time, and callgrind makes it forty times as long.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +14,13 @@
 #include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#else  // without valgrind nothing is counted
+#define CALLGRIND_START_INSTRUMENTATION
+#define CALLGRIND_STOP_INSTRUMENTATION
+#endif
+
 #include "daemon/make_cycle_config.h"
 #include "estimator/axis_estimator.h"
 #include "tools/bench/contour_problems.h"
@@ -21,6 +29,26 @@
 
 namespace contour {
 namespace {
+
+/// Whether callgrind, begun with --instr-atstart=no, counts what follows.
+class Counting {
+ public:
+  explicit Counting(bool counts) : counts_(counts) {
+    if (counts_) {
+      CALLGRIND_START_INSTRUMENTATION;
+    }
+  }
+  ~Counting() {
+    if (counts_) {
+      CALLGRIND_STOP_INSTRUMENTATION;
+    }
+  }
+  Counting(const Counting&) = delete;
+  Counting& operator=(const Counting&) = delete;
+
+ private:
+  bool counts_;
+};
 
 void Estimate(EstimatorKind kind, int count) {
   FrictionConfig f;
@@ -89,7 +117,8 @@ std::vector<std::string> Linear(const std::string& mode) {
 constexpr int kMostCycles = 400;
 
 /// The last cycles of a circle, or of a machine that holds all its axes, stepped from the recorded inputs.
-void StepCycles(const std::string& file, const std::vector<std::string>& overrides, int count, bool moves) {
+void StepCycles(const std::string& file, const std::vector<std::string>& overrides, int count, int from,
+                bool moves) {
   const EmulatedMachineFile machine_file = LoadEmulatedMachine(file, overrides);
   VirtualMachine machine(machine_file, ControllerName::kFull);
   std::vector<CycleInput> inputs;
@@ -104,13 +133,17 @@ void StepCycles(const std::string& file, const std::vector<std::string>& overrid
   }
   Cycle cycle(MakeCycleConfig(machine_file.machine, ControllerName::kFull));
   auto output = std::make_unique<CycleOutput>();
-  const std::size_t last = inputs.size() - kMostCycles + static_cast<std::size_t>(count);
-  for (std::size_t k = 0; k < last && k < inputs.size(); ++k) cycle.Step(inputs[k], *output);
+  const std::size_t begin = inputs.size() - kMostCycles;
+  const std::size_t first = begin + static_cast<std::size_t>(std::max(from, 0));
+  const std::size_t last = begin + static_cast<std::size_t>(count);
+  for (std::size_t k = 0; k < first && k < last; ++k) cycle.Step(inputs[k], *output);
+  const Counting counting(from >= 0);
+  for (std::size_t k = first; k < last && k < inputs.size(); ++k) cycle.Step(inputs[k], *output);
 }
 
-void HoldEightAxes(const std::string& file, int count) {
+void HoldEightAxes(const std::string& file, int count, int from) {
   const std::string eight = EightAxes(file);
-  StepCycles(eight, {}, count, false);
+  StepCycles(eight, {}, count, from, false);
   std::filesystem::remove(eight);
 }
 
@@ -160,7 +193,7 @@ void ProfileCycles(const std::string& file, const std::string& mode, int count) 
   }
 }
 
-int Probe(const std::string& what, int count, const std::string& file) {
+int Probe(const std::string& what, int count, const std::string& file, int from) {
   if (what == "srukf4")
     Estimate(EstimatorKind::kSrukf4, count);
   else if (what == "srukf7")
@@ -168,13 +201,13 @@ int Probe(const std::string& what, int count, const std::string& file) {
   else if (what == "mpc20")
     SolveQps(count);
   else if (what == "cycle" || what == "cycle_csp")
-    StepCycles(file, Filter(what == "cycle" ? "cst" : "csp"), count, true);
+    StepCycles(file, Filter(what == "cycle" ? "cst" : "csp"), count, from, true);
   else if (what == "cycle_linear" || what == "cycle_linear_csp")
-    StepCycles(file, Linear(what == "cycle_linear" ? "cst" : "csp"), count, true);
+    StepCycles(file, Linear(what == "cycle_linear" ? "cst" : "csp"), count, from, true);
   else if (what == "hold_two")
-    StepCycles(file, {}, count, false);
+    StepCycles(file, {}, count, from, false);
   else if (what == "hold_eight")
-    HoldEightAxes(file, count);
+    HoldEightAxes(file, count, from);
   else if (what == "cst" || what == "csp")
     ProfileCycles(file, what, count);
   else
@@ -186,5 +219,6 @@ int Probe(const std::string& what, int count, const std::string& file) {
 }  // namespace contour
 
 int main(int argc, char** argv) {
-  return argc == 4 ? contour::Probe(argv[1], std::atoi(argv[2]), argv[3]) : 2;
+  if (argc != 4 && argc != 5) return 2;
+  return contour::Probe(argv[1], std::atoi(argv[2]), argv[3], argc == 5 ? std::atoi(argv[4]) : -1);
 }

@@ -97,9 +97,9 @@ TEST(DrillingCycle, HolesTimesPecksAreBounded) {
   const std::string one = error_of("G83 X1 Z-2 R-3 Q0.9 L600000\n");
   EXPECT_EQ(one.find("part.ngc:3:1: G83: "), 0U) << one;
   EXPECT_NE(one.find("fewer holes (L) or deeper pecks (Q)"), std::string::npos) << one;
-  // All of a program's together.
-  const std::string all = error_of("o1 repeat [2000]\nG81 X1 Z-2 R-1 L1000\nG80\no1 endrepeat\n");
-  EXPECT_EQ(all.find("part.ngc:4:1: G81: "), 0U) << all;
+  // All of a program's together: 4000 strokes and 4 999 000.
+  const std::string all = error_of("G81 X1 Z-2 R-1 L1000\nG80\nG83 X1 Z-2 R-3 Q0.9 L499900\n");
+  EXPECT_EQ(all.find("part.ngc:5:1: G83: "), 0U) << all;
   EXPECT_EQ(error_of("G81 X1 Z-2 R-1 L1000\n"), "");
 }
 
