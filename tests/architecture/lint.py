@@ -48,10 +48,17 @@ def seeing_most(units):
     return max((units[name] for name in sorted(units)), key=lambda unit: unit["command"].count("-isystem"))
 
 
+def without(text, names):
+    """What clang-tidy said, less what it said of these files."""
+    said = re.split(r"^(?=\S+?:\d+:\d+: (?:error|warning))", text, flags=re.MULTILINE)
+    return "".join(part for part in said if part.partition(":")[0] not in names).strip()
+
+
 def lint_together(root, units, scratch):
     """Findings of all files, read as one, and which these were: most of the time goes into headers, which are the same for all.
 
-    Files whose own names collide with another's, or that do not compile behind another, are read in a further round.
+    Files whose own names collide with another's, or that do not compile behind another, are read in a further round; what was
+    found in the rest is as true beside them, unless the compiler gave up.
     """
     findings, read, waiting = [], set(), sorted(units)
     while waiting:
@@ -60,14 +67,14 @@ def lint_together(root, units, scratch):
             source = Path(scratch, "together.cc")
             source.write_text(unity_groups.text_of([unity_groups.Source(name) for name in together], root), encoding="utf-8")
             unit = seeing_most({name: units[name] for name in together})
-            status, text = read_as(source, unit, scratch, "-*,clang-diagnostic-*,misc-misplaced-const")
-            blamed = set(re.findall(r"^(\S+?):\d+:\d+: error", text, re.MULTILINE)) if status else set()
+            status, text = read_as(source, unit, scratch, "-bugprone-suspicious-include")
+            blamed = set(re.findall(r"^(\S+?):\d+:\d+: error: .*\[clang-diagnostic-", text, re.MULTILINE)) if status else set()
             colliding = blamed & set(together[1:])
-            if not colliding:
-                break
             together, later = [name for name in together if name not in colliding], later + sorted(colliding)
-        status, text = read_as(source, unit, scratch, "-bugprone-suspicious-include")
-        if status:
+            text = without(text, colliding)
+            if not colliding or "fatal error" not in text and "too many errors" not in text:
+                break
+        if text or status and not colliding:
             findings.append(text or "clang-tidy failed")
         read |= set(together)
         waiting = later
@@ -101,7 +108,8 @@ def self_test(root):
                    "b.cc": "namespace { int One() { return 2; } }\nint* B() { return One() ? 0 : nullptr; }\n",
                    "c.cc": "int* C() { return 0; }\n",
                    "d.cc": "namespace {\nint Two() { return 1; }\n}  // namespace\nint D() { return Two(); }\n",
-                   "e.cc": "namespace {\nint Two() { return 2; }\n}  // namespace\nint* E() { return Two() ? 0 : nullptr; }\n"}
+                   "e.cc": "namespace {\nint Two() { return 2; }\n}  // namespace\nint* E() { return Two() ? 0 : nullptr; }\n",
+                   "f.cc": "int* F() { return 0; }\n"}
         units = {}
         for name, source in sources.items():
             path = Path(folder, "core", name)
@@ -109,7 +117,7 @@ def self_test(root):
             path.write_text(source, encoding="utf-8")
             units[str(path)] = {"directory": folder, "file": str(path), "command": f"c++ -std=c++20 -c {path}"}
         found = "\n".join(lint_together(Path(folder), units, folder)[0])
-        for name in ("b.cc:2", "c.cc:1", "e.cc:4"):
+        for name in ("b.cc:2", "c.cc:1", "e.cc:4", "f.cc:1"):
             if not re.search(rf"{re.escape(name)}:.*modernize-use-nullptr", found):
                 offences.append(f"the error planted in {name} was not found; clang-tidy said: {found!r}")
         if "redefinition" in found:
