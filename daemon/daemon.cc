@@ -141,7 +141,7 @@ class Daemon {
         rest_swing_(MakeCycleConfig(machine_, machine_.machine.controller)) {
     if (machine_.io.modbus) {
       io_client_ = std::make_unique<IoClient>(*machine_.io.modbus);
-      io_ = std::make_unique<IoAdapter>(*io_client_);
+      io_ = std::make_unique<IoAdapter>(*io_client_, options_.clock == "lockstep");
       if (machine_.io.modbus->outputs.program) {
         outputs_ =
             std::make_unique<ModbusOutputs>(*machine_.io.modbus->outputs.program, *io_client_->outputs());

@@ -36,6 +36,9 @@ class IoClient {
   /// What the I/O permits at now_ns (CLOCK_MONOTONIC). For the real-time loop: wait-free. Without a sample
   /// younger than timeout_ms nothing is fresh and both circuits are open.
   [[nodiscard]] IoInput Read(std::int64_t now_ns) const noexcept;
+  /// The same in lock-step, where time stands still as long as the host holds us up: what was polled last
+  /// holds until polls fail, however long ago that was.
+  [[nodiscard]] IoInput ReadInLockstep() const noexcept;
 
   /// Totals since the start, for the lubrication. From any thread.
   void ReportMotion(double travel_m, double moving_s) noexcept;
@@ -53,9 +56,11 @@ class IoClient {
   [[nodiscard]] bool Lubricate();
   void Fail(const std::string& what);
   [[nodiscard]] bool WaitForStop(int milliseconds);
+  [[nodiscard]] IoInput From(const IoSample& sample, bool fresh) const noexcept;
 
   const ModbusConfig config_;
   IoSnapshot snapshot_;
+  std::atomic<unsigned> failed_polls_{0};  ///< since the last good one
   std::atomic<double> travel_m_{0.0};
   std::atomic<double> moving_s_{0.0};
 

@@ -86,6 +86,32 @@ TEST_F(IoClientTest, OldDataCountAsOpen) {
   EXPECT_FALSE(client.Read(now + 201'000'000).enable_chain_ok);
 }
 
+// A host that is busy for seconds holds up the polls and the cycle alike, and in lock-step no time has gone
+// by.
+TEST_F(IoClientTest, InLockstepWhatWasPolledHoldsUntilPollsFail) {
+  server_.SetInput(3, true);
+  server_.SetInput(5, true);
+  ModbusConfig held_up = Config();
+  held_up.poll_ms = 60'000;
+  IoClient slow(held_up);
+  EXPECT_FALSE(slow.ReadInLockstep().fresh);
+  slow.Start();
+  ASSERT_TRUE(Eventually([&] { return slow.stats().polls > 0 && !slow.Read(Now_ns()).fresh; }));
+  EXPECT_TRUE(slow.ReadInLockstep().fresh) << "a poll that was held up is none that failed";
+  EXPECT_TRUE(slow.ReadInLockstep().emergency_stop_ok);
+  slow.Stop();
+
+  IoClient client(Config());
+  client.Start();
+  ASSERT_TRUE(PolledAgain(client));
+  server_.SetMute(true);
+  ASSERT_TRUE(Eventually([&] { return !client.ReadInLockstep().fresh; }));
+  EXPECT_FALSE(client.ReadInLockstep().emergency_stop_ok);
+  EXPECT_FALSE(client.ReadInLockstep().enable_chain_ok);
+  server_.SetMute(false);
+  EXPECT_TRUE(Eventually([&] { return client.ReadInLockstep().enable_chain_ok; }));
+}
+
 TEST_F(IoClientTest, AMuteServerIsLostDataAndAFailureAndComesBack) {
   server_.SetInput(3, true);
   server_.SetInput(5, true);
