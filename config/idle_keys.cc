@@ -10,11 +10,15 @@ namespace contour {
 namespace {
 
 /// Of the filter with one rigid mass alone, which `friction: srukf` is.
-constexpr std::string_view kOfFilter[] = {
-    "position_noise_um",   "velocity_noise_mm_s", "timing_noise",         "bristle_noise_N",  "level_noise_N",
-    "disturbance_noise_N", "log_sigma0_noise",    "disturbance_decay_ms", "motion_gate_mm_s", "rest_noise",
-    "log_sigma0_range",    "ripple_rate",         "stribeck_rate",        "mass_rate",        "delay_rate",
-    "viscous_rate",        "level_error",         "level_asymmetry"};
+constexpr std::string_view kOfFilter[] = {"position_noise_um", "velocity_noise_mm_s",
+                                          "timing_noise",      "bristle_noise_rel",
+                                          "level_noise_rel",   "disturbance_noise_mm_s2",
+                                          "log_sigma0_noise",  "disturbance_decay_ms",
+                                          "motion_gate_mm_s",  "rest_noise",
+                                          "log_sigma0_range",  "ripple_rate",
+                                          "stribeck_rate",     "mass_rate",
+                                          "delay_rate",        "viscous_rate",
+                                          "level_error",       "level_asymmetry"};
 
 class Finder {
  public:

@@ -26,6 +26,7 @@ class DisturbanceBand {
     samples_ = std::min(samples_ + 1.0, most_);
     mean_N2_ += (disturbance_N * disturbance_N - mean_N2_) / samples_;
   }
+  [[nodiscard]] double MeanSquare_N2() const noexcept { return mean_N2_; }
   /// One standard deviation, where the estimate itself has this variance.
   [[nodiscard]] double Std_N(double variance_N2) const noexcept { return std::sqrt(mean_N2_ + variance_N2); }
 

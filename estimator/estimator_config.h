@@ -11,10 +11,10 @@ struct EstimatorConfig {
   double position_noise_um = 1.5e-5;
   double velocity_noise_mm_s = 0.003;
   double timing_noise = 0.02;
-  double bristle_noise_N = 0.4;
-  double level_noise_N = 0.015;
+  double bristle_noise_rel = 0.012;
+  double level_noise_rel = 0.00025;
   double four_state_level_noise_N = 0.075;
-  double disturbance_noise_N = 0.075;
+  double disturbance_noise_mm_s2 = 0.9;
   double log_sigma0_noise = 0.0003;
   double measurement_noise_um = 0.003;
   double disturbance_decay_ms = 200.0;
@@ -47,12 +47,13 @@ struct EstimatorConfig {
     v.Optional("velocity_noise_mm_s", velocity_noise_mm_s, kNotNegative, "process noise of the velocity");
     v.Optional("timing_noise", timing_noise, kNotNegative,
                "process noise of the force, as a share of the change of torque from one cycle to the next");
-    v.Optional("bristle_noise_N", bristle_noise_N, kNotNegative, "process noise of the bristle force");
-    v.Optional("level_noise_N", level_noise_N, kNotNegative, "process noise of the friction levels");
+    v.Optional("bristle_noise_rel", bristle_noise_rel, kNotNegative,
+               "process noise of the bristle force, as a share of the axis's Coulomb friction");
+    v.Optional("level_noise_rel", level_noise_rel, kNotNegative, "the same of the friction levels");
     v.Optional("four_state_level_noise_N", four_state_level_noise_N, kNotNegative,
                "process noise of the one friction level of the four-state filter");
-    v.Optional("disturbance_noise_N", disturbance_noise_N, kNotNegative,
-               "process noise of the leaky disturbance");
+    v.Optional("disturbance_noise_mm_s2", disturbance_noise_mm_s2, kNotNegative,
+               "process noise of the leaky disturbance, by the acceleration that it gives the axis");
     v.Optional("log_sigma0_noise", log_sigma0_noise, kNotNegative, "process noise of ln sigma0");
     v.Optional("measurement_noise_um", measurement_noise_um, kPositive,
                "position noise, at least the encoder's own step / sqrt(12)");

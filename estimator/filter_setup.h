@@ -38,6 +38,9 @@ struct FilterSetup {
     return 0.5 * kSuddenFrictions * friction_N / mechanics.mass_kg * period_s * period_s;
   }
 
+  /// Mean of both directions: what the noises of friction are stated by.
+  [[nodiscard]] double Coulomb_N() const noexcept { return 0.5 * (friction.Fc_plus_N + friction.Fc_minus_N); }
+
   /// Noise that one period adds, from the noise of one millisecond.
   [[nodiscard]] double PerPeriod(double per_millisecond) const noexcept {
     return per_millisecond * std::sqrt(period_s / 1e-3);

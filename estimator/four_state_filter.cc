@@ -27,7 +27,8 @@ FourStateFilter::FourStateFilter(const FilterSetup& setup) noexcept
   velocity_gain_ = rate > 0.0 ? -Expm1(-rate * setup.period_s) / (rate * mass_kg) : setup.period_s / mass_kg;
   level_N_ = 0.25 * (f.Fc_plus_N + f.Fc_minus_N + f.Fs_plus_N + f.Fs_minus_N);
   noise_ = {setup.PerPeriod(c.position_noise_um * 1e-6), setup.PerPeriod(c.velocity_noise_mm_s * 1e-3),
-            setup.PerPeriod(c.bristle_noise_N) / f.sigma0_N_m, setup.PerPeriod(c.four_state_level_noise_N)};
+            setup.PerPeriod(c.bristle_noise_rel * setup.Coulomb_N()) / f.sigma0_N_m,
+            setup.PerPeriod(c.four_state_level_noise_N)};
   initial_std_ = {setup.measurement_std_m, 1e-4, 0.5 * level_N_ / f.sigma0_N_m,
                   c.initial_level_std * level_N_};
   Reset(0.0);

@@ -69,7 +69,8 @@ void FullEstimator::TellKnownForces(const AxisEstimatorInput& followed) noexcept
   const auto& ahead = filter_.predicted();
   filter_.SetKnownForces_N(learnt_.momentum.extra_kg() * followed.commanded_acceleration_m_s2,
                            learnt_.viscous.extra_Ns_m() * followed.commanded_velocity_m_s +
-                               known_.Viscous_N(followed.commanded_velocity_m_s, temperature_degC_));
+                               known_.Viscous_N(followed.commanded_velocity_m_s, temperature_degC_),
+                           learnt_.momentum.mass_variance_left());
   // In the middle of the period that has passed, and of the one that lies ahead. ahead is t(k-1) here.
   const double next_m = ahead[kPosition] + ahead[kVelocity] * roll_.period_s();
   filter_.SetDrivingForces_N(

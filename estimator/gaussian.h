@@ -100,17 +100,17 @@ struct Gaussian {
   }
 
   /// Standard deviation of sum_i c_i x_i.
-  [[nodiscard]] double Std(const StateVector<N>& c) const noexcept { return Std(c, 0, N); }
+  [[nodiscard]] double Std(const StateVector<N>& c) const noexcept { return std::sqrt(Variance(c, 0, N)); }
 
-  /// The same with c_i = 0 but for first <= i < last.
-  [[nodiscard]] double Std(const StateVector<N>& c, std::size_t first, std::size_t last) const noexcept {
+  /// Its square, with c_i = 0 but for first <= i < last.
+  [[nodiscard]] double Variance(const StateVector<N>& c, std::size_t first, std::size_t last) const noexcept {
     double v = 0.0;
     for (std::size_t j = 0; j < last; ++j) {
       double t = 0.0;
       for (std::size_t i = std::max(first, j); i < last; ++i) t += c[i] * s[i][j];
       v += t * t;
     }
-    return std::sqrt(v);
+    return v;
   }
 };
 

@@ -11,9 +11,7 @@ namespace {
 constexpr double kLow = 0.1;         // low-pass of both: 10 ms
 constexpr double kSlowHigh = 0.005;  // high-pass for the mass: 200 ms
 constexpr double kFastHigh = 0.06;   // and for the delay: 16 ms
-// Evidence that the commissioned mass weighs as much as, (m/s^2)^2 ms, and the commissioned delay, (N/ms)^2
-// ms.
-constexpr double kMassPrior = 10.0;
+// Evidence that the commissioned delay weighs as much as, (N/ms)^2 ms.
 constexpr double kDelayPrior = 2e3;
 constexpr double kMost = 0.4;
 

@@ -37,6 +37,8 @@ class MomentumBalance {
   }
 
   [[nodiscard]] double extra_kg() const noexcept { return extra_kg_; }
+  /// What is left of the variance of the commissioned mass, 1 until something has been seen.
+  [[nodiscard]] double mass_variance_left() const noexcept { return kMassPrior / (mass_seen_ + kMassPrior); }
   /// Periods by which the drive acts later than commissioned, 0 to 1.
   [[nodiscard]] double delay_periods() const noexcept { return delay_periods_; }
 
@@ -52,6 +54,9 @@ class MomentumBalance {
   void Learn(double position_m, double force_N, double friction_N) noexcept;
 
  private:
+  /// Evidence that the commissioned mass weighs as much as, (m/s^2)^2 ms.
+  static constexpr double kMassPrior = 10.0;
+
   struct Bands {
     double slow, slow_change, fast, fast_change;
   };

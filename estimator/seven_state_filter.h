@@ -40,10 +40,12 @@ class SevenStateFilter {
   }
 
   /// Forces that accelerate what the axis is heavier, and push what it is more viscous, than commissioned.
-  /// The latter counts as friction.
-  void SetKnownForces_N(double inertial_N, double viscous_N) noexcept {
+  /// The latter counts as friction. `mass_variance_left`: of what the mass was uncertain by when
+  /// commissioned.
+  void SetKnownForces_N(double inertial_N, double viscous_N, double mass_variance_left) noexcept {
     inertial_N_ = inertial_N;
     viscous_N_ = viscous_N;
+    mass_variance_left_ = mass_variance_left;
   }
 
   /// Forces on the motor beside the command's, over [t(k-2), t(k-1)) and from t(k-1) on.
@@ -116,6 +118,8 @@ class SevenStateFilter {
   DriveLag<kSubsteps> lag_;
   SuddenGate gate_;
   X noise_{};
+  double timing_noise_ = 0.0;  // of the force, share of its change from one period to the next
+  double mass_std_kg_ = 0.0;
   double lasting_share_ = 0.0;  // shares per period
   double asymmetry_share_ = 0.0;
   double surprise_share_ = 0.0;
@@ -130,6 +134,7 @@ class SevenStateFilter {
   double factor_plus_ = 1.0;
   double factor_minus_ = 1.0;
   double inertial_N_ = 0.0;
+  double mass_variance_left_ = 1.0;
   double viscous_N_ = 0.0;
   double driving_before_N_ = 0.0;
   double driving_ahead_N_ = 0.0;

@@ -97,8 +97,8 @@ TEST(Contour, TheTorqueOffsetHelpsTheDrivesOwnCascade) {
 TEST(Contour, AFrozenEstimatorIsVisiblyWorse) {
   const RunResult live = RunCircle(ExampleMachine(), ControllerName::kFull, kSmall);
   // Frozen: friction is what was commissioned, whatever the machine does.
-  const RunResult frozen = RunCircle(ExampleMachine({"estimator.adapt=false", "estimator.bristle_noise_N=0",
-                                                     "estimator.disturbance_noise_N=0"}),
+  const RunResult frozen = RunCircle(ExampleMachine({"estimator.adapt=false", "estimator.bristle_noise_rel=0",
+                                                     "estimator.disturbance_noise_mm_s2=0"}),
                                      ControllerName::kFull, kSmall);
   EXPECT_GT(frozen.table_peak_m, 2.0 * live.table_peak_m);
 }

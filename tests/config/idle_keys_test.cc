@@ -30,8 +30,8 @@ bool Holds(const std::vector<std::string>& keys, const std::string& key) {
 }
 
 const std::vector<std::string> kStated{"control.full.contour_bandwidth_Hz=40",
-                                       "control.full.lag_bandwidth_Hz=30", "estimator.bristle_noise_N=0.2",
-                                       "estimator.cogging_rate=0.1"};
+                                       "control.full.lag_bandwidth_Hz=30",
+                                       "estimator.bristle_noise_rel=0.005", "estimator.cogging_rate=0.1"};
 
 std::vector<std::string> With(std::vector<std::string> more) {
   more.insert(more.begin(), kStated.begin(), kStated.end());
@@ -47,7 +47,7 @@ TEST(IdleKeys, OfTheLinearLawInTorqueModeAreThoseOfTheFilterAndTheMpc) {
   const std::vector<std::string> keys = Idle(With({Mode("cst"), "control.friction=linear"}));
   EXPECT_TRUE(Holds(keys, "control.full.contour_bandwidth_Hz"));
   EXPECT_TRUE(Holds(keys, "control.full.lag_bandwidth_Hz"));
-  EXPECT_TRUE(Holds(keys, "estimator.bristle_noise_N"));
+  EXPECT_TRUE(Holds(keys, "estimator.bristle_noise_rel"));
   EXPECT_FALSE(Holds(keys, "estimator.cogging_rate")) << "both laws learn cogging";
 }
 
@@ -72,14 +72,14 @@ TEST(IdleKeys, ByAScaleInTorqueModeTheMotorsMassIsLearnt) {
 TEST(IdleKeys, OfTheFilterInTorqueModeAreThoseOfTheOtherLoop) {
   const std::vector<std::string> keys = Idle(With({Mode("cst"), "control.friction=srukf"}));
   EXPECT_FALSE(Holds(keys, "control.full.contour_bandwidth_Hz"));
-  EXPECT_FALSE(Holds(keys, "estimator.bristle_noise_N"));
+  EXPECT_FALSE(Holds(keys, "estimator.bristle_noise_rel"));
 }
 
 TEST(IdleKeys, WhereTheDriveClosesTheLoopNoBandwidthIsTheControllers) {
   for (const char* law : {"srukf", "linear"}) {
     const std::vector<std::string> keys = Idle(With({Mode("csp"), std::string("control.friction=") + law}));
     EXPECT_TRUE(Holds(keys, "control.full.contour_bandwidth_Hz")) << law;
-    EXPECT_EQ(Holds(keys, "estimator.bristle_noise_N"), std::string(law) == "linear");
+    EXPECT_EQ(Holds(keys, "estimator.bristle_noise_rel"), std::string(law) == "linear");
   }
 }
 

@@ -125,8 +125,8 @@ TEST_P(Soundness, ARealJumpOfTheEncoderIsTakenOverInTheEnd) {
 
 TEST_P(Soundness, NoProcessNoiseAtAll) {
   EstimatorConfig c;
-  c.position_noise_um = c.velocity_noise_mm_s = c.bristle_noise_N = c.level_noise_N = 0.0;
-  c.disturbance_noise_N = c.log_sigma0_noise = c.four_state_level_noise_N = 0.0;
+  c.position_noise_um = c.velocity_noise_mm_s = c.bristle_noise_rel = c.level_noise_rel = 0.0;
+  c.disturbance_noise_mm_s2 = c.log_sigma0_noise = c.four_state_level_noise_N = 0.0;
   AxisEstimator estimator(GetParam(), WrongMechanics(), WrongFriction(), c, 1e-3, 0.2e-3);
   for (int k = 0; k < 100000; ++k) {
     AxisEstimator::Input in;
