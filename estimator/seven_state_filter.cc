@@ -35,8 +35,8 @@ constexpr double kReportedTorqueNoise = 3.0;
 constexpr double kBetweenReports = 1.0 / std::numbers::sqrt3;
 
 // Where the drive holds the axis a level that is wrong at rest swings nothing, and may follow a drift faster:
-// with friction that rises by 60 % in a minute under a constant force the error grew 2.2 times without
-// it, 1.7 times with it. Twice as much stated too little of what levels are off by (base, C: inside 0.89 of
+// with friction that rises by 60 % in a minute under a constant force the error grew to 2.2 times without it,
+// to 1.9 times with it. Twice as much stated too little of what levels are off by (base, C: inside 0.89 of
 // the time).
 constexpr double kReportedLevelNoise = 1.5;
 
@@ -92,12 +92,12 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
   // A force from outside is no friction: an axis that has next to none is to find it as fast as others do.
   const double disturbance_N = c.disturbance_noise_mm_s2 * 1e-3 * setup.mechanics.mass_kg;
   noise_[kBristle] = setup.PerPeriod(c.bristle_noise_rel * coulomb_N);
-  mass_std_kg_ = c.mass_std * setup.mechanics.mass_kg;
   noise_[kDisturbance] = setup.PerPeriod(disturbance_N) * coarse;
   noise_[kLevelPlus] = setup.PerPeriod(c.level_noise_rel * coulomb_N) * coarse;
   if (setup.reported_torque) noise_[kLevelPlus] *= kReportedLevelNoise;
   noise_[kLevelMinus] = noise_[kLevelPlus];
   noise_[kLogSigma0] = setup.PerPeriod(c.log_sigma0_noise) * coarse;
+  mass_std_kg_ = c.mass_std * setup.mechanics.mass_kg;
 
   const Friction& f = setup.friction;
   initial_std_[kPosition] = setup.measurement_std_m;
