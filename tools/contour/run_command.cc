@@ -210,6 +210,22 @@ ProgramResult ResultOf(const json& status, const std::string& name) {
   return result;
 }
 
+/// What the log has lost since `before`, and why; empty: nothing.
+std::string LostByLog(const json& before, const json& after) {
+  if (!after.at("log").is_object()) return {};
+  const auto lost = [](const json& status, const char* what) {
+    return status.at("log").is_object() ? status.at("log").at(what).get<std::uint64_t>() : std::uint64_t{0};
+  };
+  // A daemon that has begun anew since writes another log.
+  const bool same = before.at("log").is_object() && before.at("log").at("file") == after.at("log").at("file");
+  const auto since = [&](const char* what) { return lost(after, what) - (same ? lost(before, what) : 0); };
+  const std::uint64_t cycles = since("lost_cycles"), notes = since("lost_notes");
+  if (cycles == 0 && notes == 0) return {};
+  const std::string why = after.at("log").at("last_error");
+  return std::to_string(cycles) + " cycles and " + std::to_string(notes) + " notes" +
+         (why.empty() ? std::string() : ": " + why);
+}
+
 void Put(const RunMetrics& metrics, ProgramResult& result) {
   if (metrics.encoder.peak_um) {
     result.encoder_peak_um = metrics.encoder.peak_um;
@@ -336,11 +352,16 @@ int RunRun(const Options& options) {
   ProgramResult result = ours ? ResultOf(after, program.name) : ProgramResult{};
   const std::string failure = rows ? rows->failure() : std::string();
   if (rows && failure.empty()) WriteRows(*rows, options, before, PlaceOf(reply), result);
+  const std::string unlogged = ours ? LostByLog(before, after) : std::string();
+  if (!unlogged.empty()) result.log += ", which LOST " + unlogged;
   if (ours) std::cout << ResultLine(result) << "\n" << std::flush;
   const bool done = after.at("reason") == "program_end" && ours;
   if (!done) throw std::runtime_error("the program did not end by itself: " + EndSentence(after, id));
   std::cout << "done: " << program.name << "\n";
   if (!failure.empty()) throw std::runtime_error("the program has ended, but its rows are lost: " + failure);
+  if (!unlogged.empty())
+    throw std::runtime_error(
+        "the program has ended, but it is not in the log as a whole and cannot be replayed");
   return kExitDone;
 }
 

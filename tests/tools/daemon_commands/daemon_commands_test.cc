@@ -86,6 +86,20 @@ TEST_F(DaemonCommandsTest, RunSendsAProgramOfAnySize) {
   EXPECT_EQ(machine_.program(), program);
 }
 
+TEST_F(DaemonCommandsTest, AProgramThatIsNotInTheLogAsAWholeIsStatusOne) {
+  std::ofstream(directory_ / "hold.yaml") << "{shape: hold, seconds: 0.2}\n";
+  const std::string run = "run " + (directory_ / "hold.yaml").string();
+  EXPECT_EQ(Ask(run).status, 0);
+  machine_.FillLog();
+  const Outcome o = Ask(run);
+  EXPECT_EQ(o.status, 1);
+  EXPECT_NE(o.out.find("log run.lcmlog, which LOST 2"), std::string::npos) << o.out;
+  EXPECT_EQ(o.out.find("LOST 205"), std::string::npos) << "those from before are no loss of it: " << o.out;
+  EXPECT_NE(o.out.find("File too large"), std::string::npos) << o.out;
+  EXPECT_NE(o.errors.find("the program has ended, but it is not in the log as a whole"), std::string::npos)
+      << o.errors;
+}
+
 TEST_F(DaemonCommandsTest, StatusForPeopleAndForPrograms) {
   const Outcome text = Ask("status");
   EXPECT_EQ(text.status, 0) << text.errors;

@@ -40,6 +40,11 @@ void ScriptedMachine::FailWith(Reason reason, std::string text) {
   fault_text_ = std::move(text);
 }
 
+void ScriptedMachine::FillLog() {
+  const std::lock_guard lock(mutex_);
+  status_.log = {.file = "run.lcmlog", .cycles = 100, .lost_cycles = 5, .last_error = "File too large"};
+}
+
 void ScriptedMachine::TellTruth(OnTruth to) {
   const std::lock_guard lock(mutex_);
   on_truth_ = std::move(to);
@@ -118,6 +123,7 @@ Answer ScriptedMachine::Run(const ProgramUpload& upload, const std::stop_token& 
     }
     if (on_truth_) on_truth_(r.feedback_sync, point.axes);
     if (feed_) feed_->Push(entry);
+    if (!status_.log.last_error.empty()) ++status_.log.lost_cycles;
   }
   // A cycle after the program, which does not belong to it.
   entry.output.record.cycle = entry.input.cycle = ++status_.record.cycle;

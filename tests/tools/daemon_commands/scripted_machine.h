@@ -53,6 +53,8 @@ class ScriptedMachine final : public OperatorDesk {
   }
   /// Requests are accepted and lead to this fault.
   void FailWith(Reason reason, std::string text);
+  /// Its log is full: it loses the cycles of every program to come, and has lost some before.
+  void FillLog();
   /// Takes a line of the truth of every cycle run: sync_number and both axes' angles and positions. Called by
   /// the thread that carries out the request.
   using OnTruth = std::function<void(std::uint64_t sync, const PerAxis<ReferencePoint>& axes)>;
