@@ -87,7 +87,9 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
   noise_[kPosition] = setup.PerPeriod(c.position_noise_um * 1e-6);
   noise_[kVelocity] = setup.PerPeriod(c.velocity_noise_mm_s * 1e-3) * std::sqrt(coarse);
   if (setup.reported_torque) noise_[kVelocity] *= kReportedTorqueNoise;
-  timing_noise_ = std::hypot(c.timing_noise, setup.reported_torque ? kBetweenReports : 0.0);
+  const double accelerated_s_kg = setup.period_s / setup.mechanics.mass_kg;
+  timing_noise_s_kg_ =
+      accelerated_s_kg * std::hypot(c.timing_noise, setup.reported_torque ? kBetweenReports : 0.0);
   const double coulomb_N = setup.Coulomb_N();
   // A force from outside is no friction: an axis that has next to none is to find it as fast as others do.
   const double disturbance_N = c.disturbance_noise_mm_s2 * 1e-3 * setup.mechanics.mass_kg;
@@ -97,7 +99,9 @@ SevenStateFilter<Core>::SevenStateFilter(const FilterSetup& setup) noexcept
   if (setup.reported_torque) noise_[kLevelPlus] *= kReportedLevelNoise;
   noise_[kLevelMinus] = noise_[kLevelPlus];
   noise_[kLogSigma0] = setup.PerPeriod(c.log_sigma0_noise) * coarse;
+  motion_gate_m_s_ = c.motion_gate_mm_s * 1e-3;
   mass_std_kg_ = c.mass_std * setup.mechanics.mass_kg;
+  mass_noise_s2_kg2_ = setup.reported_torque ? accelerated_s_kg * accelerated_s_kg : 0.0;
 
   const Friction& f = setup.friction;
   initial_std_[kPosition] = setup.measurement_std_m;
@@ -189,16 +193,16 @@ CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::TimeUpdate(const AxisEstimator
   auto& x = core_.x;
   Reverse(in.commanded_velocity_m_s);
   driving_N_ = driving_before_N_;
-  const double moving = std::min(1.0, std::abs(x[kVelocity]) / (setup_.config.motion_gate_mm_s * 1e-3));
+  const double moving = std::min(1.0, std::abs(x[kVelocity]) / motion_gate_m_s_);
   X noise = noise_;
   noise[kDisturbance] *= moving;
   if (in.at_rest) noise[kBristle] *= setup_.config.rest_noise;
   // What stirs the bristle comes from the surfaces that make the level. Without friction it is still.
   noise[kBristle] *= std::min(1.0, 2.0 * x[LevelState()] / CommissionedLevel_N());
   // A torque that changes fast acts for a time, and on a mass, known less well than a steady one does.
-  const double uncertain_N = timing_noise_ * (in.force_N[1] - in.force_N[2]);
-  const double uncertain_m_s = uncertain_N * setup_.period_s / setup_.mechanics.mass_kg;
-  noise[kVelocity] = std::sqrt(noise[kVelocity] * noise[kVelocity] + uncertain_m_s * uncertain_m_s);
+  const double timing_m_s = timing_noise_s_kg_ * (in.force_N[1] - in.force_N[2]);
+  noise[kVelocity] = std::sqrt(noise[kVelocity] * noise[kVelocity] + timing_m_s * timing_m_s +
+                               mass_noise_s2_kg2_ * mass_N2_);
   const auto adapted = Adapted(in.at_rest);
   for (const auto i : {kLevelPlus, kLevelMinus, kLogSigma0}) noise[i] *= adapted[i] ? moving : 0.0;
 
@@ -375,15 +379,12 @@ void SevenStateFilter<Core>::LookAhead(const AxisEstimatorInput& in) noexcept {
 
 // Only ratios of the noises set the gains, so what is stated of them may be too much by any factor:
 // innovations say by how much, and where they are larger (a wrong model) they widen the band. A wrong mass is
-// seen by nothing but the acceleration it is multiplied with; what has been learnt of it takes that away, but
-// where it was found far off it is known by no more than that share of what it was off by.
+// seen by nothing but the acceleration it is multiplied with.
 template <class Core>
-double SevenStateFilter<Core>::FrictionStd_N(double acceleration_m_s2) const noexcept {
+double SevenStateFilter<Core>::FrictionStd_N() const noexcept {
   const double filter_N2 =
       core_.Variance({0.0, model_.sigma2_Ns_m(), 1.0, 1.0, 0.0, 0.0, 0.0}, kVelocity, kLevelPlus);
-  const double mass_N = mass_std_kg_ * acceleration_m_s2;
-  const double mass_N2 = mass_variance_left_ * (mass_N * mass_N + inertial_N_ * inertial_N_);
-  return std::sqrt(surprise_ * filter_N2 + mass_N2 + kUnforeseen * band_.MeanSquare_N2());
+  return std::sqrt(surprise_ * filter_N2 + mass_N2_ + kUnforeseen * band_.MeanSquare_N2());
 }
 
 template <class Core>
@@ -405,7 +406,7 @@ CONTOUR_WIDE_VECTORS void SevenStateFilter<Core>::Tell(const AxisEstimatorInput&
   if (in.enabled && !in.at_rest) band_.Step(x[kDisturbance]);
   out.disturbance_std_N = band_.Std_N(surprise_ * core_.Variance(kDisturbance));
   out.friction_N = friction_N;
-  out.friction_std_N = FrictionStd_N(in.commanded_acceleration_m_s2);
+  out.friction_std_N = FrictionStd_N();
   out.g_plus_N = x[kLevelPlus];
   out.g_minus_N = x[kLevelMinus];
   out.sigma0_N_m = sigma0_N_m_;
@@ -417,6 +418,8 @@ AxisEstimate SevenStateFilter<Core>::Update(const AxisEstimatorInput& in) noexce
   AxisEstimate out;
   at_rest_ = in.at_rest;
   periods_since_position_ += 1.0;
+  const double stated_N = mass_std_kg_ * in.commanded_acceleration_m_s2;
+  mass_N2_ = mass_variance_left_ * (stated_N * stated_N + inertial_N_ * inertial_N_);
   if (!in.enabled) {
     if (in.fresh) Follow(in.position_m);
   } else {

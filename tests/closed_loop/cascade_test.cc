@@ -45,6 +45,27 @@ TEST(FullInCascade, AWrongModelDoesNotMakeItSwing) {
   }
 }
 
+// At 10 m/min presliding is over within two reports of the torque. What sigma0 took up there was the wrong
+// mass: it went up turn by turn, to 1.6 times what it was after three, as did the error.
+TEST(FullInCascade, Sigma0DoesNotTakeUpAWrongMass) {
+  std::vector<std::string> heavier = OnBoth({"motor_inertia_kgm2=6.5e-5", "table_mass_kg=13"});
+  heavier.emplace_back("emulator.seed=3");
+  VirtualMachine machine(ExampleMachine(InCascade(heavier)), ControllerName::kFull);
+  machine.BringUp();
+  machine.Enable();
+  std::vector<double> sigma0_N_m;
+  machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) {
+    const CycleRecord& r = entry.output.record;
+    if (r.state == MachineState::kRunning) sigma0_N_m.push_back(r.axes[1].estimate.sigma0_N_m);
+  });
+  const double frequency_hz = 2.6525823849;
+  const int turns = 27;
+  machine.Run(Circle(10.0, turns, frequency_hz));
+  const auto three_turns = static_cast<std::size_t>(3.0 / frequency_hz * 1e3);
+  ASSERT_GT(sigma0_N_m.size(), 8 * three_turns);
+  EXPECT_LT(sigma0_N_m.back(), 1.1 * sigma0_N_m.at(three_turns));
+}
+
 TEST(FullInCascade, AStepOfCuttingForceCostsLessThanWithTorquesFromHere) {
   const std::vector<std::string> force = OnBoth({"effects.cutting_force={force_N: 60, start_s: 3}"});
   const RunResult from_here = RunCircle(ExampleMachine(force), ControllerName::kFull, kLarge);
