@@ -5,6 +5,8 @@ import time
 
 import yaml
 
+ANSWER_s = 120  # a safety net on a busy host
+
 
 class ControlSocket:
     def __init__(self, path):
@@ -12,6 +14,7 @@ class ControlSocket:
 
     def ask(self, **request):
         with socket.socket(socket.AF_UNIX) as s:
+            s.settimeout(ANSWER_s)
             s.connect(self.path)
             with s.makefile("rw", encoding="utf-8") as lines:
                 lines.write(json.dumps(request) + "\n")

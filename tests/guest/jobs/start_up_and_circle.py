@@ -35,7 +35,8 @@ def test(programs, out):
         bench.start_recording()
         bench.start_emulator()
         bench.start_daemon()
-        idle = bench.wait_for_state("Idle")
+        bench.wait_for_state("Idle")
+        idle = json.loads(bench.ask("status", "--json"))
         expect(not any(axis["drive_state"] == "Operation Enabled" for axis in idle["axes"]),
                "a drive was enabled before anybody asked")
         bench.enable()

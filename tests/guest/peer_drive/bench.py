@@ -1,5 +1,6 @@
 """A bench with python drives in place of the emulated ones: contourd in lock-step with an independent machine, and that machine's truth."""
 import csv
+import functools
 import json
 import os
 import select
@@ -37,6 +38,12 @@ class Axis:
         return self.statusword & mask in TORQUE_ON_STATES
 
 
+@functools.cache
+def describe_keys(contour):
+    return subprocess.run([str(contour), "check", "--describe"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          check=True).stdout
+
+
 class PeerBench(MachineBench):
     def __init__(self, programs, out, config=HERE / "machine.yaml", machine=(), settings=(), mode="cst"):
         super().__init__(programs, config, out)
@@ -51,8 +58,7 @@ class PeerBench(MachineBench):
         self.python = sys.executable
 
     def describe_keys(self):
-        return subprocess.run([str(self.programs / "contour"), "check", "--describe"], stdin=subprocess.DEVNULL, capture_output=True,
-                              text=True, check=True).stdout
+        return describe_keys(self.programs / "contour")
 
     def start_emulator(self):
         """The python machine."""
