@@ -74,6 +74,14 @@ function(contour_nightly_test name label seconds)
   contour_time_limit(${seconds} ${name})
 endfunction()
 
+# contour_by_night(TARGET...): what only tests at night and commands of the documentation need. A build leaves it out; the target
+# nightly_programs, which tools/nightly builds, has all of it, and each is built by its own name.
+add_custom_target(nightly_programs)
+function(contour_by_night)
+  set_target_properties(${ARGN} PROPERTIES EXCLUDE_FROM_ALL ON)
+  add_dependencies(nightly_programs ${ARGN})
+endfunction()
+
 # contour_test(NAME SOURCES ... LINK ... [NIGHTLY CASE...] [OWN_HEADERS]): a GoogleTest program, each case a CTest entry.
 # NIGHTLY: cases that take too long for every run of the tests. OWN_HEADERS: it has definitions of its own for the libraries
 # that are in the precompiled headers.

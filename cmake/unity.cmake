@@ -18,7 +18,7 @@ function(contour_together out name)
   endforeach()
   set(together "")
   if(sources)
-    execute_process(COMMAND ${CONTOUR_PYTHON} -B ${CMAKE_SOURCE_DIR}/cmake/unity_groups.py ${CMAKE_SOURCE_DIR}
+    execute_process(COMMAND ${CONTOUR_PYTHON} -I -S -B ${CMAKE_SOURCE_DIR}/cmake/unity_groups.py ${CMAKE_SOURCE_DIR}
                             ${CMAKE_CURRENT_BINARY_DIR}/together/${name} ${sources}
                     WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE together
                     OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
