@@ -55,12 +55,20 @@ void Describe(const Problem& problem, const Accepted& accepted, const Fit& fit, 
   }
 }
 
-/// By what the fit's scatter does not know.
-void Widen(const Problem& problem, const Accepted& accepted, const Fit& fit, Diagnosis& out) {
+bool IsPlay(const Problem& problem, Point point, std::size_t place) {
+  const double gap = problem.Build(point).gap;
+  std::fill(point.amplitudes[place].begin(), point.amplitudes[place].end(), 0.0);
+  return gap > problem.Build(point).gap;
+}
+
+/// By what the fit's scatter does not know: of plays, or of all others.
+void Widen(const Problem& problem, const Accepted& accepted, const Fit& fit, bool plays, Diagnosis& out) {
   std::size_t index = 0;
   for (Cause& cause : out.causes) {
     if (CauseNamed(cause.kind).in_scatter_only) continue;  // not in the fit
-    WidenByObserver(problem, accepted, accepted.places[index++], cause);
+    const std::size_t place = accepted.places[index++];
+    if (IsPlay(problem, fit.point, place) != plays) continue;
+    WidenByObserver(problem, accepted, place, cause);
     WidenIntervals(problem, fit.point, cause);
   }
 }
@@ -90,8 +98,10 @@ Fit Quantify(const Problem& problem, const Fit& nominal, Accepted& accepted, con
         Bootstrap(problem, accepted, fit, options, out);
       else
         Describe(problem, accepted, fit, out);
+      Widen(problem, accepted, fit, false, out);
     } while (WithdrawIdle(problem, fit, accepted, out));
-    Widen(problem, accepted, fit, out);
+    // How large a play is hangs on the observer; whether there is one does not.
+    Widen(problem, accepted, fit, true, out);
     MarkNoSize(problem, fit, accepted, out);
     if (accepted.play_is_bound && problem.Build(fit.point).gap > 0.0)
       out.notes.emplace_back(

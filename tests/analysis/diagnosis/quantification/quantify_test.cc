@@ -31,6 +31,9 @@ class QuantifyTest : public testing::Test {
     if (!accepted.places.empty()) {
       r.found.causes.emplace_back();
       r.found.causes[0].kind = "constant_torque";
+      r.found.causes[0].log_evidence_gain = 1e4;
+      r.found.candidates.push_back({"constant_torque", 2e4, 2e4, true});
+      r.found.blocks.emplace_back();
     }
     r.fit = Quantify(axis_.problem, axis_.base, accepted, options, r.found);
     return r;
@@ -57,6 +60,21 @@ TEST_F(QuantifyTest, WhatScattersMoreThanNoiseIsKnownLessWell) {
   EXPECT_NEAR((wide.high - wide.low) / (narrow.high - narrow.low), 3.0, 0.1);
 }
 
+// Before: a payload of -0.36 % (-1.19 to 0.48) was told with 395 nats; that its interval holds zero came of a
+// quicker observer, which was asked after what is idle had been withdrawn.
+TEST_F(QuantifyTest, WhatAnObserverTakesFromOneSideOfZeroToTheOtherIsNoCause) {
+  Accepted moved = OneCause();
+  moved.by_slow_observer = moved.fit.point;
+  moved.by_slow_observer.amplitudes[0][0] *= 0.5;
+  EXPECT_EQ(Quantified(moved, {}).found.causes.size(), 1U) << "half of it stays";
+  moved.by_slow_observer.amplitudes[0][0] *= -1.0;
+  const Result r = Quantified(moved, {});
+  EXPECT_TRUE(r.found.causes.empty());
+  EXPECT_TRUE(r.fit.point.effects.empty());
+  ASSERT_EQ(r.found.notes.size(), 1U);
+  EXPECT_NE(r.found.notes[0].find("withdrawn"), std::string::npos);
+}
+
 TEST_F(QuantifyTest, RefitsOfStrokesGiveAnIntervalToo) {
   DiagnoseOptions options;
   options.bootstrap_runs = 40;
@@ -76,7 +94,10 @@ TEST_F(QuantifyTest, ASizeThatEndsAtABoundWithAllThatIsAllowedInItsIntervalIsMar
   narrow->low = {1e-9};
   narrow->high = {2e-9};
   narrow->steps = {1e-10};
-  bound.fit = axis_.With(narrow);
+  Point inside = bound.fit.point;
+  inside.effects[0] = narrow;
+  inside.amplitudes[0] = {1.5e-9};
+  bound.fit = FitPoint(axis_.problem, inside);
   EXPECT_TRUE(Quantified(bound, {}).found.causes[0].no_size);
 }
 
