@@ -21,6 +21,7 @@
 #include "config/push_advice.h"
 #include "core/exit_status.h"
 #include "core/version.h"
+#include "daemon/bus_health.h"
 #include "daemon/control_socket/control_server.h"
 #include "daemon/control_socket/socket_path.h"
 #include "daemon/io_adapter.h"
@@ -118,6 +119,12 @@ int SignalCame(const sigset_t& set) {
   return sigtimedwait(&set, nullptr, &wait);
 }
 
+std::vector<BusHealth::Named> InterfaceNames(const MachineConfig& machine) {
+  std::vector<BusHealth::Named> names;
+  for (const auto& [name, bus] : machine.buses) names.push_back({name, bus.interface});
+  return names;
+}
+
 /// Everything of a running daemon, in the order in which it is taken down again.
 class Daemon {
  public:
@@ -138,7 +145,8 @@ class Daemon {
               BusNames(machine_)),
         learning_(machine_),
         cycle_(MakeCycleConfig(machine_, machine_.machine.controller)),
-        rest_swing_(MakeCycleConfig(machine_, machine_.machine.controller)) {
+        rest_swing_(MakeCycleConfig(machine_, machine_.machine.controller)),
+        bus_health_(InterfaceNames(machine_)) {
     if (machine_.io.modbus) {
       io_client_ = std::make_unique<IoClient>(*machine_.io.modbus);
       io_ = std::make_unique<IoAdapter>(*io_client_, options_.clock == "lockstep");
@@ -160,6 +168,7 @@ class Daemon {
     pump_.AlsoDrain([this] {
       buses_.DrainTruth();
       for (const std::string& swing : rest_swing_.TakeNew()) spdlog::warn(swing);
+      TellOfBuses();
     });
     hub_.WatchFeedback(FeedbackSources(machine_));
     hub_.WatchForeign(Parties(machine_));
@@ -257,6 +266,13 @@ class Daemon {
     pump_.TakeSnapshotsFrom(*snapshots_);
     hub_.AddFlightRecorder(std::make_unique<FlightRecorder>(
         std::move(config), MakeLogHeader(source_, machine_, options_.clock, UnixTime_us())));
+  }
+
+  void TellOfBuses() {
+    const auto now = std::chrono::steady_clock::now();
+    for (std::size_t b = 0; b < machine_.buses.size(); ++b)
+      for (const BusHealth::Line& line : bus_health_.Look(b, loop_->bus_states().Read(b), now))
+        spdlog::log(line.over ? spdlog::level::info : spdlog::level::warn, line.text);
   }
 
   /// Takes everything down, the log first: it is what somebody will want. The axes stand still.
@@ -367,6 +383,7 @@ class Daemon {
   ProgramLearning learning_;
   Cycle cycle_;
   RestSwing rest_swing_;
+  BusHealth bus_health_;
   std::unique_ptr<IoClient> io_client_;
   std::unique_ptr<ModbusOutputs> outputs_;
   std::unique_ptr<IoSource> io_;

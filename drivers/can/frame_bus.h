@@ -3,15 +3,28 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "core/can_frame.h"
 
 namespace contour {
 
+/// By the error counters of a CAN controller: below 96, above, and above 127; then comes bus-off.
+enum class ControllerErrors : std::uint8_t { kActive, kWarning, kPassive };
+
+constexpr std::string_view Name(ControllerErrors e) noexcept {
+  return e == ControllerErrors::kPassive ? "passive" : e == ControllerErrors::kWarning ? "warning" : "active";
+}
+
 /// State of a bus as the last calls saw it. Counters never go back.
 struct BusState {
   bool up = false;
   bool bus_off = false;
+  // As error frames say; a virtual bus has none. Small: the cycle copies all of it.
+  ControllerErrors errors = ControllerErrors::kActive;
+  std::uint8_t transmit_errors = 0;  ///< counted by the controller, where the kernel tells
+  std::uint8_t receive_errors = 0;
+  std::uint16_t bus_offs = 0;
   std::uint64_t frames_received = 0;
   std::uint64_t frames_sent = 0;
   std::uint64_t send_failures = 0;  ///< frames not accepted (ENOBUFS, ENETDOWN, ...)

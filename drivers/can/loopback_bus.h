@@ -18,8 +18,8 @@ namespace contour {
 /// is not interrupted. The master sends from one first-in-first-out queue, as a controller behind SocketCAN
 /// does: only its oldest frame takes part in arbitration. Nodes have a mailbox per frame: all their ready
 /// frames take part; equal identifiers go in order of readiness. A frame arrives, everywhere at once, at the
-/// end of its last bit before the intermission. Not modelled: bit errors, error frames, lost arbitration of
-/// equal identifiers.
+/// end of its last bit before the intermission. Not modelled: bit errors, lost arbitration of equal
+/// identifiers.
 ///
 /// Time goes on in Receive and Send only, to the `now_ns` handed in (never back); in between, ends of frames
 /// and the nodes' timers are worked off in the order of their times, so that the same calls always give the
@@ -46,6 +46,8 @@ class LoopbackBus : public FrameBus {
 
   /// A frame of somebody who is neither the master nor one of the nodes, ready now: all of them receive it.
   void Inject(std::int64_t now_ns, const CanFrame& frame) noexcept;
+  /// An error frame as SocketCAN has them: what a controller would say. Frames go on.
+  void InjectErrorFrame(std::uint32_t id, std::span<const std::uint8_t, 8> data) noexcept;
 
   /// Time the bus has been busy, for load figures.
   [[nodiscard]] std::int64_t busy_ns() const noexcept { return busy_ns_; }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "drivers/can/clock_ns.h"
+#include "drivers/can/error_frame.h"
 
 namespace contour {
 namespace {
@@ -201,7 +202,7 @@ std::size_t SocketCanBus::TakeBatch(std::size_t count, std::int64_t to_monotonic
     const can_frame& raw = batch_->frames[i];
     if (batch_->messages[i].msg_len != sizeof(can_frame)) continue;
     if ((raw.can_id & CAN_ERR_FLAG) != 0) {
-      OnErrorFrame(raw.can_id);
+      if (TakeErrorFrame(raw.can_id, raw.data, bus_off_is_new_, state_)) bus_off_is_new_ = true;
       continue;
     }
     if ((raw.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG)) != 0) continue;
@@ -219,15 +220,6 @@ std::size_t SocketCanBus::TakeBatch(std::size_t count, std::int64_t to_monotonic
     state_.up = true;
   }
   return taken;
-}
-
-void SocketCanBus::OnErrorFrame(std::uint32_t id) noexcept {
-  ++state_.error_frames;
-  if ((id & CAN_ERR_BUSOFF) != 0) {
-    state_.bus_off = true;
-    bus_off_is_new_ = true;
-  }
-  if ((id & CAN_ERR_RESTARTED) != 0 && !bus_off_is_new_) state_.bus_off = false;
 }
 
 std::size_t SocketCanBus::Send(std::int64_t /*now_ns*/, std::span<const CanFrame> frames) noexcept {

@@ -63,7 +63,6 @@ class SocketCanBus : public FrameBus {
   [[nodiscard]] bool Bind() noexcept;
   std::size_t TakeBatch(std::size_t count, std::int64_t to_monotonic_ns,
                         std::span<StampedFrame> frames) noexcept;
-  void OnErrorFrame(std::uint32_t id) noexcept;
   void OnFailure(int error) noexcept;
   void TryBindAgain() noexcept;
 

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -141,6 +144,24 @@ TEST_F(Stops, BusDown) {
   EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
   EXPECT_EQ(machine_.record().reason, Reason::kBusDown);
   machine_.bus(0).SetLink(machine_.last().input.grid_time_ns, true);
+  ExpectWorksAgain();
+}
+
+/// As SocketCAN tells of its controller: the error class, and its state.
+void Says(LoopbackBus& bus, std::uint32_t id, std::uint8_t controller = 0) {
+  const std::array<std::uint8_t, 8> data{0, controller};
+  bus.InjectErrorFrame(id | CAN_ERR_FLAG, data);
+}
+
+TEST_F(Stops, BusOffStopsAndErrorPassiveDoesNot) {
+  Says(machine_.bus(0), CAN_ERR_CRTL, CAN_ERR_CRTL_TX_PASSIVE);
+  for (int i = 0; i < 50; ++i) TicksToStandstill(1);
+  EXPECT_EQ(machine_.record().state, MachineState::kRunning);
+  Says(machine_.bus(0), CAN_ERR_BUSOFF);
+  EXPECT_LE(TicksToStandstill(400), 300);
+  EXPECT_EQ(machine_.record().state, MachineState::kFaulted);
+  EXPECT_EQ(machine_.record().reason, Reason::kBusOff);
+  Says(machine_.bus(0), CAN_ERR_RESTARTED);
   ExpectWorksAgain();
 }
 

@@ -116,14 +116,21 @@ std::string Counters(const json& s) {
   return text + table.Text() + Late(s);
 }
 
+std::string BusWord(const json& b) {
+  if (b["bus_off"] == true) return "bus off";
+  if (b["up"] != true) return "down";
+  const std::string errors = b.value("controller_errors", "active");
+  std::string word = errors == "active" ? "up" : "up, controller error " + errors;
+  if (const auto offs = b.value("bus_offs", 0U); offs != 0)
+    word += ", was bus-off " + std::to_string(offs) + (offs == 1 ? " time" : " times");
+  return word;
+}
+
 std::string Buses(const json& s) {
   std::string text;
   for (const json& b : s["buses"]) {
-    text += "  bus " + Text(b["name"]) + " on " + Text(b["interface"]) + ": " +
-            (b["bus_off"] == true ? "bus off"
-             : b["up"] == true    ? "up"
-                                  : "down") +
-            ", received " + Text(b["frames_received"]) + ", sent " + Text(b["frames_sent"]) + ", not sent " +
+    text += "  bus " + Text(b["name"]) + " on " + Text(b["interface"]) + ": " + BusWord(b) + ", received " +
+            Text(b["frames_received"]) + ", sent " + Text(b["frames_sent"]) + ", not sent " +
             Text(b["send_failures"]) + ", error frames " + Text(b["error_frames"]) + ", overflows " +
             Text(b["receive_overflows"]) + ", dropped " + Text(b["frames_dropped"]) + "\n";
     if (b.value("foreign_sdo_requests", 0U) != 0)
