@@ -59,6 +59,7 @@ enum class Reason : std::uint16_t {
   kDriveStaysEnabled = 73,  ///< the drive is in Operation Enabled although told to leave it
   kNodeAnswersTwice = 74,   ///< more answers to SYNC than SYNCs: two drives have one node number
   kAxisMoves = 75,          ///< the axis is not at rest: it is not enabled
+  kAnswersLate = 76,        ///< each answer to SYNC comes a cycle or more late
   // Limits: the output is held back, the machine goes on.
   kTorqueLimit = 96,
   kTorqueRateLimit = 97,
@@ -195,6 +196,8 @@ constexpr std::string_view Name(Reason r) noexcept {
       return "node_answers_twice";
     case Reason::kAxisMoves:
       return "axis_moves";
+    case Reason::kAnswersLate:
+      return "answers_late";
     case Reason::kTorqueConstantChanged:
       return "torque_constant_changed";
     case Reason::kOscillationNoticed:

@@ -232,6 +232,12 @@ std::string WhyText(const CycleRecord& record, std::span<const std::string> axis
       return axis +
              " is not at rest; it was not enabled. Wait until it stands, then enable again; one that falls "
              "or swings on needs its brake closed while the drive is off";
+    case Reason::kAnswersLate:
+      return axis +
+             ": the drive's answers to SYNC (TPDO1) come later than a cycle, so every position is that of a "
+             "SYNC before the one it would be taken for; not enabled. See that its TPDO1 has transmission "
+             "type 1 and no inhibit time, that the bus is not full (contour check), or state a longer "
+             "machine.cycle_us; then reset";
     case Reason::kTorqueLimit:
     case Reason::kTorqueRateLimit:
     case Reason::kSolverCap:

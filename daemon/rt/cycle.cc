@@ -73,6 +73,7 @@ Cycle::Axis::Axis(const CycleConfig& cycle, std::size_t index, const MonitoredAx
 
 Cycle::Cycle(const CycleConfig& config)
     : period_s_(config.cycle_us * 1e-6),
+      axis_count_(config.axes.size()),
       master_(config.master),
       transitions_(TransitionTimes(config)),
       reasons_(config.cycle_us),
@@ -104,7 +105,7 @@ Cycle::Cycle(const CycleConfig& config)
   }
   bus_nodes_.resize(config.master.buses.size());
   for (const AxisDriveConfig& a : config.master.axes) bus_nodes_[a.bus].Add(a.drive.node_id);
-  const std::size_t n = axes_.size();
+  const std::size_t n = axis_count_;
   control_in_.estimate.resize(n);
   control_in_.reference.resize(n);
   control_in_.friction.resize(n);
@@ -204,7 +205,7 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
   bool stale = false;
   const bool holds = transitions_.holds_torque();
   const std::size_t ahead = controller().horizon_points();
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     const AxisFeedback& f = master_.feedback()[i];
     axes_[i].position_m = f.position_rad * axes_[i].radius_m_rad;
     // Only who asks for `enable` wants to know.
@@ -244,7 +245,7 @@ FaultSeen Cycle::Contradiction(const Feedback& feedback) noexcept {
   FaultSeen first;
   // While others are still being enabled, a drive that is holds its axis already.
   const bool holds = transitions_.holds_torque() || transitions_.state() == MachineState::kEnabling;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     Axis& axis = axes_[i];
     const AxisFeedback& f = feedback[i];
     MotionSample s;
@@ -296,7 +297,7 @@ const PerAxis<GuardedTorque>& Cycle::Limit(const ControlOutput& wanted, const Fe
 
 FaultSeen Cycle::Guard(const ControlOutput& wanted, const Feedback& feedback, bool torque_allowed) noexcept {
   FaultSeen fault;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     // In CSP this is the torque offset; the drive's cascade makes the rest, and the guard watches the axis.
     const double controller_Nm = wanted.force_N[i] * axes_[i].radius_m_rad;
     axes_[i].wanted_torque_Nm = controller_Nm + control_in_.reference[i][1].extra_torque_Nm;
@@ -315,7 +316,7 @@ FaultSeen Cycle::Guard(const ControlOutput& wanted, const Feedback& feedback, bo
 
 void Cycle::Send(const Orders& orders, const ControlOutput& wanted, const PerAxis<GuardedTorque>& limited,
                  FixedVector<StampedFrame, kMaxFramesSentPerCycle>& frames) noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     AxisSetpoint& s = setpoints_[i];
     s.goal = i == orders.voltage_off ? DriveGoal::kDisabled : orders.goal;
     s.torque_Nm = limited[i].torque_Nm;
@@ -326,7 +327,7 @@ void Cycle::Send(const Orders& orders, const ControlOutput& wanted, const PerAxi
   }
   frames.clear();
   master_.Send(setpoints_, frames);
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     auto& sent = axes_[i].sent_force_N;
     sent = {master_.sent_torque_Nm()[i] / axes_[i].radius_m_rad, sent[0], sent[1]};
   }

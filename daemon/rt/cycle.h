@@ -164,6 +164,7 @@ class Cycle {
   void RecordAxis(std::size_t i, AxisRecord& record) noexcept;
 
   double period_s_;
+  std::size_t axis_count_;  ///< what axes_.size() would divide for, in every loop
   DriveMaster master_;
   std::vector<Axis> axes_;
   Transitions transitions_;

@@ -19,7 +19,7 @@ bool ChangesPath(const Orders& o) noexcept {
 void Cycle::WatchItself(const Feedback& feedback, const Estimates& estimate) noexcept {
   const bool had_fallen_back = fallen_back();
   if (transitions_.holds_torque() && Acts(Watch::kSelfWatch)) {
-    for (std::size_t i = 0; i < axes_.size(); ++i)
+    for (std::size_t i = 0; i < axis_count_; ++i)
       watch_.Look(i, {feedback[i], estimate[i], AtSample(i), axes_[i].position_m, axes_[i].radius_m_rad,
                       control_out_.limit[i] == Reason::kSolverCap});
     watch_.EndCycle(late_);
@@ -53,11 +53,11 @@ void Cycle::TellLoop() noexcept {
 const ControlOutput& Cycle::Decide(const Orders& orders, const Estimates& estimate) noexcept {
   // The path ahead is what Observe found, unless an order has just changed it.
   if (ChangesPath(orders))
-    for (std::size_t i = 0; i < axes_.size(); ++i)
+    for (std::size_t i = 0; i < axis_count_; ++i)
       follower_.Horizon(i, controller().horizon_points(), control_in_.reference[i]);
   ContourController& in_use = controller();
   in_use.Plan(control_in_, orders.torque_allowed);
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     AxisEstimator& estimator = fallen_back() ? axes_[i].observer : axes_[i].estimator;
     estimator.PreviewFriction(Reference(control_in_)[i], in_use.friction_points(), control_in_.friction[i]);
     control_in_.previous_force_N[i] = axes_[i].sent_force_N[0];
@@ -77,7 +77,7 @@ const ControlOutput& Cycle::Decide(const Orders& orders, const Estimates& estima
 
 // A change of controller takes over the force that is there; the difference fades.
 void Cycle::Blend() noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     double& blend_N = axes_[i].blend_N;
     if (take_over_) blend_N = axes_[i].sent_force_N[0] - control_out_.force_N[i];
     if (!controller().HoldsBySpring(control_in_, i)) control_out_.force_N[i] += blend_N;

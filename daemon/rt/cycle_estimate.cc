@@ -45,8 +45,8 @@ double Cycle::TableAt_m(std::size_t index, const AxisFeedback& feedback) const n
 const Cycle::Estimates& Cycle::Estimate(const Feedback& feedback, const IoInput& io) noexcept {
   const bool holds = transitions_.holds_torque();
   std::size_t moving = 0;
-  for (std::size_t i = 0; i < axes_.size(); ++i) moving += AtSample(i).velocity_m_s != 0.0 ? 1u : 0u;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) moving += AtSample(i).velocity_m_s != 0.0 ? 1u : 0u;
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     Axis& axis = axes_[i];
     const AxisFeedback& f = feedback[i];
     const ReferencePoint& commanded = AtSample(i);

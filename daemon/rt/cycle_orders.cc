@@ -14,7 +14,7 @@ void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
   if (orders.hold_here) HoldHere();
   if (orders.forget_path) {
     PerAxis<double> here;
-    for (std::size_t i = 0; i < axes_.size(); ++i) here.push_back(control_in_.reference[i][0].position_m);
+    for (std::size_t i = 0; i < axis_count_; ++i) here.push_back(control_in_.reference[i][0].position_m);
     follower_.Hold(here);
   }
   // Where nothing is held, the reference is where the axes are: nothing jumps when they are enabled.
@@ -32,7 +32,7 @@ void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
 
 // An experiment's spring, which would give way under a weight, holds an axis where its program began.
 [[gnu::cold, gnu::noinline]] void Cycle::TellStatedForces() noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     const double at_m = control_in_.reference[i][0].position_m;
     control_in_.stated[i] = {axes_[i].known.Constant_N(), axes_[i].known.TableForce_N(at_m)};
   }
@@ -42,7 +42,7 @@ void Cycle::CarryOut(const Orders& orders, const Request& request) noexcept {
 void Cycle::DoubtPosition(const Orders& orders) noexcept {
   if (transitions_.state() != MachineState::kFaulted) return;
   const std::uint8_t axis = transitions_.reason_where();
-  if (axis >= axes_.size()) return;
+  if (axis >= axis_count_) return;
   switch (transitions_.reason()) {
     case Reason::kFeedbackFrozen:
     case Reason::kFeedbackJump:
@@ -52,7 +52,7 @@ void Cycle::DoubtPosition(const Orders& orders) noexcept {
       master_.DoubtPosition(axis);
       return;
     case Reason::kOscillation:  // what takes the voltage away as a swing may be counts that are lost, too
-      if (orders.voltage_off < axes_.size()) master_.DoubtPosition(orders.voltage_off);
+      if (orders.voltage_off < axis_count_) master_.DoubtPosition(orders.voltage_off);
       return;
     default:
       return;
@@ -76,7 +76,7 @@ void Cycle::HoldHere() noexcept {
   follower_.Hold(here);
   controller_.Reset();
   guard_.Reset();
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     if (IsReferenced(master_.reference(i))) continue;
     const Axis& axis = axes_[i];
     // Where no program is allowed the axis only holds.

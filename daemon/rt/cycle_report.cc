@@ -40,8 +40,8 @@ void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONB
   r.stale_cycles = stale_cycles_;
   r.io = in.io;
   r.bring_up = master_.bring_up();
-  r.axes.resize(axes_.size());
-  for (std::size_t i = 0; i < axes_.size(); ++i) RecordAxis(i, r.axes[i]);
+  r.axes.resize(axis_count_);
+  for (std::size_t i = 0; i < axis_count_; ++i) RecordAxis(i, r.axes[i]);
   RecordContourError(r);
   const bool waits =
       (r.state == MachineState::kIdle || r.state == MachineState::kReady) && !transitions_.run_pending();
@@ -53,7 +53,7 @@ void Cycle::Report(const CycleInput& in, CycleOutput& out) noexcept CONTOUR_NONB
 }
 
 void Cycle::RecordContourError(CycleRecord& record) noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     near_position_m_[i] = axes_[i].position_m;
     follower_.Around(i, kLocalPathReach, near_path_[i]);
   }

@@ -25,13 +25,16 @@ Situation Cycle::Assess(const CycleInput& in, const Estimates& estimate) const n
   now.lost = FindLost(in);
   now.stop = FindStop();
   now.stuck = FindStuck();
-  if (const std::uint8_t where = transitions_.reason_where(); where < axes_.size())
+  if (const std::uint8_t where = transitions_.reason_where(); where < axis_count_)
     now.says_lost_master = master_.status()[where].lost_master && Acts(Watch::kDriveLostMaster);
   if (const std::uint8_t bus = master_.second_master();
       bus != DriveMaster::kNoBus && Acts(Watch::kSecondMaster))
     now.second_master = {Reason::kSecondMaster, bus};
   now.not_referenced = NotReferenced();
-  if (!transitions_.holds_torque()) now.moves = MovingAxis();
+  if (!transitions_.holds_torque()) {
+    now.moves = MovingAxis();
+    now.bring_up_active = now.bring_up_active || master_.ProbesAnswers();
+  }
   now.can_reference = CanReference(in.request);
   now.path_prefetched = follower_.Prefetched();
   now.path_begins_here = now.path_prefetched && PathBeginsHere();
@@ -45,7 +48,7 @@ FaultSeen Cycle::FindFault(const Estimates& estimate) const noexcept {
   const MachineState state = transitions_.state();
   if (skipped_ >= most_skipped_ && follower_.moving() && Acts(Watch::kGridPointsSkipped))
     return {Reason::kGridPointsSkipped, 0xFF};
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& status = master_.status()[i];
     // Why it stopped says more than that it did.
@@ -73,7 +76,7 @@ FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
     if (!in.buses[b].up && Acts(Watch::kBusDown)) return {Reason::kBusDown, where};
     if (in.buses[b].send_failures != 0 && Acts(Watch::kSendFailed)) return {Reason::kSendFailed, where};
   }
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     const auto where = static_cast<std::uint8_t>(i);
     const AxisDriveStatus& s = master_.status()[i];
     const bool left_operational = s.configured && s.nmt != NmtState::kOperational;
@@ -81,7 +84,8 @@ FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
     if (s.lost_master && left_operational && Acts(Watch::kDriveLostMaster))
       return {Reason::kDriveLostMaster, where};
     if (s.heartbeat_lost && Acts(Watch::kHeartbeatLost)) return {Reason::kHeartbeatLost, where};
-    if (s.answers_twice && Acts(Watch::kDriveLeftOperational)) return {Reason::kNodeAnswersTwice, where};
+    if (s.answers != AnswerFault::kNone && Acts(Watch::kDriveLeftOperational))
+      return {s.answers == AnswerFault::kLate ? Reason::kAnswersLate : Reason::kNodeAnswersTwice, where};
     if (s.stays_enabled && Acts(Watch::kDriveLeftEnabled)) return {Reason::kDriveStaysEnabled, where};
     if (left_operational && Acts(Watch::kDriveLeftOperational)) return {Reason::kDriveLeftOperational, where};
   }
@@ -89,26 +93,26 @@ FaultSeen Cycle::FindLost(const CycleInput& in) const noexcept {
 }
 
 FaultSeen Cycle::FindStop() const noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i)
+  for (std::size_t i = 0; i < axis_count_; ++i)
     if (master_.status()[i].emergency == EmergencyReaction::kStopOnPath && Acts(Watch::kDriveEmergency))
       return {Reason::kDriveEmergency, static_cast<std::uint8_t>(i)};
   // The axis goes on by its motor alone: there is time to stop on the path.
-  for (std::size_t i = 0; i < axes_.size(); ++i)
+  for (std::size_t i = 0; i < axis_count_; ++i)
     if (estimates_[i].scale != Reason::kNone && Acts(Watch::kScale))
       return {estimates_[i].scale, static_cast<std::uint8_t>(i)};
   return watch_.Stop();
 }
 
 std::uint8_t Cycle::FindStuck() const noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i)
+  for (std::size_t i = 0; i < axis_count_; ++i)
     if (master_.status()[i].transition_late) return static_cast<std::uint8_t>(i);
   return 0xFF;
 }
 
 bool Cycle::PathBeginsHere() const noexcept {
   const PathPoint& first = follower_.First();
-  if (first.axes.size() != axes_.size()) return false;
-  for (std::size_t i = 0; i < axes_.size(); ++i)
+  if (first.axes.size() != axis_count_) return false;
+  for (std::size_t i = 0; i < axis_count_; ++i)
     if (!(std::abs(first.axes[i].position_m - control_in_.reference[i][0].position_m) <=
           kPathStartTolerance_m))
       return false;
@@ -118,7 +122,7 @@ bool Cycle::PathBeginsHere() const noexcept {
 // Of an axis that knew where it is, or moved, and does not any more, no program can be right. One that was
 // never told may move as far as the operator says.
 std::uint8_t Cycle::NotReferenced() const noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     const ReferenceState state = master_.reference(i);
     const bool may_move =
         IsReferenced(state) || (state == ReferenceState::kNeverTold && axes_[i].unreferenced_travel_m > 0.0);
@@ -129,7 +133,7 @@ std::uint8_t Cycle::NotReferenced() const noexcept {
 
 // One that its loop would brake by more than its limit of acceleration does not stand.
 std::uint8_t Cycle::MovingAxis() const noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i)
+  for (std::size_t i = 0; i < axis_count_; ++i)
     if (std::abs(axes_[i].speed_m_s) > axes_[i].standing_m_s) return static_cast<std::uint8_t>(i);
   return 0xFF;
 }

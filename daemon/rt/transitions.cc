@@ -352,7 +352,8 @@ void Transitions::ProgressStarting(const Situation& now, Orders& orders) noexcep
   }
   if (now.bring_up_active) return;
   // Stopped by NMT from this cycle on; what follows from that is not the cause.
-  if (now.lost.reason == Reason::kDriveStaysEnabled) return Fault(now.lost);
+  if (now.lost.reason == Reason::kAnswersLate || now.lost.reason == Reason::kDriveStaysEnabled)
+    return Fault(now.lost);
   // Lost again before all was well: nothing is under way any more, so nothing is waited for.
   if (!now.operational)
     return Fault(now.lost.reason != Reason::kNone ? now.lost : FaultSeen{Reason::kHeartbeatLost, kNone});

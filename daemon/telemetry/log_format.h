@@ -6,11 +6,13 @@
 namespace contour {
 
 /// Goes up when an older program could misread a log, or would compute something else from it.
-/// 5: the drives are brought up in another way (StartUp::kNow); the messages are those of 4.
+/// 5: the drives are brought up in another way (StartUp::kOfLogFormat6); the messages are those of 4.
 /// 6: path points may follow another law of time than the program's own, and say so.
-inline constexpr std::int32_t kLogFormatVersion = 6;
+/// 7: a SYNC is left out where a drive's first answer came late.
+inline constexpr std::int32_t kLogFormatVersion = 7;
 inline constexpr std::int32_t kOldestReadFormat = 4;
-inline constexpr std::int32_t kStartUpNowSinceFormat = 5;
+inline constexpr std::int32_t kStartUpOf6SinceFormat = 5;
+inline constexpr std::int32_t kStartUpNowSinceFormat = 7;
 
 inline constexpr std::string_view kHeaderChannel = "CONTOUR_LOG_HEADER";
 inline constexpr std::string_view kStateChannel = "CONTOUR_LOG_STATE";

@@ -46,7 +46,7 @@ void DriveMaster::DoubtPosition(std::size_t axis) noexcept {
 }
 
 bool DriveMaster::CanTellPosition(std::size_t axis) const noexcept {
-  return axis < axes_.size() && axes_[axis].reference != ReferenceState::kAbsolute && Healthy(axis) &&
+  return axis < axis_count_ && axes_[axis].reference != ReferenceState::kAbsolute && Healthy(axis) &&
          feedback_[axis].valid && feedback_[axis].fresh;
 }
 
@@ -63,7 +63,7 @@ bool DriveMaster::Healthy(std::size_t axis) const noexcept {
 }
 
 bool DriveMaster::operational() const noexcept {
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     if (!Healthy(i)) return false;
   }
   return pdos_run_;
@@ -71,23 +71,23 @@ bool DriveMaster::operational() const noexcept {
 
 void DriveMaster::StartBringUp() noexcept {
   bool needed = !operational() || bring_up_failed();
-  for (const AxisDriveStatus& s : status_) needed = needed || s.mode_changed || s.answers_twice;
+  for (const AxisDriveStatus& s : status_)
+    needed = needed || s.mode_changed || s.answers != AnswerFault::kNone;
   for (const AxisFeedback& f : feedback_) needed = needed || !f.valid || f.age_cycles > kFreshEnough_cycles;
   // Whoever asks for it has seen what the drives reported.
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     ForgetEmergency(i);
     status_[i].lost_master = false;
   }
   if (!needed || (BringingUp() && !bring_up_failed())) return;
-  pdos_run_ = false;
-  sync_sent_ = false;
+  StopPdos();
   started_ = true;
   for (Bus& b : buses_) {
     b.bring_up.Start();
     b.patrol.Stop();
     b.usual_sync_ns = kNeverAnswered;
   }
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     if (!Heard(i)) CountBeganAnew(i);
     axes_[i].boot_up_due = false;
     if (feedback_[i].valid) {
@@ -123,8 +123,7 @@ bool DriveMaster::NewSecondMaster(const ReceivedFrames& frames) const noexcept {
 }
 
 void DriveMaster::FallSilent() noexcept {
-  pdos_run_ = false;
-  sync_sent_ = false;
+  StopPdos();
   started_ = false;
   for (Bus& b : buses_) b.patrol.Stop();
 }
@@ -143,7 +142,7 @@ BringUpStatus DriveMaster::bring_up() const noexcept {
 bool DriveMaster::busy() const noexcept {
   if (BringingUp()) return true;
   if (!pdos_run_) return false;
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     const AxisDriveStatus& s = status_[i];
     const bool resting_in_fault =
         feedback_[i].drive_state == DriveState::kFault && goal_[i] != DriveGoal::kFaultReset;
@@ -156,13 +155,34 @@ bool DriveMaster::BringingUp() const noexcept {
   return std::any_of(buses_.begin(), buses_.end(), [](const Bus& b) { return b.bring_up.running(); });
 }
 
+void DriveMaster::StopPdos() noexcept {
+  pdos_run_ = sync_sent_ = settled_ = false;
+  probe_.Reset();
+}
+
+// Whether there are PDOs and SYNC in the next cycle, until it is known which SYNC each drive answers.
+void DriveMaster::Settle() noexcept {
+  if (!pdos_run_ && !probe_.leaves_out()) return StartPdos();
+  sync_sent_ = pdos_run_;
+  AnswerProbe::Axes answered;
+  bool all = true;
+  for (std::size_t i = 0; i < axis_count_; ++i) {
+    answered[i] = feedback_[i].valid && axes_[i].answer_cycle == cycle_;
+    all = all && feedback_[i].valid;
+  }
+  const AnswerProbe::Axes late = probe_.Step(answered, elapsed_);
+  for (std::size_t i = 0; i < axis_count_; ++i)
+    if (late[i]) status_[i].answers = AnswerFault::kLate;
+  pdos_run_ = !probe_.leaves_out();
+  settled_ = all && !probe_.running();
+}
+
 // The cycle after the last drive came up is the first with PDOs and SYNC.
 void DriveMaster::StartPdos() noexcept {
-  if (pdos_run_) return;
   if (!std::all_of(buses_.begin(), buses_.end(), [](const Bus& b) { return b.bring_up.done(); })) return;
   pdos_run_ = true;
   for (Bus& b : buses_) b.patrol.Start();
-  for (std::size_t i = 0; i < axes_.size(); ++i) {
+  for (std::size_t i = 0; i < axis_count_; ++i) {
     status_[i].configured = true;
     status_[i].nmt = NmtState::kOperational;
     // While it was brought up there was no SYNC and no set-point, and it may have said so.
@@ -223,12 +243,12 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
     Bus& bus = buses_[b];
     const auto index = static_cast<std::uint8_t>(b);
     if (pdos) {
-      for (std::size_t i = 0; i < axes_.size(); ++i) {
+      for (std::size_t i = 0; i < axis_count_; ++i) {
         if (axes_[i].bus != b) continue;
         const AxisSetpoint setpoint = i < setpoints.size() ? setpoints[i] : AxisSetpoint{};
         out.push_back({SetpointFrame(i, setpoint), index, 0});
       }
-      for (std::size_t i = 0; i < axes_.size(); ++i)
+      for (std::size_t i = 0; i < axis_count_; ++i)
         if (axes_[i].bus == b && IgnoresUs(i))
           out.push_back({NmtFrame(NmtCommand::kStop, axes_[i].node_id), index, 0});
       out.push_back({SyncFrame(), index, 0});
@@ -250,7 +270,7 @@ void DriveMaster::Send(const PerAxis<AxisSetpoint>& setpoints, Frames& out) noex
     ++sync_number_;
     sync_grid_ns_ = grid_ns_;
   }
-  StartPdos();
+  if (!settled_) Settle();
 }
 
 }  // namespace contour

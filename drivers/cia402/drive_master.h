@@ -12,6 +12,7 @@
 #include "core/state_keeper.h"
 #include "drivers/cia301/bring_up.h"
 #include "drivers/cia301/messages.h"
+#include "drivers/cia402/answer_probe.h"
 #include "drivers/cia402/drive_config.h"
 #include "drivers/cia402/drive_patrol.h"
 #include "drivers/cia402/drive_walk.h"
@@ -38,6 +39,7 @@ struct AxisDriveConfig {
 /// sent and waited for must then be what it was.
 enum class StartUp : std::uint8_t {
   kOfLogFormat4,
+  kOfLogFormat6,  ///< and 5: whether answers come in time is not asked
   kNow,
 };
 
@@ -46,6 +48,13 @@ struct MasterConfig {
   std::vector<BusConfig> buses;
   std::uint32_t cycle_us = 1000;
   StartUp start_up = StartUp::kNow;
+};
+
+/// What is wrong with a drive's answers to SYNC.
+enum class AnswerFault : std::uint8_t {
+  kNone,
+  kTwice,  ///< more of them than SYNCs
+  kLate,   ///< each comes a cycle or more late
 };
 
 /// What the master knows of a drive beside its feedback.
@@ -68,10 +77,10 @@ struct AxisDriveStatus {
   std::uint16_t emergency_cause = 0;  ///< the code that asks for it
   bool lost_master = false;           ///< said so by an emergency message; until it is brought up or reset
   bool stays_enabled = false;         ///< in Operation Enabled long after it was told to leave that
-  bool answers_twice = false;         ///< more answers to SYNC than SYNCs; until it is brought up
-  bool not_following = false;         ///< enabled, but bit 12 or 9 of the statusword is missing for too long
-  bool mode_changed = false;          ///< 0x6061 shows another mode than was set; until it is brought up
-  std::uint64_t silent_cycles = 0;    ///< since its last sign of life
+  AnswerFault answers = AnswerFault::kNone;  ///< until it is brought up
+  bool not_following = false;       ///< enabled, but bit 12 or 9 of the statusword is missing for too long
+  bool mode_changed = false;        ///< 0x6061 shows another mode than was set; until it is brought up
+  std::uint64_t silent_cycles = 0;  ///< since its last sign of life
 };
 
 /// The real-time side of CANopen for all axes on all buses: one Receive at the start of a cycle, one Send at
@@ -127,6 +136,8 @@ class DriveMaster {
   }
   /// Drives are being found and configured at this moment.
   [[nodiscard]] bool BringingUp() const noexcept;
+  /// It is being found out which SYNC the drives' answers belong to.
+  [[nodiscard]] bool ProbesAnswers() const noexcept { return probe_.running(); }
   /// All drives are Operational and configured; SYNC and PDOs run.
   [[nodiscard]] bool operational() const noexcept;
   /// The drives have a SYNC to answer, since they were last brought up.
@@ -151,7 +162,7 @@ class DriveMaster {
 
   void Keep(StateKeeper& keep) noexcept {
     keep(axes_, buses_, feedback_, status_, sent_torque_Nm_, goal_, cycle_, elapsed_, sync_number_,
-         feedback_sync_, sync_grid_ns_, started_, pdos_run_, sync_sent_, seen_cycle_);
+         feedback_sync_, sync_grid_ns_, started_, pdos_run_, sync_sent_, seen_cycle_, probe_, settled_);
   }
 
  private:
@@ -236,7 +247,7 @@ class DriveMaster {
   void WatchFollowing(std::size_t axis) noexcept;
   void CountBeganAnew(std::size_t axis) noexcept;
   void FindElsewhere(std::size_t axis, double found_rad) noexcept;
-  void CountAnswer(Axis& axis, bool answered_before) const noexcept;
+  void CountAnswer(Axis& axis, std::size_t index, bool answered_before) noexcept;
   void WatchAnswers(std::size_t axis) noexcept;
   void WatchStaying(std::size_t axis) noexcept;
   [[nodiscard]] bool Heard(std::size_t axis) const noexcept;
@@ -250,10 +261,13 @@ class DriveMaster {
   [[nodiscard]] double Late_s(std::int64_t& usual_ns, std::int64_t stamp_ns) const noexcept;
   void Supervise(std::size_t axis) noexcept;
   void StartPdos() noexcept;
+  void StopPdos() noexcept;
+  void Settle() noexcept;
   CanFrame SetpointFrame(std::size_t axis, const AxisSetpoint& setpoint) noexcept;
   [[nodiscard]] bool Healthy(std::size_t axis) const noexcept;
   [[nodiscard]] bool IgnoresUs(std::size_t axis) const noexcept;
 
+  std::size_t axis_count_;  ///< what axes_.size() would divide for, in every loop
   std::vector<Axis> axes_;
   std::vector<Bus> buses_;
   PerAxis<AxisFeedback> feedback_;
@@ -268,11 +282,14 @@ class DriveMaster {
   std::int64_t grid_ns_ = 0;       ///< this grid point
   std::int64_t sync_grid_ns_ = 0;  ///< the grid point of the newest SYNC
   std::int64_t period_ns_;
+  AnswerProbe probe_;
+  bool probes_;           ///< by it
   bool patrols_;          ///< drives are asked while they run
   bool started_ = false;  ///< ever brought up: the master's heartbeat runs
   bool pdos_run_ = false;
   bool sync_sent_ = false;
   bool seen_cycle_ = false;
+  bool settled_ = false;  ///< PDOs run, and it is known which SYNC each drive answers
 };
 
 }  // namespace contour

@@ -58,11 +58,13 @@ void CheckNodes(const MasterConfig& config) {
 }  // namespace
 
 DriveMaster::DriveMaster(const MasterConfig& config)
-    : feedback_(config.axes.size()),
+    : axis_count_(config.axes.size()),
+      feedback_(config.axes.size()),
       status_(config.axes.size()),
       sent_torque_Nm_(config.axes.size()),
       axis_of_node_(config.buses.size() * kNodes, kNoAxis),
       period_ns_(std::int64_t{config.cycle_us} * 1000),
+      probes_(config.start_up == StartUp::kNow),
       patrols_(config.start_up != StartUp::kOfLogFormat4) {
   if (config.axes.empty() || config.axes.size() > kMaxAxes) {
     throw std::invalid_argument("a machine has 1 to " + std::to_string(kMaxAxes) + " axes");

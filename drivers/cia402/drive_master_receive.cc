@@ -33,10 +33,10 @@ void DriveMaster::Receive(const CycleInput& in) noexcept {
     if (in.buses[b].up && !in.buses[b].bus_off) continue;
     buses_[b].bring_up.BusDown();
     // Nobody would hear a boot-up message now.
-    for (std::size_t i = 0; i < axes_.size(); ++i)
+    for (std::size_t i = 0; i < axis_count_; ++i)
       if (axes_[i].bus == b) CountBeganAnew(i);
   }
-  for (std::size_t i = 0; i < axes_.size(); ++i) Supervise(i);
+  for (std::size_t i = 0; i < axis_count_; ++i) Supervise(i);
 }
 
 void DriveMaster::OnFrame(const StampedFrame& stamped) noexcept {
@@ -176,7 +176,7 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   const bool newest = AnswersNewestSync(a, f, stamped.stamp_ns);
   const double counted_rad = a.position.ToRad(a.unwrap.Update(raw.position_counts));
   if (a.seen_before) FindElsewhere(axis, counted_rad + a.offset_rad);
-  CountAnswer(a, f.valid);
+  CountAnswer(a, axis, f.valid);
   if (!a.absolute) a.seen_before = false;
   const double now_rad = counted_rad + a.offset_rad;
   if (a.absolute && f.valid && !f.fresh && !a.seen_before) {
@@ -198,14 +198,17 @@ void DriveMaster::OnFeedback(std::size_t axis, const StampedFrame& stamped) noex
   feedback_sync_ = std::max(feedback_sync_, newest ? sync_number_ : sync_number_ - 1);
 }
 
-// SYNCs before its first answer are no debts of it.
-void DriveMaster::CountAnswer(Axis& a, bool answered_before) const noexcept {
-  if (!answered_before)
+// SYNCs before its first answer are no debts of it; whether they were answered late is asked where it was not
+// the first SYNC that this one came right behind.
+void DriveMaster::CountAnswer(Axis& a, std::size_t index, bool answered_before) noexcept {
+  if (!answered_before) {
+    if (probes_ && (sync_number_ - a.answered_sync > 1 || elapsed_ > 1)) probe_.Doubt(index);
     a.answered_sync = sync_number_;
-  else if (a.answered_sync < sync_number_)
+  } else if (a.answered_sync < sync_number_) {
     ++a.answered_sync;
-  else
+  } else {
     ++a.unasked;
+  }
 }
 
 // What it owes for longer than its heartbeat may be missing it has lost.
@@ -215,7 +218,7 @@ void DriveMaster::WatchAnswers(std::size_t axis) noexcept {
   if (sync_number_ - a.answered_sync > a.heartbeat_timeout_cycles)
     a.answered_sync = sync_number_ - a.heartbeat_timeout_cycles;
   AxisDriveStatus& s = status_[axis];
-  s.answers_twice = s.answers_twice || (s.configured && patrols_ && a.unasked >= kUnaskedOfTwo);
+  if (s.configured && patrols_ && a.unasked >= kUnaskedOfTwo) s.answers = AnswerFault::kTwice;
   a.unasked = 0;
   a.unasked_since = sync_number_;
 }

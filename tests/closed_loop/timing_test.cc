@@ -56,6 +56,38 @@ TEST(CycleTiming, FromSampleToTorqueIsExactlyOnePeriod) {
   EXPECT_GT(moved, 50) << "the torque must change for this to prove anything";
 }
 
+/// Why the single axis does not come up; empty when it does.
+std::string WhyNotUp(const std::vector<std::string>& overrides) {
+  VirtualMachine machine(
+      LoadEmulatedMachine(std::string(CONTOUR_CONFIG_DIR) + "/single_axis.yaml", overrides),
+      ControllerName::kFull);
+  try {
+    machine.BringUp();
+  } catch (const std::runtime_error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(CycleTiming, ADriveThatAnswersACycleLateFromTheStartIsNotEnabled) {
+  for (const char* mode : {"cst", "csp"}) {
+    for (const int period_us : {1000, 500}) {
+      for (const double periods : {0.0, 1.05, 1.5, 2.05}) {
+        const std::string why =
+            WhyNotUp({"axes.x.drive.mode=" + std::string(mode),
+                      "machine.cycle_us=" + std::to_string(period_us), "realtime.send_deadline_us=40",
+                      "emulator.axes.x.answer_delay_us=" + std::to_string(periods * period_us)});
+        SCOPED_TRACE(mode + (" " + std::to_string(period_us)) + " " + std::to_string(periods) + ": " + why);
+        if (periods == 0.0)
+          EXPECT_EQ(why, "");
+        else
+          EXPECT_NE(why.find("axis x: the drive's answers to SYNC (TPDO1) come later than a cycle"),
+                    std::string::npos);
+      }
+    }
+  }
+}
+
 /// Calls Step alone under the guard, through a bring-up, a program and a fault.
 TEST(CycleAllocations, StepNeverTouchesTheHeap) {
   if (!AllocationGuard::kAvailable) GTEST_SKIP() << "the sanitizer owns the heap";

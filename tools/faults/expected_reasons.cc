@@ -13,7 +13,7 @@ constexpr std::array kRows{
     Expectation{F::kFeedbackFrameLost,       kGoesOn,  kGoesOn,  {}},
     Expectation{F::kFeedbackFramesLost,      kStops,   kStops,   {R::kStaleFeedback}},
     Expectation{F::kFeedbackFrameLate,       kGoesOn,  kGoesOn,  {}},
-    Expectation{F::kFeedbackFramesLate,      kStops,   kStops,   {R::kStaleFeedback}},
+    Expectation{F::kFeedbackFramesLate,      kStops,   kStops,   {R::kStaleFeedback, R::kAnswersLate}},
     Expectation{F::kFeedbackFrameTwice,      kGoesOn,  kGoesOn,  {}},
     Expectation{F::kPositionBitLow,          kGoesOn,  kGoesOn,  {}},
     Expectation{F::kPositionBitHigh,         kMayStop, kMayStop, {R::kFeedbackJump, R::kVelocityLimit}},

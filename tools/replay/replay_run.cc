@@ -169,7 +169,10 @@ ReplayReport Replay(LogReader& log, const ReplayOptions& options) {
     source.overrides.push_back(std::move(loop));
   const MachineConfig machine = LoadMachine(source);
   CycleConfig config = MakeCycleConfig(machine, machine.machine.controller);
-  if (log.header().format_version < kStartUpNowSinceFormat) config.master.start_up = StartUp::kOfLogFormat4;
+  const std::int32_t format = log.header().format_version;
+  if (format < kStartUpNowSinceFormat)
+    config.master.start_up =
+        format < kStartUpOf6SinceFormat ? StartUp::kOfLogFormat4 : StartUp::kOfLogFormat6;
   Cycle cycle(config);
   ReplayReport report;
   report.recorded_build = log.header().build;
