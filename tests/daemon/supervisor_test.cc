@@ -258,6 +258,21 @@ TEST_F(SupervisorTest, WhoeverWaitsWhenTheLoopEndsIsToldSo) {
   EXPECT_EQ(enabling.get().reason, "contourd is ending");
 }
 
+TEST_F(SupervisorTest, AMachineThatNobodyAttendsAnyMoreIsDisabled) {
+  for (const MachineState state : {MachineState::kReady, MachineState::kRunning, MachineState::kEnabling}) {
+    Publish(0, false, state);
+    auto leaving = std::async(std::launch::async, [this] { supervisor_.Abandoned(); });
+    while (!mailbox_.request_waiting() &&
+           leaving.wait_for(std::chrono::milliseconds(1)) == std::future_status::timeout) {
+    }
+    const Request request = Take();
+    EXPECT_EQ(request.kind, RequestKind::kDisable) << Name(state);
+    Publish(request.sequence, true, MachineState::kIdle);
+    leaving.get();
+    EXPECT_FALSE(supervisor_.wanted().has_value()) << "in the mode of its file it stays as it is";
+  }
+}
+
 TEST_F(SupervisorTest, AStopStaysAskedForWhileTheCycleDoesNotTakeIt) {
   const Answer answer = supervisor_.Stop();
   EXPECT_FALSE(answer.accepted) << "nobody has obeyed it";
