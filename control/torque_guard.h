@@ -46,10 +46,9 @@ class TorqueGuard {
   /// So many periods go by until the drives latch the next position, beyond the usual one.
   void Skip(std::uint32_t periods) noexcept;
 
-  /// To be called once per axis and cycle. `reference_position_m` is the reference at the feedback's instant,
-  /// which is further than a period behind the one before by `sync_apart_s`, where that is known.
+  /// To be called once per axis and cycle. `reference_position_m` is the reference at the feedback's instant.
   GuardedTorque Limit(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
-                      double reference_position_m, bool enabled, double sync_apart_s = 0.0) noexcept;
+                      double reference_position_m, bool enabled) noexcept;
 
  private:
   struct Memory {
@@ -63,7 +62,7 @@ class TorqueGuard {
     double confined_to_m = 0.0;  ///< 0: to the axis's own limits
   };
   Reason FindFault(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
-                   double reference_position_m, bool enabled, double sync_apart_s) noexcept;
+                   double reference_position_m, bool enabled) noexcept;
 
   GuardConfig config_;
   WatchesOff off_;
