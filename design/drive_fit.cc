@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "design/evolution_search.h"
@@ -104,6 +105,8 @@ DriveFit FitDrive(const DriveResponse& response, const TwoInertiaAxis& axis, dou
   }
   DriveFit out;
   out.loop = LoopAt(best.best, mass_kg, period_s);
+  // Both are the same to what a force does: (s + position) (s + integral). Which is which does not show.
+  if (out.loop.position_1_s < out.loop.integral_1_s) std::swap(out.loop.position_1_s, out.loop.integral_1_s);
   out.axis = AxisAt(best.best, axis);
   out.lines = lines.size();
   std::vector<double> errors;

@@ -12,7 +12,7 @@ namespace contour {
 /// A drive's loop from its measured response, on an axis that is known but for a factor on its masses and on
 /// its stiffness.
 struct DriveFit {
-  DriveLoop loop;
+  DriveLoop loop;           ///< of its gains of position and of the integral the larger one is the position's
   TwoInertiaAxis axis;      ///< masses and stiffness as the response has them
   double error_rel = 0.0;   ///< median over the lines of |measured - model| / |measured|
   double highest_Hz = 0.0;  ///< of the lines that were used

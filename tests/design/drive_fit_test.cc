@@ -77,6 +77,15 @@ TEST(DriveFit, FindsTheLoopItWasMadeWith) {
   EXPECT_NEAR(fit.loop.offset_late_s, truth.offset_late_s, 5e-5);
 }
 
+// What a force does shows both gains, and not which is which.
+TEST(DriveFit, TellsTheLargerOfTwoGainsThatLookTheSameAsThePositions) {
+  const DriveLoop truth{89.0 * 1300.0, 100.0, 390.0, 3e-4, 1.2e-3};
+  const DriveFit fit = FitDrive(MeasureDrive(Recorded(truth, 1e-9), kPeriod_s, 500), Axis(), kPeriod_s);
+  EXPECT_LT(fit.error_rel, 0.05);
+  EXPECT_NEAR(fit.loop.position_1_s, truth.integral_1_s, 0.05 * truth.integral_1_s);
+  EXPECT_NEAR(fit.loop.integral_1_s, truth.position_1_s, 0.05 * truth.integral_1_s);
+}
+
 TEST(DriveFit, RefusesARecordWithoutExcitation) {
   std::vector<DriveSample> samples = Recorded({89.0 * 1300.0, 390.0, 100.0, 3e-4, 1.2e-3}, 0.0);
   for (DriveSample& s : samples) s.extra_N = 0.0;
