@@ -105,8 +105,7 @@ struct EstimatorConfig {
                "uncertainty of the logarithm of the commissioned bristle stiffness");
     v.Optional("mass_std", mass_std, Range{0.0, 1.0},
                "relative uncertainty of the moving mass: in the band of the friction estimate and, in csp, "
-               "in the process "
-               "noise of the velocity");
+               "in the process noise of the velocity");
     v.Optional(
         "stiffness_std", stiffness_std, Range{0.0, 1.0},
         "relative uncertainty of the screw's stiffness where the model states none; 0: reversals do not "

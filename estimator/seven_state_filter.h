@@ -126,7 +126,7 @@ class SevenStateFilter {
   double mass_N2_ = 0.0;
   // In csp what the mass is off by is no friction: where presliding is over within two readings sigma0 took
   // it up, and with it, turn by turn, the error (10 m/min, inertias 30 % larger: 1.2 to 2.3 um). 0 with
-  // commanded torques: there friction is fed forward, and what it takes up of the mass is worth having.
+  // commanded torques: no drive makes up for the mass there, and what friction takes up of it helps.
   double mass_noise_s2_kg2_ = 0.0;
   double lasting_share_ = 0.0;  // shares per period
   double asymmetry_share_ = 0.0;

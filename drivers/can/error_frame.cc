@@ -8,7 +8,7 @@ namespace {
 
 constexpr unsigned kPassive = CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE;
 constexpr unsigned kWarning = CAN_ERR_CRTL_RX_WARNING | CAN_ERR_CRTL_TX_WARNING;
-// Bytes 6 and 7 are the counters; of kernels before 6.0 the header has no name for it, and they do not say.
+// CAN_ERR_CNT: bytes 6 and 7 are the counters. Headers of kernels before 6.0 do not name it.
 constexpr std::uint32_t kHasCounters = 0x00000200;
 
 }  // namespace
