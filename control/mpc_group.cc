@@ -4,6 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "control/motion_ahead.h"
+#include "control/spring_law.h"
+
 namespace contour {
 template <std::size_t Axes>
 MpcGroup<Axes>::MpcGroup(const MpcConfig& config, const ControllerOptions& options,
@@ -24,6 +27,7 @@ MpcGroup<Axes>::MpcGroup(const MpcConfig& config, const ControllerOptions& optio
     problem_.has_rate_limit[i] = step_m_s2_[i] < 2.0 * bound_m_s2_[i];
     problem_.dynamics[i] = feedforward_[i].dynamics();
     problem_.effort[i] = 1.0;
+    standstill_[i] = Standstill(axis.standstill);
   }
   for (const double share : {1.0, options.softer})
     weights_.emplace_back(share * config.contour_bandwidth_Hz, share * config.lag_bandwidth_Hz,
@@ -36,6 +40,7 @@ void MpcGroup<Axes>::Reset() noexcept {
   active_ = {};
   solution_ = {};
   has_planned_ = false;
+  for (Standstill& s : standstill_) s.Forget();
 }
 
 template <std::size_t Axes>
@@ -82,10 +87,31 @@ template <std::size_t Axes>
 void MpcGroup<Axes>::Step(const ControlInput& input, ControlOutput& output) noexcept {
   weights_[softer_ ? 1 : 0].Fill(Reference(input), first_, problem_);
   for (std::size_t i = 0; i < Axes; ++i) BuildAxis(input, i);
+  const bool begins = !has_planned_;
   has_planned_ = true;
   ShiftWarmStart();
   const QpReport report = solver_.Solve(problem_, config_.iteration_cap, active_, solution_);
   Report(report, output);
+  HoldAtRest(input, begins, output);
+}
+
+template <std::size_t Axes>
+void MpcGroup<Axes>::HoldAtRest(const ControlInput& input, bool begins, ControlOutput& output) noexcept {
+  const std::size_t points = problem_.horizon + 3;
+  const bool any_moves = AnyMovesAhead(input, points);
+  for (std::size_t i = 0; i < Axes; ++i) {
+    const std::size_t axis = first_ + i;
+    const Standstill::Motion motion = SpringLaw::Holds(input, axis)
+                                          ? Standstill::Motion::kOwn
+                                          : MotionAhead(Reference(input)[axis], points, any_moves);
+    const double beyond_m = input.estimate[axis].predicted_position_m - plan_[i].start_position_m;
+    if (begins && motion != Standstill::Motion::kOwn)
+      standstill_[i].Begin(beyond_m, output.feedforward_N[axis]);
+    const std::optional<double> held_N = standstill_[i].Step(beyond_m, input.previous_force_N[axis], motion);
+    if (!held_N) continue;
+    output.force_N[axis] = std::clamp(*held_N, -bound_m_s2_[i] * mass_kg_[i], bound_m_s2_[i] * mass_kg_[i]);
+    output.limit[axis] = Reason::kNone;
+  }
 }
 
 template <std::size_t Axes>

@@ -8,6 +8,7 @@
 #include "control/flat_feedforward.h"
 #include "control/path_weights.h"
 #include "control/qp_solver.h"
+#include "control/standstill.h"
 #include "core/nonblocking.h"
 
 namespace contour {
@@ -34,13 +35,14 @@ class MpcGroup final : public MpcGroupBase {
   void Soften(bool softer) noexcept override { softer_ = softer; }
   void Step(const ControlInput& input, ControlOutput& output) noexcept override;
   void Keep(StateKeeper& keep) noexcept override {
-    keep(plan_, planned_m_s2_, has_planned_, active_, solution_, softer_);
+    keep(plan_, planned_m_s2_, has_planned_, active_, solution_, softer_, standstill_);
   }
 
  private:
   void BuildAxis(const ControlInput& input, std::size_t i) noexcept;
   void ShiftWarmStart() noexcept;
   void Report(const QpReport& report, ControlOutput& output) noexcept;
+  void HoldAtRest(const ControlInput& input, bool begins, ControlOutput& output) noexcept;
 
   MpcConfig config_;
   std::size_t first_;
@@ -51,6 +53,7 @@ class MpcGroup final : public MpcGroupBase {
   std::vector<PathWeights<Axes>> weights_;  // its own and the softer ones, made once the dynamics are known
   std::vector<FlatFeedforward> feedforward_;
   std::array<AxisPlan, Axes> plan_{};
+  std::array<Standstill, Axes> standstill_;
   AxisVector<Axes> planned_m_s2_{};  // feed-forward command of the last Step
   bool has_planned_ = false;
   bool softer_ = false;

@@ -98,15 +98,24 @@ Standstill::Standstill(const StandstillBounds& bounds) noexcept
 void Standstill::Leave() noexcept {
   quiet_ = since_ = 0;
   sum_m_ = carry_N_ = steps_ = acts_s_ = 0.0;
-  standing_ = doubted_ = false;
+  standing_ = untried_ = doubted_ = false;
 }
 
 void Standstill::Forget() noexcept {
   Leave();
-  unit_m_ = moves_m_ = std::max(bounds_.step_moves_m, bounds_.count_m);
+  shown_m_ = moves_m_ = bounds_.step_moves_m;
+  unit_m_ = std::max(bounds_.step_moves_m, bounds_.count_m);
   waits_ = 1.0;
   ramp_N_ = bounds_.step_N * std::min(1.0, bounds_.period_s / ramp_s_);
   started_ = false;
+}
+
+void Standstill::Begin(double error_m, double planned_N) noexcept {
+  if (!(bounds_.step_moves_m > 0.0) || !(std::abs(error_m) < kEnds * unit_m_)) return;
+  started_ = standing_ = untried_ = true;
+  mean_m_ = error_m;
+  mean_N_ = planned_N;
+  held_N_ = target_N_ = bounds_.step_N * std::round(planned_N / bounds_.step_N);
 }
 
 std::optional<double> Standstill::Step(double error_m, double sent_N, Motion motion) noexcept {
@@ -123,7 +132,7 @@ std::optional<double> Standstill::Step(double error_m, double sent_N, Motion mot
   if (motion == Motion::kNone) waits_ = std::min(waits_ + patience_, kSofter);
   mean_m_ += share_ * (error_m - mean_m_);
   mean_N_ += share_ * (sent_N - mean_N_);
-  const double size_m = std::abs(mean_m_);
+  const double size_m = untried_ ? std::max(std::abs(mean_m_), std::abs(error_m)) : std::abs(mean_m_);
   if (standing_) {
     if (size_m < (doubted_ ? std::max(kEnds * unit_m_, kDoubtEnds * bounds_.doubt_m) : kEnds * unit_m_))
       return Held_N(error_m, sent_N);
@@ -152,7 +161,9 @@ void Standstill::Stand(double size_m, double doubt_m) noexcept {
   const double moved_m = mean_m_ - begun_m_;
   const double relief_N =
       doubted_ && std::abs(moved_m) > unit_m_ ? std::copysign(bounds_.relief_N, moved_m) : 0.0;
-  unit_m_ = moves_m_ = std::max(unit_m_, size_m / kBegins);
+  // What is let off with beyond a count is friction that is softer than stated.
+  if (size_m > kBegins * unit_m_) shown_m_ = unit_m_ = size_m / kBegins;
+  moves_m_ = shown_m_;
   held_N_ = mean_N_;
   target_N_ = bounds_.step_N * std::round((mean_N_ - relief_N) / bounds_.step_N);
   if (relief_N != 0.0) ramp_N_ = bounds_.relief_N * std::min(1.0, bounds_.period_s / ramp_s_);
@@ -180,6 +191,7 @@ double Standstill::Held_N(double error_m, double sent_N) noexcept {
 // the encoder.
 void Standstill::Watch(double error_m) noexcept {
   if (++since_ <= settle_) return;
+  untried_ = false;
   sum_m_ += error_m;
   if (since_ < settle_ + watch_) return;
   Correct(sum_m_ / watch_);
@@ -192,15 +204,16 @@ void Standstill::Correct(double mean_m) noexcept {
     // Where friction is softer than stated a step moves more, and a smaller error is none; where it turns
     // round it is stiffer, and where it gives way the other way, one step does little.
     const double moved_m = (before_m_ > 0.0 ? before_m_ - mean_m : mean_m - before_m_) / steps_;
-    unit_m_ = std::max(unit_m_, moved_m);
-    moves_m_ = std::clamp(moved_m, kStiffest * unit_m_, unit_m_);
+    shown_m_ = std::max(shown_m_, moved_m);
+    unit_m_ = std::max(unit_m_, shown_m_);
+    moves_m_ = std::clamp(moved_m, kStiffest * shown_m_, shown_m_);
   }
   const double size_m = std::abs(mean_m);
   // The first one is a single step: what it moves tells what more of them would.
-  const double wanted = std::min(kPart * size_m / moves_m_, kRelieved * size_m / unit_m_);
+  const double wanted = std::min(kPart * size_m / moves_m_, kRelieved * size_m / shown_m_);
   const double most = steps_ > 0.0 ? std::max(1.0, std::floor(wanted)) : 1.0;
   const double late = 1.0 + (kCorrectedLate - 1.0) * (waits_ - 1.0) / (kSofter - 1.0);
-  steps_ = size_m > kCorrected * late * unit_m_ ? most : 0.0;
+  steps_ = size_m > kCorrected * late * shown_m_ ? most : 0.0;
   before_m_ = mean_m;
   target_N_ -= std::copysign(steps_ * bounds_.step_N, mean_m);
   ramp_N_ = std::max(1.0, steps_) * bounds_.step_N * std::min(1.0, bounds_.period_s / ramp_s_);

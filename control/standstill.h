@@ -73,6 +73,10 @@ class Standstill {
   /// Once per cycle. `error_m`: the table as the observer sees it, beyond where it is to be; `sent_N`: what
   /// was sent last. The force to hold it by; nothing: the loop has to act.
   std::optional<double> Step(double error_m, double sent_N, Motion motion) noexcept;
+  /// Before the first Step of an axis that has just been enabled: friction goes on holding it where it stood,
+  /// by the force that is planned for it. A loop that begins to act there moves it by what it reads wrong.
+  /// Where that force does not hold it, the loop acts once it is off by what ends standing.
+  void Begin(double error_m, double planned_N) noexcept;
 
   [[nodiscard]] bool standing() const noexcept { return standing_; }
 
@@ -96,6 +100,7 @@ class Standstill {
   double sum_m_ = 0.0;     ///< of errors while it is watched
   double begun_m_ = 0.0;   ///< error when it became small
   double unit_m_ = 0.0;    ///< the most that a step moves, as far as it has been seen
+  double shown_m_ = 0.0;   ///< the same as means of many readings show it, finer than one count
   double moves_m_ = 0.0;   ///< what one moved last
   double before_m_ = 0.0;  ///< error before them
   double steps_ = 0.0;     ///< of the last correction
@@ -108,6 +113,7 @@ class Standstill {
   double acts_s_ = 0.0;    ///< for which the loop has held an axis at rest, without coming to stand
   bool started_ = false;
   bool standing_ = false;
+  bool untried_ = false;  ///< under a force that has not held it for long
   bool doubted_ = false;  ///< what holds it is within the doubt, and not corrected
 };
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "control/motion_ahead.h"
 #include "control/spring_law.h"
 
 namespace contour {
@@ -215,19 +216,11 @@ void TwoInertiaLaw::LeaveScale(Axis& a, double force_N) const noexcept {
   a.standstill.Forget();
 }
 
-// Or an experiment pushes.
-bool TwoInertiaLaw::Moves(const AxisHorizon& reference) const noexcept {
-  const std::size_t points = std::min(reference.size(), static_cast<std::size_t>(horizon_points_));
-  for (std::size_t j = 0; j < points; ++j)
-    if (reference[j].velocity_m_s != 0.0 || reference[j].extra_torque_Nm != 0.0) return true;
-  return false;
-}
-
 void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexcept {
   output.iterations = 0;
   CatchUp(input);
-  bool any_moves = false;
-  for (const AxisHorizon& reference : Reference(input)) any_moves = any_moves || Moves(reference);
+  const auto points = static_cast<std::size_t>(horizon_points_);
+  const bool any_moves = AnyMovesAhead(input, points);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     Axis& a = axes_[i];
     if (SpringLaw::Holds(input, i)) {
@@ -250,9 +243,7 @@ void TwoInertiaLaw::Step(const ControlInput& input, ControlOutput& output) noexc
     feedback_N += a.left_N;
     a.left_N *= a.left_kept;
     const double beyond_m = input.estimate[i].motion[2] - wanted[2];
-    const Standstill::Motion motion = Moves(reference) ? Standstill::Motion::kOwn
-                                      : any_moves      ? Standstill::Motion::kOfOthers
-                                                       : Standstill::Motion::kNone;
+    const Standstill::Motion motion = MotionAhead(reference, points, any_moves);
     const double force_N = a.standstill.Step(beyond_m, a.sent_N[0], motion).value_or(planned_N + feedback_N);
     output.feedforward_N[i] = planned_N;
     output.force_N[i] = std::clamp(force_N, -a.force_limit_N, a.force_limit_N);

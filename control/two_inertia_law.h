@@ -81,7 +81,6 @@ class TwoInertiaLaw final : public ControlLaw {
                        double& target_m) const noexcept;
   LoopMotion Wanted(Axis& axis, const AxisHorizon& reference, const FrictionPreview& friction,
                     bool by_scale) const noexcept;
-  [[nodiscard]] bool Moves(const AxisHorizon& reference) const noexcept;
   /// The loop without the scale takes over, from the force that acts.
   void LeaveScale(Axis& axis, double force_N) const noexcept;
   double Feedback_N(Axis& axis, const LoopMotion& wanted, const AxisEstimate& estimate,

@@ -74,7 +74,7 @@ StandstillBounds StandstillOf(const CycleConfig& config, std::size_t axis) {
                    .stiffness_N_m = LoopTakesScale(config, axis) ? 0.0 : a.two_inertia.stiffness_N_m,
                    .sigma0_N_m = f.sigma0_N_m,
                    .sigma1_Ns_m = f.sigma1_Ns_m,
-                   .regulator_Hz = a.loop->regulator_Hz},
+                   .regulator_Hz = KnowsTwoInertias(config) ? a.loop->regulator_Hz : DesignedLoop_Hz(config)},
                   2.0 * std::numbers::pi * r / a.encoder_counts_per_rev, config.cycle_us * 1e-6);
 }
 
@@ -103,6 +103,9 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
         axis.softer_scale_loop = ScaleLoopOf(config, i, config.control.supervision.softer);
       }
     }
+    // `full` by the other law of friction; its rivals are as they are sold.
+    if (config.controller == ControllerName::kFull && !KnowsTwoInertias(config) && !InCascade(config))
+      axis.standstill = StandstillOf(config, i);
     axes.push_back(axis);
   }
   return axes;

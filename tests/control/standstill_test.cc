@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <random>
 
 namespace contour {
 namespace {
@@ -75,6 +76,54 @@ TEST(Standstill, BringsTheAxisWithinAStepAndThenSendsOneTorque) {
       axis.Send(stand.Step(axis.position_m, axis.sent_N, Motion::kNone).value_or(0.0));
     EXPECT_EQ(axis.changes, before) << factor;
   }
+}
+
+// What holds an axis that has just been enabled is friction, and the force that is planned, as near as it can
+// be sent: no more is needed for the weight of a table than for one that lies.
+TEST(Standstill, AnAxisThatIsEnabledAtRestIsHeldFromTheFirstCycleOn) {
+  for (const double planned_N : {0.0, 10.3}) {
+    Standstill stand(Bounds());
+    stand.Begin(1e-7, planned_N);
+    ASSERT_TRUE(stand.standing());
+    const std::optional<double> held_N = stand.Step(1e-7, 0.0, Motion::kOfOthers);
+    ASSERT_TRUE(held_N.has_value());
+    EXPECT_NEAR(*held_N, kStep_N * std::round(planned_N / kStep_N), 1e-9);
+  }
+}
+
+// A force that turns out not to hold it is given up by the first reading that says so.
+TEST(Standstill, AnAxisThatSinksWhenItIsEnabledIsTheLoopsAtOnce) {
+  const double unit_m = kStep_N / 4e6;
+  Standstill stand(Bounds());
+  stand.Begin(0.0, 0.0);
+  ASSERT_TRUE(stand.Step(3.9 * unit_m, 0.0, Motion::kNone).has_value());
+  EXPECT_FALSE(stand.Step(4.1 * unit_m, 0.0, Motion::kNone).has_value());
+  Standstill far(Bounds());
+  far.Begin(4.1 * unit_m, 0.0);
+  EXPECT_FALSE(far.standing());
+  StandstillBounds loose = Bounds();
+  loose.step_moves_m = 0.0;
+  Standstill never(loose);
+  never.Begin(0.0, 0.0);
+  EXPECT_FALSE(never.standing());
+}
+
+// Readings that flicker between two counts show by their mean what is less than one.
+TEST(Standstill, AnErrorOfAShareOfACountIsTakenBack) {
+  StandstillBounds bounds = Bounds();
+  bounds.count_m = 3.0 * bounds.step_moves_m;
+  Held axis{4e6};
+  Standstill stand(bounds);
+  stand.Begin(0.0, 0.0);
+  axis.outside_N = -1.2 * kStep_N;
+  std::minstd_rand random(1);
+  std::uniform_real_distribution<double> noise(-0.5, 0.5);
+  for (int i = 0; i < 3000; ++i) {
+    const double read_m = bounds.count_m * std::round(axis.position_m / bounds.count_m + noise(random));
+    axis.Send(stand.Step(read_m, axis.sent_N, Motion::kOfOthers).value_or(0.0));
+  }
+  EXPECT_TRUE(stand.standing());
+  EXPECT_LT(std::abs(axis.position_m), 0.8 * bounds.step_moves_m);
 }
 
 // How far the force goes while the table is seen at one place, whatever is sent.
