@@ -264,8 +264,10 @@ class Descent {
       fit_.point = std::move(tried_[chosen_]);
       std::swap(fit_.raw, chosen_raw_);
       std::swap(fit_.residual, chosen_white_);
-      // A cost that is rough, or sensitivities that serve no more: small steps lead nowhere either.
-      if (small_ && last_chance_ && gained < kFits.kept_share * promised_) {
+      // A cost that is rough, or sensitivities that serve no more: small steps lead nowhere either, nor do
+      // sensitivities renewed once more where a step by new ones has kept next to nothing.
+      const bool little = gained < kFits.kept_share * promised_;
+      if (little && ((small_ && last_chance_) || (fresh_ && gained < kFits.worth_while))) {
         fit_.converged = true;
         return Close(false);
       }

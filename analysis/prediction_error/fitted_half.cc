@@ -10,8 +10,9 @@
 namespace contour::diagnosis {
 namespace {
 
-/// The halves are near the whole.
-constexpr FitEffort kHalfEffort = {.most_steps = 6, .most_refreshes = 2, .covariance = false};
+/// The halves are near the whole; what they are for is a forecast, and how far they are apart.
+constexpr FitEffort kHalfEffort = {
+    .most_steps = 6, .most_refreshes = 2, .close_enough = 1.0, .covariance = false};
 
 }  // namespace
 

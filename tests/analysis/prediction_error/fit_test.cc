@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <utility>
+#include <vector>
 
 #include "analysis/prediction_error/refit.h"
 #include "tests/analysis/support/learnt_problem.h"
@@ -87,6 +90,46 @@ TEST(Fit, SensitivitiesOfALargerModelServe) {
   EXPECT_EQ(fit.jacobian.cols(), known.jacobian.cols() - 1);
   EXPECT_TRUE(fit.point.effects.empty());
   EXPECT_NEAR(fit.cost, FitPoint(Made().problem, start).cost, 0.5);
+}
+
+/// A constant torque with `f` of its amplitude, and how often a model with it was made.
+std::shared_ptr<Effect> OffsetBy(double step, std::function<double(double)> f, int& made) {
+  auto effect = std::make_shared<Effect>();
+  effect->steps = {step};
+  effect->apply = [f = std::move(f), &made](const std::vector<double>& a, AxisModel& m) {
+    ++made;
+    m.offset += f(a[0]);
+  };
+  return effect;
+}
+
+Fit FitOffset(std::shared_ptr<Effect> effect, Point start) {
+  start.effects = {std::move(effect)};
+  start.amplitudes = {{0.0}};
+  return FitPoint(Made().problem, std::move(start));
+}
+
+// A cost that is rough over the length that sensitivities are taken over: each step keeps a tenth of what
+// they promise, and new ones promise as much again.
+TEST(Fit, NewSensitivitiesThatKeepNothingAreNotRenewed) {
+  int made = 0;
+  const Fit smooth = FitOffset(OffsetBy(
+                                   1e-3, [](double a) { return a; }, made),
+                               Made().point);
+  const Eigen::Index last = smooth.covariance.rows() - 1;
+  const double there = smooth.point.amplitudes[0][0], sd = std::sqrt(smooth.covariance(last, last));
+  const double length = 10.0 * sd, slope = 0.04;
+  const auto rough = [&](double a) {
+    const double whole = length * std::round(a / length);
+    return there - 2.0 * sd + whole + slope * (a - whole);
+  };
+  Point start = smooth.point;
+  made = 0;
+  const Fit fit = FitOffset(OffsetBy(length, rough, made), start);
+  EXPECT_TRUE(fit.converged);
+  const int columns = static_cast<int>(ParameterCount(fit.point));
+  // Three sets of sensitivities, that of the end among them, and the steps between.
+  EXPECT_LT(made, 5 * columns);
 }
 
 TEST(Fit, AmplitudesStayInsideTheirBounds) {
