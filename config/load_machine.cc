@@ -112,6 +112,8 @@ MachineConfig ReadMachine(const YamlValue& tree, std::vector<std::string>& error
   const std::size_t before = errors.size();
   ReadYaml(without_emulator, config, "", errors);
   if (errors.size() != before) return config;
+  if (std::string& table = config.machine.tool_table; !table.empty())
+    table = std::filesystem::absolute(Beside(tree.where, table)).lexically_normal().string();
   const YamlEntry* control = without_emulator.Find("control");
   config.control.friction_stated = control != nullptr && control->value.Find("friction") != nullptr;
   if (!config.control.friction_stated) config.control.friction = ChooseFriction(config);

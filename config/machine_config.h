@@ -38,6 +38,7 @@ struct MachineSection {
   bool slow_for_tolerance = true;
   bool optional_stop = false;
   bool block_delete = true;
+  std::string tool_table;
 
   template <class Visitor>
   void Visit(Visitor& v) {
@@ -58,6 +59,10 @@ struct MachineSection {
                "under the axes' full acceleration has so much less of acceleration and jerk");
     v.Optional("optional_stop", optional_stop, "M1 of a program waits for the operator, as M0 does");
     v.Optional("block_delete", block_delete, "lines of G-code that begin with a slash are left out");
+    v.Optional(
+        "tool_table", tool_table,
+        "file with the tools that G43 takes lengths from, as LinuxCNC writes it (T1 P1 Z42.5 a line, mm), "
+        "beside this file; read anew for every program");
   }
 };
 

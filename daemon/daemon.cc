@@ -35,6 +35,7 @@
 #include "daemon/make_log_header.h"
 #include "daemon/memory/friction_memory.h"
 #include "daemon/modbus_outputs.h"
+#include "daemon/program/gcode/tool_table.h"
 #include "daemon/pump.h"
 #include "daemon/realtime_thread.h"
 #include "daemon/recording_mode.h"
@@ -411,6 +412,8 @@ spdlog::level::level_enum ToSpdlog(LogLevel level) {
 int RunOnce(const DaemonOptions& options, std::optional<NewStart>& again) {
   std::vector<std::string> overrides = OverridesOf(options);
   const MachineConfig stated = LoadMachine(options.config, overrides);
+  // Programs read it anew; what is wrong with it is said before anything begins.
+  LoadToolTable(stated.machine.tool_table);
   // As stated: what has been learnt of the stroke moves no limit.
   const StartLoops loops = LoopsOfStart(options, overrides, &ServiceNotifier::StillStarting);
   ServiceNotifier::StillStarting();

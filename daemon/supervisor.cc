@@ -65,7 +65,8 @@ Supervisor::Supervisor(const MachineConfig& machine, ControllerName controller, 
       answers_(parts.queue.board()),
       pace_(parts.pump),
       events_(UseOfEvents(machine, machine.machine.optional_stop)),
-      program_defaults_{machine.machine.optional_stop, machine.machine.block_delete, WordsOf(machine)} {
+      program_defaults_{machine.machine.optional_stop, machine.machine.block_delete,
+                        machine.machine.tool_table, WordsOf(machine)} {
   for (const auto& [name, axis] : machine.axes)
     encoder_counts_m_.push_back(axis.model.mechanics.lead_mm * 1e-3 / axis.drive.encoder_counts_per_rev);
   for (const auto& [name, bus] : machine.buses) interfaces_.push_back(bus.interface);
@@ -346,6 +347,7 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
     PartOfProgram part = upload.part;
     part.optional_stop = part.optional_stop.value_or(program_defaults_.optional_stop);
     part.block_delete = part.block_delete.value_or(program_defaults_.block_delete);
+    part.tool_table = program_defaults_.tool_table;
     EventUse events = events_;
     events.optional_stop = *part.optional_stop;
     const bool referenced = std::all_of(now.axes.begin(), now.axes.end(),

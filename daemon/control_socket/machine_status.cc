@@ -245,6 +245,7 @@ nlohmann::json ToJson(const MachineStatus& s) {
       {"program_defaults",
        {{"optional_stop", s.program_defaults.optional_stop},
         {"block_delete", s.program_defaults.block_delete},
+        {"tool_table", s.program_defaults.tool_table},
         {"outputs", s.program_defaults.outputs}}},
       {"contour_error_m", Number(r.contour_error_m)},
       {"lag_error_m", Number(r.lag_error_m)},

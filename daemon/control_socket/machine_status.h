@@ -43,6 +43,7 @@ struct HaltStatus {
 struct ProgramDefaults {
   bool optional_stop = false;
   bool block_delete = true;
+  std::string tool_table{};            ///< its file, by its whole path; empty: none
   std::vector<std::string> outputs{};  ///< words that switch something: M3, S ...
 };
 

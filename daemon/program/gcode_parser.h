@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,6 +9,8 @@
 #include "daemon/program/shapes.h"
 
 namespace contour {
+
+struct ToolTable;
 
 struct GcodeSettings {
   bool block_delete = true;  ///< leave lines out that begin with a slash, as LinuxCNC does unless told
@@ -18,7 +21,8 @@ struct GcodeSettings {
   std::array<double, 6> start_m{};
   /// G64 Q joins no move of this line or a later one with one of the lines before.
   int begins_at_line = 0;
-  bool joins_lines = true;  ///< false: G64 Q joins nothing
+  std::shared_ptr<const ToolTable> tools{};  ///< for G43; none: no tool has a length that is known
+  bool joins_lines = true;                   ///< false: G64 Q joins nothing
 };
 
 /// Reads RS-274 G-code as docs/programs.md lists it. `name` stands for the file in messages.

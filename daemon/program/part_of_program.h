@@ -14,6 +14,7 @@ struct PartOfProgram {
   bool single_block = false;  ///< at rest at the end of every line
   std::optional<bool> optional_stop{};  ///< M1 waits for the operator; nothing: as the machine file says
   std::optional<bool> block_delete{};   ///< lines that begin with a slash are left out; likewise
+  std::string tool_table{};             ///< file that G43 takes tools' lengths from; empty: none
 };
 
 /// The moves from that line on. Moves before it are read, so that its words mean what they mean there, and

@@ -176,6 +176,17 @@ TEST(LoadModel, AMachineMayNameAModelFile) {
       << missing[0];
 }
 
+// As models are, wherever whoever reads it was started.
+TEST(LoadMachine, ATableOfToolsIsBesideTheMachineFile) {
+  const std::string machine = WriteTestFile("machine.yaml", ReadText(ExampleMachine("single_axis.yaml")));
+  const std::string folder = machine.substr(0, machine.rfind('/'));
+  EXPECT_EQ(LoadMachine(machine).machine.tool_table, "");
+  EXPECT_EQ(LoadMachine(machine, {"machine.tool_table=tools.tbl"}).machine.tool_table, folder + "/tools.tbl");
+  EXPECT_EQ(LoadMachine(machine, {"machine.tool_table=/a/tools.tbl"}).machine.tool_table, "/a/tools.tbl");
+  EXPECT_EQ(LoadMachine(ReadSource(machine, {"machine.tool_table=tools.tbl"})).machine.tool_table,
+            folder + "/tools.tbl");
+}
+
 TEST(LoadModel, MotorSideFriction) {
   const std::string model =
       "{lead_mm: 5, motor_inertia_kgm2: 5e-5, table_mass_kg: 10, screw_stiffness_N_um: 40, "

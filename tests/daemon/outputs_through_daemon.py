@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Spindle and coolant of a program on a running contourd (emulated machine, lock-step), seen by another client of the Modbus server.
+"""Spindle, coolant and lengths of tools of a program on a running contourd (emulated machine, lock-step), seen by another client of the Modbus server.
 
     outputs_through_daemon.py CONTOURD CONTOUR MACHINE_FILE
 
@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from pathlib import Path
 
 from pause_through_daemon import Operator, free_port
 
@@ -88,6 +89,17 @@ def check(operator, modbus):
     ngc.write_text("G21 F3000\nG1 X1\nS9000\nG1 X0\n", encoding="utf-8")
     refused = operator.call("run", str(ngc))
     assert refused.returncode != 0 and "spindle.ngc:3: S9000 is beyond" in refused.stderr, refused.stderr
+    # Tools have their lengths, read anew for each program.
+    for length_mm in (3, 7):
+        (operator.scratch / "tools.tbl").write_text(f"T2 X{length_mm} ;a table without Z\n", encoding="utf-8")
+        ngc.write_text("G21 F3000\nG0 X0 Y0\nG43 H2\nG1 X1\n", encoding="utf-8")
+        operator.ask("run", str(ngc))
+        status = operator.status()
+        at_mm = 1e3 * status["axes"][0]["reference_position_m"] - status["zero_mm"]["x"]
+        assert abs(at_mm - 1 - length_mm) < 1e-3, (at_mm, length_mm)
+    ngc.write_text("G0 X0\nG43 H3\n", encoding="utf-8")
+    refused = operator.call("run", str(ngc))
+    assert refused.returncode == 2 and "spindle.ngc:2:5: G43 of tool 3: it is not in" in refused.stderr, refused.stderr
     # The daemon ends while a program has it on.
     ngc.write_text("G21 F3000\nM3 S100\nG1 X1\nM0\nG1 X0\n", encoding="utf-8")
     run = start()
@@ -100,6 +112,8 @@ def main():
     settings = (f"io.modbus.port={port}", f"emulator.io.port={port}", "io.modbus.timeout_ms=5000",
                 "io.modbus.accept_blind_travel=true", f"io.modbus.outputs={OUTPUTS}")
     with tempfile.TemporaryDirectory() as scratch:
+        (Path(scratch) / "tools.tbl").write_text("", encoding="utf-8")
+        settings += (f"machine.tool_table={scratch}/tools.tbl",)
         operator = Operator(*sys.argv[1:], scratch, settings)
         try:
             modbus = Modbus(port)

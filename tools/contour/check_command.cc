@@ -13,6 +13,7 @@
 #include "config/load_machine.h"
 #include "config/yaml_tree.h"
 #include "core/friction_kind.h"
+#include "daemon/program/gcode/tool_table.h"
 #include "daemon/program/gcode_parser.h"
 #include "daemon/program/program.h"
 #include "drivers/cia402/mode_for.h"
@@ -31,6 +32,7 @@ struct Options {
   bool markdown = false;
   std::string canon;
   bool block_delete = true;
+  std::string tool_table;
   std::vector<std::string> set;
 };
 
@@ -98,6 +100,7 @@ std::string IdleSection(const Options& options, const MachineConfig& machine) {
 int PrintCanonicalMoves(const Options& options) {
   GcodeSettings settings;
   settings.block_delete = options.block_delete;
+  settings.tools = LoadToolTable(options.tool_table);
   settings.zero_m.emplace();  // no machine is asked: program zero is its own zero
   std::cout << CanonicalText(ReadProgramText(options.canon), options.canon, settings);
   return kExitDone;
@@ -110,6 +113,8 @@ int RunCheck(const Options& options) {
     if (options.file.empty()) return kExitDone;
   }
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
+  LoadToolTable(
+      file.machine.machine.tool_table);  // what is wrong with it is said here, not at the first program
   const LoopSection loops = JudgeLoops(file.machine);
   if (!loops.refused.empty()) {
     std::cout << CheckReport(file.machine) << loops.text << std::flush;
@@ -139,6 +144,8 @@ void AddCheckCommand(CLI::App& app, Action& action) {
   sub->add_option("--canon", options->canon,
                   "Print what a G-code program asks for, move by move, as LinuxCNC's rs274 does")
       ->type_name("PROGRAM");
+  sub->add_option("--tool-table", options->tool_table,
+                  "With --canon: file with the lengths of tools for G43");
   sub->add_flag("--block-delete,!--no-block-delete", options->block_delete,
                 "With --canon: leave lines out that begin with a slash (default), or not");
   sub->add_option("--set", options->set, "Put KEY=VALUE on top of the file; any number of times")

@@ -258,6 +258,7 @@ PartOfProgram PartFor(const Options& options, const json& status) {
   PartOfProgram part = options.part;
   if (!part.optional_stop) part.optional_stop = defaults.at("optional_stop").get<bool>();
   if (!part.block_delete) part.block_delete = defaults.at("block_delete").get<bool>();
+  part.tool_table = defaults.at("tool_table").get<std::string>();
   return part;
 }
 
@@ -334,8 +335,7 @@ int RunRun(const Options& options) {
   double following_m = 0.0;
   for (const json& axis : before.at("axes"))
     following_m = std::max(following_m, axis.at("facts").at("path_following_m").get<double>());
-  WarnOfProgram(options.program, EventsFor(options, before), *PartFor(options, before).block_delete, false,
-                following_m);
+  WarnOfProgram(options.program, EventsFor(options, before), PartFor(options, before), false, following_m);
   StopOnSignals();
   std::optional<RowCollector> rows;
   if (options.out) rows.emplace(*client, *options.out);

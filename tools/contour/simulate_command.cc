@@ -120,12 +120,13 @@ int RunSimulate(const Options& options) {
     return kExitBadUsage;
   }
   request.passes = options.passes;
-  request.part = options.part;
   const MachineConfig& said = request.file.machine;
+  request.part = options.part;
+  request.part.block_delete = options.part.block_delete.value_or(said.machine.block_delete);
+  request.part.tool_table = said.machine.tool_table;
   WarnOfProgram(options.program,
                 UseOfEvents(said, options.part.optional_stop.value_or(said.machine.optional_stop)),
-                options.part.block_delete.value_or(said.machine.block_delete), true,
-                1e-3 * said.machine.path_following_mm.value_or(0.0));
+                request.part, true, 1e-3 * said.machine.path_following_mm.value_or(0.0));
   if (const std::optional<std::string> wider = WiderToleranceText(said); wider && request.gcode)
     std::cerr << "contour: " << *wider << "\n";
   request.out = options.out;

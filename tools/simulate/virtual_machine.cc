@@ -53,6 +53,7 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
       limits_(ProgramLimits(file.machine)),
       events_(UseOfEvents(file.machine, file.machine.machine.optional_stop)),
       block_delete_(file.machine.machine.block_delete),
+      tool_table_(file.machine.machine.tool_table),
       emulated_(file.emulator, EmulatedPlacements(file.machine),
                 static_cast<std::uint32_t>(file.machine.machine.cycle_us), clock),
       truths_(std::make_unique<TruthMemory>()),
@@ -147,6 +148,7 @@ Program VirtualMachine::ReadGcode(const std::string& text, const std::string& na
                                       [](const AxisRecord& a) { return IsReferenced(a.reference_state); });
   PartOfProgram whole = part;
   whole.block_delete = part.block_delete.value_or(block_delete_);
+  whole.tool_table = tool_table_;
   EventUse events = events_;
   events.optional_stop = part.optional_stop.value_or(events.optional_stop);
   return ReadPlaced({text, name, ProgramFormat::kGcode}, PlaceNow(), LimitsNow(limits_, record()),

@@ -107,6 +107,7 @@ class VirtualMachine {
   PerAxis<PlanLimits> limits_;
   EventUse events_;
   bool block_delete_;
+  std::string tool_table_;
   EmulatedMachine emulated_;
   std::unique_ptr<TruthMemory> truths_;
   std::vector<std::unique_ptr<LoopbackBus>> buses_;

@@ -14,6 +14,8 @@ constexpr double kMostTurns = 1e6;
 // Of one line: more is a typing error, and would be unrolled for minutes.
 constexpr double kMostHoles = 1e6;
 constexpr double kNearlyWhole = 1e-3;
+// Numbers of tools, as LinuxCNC has them.
+constexpr double kMostTools = 99999.0;
 
 bool IsArc(int motion) { return motion == 20 || motion == 30; }
 
@@ -105,14 +107,9 @@ void CheckWordsOfCodes(const Block& block) {
     block.FailAtG(kNonModal, std::string("G4: expected P with a time in seconds") +
                                  (block.HasAny("xu") ? "; X and U are positions here" : ""));
   }
-  if (block.G(kToolLength) != 430) return;
-  if (block.Has('h') && block.Get('h')->value != 0.0) {
-    block.FailAtWord(
-        'h',
-        "G43: expected H0, as there is no table of tools: put the tool's length into the zero of Z "
-        "(G10 L20, G92 or 'contour zero')");
-  }
-  if (!block.Has('h')) block.FailAtG(kToolLength, "G43: expected H0");
+  const auto& h = block.Get('h');
+  if (block.G(kToolLength) == 430 && h && (!Whole(h->value) || h->value > kMostTools))
+    block.FailAtWord('h', "G43: expected H with the number of a tool");
 }
 
 void CheckDrilling(const Block& block) {

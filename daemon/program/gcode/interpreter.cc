@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "daemon/program/gcode/tool_table.h"
+
 namespace contour {
 namespace {
 
@@ -73,6 +75,9 @@ void GcodeInterpreter::Events(const Block& block) {
   if (block.Has('t')) Event(block, 'T', 0, block.Get('t')->value);
   for (const MGroup group : {kToolChange, kSpindle, kCoolant})
     if (block.m[group].code != kNoCode) Event(block, 'M', block.m[group].code, 0.0);
+  if (block.Has('t'))
+    selected_tool_ = static_cast<int>(std::lround(std::clamp(block.Get('t')->value, -1.0, 1e6)));
+  if (block.m[kToolChange].code == 6) tool_ = selected_tool_;
 }
 
 void GcodeInterpreter::Event(const Block& block, char letter, int code, double value) {
@@ -84,11 +89,38 @@ void GcodeInterpreter::Event(const Block& block, char letter, int code, double v
 void GcodeInterpreter::Modes(const Block& block) {
   if (block.G(kPlane) != kNoCode) plane_ = block.G(kPlane);
   if (block.G(kUnits) != kNoCode) unit_m_ = block.G(kUnits) == 200 ? kInch_m : kMillimetre_m;
+  ToolLength(block);
   if (block.G(kCoordinateSystem) != kNoCode) offsets_.Select(block.G(kCoordinateSystem));
   PathControl(block);
   if (block.G(kRetract) != kNoCode) to_level_ = block.G(kRetract) == 980;
   if (block.G(kDistance) != kNoCode) absolute_ = block.G(kDistance) == 900;
   if (block.G(kCentreDistance) != kNoCode) absolute_centres_ = block.G(kCentreDistance) == 901;
+}
+
+/// Where the program's positions count from goes up by the length of the tool; nothing moves by itself.
+void GcodeInterpreter::ToolLength(const Block& block) {
+  if (block.G(kToolLength) == 490) offsets_.SetTool({});
+  if (block.G(kToolLength) != 430) return;
+  const auto& h = block.Get('h');
+  const int asked_for = h ? static_cast<int>(std::lround(h->value)) : 0;
+  // H0 is the tool in the spindle, too. Where no lengths are known it has always meant none.
+  std::optional<int> tool = asked_for > 0 ? std::optional(asked_for) : tool_;
+  if (h && asked_for == 0 && !settings_.tools) tool = 0;
+  if (!tool)
+    block.FailAtG(kToolLength,
+                  "G43: expected H with a tool's number, or T and M6 before it: which tool is in the "
+                  "spindle is not known");
+  const int column = h ? h->column : block.g[kToolLength].column;
+  const std::string asked = "G43 of tool " + std::to_string(*tool);
+  if (!settings_.tools && *tool != 0)
+    block.FailAt(column, asked +
+                             ": there is no table of tools. Name one by machine.tool_table (LinuxCNC's), or "
+                             "put the tool's length into the zero of Z (G10 L20, G92 or 'contour zero') and "
+                             "write H0");
+  const AxisValues* offset_m = settings_.tools ? settings_.tools->Find(*tool) : nullptr;
+  if (settings_.tools && offset_m == nullptr)
+    block.FailAt(column, asked + ": it is not in " + settings_.tools->name);
+  offsets_.SetTool(offset_m != nullptr ? *offset_m : AxisValues{});
 }
 
 void GcodeInterpreter::PathControl(const Block& block) {
@@ -127,7 +159,8 @@ void GcodeInterpreter::NonModal(const Block& block) {
         if (!block.Has(kGcodeAxes[k])) continue;
         const double value_m = block.Get(kGcodeAxes[k])->value * unit_m_;
         const bool g52 = block.G(kNonModal) == 520;
-        offsets_.SetG92(k, g52 ? value_m : position_m_[k] - offsets_.system_m(k) - value_m);
+        offsets_.SetG92(k,
+                        g52 ? value_m : position_m_[k] - offsets_.system_m(k) - offsets_.Tool(k) - value_m);
       }
       offsets_.KeepG92();
       break;
@@ -151,7 +184,8 @@ void GcodeInterpreter::SetSystem(const Block& block) {
   for (std::size_t k = 0; k < kGcodeAxisCount; ++k) {
     if (!block.Has(kGcodeAxes[k])) continue;
     const double value_m = block.Get(kGcodeAxes[k])->value * unit_m_;
-    offsets_.SetSystem(number, k, from_position ? position_m_[k] - offsets_.G92(k) - value_m : value_m);
+    offsets_.SetSystem(
+        number, k, from_position ? position_m_[k] - offsets_.G92(k) - offsets_.Tool(k) - value_m : value_m);
   }
 }
 
@@ -321,6 +355,8 @@ void GcodeInterpreter::CheckSeries(const Block& block) const {
   if (differs(kPlane, plane_)) fail(kPlane);
   if (differs(kCoordinateSystem, offsets_.selected())) fail(kCoordinateSystem);
   if (nonmodal != kNoCode && nonmodal != 40) fail(kNonModal);
+  const int length = block.G(kToolLength);
+  if (length == 430 || (length == 490 && offsets_.HasTool())) fail(kToolLength);
 }
 
 /// The series with this block's words in it. What is not stated is as for the hole before.

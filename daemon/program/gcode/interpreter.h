@@ -40,6 +40,7 @@ class GcodeInterpreter {
   void Event(const Block& block, char letter, int code, double value);
   void Modes(const Block& block);
   void PathControl(const Block& block);
+  void ToolLength(const Block& block);
   void NonModal(const Block& block);
   void SetSystem(const Block& block);
   void GoHome(const Block& block);
@@ -65,6 +66,8 @@ class GcodeInterpreter {
 
   AxisValues position_m_;  ///< from program zero
   WorkOffsets offsets_;
+  std::optional<int> selected_tool_;  ///< by T
+  std::optional<int> tool_;           ///< in the spindle, by M6
   double unit_m_ = 1e-3;
   bool absolute_ = true;
   bool absolute_centres_ = false;

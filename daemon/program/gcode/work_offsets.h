@@ -6,11 +6,17 @@
 
 namespace contour {
 
-/// G54 to G59.3 and G92, in metres. A position of the program is a position from program zero less both.
+/// G54 to G59.3, G92 and the length of the tool, in metres. A position of the program is a position from
+/// program zero less all three.
 class WorkOffsets {
  public:
-  [[nodiscard]] double Of(std::size_t axis) const { return systems_m_[active_][axis] + g92_m_[axis]; }
+  [[nodiscard]] double Of(std::size_t axis) const {
+    return systems_m_[active_][axis] + g92_m_[axis] + tool_m_[axis];
+  }
   [[nodiscard]] double G92(std::size_t axis) const { return g92_m_[axis]; }
+  [[nodiscard]] double Tool(std::size_t axis) const { return tool_m_[axis]; }
+  void SetTool(const AxisValues& tool_m) { tool_m_ = tool_m; }
+  [[nodiscard]] bool HasTool() const { return tool_m_ != AxisValues{}; }
 
   /// Tenfold: 540 to 590, 591, 592, 593.
   void Select(int g) { active_ = static_cast<std::size_t>(g < 590 ? (g - 540) / 10 : 5 + g - 590); }
@@ -37,6 +43,7 @@ class WorkOffsets {
   std::size_t active_ = 0;
   AxisValues g92_m_{};
   AxisValues kept_m_{};
+  AxisValues tool_m_{};  ///< G43
 };
 
 }  // namespace contour

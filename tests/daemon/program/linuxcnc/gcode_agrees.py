@@ -11,7 +11,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from interpreters import EVENTS, by_module, by_program
+from interpreters import EVENTS, by_module, by_program, tool_table
 from random_programs import programs
 
 NANOMETRE = 1e-6    # in mm
@@ -19,9 +19,9 @@ PRINTED = 4 * 25.4e-4  # rs274 prints positions and offsets to 1e-4 inch
 FEED = 1e-9         # relative
 
 
-def ours(contour, program):
+def ours(contour, program, tools):
     """(moves, line of the error or None, its text)."""
-    done = subprocess.run([contour, "check", "--no-block-delete", "--canon", str(program)], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([contour, "check", "--no-block-delete", "--tool-table", str(tools), "--canon", str(program)], capture_output=True, text=True, timeout=60)
     if done.returncode == 2:
         message = done.stderr.strip().splitlines()[-1]
         place = message.split(str(program) + ":", 1)[1].split(":")
@@ -86,10 +86,10 @@ def has_uvw(text):
     return any(letter in text.lower() for letter in "uvw")
 
 
-def check(gcode, contour, program, scratch):
+def check(gcode, contour, program, tools, scratch):
     """(what is wrong or nothing, whether both refuse the program, moves compared)"""
     text = program.read_text()
-    moves, line, message = ours(contour, program)
+    moves, line, message = ours(contour, program, tools)
     printed, refused = ([], None) if has_uvw(text) else by_program(program, scratch)
     by = by_module(gcode, program, scratch)
     if by is None:
@@ -121,10 +121,12 @@ def main():
         return 77
     failed = refused = moves = 0
     with tempfile.TemporaryDirectory() as scratch:
+        tools = Path(scratch) / "lengths.tbl"
+        tools.write_text(tool_table(1.0))
         for number, text in programs(count, seed):
             program = Path(scratch) / f"random_{number}.ngc"
             program.write_bytes(text.encode())
-            wrong, both_refuse, compared = check(gcode, contour, program, scratch)
+            wrong, both_refuse, compared = check(gcode, contour, program, tools, scratch)
             refused += both_refuse
             moves += compared
             if wrong:

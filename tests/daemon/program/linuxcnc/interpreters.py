@@ -9,7 +9,17 @@ from pathlib import Path
 
 INCH = 25.4
 PLANES = {"XY": (0, 1, 2), "XZ": (2, 0, 1), "YZ": (1, 2, 0)}
+TOOLS = range(1, 10)
 PLANE_NUMBERS = {1: "XY", 2: "YZ", 3: "XZ", 170: "XY", 180: "XZ", 190: "YZ"}
+
+
+def tool_length(number):
+    """Of the tools that programs may ask for, mm."""
+    return 1.75 * number if number in TOOLS else 0.0
+
+
+def tool_table(unit):
+    return "".join(f"T{n} P{n} Z{tool_length(n) / unit!r}\n" for n in TOOLS)
 
 
 class Canon:
@@ -19,12 +29,13 @@ class Canon:
         self.unit = unit
         self.g5x = [0.0] * 6
         self.g92 = [0.0] * 6
+        self.tool = [0.0] * 6
         self.plane = "XY"
         self.feed = 0.0
         self.moves = []
 
     def offset(self, k):
-        return self.g5x[k] + self.g92[k]
+        return self.g5x[k] + self.g92[k] + self.tool[k]
 
     def target(self, values):
         return [v * self.unit + self.offset(k) for k, v in enumerate(values)]
@@ -67,6 +78,9 @@ class ModuleCanon(Canon):
     def set_g92_offset(self, *p):
         self.g92 = [v * INCH for v in [*p[:3], *p[6:9]]]
 
+    def tool_offset(self, *p):
+        self.tool = [v * INCH for v in [*p[:3], *p[6:9]]]
+
     def set_plane(self, plane):
         self.plane = PLANE_NUMBERS[plane]
 
@@ -74,7 +88,7 @@ class ModuleCanon(Canon):
         self.feed = rate * INCH
 
     def get_tool(self, number):
-        return (number, 0) + (0.0,) * 11 + (0,)
+        return (number, 0.0, 0.0, tool_length(number)) + (0.0,) * 9 + (0,)
 
     def get_axis_mask(self):
         return 0b111000111
@@ -123,7 +137,7 @@ def by_program(program, scratch):
     """(moves and events or None where it crashes, text of the line that is refused or None). X Y Z only, in the four decimals that it prints."""
     parameters, tools = Path(scratch) / "program.var", Path(scratch) / "tools.tbl"
     parameters.write_text("".join(f"{n}\t0.0\n" for n in [*range(5161, 5170), *range(5181, 5190)]))
-    tools.write_text("".join(f"T{n} P{n} Z0\n" for n in range(1, 10)))
+    tools.write_text(tool_table(INCH))  # in rs274's own unit
     done = subprocess.run(["rs274", "-g", "-v", str(parameters), "-t", str(tools), str(program)], capture_output=True, text=True, timeout=60)
     canon = Canon(1.0)
     ended = False
@@ -156,6 +170,9 @@ def take_printed(canon, name, words):
         canon.unit = INCH if "INCH" in words[0] else 1.0
     elif name == "SET_G5X_OFFSET":
         canon.g5x = [v * canon.unit for v in numbers()[1:4]] + [0.0] * 3
+    elif name == "USE_TOOL_LENGTH_OFFSET":
+        n = [float(w) for w in " ".join(words).split()]
+        canon.tool = [v * canon.unit for v in [*n[:3], *n[6:9]]]
     elif name == "SET_G92_OFFSET":
         canon.g92 = [v * canon.unit for v in numbers()[:3]] + [0.0] * 3
     elif name == "SELECT_PLANE":
