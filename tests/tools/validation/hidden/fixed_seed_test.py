@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
-"""The same four machines in every run: what diagnosis says of them stays what it was.
+"""The same machines in every run: what diagnosis says of them stays what it was.
 
-    fixed_seed_test.py CONTOUR_HIDDEN
+    fixed_seed_test.py CONTOUR_HIDDEN [--all]
+
+Two of them, a clean one and one with backlash; with --all, as at night, all four. Cogging is found in every run by
+diagnose.extended_gain_cogging.
 
 Beside it hidden.effects_short draws others each time and can only be judged by counts. How often intervals of 95 % hold the
 truth is judged there: one of them misses in one machine of twenty, and another build records another log. Here the truth
@@ -31,13 +34,18 @@ def far_outside(text):
     return not found or any(abs(float(true) - float(told)) > float(high) - float(low) for true, told, low, high in found)
 
 
+IN_EVERY_RUN = {f"clean_short_{SEED}", f"clear_backlash_short_{SEED}"}
+
+
 def main():
+    every = "--all" in sys.argv[2:]
+    kinds, clean = ("backlash,cogging", "2") if every else ("backlash", "1")
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.argv[1], "--short", "--compact", "--strengths", "clear", "--kinds", "backlash,cogging", "--seeds", "1",
-                        "--first-seed", str(SEED), "--clean", "2", "--out", folder], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([sys.argv[1], "--short", "--compact", "--strengths", "clear", "--kinds", kinds, "--seeds", "1",
+                        "--first-seed", str(SEED), "--clean", clean, "--out", folder], check=True, stdout=subprocess.DEVNULL)
         with open(Path(folder) / "results.csv", newline="", encoding="utf-8") as file:
             rows = {r["case"]: r for r in csv.DictReader(file)}
-    wrong = [f"{name}: not there" for name in EXPECTED.keys() - rows.keys()]
+    wrong = [f"{name}: not there" for name in (EXPECTED.keys() if every else IN_EVERY_RUN) - rows.keys()]
     for name, row in rows.items():
         if (row["verdict"], row["answer"]) != EXPECTED.get(name):
             wrong.append(f"{name}: {row['verdict']}, {row['answer']}; expected {EXPECTED.get(name)}")

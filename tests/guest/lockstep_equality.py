@@ -1,15 +1,10 @@
-#!/usr/bin/env python3
-"""The same program sends the same torque frames on vcan0, in lock-step, as in virtual time: cycle by cycle, bit by bit.
-
-    lockstep_equality.py PROGRAMS CONFIG PROGRAM
-"""
+"""The same program sends the same torque frames on vcan0, in lock-step, as in virtual time: cycle by cycle, bit by bit."""
 import csv
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-import canopen_trace  # noqa: E402
-from machine_bench import MachineBench, expect, main  # noqa: E402
+import canopen_trace
+import yaml
+from machine_bench import expect
 
 AXES = {"x": 1, "y": 2}
 TARGET_TORQUE = 0x6071
@@ -43,7 +38,6 @@ def torques_in_virtual_time(path, rated_torque_Nm):
 
 
 def rated_torque_Nm(config):
-    import yaml
     axes = yaml.safe_load(Path(config).read_text(encoding="utf-8"))["axes"]
     values = {axis["drive"]["rated_torque_Nm"] for axis in axes.values()}
     expect(len(values) == 1, f"the axes have different rated torques: {values}")
@@ -57,29 +51,23 @@ def first_difference(real, virtual):
     return None
 
 
-def test(programs, out):
-    config, program = sys.argv[2:4]
-    with MachineBench(programs, config, out) as bench:
-        bench.contour("simulate", "--config", config, "--program", program, "--out", bench.work / "virtual")
-        virtual = torques_in_virtual_time(bench.work / "virtual" / "cycles.csv", rated_torque_Nm(config))
-        bench.start_recording()
-        bench.start_emulator()
-        bench.start_daemon()
-        bench.wait_for_state("Idle")
-        bench.enable()
-        bench.ask("run", program)
-        # Both end at rest some time after the program: the bus must get as far as virtual time did.
-        real = torques_on_the_bus(bench.trace(max(virtual)))
+def virtual_torques(bench, config, program):
+    """What `contour simulate` sends, by the number of the SYNC."""
+    bench.contour("simulate", "--config", config, "--program", program, "--out", bench.work / "virtual")
+    virtual = torques_in_virtual_time(bench.work / "virtual" / "cycles.csv", rated_torque_Nm(config))
     expect(len(virtual) > 1000, f"virtual time has {len(virtual)} cycles only")
-    loud = sum(1 for sync in virtual if any(virtual[sync].values()))
+    loud = sum(1 for torques in virtual.values() if any(torques.values()))
     expect(loud > 1000, f"only {loud} cycles have any torque at all")
+    return virtual
+
+
+def compare(frames, virtual):
+    """A sentence on frames that are the same."""
+    real = torques_on_the_bus(frames)
     different = first_difference(real, virtual)
     if different is not None:
         around = range(different - 2, different + 3)
         raise AssertionError(
             f"torque frames differ first at SYNC {different}, of {max(virtual)}:\n"
             + "\n".join(f"  SYNC {sync}: bus {real.get(sync)}, virtual time {virtual.get(sync)}" for sync in around))
-    print(f"{len(virtual)} cycles, {loud} with torque: every torque frame on vcan0 equals the one of virtual time")
-
-
-main(test)
+    return f"{len(virtual)} cycles: every torque frame on vcan0 equals the one of virtual time"
