@@ -41,4 +41,10 @@ bool TakeErrorFrame(std::uint32_t id, std::span<const std::uint8_t, 8> data, boo
   return bus_off;
 }
 
+void BeginsAnew(bool holds_bus_off, BusState& state) noexcept {
+  if (!holds_bus_off) state.bus_off = false;
+  state.errors = ControllerErrors::kActive;
+  state.transmit_errors = state.receive_errors = 0;
+}
+
 }  // namespace contour

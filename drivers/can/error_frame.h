@@ -12,4 +12,8 @@ namespace contour {
 bool TakeErrorFrame(std::uint32_t id, std::span<const std::uint8_t, 8> data, bool holds_bus_off,
                     BusState& state) noexcept;
 
+/// A controller whose interface has been set up counts anew, and no error frame says so. `holds_bus_off` as
+/// above.
+void BeginsAnew(bool holds_bus_off, BusState& state) noexcept;
+
 }  // namespace contour

@@ -202,6 +202,12 @@ std::size_t SocketCanBus::TakeBatch(std::size_t count, std::int64_t to_monotonic
     const can_frame& raw = batch_->frames[i];
     if (batch_->messages[i].msg_len != sizeof(can_frame)) continue;
     if ((raw.can_id & CAN_ERR_FLAG) != 0) {
+      // What was waiting when the interface was set down is of a controller that has been stopped since.
+      if (!state_.up && stamp_ns <= down_ns_) {
+        ++state_.error_frames;
+        continue;
+      }
+      CountAsUp();
       if (TakeErrorFrame(raw.can_id, raw.data, bus_off_is_new_, state_)) bus_off_is_new_ = true;
       continue;
     }
@@ -217,7 +223,7 @@ std::size_t SocketCanBus::TakeBatch(std::size_t count, std::int64_t to_monotonic
     std::copy_n(raw.data, 8, out.frame.data.begin());
     if (own) continue;
     ++state_.frames_received;
-    state_.up = true;
+    CountAsUp();
   }
   return taken;
 }
@@ -244,7 +250,7 @@ std::size_t SocketCanBus::Send(std::int64_t /*now_ns*/, std::span<const CanFrame
       break;
     }
     sent += static_cast<std::size_t>(done);
-    if (done > 0) state_.up = true;
+    if (done > 0) CountAsUp();
     // Fewer than asked for: the next call fails at once and says why.
   }
   state_.frames_sent += sent;
@@ -256,7 +262,14 @@ void SocketCanBus::OnFailure(int error) noexcept {
   last_error_ = error;
   const bool gone = error == ENODEV || error == ENXIO;
   if (gone) bound_ = false;
-  if (gone || error == ENETDOWN) state_.up = false;
+  if (!gone && error != ENETDOWN) return;
+  state_.up = false;
+  down_ns_ = ClockNow_ns();
+}
+
+void SocketCanBus::CountAsUp() noexcept {
+  if (!state_.up) BeginsAnew(bus_off_is_new_, state_);
+  state_.up = true;
 }
 
 // Interfaces are found again by name: a USB adapter that was pulled comes back under a new index.

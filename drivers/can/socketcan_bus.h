@@ -32,6 +32,7 @@ class BusUnavailable : public std::runtime_error {
 /// - bus_off is set by an error frame, and stays until the controller restarts, or until a data frame is
 /// received in a
 ///   later call; at least one call of State() sees it.
+/// - A link that comes up again has a controller that counts its errors anew, and is not bus-off.
 /// - Only data frames with 11-bit identifiers are passed on.
 /// - With `nodes`, our own SYNCs come back as kOwnFrame | 0x080, with the time at which the controller had
 /// sent them
@@ -64,12 +65,14 @@ class SocketCanBus : public FrameBus {
   std::size_t TakeBatch(std::size_t count, std::int64_t to_monotonic_ns,
                         std::span<StampedFrame> frames) noexcept;
   void OnFailure(int error) noexcept;
+  void CountAsUp() noexcept;
   void TryBindAgain() noexcept;
 
   std::string interface_;
   std::unique_ptr<Batch> batch_;
   int fd_ = -1;
   int last_error_ = 0;
+  std::int64_t down_ns_ = 0;  ///< when it was last seen to be down, by CLOCK_MONOTONIC
   std::uint32_t overflows_seen_ = 0;
   std::uint32_t calls_unbound_ = 0;
   bool bound_ = false;

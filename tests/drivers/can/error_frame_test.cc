@@ -66,6 +66,20 @@ TEST(ErrorFrame, ARestartEndsBusOffOnceItHasBeenSeen) {
   EXPECT_EQ(c.state.bus_offs, 2U);
 }
 
+TEST(ErrorFrame, AnInterfaceThatIsSetUpAgainHasAControllerWithoutErrors) {
+  Controller c;
+  c.Says(CAN_ERR_CRTL | 0x200, CAN_ERR_CRTL_TX_PASSIVE);
+  c.state.transmit_errors = 130;
+  c.Says(CAN_ERR_BUSOFF);
+  BeginsAnew(true, c.state);
+  EXPECT_TRUE(c.state.bus_off) << "nobody has seen it yet";
+  BeginsAnew(false, c.state);
+  EXPECT_FALSE(c.state.bus_off);
+  EXPECT_EQ(c.state.errors, ControllerErrors::kActive);
+  EXPECT_EQ(c.state.transmit_errors, 0);
+  EXPECT_EQ(c.state.bus_offs, 1U);
+}
+
 TEST(ErrorFrame, CanBeInjectedIntoTheBusInTheProcess) {
   LoopbackBus bus(1'000'000, {});
   bus.InjectErrorFrame(CAN_ERR_FLAG | CAN_ERR_CRTL, Data(CAN_ERR_CRTL_RX_PASSIVE));

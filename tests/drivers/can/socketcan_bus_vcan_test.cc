@@ -100,6 +100,48 @@ TEST_F(OnVcan, ALinkThatGoesDownIsSeenAndRecoveredFrom) {
   EXPECT_TRUE(b.State().up);
 }
 
+// As `ip link set can0 down`, `up`: the controller begins anew, and no error frame says so.
+TEST_F(OnVcan, ALinkThatComesUpAgainHasAControllerWithoutErrors) {
+  SocketCanBus a("vcan0");
+  std::array<StampedFrame, 4> got;
+  const CanFrame f = Frame(0x201, 0);
+  const int fd = a.fd();
+  const auto read = [&] {
+    const std::int64_t deadline = Now_ns() + 1'000'000'000;
+    while (a.State().error_frames == 0 && Now_ns() < deadline)
+      if (WaitReadable(std::span(&fd, 1), deadline)) a.Receive(0, got);
+  };
+  ASSERT_TRUE(Shell("cansend vcan0 20000204#0020000000008207 && cansend vcan0 20000040#0000000000000000"));
+  read();
+  a.Receive(0, got);
+  EXPECT_EQ(a.State().errors, ControllerErrors::kPassive);
+  EXPECT_EQ(a.State().transmit_errors, 130);
+  EXPECT_TRUE(a.State().bus_off);
+  // One more is waiting unread when the interface is set down.
+  ASSERT_TRUE(Shell("cansend vcan0 20000204#0020000000008307 && ip link set vcan0 down"));
+  for (int i = 0; i < 3; ++i) a.Receive(0, got);
+  EXPECT_FALSE(a.State().up);
+  EXPECT_EQ(a.State().transmit_errors, 130) << "as it was when it was stopped";
+  EXPECT_EQ(a.State().error_frames, 3U);
+  ASSERT_TRUE(Shell("ip link set vcan0 up"));
+  EXPECT_EQ(a.Send(0, std::span(&f, 1)), 1u);
+  EXPECT_TRUE(a.State().up);
+  EXPECT_EQ(a.State().errors, ControllerErrors::kActive);
+  EXPECT_EQ(a.State().transmit_errors, 0);
+  EXPECT_EQ(a.State().receive_errors, 0);
+  EXPECT_FALSE(a.State().bus_off);
+  EXPECT_EQ(a.State().bus_offs, 1U);
+  // What the controller says before anything could be sent is of its new life.
+  ASSERT_TRUE(Shell("ip link set vcan0 down"));
+  a.Receive(0, got);
+  ASSERT_TRUE(Shell("ip link set vcan0 up && cansend vcan0 20000204#0008000000000060"));
+  for (int i = 0; i < 100 && a.State().error_frames == 3; ++i)
+    if (WaitReadable(std::span(&fd, 1), Now_ns() + 10'000'000)) a.Receive(0, got);
+  EXPECT_EQ(a.Send(0, std::span(&f, 1)), 1u);
+  EXPECT_EQ(a.State().errors, ControllerErrors::kWarning);
+  EXPECT_EQ(a.State().receive_errors, 96);
+}
+
 TEST_F(OnVcan, AnInterfaceThatVanishesIsBoundAgain) {
   SocketCanBus a("vcan0");
   const CanFrame f = Frame(0x201, 0);
