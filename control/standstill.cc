@@ -112,10 +112,10 @@ void Standstill::Forget() noexcept {
 
 void Standstill::Begin(double error_m, double planned_N) noexcept {
   if (!(bounds_.step_moves_m > 0.0) || !(std::abs(error_m) < kEnds * unit_m_)) return;
+  if (std::round(planned_N / bounds_.step_N) != 0.0) return;
   started_ = standing_ = untried_ = true;
   mean_m_ = error_m;
-  mean_N_ = planned_N;
-  held_N_ = target_N_ = bounds_.step_N * std::round(planned_N / bounds_.step_N);
+  mean_N_ = held_N_ = target_N_ = 0.0;
 }
 
 std::optional<double> Standstill::Step(double error_m, double sent_N, Motion motion) noexcept {

@@ -74,8 +74,10 @@ class Standstill {
   /// was sent last. The force to hold it by; nothing: the loop has to act.
   std::optional<double> Step(double error_m, double sent_N, Motion motion) noexcept;
   /// Before the first Step of an axis that has just been enabled: friction goes on holding it where it stood,
-  /// by the force that is planned for it. A loop that begins to act there moves it by what it reads wrong.
-  /// Where that force does not hold it, the loop acts once it is off by what ends standing.
+  /// without a torque, as before. A loop that begins to act there moves it by what it reads wrong. Where that
+  /// does not hold it, the loop acts with the first reading that is off by what ends standing. An axis under
+  /// a force, such as a weight, is the loop's from the beginning: whether friction, a brake or nothing bears
+  /// it is not known.
   void Begin(double error_m, double planned_N) noexcept;
 
   [[nodiscard]] bool standing() const noexcept { return standing_; }

@@ -411,6 +411,10 @@ LearningReport Supervisor::Learn(const ProgramUpload& upload, const Placement& p
   // A program that has to go to its zero first is another one than the same program that stands there.
   const auto text = [&] {
     std::string said = upload.text;
+    // A tool that was measured anew makes another path of a program with G43 in it.
+    if (const std::string& table = program_defaults_.tool_table;
+        !table.empty() && said.find("43") != std::string::npos)
+      said += '\n' + ReadProgramText(table);
     // In whole hundredths of a millimetre: two passes do not end at the same bit.
     for (std::size_t i = 0; i < place.zero_m.size(); ++i)
       said += '\n' + std::to_string(std::lround(1e5 * (place.start_m[i] - place.zero_m[i])));

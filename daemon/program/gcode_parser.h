@@ -21,8 +21,11 @@ struct GcodeSettings {
   std::array<double, 6> start_m{};
   /// G64 Q joins no move of this line or a later one with one of the lines before.
   int begins_at_line = 0;
-  std::shared_ptr<const ToolTable> tools{};  ///< for G43; none: no tool has a length that is known
-  bool joins_lines = true;                   ///< false: G64 Q joins nothing
+  /// For G43: a table, or else the file that one is read from at the first of them. Neither: no tool has a
+  /// length that is known.
+  std::shared_ptr<const ToolTable> tools{};
+  std::string tool_table{};
+  bool joins_lines = true;  ///< false: G64 Q joins nothing
 };
 
 /// Reads RS-274 G-code as docs/programs.md lists it. `name` stands for the file in messages.

@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include "daemon/program/gcode/tool_table.h"
 #include "daemon/program/gcode_parser.h"
 #include "daemon/program/piecewise_plan.h"
 
@@ -45,7 +44,7 @@ Program ReadPlaced(const ProgramSource& source, const Placement& place, const Pe
   GcodeSettings settings;
   settings.block_delete = part.block_delete.value_or(settings.block_delete);
   settings.begins_at_line = part.from_line;
-  settings.tools = LoadToolTable(part.tool_table);
+  settings.tool_table = part.tool_table;
   settings.joins_lines = !part.single_block;
   if (options.referenced) settings.zero_m.emplace();
   for (std::size_t i = 0; i < limits.size(); ++i) {

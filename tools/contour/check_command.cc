@@ -100,7 +100,7 @@ std::string IdleSection(const Options& options, const MachineConfig& machine) {
 int PrintCanonicalMoves(const Options& options) {
   GcodeSettings settings;
   settings.block_delete = options.block_delete;
-  settings.tools = LoadToolTable(options.tool_table);
+  settings.tool_table = options.tool_table;
   settings.zero_m.emplace();  // no machine is asked: program zero is its own zero
   std::cout << CanonicalText(ReadProgramText(options.canon), options.canon, settings);
   return kExitDone;

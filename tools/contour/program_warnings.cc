@@ -5,7 +5,6 @@
 
 #include "daemon/program/gcode/ignored_events.h"
 #include "daemon/program/gcode/tight_tolerance.h"
-#include "daemon/program/gcode/tool_table.h"
 #include "daemon/program/gcode_parser.h"
 #include "daemon/program/program.h"
 
@@ -18,7 +17,7 @@ void WarnOfProgram(const std::filesystem::path& program, const EventUse& use, co
     // Words and tolerances are the same wherever program zero is, so that G28, G30 and G53 may be read.
     GcodeSettings settings;
     settings.block_delete = part.block_delete.value_or(settings.block_delete);
-    settings.tools = LoadToolTable(part.tool_table);
+    settings.tool_table = part.tool_table;
     settings.zero_m.emplace().fill(0.0);
     GcodeMoves moves = ParseGcode(ReadProgramText(program), program.string(), settings);
     UseEvents(moves, program.string(), use);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "daemon/program/gcode/drilling_cycle.h"
+#include "daemon/program/gcode/tool_table.h"
 
 namespace contour {
 namespace {
@@ -14,8 +15,6 @@ constexpr double kMostTurns = 1e6;
 // Of one line: more is a typing error, and would be unrolled for minutes.
 constexpr double kMostHoles = 1e6;
 constexpr double kNearlyWhole = 1e-3;
-// Numbers of tools, as LinuxCNC has them.
-constexpr double kMostTools = 99999.0;
 
 bool IsArc(int motion) { return motion == 20 || motion == 30; }
 
@@ -107,7 +106,9 @@ void CheckWordsOfCodes(const Block& block) {
     block.FailAtG(kNonModal, std::string("G4: expected P with a time in seconds") +
                                  (block.HasAny("xu") ? "; X and U are positions here" : ""));
   }
-  const auto& h = block.Get('h');
+  const auto &h = block.Get('h'), &t = block.Get('t');
+  if (t && (!Whole(t->value) || t->value > kMostTools))
+    block.FailAtWord('t', "T: expected the whole number of a tool");
   if (block.G(kToolLength) == 430 && h && (!Whole(h->value) || h->value > kMostTools))
     block.FailAtWord('h', "G43: expected H with the number of a tool");
 }

@@ -75,8 +75,7 @@ void GcodeInterpreter::Events(const Block& block) {
   if (block.Has('t')) Event(block, 'T', 0, block.Get('t')->value);
   for (const MGroup group : {kToolChange, kSpindle, kCoolant})
     if (block.m[group].code != kNoCode) Event(block, 'M', block.m[group].code, 0.0);
-  if (block.Has('t'))
-    selected_tool_ = static_cast<int>(std::lround(std::clamp(block.Get('t')->value, -1.0, 1e6)));
+  if (block.Has('t')) selected_tool_ = static_cast<int>(std::lround(block.Get('t')->value));
   if (block.m[kToolChange].code == 6) tool_ = selected_tool_;
 }
 
@@ -105,21 +104,22 @@ void GcodeInterpreter::ToolLength(const Block& block) {
   const int asked_for = h ? static_cast<int>(std::lround(h->value)) : 0;
   // H0 is the tool in the spindle, too. Where no lengths are known it has always meant none.
   std::optional<int> tool = asked_for > 0 ? std::optional(asked_for) : tool_;
-  if (h && asked_for == 0 && !settings_.tools) tool = 0;
+  const bool known = settings_.tools || !settings_.tool_table.empty();
+  if (h && asked_for == 0 && !known) tool = 0;
   if (!tool)
     block.FailAtG(kToolLength,
                   "G43: expected H with a tool's number, or T and M6 before it: which tool is in the "
                   "spindle is not known");
   const int column = h ? h->column : block.g[kToolLength].column;
   const std::string asked = "G43 of tool " + std::to_string(*tool);
-  if (!settings_.tools && *tool != 0)
+  if (!known && *tool != 0)
     block.FailAt(column, asked +
                              ": there is no table of tools. Name one by machine.tool_table (LinuxCNC's), or "
                              "put the tool's length into the zero of Z (G10 L20, G92 or 'contour zero') and "
                              "write H0");
-  const AxisValues* offset_m = settings_.tools ? settings_.tools->Find(*tool) : nullptr;
-  if (settings_.tools && offset_m == nullptr)
-    block.FailAt(column, asked + ": it is not in " + settings_.tools->name);
+  if (!tools_) tools_ = settings_.tools ? settings_.tools : LoadToolTable(settings_.tool_table);
+  const AxisValues* offset_m = tools_ ? tools_->Find(*tool) : nullptr;
+  if (tools_ && offset_m == nullptr) block.FailAt(column, asked + ": it is not in " + tools_->name);
   offsets_.SetTool(offset_m != nullptr ? *offset_m : AxisValues{});
 }
 
@@ -160,7 +160,7 @@ void GcodeInterpreter::NonModal(const Block& block) {
         const double value_m = block.Get(kGcodeAxes[k])->value * unit_m_;
         const bool g52 = block.G(kNonModal) == 520;
         offsets_.SetG92(k,
-                        g52 ? value_m : position_m_[k] - offsets_.system_m(k) - offsets_.Tool(k) - value_m);
+                        g52 ? value_m : position_m_[k] - offsets_.system_m(k) - offsets_.tool_m(k) - value_m);
       }
       offsets_.KeepG92();
       break;
@@ -185,7 +185,7 @@ void GcodeInterpreter::SetSystem(const Block& block) {
     if (!block.Has(kGcodeAxes[k])) continue;
     const double value_m = block.Get(kGcodeAxes[k])->value * unit_m_;
     offsets_.SetSystem(
-        number, k, from_position ? position_m_[k] - offsets_.G92(k) - offsets_.Tool(k) - value_m : value_m);
+        number, k, from_position ? position_m_[k] - offsets_.G92(k) - offsets_.tool_m(k) - value_m : value_m);
   }
 }
 

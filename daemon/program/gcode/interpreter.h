@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -64,7 +65,8 @@ class GcodeInterpreter {
   int line_ = 0;
   bool in_sub_ = false;
 
-  AxisValues position_m_;  ///< from program zero
+  std::shared_ptr<const ToolTable> tools_;  ///< from the first G43 on
+  AxisValues position_m_;                   ///< from program zero
   WorkOffsets offsets_;
   std::optional<int> selected_tool_;  ///< by T
   std::optional<int> tool_;           ///< in the spindle, by M6

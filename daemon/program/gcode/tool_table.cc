@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "daemon/program/program.h"
@@ -12,8 +13,10 @@ namespace contour {
 namespace {
 
 constexpr double kMillimetre_m = 1e-3;
-/// As LinuxCNC has it.
-constexpr double kMostTools = 99999.0;
+/// More is no table of tools.
+constexpr std::uintmax_t kMostBytes = 16'000'000;
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr char kExpected[] = "expected a letter and a number, as in T1 P1 Z42.5";
 
 /// One line of the table.
 class ToolLine {
@@ -39,25 +42,28 @@ class ToolLine {
   void Word() {
     const char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(text_[at_])));
     ++at_;
+    if (letter < 'A' || letter > 'Z') Fail(kExpected);
     double value = 0.0;
     // LinuxCNC writes a sign before lengths.
     if (at_ + 1 < text_.size() && text_[at_] == '+' && text_[at_ + 1] != '-') ++at_;
     const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
     if (error != std::errc() || !std::isfinite(value))
-      Fail(std::string("expected a letter and a number, as in T1 P1 Z42.5, found '") + letter +
-           "' without one");
+      Fail(std::string(kExpected) + ", found '" + letter + "' without one");
     at_ = static_cast<std::size_t>(end - text_.data());
     ++words_;
     Take(letter, value);
   }
 
   void Take(char letter, double value) {
+    const unsigned bit = 1U << static_cast<unsigned>(letter - 'A');
+    if ((seen_ & bit) != 0) Fail(std::string(1, letter) + " is given twice");
+    seen_ |= bit;
     constexpr std::string_view kAxes = "XYZUVW";
     if (const std::size_t axis = kAxes.find(letter); axis != kAxes.npos) {
       offsets_m_[axis] = value * kMillimetre_m;
     } else if (letter == 'T') {
-      if (tool_ || value != std::round(value) || value < 0.0 || value > kMostTools)
-        Fail("expected one T with a whole number from 0 to 99999");
+      if (value != std::round(value) || value < 0.0 || value > kMostTools)
+        Fail("expected T with a whole number from 0 to 99999");
       tool_ = static_cast<int>(value);
     } else if (letter == 'A' || letter == 'B' || letter == 'C') {
       if (value != 0.0) Fail(std::string("a tool's offset along ") + letter + " is not supported");
@@ -70,6 +76,7 @@ class ToolLine {
   std::string where_;
   std::size_t at_ = 0;
   int words_ = 0;
+  unsigned seen_ = 0;  ///< letters
   std::optional<int> tool_;
   AxisValues offsets_m_{};
 };
@@ -84,6 +91,7 @@ const AxisValues* ToolTable::Find(int tool) const {
 }
 
 ToolTable ParseToolTable(std::string_view text, const std::string& name) {
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   ToolTable table{name};
   int line = 0;
   while (!text.empty()) {
@@ -98,6 +106,11 @@ ToolTable ParseToolTable(std::string_view text, const std::string& name) {
 
 std::shared_ptr<const ToolTable> LoadToolTable(const std::filesystem::path& file) {
   if (file.empty()) return nullptr;
+  std::error_code none;
+  if (std::filesystem::exists(file, none) && !std::filesystem::is_regular_file(file, none))
+    throw ProgramError(file.string() + ": expected a file with a table of tools");
+  if (const std::uintmax_t bytes = std::filesystem::file_size(file, none); !none && bytes > kMostBytes)
+    throw ProgramError(file.string() + ": is larger than a table of tools can be");
   return std::make_shared<const ToolTable>(ParseToolTable(ReadProgramText(file), file.string()));
 }
 

@@ -10,6 +10,9 @@
 
 namespace contour {
 
+/// Largest number of a tool, as LinuxCNC has it.
+inline constexpr double kMostTools = 99999.0;
+
 /// What G43 adds for each tool.
 struct ToolTable {
   std::string name;                       ///< of the file, for messages
@@ -20,12 +23,12 @@ struct ToolTable {
 };
 
 /// Reads a table of tools as LinuxCNC writes it: a tool a line, `T1 P1 Z42.5 D6 ;end mill`, lengths in
-/// millimetres. T is required; P (pocket), D, I, J and Q (diameter, angles, orientation) are read and not
-/// used, and A, B and C have to be 0. Throws ProgramError with file and line for anything else, and for a
-/// tool that is there twice.
+/// millimetres (LinuxCNC's are in the machine's units). T is required; P (pocket), D, I, J and Q (diameter,
+/// angles, orientation) are read and not used, and A, B and C have to be 0. Throws ProgramError with file and
+/// line for anything else, for a letter that comes twice in a line, and for a tool that is there twice.
 ToolTable ParseToolTable(std::string_view text, const std::string& name);
 
-/// The table of a file; an empty name: none. Throws ProgramError.
+/// The table of a plain file; an empty name: none. Throws ProgramError.
 std::shared_ptr<const ToolTable> LoadToolTable(const std::filesystem::path& file);
 
 }  // namespace contour

@@ -14,7 +14,7 @@ class WorkOffsets {
     return systems_m_[active_][axis] + g92_m_[axis] + tool_m_[axis];
   }
   [[nodiscard]] double G92(std::size_t axis) const { return g92_m_[axis]; }
-  [[nodiscard]] double Tool(std::size_t axis) const { return tool_m_[axis]; }
+  [[nodiscard]] double tool_m(std::size_t axis) const { return tool_m_[axis]; }
   void SetTool(const AxisValues& tool_m) { tool_m_ = tool_m; }
   [[nodiscard]] bool HasTool() const { return tool_m_ != AxisValues{}; }
 

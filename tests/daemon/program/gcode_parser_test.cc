@@ -119,6 +119,7 @@ TEST(GcodeParser, ErrorsNameLineAndColumn) {
       {"G43\n", "part.ngc:1:1: G43: expected H with a tool's number, or T and M6 before it"},
       {"T2 M6\nG43\n", "part.ngc:2:1: G43 of tool 2: there is no table of tools"},
       {"G43 H-1\n", "part.ngc:1:5: H: expected a number that is not negative"},
+      {"T1.5 M6\n", "part.ngc:1:1: T: expected the whole number of a tool"},
       {"G43 H1.5\n", "part.ngc:1:5: G43: expected H with the number of a tool"},
       {"WHILE [#1 LT 5] DO1\n", "part.ngc:1:1: WHILE needs an O word before it"},
       {"N5 IF [#1 EQ 0] GOTO 10\n", "part.ngc:1:4: IF needs an O word before it"},

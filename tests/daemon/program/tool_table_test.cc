@@ -42,6 +42,8 @@ TEST(ToolTable, IsReadAsLinuxCncWritesIt) {
   EXPECT_EQ(*table.Find(12), AxisValues{});
   EXPECT_EQ(*table.Find(0), AxisValues{}) << "no tool has no length";
   EXPECT_EQ(table.Find(3), nullptr);
+  EXPECT_EQ(ParseToolTable(std::string("\xEF\xBB\xBF") + kTable, "tools.tbl").offsets_m, table.offsets_m)
+      << "behind a byte order mark";
 }
 
 TEST(ToolTable, SaysWhatIsWrongAndWhere) {
@@ -54,12 +56,13 @@ TEST(ToolTable, SaysWhatIsWrongAndWhere) {
       {"T1 Z\n", "tools.tbl:1: expected a letter and a number, as in T1 P1 Z42.5, found 'Z' without one"},
       {"T1 Z+-5\n", "tools.tbl:1: expected a letter and a number"},
       {"T1 Znan\n", "tools.tbl:1: expected a letter and a number"},
-      {"T1.5\n", "tools.tbl:1: expected one T with a whole number from 0 to 99999"},
-      {"T1 T2\n", "tools.tbl:1: expected one T"},
-      {"T-1\n", "tools.tbl:1: expected one T"},
+      {"T1.5\n", "tools.tbl:1: expected T with a whole number from 0 to 99999"},
+      {"T1 T2\n", "tools.tbl:1: T is given twice"},
+      {"T1 Z42.5 Z7\n", "tools.tbl:1: Z is given twice"},
+      {"T-1\n", "tools.tbl:1: expected T"},
       {"T1 R5\n", "tools.tbl:1: found 'R', expected T, P, X"},
       {"T1 Z5 B2\n", "tools.tbl:1: a tool's offset along B is not supported"},
-      {"T1 Z5,2\n", "tools.tbl:1: found ',', expected T, P"},
+      {"T1 Z5,2\n", "tools.tbl:1: expected a letter and a number"},
   };
   for (const auto& w : wrong) EXPECT_EQ(ErrorOf(w.text).rfind(w.message, 0), 0u) << w.text << ErrorOf(w.text);
 }
@@ -138,8 +141,11 @@ TEST(ToolLength, TheTableIsReadAnewForEveryProgram) {
     EXPECT_EQ(std::get<GcodeMoves>(program.shape).moves.front().target_m[0], 1e-3 * length_mm);
   }
   std::filesystem::remove(file);
-  EXPECT_THROW(ReadPlaced({"G0 Z0\n", "part.ngc", ProgramFormat::kGcode}, here, limits, options),
+  EXPECT_THROW(ReadPlaced({"G43 H1\nG0 Z0\n", "part.ngc", ProgramFormat::kGcode}, here, limits, options),
                ProgramError);
+  EXPECT_NO_THROW(ReadPlaced({"G0 Z0\n", "part.ngc", ProgramFormat::kGcode}, here, limits, options))
+      << "a program without lengths asks for no table";
+  EXPECT_THROW(LoadToolTable("/dev/zero"), ProgramError);
 }
 
 }  // namespace

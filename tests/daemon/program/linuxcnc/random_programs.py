@@ -146,8 +146,7 @@ class RandomProgram:
         if kind == 12:
             return self.home()
         if kind == 13:
-            tool = self.r.randint(1, 9)
-            return self.r.choice([["G43", f"H{tool}"], ["G43", f"H{tool}"], [f"T{tool}", "M6", "G43"], [f"T{tool}", "M6", "G43", "H0"], ["G49"]])
+            return self.r.choice([["G43", f"H{self.r.randint(1, 9)}"], ["G49"]])
         if kind == 0:
             return [self.r.choice(["G20", "G21", "G21"])]
         if kind == 1:
