@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "design/spectral_radius.h"
+
 namespace contour {
 namespace {
 
@@ -51,11 +53,6 @@ LoopMatrix Closed(const LinearSystem& plant, const LinearSystem& controller) {
   a.bottomLeftCorner(m, n) = controller.b * plant.c;
   a.bottomRightCorner(m, m) = controller.a;
   return a;
-}
-
-double Growth(const LoopMatrix& closed) {
-  const Eigen::EigenSolver<LoopMatrix> solver(closed, false);
-  return solver.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 double ErrorOf_m(const ForceStep& step) { return step.peak_m + 2.0 * step.mean_m; }
@@ -119,14 +116,14 @@ LoopMargins MarginsOn(const LoopMember& member, const TwoInertiaLoop& loop, doub
   const std::vector<Complex> open = OpenLoop(Response(plant, 0, f), ResponseToBoth(controller, f));
   for (double& frequency : f) frequency /= period_s;
   LoopMargins m = MarginsOf(open, f);
-  m.growth_per_cycle = Growth(Closed(plant, controller));
+  m.growth_per_cycle = SpectralRadius(Closed(plant, controller));
   m.stable = m.growth_per_cycle < 1.0;
   return m;
 }
 
 double GrowthOn(const LoopMember& member, const TwoInertiaLoop& loop, double period_s) {
   const double unit_N = ForceUnit_N(member.axis, period_s);
-  return Growth(Closed(MakePlant(member, period_s, unit_N).system, MakeController(loop, unit_N)));
+  return SpectralRadius(Closed(MakePlant(member, period_s, unit_N).system, MakeController(loop, unit_N)));
 }
 
 ForceStep UnderForceStep(const LoopMember& member, const TwoInertiaLoop& loop, double period_s,
@@ -212,7 +209,7 @@ LoopVerdict LoopJudge::Judge(const TwoInertiaLoop& loop) const {
     v.worst[i].limit = PeakLimit(axis_.limits, static_cast<MemberKind>(i));
   for (const Member& m : members_) {
     WorstMember& worst = v.worst[static_cast<std::size_t>(m.member.kind)];
-    const double growth = Growth(Closed(m.plant, controller));
+    const double growth = SpectralRadius(Closed(m.plant, controller));
     const double peak = Peak(OpenLoop(m.response, response));
     const bool stable = growth < 1.0;
     const bool worse = stable == worst.stable ? (stable ? peak > worst.peak : growth > worst.growth_per_cycle)

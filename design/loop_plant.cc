@@ -6,6 +6,8 @@
 #include <unsupported/Eigen/MatrixFunctions>
 #include <utility>
 
+#include "core/wide_vectors.h"
+
 namespace contour {
 namespace {
 
@@ -112,6 +114,92 @@ std::pair<LoopMatrix, LoopMatrix> Prediction(const TwoInertiaLoop& loop, double 
   return {next, from_command};
 }
 
+/// A system whose matrix is of Hessenberg form, with two inputs and one output.
+struct HessenbergSystem {
+  LoopMatrix a, b, c;
+};
+
+/// Frequencies side by side, as the vectors of the processor take them.
+constexpr std::size_t kLanes = 4;
+using Lane = std::array<double, kLanes>;
+constexpr std::size_t kMostColumns = kMostClosedStates + 2;
+using LaneRow = std::array<Lane, kMostColumns>;
+
+/// Rows i and i + 1 of (z - a | b): what stands under the diagonal goes, with the larger of the two pivots on
+/// it.
+CONTOUR_WIDE_VECTORS void EliminateBelow(std::size_t i, std::size_t columns, LaneRow& upper_re,
+                                         LaneRow& upper_im, LaneRow& lower_re, LaneRow& lower_im) {
+  Lane factor_re, factor_im, swaps;
+  for (std::size_t l = 0; l < kLanes; ++l) {
+    const double a = upper_re[i][l], b = upper_im[i][l], c = lower_re[i][l], d = lower_im[i][l];
+    const double upper2 = a * a + b * b, lower2 = c * c + d * d;
+    const bool swap = lower2 > upper2;
+    swaps[l] = swap ? 1.0 : 0.0;
+    const double most2 = swap ? lower2 : upper2;
+    // The smaller over the larger: conjugate where they change places.
+    factor_re[l] = (c * a + d * b) / most2;
+    factor_im[l] = (swap ? b * c - a * d : d * a - c * b) / most2;
+  }
+  for (std::size_t k = i; k < columns; ++k)
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const bool swap = swaps[l] != 0.0;
+      const double up_re = swap ? lower_re[k][l] : upper_re[k][l],
+                   up_im = swap ? lower_im[k][l] : upper_im[k][l];
+      const double low_re = swap ? upper_re[k][l] : lower_re[k][l],
+                   low_im = swap ? upper_im[k][l] : lower_im[k][l];
+      upper_re[k][l] = up_re;
+      upper_im[k][l] = up_im;
+      lower_re[k][l] = low_re - (factor_re[l] * up_re - factor_im[l] * up_im);
+      lower_im[k][l] = low_im - (factor_re[l] * up_im + factor_im[l] * up_re);
+    }
+}
+
+/// From the last row up: x_i of one column on the right, into its place.
+CONTOUR_WIDE_VECTORS void Substitute(std::size_t n, std::size_t right,
+                                     std::array<LaneRow, kMostClosedStates>& re,
+                                     std::array<LaneRow, kMostClosedStates>& im) {
+  for (std::size_t i = n; i-- > 0;) {
+    Lane x_re = re[i][right], x_im = im[i][right];
+    for (std::size_t k = i + 1; k < n; ++k)
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        x_re[l] -= re[i][k][l] * re[k][right][l] - im[i][k][l] * im[k][right][l];
+        x_im[l] -= re[i][k][l] * im[k][right][l] + im[i][k][l] * re[k][right][l];
+      }
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const double a = re[i][i][l], b = im[i][i][l], size2 = a * a + b * b;
+      re[i][right][l] = (x_re[l] * a + x_im[l] * b) / size2;
+      im[i][right][l] = (x_im[l] * a - x_re[l] * b) / size2;
+    }
+  }
+}
+
+/// c (z - a)^-1 b of both inputs at z = cosine + i sine.
+void RespondInLanes(const HessenbergSystem& s, const Lane& cosine, const Lane& sine,
+                    std::array<Lane, 2>& real, std::array<Lane, 2>& imaginary) {
+  const auto n = static_cast<std::size_t>(s.a.rows());
+  std::array<LaneRow, kMostClosedStates> re, im;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto row = static_cast<Index>(i);
+    for (std::size_t k = i > 0 ? i - 1 : 0; k < n + 2; ++k) {
+      re[i][k].fill(k < n ? -s.a(row, static_cast<Index>(k)) : s.b(row, static_cast<Index>(k - n)));
+      im[i][k].fill(0.0);
+    }
+    for (std::size_t l = 0; l < kLanes; ++l) re[i][i][l] += cosine[l];
+    im[i][i] = sine;
+  }
+  for (std::size_t i = 0; i + 1 < n; ++i) EliminateBelow(i, n + 2, re[i], im[i], re[i + 1], im[i + 1]);
+  for (std::size_t j = 0; j < 2; ++j) {
+    Substitute(n, n + j, re, im);
+    real[j].fill(0.0);
+    imaginary[j].fill(0.0);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t l = 0; l < kLanes; ++l) {
+        real[j][l] += s.c(0, static_cast<Index>(i)) * re[i][n + j][l];
+        imaginary[j][l] += s.c(0, static_cast<Index>(i)) * im[i][n + j][l];
+      }
+  }
+}
+
 }  // namespace
 
 LoopPlant MakePlant(const LoopMember& m, double period_s, double force_N) {
@@ -208,38 +296,23 @@ std::vector<std::array<Complex, 2>> Response(const LinearSystem& s, Eigen::Index
 
 std::vector<std::array<Complex, 2>> ResponseToBoth(const LinearSystem& s,
                                                    const std::vector<double>& frequencies) {
-  std::vector<std::array<Complex, 2>> out;
-  out.reserve(frequencies.size());
   // One Hessenberg form serves all frequencies: then each is one elimination along the subdiagonal.
   const Eigen::HessenbergDecomposition<LoopMatrix> form(s.a);
   const LoopMatrix q = form.matrixQ();
-  const LoopMatrix h = form.matrixH();
-  const LoopMatrix b = q.transpose() * s.b, c = s.c * q;
-  const Index n = h.rows();
-  using Columns = Eigen::Matrix<Complex, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMostClosedStates,
-                                kMostClosedStates>;
-  Columns m(n, n + 2);
-  for (const double f : frequencies) {
-    m.leftCols(n) = -h.cast<Complex>();
-    m.rightCols(2) = b.cast<Complex>();
-    const Complex z = std::polar(1.0, 2.0 * std::numbers::pi * f);
-    for (Index i = 0; i < n; ++i) m(i, i) += z;
-    for (Index i = 0; i + 1 < n; ++i) {
-      if (std::norm(m(i + 1, i)) > std::norm(m(i, i))) m.row(i).swap(m.row(i + 1));
-      const Complex factor = m(i + 1, i) / m(i, i);
-      m.row(i + 1).tail(n + 1 - i) -= factor * m.row(i).tail(n + 1 - i);
+  const HessenbergSystem system{form.matrixH(), q.transpose() * s.b, s.c * q};
+  std::vector<std::array<Complex, 2>> out(frequencies.size(), {s.d(0, 0), s.d(0, 1)});
+  Lane cosine{}, sine{};
+  std::array<Lane, 2> real{}, imaginary{};
+  for (std::size_t from = 0; from < out.size(); from += kLanes) {
+    const std::size_t count = std::min(kLanes, out.size() - from);
+    for (std::size_t l = 0; l < kLanes; ++l) {  // what is over repeats the last
+      const double angle = 2.0 * std::numbers::pi * frequencies[from + std::min(l, count - 1)];
+      cosine[l] = std::cos(angle);
+      sine[l] = std::sin(angle);
     }
-    std::array<Complex, 2> y{s.d(0, 0), s.d(0, 1)};
-    for (std::size_t j = 0; j < 2; ++j) {
-      const Index right = n + static_cast<Index>(j);
-      for (Index i = n - 1; i >= 0; --i) {
-        Complex x = m(i, right);
-        for (Index k = i + 1; k < n; ++k) x -= m(i, k) * m(k, right);
-        m(i, right) = x / m(i, i);
-        y[j] += c(0, i) * m(i, right);
-      }
-    }
-    out.push_back(y);
+    RespondInLanes(system, cosine, sine, real, imaginary);
+    for (std::size_t l = 0; l < count; ++l)
+      for (std::size_t j = 0; j < 2; ++j) out[from + l][j] += Complex(real[j][l], imaginary[j][l]);
   }
   return out;
 }

@@ -1,0 +1,97 @@
+#include "design/spectral_radius.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "design/loop_margins.h"
+#include "tests/design/family_axes.h"
+
+namespace contour {
+namespace {
+
+using Index = Eigen::Index;
+
+double ByEigen(const LoopMatrix& m) {
+  return Eigen::EigenSolver<LoopMatrix>(m, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+TEST(SpectralRadius, IsThatOfAnotherSolverForMatricesOfEverySize) {
+  std::mt19937 generator(1);
+  std::normal_distribution<double> draw;
+  for (Index n = 1; n <= kMostClosedStates; ++n)
+    for (int i = 0; i < 20; ++i) {
+      LoopMatrix m(n, n);
+      // Every third one is sparse, as a queue is; some are small.
+      for (double& value : m.reshaped()) value = i % 3 == 0 && draw(generator) > 0.3 ? 0.0 : draw(generator);
+      if (i % 5 == 0) m *= 1e-6;
+      const double expected = ByEigen(m);
+      EXPECT_NEAR(SpectralRadius(m), expected, 1e-11 * expected) << n << " rows\n" << m;
+    }
+}
+
+/// As MarginsOn closes it.
+LoopMatrix Closed(const LoopMember& member, const TwoInertiaLoop& loop, double force_N) {
+  const LinearSystem plant = MakePlant(member, 1e-3, force_N).system,
+                     controller = MakeController(loop, force_N);
+  const Index n = plant.a.rows(), m = controller.a.rows();
+  LoopMatrix a(n + m, n + m);
+  a << plant.a + plant.b.col(0) * controller.d * plant.c, plant.b.col(0) * controller.c,
+      controller.b * plant.c, controller.a;
+  return a;
+}
+
+// Their queues have eigenvalues of nothing, which take the iteration long: some were given up, and taken for
+// unstable.
+TEST(SpectralRadius, IsFoundForLoopsOnAllThatAnAxisMayBe) {
+  const LoopTuning tuning{.regulator_Hz = 9.0,
+                          .windup_weight = 0.2,
+                          .velocity_weight = 0.35,
+                          .disturbance_Hz = 150.0,
+                          .motor_force_Hz = 400.0,
+                          .table_force_Hz = 60.0,
+                          .notch_ratio = 0.7,
+                          .notch_pole_damping = 0.7,
+                          .notch_zero_damping = 0.2};
+  for (const FamilyAxis& family : kFamily)
+    for (const bool scale : {false, true}) {
+      const LoopAxis axis = AxisOf(family, scale);
+      const TwoInertiaLoop loop = DesignLoop(axis.axis, tuning, 1e-3, scale);
+      const double force_N = 1e6 * (axis.axis.motor_mass_kg + axis.axis.table_mass_kg);
+      for (const LoopMember& member : UncertaintySet(axis)) {
+        const LoopMatrix closed = Closed(member, loop, force_N);
+        EXPECT_NEAR(SpectralRadius(closed), ByEigen(closed), 1e-8) << family.name << ", " << member.name;
+      }
+    }
+}
+
+TEST(SpectralRadius, OfARotationIsItsLength) {
+  LoopMatrix m(2, 2);
+  m << 0.3, -0.4, 0.4, 0.3;
+  EXPECT_NEAR(SpectralRadius(m), 0.5, 1e-15);
+}
+
+TEST(SpectralRadius, OfARingOfDelaysIsFound) {
+  // All eigenvalues are of one size: the usual shifts alone turn it for ever.
+  LoopMatrix m = LoopMatrix::Zero(8, 8);
+  for (Index i = 0; i < 8; ++i) m(i, (i + 1) % 8) = 0.9;
+  EXPECT_NEAR(SpectralRadius(m), 0.9, 1e-13);
+}
+
+TEST(SpectralRadius, OfAQueueThatEmptiesIsNothing) {
+  LoopMatrix m = LoopMatrix::Zero(4, 4);
+  for (Index i = 0; i + 1 < 4; ++i) m(i, i + 1) = 1.0;
+  EXPECT_EQ(SpectralRadius(m), 0.0);
+}
+
+TEST(SpectralRadius, OfWhatIsNoNumberIsNotStable) {
+  LoopMatrix m = LoopMatrix::Identity(3, 3);
+  m(1, 2) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(SpectralRadius(m) < 1.0);
+}
+
+}  // namespace
+}  // namespace contour
