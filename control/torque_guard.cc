@@ -27,10 +27,10 @@ void TorqueGuard::Skip(std::uint32_t periods) noexcept {
 }
 
 GuardedTorque TorqueGuard::Limit(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
-                                 double reference_position_m, bool enabled) noexcept {
+                                 double reference_position_m, bool enabled, double sync_apart_s) noexcept {
   GuardedTorque out;
   Memory& memory = memory_[axis];
-  out.fault = FindFault(axis, wanted_torque_Nm, feedback, reference_position_m, enabled);
+  out.fault = FindFault(axis, wanted_torque_Nm, feedback, reference_position_m, enabled, sync_apart_s);
   if (!enabled || out.fault != Reason::kNone) {
     memory.torque_Nm = 0.0;
     return out;
@@ -46,18 +46,19 @@ GuardedTorque TorqueGuard::Limit(std::size_t axis, double wanted_torque_Nm, cons
 }
 
 Reason TorqueGuard::FindFault(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
-                              double reference_position_m, bool enabled) noexcept {
+                              double reference_position_m, bool enabled, double sync_apart_s) noexcept {
   Memory& memory = memory_[axis];
   const AxisLimitsSi& limits = axes_[axis].limits;
   const double position = feedback.position_rad * axes_[axis].radius_m_rad;
   if (!std::isfinite(wanted_torque_Nm) || !std::isfinite(position) || !std::isfinite(reference_position_m)) {
     return Reason::kNotANumber;
   }
-  double velocity = 0.0;
+  double velocity = 0.0, over_s = 0.0;
   ++memory.cycles_since_position;
   if (feedback.fresh) {
     if (memory.has_position) {
-      velocity = (position - memory.position_m) / (period_s_ * memory.cycles_since_position);
+      over_s = period_s_ * memory.cycles_since_position;
+      velocity = (position - memory.position_m) / over_s;
     }
     memory.position_m = position;
     memory.cycles_since_position = 0;
@@ -81,7 +82,10 @@ Reason TorqueGuard::FindFault(std::size_t axis, double wanted_torque_Nm, const A
   const bool stale =
       !feedback.valid || feedback.age_cycles >= static_cast<std::uint32_t>(config_.stale_cycles);
   if (stale && off_.Acts(Watch::kStaleFeedback)) return Reason::kStaleFeedback;
-  const bool too_fast = std::abs(velocity) > config_.overspeed_factor * limits.velocity_m_s;
+  const double fastest_m_s = config_.overspeed_factor * limits.velocity_m_s;
+  // Where its SYNC waited for another frame, a reading shows the way of longer than a cycle.
+  const bool too_fast = std::abs(velocity) > fastest_m_s &&
+                        std::abs(velocity) * over_s > fastest_m_s * (over_s + std::max(sync_apart_s, 0.0));
   if (too_fast && off_.Acts(Watch::kVelocityLimit)) return Reason::kVelocityLimit;
   const bool beyond = position < memory.allowed_min_m || position > memory.allowed_max_m;
   if (beyond && off_.Acts(Watch::kPositionLimit)) return Reason::kPositionLimit;

@@ -46,9 +46,10 @@ class TorqueGuard {
   /// So many periods go by until the drives latch the next position, beyond the usual one.
   void Skip(std::uint32_t periods) noexcept;
 
-  /// To be called once per axis and cycle. `reference_position_m` is the reference at the feedback's instant.
+  /// To be called once per axis and cycle. `reference_position_m` is the reference at the feedback's instant,
+  /// which is further than a period behind the one before by `sync_apart_s`, where that is known.
   GuardedTorque Limit(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
-                      double reference_position_m, bool enabled) noexcept;
+                      double reference_position_m, bool enabled, double sync_apart_s = 0.0) noexcept;
 
  private:
   struct Memory {
@@ -62,7 +63,7 @@ class TorqueGuard {
     double confined_to_m = 0.0;  ///< 0: to the axis's own limits
   };
   Reason FindFault(std::size_t axis, double wanted_torque_Nm, const AxisFeedback& feedback,
-                   double reference_position_m, bool enabled) noexcept;
+                   double reference_position_m, bool enabled, double sync_apart_s) noexcept;
 
   GuardConfig config_;
   WatchesOff off_;

@@ -8,7 +8,6 @@
 #include "config/interfaces.h"
 #include "drivers/can/loopback_bus.h"
 #include "drivers/can/socketcan_bus.h"
-#include "drivers/cia301/messages.h"
 #include "tools/machine/placements.h"
 
 namespace contour {
@@ -68,9 +67,8 @@ MachineBuses::MachineBuses(const MachineConfig& machine, const std::optional<Emu
   for (const auto& [name, bus] : machine.buses) {
     std::vector<BusNode*> nodes;
     if (index < emulated_->bus_count()) nodes.push_back(&emulated_->node(index));
-    auto loopback = std::make_unique<LoopbackBus>(bus.bitrate_bit_s, std::move(nodes));
-    loopback->TellOf(cob::kSync);
-    buses_.push_back(std::move(loopback));
+    // Of SYNC it tells nothing: the plant is stepped by it, as if none came late.
+    buses_.push_back(std::make_unique<LoopbackBus>(bus.bitrate_bit_s, std::move(nodes)));
     pointers_.push_back(buses_.back().get());
     ++index;
   }

@@ -213,7 +213,7 @@ const Cycle::Feedback& Cycle::Observe(const CycleInput& in) noexcept {
       axes_[i].seen = false;
     else
       MeasureSpeed(axes_[i], f);
-    if (std::max(std::abs(f.sync_late_s), f.late_s) > axes_[i].late_from_s) TakeLateness(i, f);
+    if (f.sync_late_s != 0.0 || f.late_s > axes_[i].late_from_s) TakeLateness(i, f);
     stale = stale || (f.valid && !f.fresh);
     follower_.Horizon(i, ahead, control_in_.reference[i]);
   }
@@ -301,8 +301,8 @@ FaultSeen Cycle::Guard(const ControlOutput& wanted, const Feedback& feedback, bo
     // In CSP this is the torque offset; the drive's cascade makes the rest, and the guard watches the axis.
     const double controller_Nm = wanted.force_N[i] * axes_[i].radius_m_rad;
     axes_[i].wanted_torque_Nm = controller_Nm + control_in_.reference[i][1].extra_torque_Nm;
-    guarded_[i] =
-        guard_.Limit(i, axes_[i].wanted_torque_Nm, feedback[i], AtSample(i).position_m, torque_allowed);
+    guarded_[i] = guard_.Limit(i, axes_[i].wanted_torque_Nm, feedback[i], AtSample(i).position_m,
+                               torque_allowed, master_.SyncApart_s(i));
     if (guarded_[i].fault != Reason::kNone && fault.reason == Reason::kNone) {
       fault = {guarded_[i].fault, static_cast<std::uint8_t>(i)};
       // An axis that runs away against its torque must not be braked by the encoder that says so.

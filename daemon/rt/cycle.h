@@ -101,7 +101,7 @@ class Cycle {
     double seen_at_m = 0.0;           ///< the newest reading
     bool seen = false;                ///< there is one
     std::uint64_t unseen_cycles = 0;  ///< since that one
-    double late_from_s;               ///< bit stuffing makes answers late by less
+    double late_from_s;               ///< bit stuffing alone makes answers late by less
     double late_from_m;               ///< less is of the encoder's steps
 
     void Keep(StateKeeper& keep) noexcept {

@@ -17,16 +17,16 @@ constexpr double kBeyondExpected = 2.0;
 }  // namespace
 
 // A SYNC that another frame held up latches a later position. Where the bus tells when it was on the wire,
-// that is known, to what the time stamp is worth (stuff bits are left alone: in lock-step there are none):
-// what is nearer to where the axis was foreseen tells. Where it does not, the answer comes as much later; but
-// the answer alone may be late as well.
+// that is known, however little it is, to what the time stamp is worth: what is nearer to where the axis was
+// foreseen tells. Where it does not, the answer comes as much later; but the answer alone may be late as
+// well.
 void Cycle::TakeLateness(std::size_t index, const AxisFeedback& feedback) noexcept {
   Axis& axis = axes_[index];
   const AxisEstimate& foreseen = estimates_[index];
   const double matters_m = std::max(axis.late_from_m, kBeyondExpected * foreseen.innovation_std_m);
   double off_m = axis.position_m - foreseen.predicted_position_m;
   const double known_m = feedback.sync_late_s * foreseen.predicted_velocity_m_s;
-  if (std::abs(feedback.sync_late_s) > axis.late_from_s && std::abs(off_m - known_m) < std::abs(off_m)) {
+  if (std::abs(known_m) > matters_m && std::abs(off_m - known_m) < std::abs(off_m)) {
     axis.position_m -= known_m;
     off_m -= known_m;
   }

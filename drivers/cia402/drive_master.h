@@ -138,6 +138,11 @@ class DriveMaster {
   [[nodiscard]] bool BringingUp() const noexcept;
   /// It is being found out which SYNC the drives' answers belong to.
   [[nodiscard]] bool ProbesAnswers() const noexcept { return probe_.running(); }
+  /// By which the SYNC of the newest positions is known to have come later behind the one before than usual.
+  [[nodiscard]] double SyncApart_s(std::size_t axis) const noexcept {
+    const Bus& bus = buses_[axes_[axis].bus];
+    return bus.sync_told_cycle == cycle_ ? bus.sync_apart_s : 0.0;
+  }
   /// All drives are Operational and configured; SYNC and PDOs run.
   [[nodiscard]] bool operational() const noexcept;
   /// The drives have a SYNC to answer, since they were last brought up.
@@ -234,9 +239,10 @@ class DriveMaster {
     std::uint64_t heartbeat_due = 0;
     std::int64_t usual_sync_ns = kNeverAnswered;  ///< after its grid point, lately
     double sync_late_s = 0.0;                     ///< beyond that, of the newest
+    double sync_apart_s = 0.0;                    ///< beyond a cycle, of the newest and the one before it
     std::uint64_t sync_told_cycle = 0;            ///< in which that was told
     void Keep(StateKeeper& keep) noexcept {
-      keep(bring_up, patrol, heartbeat_due, usual_sync_ns, sync_late_s, sync_told_cycle);
+      keep(bring_up, patrol, heartbeat_due, usual_sync_ns, sync_late_s, sync_apart_s, sync_told_cycle);
     }
   };
 

@@ -148,7 +148,9 @@ double DriveMaster::Late_s(std::int64_t& usual_ns, std::int64_t stamp_ns) const 
 
 void DriveMaster::OnOwnSync(Bus& bus, std::int64_t stamp_ns) noexcept {
   if (!AfterSync(stamp_ns)) return;
+  const double before_s = bus.sync_told_cycle + elapsed_ == cycle_ ? bus.sync_late_s : 0.0;
   bus.sync_late_s = Late_s(bus.usual_sync_ns, stamp_ns);
+  bus.sync_apart_s = bus.sync_late_s - before_s;
   bus.sync_told_cycle = cycle_;
 }
 

@@ -116,11 +116,12 @@ std::vector<std::string> Linear(const std::string& mode) {
 
 constexpr int kMostCycles = 400;
 
-/// The last cycles of a circle, or of a machine that holds all its axes, stepped from the recorded inputs.
+/// The last cycles of a circle, or of a machine that holds all its axes, stepped from the recorded inputs. By
+/// the bus's time, in which SYNCs come late and the buses say so, as on a machine.
 void StepCycles(const std::string& file, const std::vector<std::string>& overrides, int count, int from,
                 bool moves) {
   const EmulatedMachineFile machine_file = LoadEmulatedMachine(file, overrides);
-  VirtualMachine machine(machine_file, ControllerName::kFull);
+  VirtualMachine machine(machine_file, ControllerName::kFull, EmulatedClock::kWall);
   std::vector<CycleInput> inputs;
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) { inputs.push_back(entry.input); });
   machine.BringUp();
@@ -159,7 +160,7 @@ void HoldEightAxes(const std::string& file, int count, int from) {
 void ProfileCycles(const std::string& file, const std::string& mode, int count) {
   const EmulatedMachineFile machine_file =
       LoadEmulatedMachine(file, {"axes.x.drive.mode=" + mode, "axes.y.drive.mode=" + mode});
-  VirtualMachine machine(machine_file, ControllerName::kFull);
+  VirtualMachine machine(machine_file, ControllerName::kFull, EmulatedClock::kWall);
   std::vector<CycleInput> inputs;
   std::vector<CycleRecord> records;
   machine.SetObserver([&](const CycleEntry& entry, const TruthRow*) {

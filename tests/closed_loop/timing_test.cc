@@ -3,6 +3,7 @@
 #include <map>
 
 #include "daemon/make_cycle_config.h"
+#include "drivers/cia301/messages.h"
 #include "tests/closed_loop/test_machine.h"
 #include "tests/support/allocation_guard.h"
 
@@ -54,6 +55,37 @@ TEST(CycleTiming, FromSampleToTorqueIsExactlyOnePeriod) {
   }
   EXPECT_GT(compared, 500);
   EXPECT_GT(moved, 50) << "the torque must change for this to prove anything";
+}
+
+// What the cycle is told of a SYNC has to be what the plant goes by: a plant that every SYNC steps by a
+// period knows no late one, whatever was on the bus before it.
+TEST(CycleTiming, ASyncIsToldToBeLateWhereItLatchesALaterPosition) {
+  for (const EmulatedClock clock : {EmulatedClock::kSync, EmulatedClock::kWall}) {
+    VirtualMachine machine(ExampleMachine(), ControllerName::kFull, clock);
+    machine.BringUp();
+    machine.Enable();
+    double at_s = 0.0, latched_s = 0.0, latest_s = 0.0;
+    int compared = 0;
+    machine.SetObserver([&](const CycleEntry& entry, const TruthRow* truth) {
+      double told_s = 1e-9 * static_cast<double>(entry.input.grid_time_ns);
+      for (const StampedFrame& f : entry.input.frames)
+        if (f.frame.id == cob::kOwnSync) told_s = 1e-9 * static_cast<double>(f.stamp_ns);
+      ASSERT_NE(truth, nullptr);
+      if (latched_s != 0.0) {
+        EXPECT_NEAR(truth->time_s - latched_s, told_s - at_s, 1e-9);
+        latest_s = std::max(latest_s, truth->time_s - latched_s - 1e-3);
+        ++compared;
+      }
+      at_s = told_s;
+      latched_s = truth->time_s;
+    });
+    machine.Run(Circle(10.0, 1, 0.8));
+    EXPECT_GT(compared, 1000);
+    if (clock == EmulatedClock::kSync)
+      EXPECT_NEAR(latest_s, 0.0, 1e-9);
+    else
+      EXPECT_GT(latest_s, 1e-6) << "our own frames before it have stuff bits";
+  }
 }
 
 /// Why the single axis does not come up; empty when it does.

@@ -164,6 +164,22 @@ TEST(TorqueGuard, SpeedIsMeasuredOverTheCyclesThatWereMissed) {
   EXPECT_EQ(guard.Limit(0, 0.0, At(1.0), 1e-3, true).fault, Reason::kVelocityLimit);
 }
 
+// A SYNC that waited for another node's frame, and the one behind it that did not.
+TEST(TorqueGuard, SpeedIsMeasuredOverTheTimeBetweenTheSyncs) {
+  for (const double late_s : {0.0, 165e-6}) {
+    for (const double sign : {1e-3, -1e-3}) {
+      TorqueGuard guard = Guard();
+      const auto at = [&](double mm, double apart_s) {
+        return guard.Limit(0, 0.0, At(1e3 * sign * mm), sign * mm, true, apart_s).fault;
+      };
+      at(0.0, 0.0);
+      EXPECT_EQ(at(0.33, late_s), late_s > 0.0 ? Reason::kNone : Reason::kVelocityLimit);
+      EXPECT_EQ(at(0.58, -late_s), Reason::kNone);
+      EXPECT_EQ(at(0.94, late_s), Reason::kVelocityLimit) << "too fast all the same";
+    }
+  }
+}
+
 TEST(TorqueGuard, AnAxisOutsideItsLimitsCanBeDrivenBackButNotFurther) {
   TorqueGuard guard = Guard();
   guard.Limit(0, 0.0, At(201.0), 0.201, false);

@@ -71,7 +71,8 @@ VirtualMachine::VirtualMachine(const EmulatedMachineFile& file, ControllerName c
     if (b < surroundings.nodes.size())
       nodes.insert(nodes.end(), surroundings.nodes[b].begin(), surroundings.nodes[b].end());
     buses_.push_back(std::make_unique<LoopbackBus>(bus.bitrate_bit_s, std::move(nodes)));
-    buses_.back()->TellOf(cob::kSync);
+    // Stepped by SYNC, the plant knows no late one.
+    if (clock == EmulatedClock::kWall) buses_.back()->TellOf(cob::kSync);
     bus_pointers_.push_back(surroundings.wrap ? surroundings.wrap(b, *buses_.back()) : buses_.back().get());
     ++b;
   }

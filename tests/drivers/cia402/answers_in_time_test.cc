@@ -160,6 +160,36 @@ TEST(DriveMaster, ASyncOfItsOwnOnTheWireSaysByHowMuchLaterItCame) {
   EXPECT_LT(std::abs(f.sync_late_s), 0.25 * frame_s);
 }
 
+TEST(DriveMaster, InEitherModeItIsKnownHowFarTwoSyncsWereApart) {
+  for (const DriveMode mode : {DriveMode::kCst, DriveMode::kCsp}) {
+    MasterConfig config = TwoAxes();
+    for (AxisDriveConfig& a : config.axes) a.drive.mode = mode;
+    Machine m(config);
+    m.TellOfSync();
+    m.BringUp();
+    ASSERT_TRUE(m.master.operational());
+    m.Cycles(1000);
+    constexpr CanFrame kLong{0x4FE, 8, {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55}};
+    const double frame_s = 1e-9 * static_cast<double>(BitsToNs(FrameBits(kLong), 1'000'000));
+    const auto apart_s = [&](std::size_t i) { return m.master.SyncApart_s(i); };
+    EXPECT_LT(apart_s(0), 0.25 * frame_s);
+    m.BeginFrame(kLong);
+    m.Cycles(2);
+    for (const std::size_t i : {0U, 1U}) EXPECT_NEAR(apart_s(i), frame_s, 0.25 * frame_s);
+    m.Cycle();
+    EXPECT_NEAR(apart_s(0), -frame_s, 0.25 * frame_s) << "nearer than a cycle";
+    m.BeginFrame(kLong);
+    m.Cycle();
+    m.BeginFrame(kLong);
+    m.Cycles(2);
+    EXPECT_LT(apart_s(0), 0.25 * frame_s) << "both were late";
+    m.stamp_offset_ns = 1'000'000'000'000;
+    m.BeginFrame(kLong);
+    m.Cycles(2);
+    EXPECT_EQ(apart_s(0), 0.0) << "stamps of another clock";
+  }
+}
+
 /// Cycles with SYNCs left out until it is known which ones are answered.
 int Probe(Machine& m) {
   int left_out = 0;
