@@ -209,7 +209,7 @@ LoopVerdict LoopJudge::Judge(const TwoInertiaLoop& loop) const {
     v.worst[i].limit = PeakLimit(axis_.limits, static_cast<MemberKind>(i));
   for (const Member& m : members_) {
     WorstMember& worst = v.worst[static_cast<std::size_t>(m.member.kind)];
-    const double growth = SpectralRadius(Closed(m.plant, controller));
+    const double growth = SpectralRadius(Closed(m.plant, controller), 1.0);
     const double peak = Peak(OpenLoop(m.response, response));
     const bool stable = growth < 1.0;
     const bool worse = stable == worst.stable ? (stable ? peak > worst.peak : growth > worst.growth_per_cycle)
