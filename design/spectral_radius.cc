@@ -6,27 +6,37 @@
 namespace contour {
 namespace {
 
-// The norm of A^N to the power of 1 / N, at N = 2^20: what the norm has beyond the radius is down to a part
-// in 1e5 where it is a million times as much. A search for loops asks for thousands of radii and for nothing
-// else of the eigenvalues, which take two to three times as long.
-constexpr int kSquarings = 20;
+// A search for loops asks of thousands of matrices whether their radius is below 1, and where it is, for
+// nothing else. The norm of A^N to the power of 1 / N is above the radius for every N, and by little for a
+// large one: a few products of the matrix with itself are enough for most loops, in less than half the time
+// of the eigenvalues.
+constexpr int kSquarings = 14;
 
-}  // namespace
-
-double SpectralRadius(const LoopMatrix& matrix, double below) {
-  LoopMatrix power = matrix, squared(matrix.rows(), matrix.cols());
-  double log_radius = 0.0, share = 1.0;
+/// A bound from above that is smaller than `below`, or infinity where there is none.
+double Bound(LoopMatrix power, double below) {
+  LoopMatrix squared(power.rows(), power.cols());
+  double log_bound = 0.0, share = 1.0;
   for (int i = 0; i <= kSquarings; ++i, share *= 0.5) {
     const double norm = power.norm();
-    if (!std::isfinite(norm)) return std::numeric_limits<double>::infinity();
     if (norm == 0.0) return 0.0;
-    log_radius += share * std::log(norm);  // of a bound from above
-    if (below > 0.0 && log_radius < std::log(below)) break;
+    log_bound += share * std::log(norm);
+    if (log_bound < std::log(below)) return std::exp(log_bound);
     power /= norm;
     squared.noalias() = power * power;
     power.swap(squared);
   }
-  return std::exp(log_radius);
+  return std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+double SpectralRadius(const LoopMatrix& matrix, double below) {
+  if (!std::isfinite(matrix.norm())) return std::numeric_limits<double>::infinity();
+  if (below > 0.0)
+    if (const double bound = Bound(matrix, below); bound < below) return bound;
+  const Eigen::EigenSolver<LoopMatrix> solver(matrix, false);
+  if (solver.info() != Eigen::Success) return std::numeric_limits<double>::infinity();
+  return solver.eigenvalues().cwiseAbs().maxCoeff();
 }
 
 }  // namespace contour

@@ -19,20 +19,6 @@ double ByEigen(const LoopMatrix& m) {
   return Eigen::EigenSolver<LoopMatrix>(m, false).eigenvalues().cwiseAbs().maxCoeff();
 }
 
-TEST(SpectralRadius, IsThatOfAnotherSolverForMatricesOfEverySize) {
-  std::mt19937 generator(1);
-  std::normal_distribution<double> draw;
-  for (Index n = 1; n <= kMostClosedStates; ++n)
-    for (int i = 0; i < 20; ++i) {
-      LoopMatrix m(n, n);
-      // Every third one is sparse, as a queue is; some are small.
-      for (double& value : m.reshaped()) value = i % 3 == 0 && draw(generator) > 0.3 ? 0.0 : draw(generator);
-      if (i % 5 == 0) m *= 1e-6;
-      const double expected = ByEigen(m);
-      EXPECT_NEAR(SpectralRadius(m), expected, 2e-5 * expected) << n << " rows\n" << m;
-    }
-}
-
 /// As MarginsOn closes it.
 LoopMatrix Closed(const LoopMember& member, const TwoInertiaLoop& loop, double force_N) {
   const LinearSystem plant = MakePlant(member, 1e-3, force_N).system,
@@ -44,8 +30,8 @@ LoopMatrix Closed(const LoopMember& member, const TwoInertiaLoop& loop, double f
   return a;
 }
 
-// Their queues have eigenvalues of nothing, and their states are of several sizes.
-TEST(SpectralRadius, IsFoundForLoopsOnAllThatAnAxisMayBe) {
+// Their states are of several sizes: far beyond that, products say nothing any more, and eigenvalues decide.
+TEST(SpectralRadius, SaysWhetherLoopsAreStableOnAllThatAnAxisMayBe) {
   const LoopTuning tuning{.regulator_Hz = 9.0,
                           .windup_weight = 0.2,
                           .velocity_weight = 0.35,
@@ -62,7 +48,9 @@ TEST(SpectralRadius, IsFoundForLoopsOnAllThatAnAxisMayBe) {
       const double force_N = 1e6 * (axis.axis.motor_mass_kg + axis.axis.table_mass_kg);
       for (const LoopMember& member : UncertaintySet(axis)) {
         const LoopMatrix closed = Closed(member, loop, force_N);
-        EXPECT_NEAR(SpectralRadius(closed), ByEigen(closed), 2e-5) << family.name << ", " << member.name;
+        const double radius = ByEigen(closed), told = SpectralRadius(closed, 1.0);
+        EXPECT_EQ(told < 1.0, radius < 1.0) << family.name << ", " << member.name << ": " << radius;
+        EXPECT_GE(told, radius * (1.0 - 1e-9)) << family.name << ", " << member.name;
       }
     }
 }
@@ -78,7 +66,7 @@ TEST(SpectralRadius, IsBoundedFromAboveWhereThatIsEnough) {
     EXPECT_EQ(told < 1.0, radius < 1.0) << radius;
     EXPECT_GE(told, radius * (1.0 - 1e-12));
     if (radius >= 1.0) {
-      EXPECT_NEAR(told, radius, 2e-5 * radius);
+      EXPECT_NEAR(told, radius, 1e-12 * radius);
     }
   }
 }
@@ -86,26 +74,28 @@ TEST(SpectralRadius, IsBoundedFromAboveWhereThatIsEnough) {
 TEST(SpectralRadius, OfARotationIsItsLength) {
   LoopMatrix m(2, 2);
   m << 0.3, -0.4, 0.4, 0.3;
-  EXPECT_NEAR(SpectralRadius(m), 0.5, 1e-6);
+  EXPECT_NEAR(SpectralRadius(m), 0.5, 1e-15);
 }
 
 TEST(SpectralRadius, OfARingOfDelaysIsFound) {
   // All eigenvalues are of one size.
   LoopMatrix m = LoopMatrix::Zero(8, 8);
   for (Index i = 0; i < 8; ++i) m(i, (i + 1) % 8) = 0.9;
-  EXPECT_NEAR(SpectralRadius(m), 0.9, 2e-6);
+  EXPECT_NEAR(SpectralRadius(m), 0.9, 1e-13);
 }
 
 TEST(SpectralRadius, OfAQueueThatEmptiesIsNothing) {
   LoopMatrix m = LoopMatrix::Zero(4, 4);
   for (Index i = 0; i + 1 < 4; ++i) m(i, i + 1) = 1.0;
   EXPECT_EQ(SpectralRadius(m), 0.0);
+  EXPECT_EQ(SpectralRadius(m, 1.0), 0.0);
 }
 
 TEST(SpectralRadius, OfWhatIsNoNumberIsNotStable) {
   LoopMatrix m = LoopMatrix::Identity(3, 3);
   m(1, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(SpectralRadius(m) < 1.0);
+  EXPECT_FALSE(SpectralRadius(m, 1.0) < 1.0);
 }
 
 }  // namespace
