@@ -184,8 +184,7 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
   Inputs in{setup, {}, setup.log->position, std::vector<double>(setup.log->size(), 0.0)};
   for (std::size_t k = 0; k < in.measured.size(); ++k)
     if (setup.valid[k] == 0) in.measured[k] = 0.0;
-  std::map<Shape, std::vector<std::size_t>> shapes;
-  std::map<DeliveredKey, std::size_t> drives;  // how many have it
+  std::map<Shape, std::vector<Bundle>> bundles;
   for (std::size_t i = 0; i < models.size(); ++i) {
     const AxisModel& m = models[i];
     if (!IsMachine(m)) {
@@ -196,22 +195,10 @@ std::vector<FilterRun> RunFilter(const FilterSetup& setup, std::span<const AxisM
       continue;
     }
     in.means[KeyOf(setup, m)];
-    ++drives[KeyOf(setup, m)];
-    shapes[ShapeOf(m)].push_back(i);
-  }
-  std::map<Shape, std::vector<Bundle>> bundles;
-  for (auto& [shape, which] : shapes) {
-    // Lanes next to each other that read the same of the drive read it once.
-    std::stable_sort(which.begin(), which.end(), [&](std::size_t a, std::size_t b) {
-      const DeliveredKey of_a = KeyOf(setup, models[a]), of_b = KeyOf(setup, models[b]);
-      return std::make_pair(drives[of_b], of_a) < std::make_pair(drives[of_a], of_b);
-    });
-    std::vector<Bundle>& alike = bundles[shape];
-    for (const std::size_t i : which) {
-      if (alike.empty() || alike.back().models.size() == kLanes) alike.emplace_back();
-      alike.back().models.push_back(&models[i]);
-      alike.back().out.push_back(&runs[i]);
-    }
+    std::vector<Bundle>& alike = bundles[ShapeOf(m)];
+    if (alike.empty() || alike.back().models.size() == kLanes) alike.emplace_back();
+    alike.back().models.push_back(&m);
+    alike.back().out.push_back(&runs[i]);
   }
   MakeMeans(setup, in.means);
   std::vector<std::span<const Bundle>> work;

@@ -81,10 +81,9 @@ class RowStore {
 /// Everything that the runs of one diagnosis share.
 struct FilterSetup {
   const AxisLog* log = nullptr;
-  std::vector<std::uint8_t> valid;   ///< rows whose position may correct
-  std::vector<std::uint8_t> slides;  ///< rows of steady sliding, whose friction is held; empty: none
-  std::vector<double> start;         ///< position and velocity of the motor at the first row
-  ObserverGain gain{}, gain_two{};   ///< for rigid runs, for two-inertia runs
+  std::vector<std::uint8_t> valid;  ///< rows whose position may correct
+  std::vector<double> start;        ///< position and velocity of the motor at the first row
+  ObserverGain gain{}, gain_two{};  ///< for rigid runs, for two-inertia runs
   int substeps_rigid = 4, substeps_two = 8;
   bool full = false;  ///< fill table_position; velocity and friction too when `trace`
   bool trace = false;

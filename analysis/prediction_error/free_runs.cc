@@ -58,7 +58,6 @@ std::vector<std::vector<double>> FreeRuns(const Problem& problem, std::span<cons
   free.gain = {};
   free.gain_two = {};
   free.full = false;
-  free.slides.clear();  // of the measured motion, which the free one may leave
   free.segments = windows;
   // The run's row k holds where the model is at row k: nothing corrects it, so that is how far it is off.
   std::vector<FilterRun> runs = RunFilter(free, models, problem.threads);

@@ -25,12 +25,10 @@ Decay DecayOver(double square, double decay, double h) {
   return {e * (c + decay * s), e * s, -square * e * s, e * (c - decay * s)};
 }
 
-void SetFlow(LaneFlow& flow, std::size_t i, const AxisModel& a, double load_inertia, double h,
-             double period_s) {
+void SetFlow(LaneFlow& flow, std::size_t i, const AxisModel& a, double load_inertia, double h) {
   const double per_inertia = 1.0 / a.motor_inertia + 1.0 / load_inertia;
   const double square = a.stiffness * per_inertia, decay = 0.5 * a.damping * per_inertia;
-  const Decay whole = DecayOver(square, decay, h), half = DecayOver(square, decay, 0.5 * h),
-              row = DecayOver(square, decay, 0.5 * period_s);
+  const Decay whole = DecayOver(square, decay, h), half = DecayOver(square, decay, 0.5 * h);
   flow.dd[i] = whole.dd;
   flow.dr[i] = flow.ra[i] = whole.dr;
   flow.rd[i] = whole.rd;
@@ -39,9 +37,6 @@ void SetFlow(LaneFlow& flow, std::size_t i, const AxisModel& a, double load_iner
   flow.half_rd[i] = half.rd;
   flow.half_rr[i] = half.rr;
   flow.half_ra[i] = half.dr;
-  flow.row_rd[i] = row.rd;
-  flow.row_rr[i] = row.rr;
-  flow.row_ra[i] = row.dr;
   flow.stiff[i] = square;
   flow.damp[i] = 2.0 * decay;
   flow.motor_share[i] = a.motor_inertia / (a.motor_inertia + load_inertia);
@@ -49,11 +44,7 @@ void SetFlow(LaneFlow& flow, std::size_t i, const AxisModel& a, double load_iner
 }
 
 void Compare(LaneRow& row) {
-  const auto same = [&](int from, int to) {
-    return std::all_of(row.at + from, row.at + to, [&](const double* p) { return p == row.at[from]; });
-  };
-  row.alike = same(0, kLanes);
-  row.halves_alike = same(0, kLanes / 2) && same(kLanes / 2, kLanes);
+  row.alike = std::all_of(row.at, row.at + kLanes, [&](const double* p) { return p == row.at[0]; });
 }
 
 void SetFriction(Lanes& m, std::size_t i, const AxisModel& a) {
@@ -94,7 +85,6 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
   m.period_s = setup.log->period_s;
   m.measured = measured;
   m.valid = setup.valid.data();
-  m.slides = m.substeps < 2 || setup.slides.empty() ? nullptr : setup.slides.data();
   const ObserverGain& gain = first.two_inertia ? setup.gain_two : setup.gain;
   std::copy(gain.begin(), gain.end(), m.l);
   m.start_q = setup.start[0];
@@ -125,8 +115,8 @@ Lanes MakeLanes(const FilterSetup& setup, std::span<const AxisModel* const> mode
     m.payload_row[i] = static_cast<std::int64_t>(a.payload != 0.0 ? a.payload_row : setup.log->size() + 1);
     if (a.two_inertia) {
       const double h = m.period_s / m.substeps;
-      SetFlow(m.flow, i, a, a.load_inertia, h, m.period_s);
-      SetFlow(m.flow_payload, i, a, a.load_inertia + a.payload, h, m.period_s);
+      SetFlow(m.flow, i, a, a.load_inertia, h);
+      SetFlow(m.flow_payload, i, a, a.load_inertia + a.payload, h);
     }
     m.payload = m.payload || a.payload != 0.0;
     m.half_gap[i] = 0.5 * a.gap;
@@ -156,7 +146,6 @@ Lanes Over(const Lanes& lanes, const Segment& segment) {
     for (const double*& p : row->at) p += segment.at * static_cast<std::size_t>(m.substeps);
   m.measured += from;
   m.valid += from;
-  if (m.slides != nullptr) m.slides += from;
   m.payload_row = m.payload_row - static_cast<std::int64_t>(from);
   m.start_q = segment.start_q;
   m.start_w = segment.start_w;

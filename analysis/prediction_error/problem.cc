@@ -11,7 +11,6 @@
 #include "analysis/prediction_error/extras.h"
 #include "analysis/prediction_error/fit.h"
 #include "analysis/prediction_error/simd/lane_run.h"
-#include "analysis/prediction_error/steady_slides.h"
 
 namespace contour::diagnosis {
 namespace {
@@ -93,7 +92,6 @@ void Problem::ChooseSubsteps() {
   };
   setup.substeps_rigid = steps(0.0);
   setup.substeps_two = steps(coupling);
-  setup.slides = HeldSlides(setup, {log, setup.valid, signals->begins, nominal, stiffer});
 }
 
 void Problem::CountRows() {

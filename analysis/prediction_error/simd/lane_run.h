@@ -10,8 +10,7 @@ namespace contour::diagnosis {
 /// A number per row (or sub-step) and lane.
 struct LaneRow {
   const double* at[kLanes] = {};
-  bool alike = false;         ///< all lanes read the same, which need be read only once
-  bool halves_alike = false;  ///< so do the first and the second half of them, each for itself
+  bool alike = false;  ///< all lanes read the same, which need be read only once
 };
 
 /// What acts over a row, taken as linear inside it: value at its beginning and at its end.
@@ -27,7 +26,6 @@ template <class V, class Where = void>
 struct LaneFlowOf {
   V dd, dr, da, rd, rr, ra;
   V half_rd, half_rr, half_ra;  ///< of r, over half the sub-step
-  V row_rd, row_rr, row_ra;     ///< of r, over half the row
   V stiff, damp;                ///< over the reduced inertia
   V motor_share, load_share;
 };
@@ -68,7 +66,6 @@ struct Lanes : LaneNumbersOf<LaneValues> {
   LaneRow viscous, reading;
   const double* measured = nullptr;
   const std::uint8_t* valid = nullptr;
-  const std::uint8_t* slides = nullptr;  ///< rows over which friction is held; null: none
   LaneIntegers payload_row;
   double l[4] = {};
   double start_q = 0.0, start_w = 0.0;

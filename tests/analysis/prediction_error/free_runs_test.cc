@@ -20,18 +20,6 @@ TEST(FreeRuns, AWorseModelIsFurtherOffOverASecond) {
   EXPECT_GT(FreeRunError(made.problem, bad, 1.0, 0, made.problem.rows()), 2.0 * near);
 }
 
-// A free run may stick where the axis slid.
-TEST(FreeRuns, FrictionIsNotHeldWhereTheMeasuredMotionSlides) {
-  test::HiddenOptions o;
-  o.duration_s = 20.0;
-  test::LearntProblem made(test::MakeHiddenAxis(o));
-  const AxisModel model = made.problem.Build(made.point);
-  const double before = FreeRunError(made.problem, model, 1.0, 0, made.problem.rows());
-  ASSERT_FALSE(made.problem.setup.slides.empty());
-  made.problem.setup.slides.clear();
-  EXPECT_EQ(FreeRunError(made.problem, model, 1.0, 0, made.problem.rows()), before);
-}
-
 TEST(FreeRuns, WindowsOfTheHalvesShareNoRow) {
   test::HiddenOptions o;
   o.duration_s = 20.0;

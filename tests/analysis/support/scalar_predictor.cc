@@ -71,10 +71,7 @@ class Run {
       z_before_ = z_;
       soft_before_ = soft_;
       path_.clear();
-      if (k + 1 < rows && !setup_.slides.empty() && setup_.slides[k] != 0)
-        Slide(k);
-      else
-        for (int j = 0; j < substeps_ && k + 1 < rows; ++j) Step(k, j);
+      for (int j = 0; j < substeps_ && k + 1 < rows; ++j) Step(k, j);
       predicted_ = OnLoad() ? b_.theta_load : b_.theta;
     }
     return innovation;
@@ -151,76 +148,6 @@ class Run {
     drag_ = f.s1 * fading * (z_ - z) / h_ + viscous;
     const double friction = s0_ * 0.5 * (z + z_) + soft_s0_ * 0.5 * (soft + soft_) + drag_;
     if (!m_.two_inertia) {
-      b_.w += h_ * (motor + load - friction) / carried;
-      b_.theta += 0.5 * h_ * b_.w + late;
-      return;
-    }
-    (OnLoad() ? load : motor) -= friction;
-    b_ = Moved(b_, m_, carried, motor / m_.motor_inertia, load / carried, h_);
-    b_.theta += late;
-  }
-
-  double FrictionSpeed() const { return OnLoad() ? b_.w_load : b_.w; }
-
-  /// Mean of a bristle that goes from `from` to `to` in x of its lengths.
-  static double MeanOver(double x, double from, double to, double end) {
-    return x > 1e-6 ? end + (from - to) / x : from;
-  }
-
-  /// A row of steady sliding: one step of the bristle at the speed half-way, friction but for its viscous
-  /// part held over the sub-steps.
-  void Slide(std::size_t k) {
-    const StatedFriction& f = m_.friction;
-    const double period = setup_.log->period_s;
-    const double carried =
-        (m_.two_inertia ? m_.load_inertia : m_.motor_inertia) + (k >= m_.payload_row ? m_.payload : 0.0);
-    const auto given = [&](double torque) {
-      return torque * (m_.torque_gain - m_.saturation * torque * torque);
-    };
-    const std::size_t first = k * static_cast<std::size_t>(substeps_);
-    double mean = 0.0;
-    for (int j = 0; j < substeps_ / 2; ++j) mean += delivered_.mean[first + static_cast<std::size_t>(j)];
-    mean /= substeps_ / 2;
-    double motor = given(mean) + m_.offset + At(m_.motor_force, k, 0.25), load = At(m_.load_force, k, 0.25);
-    const double known = s0_ * z_ + drag_ + soft_s0_ * soft_;
-    const double begins = FrictionSpeed();
-    double v = 0.0;
-    if (m_.two_inertia) {
-      (OnLoad() ? load : motor) -= known;
-      const Bodies half = Moved(b_, m_, carried, motor / m_.motor_inertia, load / carried, 0.5 * period);
-      v = OnLoad() ? half.w_load : half.w;
-    } else {
-      v = b_.w + 0.5 * period * (motor + load - known) / carried;
-    }
-    const double g = Level(v, 1.0 + At(m_.level, k, 0.5)), speed = WearSpeed(v);
-    const double x = s0_ * period / g * speed, end = g / s0_ * v / speed;
-    path_.push_back({v, g / s0_, s0_ * period / g});
-    const double z = z_, soft = soft_;
-    MoveBristles(x, end);
-    const double fading = f.vd > 0.0 ? std::exp(-(v / f.vd) * (v / f.vd)) : 1.0;
-    const double bends = f.s1 * fading * (z_ - z) / period;
-    double held = s0_ * MeanOver(x, z, z_, end) + bends;
-    if (m_.soft_share > 0.0) held += soft_s0_ * MeanOver(x * soft_rate_, soft, soft_, end / soft_rate_);
-    const double viscous = f.s2 * (1.0 + (m_.viscous ? (*m_.viscous)[k] : 0.0));
-    double before = begins - (v - begins) * 2.0 / substeps_;
-    for (int j = 0; j < substeps_; ++j) {
-      const double now = FrictionSpeed(), half_way = now + 0.5 * (now - before),
-                   share = (j + 0.5) / substeps_;
-      before = now;
-      const double friction = held + viscous * half_way;
-      drag_ = bends + viscous * half_way;
-      Carry(first + static_cast<std::size_t>(j),
-            given(delivered_.mean[first + static_cast<std::size_t>(j)]) + m_.offset +
-                At(m_.motor_force, k, share),
-            At(m_.load_force, k, share), friction, carried);
-    }
-  }
-
-  /// A sub-step of rigid or of both bodies from its beginning under forces that are held.
-  void Carry(std::size_t at, double motor, double load, double friction, double carried) {
-    const double late = m_.torque_gain * delivered_.late[at] / (m_.two_inertia ? m_.motor_inertia : carried);
-    if (!m_.two_inertia) {
-      b_.theta += 0.5 * h_ * b_.w;
       b_.w += h_ * (motor + load - friction) / carried;
       b_.theta += 0.5 * h_ * b_.w + late;
       return;
