@@ -16,6 +16,7 @@
 #include "core/reference.h"
 #include "core/version.h"
 #include "daemon/drive_warnings.h"
+#include "daemon/learning/learnt_under.h"
 #include "daemon/loaded_model.h"
 #include "daemon/make_cycle_config.h"
 #include "daemon/output_words.h"
@@ -408,18 +409,7 @@ Answer Supervisor::Run(const ProgramUpload& upload, const std::stop_token& unwan
 LearningReport Supervisor::Learn(const ProgramUpload& upload, const Placement& place,
                                  PathGenerator& generator) {
   if (upload.forget) parts_.learning.Forget();
-  // A program that has to go to its zero first is another one than the same program that stands there.
-  const auto text = [&] {
-    std::string said = upload.text;
-    // A tool that was measured anew makes another path of a program with G43 in it.
-    if (const std::string& table = program_defaults_.tool_table;
-        !table.empty() && said.find("43") != std::string::npos)
-      said += '\n' + ReadProgramText(table);
-    // In whole hundredths of a millimetre: two passes do not end at the same bit.
-    for (std::size_t i = 0; i < place.zero_m.size(); ++i)
-      said += '\n' + std::to_string(std::lround(1e5 * (place.start_m[i] - place.zero_m[i])));
-    return said;
-  };
+  const auto text = [&] { return LearntUnder(upload.text, place, program_defaults_.tool_table); };
   const LearningReport report =
       parts_.learning.Prepare(text, place.zero_m, program_id_, generator).value_or(LearningReport());
   if (!report.refused.empty()) spdlog::warn("the last pass taught nothing: {}", report.refused);

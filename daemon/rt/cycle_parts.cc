@@ -97,14 +97,13 @@ PerAxis<ControlledAxis> ControlledAxes(const CycleConfig& config) {
       axis.loop = LoopOf(config, i, 1.0);
       axis.softer_loop = LoopOf(config, i, config.control.supervision.softer);
       axis.regulator_Hz = a.loop->regulator_Hz;
-      axis.standstill = StandstillOf(config, i);
       if (LoopTakesScale(config, i)) {
         axis.scale_loop = ScaleLoopOf(config, i, 1.0);
         axis.softer_scale_loop = ScaleLoopOf(config, i, config.control.supervision.softer);
       }
     }
-    // `full` by the other law of friction; its rivals are as they are sold.
-    if (config.controller == ControllerName::kFull && !KnowsTwoInertias(config) && !InCascade(config))
+    // By either law of friction; rivals are as they are sold.
+    if (config.controller == ControllerName::kFull && !InCascade(config))
       axis.standstill = StandstillOf(config, i);
     axes.push_back(axis);
   }

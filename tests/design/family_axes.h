@@ -9,6 +9,17 @@
 
 namespace contour {
 
+/// A loop for tests that is tuned for none of the axes below.
+inline constexpr LoopTuning kTuning{.regulator_Hz = 9.0,
+                                    .windup_weight = 0.2,
+                                    .velocity_weight = 0.35,
+                                    .disturbance_Hz = 150.0,
+                                    .motor_force_Hz = 400.0,
+                                    .table_force_Hz = 60.0,
+                                    .notch_ratio = 0.7,
+                                    .notch_pole_damping = 0.7,
+                                    .notch_zero_damping = 0.2};
+
 /// A family of feed axes from a light ball-screw table to a belt, with one drive and a mode of 3 % damping.
 struct FamilyAxis {
   std::string name;

@@ -11,15 +11,6 @@ namespace contour {
 namespace {
 
 constexpr double kPeriod_s = 1e-3;
-constexpr LoopTuning kTuning{.regulator_Hz = 9.0,
-                             .windup_weight = 0.2,
-                             .velocity_weight = 0.35,
-                             .disturbance_Hz = 150.0,
-                             .motor_force_Hz = 400.0,
-                             .table_force_Hz = 60.0,
-                             .notch_ratio = 0.7,
-                             .notch_pole_damping = 0.7,
-                             .notch_zero_damping = 0.2};
 
 /// The same axis, moved more by the same force.
 LoopMember WithGain(LoopMember m, double gain) {

@@ -32,19 +32,10 @@ LoopMatrix Closed(const LoopMember& member, const TwoInertiaLoop& loop, double f
 
 // Their states are of several sizes: far beyond that, products say nothing any more, and eigenvalues decide.
 TEST(SpectralRadius, SaysWhetherLoopsAreStableOnAllThatAnAxisMayBe) {
-  const LoopTuning tuning{.regulator_Hz = 9.0,
-                          .windup_weight = 0.2,
-                          .velocity_weight = 0.35,
-                          .disturbance_Hz = 150.0,
-                          .motor_force_Hz = 400.0,
-                          .table_force_Hz = 60.0,
-                          .notch_ratio = 0.7,
-                          .notch_pole_damping = 0.7,
-                          .notch_zero_damping = 0.2};
   for (const FamilyAxis& family : kFamily)
     for (const bool scale : {false, true}) {
       const LoopAxis axis = AxisOf(family, scale);
-      const TwoInertiaLoop loop = DesignLoop(axis.axis, tuning, 1e-3, scale);
+      const TwoInertiaLoop loop = DesignLoop(axis.axis, kTuning, 1e-3, scale);
       const double force_N = 1e6 * (axis.axis.motor_mass_kg + axis.axis.table_mass_kg);
       for (const LoopMember& member : UncertaintySet(axis)) {
         const LoopMatrix closed = Closed(member, loop, force_N);

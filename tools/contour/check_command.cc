@@ -113,8 +113,8 @@ int RunCheck(const Options& options) {
     if (options.file.empty()) return kExitDone;
   }
   const MaybeEmulatedMachineFile file = LoadMaybeEmulatedMachine(options.file, options.set);
-  LoadToolTable(
-      file.machine.machine.tool_table);  // what is wrong with it is said here, not at the first program
+  // What is wrong with it is said here, not at the first program.
+  LoadToolTable(file.machine.machine.tool_table);
   const LoopSection loops = JudgeLoops(file.machine);
   if (!loops.refused.empty()) {
     std::cout << CheckReport(file.machine) << loops.text << std::flush;

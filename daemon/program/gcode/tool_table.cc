@@ -90,6 +90,23 @@ const AxisValues* ToolTable::Find(int tool) const {
   return tool == 0 ? &kNone : nullptr;
 }
 
+// Blanks may stand within a number, and zeros before it.
+bool AsksForLengths(std::string_view program) {
+  constexpr std::string_view kBlanks = " \t";
+  const auto takes = [&](std::size_t& at, char wanted) {
+    at = program.find_first_not_of(kBlanks, at);
+    return at != program.npos && program[at] == wanted && ++at > 0;
+  };
+  for (std::size_t at = program.find_first_of("gG"); at != program.npos;
+       at = program.find_first_of("gG", at)) {
+    std::size_t digit = ++at;
+    while (takes(digit, '0')) {
+    }
+    if (digit != program.npos && takes(digit, '4') && takes(digit, '3')) return true;
+  }
+  return false;
+}
+
 ToolTable ParseToolTable(std::string_view text, const std::string& name) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   ToolTable table{name};

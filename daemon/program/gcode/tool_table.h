@@ -22,6 +22,9 @@ struct ToolTable {
   [[nodiscard]] const AxisValues* Find(int tool) const;
 };
 
+/// Whether a program has a G43 in it, be it in a comment.
+[[nodiscard]] bool AsksForLengths(std::string_view program);
+
 /// Reads a table of tools as LinuxCNC writes it: a tool a line, `T1 P1 Z42.5 D6 ;end mill`, lengths in
 /// millimetres (LinuxCNC's are in the machine's units). T is required; P (pocket), D, I, J and Q (diameter,
 /// angles, orientation) are read and not used, and A, B and C have to be 0. Throws ProgramError with file and

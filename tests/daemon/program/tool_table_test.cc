@@ -1,7 +1,6 @@
 #include "daemon/program/gcode/tool_table.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -13,6 +12,7 @@
 #include "daemon/program/gcode_parser.h"
 #include "daemon/program/placed_program.h"
 #include "daemon/program/program.h"
+#include "tests/support/scratch_directory.h"
 
 namespace contour {
 namespace {
@@ -44,6 +44,13 @@ TEST(ToolTable, IsReadAsLinuxCncWritesIt) {
   EXPECT_EQ(table.Find(3), nullptr);
   EXPECT_EQ(ParseToolTable(std::string("\xEF\xBB\xBF") + kTable, "tools.tbl").offsets_m, table.offsets_m)
       << "behind a byte order mark";
+}
+
+TEST(ToolTable, MatterToProgramsThatAskForLengths) {
+  for (const char* text : {"G43 H1\n", "g1x2g43\n", "N10 G 04 3\n", "G043\n"})
+    EXPECT_TRUE(AsksForLengths(text)) << text;
+  for (const char* text : {"G1 X43 Y0.43\n", "G4 P43\n", "G1 X1 N43\n", ""})
+    EXPECT_FALSE(AsksForLengths(text)) << text;
 }
 
 TEST(ToolTable, SaysWhatIsWrongAndWhere) {
@@ -123,8 +130,8 @@ TEST(ToolLength, OfAToolThatIsNotInTheTableIsRefused) {
 }
 
 TEST(ToolLength, TheTableIsReadAnewForEveryProgram) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / ("contour_tools_" + std::to_string(::getpid()) + ".tbl");
+  const test::ScratchDirectory scratch;
+  const std::filesystem::path file = scratch.path() / "tools.tbl";
   PerAxis<PlanLimits> limits;
   PlanLimits z;
   z.axis = "z";
